@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/opal/rgb.h"
+#include "formats/opal/sparse_rows.h"
+#include "formats/opal/vec3.h"
+
+namespace opaline::formats {
+
+/// What an `.opal` file holds; formats/README.md specifies the bytes.
+
+inline constexpr std::uint32_t kOpalVersion = 1;
+inline constexpr std::uint32_t kNoImage = 0xffffffffu;
+
+/// Which side of <T, L> carries the solid angle (translucency.md 3.9). Only A is defined so far.
+enum class Pairing : std::uint32_t { light_carries_solid_angle = 1 };
+
+/// How a texture coordinate outside [0, 1] is brought back inside.
+enum class Wrap : std::uint32_t { repeat = 0, clamp = 1, mirror = 2 };
+
+/// What row values mean and how a receiver is shaded from them.
+enum class Shading : std::uint32_t {
+    /// L_o = base_color * <T_0, L>; T_0 = V max(0, n.w) / pi, one term, grey or RGB.
+    diffuse = 1,
+};
+
+/// One glTF primitive of one node instance. Receivers and vertices are the same thing: row
+/// (v - first_vertex) * terms + k is T_k of vertex v. Fixed size, stored as is.
+struct PrimitiveRecord {
+    std::uint32_t node = 0, mesh = 0, primitive = 0, material = 0;  ///< indices in the source file
+    std::uint32_t first_vertex = 0, vertex_count = 0;
+    std::uint32_t first_index = 0, index_count = 0;  ///< triangles; indices count from first_vertex
+    std::uint32_t terms = 1;                         ///< K, view terms per receiver
+    std::uint32_t bands = 1;                         ///< 1 grey, 3 RGB
+    std::uint32_t first_row = 0, first_band_row = 0;
+    std::uint64_t first_code = 0;
+    Shading shading = Shading::diffuse;
+    std::uint32_t base_color_image = kNoImage;       ///< index into images
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    std::uint32_t flags = 0;                         ///< kDoubleSided
+    std::uint32_t reserved = 0;                      ///< zero
+
+    static constexpr std::uint32_t kDoubleSided = 1;
+
+    RowRange rows() const {
+        return {first_row, vertex_count * terms, bands, first_band_row, first_code};
+    }
+};
+static_assert(sizeof(PrimitiveRecord) == 80);
+
+struct Float2 {
+    float x = 0, y = 0;
+};
+
+/// 8-bit sRGB colour, three bytes a pixel, row 0 on top.
+struct PreviewImage {
+    std::uint32_t width = 0, height = 0;
+    std::span<const std::uint8_t> rgb;
+};
+
+/// The whole asset as spans, into a mapped file or into an `Asset`. Immutable.
+struct AssetView {
+    std::string_view provenance;  ///< JSON text, for people and tools
+    std::uint32_t cubemap_size = 0;
+    Pairing pairing = Pairing::light_carries_solid_angle;
+    std::span<const PrimitiveRecord> primitives;
+    SparseRowsView transport;
+    std::span<const Vec3> position;    ///< [m], world
+    std::span<const Vec3> normal;      ///< unit
+    std::span<const Rgb> base_color;   ///< factor times vertex colour; the image comes on top
+    std::span<const Float2> texcoord;  ///< empty, or one per vertex
+    std::span<const std::uint32_t> index;
+    std::vector<PreviewImage> images;
+
+    std::uint32_t receivers() const { return static_cast<std::uint32_t>(position.size()); }
+};
+
+/// Owning twin of `PreviewImage`.
+struct PreviewImageData {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgb;
+};
+
+/// Owning twin of `AssetView`: what the baker builds.
+struct Asset {
+    std::string provenance;
+    std::vector<PrimitiveRecord> primitives;
+    SparseRows transport;
+    std::vector<Vec3> position, normal;
+    std::vector<Rgb> base_color;
+    std::vector<Float2> texcoord;
+    std::vector<std::uint32_t> index;
+    std::vector<PreviewImageData> images;
+
+    AssetView view() const;
+};
+
+}  // namespace opaline::formats

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "formats/opal/asset.h"
+#include "formats/opal/atomic_file.h"
+#include "formats/opal/result.h"
+
+namespace opaline::formats {
+
+/// Writes a whole asset and commits the file. The bytes depend on the asset alone.
+Status write_opal(const AssetView& asset, AtomicFile file);
+
+}  // namespace opaline::formats

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "formats/image/image.h"
+#include "formats/opal/result.h"
+#include "formats/opal/rgb.h"
+
+namespace opaline::formats {
+
+inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
+
+/// Surface appearance, as the input formats mean it. Colours are linear Rec. 709.
+struct Material {
+    std::string name;
+    Rgb base_color{1, 1, 1};                    ///< factor, each in [0,1]
+    std::uint32_t base_color_image = kNone;     ///< index into Scene::images
+    std::uint32_t base_color_texcoord = 0;      ///< which texture coordinate set it uses
+    glm::mat3 base_color_uv_transform{1.0f};    ///< KHR_texture_transform, applied to (u, v, 1)
+    enum class Wrap { repeat, clamp, mirror } wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    bool double_sided = false;
+};
+
+/// One glTF primitive of one node instance, in world space and metres. Vertices keep the original
+/// order and count: receivers and output rows use this numbering.
+struct Primitive {
+    std::uint32_t node = 0, mesh = 0, primitive = 0;  ///< indices in the file, for messages
+    std::string name;                                 ///< "node 'Vase' > mesh 3 > primitive 0"
+    std::uint32_t material = 0;                       ///< index into Scene::materials, always valid
+    std::vector<glm::vec3> position;                  ///< [m], finite
+    std::vector<glm::vec3> normal;   ///< unit; one per vertex; {0,0,0} where none can be defined
+    std::vector<glm::vec2> texcoord; ///< base-colour set, transform applied; empty or one per vertex
+    std::vector<Rgb> color;          ///< COLOR_0, linear; empty or one per vertex
+    std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();
+                                       ///< counter-clockwise seen from outside
+};
+
+/// Everything the baker knows about its input. Plain values; links are indices.
+struct Scene {
+    std::vector<Primitive> primitives;  ///< scene nodes depth-first, then the mesh's primitives:
+                                        ///< a primitive's position here is its running number
+    std::vector<Material> materials;    ///< never empty
+    std::vector<Image8> images;         ///< decoded textures that a material uses
+    std::string source;                 ///< path as given by the user
+    std::string sha256;                 ///< of all input bytes, in reading order, lower-case hex
+    std::vector<std::filesystem::path> inputs;  ///< files read, for dependency files
+};
+
+}  // namespace opaline::formats
