@@ -42,10 +42,10 @@ struct PrimitiveRecord {
     std::uint32_t first_row = 0, first_band_row = 0;
     std::uint64_t first_code = 0;
     Shading shading = Shading::diffuse;
-    std::uint32_t base_color_image = kNoImage;       ///< index into images
+    std::uint32_t base_color_image = kNoImage;  ///< index into images
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    std::uint32_t flags = 0;                         ///< kDoubleSided
-    std::uint32_t reserved = 0;                      ///< zero
+    std::uint32_t flags = 0;     ///< kDoubleSided
+    std::uint32_t reserved = 0;  ///< zero
 
     static constexpr std::uint32_t kDoubleSided = 1;
 

@@ -11,9 +11,9 @@ namespace opaline::formats {
 /// A uniform disc of light at infinity: the sun. Kept apart from the map, whose pixels are too
 /// coarse for it.
 struct DistantDisc {
-    Vec3 direction{0, 1, 0};     ///< unit, toward the disc's centre
-    float angular_radius = 0;    ///< [rad], in (0, pi/2)
-    Rgb radiance;                ///< [W m^-2 sr^-1], >= 0; irradiance facing it = radiance * solid angle
+    Vec3 direction{0, 1, 0};   ///< unit, toward the disc's centre
+    float angular_radius = 0;  ///< [rad], in (0, pi/2)
+    Rgb radiance;  ///< [W m^-2 sr^-1], >= 0; irradiance facing it = radiance * solid angle
 };
 
 /// 2 pi (1 - cos r), without cancellation for small r.

@@ -71,6 +71,8 @@ class [[nodiscard]] Result {
 
 /// For operations that return nothing but may fail.
 using Status = Result<std::monostate>;
-inline Status ok_status() { return Status(std::monostate{}); }
+inline Status ok_status() {
+    return Status(std::monostate{});
+}
 
 }  // namespace opaline::formats

@@ -40,7 +40,7 @@ struct FileHeader {
     std::array<char, 8> magic = kOpalMagic;
     std::uint32_t version = 0;
     std::uint32_t endian_mark = kEndianMark;
-    std::uint64_t file_size = 0;      ///< of the whole file, so that truncation shows at once
+    std::uint64_t file_size = 0;  ///< of the whole file, so that truncation shows at once
     std::uint32_t section_count = 0;
     std::uint32_t reserved = 0;
     std::uint64_t table_checksum = 0;  ///< XXH3-64 of the section table
@@ -55,16 +55,9 @@ struct SectionEntry {
     std::uint64_t stored_size = 0;  ///< bytes in the file
     std::uint32_t codec = 0;        ///< Codec
     std::uint32_t reserved = 0;
-    std::uint64_t checksum = 0;     ///< XXH3-64 of the stored bytes
+    std::uint64_t checksum = 0;  ///< XXH3-64 of the stored bytes
 };
 static_assert(sizeof(SectionEntry) == 48);
-
-/// One section to be written.
-struct SectionData {
-    std::uint32_t id = 0;
-    Codec codec = Codec::none;
-    std::vector<std::span<const std::byte>> parts;  ///< written one after the other, each padded to 16
-};
 
 /// Header and table of a file, checked against its size and against each other; section contents
 /// are not touched. `file` is used in messages only.

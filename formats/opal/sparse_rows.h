@@ -27,16 +27,16 @@ struct SparseRow {
 /// + face] * average_scale[band row]. Worst rounding error: half a scale.
 struct SparseRowsView {
     std::uint32_t cubemap_size = 0;
-    std::uint32_t code_bits = 8;                    ///< 8 or 16: width of detail codes, two's complement
-    std::uint32_t index_bytes = 2;                  ///< 2, or 4 where 6 n n exceeds 65536
-    std::span<const std::uint32_t> row_offset;      ///< rows + 1
-    std::span<const float> average_scale;           ///< band rows
-    std::span<const float> detail_scale;            ///< band rows
-    std::span<const std::int16_t> average_code;     ///< 6 * band rows
-    std::span<const std::uint16_t> index16;         ///< details, if index_bytes == 2
-    std::span<const std::uint32_t> index32;         ///< details, if index_bytes == 4
-    std::span<const std::int8_t> code8;             ///< details * bands, if code_bits == 8
-    std::span<const std::int16_t> code16;           ///< details * bands, if code_bits == 16
+    std::uint32_t code_bits = 8;    ///< 8 or 16: width of detail codes, two's complement
+    std::uint32_t index_bytes = 2;  ///< 2, or 4 where 6 n n exceeds 65536
+    std::span<const std::uint32_t> row_offset;   ///< rows + 1
+    std::span<const float> average_scale;        ///< band rows
+    std::span<const float> detail_scale;         ///< band rows
+    std::span<const std::int16_t> average_code;  ///< 6 * band rows
+    std::span<const std::uint16_t> index16;      ///< details, if index_bytes == 2
+    std::span<const std::uint32_t> index32;      ///< details, if index_bytes == 4
+    std::span<const std::int8_t> code8;          ///< details * bands, if code_bits == 8
+    std::span<const std::int16_t> code16;        ///< details * bands, if code_bits == 16
 
     std::uint32_t rows() const {
         return row_offset.empty() ? 0 : static_cast<std::uint32_t>(row_offset.size() - 1);

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace opaline::formats {
+
+/// The fixed heads of the sections, shared by reader and writer (formats/README.md).
+
+inline constexpr std::size_t kArrayAlignment = 16;  ///< every array of a section is padded to this
+
+struct BasisHead {
+    std::uint32_t kind = 1;  ///< 1: orthonormal Haar per face (haar.h)
+    std::uint32_t cubemap_size = 0;
+    std::uint32_t pairing = 0;
+    std::uint32_t reserved = 0;
+};
+static_assert(sizeof(BasisHead) == 16);
+
+struct PrimitivesHead {
+    std::uint32_t count = 0, record_size = 0;
+    std::uint64_t reserved = 0;
+};
+static_assert(sizeof(PrimitivesHead) == 16);
+
+struct MeshHead {
+    std::uint32_t vertices = 0, indices = 0, texcoords = 0, reserved = 0;
+};
+static_assert(sizeof(MeshHead) == 16);
+
+struct ImagesHead {
+    std::uint32_t count = 0, reserved[3] = {};
+};
+static_assert(sizeof(ImagesHead) == 16);
+
+struct ImageSize {
+    std::uint32_t width = 0, height = 0;
+};
+
+struct TransportHead {
+    std::uint32_t rows = 0, code_bits = 0, index_bytes = 0, reserved = 0;
+    std::uint64_t band_rows = 0, details = 0, codes = 0, reserved_wide = 0;
+};
+static_assert(sizeof(TransportHead) == 48);
+
+/// Largest ratio of decoded to stored size that a reader accepts and a writer makes: bounds what a
+/// hostile file can make a reader allocate.
+inline constexpr std::uint64_t kMaxCompressionRatio = 1024;
+
+}  // namespace opaline::formats

@@ -1,0 +1,135 @@
+#include "formats/opal/sparse_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "formats/opal/cubemap.h"
+
+namespace opaline::formats {
+namespace {
+
+float largest_magnitude(std::span<const float> values) {
+    float largest = 0;
+    for (const float value : values) {
+        largest = std::max(largest, std::abs(value));
+    }
+    return largest;
+}
+
+// One scale for a set of values so that the largest uses the full code range. A scale too small to
+// be inverted means values that are zero for every purpose.
+float code_scale(float largest, std::int32_t limit) {
+    const float scale = largest / static_cast<float>(limit);
+    return scale >= std::numeric_limits<float>::min() ? scale : 0.0f;
+}
+
+std::int16_t quantise(float value, float scale, std::int32_t limit) {
+    if (scale == 0.0f) {
+        return 0;
+    }
+    const auto code = static_cast<std::int32_t>(std::lround(value / scale));
+    return static_cast<std::int16_t>(std::clamp(code, -limit, limit));
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+constexpr std::int32_t kAverageLimit = 32767;
+
+}  // namespace
+
+SparseRowsView SparseRows::view() const {
+    return {cubemap_size, code_bits, index_bytes, row_offset, average_scale, detail_scale,
+            average_code, index16,   index32,     code8,      code16};
+}
+
+SparseRows make_sparse_rows(std::uint32_t cubemap_size, std::uint32_t code_bits) {
+    SparseRows rows;
+    rows.cubemap_size = cubemap_size;
+    rows.code_bits = code_bits;
+    rows.index_bytes = cubemap_texels(cubemap_size) <= 65536 ? 2 : 4;
+    return rows;
+}
+
+bool append_row(SparseRows& rows, const SparseRow& row) {
+    const std::size_t details = row.index.size();
+    if (details > std::numeric_limits<std::uint32_t>::max() - rows.row_offset.back()) {
+        return false;
+    }
+    const std::int32_t limit = rows.code_bits == 8 ? 127 : 32767;
+    const std::span<const float> values(row.value), averages(row.average);
+    const std::size_t first_band_row = rows.detail_scale.size();
+    for (std::uint32_t band = 0; band < row.bands; ++band) {
+        const auto average = averages.subspan(std::size_t{band} * kCubeFaces, kCubeFaces);
+        const float average_scale = code_scale(largest_magnitude(average), kAverageLimit);
+        rows.average_scale.push_back(average_scale);
+        for (const float value : average) {
+            rows.average_code.push_back(quantise(value, average_scale, kAverageLimit));
+        }
+        rows.detail_scale.push_back(
+            code_scale(largest_magnitude(values.subspan(band * details, details)), limit));
+    }
+    for (std::size_t i = 0; i < details; ++i) {
+        if (rows.index_bytes == 2) {
+            rows.index16.push_back(static_cast<std::uint16_t>(row.index[i]));
+        } else {
+            rows.index32.push_back(row.index[i]);
+        }
+        for (std::uint32_t band = 0; band < row.bands; ++band) {
+            const float scale = rows.detail_scale[first_band_row + band];
+            const std::int16_t code = quantise(values[band * details + i], scale, limit);
+            if (rows.code_bits == 8) {
+                rows.code8.push_back(static_cast<std::int8_t>(code));
+            } else {
+                rows.code16.push_back(code);
+            }
+        }
+    }
+    rows.row_offset.push_back(rows.row_offset.back() + static_cast<std::uint32_t>(details));
+    return true;
+}
+
+bool append_rows(SparseRows& rows, const SparseRows& tail) {
+    const std::uint32_t base = rows.row_offset.back();
+    if (tail.row_offset.back() > std::numeric_limits<std::uint32_t>::max() - base) {
+        return false;
+    }
+    for (std::size_t r = 1; r < tail.row_offset.size(); ++r) {
+        rows.row_offset.push_back(base + tail.row_offset[r]);
+    }
+    append(rows.average_scale, tail.average_scale);
+    append(rows.detail_scale, tail.detail_scale);
+    append(rows.average_code, tail.average_code);
+    append(rows.index16, tail.index16);
+    append(rows.index32, tail.index32);
+    append(rows.code8, tail.code8);
+    append(rows.code16, tail.code16);
+    return true;
+}
+
+void decode_row(const SparseRowsView& rows, const RowRange& range, std::uint32_t row,
+                std::uint32_t band, std::span<float> dense) {
+    std::fill(dense.begin(), dense.end(), 0.0f);
+    const std::uint32_t n = rows.cubemap_size;
+    const std::size_t band_row = std::size_t{range.first_band_row} + row * range.bands + band;
+    for (std::uint32_t face = 0; face < kCubeFaces; ++face) {
+        dense[std::size_t{face} * n * n] =
+            static_cast<float>(rows.average_code[band_row * kCubeFaces + face]) *
+            rows.average_scale[band_row];
+    }
+    const std::uint32_t first = rows.row_offset[range.first_row];
+    const std::uint32_t begin = rows.row_offset[range.first_row + row];
+    const std::uint32_t end = rows.row_offset[range.first_row + row + 1];
+    for (std::uint32_t i = begin; i < end; ++i) {
+        const std::size_t code_at = range.first_code + std::size_t{i - first} * range.bands + band;
+        const float code = rows.code_bits == 8 ? static_cast<float>(rows.code8[code_at])
+                                               : static_cast<float>(rows.code16[code_at]);
+        const std::uint32_t index = rows.index_bytes == 2 ? rows.index16[i] : rows.index32[i];
+        dense[index] = code * rows.detail_scale[band_row];
+    }
+}
+
+}  // namespace opaline::formats
