@@ -1,0 +1,25 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+namespace opaline::bake {
+
+/// How far a stage has come. Called from worker threads, one call at a time.
+struct Progress {
+    std::string_view stage;
+    std::uint64_t done = 0, total = 0;
+};
+
+/// What a long stage needs from its surroundings, none of which changes its result.
+struct Context {
+    unsigned threads = 0;  ///< 0: one per core
+    std::function<void(const Progress&)> on_progress;  ///< may be empty
+    const std::atomic<bool>* cancel = nullptr;         ///< set by SIGINT; may be null
+
+    bool cancelled() const { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }
+};
+
+}  // namespace opaline::bake
