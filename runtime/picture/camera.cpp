@@ -119,7 +119,7 @@ std::vector<std::size_t> all_primitives(const AssetView& asset) {
 // the origin.
 double usable_radius(const BoundingSphere& sphere) {
     const double away = std::max({std::abs(sphere.x), std::abs(sphere.y), std::abs(sphere.z)});
-    const double least = std::max(1e-4 * away, 1e-30);
+    const double least = std::max(1e-6 * away, 1e-30);
     return sphere.radius > 0 ? std::max(sphere.radius, least) : std::max(1e-2 * away, 1.0);
 }
 
