@@ -12,7 +12,6 @@
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/picture.h"
-#include "runtime/picture/rotation.h"
 
 namespace opaline::runtime {
 
@@ -25,16 +24,16 @@ struct GlOptions {
 };
 
 struct GlRenderOptions {
-    std::uint32_t supersampling = 3;      ///< S: S x S samples a pixel, box filter; in [1, 8]
+    std::uint32_t supersampling = 3;        ///< S: S x S samples a pixel, box filter; in [1, 8]
     std::uint32_t max_tile_samples = 2048;  ///< side of the tiles drawn at once, >= S
 };
 
 /// Wall-clock seconds of the last upload, set_light and render; each ends with glFinish.
 struct GlStats {
-    double upload_seconds = 0;        ///< asset and environment to buffers and textures
-    double light_seconds = 0;         ///< light vector to its buffer
-    double dot_seconds = 0;           ///< all dot products
-    double draw_seconds = 0;          ///< geometry, background and box filter
+    double upload_seconds = 0;  ///< asset and environment to buffers and textures
+    double light_seconds = 0;   ///< light vector to its buffer
+    double dot_seconds = 0;     ///< all dot products
+    double draw_seconds = 0;    ///< geometry, background and box filter
     double readback_seconds = 0;
     std::size_t gpu_bytes = 0;        ///< in buffers and textures of the asset and environment
     std::uint32_t dispatches = 0;     ///< of the compute shader, one per batch of rows

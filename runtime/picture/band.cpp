@@ -44,9 +44,8 @@ EdgeFunctions edge_functions(const std::array<GridVertex, 3>& corner) {
 
 void draw_triangle(Band& band, std::uint32_t number, const GridTriangle& triangle,
                    std::span<const GridVertex> vertices, const SampleGrid& grid) {
-    const std::array<GridVertex, 3> corner{vertices[triangle.vertex[0]],
-                                           vertices[triangle.vertex[1]],
-                                           vertices[triangle.vertex[2]]};
+    const std::array<GridVertex, 3> corner{
+        vertices[triangle.vertex[0]], vertices[triangle.vertex[1]], vertices[triangle.vertex[2]]};
     const EdgeFunctions edges = edge_functions(corner);
     if (edges.inverse_determinant == 0) return;
     const GridBox box = visible_box(corner, grid.near_plane);

@@ -72,8 +72,7 @@ double sheet_coherence(const AssetView& asset, const PrimitiveRecord& primitive)
         const Vec3 a = positions[indices[i]], b = positions[indices[i + 1]],
                    c = positions[indices[i + 2]];
         if (!is_finite(a) || !is_finite(b) || !is_finite(c)) continue;
-        const Double3 n =
-            cross_product(minus(widen(b), widen(a)), minus(widen(c), widen(a)));
+        const Double3 n = cross_product(minus(widen(b), widen(a)), minus(widen(c), widen(a)));
         sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
         area += norm(n);
     }
@@ -189,8 +188,7 @@ float near_plane_for(const AssetView& asset, Vec3 eye) {
     return narrow(std::max(0.5 * (distance - radius), 1e-3 * radius));
 }
 
-Camera frame_asset(const AssetView& asset, float fov_y, std::uint32_t width,
-                   std::uint32_t height) {
+Camera frame_asset(const AssetView& asset, float fov_y, std::uint32_t width, std::uint32_t height) {
     Camera camera;
     camera.fov_y = fov_y;
     camera.width = width;
@@ -213,9 +211,7 @@ Camera frame_asset(const AssetView& asset, float fov_y, std::uint32_t width,
 Camera orbit(const Camera& camera, float degrees) {
     const double radians = static_cast<double>(degrees) * std::numbers::pi / 180.0;
     const double c = std::cos(radians), s = std::sin(radians);
-    const auto turn = [&](Double3 v) {
-        return Double3{c * v.x + s * v.z, v.y, c * v.z - s * v.x};
-    };
+    const auto turn = [&](Double3 v) { return Double3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
     const Double3 target = widen(camera.target);
     const Double3 eye = turn(minus(widen(camera.eye), target));
     const Double3 up = turn(widen(camera.up));

@@ -12,10 +12,10 @@ namespace opaline::runtime {
 struct Camera {
     formats::Vec3 eye{0, 0, 1};
     formats::Vec3 target{0, 0, 0};
-    formats::Vec3 up{0, 1, 0};             ///< need not be perpendicular to the view
-    float fov_y = 40;                      ///< full vertical angle of view [deg], in (0, 180)
+    formats::Vec3 up{0, 1, 0};                ///< need not be perpendicular to the view
+    float fov_y = 40;                         ///< full vertical angle of view [deg], in (0, 180)
     std::uint32_t width = 960, height = 720;  ///< of the picture, in pixels
-    float near_plane = 1e-3f;              ///< nothing nearer along the view axis is drawn, > 0
+    float near_plane = 1e-3f;                 ///< nothing nearer along the view axis is drawn, > 0
 };
 
 /// Orthonormal frame of a camera: x to the right, y up, z toward the viewer. Defined for every

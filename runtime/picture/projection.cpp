@@ -48,8 +48,7 @@ GridBox visible_box(const std::array<GridVertex, 3>& corner, double near_plane) 
         if (a.w >= near_plane) extend(box, a.x / a.w, a.y / a.w);
         if ((a.w >= near_plane) != (b.w >= near_plane)) {
             const double t = (near_plane - a.w) / (b.w - a.w);
-            extend(box, (a.x + t * (b.x - a.x)) / near_plane,
-                   (a.y + t * (b.y - a.y)) / near_plane);
+            extend(box, (a.x + t * (b.x - a.x)) / near_plane, (a.y + t * (b.y - a.y)) / near_plane);
         }
     }
     return box;

@@ -49,9 +49,9 @@ T interpolate(std::span<const T> values, const std::array<std::uint32_t, 3>& ver
 }
 
 Rgb shade_surface(const Job& job, const GridTriangle& triangle, double x, double y) {
-    const EdgeFunctions edges = edge_functions({job.vertices[triangle.vertex[0]],
-                                                job.vertices[triangle.vertex[1]],
-                                                job.vertices[triangle.vertex[2]]});
+    const EdgeFunctions edges =
+        edge_functions({job.vertices[triangle.vertex[0]], job.vertices[triangle.vertex[1]],
+                        job.vertices[triangle.vertex[2]]});
     const auto e = edges.at(x, y);
     const double scale = 1.0 / (e[0] + e[1] + e[2]);
     const std::array<float, 3> weight{static_cast<float>(e[0] * scale),
@@ -77,9 +77,9 @@ Rgb shade_sample(const Job& job, const Band& band, std::uint32_t column, std::ui
         band.triangle[std::size_t{row - band.first_row} * band.columns + column];
     const double x = column + 0.5, y = row + 0.5;
     if (number != Band::kNothing) return shade_surface(job, job.triangles[number], x, y);
-    const formats::Vec3 ray = view_ray(job.camera, job.frame, x / job.supersampling,
-                                       y / job.supersampling);
-    return tame(formats::sample_radiance(job.environment, to_environment(job.rotation, ray)));
+    const formats::Vec3 ray =
+        view_ray(job.camera, job.frame, x / job.supersampling, y / job.supersampling);
+    return tame(formats::sample_radiance(job.environment, job.rotation.light_from_world(ray)));
 }
 
 void resolve_band(const Job& job, const Band& band, Picture& picture) {
@@ -159,9 +159,17 @@ formats::Result<Picture> render_software(const AssetView& asset, std::span<const
                                        std::to_string(asset.position.size()) + " vertices");
     }
     const std::uint32_t s = options.supersampling;
-    Job job{asset,  irradiance, environment, rotation, camera, camera_frame(camera),
+    Job job{asset,
+            irradiance,
+            environment,
+            rotation,
+            camera,
+            camera_frame(camera),
             SampleGrid{camera.width * s, camera.height * s, static_cast<double>(camera.near_plane)},
-            s,      {},         {},          {}};
+            s,
+            {},
+            {},
+            {}};
     job.vertices = project_vertices(asset.position, camera, job.grid);
     job.triangles = select_triangles(asset, job.vertices, job.grid);
 

@@ -7,9 +7,9 @@
 #include "formats/opal/environment.h"
 #include "formats/opal/result.h"
 #include "formats/opal/rgb.h"
+#include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/picture.h"
-#include "runtime/picture/rotation.h"
 
 namespace opaline::runtime {
 

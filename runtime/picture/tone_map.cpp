@@ -28,9 +28,8 @@ formats::Rgb tone_map_neutral(formats::Rgb radiance) {
 
     formats::Rgb c{tame(radiance.r), tame(radiance.g), tame(radiance.b)};
     const float least = std::min({c.r, c.g, c.b});
-    const float offset = least < 2.0f * kReflectance
-                             ? least - least * least / (4.0f * kReflectance)
-                             : kReflectance;
+    const float offset =
+        least < 2.0f * kReflectance ? least - least * least / (4.0f * kReflectance) : kReflectance;
     c = {c.r - offset, c.g - offset, c.b - offset};
 
     const float peak = std::max({c.r, c.g, c.b});
