@@ -11,7 +11,7 @@ namespace opaline::runtime {
 
 /// Which instructions sum the products. Each path sums in one fixed order, so a row's result does
 /// not depend on threads or on neighbouring rows; two paths differ by float rounding only:
-/// by at most (details + 7) * 2^-23 * sum_i |T_i L_i| for a row.
+/// by at most (details + 16) * 2^-23 * sum_i |T_i L_i| for a row.
 enum class DotPath {
     scalar,  ///< the reference
     avx2     ///< x86-64 with AVX2 and FMA

@@ -74,7 +74,7 @@ typedef struct opaline_primitive_info {
     uint32_t double_sided;                    /* 0 or 1 */
 } opaline_primitive_info;
 
-/* Fills `info` up to its struct_size. Any thread, concurrently. */
+/* Fills `info`. Any thread, concurrently. */
 OPALINE_API opaline_status opaline_asset_primitive(const opaline_asset* asset, uint32_t index,
                                                    opaline_primitive_info* info);
 
@@ -110,7 +110,8 @@ OPALINE_API opaline_status opaline_light_set_cubemap(opaline_light* light, const
 OPALINE_API opaline_status opaline_light_set_lat_long(opaline_light* light, const float* rgb,
                                                       uint32_t width, uint32_t height);
 
-/* Adds a disc at infinity: direction toward it (any length but 0), radius [rad] in (0, pi/2),
+/* Adds a disc at infinity: direction toward it (any length but 0), radius [rad] from
+   1e-6 to below pi/2,
    radiance [W m^-2 sr^-1]. Irradiance facing it is about pi * radius^2 * radiance. One writer. */
 OPALINE_API opaline_status opaline_light_add_sun(opaline_light* light, const float direction[3],
                                                  float angular_radius, const float radiance[3]);

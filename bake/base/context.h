@@ -15,7 +15,7 @@ struct Progress {
 
 /// What a long stage needs from its surroundings, none of which changes its result.
 struct Context {
-    unsigned threads = 0;  ///< 0: one per core
+    unsigned threads = 0;                              ///< 0: one per core
     std::function<void(const Progress&)> on_progress;  ///< may be empty
     const std::atomic<bool>* cancel = nullptr;         ///< set by SIGINT; may be null
 

@@ -43,11 +43,14 @@ struct PlanEntry {
     std::string effect;   ///< design 3, "Effect names"
     std::string subject;  ///< "material 'Floor'"
     bool on = false;
-    std::string reason;           ///< the rule in words
-    double bound = 0;             ///< largest radiance it can contribute under `white`
+    std::string reason;  ///< the rule in words
+    double bound = 0;    ///< largest radiance it can contribute under `white`
     double predicted_seconds = 0;
     std::uint64_t predicted_bytes = 0;
 };
+
+/// How a plan names a material: "material 'Floor'".
+std::string material_subject(const formats::Material& material);
 
 /// Decides what to simulate, from the scene alone: traces nothing.
 std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const Knobs& knobs, unsigned threads);

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <thread>
+#include <utility>
+
+#include "bake/base/context.h"
+
+namespace opaline::bake {
+
+/// The number of threads a context asks for.
+inline unsigned thread_count(const Context& context) {
+    return context.threads != 0 ? context.threads
+                                : std::max(1u, std::thread::hardware_concurrency());
+}
+
+/// Half-open range of receivers.
+struct Range {
+    std::size_t begin = 0, end = 0;
+};
+
+/// Cuts [0, count) into blocks, runs `compute(Range)` on all threads and hands each result to
+/// `consume(Range, result&&)` one at a time and in order, whatever order they finish in: the
+/// consumer's output does not depend on the number of threads. Only a few blocks per thread are
+/// alive at once. Stops early, after consuming what was in flight, once the context is cancelled.
+template <class Compute, class Consume>
+void for_each_block_in_order(std::size_t count, std::size_t block, const Context& context,
+                             Compute&& compute, Consume&& consume) {
+    const unsigned threads = thread_count(context);
+    tbb::task_arena arena(static_cast<int>(threads));
+    using Item = decltype(compute(Range{}));
+    struct Job {
+        Range range;
+        Item item;
+    };
+    std::size_t next = 0;
+    arena.execute([&] {
+        tbb::parallel_pipeline(
+            std::size_t{threads} * 4,
+            tbb::make_filter<void, Range>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control&
+                                                                                     control) {
+                if (next >= count || context.cancelled()) {
+                    control.stop();
+                    return Range{};
+                }
+                const Range range{next, std::min(count, next + block)};
+                next = range.end;
+                return range;
+            }) & tbb::make_filter<Range, Job>(tbb::filter_mode::parallel, [&](Range range) {
+                return Job{range, compute(range)};
+            }) & tbb::make_filter<Job, void>(tbb::filter_mode::serial_in_order, [&](Job job) {
+                consume(job.range, std::move(job.item));
+            }));
+    });
+}
+
+}  // namespace opaline::bake

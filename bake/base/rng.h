@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Random123/philox.h>
+
+#include <array>
+#include <cstdint>
+
+namespace opaline::bake {
+
+/// Which part of a bake a random number belongs to: a word of the key, so that streams never meet.
+enum class RandomStage : std::uint32_t {
+    held_back_receivers = 1,
+    surface_samples = 2,
+    bootstrap = 3
+};
+
+/// Four uniform numbers in [0, 1), a pure function of its arguments: no state, hence the same for
+/// any number of threads or shards. Philox4x32-10 [Salmon2011].
+inline std::array<float, 4> random_uniform(std::uint64_t seed, RandomStage stage,
+                                           std::uint64_t receiver, std::uint32_t sample = 0) {
+    const r123::Philox4x32::ctr_type counter{{static_cast<std::uint32_t>(receiver),
+                                              static_cast<std::uint32_t>(receiver >> 32), sample,
+                                              static_cast<std::uint32_t>(stage)}};
+    const r123::Philox4x32::key_type key{
+        {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
+    const auto bits = r123::Philox4x32{}(counter, key);
+    std::array<float, 4> uniform{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        uniform[i] = static_cast<float>(bits[i] >> 8) * 0x1p-24f;
+    }
+    return uniform;
+}
+
+}  // namespace opaline::bake

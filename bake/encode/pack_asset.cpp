@@ -1,0 +1,84 @@
+#include "bake/encode/pack_asset.h"
+
+#include <utility>
+
+namespace opaline::bake {
+namespace {
+
+using namespace formats;
+
+Wrap to_wrap(Material::Wrap wrap) {
+    switch (wrap) {
+        case Material::Wrap::clamp:
+            return Wrap::clamp;
+        case Material::Wrap::mirror:
+            return Wrap::mirror;
+        default:
+            return Wrap::repeat;
+    }
+}
+
+Vec3 to_vec3(glm::vec3 v) {
+    return {v.x, v.y, v.z};
+}
+
+void append_vertices(Asset& asset, const Primitive& p, const Material& material, bool textured) {
+    for (std::size_t v = 0; v < p.position.size(); ++v) {
+        asset.position.push_back(to_vec3(p.position[v]));
+        asset.normal.push_back(to_vec3(p.normal[v]));
+        asset.base_color.push_back(p.color.empty() ? material.base_color
+                                                   : material.base_color * p.color[v]);
+        if (textured) {
+            asset.texcoord.push_back(p.texcoord.empty() ? Float2{}
+                                                        : Float2{p.texcoord[v].x, p.texcoord[v].y});
+        }
+    }
+}
+
+PreviewImageData to_preview(const Image8& image) {
+    PreviewImageData preview{image.width, image.height, {}};
+    preview.rgb.reserve(image.rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
+        preview.rgb.insert(preview.rgb.end(),
+                           {image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]});
+    }
+    return preview;
+}
+
+}  // namespace
+
+Asset pack_asset(const Scene& scene, SparseRows transport) {
+    Asset asset;
+    const bool textured = !scene.images.empty();
+    for (const Primitive& p : scene.primitives) {
+        const Material& material = scene.materials[p.material];
+        PrimitiveRecord record;
+        record.node = p.node;
+        record.mesh = p.mesh;
+        record.primitive = p.primitive;
+        record.material = p.material;
+        record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
+        record.vertex_count = static_cast<std::uint32_t>(p.position.size());
+        record.first_index = static_cast<std::uint32_t>(asset.index.size());
+        record.index_count = static_cast<std::uint32_t>(p.index.size());
+        // Grey rows, one per vertex: rows, band rows and codes are numbered alike.
+        record.first_row = record.first_band_row = record.first_vertex;
+        record.first_code = transport.row_offset[record.first_row];
+        if (material.base_color_image != kNone && !p.texcoord.empty()) {
+            record.base_color_image = material.base_color_image;
+            record.wrap_u = to_wrap(material.wrap_u);
+            record.wrap_v = to_wrap(material.wrap_v);
+        }
+        record.flags = material.double_sided ? PrimitiveRecord::kDoubleSided : 0;
+        asset.primitives.push_back(record);
+        append_vertices(asset, p, material, textured);
+        asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
+    }
+    for (const Image8& image : scene.images) {
+        asset.images.push_back(to_preview(image));
+    }
+    asset.transport = std::move(transport);
+    return asset;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bake/measure/measure_error.h"
+#include "bake/plan/bake_plan.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// The PROV section: how the file came about, as JSON. Nothing that differs between two runs of the
+/// same bake: no seconds, dates, paths or thread counts.
+std::string make_provenance(const formats::Scene& scene, Quality quality, const Knobs& knobs,
+                            const std::vector<PlanEntry>& plan, const ErrorReport& error,
+                            std::string_view ray_tracer);
+
+}  // namespace opaline::bake

@@ -1,0 +1,77 @@
+#include "bake/encode/select_coefficients.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+
+namespace opaline::bake {
+
+using formats::kCubeFaces;
+
+Selector make_selector(std::uint32_t cubemap_size, std::uint32_t kept, float area_prior) {
+    Selector selector{cubemap_size, kept, {}};
+    selector.weight.reserve(formats::cubemap_texels(cubemap_size));
+    for (std::uint32_t face = 0; face < kCubeFaces; ++face) {
+        for (std::uint32_t row = 0; row < cubemap_size; ++row) {
+            for (std::uint32_t column = 0; column < cubemap_size; ++column) {
+                const auto side =
+                    static_cast<float>(formats::haar_support(cubemap_size, row, column));
+                selector.weight.push_back(row + column == 0 ? 0.0f : std::pow(side, area_prior));
+            }
+        }
+    }
+    return selector;
+}
+
+formats::SparseRow select_coefficients(const Selector& selector,
+                                       std::span<const float> coefficients, std::uint32_t bands) {
+    constexpr std::array<float, 3> kLuminance{0.2126f, 0.7152f, 0.0722f};
+    const std::size_t size = selector.weight.size();
+    using Scored = std::pair<float, std::uint32_t>;
+    std::vector<Scored> scored;
+    scored.reserve(size);
+    for (std::uint32_t k = 0; k < size; ++k) {
+        float squares = 0;
+        for (std::uint32_t band = 0; band < bands; ++band) {
+            const float value =
+                (bands == 1 ? 1.0f : kLuminance[band]) * coefficients[band * size + k];
+            squares += value * value;
+        }
+        // The square of the score: same order, no square root.
+        const float score = selector.weight[k] * selector.weight[k] * squares;
+        if (score > 0) {
+            scored.emplace_back(score, k);
+        }
+    }
+    const std::size_t details = selector.kept > kCubeFaces ? selector.kept - kCubeFaces : 0;
+    if (scored.size() > details) {
+        const auto better = [](const Scored& a, const Scored& b) {
+            return a.first != b.first ? a.first > b.first : a.second < b.second;
+        };
+        std::nth_element(scored.begin(), scored.begin() + static_cast<std::ptrdiff_t>(details),
+                         scored.end(), better);
+        scored.resize(details);
+    }
+    formats::SparseRow row;
+    row.bands = bands;
+    for (const Scored& s : scored) {
+        row.index.push_back(s.second);
+    }
+    std::sort(row.index.begin(), row.index.end());
+    const std::uint32_t face_size = selector.cubemap_size * selector.cubemap_size;
+    for (std::uint32_t band = 0; band < bands; ++band) {
+        for (const std::uint32_t k : row.index) {
+            row.value.push_back(coefficients[band * size + k]);
+        }
+        for (std::uint32_t face = 0; face < kCubeFaces; ++face) {
+            row.average.push_back(coefficients[band * size + std::size_t{face} * face_size]);
+        }
+    }
+    return row;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/opal/sparse_rows.h"
+
+namespace opaline::bake {
+
+/// Non-linear approximation of transport vectors (translucency.md 3.9).
+struct Selector {
+    std::uint32_t cubemap_size = 0;
+    std::uint32_t kept = 0;     ///< M per row, the six face averages included
+    std::vector<float> weight;  ///< side^beta of each coefficient's support; face averages: 0
+};
+
+/// `area_prior` is beta in [0, 1]: 0 keeps the L2-best coefficients, larger values prefer coarse
+/// ones, of which natural light has more. Default 1/2.
+Selector make_selector(std::uint32_t cubemap_size, std::uint32_t kept, float area_prior = 0.5f);
+
+/// Keeps the face averages and the `kept` - 6 details that score highest,
+///     score_k = weight_k sqrt(sum over bands of (luminance share T_k)^2),
+/// ties by index; exact zeros are never kept. `coefficients`: `bands` Haar-transformed cube maps
+/// one after the other, finite.
+formats::SparseRow select_coefficients(const Selector& selector,
+                                       std::span<const float> coefficients, std::uint32_t bands);
+
+}  // namespace opaline::bake

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "formats/opal/result.h"
+
+namespace opaline::bake {
+
+/// A light in the bases that an error is measured in: luminance per Haar coefficient, pairing A.
+struct TestLight {
+    std::string name;           ///< as for `--light`
+    std::vector<float> coarse;  ///< 6 n n, n the asset's cube map size
+    std::vector<float> fine;    ///< 6 (2n)(2n), of the reference
+};
+
+/// The published set: white, the sun at three angles, studio, sky.
+formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_size,
+                                                         unsigned threads);
+
+}  // namespace opaline::bake

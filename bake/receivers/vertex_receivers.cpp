@@ -1,0 +1,166 @@
+#include "bake/receivers/vertex_receivers.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+namespace opaline::bake {
+namespace {
+
+using formats::Primitive;
+using formats::Scene;
+
+struct PositionHash {
+    std::size_t operator()(const glm::vec3& p) const {
+        std::uint64_t h = 0x9e3779b97f4a7c15u;
+        for (const float x : {p.x, p.y, p.z}) {
+            h = (h ^ std::bit_cast<std::uint32_t>(x)) * 0xff51afd7ed558ccdu;
+            h ^= h >> 32;
+        }
+        return h;
+    }
+};
+
+// -0 and +0 are one place.
+glm::vec3 weld_key(glm::vec3 p) {
+    return p + 0.0f;
+}
+
+// Unit normals of the triangles at each distinct position, as one array cut by offsets.
+struct Fans {
+    std::unordered_map<glm::vec3, std::uint32_t, PositionHash> point;
+    std::vector<std::uint32_t> offset;
+    std::vector<glm::vec3> normal;
+    std::vector<float> magnitude;  // largest coordinate among the triangles of the point
+};
+
+// Normal of a triangle in double precision, so that slivers keep their direction; {0,0,0} if flat.
+glm::vec3 triangle_normal(const Primitive& p, std::size_t triangle) {
+    const glm::dvec3 a = p.position[p.index[3 * triangle]];
+    const glm::dvec3 b = p.position[p.index[3 * triangle + 1]];
+    const glm::dvec3 c = p.position[p.index[3 * triangle + 2]];
+    const glm::dvec3 n = glm::cross(b - a, c - a);
+    const double length = glm::length(n);
+    return length > 0 ? glm::vec3(n / length) : glm::vec3(0);
+}
+
+float largest_coordinate(glm::vec3 p) {
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+}
+
+Fans collect_fans(const Scene& scene) {
+    Fans fans;
+    const auto for_each_corner = [&](auto&& visit) {
+        for (const Primitive& p : scene.primitives) {
+            for (std::size_t t = 0; t < p.index.size() / 3; ++t) {
+                const glm::vec3 normal = triangle_normal(p, t);
+                if (normal == glm::vec3(0)) {
+                    continue;  // no area: no ray can hit it
+                }
+                const glm::vec3 corner[3] = {p.position[p.index[3 * t]],
+                                             p.position[p.index[3 * t + 1]],
+                                             p.position[p.index[3 * t + 2]]};
+                const float magnitude =
+                    std::max({largest_coordinate(corner[0]), largest_coordinate(corner[1]),
+                              largest_coordinate(corner[2])});
+                for (const glm::vec3& c : corner) {
+                    visit(weld_key(c), normal, magnitude);
+                }
+            }
+        }
+    };
+    for_each_corner([&](glm::vec3 at, glm::vec3, float magnitude) {
+        const auto [it, added] =
+            fans.point.try_emplace(at, static_cast<std::uint32_t>(fans.point.size()));
+        if (added) {
+            fans.offset.push_back(0);
+            fans.magnitude.push_back(0);
+        }
+        ++fans.offset[it->second];
+        fans.magnitude[it->second] = std::max(fans.magnitude[it->second], magnitude);
+    });
+    fans.offset.push_back(0);
+    std::uint32_t sum = 0;
+    for (std::uint32_t& entry : fans.offset) {
+        sum += std::exchange(entry, sum);
+    }
+    fans.normal.resize(sum);
+    std::vector<std::uint32_t> filled(fans.magnitude.size(), 0);
+    for_each_corner([&](glm::vec3 at, glm::vec3 normal, float) {
+        const std::uint32_t point = fans.point.find(at)->second;
+        fans.normal[fans.offset[point] + filled[point]++] = normal;
+    });
+    return fans;
+}
+
+}  // namespace
+
+float intersection_error_bound(float magnitude) {
+    // The test subtracts the origin from three vertices, multiplies edges and sums three products:
+    // fewer than 16 roundings of numbers up to twice the magnitude, each off by half an ulp.
+    constexpr float kRoundings = 32.0f;
+    const float bound = kRoundings * std::numeric_limits<float>::epsilon() * magnitude;
+    return std::max(bound, std::numeric_limits<float>::min());
+}
+
+Clearance clearest_direction(std::span<const glm::vec3> normals) {
+    glm::vec3 d(0);
+    for (const glm::vec3& n : normals) {
+        d += n;
+    }
+    Clearance best;
+    constexpr int kIterations = 32;
+    for (int i = 0; i < kIterations; ++i) {
+        const float length = glm::length(d);
+        if (!(length > 1e-6f)) {
+            break;
+        }
+        d /= length;
+        glm::vec3 worst(0);
+        float smallest = 2;
+        for (const glm::vec3& n : normals) {
+            if (const float cosine = glm::dot(d, n); cosine < smallest) {
+                smallest = cosine;
+                worst = n;
+            }
+        }
+        if (smallest > best.cosine) {
+            best = {d, smallest};
+        }
+        // Toward the worst normal, by less each time: converges to the centre of the normal cone.
+        d += worst * (1.0f / static_cast<float>(i + 2));
+    }
+    return best;
+}
+
+std::vector<Receiver> make_vertex_receivers(const Scene& scene) {
+    const Fans fans = collect_fans(scene);
+    std::vector<Clearance> clearance(fans.magnitude.size());
+    for (std::size_t i = 0; i < clearance.size(); ++i) {
+        clearance[i] = clearest_direction(
+            std::span(fans.normal).subspan(fans.offset[i], fans.offset[i + 1] - fans.offset[i]));
+    }
+    constexpr float kSmallestClearance =
+        0.02f;  // beyond this, a crease is closed for every purpose
+    std::vector<Receiver> receivers;
+    for (const Primitive& primitive : scene.primitives) {
+        for (std::size_t v = 0; v < primitive.position.size(); ++v) {
+            const glm::vec3 position = primitive.position[v];
+            const glm::vec3 normal = primitive.normal[v];
+            Receiver receiver{position, normal};
+            if (const auto it = fans.point.find(weld_key(position)); it != fans.point.end()) {
+                const Clearance c = clearance[it->second];
+                const float bound = intersection_error_bound(fans.magnitude[it->second]);
+                receiver.origin += c.cosine > kSmallestClearance ? (bound / c.cosine) * c.direction
+                                                                 : bound * normal;
+            }
+            receivers.push_back(receiver);
+        }
+    }
+    return receivers;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/receivers/receiver.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// One receiver per vertex, in output order: primitives one after the other.
+///
+/// Rays must not hit the triangles they start on, and must hit all others. A vertex lies on all its
+/// triangles at once, so its rays start at
+///     origin = position + (bound / clearance) * d,
+/// d: the direction that stays farthest in front of all triangles meeting at that position (welded
+///    over primitives and vertex duplicates: a floor that meets a wall counts), found by a
+///    perceptron iteration; clearance: the smallest cosine between d and their normals;
+/// bound: the rounding error of the intersection test, a multiple of the coordinates' ulp.
+/// Duplicated vertices therefore get identical origins, and no seam.
+/// Where no d is in front of all triangles (a point between two back-to-back sheets), the shading
+/// normal is used.
+std::vector<Receiver> make_vertex_receivers(const formats::Scene& scene);
+
+/// Bound [m] on how far the computed intersection of a ray with a triangle may lie from the true
+/// one, for coordinates up to `magnitude` [m].
+float intersection_error_bound(float magnitude);
+
+/// The unit direction d that maximises the smallest dot(d, normal), and that dot product, which is
+/// not positive where the normals do not fit into an open half space.
+struct Clearance {
+    glm::vec3 direction{0, 0, 0};
+    float cosine = -1;
+};
+Clearance clearest_direction(std::span<const glm::vec3> normals);
+
+}  // namespace opaline::bake

@@ -1,0 +1,71 @@
+#include "bake/visibility/irradiance_transport.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::uint32_t kLanes = RayPacket::kSize;
+
+// Integral of the cosine over each subtexel, and whether any is above the horizon.
+bool integrate_cosine(const DirectionBlock& block, glm::vec3 normal, RayPacket::Lane& cosine,
+                      LaneMask& above) {
+    std::int32_t any = 0;
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        cosine[lane] = normal.x * block.moment_x[lane] + normal.y * block.moment_y[lane] +
+                       normal.z * block.moment_z[lane];
+        above[lane] = cosine[lane] > 0.0f ? -1 : 0;
+        any |= above[lane];
+    }
+    return any != 0;
+}
+
+}  // namespace
+
+std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& directions,
+                                const Receiver& receiver, std::span<float> transport) {
+    std::fill(transport.begin(), transport.end(), 0.0f);
+    if (receiver.normal == glm::vec3(0)) {
+        return 0;
+    }
+    const glm::vec3 origin = receiver.origin - rays.centre();
+    RayPacket packet;
+    packet.org_x.fill(origin.x);
+    packet.org_y.fill(origin.y);
+    packet.org_z.fill(origin.z);
+    packet.tnear.fill(0.0f);
+    packet.time.fill(0.0f);
+    packet.mask.fill(0xffffffffu);
+    packet.id.fill(0);
+    packet.flags.fill(0);
+    std::uint64_t traced = 0;
+    for (const DirectionBlock& block : directions.blocks) {
+        // The whole block is below the horizon if its axis is by more than its radius:
+        // angle(n, axis) > 90 degrees + radius, i.e. dot(n, axis) < -sin(radius).
+        if (glm::dot(receiver.normal, block.axis) < -block.sine_radius) {
+            continue;
+        }
+        RayPacket::Lane cosine;
+        LaneMask lanes;
+        if (!integrate_cosine(block, receiver.normal, cosine, lanes)) {
+            continue;
+        }
+        packet.dir_x = block.dir_x;
+        packet.dir_y = block.dir_y;
+        packet.dir_z = block.dir_z;
+        packet.tfar.fill(std::numeric_limits<float>::infinity());
+        rays.occluded(lanes, packet);
+        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+            traced += static_cast<std::uint64_t>(-lanes[lane]);
+            const bool lit = lanes[lane] != 0 && packet.tfar[lane] > 0.0f;
+            transport[block.texel[lane]] += lit ? cosine[lane] : 0.0f;
+        }
+    }
+    for (std::size_t j = 0; j < transport.size(); ++j) {
+        transport[j] *= directions.inverse_solid_angle[j];
+    }
+    return traced;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Sixteen coherent shadow rays, structure of arrays; the layout is Embree's.
+struct alignas(64) RayPacket {
+    static constexpr std::uint32_t kSize = 16;
+    using Lane = std::array<float, kSize>;
+    using LaneBits = std::array<std::uint32_t, kSize>;
+    Lane org_x, org_y, org_z, tnear;
+    Lane dir_x, dir_y, dir_z, time;
+    Lane tfar;  ///< in: farthest distance; out: -infinity where something was hit
+    LaneBits mask, id, flags;
+};
+
+/// Which lanes of a packet to trace: -1 yes, 0 no.
+using LaneMask = std::array<std::int32_t, RayPacket::kSize>;
+
+/// All triangles of a scene, ready for rays. Immutable once built; any thread may trace.
+/// Coordinates are taken relative to the scene's centre, so a scene far from the origin loses no
+/// precision beyond what its own numbers lost.
+class RayScene {
+  public:
+    /// Builds the hierarchy with `threads` threads (0: all). Errors: resource.
+    static formats::Result<RayScene> build(const formats::Scene& scene, unsigned threads);
+
+    RayScene(RayScene&&) noexcept;
+    RayScene& operator=(RayScene&&) noexcept;
+    ~RayScene();
+
+    /// Any-hit test of the rays in `lanes`, between tnear and tfar. Coherent packets are fast:
+    /// about one origin, or about one direction.
+    void occluded(const LaneMask& lanes, RayPacket& packet) const;
+
+    /// Subtract from world positions before they become ray origins [m].
+    glm::vec3 centre() const { return centre_; }
+
+    std::uint64_t triangles() const { return triangles_; }
+
+    /// Embree's version and the instruction set it is pinned to: hit distances differ between
+    /// instruction sets, so both belong into the provenance.
+    static std::string description();
+
+  private:
+    struct Handles;
+    RayScene();
+    std::unique_ptr<Handles> handles_;
+    glm::vec3 centre_{0};
+    std::uint64_t triangles_ = 0;
+};
+
+}  // namespace opaline::bake
