@@ -56,8 +56,8 @@ GridBox visible_box(const std::array<GridVertex, 3>& corner, double near_plane) 
 
 SampleRange samples_within(double low, double high, std::uint32_t limit) {
     // A sample more on either side: the box is rounded, the edge functions decide.
-    const double first = std::clamp(std::ceil(low - 0.5) - 1.0, 0.0, double{limit});
-    const double end = std::clamp(std::floor(high - 0.5) + 2.0, 0.0, double{limit});
+    const double first = std::clamp(std::ceil(low - 0.5) - 1.0, 0.0, static_cast<double>(limit));
+    const double end = std::clamp(std::floor(high - 0.5) + 2.0, 0.0, static_cast<double>(limit));
     return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(std::max(first, end))};
 }
 
