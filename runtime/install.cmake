@@ -1,0 +1,29 @@
+# Installed: the C and C++ headers, both libraries, find_package(Opaline) and pkg-config.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+target_include_directories(opaline_runtime INTERFACE
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+set(OPALINE_INSTALLED opaline_runtime opaline_opal)
+if(OPALINE_BUILD_SHARED)
+    list(APPEND OPALINE_INSTALLED opaline_shared)
+endif()
+install(TARGETS ${OPALINE_INSTALLED} EXPORT OpalineTargets
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES opaline.h opaline.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+
+set(OPALINE_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Opaline)
+install(EXPORT OpalineTargets NAMESPACE Opaline:: DESTINATION ${OPALINE_CONFIG_DIR})
+configure_package_config_file(cmake/OpalineConfig.cmake.in OpalineConfig.cmake
+    INSTALL_DESTINATION ${OPALINE_CONFIG_DIR})
+write_basic_package_version_file(OpalineConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/OpalineConfig.cmake
+              ${CMAKE_CURRENT_BINARY_DIR}/OpalineConfigVersion.cmake
+        DESTINATION ${OPALINE_CONFIG_DIR})
+if(OPALINE_BUILD_SHARED)
+    configure_file(cmake/opaline.pc.in opaline.pc @ONLY)
+    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/opaline.pc
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endif()

@@ -1,0 +1,110 @@
+#include "runtime/integrate_discs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "formats/opal/cubemap.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::DistantDisc;
+using formats::Vec3;
+using std::numbers::pi;
+
+// A frame whose third axis is the disc's direction.
+struct Frame {
+    Vec3 across, along, axis;
+};
+Frame frame_around(Vec3 axis) {
+    const Vec3 helper = std::abs(axis.y) < 0.9f ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
+    const Vec3 across = normalize(cross(helper, axis));
+    return {across, cross(axis, across), axis};
+}
+
+// Sunflower: equal steps in height, the golden angle in azimuth.
+void cover_small_disc(Vec3 axis, double radius, std::uint32_t n, std::span<double> cover) {
+    constexpr std::uint32_t kPoints = 4096;
+    const double golden_angle = pi * (3.0 - std::sqrt(5.0));
+    const Frame frame = frame_around(axis);
+    const double half = std::sin(0.5 * radius);
+    for (std::uint32_t i = 0; i < kPoints; ++i) {
+        // 1 - cos theta grows evenly; with s = sin(theta / 2) nothing cancels.
+        const double s = half * std::sqrt((i + 0.5) / kPoints);
+        const double sine = 2.0 * s * std::sqrt(1.0 - s * s);
+        const double phi = golden_angle * i;
+        const Vec3 d = static_cast<float>(sine * std::cos(phi)) * frame.across +
+                       static_cast<float>(sine * std::sin(phi)) * frame.along +
+                       static_cast<float>(1.0 - 2.0 * s * s) * frame.axis;
+        cover[formats::texel_index(n, d)] += 1.0;
+    }
+}
+
+// Share of the texel [u, u + step] x [v, v + step] inside the disc.
+double covered_share(Vec3 axis, float chord, std::uint32_t n, std::uint32_t face, std::uint32_t row,
+                     std::uint32_t column) {
+    constexpr std::uint32_t kSide = 32;
+    std::uint32_t inside = 0;
+    for (std::uint32_t y = row * kSide; y < (row + 1) * kSide; ++y) {
+        for (std::uint32_t x = column * kSide; x < (column + 1) * kSide; ++x) {
+            const Vec3 d = formats::texel_direction(n * kSide, face, y, x);
+            inside += length(d - axis) <= chord ? 1 : 0;
+        }
+    }
+    return static_cast<double>(inside) / (kSide * kSide);
+}
+
+void cover_large_disc(Vec3 axis, double radius, std::uint32_t n, std::span<double> cover) {
+    const std::vector<double> solid_angle = formats::texel_solid_angles(n);
+    // No point of a texel is further from its centre than this.
+    const double reach = std::sqrt(2.0) / n;
+    const auto chord = [](double angle) {
+        return static_cast<float>(2.0 * std::sin(0.5 * std::clamp(angle, 0.0, pi)));
+    };
+    const float surely_inside = chord(radius - reach), surely_outside = chord(radius + reach);
+    std::size_t texel = 0;
+    for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
+        for (std::uint32_t row = 0; row < n; ++row) {
+            for (std::uint32_t column = 0; column < n; ++column, ++texel) {
+                const float distance =
+                    length(formats::texel_direction(n, face, row, column) - axis);
+                double share = distance < surely_inside ? 1.0 : 0.0;
+                if (distance >= surely_inside && distance <= surely_outside) {
+                    share = covered_share(axis, chord(radius), n, face, row, column);
+                }
+                cover[texel] = share * solid_angle[std::size_t{row} * n + column];
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void integrate_discs(std::span<const DistantDisc> discs, std::uint32_t n, const Rotation& rotation,
+                     std::span<double> integral) {
+    std::vector<double> cover(formats::cubemap_texels(n));
+    for (const DistantDisc& disc : discs) {
+        const Vec3 axis = normalize(rotation.world_from_light(disc.direction));
+        const auto radius = static_cast<double>(disc.angular_radius);
+        std::fill(cover.begin(), cover.end(), 0.0);
+        if (radius < 2.0 / n) {
+            cover_small_disc(axis, radius, n, cover);
+        } else {
+            cover_large_disc(axis, radius, n, cover);
+        }
+        double total = 0;
+        for (const double c : cover) {
+            total += c;
+        }
+        const double scale = formats::disc_solid_angle(disc.angular_radius) / total;
+        for (std::size_t j = 0; j < cover.size(); ++j) {
+            integral[3 * j] += scale * cover[j] * static_cast<double>(disc.radiance.r);
+            integral[3 * j + 1] += scale * cover[j] * static_cast<double>(disc.radiance.g);
+            integral[3 * j + 2] += scale * cover[j] * static_cast<double>(disc.radiance.b);
+        }
+    }
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,148 @@
+/* Opaline: relights baked light transport. C99; needs no other header of the project.
+
+   Rules: the caller owns every array; nothing prints, exits or throws. A function that fails
+   returns a status other than OPALINE_OK, changes nothing it was given, and leaves an English
+   sentence in opaline_last_error. Structs begin with struct_size, set by the caller to sizeof.
+   Enum values and functions are never changed or reused, only added. */
+#ifndef OPALINE_H
+#define OPALINE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define OPALINE_API __attribute__((visibility("default")))
+#else
+#define OPALINE_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define OPALINE_VERSION \
+    100 /* major * 10000 + minor * 100 + patch; the file's version is separate */
+
+typedef struct opaline_asset opaline_asset; /* immutable once loaded */
+typedef struct opaline_light opaline_light; /* distant light in one asset's basis */
+
+typedef enum opaline_status {
+    OPALINE_OK = 0,
+    OPALINE_INVALID_ARGUMENT = 1,
+    OPALINE_BAD_FILE = 2,   /* damaged, truncated, or not an Opaline asset */
+    OPALINE_NEWER_FILE = 3, /* written by a later version: update the library */
+    OPALINE_BUFFER_TOO_SMALL = 4,
+    OPALINE_OUT_OF_MEMORY = 5
+} opaline_status;
+
+/* Version of the library that is linked, as in OPALINE_VERSION. Any thread. */
+OPALINE_API uint32_t opaline_version(void);
+
+/* Name of a status, such as "bad file"; never NULL. Any thread. */
+OPALINE_API const char* opaline_status_string(opaline_status status);
+
+/* What went wrong in the last call that failed on this thread; never NULL, valid until the next
+   failing call on this thread. Any thread. */
+OPALINE_API const char* opaline_last_error(void);
+
+/* --- Assets ------------------------------------------------------------------------------- */
+
+/* Reads an asset in place: `bytes`, aligned to 64 (memory maps are), must stay unchanged until
+   the asset is released; only compressed sections are copied. The whole file is checked once,
+   checksums included, so untrusted input is safe. Any thread. */
+OPALINE_API opaline_status opaline_asset_load(const void* bytes, size_t size, opaline_asset** out);
+
+/* NULL is fine. No other thread may be using the asset; lights made for it stay valid. */
+OPALINE_API void opaline_asset_release(opaline_asset* asset);
+
+/* Receivers: the vertices of all primitives, in the order of the source mesh. 0 for NULL.
+   Any thread, concurrently. */
+OPALINE_API uint32_t opaline_asset_receiver_count(const opaline_asset* asset);
+
+/* Side of the cube map that the light basis was made of. 0 for NULL. Any thread, concurrently. */
+OPALINE_API uint32_t opaline_asset_cubemap_size(const opaline_asset* asset);
+
+/* Primitives, one per primitive of the source file and node instance. 0 for NULL.
+   Any thread, concurrently. */
+OPALINE_API uint32_t opaline_asset_primitive_count(const opaline_asset* asset);
+
+typedef struct opaline_primitive_info {
+    size_t struct_size;                       /* in: sizeof(opaline_primitive_info) */
+    uint32_t node, mesh, primitive, material; /* indices in the source file */
+    uint32_t first_receiver, receiver_count;  /* receiver first_receiver + v is vertex v */
+    uint32_t bands;                           /* 1: grey transport, 3: RGB */
+    uint32_t double_sided;                    /* 0 or 1 */
+} opaline_primitive_info;
+
+/* Fills `info`. Any thread, concurrently. */
+OPALINE_API opaline_status opaline_asset_primitive(const opaline_asset* asset, uint32_t index,
+                                                   opaline_primitive_info* info);
+
+/* --- Lights ------------------------------------------------------------------------------- */
+
+/* A light starts black: no map, no suns, no rotation. Functions that change a light project it on
+   the basis at once, which takes time in proportion to map and basis: set the rotation before the
+   map to pay once. One thread at a time may change a light, and none may read it meanwhile;
+   different lights are independent. */
+OPALINE_API opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** out);
+
+/* NULL is fine. No other thread may be using the light. */
+OPALINE_API void opaline_light_release(opaline_light* light);
+
+/* How many threads the functions below may start, 1 (default: none) to 256, or 0: one per core.
+   The result has the same bits for any number. One writer. */
+OPALINE_API opaline_status opaline_light_set_threads(opaline_light* light, uint32_t threads);
+
+/* The light's axes in the world: nine floats, three columns of a rotation matrix, the images of
+   +X, +Y and +Z (column-major, as in OpenGL). Orthonormal to 1e-3, determinant +1. Turns map and
+   suns. One writer. */
+OPALINE_API opaline_status opaline_light_set_rotation(opaline_light* light,
+                                                      const float world_from_light[9]);
+
+/* Linear Rec. 709 radiance [W m^-2 sr^-1], 3 * 6 * size * size floats: faces +X -X +Y -Y +Z -Z,
+   rows and columns oriented as OpenGL cube maps. Finite, not negative; size 1 ... 8192. Replaces
+   the map; the values are copied. One writer. */
+OPALINE_API opaline_status opaline_light_set_cubemap(opaline_light* light, const float* rgb,
+                                                     uint32_t size);
+
+/* The same from a latitude-longitude map, 3 * width * height floats, row 0 up, +X in the centre of
+   the image, +Z to its right. width and height 1 ... 32768. One writer. */
+OPALINE_API opaline_status opaline_light_set_lat_long(opaline_light* light, const float* rgb,
+                                                      uint32_t width, uint32_t height);
+
+/* Adds a disc at infinity: direction toward it (any length but 0), radius [rad] from
+   1e-6 to below pi/2,
+   radiance [W m^-2 sr^-1]. Irradiance facing it is about pi * radius^2 * radiance. One writer. */
+OPALINE_API opaline_status opaline_light_add_sun(opaline_light* light, const float direction[3],
+                                                 float angular_radius, const float radiance[3]);
+
+/* Back to black; keeps the rotation and the number of threads. One writer. */
+OPALINE_API opaline_status opaline_light_clear(opaline_light* light);
+
+/* --- Shading ------------------------------------------------------------------------------ */
+
+typedef enum opaline_shade_flags {
+    OPALINE_SHADE_DEFAULT = 0,
+    OPALINE_SHADE_WITHOUT_BASE_COLOR = 1 /* as if white: multiply by your own texture per pixel */
+} opaline_shade_flags;
+
+/* out_rgb[3 i .. 3 i + 2]: outgoing radiance [W m^-2 sr^-1] of receiver i, finite and not
+   negative. `out_count` floats, at least 3 * receiver_count. The light must have been made for an
+   asset of the same cube map size. `flags` is a sum of opaline_shade_flags. Runs on the calling
+   thread, never allocates, costs in proportion to the stored coefficients. Any thread,
+   concurrently; the light must not change meanwhile. */
+OPALINE_API opaline_status opaline_shade(const opaline_asset* asset, const opaline_light* light,
+                                         uint32_t flags, float* out_rgb, size_t out_count);
+
+/* The same for receivers first ... first + count - 1, written to out_rgb[0 ... 3 count - 1]: give
+   each of your threads a range of its own. */
+OPALINE_API opaline_status opaline_shade_range(const opaline_asset* asset,
+                                               const opaline_light* light, uint32_t flags,
+                                               uint32_t first, uint32_t count, float* out_rgb,
+                                               size_t out_count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

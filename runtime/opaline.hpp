@@ -1,0 +1,45 @@
+/// C++ handles over opaline.h: they release what they own and nothing more. Header only, C++17, no
+/// exceptions; call the C functions with `handle.get()`.
+#ifndef OPALINE_HPP
+#define OPALINE_HPP
+
+#include <cstddef>
+#include <memory>
+
+#include "opaline.h"
+
+namespace opaline {
+
+struct Releaser {
+    void operator()(opaline_asset* asset) const noexcept { opaline_asset_release(asset); }
+    void operator()(opaline_light* light) const noexcept { opaline_light_release(light); }
+};
+
+using AssetHandle = std::unique_ptr<opaline_asset, Releaser>;
+using LightHandle = std::unique_ptr<opaline_light, Releaser>;
+
+/// A handle or, where it is empty, the reason.
+template <class Handle>
+struct Made {
+    Handle handle;
+    opaline_status status = OPALINE_OK;
+    explicit operator bool() const noexcept { return status == OPALINE_OK; }
+};
+
+/// See opaline_asset_load: `bytes`, aligned to 64, must outlive the handle.
+[[nodiscard]] inline Made<AssetHandle> load_asset(const void* bytes, std::size_t size) noexcept {
+    opaline_asset* asset = nullptr;
+    const opaline_status status = opaline_asset_load(bytes, size, &asset);
+    return {AssetHandle(asset), status};
+}
+
+/// See opaline_light_create.
+[[nodiscard]] inline Made<LightHandle> create_light(const AssetHandle& asset) noexcept {
+    opaline_light* light = nullptr;
+    const opaline_status status = opaline_light_create(asset.get(), &light);
+    return {LightHandle(light), status};
+}
+
+}  // namespace opaline
+
+#endif

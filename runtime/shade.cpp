@@ -1,0 +1,63 @@
+#include "runtime/shade.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "runtime/parallel.h"
+#include "runtime/texture.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Rgb;
+
+// Truncated rows ring below zero where the truth is black; sums of absurd scales overflow. The
+// comparison is false for NaN, which becomes black.
+float displayable(float x) {
+    return x > 0.0f ? std::min(x, std::numeric_limits<float>::max()) : 0.0f;
+}
+
+// Rows per block: their colours stay in the nearest cache between the dot product and the colour.
+constexpr std::uint32_t kBlock = 512;
+
+void shade_block(const formats::AssetView& asset, const formats::PrimitiveRecord& primitive,
+                 const LightVector& light, std::uint32_t first_vertex, std::span<Rgb> out,
+                 const ShadeOptions& options) {
+    dot_rows(asset.transport, primitive.rows(), light, first_vertex - primitive.first_vertex, out,
+             options.path);
+    for (std::uint32_t i = 0; i < out.size(); ++i) {
+        Rgb radiance = out[i];
+        if (options.base_color) {
+            radiance = radiance * vertex_base_color(asset, primitive, first_vertex + i);
+        }
+        out[i] = {displayable(radiance.r), displayable(radiance.g), displayable(radiance.b)};
+    }
+}
+
+}  // namespace
+
+void shade_range(const formats::AssetView& asset, const LightVector& light, std::uint32_t first,
+                 std::span<Rgb> out, const ShadeOptions& options) {
+    std::fill(out.begin(), out.end(), Rgb{});
+    const std::uint64_t last = first + std::uint64_t{out.size()};
+    for (const formats::PrimitiveRecord& primitive : asset.primitives) {
+        const std::uint64_t end =
+            std::min(last, std::uint64_t{primitive.first_vertex} + primitive.vertex_count);
+        for (std::uint64_t v = std::max(first, primitive.first_vertex); v < end; v += kBlock) {
+            const std::size_t count = std::min<std::uint64_t>(kBlock, end - v);
+            shade_block(asset, primitive, light, static_cast<std::uint32_t>(v),
+                        out.subspan(v - first, count), options);
+        }
+    }
+}
+
+void shade(const formats::AssetView& asset, const LightVector& light, std::span<Rgb> out,
+           const ShadeOptions& options) {
+    constexpr std::uint32_t kGrain = 2048;  // some microseconds of work for each claim of a range
+    for_ranges(asset.receivers(), kGrain, options.threads,
+               [&](std::uint32_t begin, std::uint32_t end) {
+                   shade_range(asset, light, begin, out.subspan(begin, end - begin), options);
+               });
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "formats/opal/asset.h"
+#include "formats/opal/rgb.h"
+#include "runtime/dot.h"
+#include "runtime/light_vector.h"
+
+namespace opaline::runtime {
+
+struct ShadeOptions {
+    unsigned threads = 0;    ///< 0: all cores; results have the same bits for any number
+    bool base_color = true;  ///< false: as if every base colour were white
+    DotPath path = best_dot_path();
+};
+
+/// Outgoing radiance [W m^-2 sr^-1] of every receiver: L_o = base_color * <T_0, L>
+/// (Shading::diffuse). The final value is clamped to [0, largest float]; what belongs to no
+/// primitive is black. Preconditions: light.n == asset.cubemap_size, out.size() ==
+/// asset.receivers(), the asset passed read_opal's checks.
+void shade(const formats::AssetView& asset, const LightVector& light, std::span<formats::Rgb> out,
+           const ShadeOptions& options = {});
+
+/// The same for receivers first .. first + out.size(), on the calling thread; never allocates.
+/// `options.threads` does not matter.
+void shade_range(const formats::AssetView& asset, const LightVector& light, std::uint32_t first,
+                 std::span<formats::Rgb> out, const ShadeOptions& options = {});
+
+}  // namespace opaline::runtime
