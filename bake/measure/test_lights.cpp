@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "bake/environment/builtin.h"
+#include "bake/environment/builtin_environment.h"
 #include "formats/opal/rgb.h"
 #include "runtime/light_vector.h"
 

@@ -9,7 +9,7 @@
 namespace opaline::formats {
 
 /// Linear RGB float image, row-major, row 0 on top; `pixel[y * width + x]`.
-/// For environments: radiance, finite and >= 0 once loaded (see load_environment_image).
+/// For environments: radiance, finite and >= 0 once loaded (see load_environment).
 struct Image {
     std::uint32_t width = 0, height = 0;
     std::vector<Rgb> pixel;

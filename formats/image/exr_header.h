@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "formats/image/exr.h"
+#include "formats/opal/result.h"
+
+namespace opaline::formats {
+
+/// What we need to know of an OpenEXR header before OpenEXR may see the file.
+struct ExrHeader {
+    std::int32_t min_x = 0, min_y = 0;  ///< data window
+    std::uint32_t width = 0, height = 0;
+    Envmap envmap = Envmap::none;
+    bool is_rec709 = true;               ///< chromaticities absent or those of Rec. 709
+    std::vector<std::string> full_size;  ///< channels that have a value for every pixel
+    std::vector<std::string> subsampled;
+};
+
+/// Parses the header of `bytes` (a whole file) and refuses what we do not read or what could make
+/// OpenEXR allocate far more than the file warrants: several parts, deep data, attributes that
+/// overrun the file, huge windows, tiles, channel lists or chunk tables.
+/// Attributes that do not matter here are renamed in place to a type unknown to OpenEXR, so that
+/// none of its attribute parsers (previews, manifests, ...) runs on untrusted sizes.
+/// Errors: bad_input. `name` is used in messages only.
+Result<ExrHeader> check_exr_header(std::string& bytes, const std::string& name);
+
+}  // namespace opaline::formats

@@ -1,0 +1,99 @@
+#include "bake/receivers/surface_samples.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "tests/support/scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+double area_of(const formats::Primitive& p) {
+    double sum = 0;
+    for (std::size_t t = 0; t < p.index.size(); t += 3) {
+        const glm::dvec3 a = p.position[p.index[t]];
+        sum += 0.5 * glm::length(glm::cross(glm::dvec3(p.position[p.index[t + 1]]) - a,
+                                            glm::dvec3(p.position[p.index[t + 2]]) - a));
+    }
+    return sum;
+}
+
+TEST(SurfaceSamples, AreasAddUpToTheSurface) {
+    const auto scene = tests::make_scene({tests::make_sphere(3), tests::make_cube(2, false)});
+    const auto samples = sample_surface(scene, {0, 1}, 1000, 5);
+    ASSERT_EQ(samples.size(), 1000u);
+    double sum = 0;
+    std::size_t on_sphere = 0;
+    for (const SurfaceSample& s : samples) {
+        sum += s.area;
+        on_sphere += s.primitive == 0 ? 1 : 0;
+    }
+    const double sphere = area_of(scene.primitives[0]), cube = area_of(scene.primitives[1]);
+    EXPECT_NEAR(sum / (sphere + cube), 1, 1e-5);
+    // Elimination keeps slightly more points where neighbours are fewer: along the edges of a cube.
+    EXPECT_NEAR(on_sphere / 1000.0, sphere / (sphere + cube), 0.02);
+}
+
+// Blue noise: no two samples closer than about two thirds of the closest packing's distance,
+// sqrt(2 A / (sqrt(3) N)); independent points come arbitrarily close.
+TEST(SurfaceSamples, SamplesKeepTheirDistance) {
+    const auto scene = tests::make_scene({tests::make_sphere(4)});
+    const auto samples = sample_surface(scene, {0}, 800, 1);
+    const double packed = std::sqrt(2 * area_of(scene.primitives[0]) / (std::sqrt(3.0) * 800));
+    double closest = 10;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            closest =
+                std::min<double>(closest, glm::distance(samples[i].position, samples[j].position));
+        }
+    }
+    EXPECT_GT(closest / packed, 0.6);
+}
+
+// A quadrature rule: the mean of a smooth function over the sphere is met far better than by
+// independent points (whose mean would have a standard error of 1 / sqrt(800) = 3.5e-2).
+TEST(SurfaceSamples, MeansOverTheSurfaceAreMet) {
+    const auto scene = tests::make_scene({tests::make_sphere(5)});
+    glm::dvec3 mean(0);
+    double square = 0;
+    const auto samples = sample_surface(scene, {0}, 800, 2);
+    for (const SurfaceSample& s : samples) {
+        mean += glm::dvec3(s.position) / 800.0;
+        square += s.position.y * s.position.y / 800.0;
+    }
+    EXPECT_LT(glm::length(mean), 8e-3);
+    EXPECT_NEAR(square, 1.0 / 3, 5e-3);
+}
+
+TEST(SurfaceSamples, BothSidesOfAThinSheetAreCoveredEqually) {
+    const auto scene =
+        tests::make_scene({tests::make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 4),
+                           tests::make_quad({0, -1e-4f, 0}, {1, 0, 0}, {0, 0, 1}, 4)});
+    std::size_t up = 0;
+    for (const SurfaceSample& s : sample_surface(scene, {0, 1}, 600, 3)) {
+        up += s.geometric_normal.y > 0 ? 1 : 0;
+    }
+    EXPECT_NEAR(up, 300, 6);
+}
+
+TEST(SurfaceSamples, DependOnTheSeedAlone) {
+    const auto scene = tests::make_scene({tests::make_sphere(2)});
+    const auto a = sample_surface(scene, {0}, 100, 1), b = sample_surface(scene, {0}, 100, 1);
+    const auto c = sample_surface(scene, {0}, 100, 2);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_EQ(a[i].position, b[i].position);
+    }
+    EXPECT_NE(a[0].position, c[0].position);
+}
+
+TEST(SurfaceSamples, SurfacesWithoutAreaHaveNone) {
+    auto scene = tests::make_scene({tests::make_sphere(0)});
+    scene.primitives[0].position.assign(scene.primitives[0].position.size(), {1, 2, 3});
+    EXPECT_TRUE(sample_surface(scene, {0}, 100, 1).empty());
+    EXPECT_TRUE(sample_surface(scene, {}, 100, 1).empty());
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,57 @@
+#include "bake/receivers/vertex_receivers.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+TEST(VertexReceivers, DirectionLiesInTheMiddleOfTheNormals) {
+    const glm::vec3 corner[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const Clearance c = clearest_direction(corner);
+    EXPECT_NEAR(c.cosine, 1 / std::sqrt(3.0f), 1e-3f);
+    // One normal many times over must not pull the direction toward itself.
+    const glm::vec3 uneven[] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}};
+    EXPECT_GT(clearest_direction(uneven).cosine, 0.6f);
+}
+
+TEST(VertexReceivers, BackToBackSheetsHaveNoClearance) {
+    const glm::vec3 sheets[] = {{0, 1, 0}, {0, -1, 0}};
+    EXPECT_LE(clearest_direction(sheets).cosine, 0.0f);
+}
+
+TEST(VertexReceivers, OriginsLieInFrontOfAllTrianglesOfTheVertex) {
+    const auto scene = tests::make_scene(
+        {tests::transformed(tests::make_cube(3, true), tests::some_rotation(), 2, {5, 5, 5})});
+    const auto receivers = make_vertex_receivers(scene);
+    const auto& p = scene.primitives[0];
+    for (std::size_t t = 0; t < p.index.size(); t += 3) {
+        const glm::dvec3 a = p.position[p.index[t]];
+        const glm::dvec3 normal =
+            glm::normalize(glm::cross(glm::dvec3(p.position[p.index[t + 1]]) - a,
+                                      glm::dvec3(p.position[p.index[t + 2]]) - a));
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_GT(glm::dot(glm::dvec3(receivers[p.index[t + k]].origin) - a, normal), 0);
+        }
+    }
+}
+
+TEST(VertexReceivers, OffsetsAreOfTheOrderOfTheRoundingError) {
+    const auto scene = tests::make_scene({tests::make_sphere(3, 100)});
+    for (const auto& receiver : make_vertex_receivers(scene)) {
+        const float offset = glm::length(receiver.origin) - 100;
+        EXPECT_GT(offset, 0);
+        EXPECT_LT(offset, 100 * 1e-5f);
+    }
+}
+
+TEST(VertexReceivers, LooseVerticesAreReceiversToo) {
+    auto scene = tests::make_scene({tests::make_sphere(0)});
+    scene.primitives[0].position.push_back({9, 9, 9});
+    scene.primitives[0].normal.push_back({0, 1, 0});
+    EXPECT_EQ(make_vertex_receivers(scene).back().origin, glm::vec3(9, 9, 9));
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <random>
+
+#include "formats/opal/asset.h"
+#include "formats/opal/cubemap.h"
+
+namespace opaline::tests {
+
+/// A small sound asset: a grey primitive and a textured RGB one, n = 8.
+inline formats::Asset make_small_asset(std::uint32_t code_bits = 8) {
+    using namespace formats;
+    std::mt19937 generator(7);
+    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+    Asset asset;
+    asset.provenance = R"({"generator":"test"})";
+    asset.transport = make_sparse_rows(8, code_bits);
+    asset.images.push_back({2, 2, {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255}});
+    for (std::uint32_t p = 0; p < 2; ++p) {
+        PrimitiveRecord record;
+        record.bands = p == 0 ? 1 : 3;
+        record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
+        record.vertex_count = 4;
+        record.first_index = static_cast<std::uint32_t>(asset.index.size());
+        record.index_count = 6;
+        record.first_row = asset.transport.view().rows();
+        record.first_band_row = static_cast<std::uint32_t>(asset.transport.detail_scale.size());
+        record.first_code = asset.transport.code8.size() + asset.transport.code16.size();
+        record.base_color_image = p == 0 ? kNoImage : 0;
+        for (std::uint32_t v = 0; v < 4; ++v) {
+            asset.position.push_back(
+                {static_cast<float>(v & 1u), static_cast<float>(v >> 1u), static_cast<float>(p)});
+            asset.normal.push_back({0, 0, 1});
+            asset.base_color.push_back({0.5f, 0.6f, 0.7f});
+            asset.texcoord.push_back({static_cast<float>(v & 1u), static_cast<float>(v >> 1u)});
+            SparseRow row;
+            row.bands = record.bands;
+            for (std::uint32_t k = 1; k < cubemap_texels(8); k += 3 + v) {
+                if (k % 64 != 0) {
+                    row.index.push_back(k);
+                }
+            }
+            for (std::size_t i = 0; i < row.index.size() * row.bands; ++i) {
+                row.value.push_back(uniform(generator) - 0.5f);
+            }
+            for (std::size_t i = 0; i < row.bands * std::size_t{6}; ++i) {
+                row.average.push_back(uniform(generator));
+            }
+            append_row(asset.transport, row);
+        }
+        for (const std::uint32_t i : {0u, 1u, 2u, 1u, 3u, 2u}) {
+            asset.index.push_back(i);
+        }
+        asset.primitives.push_back(record);
+    }
+    return asset;
+}
+
+}  // namespace opaline::tests

@@ -1,0 +1,211 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "formats/opal/mapped_file.h"
+#include "formats/opal/read_opal.h"
+#include "formats/opal/write_opal.h"
+#include "tests/formats/opal/asset_fixture.h"
+#include "tests/support/temporary_folder.h"
+
+namespace opaline::formats {
+namespace {
+
+// Bytes at an address aligned like a mapped file's, with nothing readable behind them under the
+// address sanitizer.
+class AlignedBytes {
+  public:
+    explicit AlignedBytes(std::span<const std::byte> bytes)
+        : size_(bytes.size()),
+          data_(static_cast<std::byte*>(
+              ::operator new(std::max<std::size_t>(size_, 1), std::align_val_t(64)))) {
+        std::memcpy(data_, bytes.data(), size_);
+    }
+    AlignedBytes(const AlignedBytes&) = delete;
+    AlignedBytes& operator=(const AlignedBytes&) = delete;
+    ~AlignedBytes() { ::operator delete(data_, std::align_val_t(64)); }
+    std::span<std::byte> bytes() { return {data_, size_}; }
+
+  private:
+    std::size_t size_;
+    std::byte* data_;
+};
+
+std::vector<std::byte> encode(const Asset& asset) {
+    const tests::TemporaryFolder folder;
+    auto file = AtomicFile::create(folder / "a.opal");
+    EXPECT_TRUE(file);
+    EXPECT_TRUE(write_opal(asset.view(), std::move(*file)));
+    auto mapped = MappedFile::open(folder / "a.opal");
+    EXPECT_TRUE(mapped);
+    return {mapped->bytes().begin(), mapped->bytes().end()};
+}
+
+template <class A, class B>
+void expect_same_bytes(const A& a, const B& b) {
+    ASSERT_EQ(std::size(a), std::size(b));
+    EXPECT_EQ(std::memcmp(std::data(a), std::data(b), std::size(a) * sizeof(*std::data(a))), 0);
+}
+
+TEST(OpalFile, ReturnsEveryValueItWasGiven) {
+    for (const std::uint32_t bits : {8u, 16u}) {
+        const Asset asset = tests::make_small_asset(bits);
+        AlignedBytes stored(encode(asset));
+        const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+        ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
+        const AssetView& view = loaded->view;
+        EXPECT_EQ(view.provenance, asset.provenance);
+        EXPECT_EQ(view.cubemap_size, 8u);
+        expect_same_bytes(view.primitives, asset.primitives);
+        expect_same_bytes(view.position, asset.position);
+        expect_same_bytes(view.normal, asset.normal);
+        expect_same_bytes(view.base_color, asset.base_color);
+        expect_same_bytes(view.texcoord, asset.texcoord);
+        expect_same_bytes(view.index, asset.index);
+        expect_same_bytes(view.transport.row_offset, asset.transport.row_offset);
+        expect_same_bytes(view.transport.average_scale, asset.transport.average_scale);
+        expect_same_bytes(view.transport.detail_scale, asset.transport.detail_scale);
+        expect_same_bytes(view.transport.average_code, asset.transport.average_code);
+        expect_same_bytes(view.transport.index16, asset.transport.index16);
+        expect_same_bytes(view.transport.code8, asset.transport.code8);
+        expect_same_bytes(view.transport.code16, asset.transport.code16);
+        ASSERT_EQ(view.images.size(), 1u);
+        expect_same_bytes(view.images[0].rgb, asset.images[0].rgb);
+        for (const SectionEntry& section : loaded->sections) {
+            EXPECT_EQ(section.offset % kSectionAlignment, 0u);
+        }
+    }
+}
+
+TEST(OpalFile, TransportIsUsedInPlace) {
+    AlignedBytes stored(encode(tests::make_small_asset()));
+    const auto loaded = read_opal(stored.bytes(), "a.opal");
+    ASSERT_TRUE(loaded);
+    const auto* codes = reinterpret_cast<const std::byte*>(loaded->view.transport.code8.data());
+    EXPECT_GE(codes, stored.bytes().data());
+    EXPECT_LT(codes, stored.bytes().data() + stored.bytes().size());
+}
+
+TEST(OpalFile, EveryTruncationIsRefused) {
+    const std::vector<std::byte> whole = encode(tests::make_small_asset());
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+        AlignedBytes stored(std::span<const std::byte>(whole).first(size));
+        const auto loaded = read_opal(stored.bytes(), "a.opal");
+        ASSERT_FALSE(loaded) << "accepted the first " << size << " bytes";
+        ASSERT_EQ(loaded.error().kind, ErrorKind::bad_input);
+    }
+}
+
+TEST(OpalFile, TrailingBytesAreRefused) {
+    std::vector<std::byte> bytes = encode(tests::make_small_asset());
+    bytes.push_back(std::byte{0});
+    AlignedBytes stored(bytes);
+    EXPECT_FALSE(read_opal(stored.bytes(), "a.opal"));
+}
+
+// Padding between sections is the only place where a flipped bit means nothing.
+TEST(OpalFile, EveryFlippedByteOfASectionIsFoundByTheFullCheck) {
+    const std::vector<std::byte> whole = encode(tests::make_small_asset());
+    AlignedBytes sound(whole);
+    const auto table = read_section_table(sound.bytes(), "a.opal");
+    ASSERT_TRUE(table);
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+        AlignedBytes stored(whole);
+        stored.bytes()[at] ^= std::byte{0x40};
+        const bool in_section = std::any_of(table->begin(), table->end(), [at](const auto& s) {
+            return at >= s.offset && at < s.offset + s.stored_size;
+        });
+        const bool accepted = read_opal(stored.bytes(), "a.opal", Checks::full).has_value();
+        if (in_section) {
+            ASSERT_FALSE(accepted) << "byte " << at;
+        }
+    }
+}
+
+// Damage that keeps its checksum is what a hostile writer makes: nothing may be read out of bounds.
+TEST(OpalFile, ConsistentlyForgedSectionsAreRefusedOrStayInBounds) {
+    const std::vector<std::byte> whole = encode(tests::make_small_asset());
+    std::size_t refused = 0, accepted = 0;
+    for (std::size_t at = sizeof(FileHeader); at < whole.size(); ++at) {
+        for (const int bit : {0, 3, 7}) {
+            AlignedBytes stored(whole);
+            stored.bytes()[at] ^= static_cast<std::byte>(1 << bit);
+            // Repair the table's own checksum, so that forged tables are looked at.
+            FileHeader header;
+            std::memcpy(&header, stored.bytes().data(), sizeof header);
+            header.table_checksum = checksum(
+                stored.bytes().subspan(sizeof header, header.section_count * sizeof(SectionEntry)));
+            std::memcpy(stored.bytes().data(), &header, sizeof header);
+            const auto loaded = read_opal(stored.bytes(), "a.opal");
+            if (!loaded) {
+                ++refused;
+                continue;
+            }
+            ++accepted;
+            // Use everything the runtime would use; the address sanitizer watches.
+            std::vector<float> dense(cubemap_texels(loaded->view.cubemap_size));
+            for (const PrimitiveRecord& p : loaded->view.primitives) {
+                for (std::uint32_t r = 0; r < p.vertex_count; ++r) {
+                    for (std::uint32_t band = 0; band < p.bands; ++band) {
+                        decode_row(loaded->view.transport, p.rows(), r, band, dense);
+                    }
+                }
+                for (std::uint32_t i = 0; i < p.index_count; ++i) {
+                    const std::uint32_t v = p.first_vertex + loaded->view.index[p.first_index + i];
+                    ASSERT_LT(v, loaded->view.position.size());
+                }
+            }
+        }
+    }
+    EXPECT_GT(refused, 100u);
+    EXPECT_GT(accepted, 100u);
+}
+
+TEST(OpalFile, ALaterVersionAsksForAnUpdate) {
+    AlignedBytes stored(encode(tests::make_small_asset()));
+    FileHeader header;
+    std::memcpy(&header, stored.bytes().data(), sizeof header);
+    header.version = kOpalVersion + 1;
+    std::memcpy(stored.bytes().data(), &header, sizeof header);
+    const auto loaded = read_opal(stored.bytes(), "a.opal");
+    ASSERT_FALSE(loaded);
+    EXPECT_EQ(loaded.error().kind, ErrorKind::newer_file);
+}
+
+TEST(OpalFile, AnUnknownSectionIsSkipped) {
+    AlignedBytes stored(encode(tests::make_small_asset()));
+    FileHeader header;
+    std::memcpy(&header, stored.bytes().data(), sizeof header);
+    // The provenance is the one section that nothing else needs: rename it.
+    SectionEntry entry;
+    std::byte* table = stored.bytes().data() + sizeof header;
+    std::memcpy(&entry, table, sizeof entry);
+    ASSERT_EQ(entry.id, kProvSection);
+    entry.id = section_id("XTRA");
+    entry.version = 99;
+    std::memcpy(table, &entry, sizeof entry);
+    header.table_checksum = checksum({table, header.section_count * sizeof(SectionEntry)});
+    std::memcpy(stored.bytes().data(), &header, sizeof header);
+    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+    ASSERT_TRUE(loaded);
+    EXPECT_TRUE(loaded->view.provenance.empty());
+}
+
+TEST(OpalFile, TheFullCheckFindsNumbersThatAreNotFinite) {
+    Asset asset = tests::make_small_asset();
+    asset.position[3].y = std::numeric_limits<float>::quiet_NaN();
+    AlignedBytes bad_position(encode(asset));
+    EXPECT_TRUE(read_opal(bad_position.bytes(), "a.opal"));
+    EXPECT_FALSE(read_opal(bad_position.bytes(), "a.opal", Checks::full));
+    asset = tests::make_small_asset();
+    asset.transport.detail_scale[2] = std::numeric_limits<float>::infinity();
+    AlignedBytes bad_scale(encode(asset));
+    EXPECT_FALSE(read_opal(bad_scale.bytes(), "a.opal", Checks::full));
+}
+
+}  // namespace
+}  // namespace opaline::formats

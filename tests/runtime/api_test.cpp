@@ -1,0 +1,237 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "formats/opal/write_opal.h"
+#include "runtime/opaline.hpp"
+#include "runtime/shade.h"
+#include "tests/runtime/light_test_support.h"
+#include "tests/runtime/row_test_support.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Rgb;
+using testing::HasSubstr;
+
+/// The bytes of a small file, aligned as a memory map is.
+struct FileBytes {
+    std::vector<char> storage;
+    std::size_t size = 0;
+
+    char* data() {
+        void* p = storage.data();
+        std::size_t room = storage.size();
+        return static_cast<char*>(std::align(64, size, p, room));
+    }
+};
+
+formats::Asset make_asset(std::uint32_t n) {
+    formats::Asset asset;
+    asset.provenance = "{}";
+    asset.transport = tests::random_rows(n, 8, 3, 21);
+    formats::PrimitiveRecord p;
+    p.node = 4;
+    p.vertex_count = asset.transport.view().rows();
+    p.bands = 3;
+    p.flags = formats::PrimitiveRecord::kDoubleSided;
+    asset.primitives = {p};
+    asset.position.resize(p.vertex_count);
+    asset.normal.resize(p.vertex_count, {0, 1, 0});
+    asset.base_color.resize(p.vertex_count, {0.5f, 0.5f, 0.5f});
+    return asset;
+}
+
+FileBytes write(const formats::Asset& asset, const std::string& name) {
+    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+    auto file = formats::AtomicFile::create(path);
+    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    std::ifstream in(path, std::ios::binary);
+    const std::string content{std::istreambuf_iterator<char>(in), {}};
+    std::filesystem::remove(path);
+    FileBytes bytes{std::vector<char>(content.size() + 64), content.size()};
+    std::memcpy(bytes.data(), content.data(), content.size());
+    return bytes;
+}
+
+class Api : public testing::Test {
+  protected:
+    void SetUp() override {
+        file =
+            write(make_asset(8), std::string("api-") +
+                                     testing::UnitTest::GetInstance()->current_test_info()->name());
+        auto loaded = load_asset(file.data(), file.size);
+        ASSERT_TRUE(loaded) << opaline_last_error();
+        asset = std::move(loaded.handle);
+        auto created = create_light(asset);
+        ASSERT_TRUE(created) << opaline_last_error();
+        light = std::move(created.handle);
+        receivers = opaline_asset_receiver_count(asset.get());
+    }
+    std::vector<float> shaded(std::uint32_t flags = 0) {
+        std::vector<float> out(3 * receivers, -1.0f);
+        EXPECT_EQ(opaline_shade(asset.get(), light.get(), flags, out.data(), out.size()),
+                  OPALINE_OK)
+            << opaline_last_error();
+        return out;
+    }
+    FileBytes file;
+    AssetHandle asset;
+    LightHandle light;
+    std::size_t receivers = 0;
+};
+
+TEST_F(Api, DescribesTheAsset) {
+    EXPECT_EQ(receivers, 41u);
+    EXPECT_EQ(opaline_asset_cubemap_size(asset.get()), 8u);
+    ASSERT_EQ(opaline_asset_primitive_count(asset.get()), 1u);
+    opaline_primitive_info info{};
+    info.struct_size = sizeof info;
+    ASSERT_EQ(opaline_asset_primitive(asset.get(), 0, &info), OPALINE_OK);
+    EXPECT_EQ(info.node, 4u);
+    EXPECT_EQ(info.receiver_count, 41u);
+    EXPECT_EQ(info.bands, 3u);
+    EXPECT_EQ(info.double_sided, 1u);
+    EXPECT_EQ(opaline_asset_primitive(asset.get(), 1, &info), OPALINE_INVALID_ARGUMENT);
+    info.struct_size = 3;
+    EXPECT_EQ(opaline_asset_primitive(asset.get(), 0, &info), OPALINE_INVALID_ARGUMENT);
+    EXPECT_THAT(opaline_last_error(), HasSubstr("struct_size"));
+}
+
+TEST_F(Api, ShadesAsTheLibraryDoes) {
+    const formats::Environment map = tests::lat_long_map(64, 32, tests::smooth_sky);
+    ASSERT_EQ(opaline_light_set_lat_long(light.get(), &map.pixel[0].r, 64, 32), OPALINE_OK);
+    const formats::Asset same = make_asset(8);
+    std::vector<Rgb> expected(receivers);
+    shade(same.view(), project_environment(map, 8), expected);
+    const std::vector<float> out = shaded();
+    EXPECT_EQ(std::memcmp(out.data(), expected.data(), out.size() * sizeof(float)), 0);
+    shade(same.view(), project_environment(map, 8), expected, {.base_color = false});
+    EXPECT_EQ(std::memcmp(shaded(OPALINE_SHADE_WITHOUT_BASE_COLOR).data(), expected.data(),
+                          out.size() * sizeof(float)),
+              0);
+}
+
+TEST_F(Api, OrderOfRotationMapAndSunDoesNotMatter) {
+    const formats::Environment map = tests::cube_map(8, tests::smooth_sky);
+    const Rotation r = rotation_about_y(0.8f);
+    const float turn[9] = {r.x.x, r.x.y, r.x.z, r.y.x, r.y.y, r.y.z, r.z.x, r.z.y, r.z.z};
+    const float direction[3] = {0, 3, 4}, radiance[3] = {1e4f, 1e4f, 9e3f};
+    ASSERT_EQ(opaline_light_set_rotation(light.get(), turn), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_cubemap(light.get(), &map.pixel[0].r, 8), OPALINE_OK);
+    ASSERT_EQ(opaline_light_add_sun(light.get(), direction, 0.005f, radiance), OPALINE_OK);
+    const std::vector<float> first = shaded();
+
+    ASSERT_EQ(opaline_light_clear(light.get()), OPALINE_OK);
+    EXPECT_THAT(shaded(), testing::Each(0.0f));
+    const float identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    ASSERT_EQ(opaline_light_set_rotation(light.get(), identity), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_threads(light.get(), 2), OPALINE_OK);
+    ASSERT_EQ(opaline_light_add_sun(light.get(), direction, 0.005f, radiance), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_cubemap(light.get(), &map.pixel[0].r, 8), OPALINE_OK);
+    EXPECT_NE(shaded(), first);
+    ASSERT_EQ(opaline_light_set_rotation(light.get(), turn), OPALINE_OK);
+    EXPECT_EQ(shaded(), first);
+}
+
+TEST_F(Api, RangesOnSeveralThreadsMakeTheWhole) {
+    const float up[3] = {0, 1, 0}, radiance[3] = {10, 10, 10};
+    ASSERT_EQ(opaline_light_add_sun(light.get(), up, 0.1f, radiance), OPALINE_OK);
+    const std::vector<float> whole = shaded();
+    std::vector<float> parts(whole.size());
+    std::vector<std::thread> threads;
+    for (std::uint32_t first = 0; first < receivers; first += 10) {
+        threads.emplace_back([&, first] {
+            const auto count =
+                std::min<std::uint32_t>(10, static_cast<std::uint32_t>(receivers) - first);
+            opaline_shade_range(asset.get(), light.get(), 0, first, count, &parts[3 * first],
+                                std::size_t{3} * count);
+        });
+    }
+    for (std::thread& thread : threads) {
+        thread.join();
+    }
+    EXPECT_EQ(parts, whole);
+}
+
+TEST_F(Api, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
+    const float up[3] = {0, 1, 0}, white[3] = {1, 1, 1}, none[3] = {0, 0, 0};
+    const float bad[3] = {1, NAN, 1};
+    opaline_light* const l = light.get();
+    ASSERT_EQ(opaline_light_add_sun(l, up, 0.1f, white), OPALINE_OK);
+    const std::vector<float> before = shaded();
+    EXPECT_EQ(opaline_light_add_sun(l, none, 0.1f, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, bad, 0.1f, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, up, 0.1f, bad), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, up, 0.0f, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, up, NAN, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, up, 1.6f, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(nullptr, up, 0.1f, white), OPALINE_INVALID_ARGUMENT);
+    const float shear[9] = {1, 0, 0, 0.1f, 1, 0, 0, 0, 1};
+    EXPECT_EQ(opaline_light_set_rotation(l, shear), OPALINE_INVALID_ARGUMENT);
+    EXPECT_THAT(opaline_last_error(), HasSubstr("rotation"));
+    EXPECT_EQ(opaline_light_set_lat_long(l, bad, 1, 1), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_lat_long(l, white, 0, 1), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_lat_long(l, white, 40000, 1), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_cubemap(l, white, 0), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_threads(l, 257), OPALINE_INVALID_ARGUMENT);
+    std::vector<float> out(3 * receivers);
+    EXPECT_EQ(opaline_shade(asset.get(), l, 2, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_shade(asset.get(), l, 0, out.data(), out.size() - 1),
+              OPALINE_BUFFER_TOO_SMALL);
+    EXPECT_EQ(opaline_shade(asset.get(), l, 0, nullptr, out.size()), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_shade_range(asset.get(), l, 0, 41, 1, out.data(), 3),
+              OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_shade_range(asset.get(), l, 0, 40, 0xffffffffu, out.data(), 3),
+              OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_shade_range(asset.get(), l, 0, 41, 0, out.data(), 0), OPALINE_OK);
+    EXPECT_EQ(shaded(), before);
+    opaline_asset_release(nullptr);
+    opaline_light_release(nullptr);
+    EXPECT_EQ(opaline_asset_receiver_count(nullptr), 0u);
+}
+
+TEST_F(Api, LightOfAnotherBasisIsRefused) {
+    FileBytes other_file = write(make_asset(16), "api-other");
+    auto other = load_asset(other_file.data(), other_file.size);
+    ASSERT_TRUE(other);
+    auto other_light = create_light(other.handle);
+    ASSERT_TRUE(other_light);
+    std::vector<float> out(3 * receivers);
+    EXPECT_EQ(opaline_shade(asset.get(), other_light.handle.get(), 0, out.data(), out.size()),
+              OPALINE_INVALID_ARGUMENT);
+}
+
+TEST_F(Api, DamagedFilesAreRefusedWhereverTheDamageIs) {
+    EXPECT_EQ(load_asset(nullptr, 10).status, OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(load_asset(file.data() + 1, file.size - 1).status, OPALINE_INVALID_ARGUMENT);
+    for (std::size_t size = 0; size < file.size; size += 61) {
+        const auto loaded = load_asset(file.data(), size);
+        EXPECT_EQ(loaded.status, OPALINE_BAD_FILE) << size;
+        EXPECT_STRNE(opaline_last_error(), "");
+    }
+    // A flipped bit is refused or, in padding, harmless.
+    for (std::size_t at = 0; at < file.size; at += 7) {
+        file.data()[at] = static_cast<char>(file.data()[at] ^ 0x10);
+        if (const auto loaded = load_asset(file.data(), file.size)) {
+            std::vector<float> out(3 * receivers);
+            const auto l = create_light(loaded.handle);
+            opaline_shade(loaded.handle.get(), l.handle.get(), 0, out.data(), out.size());
+        }
+        file.data()[at] = static_cast<char>(file.data()[at] ^ 0x10);
+    }
+}
+
+TEST_F(Api, StatusesHaveNames) {
+    for (int status = 0; status <= 5; ++status) {
+        EXPECT_STRNE(opaline_status_string(static_cast<opaline_status>(status)), "unknown status");
+    }
+    EXPECT_EQ(opaline_version(), OPALINE_VERSION);
+}
+
+}  // namespace
+}  // namespace opaline::runtime
