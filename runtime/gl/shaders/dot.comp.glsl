@@ -80,8 +80,10 @@ vec3 lane_sum(uint row, uint lane) {
     return detail_scale[scale] * details + average_scale[scale] * averages;
 #else
     uint scale = scale_origin + 3u * row;
-    return vec3(detail_scale[scale], detail_scale[scale + 1u], detail_scale[scale + 2u]) * details +
-           vec3(average_scale[scale], average_scale[scale + 1u], average_scale[scale + 2u]) * averages;
+    vec3 unit = vec3(detail_scale[scale], detail_scale[scale + 1u], detail_scale[scale + 2u]);
+    vec3 average_unit =
+        vec3(average_scale[scale], average_scale[scale + 1u], average_scale[scale + 2u]);
+    return unit * details + average_unit * averages;
 #endif
 }
 

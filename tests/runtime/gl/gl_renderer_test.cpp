@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <numbers>
 
 #include "runtime/gl/egl_context.h"
@@ -285,6 +286,32 @@ TEST_F(Gl, StatisticsAreFilledIn) {
     }
     EXPECT_GE(stats.gpu_bytes, asset.transport.code8.size() + asset.position.size() * 12);
     EXPECT_FALSE(stats.device.empty());
+}
+
+TEST_F(Gl, DamagedValuesNeverReachThePicture) {
+    const Environment sky = test::make_lat_long(32, 16, test::two_lights);
+    Asset asset = make_scene({16, 8, 3, 20});
+    const Camera camera = frame_asset(asset.view(), 40, 60, 60);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float inf = std::numeric_limits<float>::infinity();
+    asset.position[200] = {nan, 0, 0};
+    asset.position[201] = {inf, -inf, 0};
+    asset.position[202] = {3e38f, -3e38f, 3e38f};
+    asset.transport.detail_scale[3 * 250] = nan;
+    asset.transport.average_scale[3 * 260] = inf;
+    asset.transport.average_scale[3 * 270 + 1] = 3e38f;
+    asset.base_color[280] = {inf, nan, -1};
+    asset.texcoord.back() = {nan, inf};
+    auto renderer = GlRenderer::create(asset.view(), sky);
+    ASSERT_TRUE(renderer.has_value());
+    ASSERT_TRUE(renderer->set_light(project_environment(sky, 16), {}));
+    const auto picture = renderer->render(camera);
+    ASSERT_TRUE(picture.has_value());
+    for (const Rgb pixel : picture->pixel) {
+        for (const float value : {pixel.r, pixel.g, pixel.b}) {
+            EXPECT_TRUE(std::isfinite(value) && value >= 0);
+        }
+    }
 }
 
 TEST_F(Gl, WrongRequestsAreRefusedWithTheReason) {
