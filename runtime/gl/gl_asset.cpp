@@ -79,6 +79,11 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& l
     gl.code_bits = asset.transport.code_bits;
     gl.index_bytes = asset.transport.index_bytes;
     gl.primitives.assign(asset.primitives.begin(), asset.primitives.end());
+    if (asset.texcoord.empty()) {  // nowhere to look up images: the CPU leaves them out too
+        for (formats::PrimitiveRecord& primitive : gl.primitives) {
+            primitive.base_color_image = formats::kNoImage;
+        }
+    }
 
     const formats::SparseRowsView& rows = asset.transport;
     gl.row_offset = make_buffer_of(rows.row_offset, gl.resident);

@@ -87,7 +87,7 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
 
     GlClock clock;
     const std::uint32_t lanes = options.lanes_per_row != 0     ? options.lanes_per_row
-                                : state->context.is_software() ? 1
+                                : state->context.is_software() ? 8
                                                                : 16;
     auto gl_asset = upload_asset(asset, query_dot_limits(options.max_block_bytes, lanes));
     if (!gl_asset) return gl_asset.error();
@@ -149,8 +149,8 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
         make_draw_target(std::min(side, camera.width), std::min(side, camera.height), s);
     if (!target) return target.error();
 
-    Picture picture{camera.width, camera.height, {}};
-    picture.pixel.resize(std::size_t{camera.width} * camera.height);
+    auto picture = make_picture(camera.width, camera.height);
+    if (!picture) return picture;
     const DrawScene scene{resources.asset, resources.environment, state_->rotation, camera, s};
     for (std::uint32_t y = 0; y < camera.height; y += side) {
         for (std::uint32_t x = 0; x < camera.width; x += side) {
@@ -158,7 +158,7 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
                             std::min(side, camera.height - y)};
             draw_tile(scene, resources.draw_programs, *target, tile);
             state_->stats.draw_seconds += clock.lap();
-            read_tile(*target, tile, picture);
+            read_tile(*target, tile, *picture);
             state_->stats.readback_seconds += clock.lap();
         }
     }

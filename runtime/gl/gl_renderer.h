@@ -16,8 +16,8 @@
 namespace opaline::runtime {
 
 struct GlOptions {
-    /// Threads that share a row of the dot products: a power of two in [1, 32]; 0: one on software
-    /// renderers, where a barrier is dear, 16 on GPUs, where neighbours should read neighbours.
+    /// Invocations that share a row of the dot products: a power of two in [1, 32]. 0: 8 on
+    /// software renderers (a SIMD register, measured best on llvmpipe), 16 on GPUs (half a warp).
     std::uint32_t lanes_per_row = 0;
     /// Upper bound on bytes that one dispatch may see of one buffer; 0: what the driver states.
     std::size_t max_block_bytes = 0;

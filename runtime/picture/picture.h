@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "formats/opal/result.h"
 #include "formats/opal/rgb.h"
 
 namespace opaline::runtime {
@@ -15,6 +16,9 @@ struct Picture {
 };
 
 /// Largest width and height of a picture, in pixels, of either backend.
-inline constexpr std::uint32_t kMaxPictureSize = 32768;
+inline constexpr std::uint32_t kMaxPictureSize = 16384;
+
+/// A black picture. Errors: resource, where there is no memory for it.
+formats::Result<Picture> make_picture(std::uint32_t width, std::uint32_t height);
 
 }  // namespace opaline::runtime

@@ -1,11 +1,10 @@
 #include "runtime/picture/software_renderer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <string>
-#include <thread>
 
+#include "runtime/parallel.h"
 #include "runtime/picture/band.h"
 #include "runtime/texture.h"
 
@@ -28,6 +27,7 @@ struct Job {
     CameraFrame frame;
     SampleGrid grid;
     std::uint32_t supersampling = 1;
+    std::uint32_t band_rows = 1;  ///< samples
     std::vector<GridVertex> vertices;
     std::vector<GridTriangle> triangles;
     std::vector<std::vector<std::uint32_t>> triangles_of_band;
@@ -98,16 +98,33 @@ void resolve_band(const Job& job, const Band& band, Picture& picture) {
     }
 }
 
-constexpr std::uint32_t kBandPixels = 16;  ///< rows of pixels a thread works on at once
+// Rows of samples that a thread works on at once: whole pixels, and few enough that a band stays in
+// the megabytes however wide the picture is.
+std::uint32_t rows_of_band(const SampleGrid& grid, std::uint32_t supersampling) {
+    constexpr std::uint32_t kMostPixels = 16, kMostSamples = 1u << 20;
+    return std::clamp(kMostSamples / (grid.columns * supersampling), 1u, kMostPixels) *
+           supersampling;
+}
 
-void render_band(const Job& job, std::uint32_t number, Band& band, Picture& picture) {
-    const std::uint32_t height = kBandPixels * job.supersampling;
-    const std::uint32_t first = number * height;
-    reset_band(band, first, std::min(height, job.grid.rows - first), job.grid.columns);
+void render_band(const Job& job, std::uint32_t number, Picture& picture) {
+    Band band;
+    const std::uint32_t first = number * job.band_rows;
+    reset_band(band, first, std::min(job.band_rows, job.grid.rows - first), job.grid.columns);
     for (const std::uint32_t t : job.triangles_of_band[number]) {
         draw_triangle(band, t, job.triangles[t], job.vertices, job.grid);
     }
     resolve_band(job, band, picture);
+}
+
+void sort_into_bands(Job& job) {
+    job.triangles_of_band.resize((job.grid.rows + job.band_rows - 1) / job.band_rows);
+    for (std::uint32_t t = 0; t < job.triangles.size(); ++t) {
+        const GridTriangle& triangle = job.triangles[t];
+        for (std::uint32_t b = triangle.first_row / job.band_rows;
+             b <= triangle.last_row / job.band_rows; ++b) {
+            job.triangles_of_band[b].push_back(t);
+        }
+    }
 }
 
 }  // namespace
@@ -158,51 +175,22 @@ formats::Result<Picture> render_software(const AssetView& asset, std::span<const
                                        " values, expected one for each of " +
                                        std::to_string(asset.position.size()) + " vertices");
     }
+    auto picture = make_picture(camera.width, camera.height);
+    if (!picture) return picture;
     const std::uint32_t s = options.supersampling;
-    Job job{asset,
-            irradiance,
-            environment,
-            rotation,
-            camera,
-            camera_frame(camera),
-            SampleGrid{camera.width * s, camera.height * s, static_cast<double>(camera.near_plane)},
-            s,
-            {},
-            {},
-            {}};
-    job.vertices = project_vertices(asset.position, camera, job.grid);
-    job.triangles = select_triangles(asset, job.vertices, job.grid);
-
-    const std::uint32_t band_rows = kBandPixels * s;
-    const std::uint32_t bands = (job.grid.rows + band_rows - 1) / band_rows;
-    job.triangles_of_band.resize(bands);
-    for (std::uint32_t t = 0; t < job.triangles.size(); ++t) {
-        const GridTriangle& triangle = job.triangles[t];
-        for (std::uint32_t b = triangle.first_row / band_rows; b <= triangle.last_row / band_rows;
-             ++b) {
-            job.triangles_of_band[b].push_back(t);
+    const SampleGrid grid{camera.width * s, camera.height * s,
+                          static_cast<double>(camera.near_plane)};
+    Job job{asset, irradiance, environment,           rotation, camera, camera_frame(camera),
+            grid,  s,          rows_of_band(grid, s), {},       {},     {}};
+    job.vertices = project_vertices(asset.position, camera, grid);
+    job.triangles = select_triangles(asset, job.vertices, grid);
+    sort_into_bands(job);
+    const auto bands = static_cast<std::uint32_t>(job.triangles_of_band.size());
+    for_ranges(bands, 1, options.threads, [&](std::uint32_t first, std::uint32_t end) {
+        for (std::uint32_t band = first; band < end; ++band) {
+            render_band(job, band, *picture);
         }
-    }
-
-    Picture picture{camera.width, camera.height, {}};
-    picture.pixel.resize(std::size_t{camera.width} * camera.height);
-    std::atomic<std::uint32_t> next{0};
-    const auto work = [&] {
-        Band band;
-        for (std::uint32_t b = next++; b < bands; b = next++) {
-            render_band(job, b, band, picture);
-        }
-    };
-    const std::uint32_t wanted =
-        options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-    std::vector<std::thread> helpers;
-    for (std::uint32_t t = 1; t < std::min(wanted, bands); ++t) {
-        helpers.emplace_back(work);
-    }
-    work();
-    for (std::thread& helper : helpers) {
-        helper.join();
-    }
+    });
     return picture;
 }
 

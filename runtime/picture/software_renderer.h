@@ -15,7 +15,7 @@ namespace opaline::runtime {
 
 struct SoftwareOptions {
     std::uint32_t supersampling = 3;  ///< S: S x S samples a pixel, box filter; in [1, 8]
-    std::uint32_t threads = 0;        ///< 0: as many as the machine has; no influence on the result
+    unsigned threads = 0;             ///< 0: all cores; the result has the same bits for any number
 };
 
 /// A picture of the asset in front of its environment, on the CPU.
@@ -26,7 +26,7 @@ struct SoftwareOptions {
 /// Where no triangle is seen stands the radiance of the environment, turned by `rotation` like the
 /// light. Depth and clipping: what is nearest, from the near plane on.
 ///
-/// Errors: usage (image size, supersampling, field of view out of range; one value per vertex).
+/// Errors: usage (see check_camera; not one value per vertex), resource (memory).
 formats::Result<Picture> render_software(const formats::AssetView& asset,
                                          std::span<const formats::Rgb> irradiance,
                                          const formats::Environment& environment,

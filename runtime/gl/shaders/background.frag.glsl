@@ -38,7 +38,7 @@ float arc_tangent(float y, float x) {
 }
 
 vec3 lat_long_texel(int column, int row, ivec2 size) {
-    column = (column % size.x + size.x) % size.x;
+    column = (column + size.x) % size.x;  // column >= -1; % of a negative number is undefined
     return texelFetch(map, ivec3(column, clamp(row, 0, size.y - 1), 0), 0).rgb;
 }
 

@@ -20,8 +20,7 @@ int wrap_texel(int i, int size, int mode) {
         return clamp(i, 0, size - 1);
     }
     int period = mode == WRAP_MIRROR ? 2 * size : size;
-    i %= period;
-    i += i < 0 ? period : 0;
+    i = (i + period) % period;  // i >= -1; of negative numbers GLSL leaves % undefined
     return i < size ? i : period - 1 - i;
 }
 
