@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "formats/opal/cubemap.h"
 #include "runtime/map_geometry.h"
@@ -87,10 +89,11 @@ Footprint cube_footprint(const Environment& map, std::uint32_t column, std::uint
     return points;
 }
 
-}  // namespace
+// Below this many times the mean radiance one pixel does not matter to a texel of many.
+constexpr float kTimesMean = 8.0f;
+constexpr float kTimesSurroundings = 2.0f;
 
-std::vector<BrightPixel> take_bright_pixels(Environment& map) {
-    constexpr double kBright = 8.0;
+Rgb mean_radiance(const Environment& map) {
     const std::vector<double> edges =
         map.layout == Environment::Layout::cube ? std::vector<double>{} : row_edges(map);
     std::array<double, 3> mean{};
@@ -103,19 +106,62 @@ std::vector<BrightPixel> take_bright_pixels(Environment& map) {
             mean[2] += share * static_cast<double>(p.b);
         }
     }
-    const Rgb most{static_cast<float>(kBright * mean[0]), static_cast<float>(kBright * mean[1]),
-                   static_cast<float>(kBright * mean[2])};
+    return {static_cast<float>(mean[0]), static_cast<float>(mean[1]), static_cast<float>(mean[2])};
+}
+
+// How bright a pixel would be if the map were straight between the pixels three away to either
+// side, in that of four directions in which it is least: small next to a dot, a line or a corner,
+// the pixel's own value where the map is smooth, at least half of it along an edge.
+Rgb surroundings(const Environment& map, std::uint32_t column, std::uint32_t row) {
+    constexpr std::int64_t kDistance = 3;
+    const bool cube = map.layout == Environment::Layout::cube;
+    const auto width = static_cast<std::int64_t>(map.width);
+    // Rows stay in their face, columns of a lat-long map go round.
+    const std::int64_t first_row = cube ? row / map.width * width : 0;
+    const std::int64_t last_row = cube ? first_row + width - 1 : std::int64_t{map.height} - 1;
+    const auto at = [&](std::int64_t across, std::int64_t down) {
+        std::int64_t x = std::int64_t{column} + across;
+        x = cube ? std::clamp<std::int64_t>(x, 0, width - 1) : (x % width + width) % width;
+        const std::int64_t y = std::clamp(std::int64_t{row} + down, first_row, last_row);
+        return map.pixel[static_cast<std::size_t>(y * width + x)];
+    };
+    constexpr std::int64_t d = kDistance;
+    Rgb least{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+              std::numeric_limits<float>::infinity()};
+    constexpr std::array<std::array<std::int64_t, 2>, 4> kDirections{
+        {{d, 0}, {0, d}, {d, d}, {d, -d}}};
+    for (const auto& [across, down] : kDirections) {
+        const Rgb mean = 0.5f * at(across, down) + 0.5f * at(-across, -down);
+        least = {std::min(least.r, mean.r), std::min(least.g, mean.g), std::min(least.b, mean.b)};
+    }
+    return least;
+}
+
+}  // namespace
+
+std::vector<BrightPixel> take_bright_pixels(Environment& map) {
+    const Rgb floor = kTimesMean * mean_radiance(map);
     std::vector<BrightPixel> bright;
+    std::vector<Rgb> kept = map.pixel;
     for (std::uint32_t row = 0; row < map.height; ++row) {
         for (std::uint32_t column = 0; column < map.width; ++column) {
-            Rgb& p = map.pixel[std::size_t{row} * map.width + column];
-            if (p.r > most.r || p.g > most.g || p.b > most.b) {
-                const Rgb kept{std::min(p.r, most.r), std::min(p.g, most.g), std::min(p.b, most.b)};
-                bright.push_back({column, row, {p.r - kept.r, p.g - kept.g, p.b - kept.b}});
-                p = kept;
+            const Rgb p = map.pixel[std::size_t{row} * map.width + column];
+            if (p.r <= floor.r && p.g <= floor.g && p.b <= floor.b) {
+                continue;
+            }
+            const Rgb around = kTimesSurroundings * surroundings(map, column, row);
+            const Rgb most{std::max(floor.r, around.r), std::max(floor.g, around.g),
+                           std::max(floor.b, around.b)};
+            const Rgb excess{std::max(p.r - most.r, 0.0f), std::max(p.g - most.g, 0.0f),
+                             std::max(p.b - most.b, 0.0f)};
+            if (excess.r > 0 || excess.g > 0 || excess.b > 0) {
+                bright.push_back({column, row, excess});
+                kept[std::size_t{row} * map.width + column] = {
+                    std::min(p.r, most.r), std::min(p.g, most.g), std::min(p.b, most.b)};
             }
         }
     }
+    map.pixel = std::move(kept);
     return bright;
 }
 

@@ -19,8 +19,8 @@ namespace opaline::runtime {
 ///   exact solid angle of its share, so that a constant map gives the texels' solid angles to
 ///   rounding. s <= 32; maps too fine for that are first reduced (reduce_map.h).
 /// - Where pixels are smaller than texels, points on a grid would catch a little too much or too
-///   little of a pixel that outshines its surroundings (a sun in the map). What exceeds
-///   eight times the mean is therefore taken off and dealt out pixel by pixel with its exact flux.
+///   little of a pixel that outshines its surroundings (a sun in the map). What stands out is
+///   therefore taken off and dealt out pixel by pixel with its exact flux (deal_out.h).
 void integrate_map(const formats::Environment& map, std::uint32_t n, const Rotation& rotation,
                    unsigned threads, std::span<double> integral);
 

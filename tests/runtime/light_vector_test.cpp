@@ -147,7 +147,7 @@ TEST(LightVector, QuarterTurnPermutesTheTexels) {
 
 TEST(LightVector, AnyRotationKeepsTheFlux) {
     const Rotation turn = rotation_about_y(0.7f);
-    const Vec3 x = normalize({0.6f, 0.5f, -0.4f}), z = normalize(cross(x, {0, 1, 0}));
+    const Vec3 x = formats::normalize({0.6f, 0.5f, -0.4f}), z = normalize(cross(x, Vec3{0, 1, 0}));
     for (const Rotation& r : {turn, Rotation{x, cross(z, x), z}}) {
         ASSERT_TRUE(is_rotation(r));
         for (const Environment& map :
@@ -173,7 +173,7 @@ TEST(LightVector, RotationMovesTheLightWithItsAxes) {
 TEST(LightVector, DiscsOfAnySizeHaveTheirFluxInTheRightPlace) {
     for (const float radius : {1e-5f, 0.0046f, 0.05f, 0.2f, 0.9f, 1.5f}) {
         Environment sky;
-        const Vec3 toward = normalize({-0.4f, 0.3f, 0.8f});
+        const Vec3 toward = formats::normalize({-0.4f, 0.3f, 0.8f});
         sky.discs.push_back({toward, radius, {2, 1, 0}});
         const LightVector light = project_environment(sky, 32);
         EXPECT_NEAR(flux(light, 0) / (2 * formats::disc_solid_angle(radius)), 1.0, 1e-6) << radius;
