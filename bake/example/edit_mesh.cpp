@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <cstddef>
 #include <limits>
 #include <set>
@@ -20,14 +21,21 @@ double length_over_target(const TriangleMesh& mesh, const std::vector<double>& t
     return glm::distance(mesh.position[a], mesh.position[b]) / (0.5 * (target[a] + target[b]));
 }
 
-/// Edges and their relative lengths, sorted so that passes do the most urgent first; ties by index
-/// keep the order the same everywhere.
-std::vector<std::pair<double, std::size_t>> rank_edges(const TriangleMesh& mesh,
-                                                       const std::vector<double>& target,
-                                                       const std::vector<Edge>& edges) {
-    std::vector<std::pair<double, std::size_t>> rank(edges.size());
+/// An edge by its index in a list, and its length over its target.
+struct RankedEdge {
+    double length;
+    std::size_t index;
+    friend auto operator<=>(const RankedEdge&, const RankedEdge&) = default;
+};
+
+/// The edges whose relative length lies in (low, high), shortest first; ties by index keep the
+/// order the same everywhere.
+std::vector<RankedEdge> rank_edges(const TriangleMesh& mesh, const std::vector<double>& target,
+                                   const std::vector<Edge>& edges, double low, double high) {
+    std::vector<RankedEdge> rank;
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        rank[i] = {length_over_target(mesh, target, edges[i].a, edges[i].b), i};
+        const double length = length_over_target(mesh, target, edges[i].a, edges[i].b);
+        if (length > low && length < high) rank.push_back({length, i});
     }
     std::sort(rank.begin(), rank.end());
     return rank;
@@ -108,10 +116,11 @@ void compact(TriangleMesh& mesh, std::vector<double>& target) {
 void split_long_edges(TriangleMesh& mesh, std::vector<double>& target) {
     for (int pass = 0; pass < kPasses; ++pass) {
         const std::vector<Edge> edges = find_edges(mesh);
-        const auto rank = rank_edges(mesh, target, edges);
+        const auto rank = rank_edges(mesh, target, edges, 4.0 / 3.0, 1e9);
+        if (rank.empty()) break;
         std::vector<bool> touched(mesh.triangles.size(), false);
-        for (auto item = rank.rbegin(); item != rank.rend() && item->first > 4.0 / 3.0; ++item) {
-            const Edge& edge = edges[item->second];
+        for (auto item = rank.rbegin(); item != rank.rend(); ++item) {
+            const Edge& edge = edges[item->index];
             if (touched[edge.left] || touched[edge.right]) continue;
             touched[edge.left] = touched[edge.right] = true;
             const auto middle = static_cast<std::uint32_t>(mesh.position.size());
@@ -132,14 +141,14 @@ void split_long_edges(TriangleMesh& mesh, std::vector<double>& target) {
 void collapse_short_edges(TriangleMesh& mesh, std::vector<double>& target) {
     for (int pass = 0; pass < kPasses; ++pass) {
         const std::vector<Edge> edges = find_edges(mesh);
-        const auto rank = rank_edges(mesh, target, edges);
+        const auto rank = rank_edges(mesh, target, edges, -1.0, 0.8);
+        if (rank.empty()) break;
         const VertexTriangles ring = find_vertex_triangles(mesh);
         // Vertices near an edit are left alone until the next pass, so `ring` stays true for the
         // others.
         std::vector<bool> locked(mesh.position.size(), false);
-        for (const auto& [length, index] : rank) {
-            if (length >= 0.8) break;
-            const std::uint32_t a = edges[index].a, b = edges[index].b;
+        for (const RankedEdge& short_edge : rank) {
+            const std::uint32_t a = edges[short_edge.index].a, b = edges[short_edge.index].b;
             if (locked[a] || locked[b]) continue;
             const auto near_a = neighbours(mesh, ring, a), near_b = neighbours(mesh, ring, b);
             std::vector<std::uint32_t> common;

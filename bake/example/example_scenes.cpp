@@ -34,7 +34,7 @@ GltfObject floor_object(const FloorOptions& options) {
 
 std::vector<GltfObject> make_statue() {
     const Solid swan = make_swan();
-    TriangleMesh mesh = polygonize(swan.field, swan.bounds, 1.0);
+    TriangleMesh mesh = polygonize(swan.field, swan.bounds, 1.1);
     remesh(swan.field, RemeshOptions{}, mesh);
     return {{"Statue", "Statue", {0.82, 0.81, 0.79}, in_metres(std::move(mesh))},
             floor_object({.finest = 1.7, .fine_radius = 55.0, .growth = 0.1, .levels = 9})};

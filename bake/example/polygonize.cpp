@@ -3,10 +3,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <iterator>
+#include <utility>
 
 namespace opaline::bake {
 namespace {
@@ -70,36 +72,103 @@ Grid sample_grid(const Field& field, const Box& bounds, double cell) {
     return grid;
 }
 
-/// Mean of the points where the surface crosses the twelve edges of a cell, in cell coordinates;
-/// false if it crosses none.
-bool cell_vertex(const double (&corner)[8], glm::dvec3& vertex) {
-    glm::dvec3 sum(0.0);
-    int crossings = 0;
-    for (unsigned a = 0; a < 8; ++a) {
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            const unsigned b = a | 1u << axis;
-            if (a == b || (corner[a] < 0.0) == (corner[b] < 0.0)) continue;
-            glm::dvec3 point(a & 1u, a >> 1 & 1u, a >> 2 & 1u);
-            point[static_cast<int>(axis)] = corner[a] / (corner[a] - corner[b]);
-            sum += point;
-            ++crossings;
-        }
-    }
-    if (crossings == 0) return false;
-    vertex = sum / static_cast<double>(crossings);
-    return true;
+// Corner i of a cell lies at (i & 1, i >> 1 & 1, i >> 2 & 1); the cell edge from there along an
+// axis is number 3 i + axis.
+constexpr std::size_t kCellEdges = 24;
+
+/// The corners of a cell's faces, counter-clockwise seen from outside the cell.
+constexpr unsigned kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                   {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+std::size_t cell_edge(unsigned a, unsigned b) {
+    const unsigned axis = (a ^ b) >> 1;  // 1, 2, 4 become 0, 1, 2
+    return 3 * std::min(a, b) + axis;
 }
 
-/// Two triangles along the shorter diagonal of the quad a b c d, counter-clockwise from outside.
-void add_quad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c,
-              std::uint32_t d) {
+/// Where the surface's outline leads from each crossed edge of a cell to the next, kCellEdges where
+/// an edge is not crossed; true if some face could be cut in two ways.
+bool link_outline(const bool (&inside)[8], std::size_t (&next)[kCellEdges]) {
+    std::fill(std::begin(next), std::end(next), kCellEdges);
+    bool ambiguous = false;
+    for (const auto& face : kFaces) {
+        for (unsigned k = 0; k < 4; ++k) {
+            // Around the face, the outline runs from where one enters the solid to where one left
+            // it before: so opposite inside corners are joined, and cells that share the face
+            // agree.
+            if (inside[face[k]] || !inside[face[(k + 1) % 4]]) continue;
+            unsigned left = (k + 3) % 4;
+            while (!inside[face[left]] || inside[face[(left + 1) % 4]]) {
+                left = (left + 3) % 4;
+            }
+            next[cell_edge(face[k], face[(k + 1) % 4])] =
+                cell_edge(face[left], face[(left + 1) % 4]);
+        }
+        ambiguous =
+            ambiguous || (inside[face[0]] == inside[face[2]] &&
+                          inside[face[1]] == inside[face[3]] && inside[face[0]] != inside[face[1]]);
+    }
+    return ambiguous;
+}
+
+/// Fills one outline. Anything but a plain triangle or quad gets a vertex in its middle, since a
+/// diagonal might coincide with one of another outline.
+void fill_outline(const std::vector<std::uint32_t>& outline, bool ambiguous, TriangleMesh& mesh) {
     const auto& p = mesh.position;
-    if (glm::distance(p[a], p[c]) <= glm::distance(p[b], p[d])) {
-        mesh.triangles.push_back({a, b, c});
-        mesh.triangles.push_back({a, c, d});
-    } else {
-        mesh.triangles.push_back({a, b, d});
-        mesh.triangles.push_back({b, c, d});
+    if (outline.size() == 3) {
+        mesh.triangles.push_back({outline[0], outline[1], outline[2]});
+        return;
+    }
+    if (outline.size() == 4 && !ambiguous) {
+        const auto [a, b, c, d] = std::array{outline[0], outline[1], outline[2], outline[3]};
+        if (glm::distance(p[a], p[c]) <= glm::distance(p[b], p[d])) {
+            mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
+        } else {
+            mesh.triangles.insert(mesh.triangles.end(), {{a, b, d}, {b, c, d}});
+        }
+        return;
+    }
+    glm::dvec3 sum(0.0);
+    for (const std::uint32_t v : outline) {
+        sum += p[v];
+    }
+    const auto middle = static_cast<std::uint32_t>(p.size());
+    mesh.position.push_back(sum / static_cast<double>(outline.size()));
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        mesh.triangles.push_back({middle, outline[i], outline[(i + 1) % outline.size()]});
+    }
+}
+
+/// Adds the part of the surface inside one cell; `vertex_of` numbers the crossed grid edges.
+void cut_cell(const Grid& grid, std::size_t node, const std::vector<std::uint32_t>& vertex_of,
+              TriangleMesh& mesh) {
+    std::size_t corner[8];
+    bool inside[8];
+    for (unsigned i = 0; i < 8; ++i) {
+        corner[i] = node + grid.at(i & 1u, i >> 1 & 1u, i >> 2 & 1u);
+        inside[i] = grid.value[corner[i]] < 0.0;
+    }
+    if (std::all_of(inside, inside + 8, [&](bool in) { return in == inside[0]; })) return;
+    std::size_t next[kCellEdges];
+    const bool ambiguous = link_outline(inside, next);
+    for (std::size_t start = 0; start < kCellEdges; ++start) {
+        std::vector<std::uint32_t> outline;
+        for (std::size_t edge = start; next[edge] != kCellEdges;) {
+            outline.push_back(vertex_of[3 * corner[edge / 3] + edge % 3]);
+            edge = std::exchange(next[edge], kCellEdges);
+        }
+        if (!outline.empty()) fill_outline(outline, ambiguous, mesh);
+    }
+}
+
+/// Calls visit(x, y, z) for the low corner of every cell.
+template <class Visit>
+void for_each_cell(const Grid& grid, const Visit& visit) {
+    for (std::size_t z = 0; z + 1 < grid.nz; ++z) {
+        for (std::size_t y = 0; y + 1 < grid.ny; ++y) {
+            for (std::size_t x = 0; x + 1 < grid.nx; ++x) {
+                visit(x, y, z);
+            }
+        }
     }
 }
 
@@ -107,48 +176,25 @@ void add_quad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_
 
 TriangleMesh polygonize(const Field& field, const Box& bounds, double cell) {
     const Grid grid = sample_grid(field, bounds, cell);
-    TriangleMesh mesh;
-    constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> vertex_of(grid.value.size(), kNoVertex);
     const std::size_t step[3] = {1, grid.nx, grid.nx * grid.ny};
-    for (std::size_t z = 0; z + 1 < grid.nz; ++z) {
-        for (std::size_t y = 0; y + 1 < grid.ny; ++y) {
-            for (std::size_t x = 0; x + 1 < grid.nx; ++x) {
-                const std::size_t node = grid.at(x, y, z);
-                double corner[8];
-                for (unsigned i = 0; i < 8; ++i) {
-                    corner[i] = grid.value[node + (i & 1u) * step[0] + (i >> 1 & 1u) * step[1] +
-                                           (i >> 2 & 1u) * step[2]];
-                }
-                glm::dvec3 vertex;
-                if (!cell_vertex(corner, vertex)) continue;
-                vertex_of[node] = static_cast<std::uint32_t>(mesh.position.size());
-                mesh.position.push_back(grid.point(static_cast<double>(x) + vertex.x,
-                                                   static_cast<double>(y) + vertex.y,
-                                                   static_cast<double>(z) + vertex.z));
-            }
+    TriangleMesh mesh;
+    std::vector<std::uint32_t> vertex_of(3 * grid.value.size());
+    for_each_cell(grid, [&](std::size_t x, std::size_t y, std::size_t z) {
+        const std::size_t node = grid.at(x, y, z);
+        const double here = grid.value[node];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double there = grid.value[node + step[axis]];
+            if ((here < 0.0) == (there < 0.0)) continue;
+            glm::dvec3 p(x, y, z);
+            // Kept off the grid's nodes, where vertices of several edges would coincide.
+            p[static_cast<int>(axis)] += std::clamp(here / (here - there), 0.02, 0.98);
+            vertex_of[3 * node + axis] = static_cast<std::uint32_t>(mesh.position.size());
+            mesh.position.push_back(grid.point(p.x, p.y, p.z));
         }
-    }
-    for (std::size_t z = 1; z + 1 < grid.nz; ++z) {
-        for (std::size_t y = 1; y + 1 < grid.ny; ++y) {
-            for (std::size_t x = 1; x + 1 < grid.nx; ++x) {
-                const std::size_t node = grid.at(x, y, z);
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    const bool inside = grid.value[node] < 0.0;
-                    if (inside == (grid.value[node + step[axis]] < 0.0)) continue;
-                    const std::size_t u = step[(axis + 1) % 3], v = step[(axis + 2) % 3];
-                    const std::uint32_t a = vertex_of[node - u - v], b = vertex_of[node - v],
-                                        c = vertex_of[node], d = vertex_of[node - u];
-                    // Seen against the axis, a b c d runs counter-clockwise.
-                    if (inside) {
-                        add_quad(mesh, a, b, c, d);
-                    } else {
-                        add_quad(mesh, d, c, b, a);
-                    }
-                }
-            }
-        }
-    }
+    });
+    for_each_cell(grid, [&](std::size_t x, std::size_t y, std::size_t z) {
+        cut_cell(grid, grid.at(x, y, z), vertex_of, mesh);
+    });
     return mesh;
 }
 

@@ -12,23 +12,17 @@
 namespace opaline::bake {
 namespace {
 
-/// Moves every vertex onto the surface and sets its normal.
-void project(const Field& field, double step, int newton_steps, TriangleMesh& mesh) {
-    mesh.normal.resize(mesh.position.size());
+/// Sets every vertex's normal, after moving it toward the surface along the normal it has.
+void drop_onto_surface(const Field& field, double step, TriangleMesh& mesh) {
     tbb::parallel_for(std::size_t{0}, mesh.position.size(), [&](std::size_t v) {
-        glm::dvec3& p = mesh.position[v];
-        glm::dvec3 slope = gradient(field, p, step);
-        for (int i = 0; i < newton_steps; ++i) {
-            const double squared = std::max(glm::dot(slope, slope), 0.05);
+        glm::dvec3 &p = mesh.position[v], &n = mesh.normal[v];
+        if (glm::dot(n, n) > 0.0) {
             // Bounded, so that a bad guess beside a crease cannot fling a vertex away.
-            const double move = std::clamp(field(p) / std::sqrt(squared), -0.5, 0.5);
-            p -= move / std::sqrt(squared) * slope;
-            if (i + 1 == newton_steps || std::abs(move) > 0.02) {
-                slope = gradient(field, p, step);
-            }
+            p -= std::clamp(field(p), -0.5, 0.5) * n;
         }
+        const glm::dvec3 slope = gradient(field, p, step);
         const double length = glm::length(slope);
-        mesh.normal[v] = length > 1e-9 ? slope / length : glm::dvec3(0, 1, 0);
+        n = length > 1e-9 ? slope / length : glm::dvec3(0.0, 1.0, 0.0);
     });
 }
 
@@ -87,7 +81,9 @@ void relax(const std::vector<double>& target, TriangleMesh& mesh) {
 
 void remesh(const Field& field, const RemeshOptions& options, TriangleMesh& mesh) {
     const double step = 0.1 * options.shortest;
-    project(field, step, 3, mesh);
+    mesh.normal.assign(mesh.position.size(), glm::dvec3(0.0));
+    drop_onto_surface(field, step, mesh);
+    drop_onto_surface(field, step, mesh);
     for (int round = 0; round < options.rounds; ++round) {
         std::vector<double> target = edge_targets(mesh, options);
         const bool last = round + 1 == options.rounds;
@@ -97,9 +93,11 @@ void remesh(const Field& field, const RemeshOptions& options, TriangleMesh& mesh
         }
         flip_to_delaunay(mesh);
         relax(target, mesh);
-        project(field, step, last ? 3 : 1, mesh);
+        drop_onto_surface(field, step, mesh);
         flip_to_delaunay(mesh);
     }
+    drop_onto_surface(field, step, mesh);
+    drop_onto_surface(field, step, mesh);
 }
 
 }  // namespace opaline::bake

@@ -7,9 +7,9 @@ namespace opaline::bake {
 
 /// How fine a remeshed surface is.
 struct RemeshOptions {
-    double shortest = 0.5;    ///< target edge where the surface bends most [mm]
-    double longest = 1.4;     ///< target edge where it is flat [mm]
-    double deviation = 0.02;  ///< wanted distance between a triangle and the surface [mm]
+    double shortest = 0.6;    ///< target edge where the surface bends most [mm]
+    double longest = 1.6;     ///< target edge where it is flat [mm]
+    double deviation = 0.03;  ///< wanted distance between a triangle and the surface [mm]
     int rounds = 6;
 };
 

@@ -22,18 +22,26 @@ TaperedCurve::TaperedCurve(const std::vector<glm::dvec4>& control) {
 
     const std::size_t spans = control.size() - 1;
     for (std::size_t i = 0; i <= spans * kSamplesPerSpan; ++i) {
-        const Point point = evaluate(static_cast<double>(i) / double{kSamplesPerSpan});
-        samples_.emplace_back(point.value);
-        center_ += glm::dvec3(point.value);
+        samples_.emplace_back(evaluate(static_cast<double>(i) / double{kSamplesPerSpan}).value);
     }
-    center_ /= static_cast<double>(samples_.size());
     double largest = 0.0;
     for (const glm::dvec4& point : control) {
         largest = std::max(largest, point.w);
     }
     for (const glm::dvec3& point : samples_) {
-        reach_ = std::max(reach_, glm::distance(point, center_) + largest);
+        reach_ = std::max(reach_, chord_distance(point) + largest);
     }
+}
+
+double TaperedCurve::chord_distance(const glm::dvec3& p) const {
+    const glm::dvec3 chord = samples_.back() - samples_.front();
+    const glm::dvec3 offset = p - samples_.front();
+    const double t = std::clamp(glm::dot(offset, chord) / glm::dot(chord, chord), 0.0, 1.0);
+    return glm::length(offset - t * chord);
+}
+
+double TaperedCurve::distance_bound(const glm::dvec3& p) const {
+    return chord_distance(p) - reach_;
 }
 
 TaperedCurve::Point TaperedCurve::evaluate(double t) const {

@@ -24,8 +24,9 @@ class TaperedCurve {
     /// Signed distance to the tube, exact up to its taper.
     double distance(const glm::dvec3& p) const;
 
-    /// A lower bound of the distance from `p` to the tube, cheap.
-    double distance_bound(const glm::dvec3& p) const { return glm::distance(p, center_) - reach_; }
+    /// A lower bound of the distance from `p` to the tube, cheap and tight for a nearly straight
+    /// one.
+    double distance_bound(const glm::dvec3& p) const;
 
   private:
     struct Point {
@@ -35,8 +36,8 @@ class TaperedCurve {
 
     std::vector<glm::dvec4> control_;  ///< with one phantom point before and after
     std::vector<glm::dvec3> samples_;  ///< even in the parameter: where the search begins
-    glm::dvec3 center_{0.0};
-    double reach_ = 0.0;
+    double reach_ = 0.0;               ///< no point of the tube is farther from its chord
+    double chord_distance(const glm::dvec3& p) const;
 };
 
 }  // namespace opaline::bake
