@@ -188,7 +188,7 @@ void deal_out(const Environment& map, std::span<const BrightPixel> bright, std::
     const bool cube = map.layout == Environment::Layout::cube;
     const std::vector<double> edges = cube ? std::vector<double>{} : row_edges(map);
     // Six halvings leave pieces of 1/64 pixel at the border between texels.
-    const unsigned depth = bright.size() <= 10000 ? 6 : 4;
+    const unsigned depth = bright.size() <= 50000 ? 6 : 4;
     // A fixed number of shares, summed in order: the rounding is the same for any thread count.
     constexpr std::uint32_t kShares = 8;
     std::array<std::vector<double>, kShares> partial;

@@ -138,15 +138,14 @@ void integrate_map(const Environment& map, std::uint32_t n, const Rotation& rota
         return static_cast<std::uint32_t>(
             std::clamp(std::ceil(per_pixel * texel / pixel.smaller), 2.0, most));
     };
-    if (false && pixel.larger < 0.5 * texel) {
+    if (pixel.larger < 0.5 * texel) {
         const std::vector<BrightPixel> bright = take_bright_pixels(fine);
         integrate_bilinear(fine, n, samples(4.0), rotation, threads, integral);
         deal_out(fine, bright, n, rotation, threads, integral);
     } else {
         // Pixels as large as texels: sixteen samples across make even a lone bright one exact to
         // 2 / (16.5 pi)^2 < 0.1 %, the worst ripple of a tent summed on a grid.
-        integrate_bilinear(fine, n, samples(pixel.larger < .5 * texel ? 4 : 16.0), rotation,
-                           threads, integral);
+        integrate_bilinear(fine, n, samples(16.0), rotation, threads, integral);
     }
 }
 
