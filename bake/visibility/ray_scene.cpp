@@ -3,7 +3,10 @@
 #include <embree3/rtcore.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstring>
+#include <iterator>
 #include <limits>
 
 namespace opaline::bake {
@@ -37,6 +40,7 @@ struct RayScene::Handles {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     RTCIntersectContext coherent{};
+    std::vector<bool> double_sided;  // by Embree geometry id
 
     Handles() {
         rtcInitIntersectContext(&coherent);
@@ -98,7 +102,8 @@ formats::Result<RayScene> RayScene::build(const Scene& scene, unsigned threads) 
         std::copy(p.index.begin(), p.index.end(), index);
         rays.triangles_ += p.index.size() / 3;
         rtcCommitGeometry(geometry);
-        rtcAttachGeometry(h.scene, geometry);
+        rtcAttachGeometry(h.scene, geometry);  // ids count up from 0
+        h.double_sided.push_back(scene.materials[p.material].double_sided);
         rtcReleaseGeometry(geometry);
     }
     // In an arena of its own: Embree's `threads` setting would limit TBB in the whole process.
@@ -113,6 +118,26 @@ formats::Result<RayScene> RayScene::build(const Scene& scene, unsigned threads) 
 void RayScene::occluded(const LaneMask& lanes, RayPacket& packet) const {
     RTCIntersectContext context = handles_->coherent;
     rtcOccluded16(lanes.data(), handles_->scene, &context, reinterpret_cast<RTCRay16*>(&packet));
+}
+
+LaneMask RayScene::meets_back_face(const LaneMask& lanes, const RayPacket& packet) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit16 ray;
+    std::memcpy(&ray.ray, &packet, sizeof packet);
+    std::fill(std::begin(ray.hit.geomID), std::end(ray.hit.geomID), RTC_INVALID_GEOMETRY_ID);
+    rtcIntersect16(lanes.data(), handles_->scene, &context, &ray);
+    LaneMask back{};
+    for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
+        if (lanes[i] != 0 && ray.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID &&
+            !handles_->double_sided[ray.hit.geomID[i]]) {
+            const float along = ray.hit.Ng_x[i] * packet.dir_x[i] +
+                                ray.hit.Ng_y[i] * packet.dir_y[i] +
+                                ray.hit.Ng_z[i] * packet.dir_z[i];
+            back[i] = along > 0 ? -1 : 0;
+        }
+    }
+    return back;
 }
 
 std::string RayScene::description() {

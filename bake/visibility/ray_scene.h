@@ -43,6 +43,10 @@ class RayScene {
     /// about one origin, or about one direction.
     void occluded(const LaneMask& lanes, RayPacket& packet) const;
 
+    /// Which of the rays in `lanes` meet the back of a single-sided triangle first: -1 yes, 0 no.
+    /// Inside a closed body all do.
+    LaneMask meets_back_face(const LaneMask& lanes, const RayPacket& packet) const;
+
     /// Subtract from world positions before they become ray origins [m].
     glm::vec3 centre() const { return centre_; }
 

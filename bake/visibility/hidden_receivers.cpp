@@ -1,0 +1,95 @@
+#include "bake/visibility/hidden_receivers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <utility>
+
+namespace opaline::bake {
+namespace {
+
+// Two unit vectors that make an orthonormal frame with n [Duff2017].
+std::pair<glm::vec3, glm::vec3> tangents(glm::vec3 n) {
+    const float sign = std::copysign(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+    return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
+}
+
+// Sixteen cosine-weighted directions around the normal, on a golden-angle spiral.
+RayPacket probe_packet(const Receiver& receiver, glm::vec3 centre) {
+    RayPacket packet{};
+    const glm::vec3 origin = receiver.origin - centre;
+    const auto [u, v] = tangents(receiver.normal);
+    for (std::uint32_t i = 0; i < RayPacket::kSize; ++i) {
+        const float r2 = (static_cast<float>(i) + 0.5f) / static_cast<float>(RayPacket::kSize);
+        const float phi =
+            2.0f * std::numbers::pi_v<float> * (static_cast<float>(i) / std::numbers::phi_v<float>);
+        const float r = std::sqrt(r2);
+        const glm::vec3 d =
+            r * std::cos(phi) * u + r * std::sin(phi) * v + std::sqrt(1.0f - r2) * receiver.normal;
+        packet.org_x[i] = origin.x, packet.org_y[i] = origin.y, packet.org_z[i] = origin.z;
+        packet.dir_x[i] = d.x, packet.dir_y[i] = d.y, packet.dir_z[i] = d.z;
+    }
+    packet.tfar.fill(std::numeric_limits<float>::infinity());
+    packet.mask.fill(0xffffffffu);
+    return packet;
+}
+
+bool is_hidden(const RayScene& rays, const Receiver& receiver) {
+    if (receiver.normal == glm::vec3(0)) {
+        return false;
+    }
+    LaneMask all;
+    all.fill(-1);
+    const LaneMask back = rays.meets_back_face(all, probe_packet(receiver, rays.centre()));
+    return std::all_of(back.begin(), back.end(), [](std::int32_t lane) { return lane != 0; });
+}
+
+// Visible vertices that share an edge with a hidden one, as sorted pairs (hidden, visible).
+using Link = std::pair<std::uint32_t, std::uint32_t>;
+std::vector<Link> link_to_visible(const formats::Scene& scene, const std::vector<bool>& hidden) {
+    std::vector<Link> links;
+    std::uint32_t base = 0;
+    for (const formats::Primitive& p : scene.primitives) {
+        for (std::size_t i = 0; i < p.index.size(); ++i) {
+            const std::uint32_t a = base + p.index[i];
+            const std::uint32_t b = base + p.index[i % 3 == 2 ? i - 2 : i + 1];
+            if (hidden[a] != hidden[b]) {
+                links.push_back(hidden[a] ? Link{a, b} : Link{b, a});
+            }
+        }
+        base += static_cast<std::uint32_t>(p.position.size());
+    }
+    std::sort(links.begin(), links.end());
+    links.erase(std::unique(links.begin(), links.end()), links.end());
+    return links;
+}
+
+}  // namespace
+
+ReceiverSet take_over_hidden(const RayScene& rays, const formats::Scene& scene,
+                             std::vector<Receiver> receivers) {
+    std::vector<bool> hidden(receivers.size());
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        hidden[i] = is_hidden(rays, receivers[i]);
+    }
+    const std::vector<Link> links = link_to_visible(scene, hidden);
+    ReceiverSet set;
+    set.points.reserve(receivers.size());
+    set.first.reserve(receivers.size() + 1);
+    auto link = links.begin();
+    for (std::uint32_t i = 0; i < receivers.size(); ++i) {
+        if (link == links.end() || link->first != i) {
+            set.points.push_back(receivers[i]);
+        }
+        for (; link != links.end() && link->first == i; ++link) {
+            set.points.push_back({receivers[link->second].origin, receivers[i].normal});
+        }
+        set.first.push_back(static_cast<std::uint32_t>(set.points.size()));
+    }
+    return set;
+}
+
+}  // namespace opaline::bake
