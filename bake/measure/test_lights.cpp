@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "bake/environment/builtin_environment.h"
+#include "formats/opal/cubemap.h"
 #include "formats/opal/rgb.h"
 #include "runtime/light_vector.h"
+#include "runtime/reduce_map.h"
 
 namespace opaline::bake {
 namespace {
@@ -22,6 +24,22 @@ std::vector<float> luminances(const runtime::LightVector& light) {
     return values;
 }
 
+// The same light on n x n texels from its 2n x 2n coefficients: a coarse texel's integral is the
+// sum of four, which is twice the low-pass of one Haar level, so the coarse coefficients are twice
+// the top-left quarter.
+std::vector<float> coarsen(const std::vector<float>& fine, std::uint32_t n) {
+    std::vector<float> coarse;
+    coarse.reserve(fine.size() / 4);
+    for (std::size_t face = 0; face < formats::kCubeFaces; ++face) {
+        for (std::size_t row = 0; row < n; ++row) {
+            for (std::size_t column = 0; column < n; ++column) {
+                coarse.push_back(2.0f * fine[(face * 2 * n + row) * 2 * n + column]);
+            }
+        }
+    }
+    return coarse;
+}
+
 }  // namespace
 
 formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_size,
@@ -32,11 +50,17 @@ formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_s
         if (!environment) {
             return std::move(environment).error();
         }
-        lights.push_back({name,
-                          luminances(runtime::project_environment(*environment, cubemap_size,
-                                                                  runtime::Rotation{}, threads)),
-                          luminances(runtime::project_environment(*environment, 2 * cubemap_size,
-                                                                  runtime::Rotation{}, threads))});
+        // Two to three pixels a texel are plenty for these smooth maps, and quick to project.
+        const std::uint32_t fine_size = 2 * cubemap_size;
+        if (!environment->pixel.empty()) {
+            std::vector<formats::DistantDisc> discs = std::move(environment->discs);
+            environment =
+                runtime::reduce_lat_long(*environment, 8 * fine_size, 4 * fine_size, threads);
+            environment->discs = std::move(discs);
+        }
+        std::vector<float> fine =
+            luminances(runtime::project_environment(*environment, fine_size, {}, threads));
+        lights.push_back({name, coarsen(fine, cubemap_size), std::move(fine)});
     }
     return lights;
 }

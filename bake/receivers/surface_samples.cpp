@@ -84,6 +84,9 @@ std::vector<Candidate> scatter(const Scene& scene, const AreaTable& table, std::
     return candidates;
 }
 
+// Normals at more than 120 degrees belong to different sides of a sheet; those of a box's edge do not.
+constexpr float kOpposed = -0.5f;
+
 // Points in cubic cells of the search radius.
 class Grid {
   public:
@@ -106,7 +109,7 @@ class Grid {
                     for (const std::uint32_t j : cell->second) {
                         const float d = glm::distance(points_[i].position, points_[j].position);
                         if (j != i && d < radius &&
-                            glm::dot(points_[i].normal, points_[j].normal) > 0) {
+                            glm::dot(points_[i].normal, points_[j].normal) > kOpposed) {
                             visit(j, d);
                         }
                     }

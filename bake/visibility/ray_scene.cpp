@@ -1,6 +1,7 @@
 #include "bake/visibility/ray_scene.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 #include <cstddef>
 #include <limits>
@@ -62,9 +63,7 @@ formats::Result<RayScene> RayScene::build(const Scene& scene, unsigned threads) 
     RayScene rays;
     rays.centre_ = scene_centre(scene);
     Handles& h = *rays.handles_;
-    const std::string config = std::string("isa=") + kInstructionSet +
-                               (threads != 0 ? ",threads=" + std::to_string(threads) : "");
-    h.device = rtcNewDevice(config.c_str());
+    h.device = rtcNewDevice((std::string("isa=") + kInstructionSet).c_str());
     const auto failed = [&](const char* what) {
         return formats::make_error(ErrorKind::resource, scene.source, "ray tracer", what,
                                    "free some memory, or bake a smaller scene");
@@ -102,7 +101,9 @@ formats::Result<RayScene> RayScene::build(const Scene& scene, unsigned threads) 
         rtcAttachGeometry(h.scene, geometry);
         rtcReleaseGeometry(geometry);
     }
-    rtcCommitScene(h.scene);
+    // In an arena of its own: Embree's `threads` setting would limit TBB in the whole process.
+    tbb::task_arena arena(threads != 0 ? static_cast<int>(threads) : tbb::task_arena::automatic);
+    arena.execute([&h] { rtcCommitScene(h.scene); });
     if (rtcGetDeviceError(h.device) != RTC_ERROR_NONE) {
         return failed("the ray hierarchy cannot be built");
     }

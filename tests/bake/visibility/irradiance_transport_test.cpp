@@ -67,14 +67,16 @@ TEST(IrradianceTransport, EveryVertexOfASphereUnderWhiteReflectsItsAlbedo) {
     }
 }
 
-// A wall that reaches to infinity covers half of the hemisphere at its foot, and half of the
-// irradiance. The wall here ends at an elevation of 89.94 degrees: 1 - 1/1000 of it is there.
+// Differential area to a perpendicular wall, infinitely long, of height h at distance a:
+// F = (1 - a / sqrt(a^2 + h^2)) / 2; half of the hemisphere for a high wall at its foot.
 TEST(IrradianceTransport, WallHalvesTheIrradianceAtItsFoot) {
-    const auto scene =
-        tests::make_scene({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2),
-                           tests::make_quad({-1000, 0, 0}, {2000, 0, 0}, {0, 1000, 0})});
-    const Receiver foot{{0, 1e-5f, 1e-5f}, {0, 1, 0}};
-    EXPECT_NEAR(radiance_under_white(scene, foot, 32), 0.5, 1.5e-3);
+    const auto scene = tests::make_scene({tests::make_quad({-100, 0, 0}, {200, 0, 0}, {0, 20, 0})});
+    for (const float a : {0.001f, 5.0f}) {
+        const Receiver foot{{0, 0, a}, {0, 1, 0}};
+        const double expected = 1 - 0.5 * (1 - a / std::sqrt(a * a + 400));
+        // The wall's ends, at 100 m, leave less than 0.2 percent open.
+        EXPECT_NEAR(radiance_under_white(scene, foot, 64), expected, 4e-3) << a;
+    }
 }
 
 // Differential area to parallel disc: F = r^2 / (r^2 + h^2).

@@ -1,0 +1,117 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "bake/cli/command.h"
+#include "bake/cli/inputs.h"
+#include "bake/cli/interrupt.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/progress.h"
+#include "bake/cli/report.h"
+#include "bake/cli/scene_options.h"
+#include "bake/pipeline.h"
+#include "formats/opal/write_opal.h"
+
+namespace opaline::cli {
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    std::string output, report, depfile;
+    ProgressStyle progress = ProgressStyle::automatic;
+};
+
+void print_summary(const Options& options, const bake::BakeResult& result, std::uint64_t bytes,
+                   std::size_t warnings) {
+    fmt::print(stderr, "{}: {} receivers, {}, {}; measured error {:.2f} % (95 %: {:.2f} to {:.2f})",
+               options.output, result.asset.position.size(), format_seconds(result.seconds_total),
+               format_bytes(static_cast<double>(bytes)), 100 * result.error.rms_relative,
+               100 * result.error.ci95[0], 100 * result.error.ci95[1]);
+    fmt::print(stderr, "{}\n",
+               warnings == 0   ? ""
+               : warnings == 1 ? "; 1 warning"
+                               : "; " + std::to_string(warnings) + " warnings");
+}
+
+int run(const Options& options) {
+    const std::atomic<bool>& interrupted = catch_interrupts();
+    if (auto status = check_effects(options.scene); !status) {
+        return report_error(status.error());
+    }
+    const auto knobs = bake::resolve_knobs(options.scene.bake);
+    if (!knobs) {
+        return report_error(knobs.error());
+    }
+    auto imported = open_scene(options.scene.scene, options.scene.metres_per_unit);
+    if (!imported) {
+        return report_error(imported.error());
+    }
+    for (const std::string* path : {&options.output, &options.report, &options.depfile}) {
+        if (auto status = check_output(*path, imported->scene.inputs, {}); !status) {
+            return report_error(status.error());
+        }
+    }
+    // Before the work, so that an unwritable folder is found out at once.
+    auto file = formats::AtomicFile::create(options.output);
+    if (!file) {
+        return report_error(file.error());
+    }
+    bake::Context context;
+    context.threads = options.scene.bake.threads;
+    context.cancel = &interrupted;
+    context.on_progress = make_progress_printer(options.progress);
+    auto result = bake::run_bake(imported->scene, options.scene.bake, context);
+    if (!result) {
+        return report_error(result.error());
+    }
+    if (auto status = formats::write_opal(result->asset.view(), std::move(*file)); !status) {
+        return report_error(status.error());
+    }
+    std::error_code ignored;
+    const std::uint64_t bytes = std::filesystem::is_regular_file(options.output, ignored)
+                                    ? std::filesystem::file_size(options.output, ignored)
+                                    : 0;
+    std::vector<formats::Diagnostic> warnings = imported->warnings;
+    warnings.insert(warnings.end(), result->warnings.begin(), result->warnings.end());
+    print_warnings(result->warnings);
+    if (!options.report.empty()) {
+        const std::string report = make_report(imported->scene, *result, warnings, bytes);
+        if (auto status = formats::write_file_atomically(options.report, report); !status) {
+            return report_error(status.error());
+        }
+    }
+    if (!options.depfile.empty()) {
+        const std::string rule = make_depfile(options.output, imported->scene.inputs);
+        if (auto status = formats::write_file_atomically(options.depfile, rule); !status) {
+            return report_error(status.error());
+        }
+    }
+    print_summary(options, *result, bytes, warnings.size());
+    return kExitSuccess;
+}
+
+}  // namespace
+
+void add_bake_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("bake", "Bake a scene into an .opal file");
+    add_scene_options(*command, options->scene);
+    command->add_option("-o,--output", options->output, "the .opal file to write")->required();
+    command->add_option("--report", options->report, "write a JSON report: plan, stages, error");
+    command->add_option("--depfile", options->depfile,
+                        "write the files read as a rule for make and ninja");
+    command
+        ->add_option("--progress", options->progress,
+                     "auto: a bar on a terminal; json: a line of JSON a step on stderr; none")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
+                                                 {"json", ProgressStyle::json},
+                                                 {"none", ProgressStyle::none}}))
+        ->option_text("auto|json|none [auto]");
+    command->footer("Example:\n  opaline bake scene.glb -o scene.opal --quality production");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

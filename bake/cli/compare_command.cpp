@@ -1,0 +1,60 @@
+#include "bake/compare/compare_files.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <string>
+
+#include "bake/cli/command.h"
+#include "bake/cli/messages.h"
+
+namespace opaline::cli {
+namespace {
+
+struct Options {
+    std::string a, b;
+    double max_relative = -1;
+};
+
+int run(const Options& options) {
+    const auto comparison = bake::compare_files(options.a, options.b);
+    if (!comparison) {
+        return report_error(comparison.error());
+    }
+    fmt::print("elements        {}\n", comparison->count);
+    fmt::print("rmse            {:.6g}\n", comparison->rmse);
+    fmt::print("relative rmse   {:.6g}\n", comparison->relative_rmse);
+    fmt::print("95th percentile {:.6g}\n", comparison->p95);
+    fmt::print("maximum         {:.6g}\n", comparison->maximum);
+    if (options.max_relative >= 0 && !(comparison->relative_rmse <= options.max_relative)) {
+        fmt::print(stderr, "opaline: {} differs from {} by more than {:g}\n", options.a, options.b,
+                   options.max_relative);
+        return kExitNo;
+    }
+    return kExitSuccess;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command =
+        app.add_subcommand("compare",
+                           "Say how far A is from the reference B: two images or two "
+                           "relight tables");
+    command->add_option("a", options->a, "image (.exr, .hdr, .png) or table (.csv)")
+        ->required()
+        ->option_text("A");
+    command->add_option("b", options->b, "the reference, of the same kind")
+        ->required()
+        ->option_text("B");
+    command
+        ->add_option("--max-rel", options->max_relative,
+                     "exit with code 1 if the relative RMSE is larger")
+        ->check(CLI::NonNegativeNumber)
+        ->option_text("E");
+    command->footer("Example:\n  opaline compare draft.exr production.exr --max-rel 0.05");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

@@ -1,0 +1,102 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "bake/cli/command.h"
+#include "bake/cli/messages.h"
+#include "bake/environment/builtin_environment.h"
+#include "bake/environment/rasterise.h"
+#include "bake/example/example_scenes.h"
+#include "formats/image/exr.h"
+
+namespace opaline::cli {
+namespace {
+
+struct Options {
+    std::string name, folder;
+    bool list = false;
+};
+
+int list_all() {
+    fmt::print("Scenes:\n");
+    for (const bake::ExampleInfo& example : bake::list_examples()) {
+        fmt::print("  {:<10} {}\n", example.name, example.summary);
+    }
+    fmt::print("Lights (written as OpenEXR; also names for --light):\n{}",
+               bake::list_builtin_environments());
+    return kExitSuccess;
+}
+
+// A sun of half a degree wants a finer map than soft lights do.
+formats::Result<std::filesystem::path> write_light(const std::string& spec,
+                                                   const std::filesystem::path& folder) {
+    auto environment = bake::make_environment(spec);
+    if (!environment) {
+        return std::move(environment).error();
+    }
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) {
+        return formats::make_error(formats::ErrorKind::resource, folder.string(), "",
+                                   "cannot create the folder: " + error.message(),
+                                   "choose a folder you may write to");
+    }
+    std::string file = spec;
+    std::replace_if(
+        file.begin(), file.end(), [](char c) { return c == ':' || c == ','; }, '-');
+    const std::filesystem::path path = folder / (file + ".exr");
+    const std::uint32_t height = environment->discs.empty() ? 512 : 2048;
+    const formats::Status status =
+        formats::write_exr(path, bake::rasterise_lat_long(*environment, 2 * height, height));
+    if (!status) {
+        return status.error();
+    }
+    return path;
+}
+
+int run(const Options& options) {
+    if (options.list) {
+        return list_all();
+    }
+    if (options.name.empty() || options.folder.empty()) {
+        return report_error(formats::make_error(
+            formats::ErrorKind::usage, "", "example", "a name and a folder are needed",
+            "opaline example NAME -o DIR, or opaline example --list"));
+    }
+    if (bake::is_builtin(options.name)) {
+        const auto path = write_light(options.name, options.folder);
+        if (!path) {
+            return report_error(path.error());
+        }
+        fmt::print("{}\n", path->string());
+        return kExitSuccess;
+    }
+    const auto files = bake::write_example(options.name, options.folder);
+    if (!files) {
+        return report_error(files.error());
+    }
+    for (const std::filesystem::path& file : *files) {
+        fmt::print("{}\n", file.string());
+    }
+    return kExitSuccess;
+}
+
+}  // namespace
+
+void add_example_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "example", "Write a bundled example scene or light; nothing is downloaded");
+    command->add_option("name", options->name, "a scene or a light of the list")
+        ->option_text("NAME");
+    command->add_option("-o,--output", options->folder, "folder to write to, created if absent")
+        ->option_text("DIR");
+    command->add_flag("--list", options->list, "say what there is");
+    command->footer(
+        "Examples:\n  opaline example statue -o scenes\n  opaline example studio -o lights");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

@@ -1,0 +1,148 @@
+#include <fmt/core.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bake/cli/command.h"
+#include "bake/cli/inputs.h"
+#include "bake/cli/messages.h"
+
+namespace opaline::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+    std::string path;
+    bool json = false;
+};
+
+Json describe(const OpenedAsset& asset) {
+    const formats::AssetView& view = asset.loaded.view;
+    Json info;
+    info["format_version"] = formats::kOpalVersion;
+    info["bytes"] = asset.file.bytes().size();
+    info["cubemap"] = view.cubemap_size;
+    info["receivers"] = view.receivers();
+    info["rows"] = view.transport.rows();
+    info["coefficients"] = view.transport.row_offset.back();
+    info["code_bits"] = view.transport.code_bits;
+    info["images"] = view.images.size();
+    info["primitives"] = Json::array();
+    for (const formats::PrimitiveRecord& p : view.primitives) {
+        info["primitives"].push_back({{"node", p.node},
+                                      {"mesh", p.mesh},
+                                      {"primitive", p.primitive},
+                                      {"vertices", p.vertex_count},
+                                      {"triangles", p.index_count / 3},
+                                      {"terms", p.terms},
+                                      {"bands", p.bands}});
+    }
+    info["sections"] = Json::array();
+    for (const formats::SectionEntry& section : asset.loaded.sections) {
+        info["sections"].push_back({{"id", formats::section_name(section.id)},
+                                    {"size", section.size},
+                                    {"stored_size", section.stored_size},
+                                    {"codec", section.codec == 0 ? "none" : "zstd"}});
+    }
+    // Whatever stands there: a damaged provenance must not keep the rest from being shown.
+    info["provenance"] = Json::parse(view.provenance, nullptr, false);
+    if (info["provenance"].is_discarded()) {
+        info["provenance"] = nullptr;
+    }
+    return info;
+}
+
+std::string text_of(const Json& json, const char* key) {
+    if (!json.is_object() || !json.contains(key)) {
+        return "unknown";
+    }
+    return json[key].is_string() ? json[key].get<std::string>() : json[key].dump();
+}
+
+void print_provenance(const Json& provenance) {
+    if (!provenance.is_object()) {
+        return;
+    }
+    fmt::print("generator     {}, {}\n", text_of(provenance, "generator"),
+               text_of(provenance, "ray_tracer"));
+    if (provenance.contains("scene")) {
+        fmt::print("scene sha256  {}\n", text_of(provenance["scene"], "sha256"));
+    }
+    if (provenance.contains("knobs") && provenance["knobs"].is_object()) {
+        const Json& knobs = provenance["knobs"];
+        fmt::print("knobs         quality {}, cube map {}, coefficients {}, {} bits, seed {}\n",
+                   text_of(knobs, "quality"), text_of(knobs, "cubemap"),
+                   text_of(knobs, "coefficients"), text_of(knobs, "code_bits"),
+                   text_of(provenance, "seed"));
+    }
+    if (provenance.contains("error") && provenance["error"].is_object() &&
+        provenance["error"].contains("rms_relative") &&
+        provenance["error"]["rms_relative"].is_number()) {
+        fmt::print("measured error {:.2f} % RMS at {} receivers\n",
+                   100 * provenance["error"]["rms_relative"].get<double>(),
+                   text_of(provenance["error"], "receivers_checked"));
+    }
+    if (provenance.contains("plan") && provenance["plan"].is_array()) {
+        fmt::print("plan\n");
+        for (const Json& entry : provenance["plan"]) {
+            fmt::print("  {} {} for {}: {}\n", text_of(entry, "effect"), text_of(entry, "decision"),
+                       text_of(entry, "subject"), text_of(entry, "reason"));
+        }
+    }
+}
+
+int run(const Options& options) {
+    const auto asset = open_asset(options.path);
+    if (!asset) {
+        return report_error(asset.error());
+    }
+    const Json info = describe(*asset);
+    if (options.json) {
+        fmt::print("{}\n", info.dump(2, ' ', false, Json::error_handler_t::replace));
+        return kExitSuccess;
+    }
+    const formats::AssetView& view = asset->loaded.view;
+    fmt::print("{}: {}, .opal version {}\n", options.path,
+               format_bytes(static_cast<double>(asset->file.bytes().size())),
+               formats::kOpalVersion);
+    fmt::print("basis         Haar, cube map 6 x {0} x {0}\n", view.cubemap_size);
+    fmt::print("transport     {} rows, {:.1f} details a row, {} bits\n", view.transport.rows(),
+               view.transport.rows() == 0
+                   ? 0.0
+                   : static_cast<double>(view.transport.row_offset.back()) / view.transport.rows(),
+               view.transport.code_bits);
+    print_provenance(info["provenance"]);
+    fmt::print("primitives\n");
+    for (std::size_t i = 0; i < view.primitives.size(); ++i) {
+        const formats::PrimitiveRecord& p = view.primitives[i];
+        fmt::print("  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}\n", i, p.vertex_count,
+                   p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
+                   p.base_color_image == formats::kNoImage ? "" : ", textured");
+    }
+    fmt::print("sections\n");
+    for (const formats::SectionEntry& section : asset->loaded.sections) {
+        fmt::print("  {}  {:>10}{}\n", formats::section_name(section.id),
+                   format_bytes(static_cast<double>(section.stored_size)),
+                   section.codec == 0
+                       ? ""
+                       : fmt::format("  (zstd, {} decoded)",
+                                     format_bytes(static_cast<double>(section.size))));
+    }
+    return kExitSuccess;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("info", "Say what is inside an .opal file");
+    command->add_option("file", options->path, "the .opal file")
+        ->required()
+        ->option_text("FILE.opal");
+    command->add_flag("--json", options->json, "print JSON");
+    command->footer("Example:\n  opaline info scene.opal");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

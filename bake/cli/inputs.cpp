@@ -1,0 +1,97 @@
+#include "bake/cli/inputs.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "bake/cli/messages.h"
+#include "bake/environment/builtin_environment.h"
+
+namespace opaline::cli {
+
+using formats::ErrorKind;
+using formats::make_error;
+
+formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, formats::Checks checks) {
+    auto file = formats::MappedFile::open(path);
+    if (!file) {
+        return std::move(file).error();
+    }
+    auto loaded = formats::read_opal(file->bytes(), path.string(), checks);
+    if (!loaded) {
+        return std::move(loaded).error();
+    }
+    return OpenedAsset{std::move(*file), std::move(*loaded)};
+}
+
+formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
+                                                   double metres_per_unit) {
+    if (path.extension() == ".vdb") {
+        return make_error(ErrorKind::bad_input, path.string(), "", "volumes are not supported yet",
+                          "give a .gltf or .glb file");
+    }
+    auto imported = formats::import_gltf(path, {metres_per_unit});
+    if (imported) {
+        print_warnings(imported->warnings);
+    }
+    return imported;
+}
+
+formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees) {
+    auto opened = bake::open_environment(spec);
+    if (!opened) {
+        return std::move(opened).error();
+    }
+    print_warnings(opened->warnings);
+    return OpenedLight{
+        std::move(opened->environment),
+        runtime::rotation_about_y(static_cast<float>(rotate_degrees * std::numbers::pi / 180))};
+}
+
+std::string light_help() {
+    return "lat-long .exr or .hdr, cube .exr, or a built-in: white, studio, sun:AZ,EL, "
+           "sky:TURBIDITY,EL (`opaline example --list` explains them)";
+}
+
+formats::Result<formats::Vec3> parse_vec3(const std::string& option, const std::string& text) {
+    float value[3] = {};
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (int i = 0; i < 3; ++i) {
+        const auto [next, error] = std::from_chars(at, end, value[i]);
+        const bool last = i == 2;
+        if (error != std::errc{} || !std::isfinite(value[i]) ||
+            (last ? next != end : next == end || *next != ',')) {
+            return make_error(ErrorKind::usage, "", option, "'" + text + "' is not a point",
+                              "give three numbers: x,y,z");
+        }
+        at = next + 1;
+    }
+    return formats::Vec3{value[0], value[1], value[2]};
+}
+
+formats::Status check_output(const std::filesystem::path& output,
+                             const std::vector<std::filesystem::path>& inputs,
+                             const std::vector<std::string>& endings) {
+    const std::string ending = output.extension().string();
+    if (!endings.empty() && std::find(endings.begin(), endings.end(), ending) == endings.end()) {
+        std::string list;
+        for (const std::string& e : endings) {
+            list += (list.empty() ? "" : " or ") + e;
+        }
+        return make_error(ErrorKind::usage, output.string(), "",
+                          "cannot tell the format from the ending '" + ending + "'",
+                          "end the name in " + list);
+    }
+    std::error_code ignored;
+    for (const std::filesystem::path& input : inputs) {
+        if (std::filesystem::equivalent(output, input, ignored)) {
+            return make_error(ErrorKind::usage, output.string(), "",
+                              "is an input and would be overwritten", "choose another output");
+        }
+    }
+    return formats::ok_status();
+}
+
+}  // namespace opaline::cli

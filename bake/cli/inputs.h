@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "formats/gltf/import_gltf.h"
+#include "formats/opal/environment.h"
+#include "formats/opal/mapped_file.h"
+#include "formats/opal/read_opal.h"
+#include "formats/opal/result.h"
+#include "runtime/light_vector.h"
+
+namespace opaline::cli {
+
+/// A mapped `.opal` file and the view into it.
+struct OpenedAsset {
+    formats::MappedFile file;
+    formats::LoadedAsset loaded;
+};
+formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path,
+                                        formats::Checks checks = formats::Checks::structure);
+
+/// Reads a scene and prints its warnings. `.vdb` is refused: volumes are not supported yet.
+formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
+                                                   double metres_per_unit);
+
+/// A light as `--light` names it, turned by `--rotate-light` degrees about +Y.
+struct OpenedLight {
+    formats::Environment environment;
+    runtime::Rotation rotation;
+};
+/// Prints warnings about repaired pixels.
+formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees);
+
+/// Help text of `--light`.
+std::string light_help();
+
+/// "x,y,z"; three finite numbers. Errors: usage, naming the option.
+formats::Result<formats::Vec3> parse_vec3(const std::string& option, const std::string& text);
+
+/// Refuses an output that would overwrite one of the inputs, and an ending that is not among
+/// `endings` (empty: any). Errors: usage.
+formats::Status check_output(const std::filesystem::path& output,
+                             const std::vector<std::filesystem::path>& inputs,
+                             const std::vector<std::string>& endings);
+
+}  // namespace opaline::cli

@@ -1,0 +1,25 @@
+#include "bake/cli/interrupt.h"
+
+#include <csignal>
+
+namespace opaline::cli {
+namespace {
+
+// A signal handler can reach nothing but a global.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void on_signal(int number) {
+    interrupted.store(true);
+    std::signal(number, SIG_DFL);
+}
+
+}  // namespace
+
+const std::atomic<bool>& catch_interrupts() {
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+    return interrupted;
+}
+
+}  // namespace opaline::cli

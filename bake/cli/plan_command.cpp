@@ -1,0 +1,51 @@
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/cli/command.h"
+#include "bake/cli/inputs.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/report.h"
+#include "bake/cli/scene_options.h"
+
+namespace opaline::cli {
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    bool json = false;
+};
+
+int run(const Options& options) {
+    if (auto status = check_effects(options.scene); !status) {
+        return report_error(status.error());
+    }
+    const auto knobs = bake::resolve_knobs(options.scene.bake);
+    if (!knobs) {
+        return report_error(knobs.error());
+    }
+    const auto imported = open_scene(options.scene.scene, options.scene.metres_per_unit);
+    if (!imported) {
+        return report_error(imported.error());
+    }
+    bake::Context context;
+    context.threads = options.scene.bake.threads;
+    const auto plan = bake::plan_bake(imported->scene, *knobs, bake::thread_count(context));
+    fmt::print("{}", options.json ? make_plan_json(plan) : make_plan_table(plan));
+    return kExitSuccess;
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command =
+        app.add_subcommand("plan", "Say what a bake of the scene would simulate, and why");
+    add_scene_options(*command, options->scene);
+    command->add_flag("--json", options->json, "print JSON");
+    command->footer("Example:\n  opaline plan scene.glb --quality production");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

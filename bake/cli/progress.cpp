@@ -1,0 +1,69 @@
+#include "bake/cli/progress.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "bake/cli/messages.h"
+
+namespace opaline::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Bar {
+    std::string stage;
+    Clock::time_point start, last;
+};
+
+bool is_due(Bar& bar, const bake::Progress& progress) {
+    const Clock::time_point now = Clock::now();
+    if (bar.stage != progress.stage) {
+        bar = {std::string(progress.stage), now, {}};
+    }
+    const bool due =
+        now - bar.last > std::chrono::milliseconds(100) || progress.done == progress.total;
+    bar.last = due ? now : bar.last;
+    return due;
+}
+
+void print_bar(const Bar& bar, const bake::Progress& progress) {
+    constexpr int kWidth = 32;
+    const double share = progress.total > 0 ? static_cast<double>(progress.done) /
+                                                  static_cast<double>(progress.total)
+                                            : 1.0;
+    const double seconds = std::chrono::duration<double>(bar.last - bar.start).count();
+    const int filled = static_cast<int>(share * kWidth);
+    const std::string left =
+        share > 0 && share < 1 ? format_seconds(seconds * (1 - share) / share) + " left" : "";
+    fmt::print(stderr, "\r{:<10} [{}{}] {:3.0f} % {:<16}", bar.stage, std::string(filled, '#'),
+               std::string(kWidth - filled, '.'), share * 100, left);
+    if (progress.done == progress.total) {
+        fmt::print(stderr, "\n");
+    }
+    std::fflush(stderr);
+}
+
+}  // namespace
+
+std::function<void(const bake::Progress&)> make_progress_printer(ProgressStyle style) {
+    if (style == ProgressStyle::none || (style == ProgressStyle::automatic && isatty(2) == 0)) {
+        return {};
+    }
+    return [style, bar = std::make_shared<Bar>()](const bake::Progress& progress) {
+        if (!is_due(*bar, progress)) {
+            return;
+        }
+        if (style == ProgressStyle::json) {
+            fmt::print(stderr, "{{\"stage\":\"{}\",\"done\":{},\"total\":{}}}\n", progress.stage,
+                       progress.done, progress.total);
+        } else {
+            print_bar(*bar, progress);
+        }
+    };
+}
+
+}  // namespace opaline::cli

@@ -1,0 +1,110 @@
+#include <memory>
+
+#include "bake/cli/command.h"
+#include "bake/cli/inputs.h"
+#include "bake/cli/messages.h"
+#include "bake/compare/relight_table.h"
+#include "runtime/shade.h"
+
+namespace opaline::cli {
+namespace {
+
+struct Options {
+    std::string path, light, output, eye;
+    double rotate_light = 0;
+    unsigned threads = 0;
+};
+
+// One row per receiver, in file order.
+std::vector<bake::RelightRow> make_rows(const formats::AssetView& view,
+                                        std::span<const formats::Rgb> radiance) {
+    std::vector<bake::RelightRow> rows;
+    rows.reserve(radiance.size());
+    for (std::uint32_t p = 0; p < view.primitives.size(); ++p) {
+        const formats::PrimitiveRecord& primitive = view.primitives[p];
+        for (std::uint32_t v = 0; v < primitive.vertex_count; ++v) {
+            rows.push_back({p, v, radiance[primitive.first_vertex + v]});
+        }
+    }
+    return rows;
+}
+
+std::vector<formats::Vec3> row_positions(const formats::AssetView& view) {
+    std::vector<formats::Vec3> positions;
+    for (const formats::PrimitiveRecord& p : view.primitives) {
+        const auto own = view.position.subspan(p.first_vertex, p.vertex_count);
+        positions.insert(positions.end(), own.begin(), own.end());
+    }
+    return positions;
+}
+
+int run(const Options& options) {
+    if (auto status =
+            check_output(options.output, {options.path, options.light}, {".csv", ".ply", ".exr"});
+        !status) {
+        return report_error(status.error());
+    }
+    if (!options.eye.empty()) {
+        // Diffuse rows look the same from everywhere; the option is checked all the same.
+        if (const auto eye = parse_vec3("--eye", options.eye); !eye) {
+            return report_error(eye.error());
+        }
+    }
+    const auto asset = open_asset(options.path);
+    if (!asset) {
+        return report_error(asset.error());
+    }
+    const auto light = open_light(options.light, options.rotate_light);
+    if (!light) {
+        return report_error(light.error());
+    }
+    const formats::AssetView& view = asset->loaded.view;
+    std::vector<formats::Rgb> radiance(view.receivers());
+    runtime::ShadeOptions shading;
+    shading.threads = options.threads;
+    runtime::shade(view,
+                   runtime::project_environment(light->environment, view.cubemap_size,
+                                                light->rotation, options.threads),
+                   radiance, shading);
+    const std::vector<bake::RelightRow> rows = make_rows(view, radiance);
+    const std::string ending = std::filesystem::path(options.output).extension().string();
+    const formats::Status status =
+        ending == ".csv"   ? bake::write_relight_csv(options.output, rows)
+        : ending == ".ply" ? bake::write_relight_ply(options.output, row_positions(view), rows)
+                           : bake::write_relight_exr(options.output, rows);
+    return status ? kExitSuccess : report_error(status.error());
+}
+
+}  // namespace
+
+void add_relight_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "relight", "Evaluate the outgoing radiance of every receiver under a light");
+    command->add_option("file", options->path, "the .opal file")
+        ->required()
+        ->option_text("FILE.opal");
+    command->add_option("--light", options->light, light_help())->required()->option_text("ENV");
+    command
+        ->add_option("-o,--output", options->output,
+                     ".csv: primitive,vertex,r,g,b; .ply: points with colours; .exr: one pixel per "
+                     "receiver, 1024 a row")
+        ->required()
+        ->option_text("OUT.csv|.ply|.exr");
+    command
+        ->add_option("--eye", options->eye,
+                     "the point everything is seen from [m]; default: each receiver along its own "
+                     "normal. Diffuse surfaces look the same from everywhere")
+        ->option_text("X,Y,Z");
+    command
+        ->add_option("--rotate-light", options->rotate_light,
+                     "turn the light about +Y, from +Z toward +X [degrees]")
+        ->option_text("DEG [0]");
+    command->add_option("--threads", options->threads, "0: one per core")
+        ->check(CLI::Range(0u, 1024u))
+        ->option_text("T [0]");
+    command->footer("Example:\n  opaline relight scene.opal --light studio -o radiance.csv");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

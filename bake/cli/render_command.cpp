@@ -1,0 +1,259 @@
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "bake/cli/command.h"
+#include "bake/cli/inputs.h"
+#include "bake/cli/interrupt.h"
+#include "bake/cli/messages.h"
+#include "formats/image/exr.h"
+#include "formats/image/png.h"
+#include "runtime/picture/camera.h"
+#include "runtime/picture/software_renderer.h"
+#include "runtime/picture/tone_map.h"
+#include "runtime/shade.h"
+#ifdef OPALINE_HAS_GL
+#include "runtime/gl/gl_renderer.h"
+#endif
+
+namespace opaline::cli {
+namespace {
+
+using formats::ErrorKind;
+using formats::make_error;
+using formats::Result;
+using formats::Status;
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+    std::string path, light, output, size = "960x720", eye, target, backend = "gl";
+    float fov = 32, exposure = 0;
+    double rotate_light = 0;
+    std::uint32_t frames = 1;
+    unsigned threads = 0;
+    bool stats = false;
+};
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Status parse_size(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
+    int used = 0;
+    if (std::sscanf(text.c_str(), "%5ux%5u%n", &width, &height, &used) != 2 ||
+        static_cast<std::size_t>(used) != text.size() || width == 0 || height == 0) {
+        return make_error(ErrorKind::usage, "", "--size", "'" + text + "' is not a size",
+                          "give WIDTHxHEIGHT in pixels, such as 960x720");
+    }
+    return formats::ok_status();
+}
+
+Result<runtime::Camera> make_camera(const Options& options, const formats::AssetView& view) {
+    std::uint32_t width = 0, height = 0;
+    if (auto status = parse_size(options.size, width, height); !status) {
+        return status.error();
+    }
+    runtime::Camera camera = runtime::frame_asset(view, options.fov, width, height);
+    if (!options.target.empty()) {
+        const auto target = parse_vec3("--target", options.target);
+        if (!target) {
+            return target.error();
+        }
+        camera.target = *target;
+    }
+    if (!options.eye.empty()) {
+        const auto eye = parse_vec3("--eye", options.eye);
+        if (!eye) {
+            return eye.error();
+        }
+        camera.eye = *eye;
+    }
+    if (!options.eye.empty() || !options.target.empty()) {
+        camera.near_plane = runtime::near_plane_for(view, camera.eye);
+    }
+    if (auto status = runtime::check_camera(camera, runtime::SoftwareOptions{}.supersampling);
+        !status) {
+        return status.error();
+    }
+    return camera;
+}
+
+Status write_picture(const std::string& path, const runtime::Picture& picture, float exposure) {
+    if (std::filesystem::path(path).extension() == ".exr") {
+        const float gain = std::exp2(exposure);
+        formats::Image image{picture.width, picture.height, picture.pixel};
+        for (formats::Rgb& pixel : image.pixel) {
+            pixel = gain * pixel;
+        }
+        return formats::write_exr(path, image);
+    }
+    runtime::DisplayPicture display = runtime::tone_map(picture, exposure);
+    return formats::write_png(path, {display.width, display.height, std::move(display.rgba)});
+}
+
+// OUT.png, or OUT-0001.png and so on for a turntable.
+std::string frame_path(const Options& options, std::uint32_t frame) {
+    if (options.frames == 1) {
+        return options.output;
+    }
+    const std::filesystem::path path(options.output);
+    return (path.parent_path() /
+            fmt::format("{}-{:04}{}", path.stem().string(), frame + 1, path.extension().string()))
+        .string();
+}
+
+// Draws every frame of a turntable with `draw(camera)` and writes it.
+template <class Draw>
+int render_frames(const Options& options, const runtime::Camera& camera, Draw&& draw) {
+    const std::atomic<bool>& interrupted = catch_interrupts();
+    double draw_seconds = 0;
+    for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
+        if (interrupted.load()) {
+            return report_error(make_error(ErrorKind::interrupted, "", "", "interrupted",
+                                           "frames written so far are whole"));
+        }
+        const float degrees =
+            360.0f * static_cast<float>(frame) / static_cast<float>(options.frames);
+        const auto start = Clock::now();
+        const auto picture = draw(runtime::orbit(camera, degrees));
+        draw_seconds += seconds_since(start);
+        if (!picture) {
+            return report_error(picture.error());
+        }
+        if (auto status = write_picture(frame_path(options, frame), *picture, options.exposure);
+            !status) {
+            return report_error(status.error());
+        }
+    }
+    if (options.stats) {
+        fmt::print("{:<16} {}\n", "frames", options.frames);
+        fmt::print("{:<16} {}\n", "draw per frame", format_seconds(draw_seconds / options.frames));
+    }
+    return kExitSuccess;
+}
+
+void print_stat(const Options& options, const char* name, double seconds) {
+    if (options.stats) {
+        fmt::print("{:<16} {}\n", name, format_seconds(seconds));
+    }
+}
+
+int render_on_cpu(const Options& options, const formats::AssetView& view, const OpenedLight& light,
+                  const runtime::LightVector& vector, const runtime::Camera& camera) {
+    std::vector<formats::Rgb> irradiance(view.receivers());
+    runtime::ShadeOptions shading;
+    shading.threads = options.threads;
+    shading.base_color = false;
+    const auto start = Clock::now();
+    runtime::shade(view, vector, irradiance, shading);
+    print_stat(options, "dot products", seconds_since(start));
+    return render_frames(options, camera, [&](const runtime::Camera& at) {
+        runtime::SoftwareOptions software;
+        software.threads = options.threads;
+        return runtime::render_software(view, irradiance, light.environment, light.rotation, at,
+                                        software);
+    });
+}
+
+int render_on_gpu([[maybe_unused]] const Options& options,
+                  [[maybe_unused]] const formats::AssetView& view,
+                  [[maybe_unused]] const OpenedLight& light,
+                  [[maybe_unused]] const runtime::LightVector& vector,
+                  [[maybe_unused]] const runtime::Camera& camera) {
+#ifdef OPALINE_HAS_GL
+    auto renderer = runtime::GlRenderer::create(view, light.environment);
+    if (!renderer) {
+        return report_error(renderer.error());
+    }
+    if (auto status = renderer->set_light(vector, light.rotation); !status) {
+        return report_error(status.error());
+    }
+    if (options.stats) {
+        fmt::print("{:<16} {}\n", "device", renderer->stats().device);
+    }
+    print_stat(options, "upload", renderer->stats().upload_seconds);
+    print_stat(options, "light upload", renderer->stats().light_seconds);
+    print_stat(options, "dot products", renderer->stats().dot_seconds);
+    return render_frames(options, camera,
+                         [&](const runtime::Camera& at) { return renderer->render(at); });
+#else
+    return report_error(make_error(ErrorKind::resource, "", "--backend",
+                                   "this program was built without OpenGL", "use --backend cpu"));
+#endif
+}
+
+int run(const Options& options) {
+    if (auto status = check_output(options.output, {options.path, options.light}, {".png", ".exr"});
+        !status) {
+        return report_error(status.error());
+    }
+    const auto asset = open_asset(options.path);
+    if (!asset) {
+        return report_error(asset.error());
+    }
+    const formats::AssetView& view = asset->loaded.view;
+    const auto camera = make_camera(options, view);
+    if (!camera) {
+        return report_error(camera.error());
+    }
+    const auto light = open_light(options.light, options.rotate_light);
+    if (!light) {
+        return report_error(light.error());
+    }
+    const auto start = Clock::now();
+    const runtime::LightVector vector = runtime::project_environment(
+        light->environment, view.cubemap_size, light->rotation, options.threads);
+    print_stat(options, "light vector", seconds_since(start));
+    return options.backend == "cpu" ? render_on_cpu(options, view, *light, vector, *camera)
+                                    : render_on_gpu(options, view, *light, vector, *camera);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("render", "Make pictures of an .opal file, headless");
+    command->add_option("file", options->path, "the .opal file")
+        ->required()
+        ->option_text("FILE.opal");
+    command->add_option("--light", options->light, light_help())->required()->option_text("ENV");
+    command
+        ->add_option("-o,--output", options->output,
+                     ".png: tone-mapped (Khronos PBR Neutral), sRGB; .exr: linear radiance")
+        ->required()
+        ->option_text("OUT.png|.exr");
+    command->add_option("--size", options->size, "of the picture, in pixels")
+        ->option_text("WxH [960x720]");
+    command->add_option("--eye", options->eye, "camera position [m]; default: frames the object")
+        ->option_text("X,Y,Z");
+    command->add_option("--target", options->target, "point looked at [m]; default: the object")
+        ->option_text("X,Y,Z");
+    command->add_option("--fov", options->fov, "vertical angle of view [degrees]")
+        ->option_text("DEG [32]");
+    command->add_option("--backend", options->backend, "gl: OpenGL 4.5 through EGL; cpu: software")
+        ->check(CLI::IsMember({"gl", "cpu"}))
+        ->option_text("gl|cpu [gl]");
+    command
+        ->add_option("--rotate-light", options->rotate_light,
+                     "turn the light about +Y, from +Z toward +X [degrees]")
+        ->option_text("DEG [0]");
+    command
+        ->add_option("--frames", options->frames,
+                     "a turntable: N pictures OUT-0001.png ... once around the target")
+        ->check(CLI::Range(1u, 9999u))
+        ->option_text("N [1]");
+    command->add_option("--exposure", options->exposure, "brighter by a factor of 2^EV")
+        ->check(CLI::Range(-64.0f, 64.0f))
+        ->option_text("EV [0]");
+    command->add_option("--threads", options->threads, "0: one per core")
+        ->check(CLI::Range(0u, 1024u))
+        ->option_text("T [0]");
+    command->add_flag("--stats", options->stats, "print timings");
+    command->footer(
+        "Example:\n  opaline render scene.opal --light sky:3,35 --rotate-light 90 -o scene.png");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

@@ -1,0 +1,121 @@
+#include "bake/cli/report.h"
+
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+
+#include "bake/cli/messages.h"
+
+namespace opaline::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Names come from user files: bytes that are not UTF-8 must not stop the report.
+std::string dump(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json plan_array(const std::vector<bake::PlanEntry>& plan) {
+    Json array = Json::array();
+    for (const bake::PlanEntry& entry : plan) {
+        array.push_back({{"effect", entry.effect},
+                         {"subject", entry.subject},
+                         {"decision", entry.on ? "on" : "off"},
+                         {"reason", entry.reason},
+                         {"bound", entry.bound},
+                         {"predicted_seconds", entry.predicted_seconds},
+                         {"predicted_bytes", entry.predicted_bytes}});
+    }
+    return array;
+}
+
+Json coefficients_json(const bake::Knobs& knobs) {
+    return knobs.coefficients == bake::kAllCoefficients ? Json("all") : Json(knobs.coefficients);
+}
+
+}  // namespace
+
+std::string make_report(const formats::Scene& scene, const bake::BakeResult& result,
+                        const std::vector<formats::Diagnostic>& warnings, std::uint64_t bytes) {
+    Json report;
+    report["version"] = OPALINE_VERSION;
+    report["scene"]["sha256"] = scene.sha256;
+    report["seed"] = result.knobs.seed;
+    report["threads"] = result.threads;
+    report["knobs"] = {{"cubemap", result.knobs.cubemap_size},
+                       {"coefficients", coefficients_json(result.knobs)},
+                       {"code_bits", result.knobs.code_bits}};
+    report["plan"] = plan_array(result.plan);
+    report["stages"] = Json::array();
+    for (const bake::StageReport& stage : result.stages) {
+        report["stages"].push_back({{"name", stage.name},
+                                    {"seconds", stage.seconds},
+                                    {"rays", stage.rays},
+                                    {"peak_rss_bytes", stage.peak_rss_bytes}});
+    }
+    report["seconds_total"] = result.seconds_total;
+    const bake::ErrorReport& error = result.error;
+    report["error"] = {{"rms_relative", error.rms_relative},
+                       {"ci95", {error.ci95[0], error.ci95[1]}},
+                       {"p95_relative", error.p95_relative},
+                       {"max_relative", error.max_relative},
+                       {"receivers_checked", error.receivers_checked},
+                       {"reference", error.reference},
+                       {"by_effect", Json::object()}};
+    for (const auto& effect : error.by_effect) {
+        report["error"]["by_effect"][effect.effect] = effect.rms_relative;
+    }
+    report["output"] = {
+        {"bytes", bytes},
+        {"receivers", result.asset.position.size()},
+        {"terms", result.asset.primitives.empty() ? 0 : result.asset.primitives[0].terms},
+        {"coefficients_per_term", coefficients_json(result.knobs)}};
+    report["warnings"] = Json::array();
+    for (const formats::Diagnostic& warning : warnings) {
+        report["warnings"].push_back(format_diagnostic(warning));
+    }
+    return dump(report);
+}
+
+std::string make_plan_json(const std::vector<bake::PlanEntry>& plan) {
+    return dump(Json{{"plan", plan_array(plan)}});
+}
+
+std::string make_plan_table(const std::vector<bake::PlanEntry>& plan) {
+    std::size_t widest = 7;
+    double seconds = 0, bytes = 0;
+    for (const bake::PlanEntry& entry : plan) {
+        widest = std::max(widest, entry.subject.size());
+        seconds += entry.predicted_seconds;
+        bytes += static_cast<double>(entry.predicted_bytes);
+    }
+    std::string table =
+        fmt::format("{:<8} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", "effect", "subject", widest,
+                    "decision", "bound", "time", "size", "reason");
+    for (const bake::PlanEntry& entry : plan) {
+        table += fmt::format(
+            "{:<8} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.effect, entry.subject, widest,
+            entry.on ? "on" : "off", entry.bound, format_seconds(entry.predicted_seconds),
+            format_bytes(static_cast<double>(entry.predicted_bytes)), entry.reason);
+    }
+    return table + fmt::format("predicted: {}, {}\n", format_seconds(seconds), format_bytes(bytes));
+}
+
+std::string make_depfile(const std::filesystem::path& output,
+                         const std::vector<std::filesystem::path>& inputs) {
+    const auto escape = [](const std::string& path) {
+        std::string text;
+        for (const char c : path) {
+            text += c == '$' ? "$$" : c == ' ' ? "\\ " : c == '#' ? "\\#" : std::string(1, c);
+        }
+        return text;
+    };
+    std::string rule = escape(output.string()) + ":";
+    for (const std::filesystem::path& input : inputs) {
+        rule += " \\\n  " + escape(input.string());
+    }
+    return rule + "\n";
+}
+
+}  // namespace opaline::cli

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "bake/plan/bake_plan.h"
+#include "formats/opal/result.h"
+
+namespace opaline::cli {
+
+/// What `bake` and `plan` have in common.
+struct SceneOptions {
+    std::string scene;
+    double metres_per_unit = 1.0;
+    std::string effects = "auto";
+    bake::BakeOptions bake;
+};
+
+void add_scene_options(CLI::App& command, SceneOptions& options);
+
+/// Refuses effects that are unknown or that this version does not simulate (usage error).
+formats::Status check_effects(const SceneOptions& options);
+
+}  // namespace opaline::cli

@@ -1,0 +1,154 @@
+#include "bake/environment/rasterise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace opaline::bake {
+namespace {
+
+using formats::DistantDisc;
+using formats::Environment;
+using formats::Image;
+using formats::Rgb;
+using formats::Vec3;
+
+constexpr double kPi = std::numbers::pi;
+
+struct Point {
+    double x, y, z;
+};
+
+Point lat_long_point(double u, double v) {
+    const double theta = kPi * v, phi = kPi * (2 * u - 1);
+    return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+}
+
+Vec3 to_vec3(Point p) {
+    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
+bool is_aligned(const Environment& environment, std::uint32_t width, std::uint32_t height) {
+    return environment.layout == Environment::Layout::lat_long && environment.width == width &&
+           environment.height == height && environment.u_offset == 0.5f &&
+           environment.u_sign == 1.0f && !environment.rows_include_poles;
+}
+
+/// Mean of the map over every pixel, each sample weighted by its solid angle.
+void rasterise_map(const Environment& environment, Image& image) {
+    const std::uint32_t source =
+        environment.layout == Environment::Layout::cube ? 4 * environment.width : environment.width;
+    const std::uint32_t k = std::clamp((2 * source + image.width - 1) / image.width, 2u, 16u);
+    for (std::uint32_t row = 0; row < image.height; ++row) {
+        for (std::uint32_t column = 0; column < image.width; ++column) {
+            double r = 0, g = 0, b = 0, total = 0;
+            for (std::uint32_t i = 0; i < k * k; ++i) {
+                const double v = (row + (i / k + 0.5) / k) / image.height;
+                const double u = (column + (i % k + 0.5) / k) / image.width;
+                const double weight = std::sin(kPi * v);
+                const Rgb c = sample_map(environment, to_vec3(lat_long_point(u, v)));
+                r += weight * double{c.r};
+                g += weight * double{c.g};
+                b += weight * double{c.b};
+                total += weight;
+            }
+            image.pixel[std::size_t{row} * image.width + column] = {static_cast<float>(r / total),
+                                                                    static_cast<float>(g / total),
+                                                                    static_cast<float>(b / total)};
+        }
+    }
+}
+
+/// Adds a disc: the share of each pixel that it covers, then one factor that makes its flux exact.
+void add_disc(const DistantDisc& disc, Image& image) {
+    const double width = image.width, height = image.height;
+    const Point center{double{disc.direction.x}, double{disc.direction.y},
+                       double{disc.direction.z}};
+    const double radius = double{disc.angular_radius};
+    const double chord_squared = 4 * std::pow(std::sin(0.5 * radius), 2);
+    const auto distance_squared = [&](Point p) {
+        return std::pow(p.x - center.x, 2) + std::pow(p.y - center.y, 2) +
+               std::pow(p.z - center.z, 2);
+    };
+    // No point of a pixel is farther from its centre than half its sides' lengths together.
+    const double reach = kPi * (1 / width + 0.5 / height);
+    const double outer = std::min(radius + reach, kPi), inner = std::max(radius - reach, 0.0);
+    const double far_squared = 4 * std::pow(std::sin(0.5 * outer), 2);
+    const double near_squared = 4 * std::pow(std::sin(0.5 * inner), 2);
+    // Sub-pixels an eighth of the radius apart, so that even a tiny disc is seen.
+    const double pixel_size = kPi * std::max(2 / width, 1 / height);
+    const int k = static_cast<int>(std::clamp(8 * pixel_size / radius, 16.0, 2048.0));
+
+    struct Covered {
+        std::size_t pixel;
+        double share;
+    };
+    std::vector<Covered> covered;
+    double flux = 0;  // of radiance 1
+    for (std::uint32_t row = 0; row < image.height; ++row) {
+        const double solid_angle = lat_long_pixel_solid_angle(image.width, image.height, row);
+        for (std::uint32_t column = 0; column < image.width; ++column) {
+            const double middle =
+                distance_squared(lat_long_point((column + 0.5) / width, (row + 0.5) / height));
+            if (middle > far_squared) continue;
+            double share = 1;
+            if (middle >= near_squared || inner == 0) {
+                double inside = 0, total = 0;
+                for (int i = 0; i < k; ++i) {
+                    const double v = (row + (i + 0.5) / k) / height, weight = std::sin(kPi * v);
+                    for (int j = 0; j < k; ++j) {
+                        const double u = (column + (j + 0.5) / k) / width;
+                        total += weight;
+                        if (distance_squared(lat_long_point(u, v)) <= chord_squared) {
+                            inside += weight;
+                        }
+                    }
+                }
+                share = inside / total;
+            }
+            if (share > 0) {
+                covered.push_back({std::size_t{row} * image.width + column, share});
+                flux += share * solid_angle;
+            }
+        }
+    }
+    if (covered.empty()) {  // smaller than the finest sub-pixel
+        const double u = 0.5 + std::atan2(center.z, center.x) / (2 * kPi);
+        const double v = std::acos(std::clamp(center.y, -1.0, 1.0)) / kPi;
+        const auto column = std::min(static_cast<std::uint32_t>(u * width), image.width - 1);
+        const auto row = std::min(static_cast<std::uint32_t>(v * height), image.height - 1);
+        covered.push_back({std::size_t{row} * image.width + column, 1});
+        flux = lat_long_pixel_solid_angle(image.width, image.height, row);
+    }
+    const double scale = formats::disc_solid_angle(disc.angular_radius) / flux;
+    for (const Covered& c : covered) {
+        Rgb& pixel = image.pixel[c.pixel];
+        pixel = pixel + static_cast<float>(scale * c.share) * disc.radiance;
+    }
+}
+
+}  // namespace
+
+double lat_long_pixel_solid_angle(std::uint32_t width, std::uint32_t height, std::uint32_t row) {
+    // cos a - cos b as a product: the rows at the poles would cancel.
+    const double middle = kPi * (row + 0.5) / height, half = 0.5 * kPi / height;
+    return 2 * kPi / width * 2 * std::sin(middle) * std::sin(half);
+}
+
+Image rasterise_lat_long(const Environment& environment, std::uint32_t width,
+                         std::uint32_t height) {
+    Image image{width, height, {}};
+    if (is_aligned(environment, width, height) && !environment.pixel.empty()) {
+        image.pixel = environment.pixel;
+    } else {
+        image.pixel.resize(std::size_t{width} * height);
+        if (!environment.pixel.empty()) rasterise_map(environment, image);
+    }
+    for (const DistantDisc& disc : environment.discs) {
+        add_disc(disc, image);
+    }
+    return image;
+}
+
+}  // namespace opaline::bake

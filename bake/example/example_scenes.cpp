@@ -1,0 +1,93 @@
+#include "bake/example/example_scenes.h"
+
+#include <array>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "bake/example/floor.h"
+#include "bake/example/knot.h"
+#include "bake/example/polygonize.h"
+#include "bake/example/remesh.h"
+#include "bake/example/swan_field.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr double kMetresPerMillimetre = 1e-3;
+
+struct Example {
+    ExampleInfo info;
+    std::vector<GltfObject> (*make)();
+};
+
+TriangleMesh in_metres(TriangleMesh mesh) {
+    for (glm::dvec3& p : mesh.position) {
+        p *= kMetresPerMillimetre;
+    }
+    return mesh;
+}
+
+GltfObject floor_object(const FloorOptions& options) {
+    return {"Floor", "Floor", {0.50, 0.48, 0.45}, in_metres(make_floor(options))};
+}
+
+std::vector<GltfObject> make_statue() {
+    const Solid swan = make_swan();
+    TriangleMesh mesh = polygonize(swan.field, swan.bounds, 1.1);
+    remesh(swan.field, RemeshOptions{}, mesh);
+    return {{"Statue", "Statue", {0.82, 0.81, 0.79}, in_metres(std::move(mesh))},
+            floor_object({.finest = 1.7, .fine_radius = 55.0, .growth = 0.1, .levels = 9})};
+}
+
+std::vector<GltfObject> make_trefoil() {
+    return {{"Knot", "Knot", {0.80, 0.80, 0.80}, in_metres(make_knot({}))},
+            floor_object({.finest = 3.2, .fine_radius = 110.0, .growth = 0.1, .levels = 9})};
+}
+
+constexpr Example kExamples[] = {
+    {{"statue", "a resting swan with thin lifted wings, the showpiece for translucent media"},
+     make_statue},
+    {{"knot", "a trefoil knot standing on a floor: self-shadowing and contact shadows"},
+     make_trefoil},
+};
+
+}  // namespace
+
+std::span<const ExampleInfo> list_examples() {
+    static constexpr auto kInfos = [] {
+        std::array<ExampleInfo, std::size(kExamples)> infos{};
+        for (std::size_t i = 0; i < infos.size(); ++i) {
+            infos[i] = kExamples[i].info;
+        }
+        return infos;
+    }();
+    return kInfos;
+}
+
+formats::Result<std::vector<GltfObject>> make_example(std::string_view name) {
+    std::string known;
+    for (const Example& example : kExamples) {
+        if (example.info.name == name) return example.make();
+        known += (known.empty() ? "" : ", ") + std::string(example.info.name);
+    }
+    return formats::make_error(formats::ErrorKind::usage, "", "",
+                               "there is no example '" + std::string(name) + "'",
+                               "choose one of: " + known);
+}
+
+formats::Result<std::vector<std::filesystem::path>> write_example(
+    std::string_view name, const std::filesystem::path& folder) {
+    formats::Result<std::vector<GltfObject>> objects = make_example(name);
+    if (!objects) return std::move(objects).error();
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    if (failure) {
+        return formats::make_error(formats::ErrorKind::resource, folder.string(), "",
+                                   "cannot create the folder: " + failure.message(),
+                                   "choose a folder you may write to");
+    }
+    return write_gltf(folder, std::string(name), *objects);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,103 @@
+#include "bake/example/remesh.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "bake/example/edges.h"
+#include "bake/example/edit_mesh.h"
+
+namespace opaline::bake {
+namespace {
+
+/// Sets every vertex's normal, after moving it toward the surface along the normal it has.
+void drop_onto_surface(const Field& field, double step, TriangleMesh& mesh) {
+    tbb::parallel_for(std::size_t{0}, mesh.position.size(), [&](std::size_t v) {
+        glm::dvec3 &p = mesh.position[v], &n = mesh.normal[v];
+        if (glm::dot(n, n) > 0.0) {
+            // Bounded, so that a bad guess beside a crease cannot fling a vertex away.
+            p -= std::clamp(field(p), -0.5, 0.5) * n;
+        }
+        const glm::dvec3 slope = gradient(field, p, step);
+        const double length = glm::length(slope);
+        n = length > 1e-9 ? slope / length : glm::dvec3(0.0, 1.0, 0.0);
+    });
+}
+
+/// Target edge length at each vertex, from how fast the normal turns along its edges: a chord over
+/// an arc of curvature k deviates from it by about length^2 k / 8.
+std::vector<double> edge_targets(const TriangleMesh& mesh, const RemeshOptions& options) {
+    std::vector<double> curvature(mesh.position.size(), 0.0);
+    const std::vector<Edge> edges = find_edges(mesh);
+    for (const Edge& edge : edges) {
+        const double length = glm::distance(mesh.position[edge.a], mesh.position[edge.b]);
+        const double turn = glm::distance(mesh.normal[edge.a], mesh.normal[edge.b]);
+        const double k = turn / std::max(length, 0.25 * options.shortest);
+        curvature[edge.a] = std::max(curvature[edge.a], k);
+        curvature[edge.b] = std::max(curvature[edge.b], k);
+    }
+    std::vector<double> target(curvature.size());
+    for (std::size_t v = 0; v < target.size(); ++v) {
+        const double length = std::sqrt(8.0 * options.deviation / std::max(curvature[v], 1e-6));
+        target[v] = std::clamp(length, options.shortest, options.longest);
+    }
+    // Graded: neighbouring triangles of very different size would be slivers.
+    for (int pass = 0; pass < 4; ++pass) {
+        for (const Edge& edge : edges) {
+            const double reach = 0.3 * glm::distance(mesh.position[edge.a], mesh.position[edge.b]);
+            target[edge.a] = std::min(target[edge.a], target[edge.b] + reach);
+            target[edge.b] = std::min(target[edge.b], target[edge.a] + reach);
+        }
+    }
+    return target;
+}
+
+/// Moves each vertex along the surface toward the middle of its triangles, large ones (for the
+/// target there) pulling harder.
+void relax(const std::vector<double>& target, TriangleMesh& mesh) {
+    const VertexTriangles ring = find_vertex_triangles(mesh);
+    std::vector<glm::dvec3> moved(mesh.position.size());
+    tbb::parallel_for(std::size_t{0}, mesh.position.size(), [&](std::size_t v) {
+        glm::dvec3 sum(0.0);
+        double weights = 0.0;
+        for (std::size_t i = ring.begin[v]; i < ring.begin[v + 1]; ++i) {
+            const Triangle& t = mesh.triangles[ring.triangle[i]];
+            const double size = (target[t[0]] + target[t[1]] + target[t[2]]) / 3.0;
+            const double weight = glm::length(area_vector(mesh, t)) / (size * size * size * size);
+            sum += weight / 3.0 * (mesh.position[t[0]] + mesh.position[t[1]] + mesh.position[t[2]]);
+            weights += weight;
+        }
+        const glm::dvec3 offset =
+            weights > 0.0 ? sum / weights - mesh.position[v] : glm::dvec3(0.0);
+        const glm::dvec3& n = mesh.normal[v];
+        moved[v] = mesh.position[v] + 0.9 * (offset - glm::dot(offset, n) * n);
+    });
+    mesh.position = std::move(moved);
+}
+
+}  // namespace
+
+void remesh(const Field& field, const RemeshOptions& options, TriangleMesh& mesh) {
+    const double step = 0.1 * options.shortest;
+    mesh.normal.assign(mesh.position.size(), glm::dvec3(0.0));
+    drop_onto_surface(field, step, mesh);
+    drop_onto_surface(field, step, mesh);
+    for (int round = 0; round < options.rounds; ++round) {
+        std::vector<double> target = edge_targets(mesh, options);
+        const bool last = round + 1 == options.rounds;
+        if (!last) {
+            split_long_edges(mesh, target);
+            collapse_short_edges(mesh, target);
+        }
+        flip_to_delaunay(mesh);
+        relax(target, mesh);
+        drop_onto_surface(field, step, mesh);
+        flip_to_delaunay(mesh);
+    }
+    drop_onto_surface(field, step, mesh);
+    drop_onto_surface(field, step, mesh);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,99 @@
+#include "bake/example/tapered_curve.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <limits>
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::size_t kSamplesPerSpan = 4;
+constexpr int kNewtonSteps = 4;
+
+}  // namespace
+
+TaperedCurve::TaperedCurve(const std::vector<glm::dvec4>& control) {
+    assert(control.size() >= 2);
+    // A phantom point mirrored through the end makes the spline start in that end.
+    control_.push_back(2.0 * control[0] - control[1]);
+    control_.insert(control_.end(), control.begin(), control.end());
+    control_.push_back(2.0 * control.back() - control[control.size() - 2]);
+
+    const std::size_t spans = control.size() - 1;
+    for (std::size_t i = 0; i <= spans * kSamplesPerSpan; ++i) {
+        samples_.emplace_back(evaluate(static_cast<double>(i) / double{kSamplesPerSpan}).value);
+    }
+    double largest = 0.0;
+    for (const glm::dvec4& point : control) {
+        largest = std::max(largest, point.w);
+    }
+    for (const glm::dvec3& point : samples_) {
+        reach_ = std::max(reach_, chord_distance(point) + largest);
+    }
+}
+
+double TaperedCurve::chord_distance(const glm::dvec3& p) const {
+    const glm::dvec3 chord = samples_.back() - samples_.front();
+    const glm::dvec3 offset = p - samples_.front();
+    const double t = std::clamp(glm::dot(offset, chord) / glm::dot(chord, chord), 0.0, 1.0);
+    return glm::length(offset - t * chord);
+}
+
+double TaperedCurve::distance_bound(const glm::dvec3& p) const {
+    return chord_distance(p) - reach_;
+}
+
+TaperedCurve::Point TaperedCurve::evaluate(double t) const {
+    const std::size_t spans = control_.size() - 3;
+    const auto span = std::min(static_cast<std::size_t>(std::max(t, 0.0)), spans - 1);
+    const double u = t - static_cast<double>(span);
+    const glm::dvec4* const p = &control_[span];
+    const double v = 1.0 - u;
+    return {(v * v * v * p[0] + (4.0 - 6.0 * u * u + 3.0 * u * u * u) * p[1] +
+             (4.0 - 6.0 * v * v + 3.0 * v * v * v) * p[2] + u * u * u * p[3]) /
+                6.0,
+            (-v * v * p[0] + (3.0 * u * u - 4.0 * u) * p[1] - (3.0 * v * v - 4.0 * v) * p[2] +
+             u * u * p[3]) /
+                2.0,
+            v * p[0] + (3.0 * u - 2.0) * p[1] + (3.0 * v - 2.0) * p[2] + u * p[3]};
+}
+
+TaperedCurve::Nearest TaperedCurve::nearest(const glm::dvec3& p) const {
+    double best = std::numeric_limits<double>::max();
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+        const glm::dvec3 offset = samples_[i] - p;
+        const double squared = glm::dot(offset, offset);
+        if (squared < best) {
+            best = squared;
+            begin = i;
+        }
+    }
+    const double end = static_cast<double>(control_.size() - 3);
+    double t = static_cast<double>(begin) / double{kSamplesPerSpan};
+    Point point = evaluate(t);
+    for (int step = 0; step < kNewtonSteps; ++step) {
+        const glm::dvec3 offset = glm::dvec3(point.value) - p;
+        const glm::dvec3 first(point.first);
+        const double speed = glm::dot(first, first);
+        // Past the centre of curvature the second derivative of the distance turns negative; the
+        // floor keeps the step finite and downhill there.
+        const double curvature =
+            std::max(speed + glm::dot(offset, glm::dvec3(point.second)), 0.2 * speed);
+        const double next = std::clamp(t - glm::dot(offset, first) / curvature, 0.0, end);
+        const double moved = std::abs(next - t);
+        t = next;
+        point = evaluate(t);
+        if (moved < 1e-10) break;
+    }
+    return {glm::dvec3(point.value), glm::normalize(glm::dvec3(point.first)), point.value.w,
+            t / end};
+}
+
+double TaperedCurve::distance(const glm::dvec3& p) const {
+    const Nearest spine = nearest(p);
+    return glm::distance(p, spine.point) - spine.radius;
+}
+
+}  // namespace opaline::bake

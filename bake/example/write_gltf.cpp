@@ -1,0 +1,135 @@
+#include "bake/example/write_gltf.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+
+#include "formats/opal/atomic_file.h"
+
+namespace opaline::bake {
+namespace {
+
+// Keys in the order of writing: the file reads like the specification's examples.
+using Json = nlohmann::ordered_json;
+
+// Values fixed by the glTF 2.0 specification.
+constexpr int kFloat = 5126, kUnsignedInt = 5125;
+constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+
+void append(std::string& bytes, std::uint32_t word) {
+    for (int shift = 0; shift < 32; shift += 8) {
+        bytes.push_back(static_cast<char>(word >> shift & 0xffu));
+    }
+}
+
+/// Both files while they grow. Every element is a 4-byte word, so all views stay aligned.
+struct Draft {
+    Json views = Json::array(), accessors = Json::array();
+    std::string bytes;
+};
+
+/// Adds a view of `count` elements from `offset` to the end of the bytes, and the accessor of all
+/// of it; returns the accessor's index.
+std::size_t add_accessor(Draft& draft, std::size_t offset, int target, int component,
+                         const char* type, std::size_t count) {
+    draft.views.push_back({{"buffer", 0},
+                           {"byteOffset", offset},
+                           {"byteLength", draft.bytes.size() - offset},
+                           {"target", target}});
+    draft.accessors.push_back({{"bufferView", draft.views.size() - 1},
+                               {"componentType", component},
+                               {"count", count},
+                               {"type", type}});
+    return draft.accessors.size() - 1;
+}
+
+/// Adds vectors as floats, with the smallest and largest of each coordinate as they were rounded.
+std::size_t add_vectors(Draft& draft, const std::vector<glm::dvec3>& vectors) {
+    const std::size_t offset = draft.bytes.size();
+    glm::vec3 low(vectors.front()), high(low);
+    for (const glm::dvec3& exact : vectors) {
+        const glm::vec3 vector(exact);
+        low = glm::min(low, vector);
+        high = glm::max(high, vector);
+        for (int axis = 0; axis < 3; ++axis) {
+            append(draft.bytes, std::bit_cast<std::uint32_t>(vector[axis]));
+        }
+    }
+    const std::size_t index =
+        add_accessor(draft, offset, kArrayBuffer, kFloat, "VEC3", vectors.size());
+    draft.accessors[index]["min"] = {low.x, low.y, low.z};
+    draft.accessors[index]["max"] = {high.x, high.y, high.z};
+    return index;
+}
+
+std::size_t add_indices(Draft& draft, const TriangleMesh& mesh) {
+    const std::size_t offset = draft.bytes.size();
+    std::uint32_t low = mesh.triangles.front()[0], high = low;
+    for (const Triangle& triangle : mesh.triangles) {
+        for (const std::uint32_t v : triangle) {
+            append(draft.bytes, v);
+            low = std::min(low, v);
+            high = std::max(high, v);
+        }
+    }
+    const std::size_t index = add_accessor(draft, offset, kElementArrayBuffer, kUnsignedInt,
+                                           "SCALAR", 3 * mesh.triangles.size());
+    draft.accessors[index]["min"] = {low};
+    draft.accessors[index]["max"] = {high};
+    return index;
+}
+
+}  // namespace
+
+formats::Result<std::vector<std::filesystem::path>> write_gltf(
+    const std::filesystem::path& folder, const std::string& name,
+    const std::vector<GltfObject>& objects) {
+    Draft draft;
+    Json nodes = Json::array(), roots = Json::array();
+    Json meshes = Json::array(), materials = Json::array();
+    for (const GltfObject& object : objects) {
+        assert(!object.mesh.position.empty() && !object.mesh.triangles.empty());
+        assert(object.mesh.normal.size() == object.mesh.position.size());
+        roots.push_back(nodes.size());
+        nodes.push_back({{"name", object.name}, {"mesh", meshes.size()}});
+        const std::size_t position = add_vectors(draft, object.mesh.position);
+        const std::size_t normal = add_vectors(draft, object.mesh.normal);
+        const std::size_t indices = add_indices(draft, object.mesh);
+        const Json primitive = {{"attributes", {{"POSITION", position}, {"NORMAL", normal}}},
+                                {"indices", indices},
+                                {"material", materials.size()}};
+        meshes.push_back({{"name", object.name}, {"primitives", Json::array({primitive})}});
+        const auto& color = object.base_color;
+        materials.push_back({{"name", object.material},
+                             {"pbrMetallicRoughness",
+                              {{"baseColorFactor", {color[0], color[1], color[2], 1.0}},
+                               {"metallicFactor", 0.0},
+                               {"roughnessFactor", 1.0}}}});
+    }
+    const Json document = {
+        {"asset", {{"version", "2.0"}, {"generator", "Opaline"}}},
+        {"scene", 0},
+        {"scenes", Json::array({{{"name", name}, {"nodes", roots}}})},
+        {"nodes", nodes},
+        {"meshes", meshes},
+        {"materials", materials},
+        {"accessors", draft.accessors},
+        {"bufferViews", draft.views},
+        {"buffers", Json::array({{{"uri", name + ".bin"}, {"byteLength", draft.bytes.size()}}})}};
+
+    const std::vector<std::filesystem::path> files = {folder / (name + ".bin"),
+                                                      folder / (name + ".gltf")};
+    const std::string contents[] = {std::move(draft.bytes), document.dump(2) + "\n"};
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (formats::Status written = formats::write_file_atomically(files[i], contents[i]);
+            !written) {
+            return std::move(written).error();
+        }
+    }
+    return std::vector<std::filesystem::path>{files[1], files[0]};
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bake/example/triangle_mesh.h"
+#include "formats/opal/result.h"
+
+namespace opaline::bake {
+
+/// A mesh in a node of its own, with a dull, non-metallic material. Names are free; several objects
+/// may not share a material name.
+struct GltfObject {
+    std::string name;                           ///< of node and mesh
+    std::string material;                       ///< media files match it by this name
+    std::array<double, 3> base_color{1, 1, 1};  ///< linear Rec. 709, each in [0, 1]
+    TriangleMesh mesh;                          ///< positions in metres, one unit normal each
+};
+
+/// Writes FOLDER/NAME.gltf and its buffer FOLDER/NAME.bin as glTF 2.0 and returns both paths; the
+/// buffer appears first, so the .gltf never points at nothing. The bytes depend on the objects
+/// alone. Errors: resource, if either file cannot be written.
+/// Precondition: every object has a vertex, a triangle, and as many normals as positions.
+formats::Result<std::vector<std::filesystem::path>> write_gltf(
+    const std::filesystem::path& folder, const std::string& name,
+    const std::vector<GltfObject>& objects);
+
+}  // namespace opaline::bake

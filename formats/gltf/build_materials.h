@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "formats/gltf/document.h"
+#include "formats/gltf/report.h"
+#include "formats/gltf/resources.h"
+#include "formats/gltf/walk_scene.h"
+#include "formats/scene.h"
+
+namespace opaline::formats::gltf {
+
+/// Fills `scene.materials`, one per material of the file in its order and a default one behind
+/// them where a primitive needs it or there is none, and `scene.images` with the decoded
+/// base-colour textures. Textures are read and warnings given only for materials that an instance
+/// uses. Everything that a material asks for and Opaline does not simulate is named once.
+void build_materials(const Document& document, const std::vector<MeshInstance>& instances,
+                     Resources& resources, Scene& scene, Report& report);
+
+}  // namespace opaline::formats::gltf

@@ -1,0 +1,247 @@
+#include "formats/gltf/build_primitives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "formats/gltf/read_primitive.h"
+#include "formats/gltf/smooth_normals.h"
+
+namespace opaline::formats::gltf {
+
+namespace {
+
+bool is_finite(glm::dvec3 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+glm::dvec3 triple(const std::vector<float>& values, std::size_t i) {
+    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+}
+
+/// Rows are the cross products of the columns: det(m) * inverse(transpose(m)), which transforms
+/// normals and needs no division, so that flattened nodes cause none by zero.
+glm::dmat3 cofactors(const glm::dmat3& m) {
+    return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+void place_positions(const PrimitiveData& data, const glm::dmat4& world, double metres_per_unit,
+                     Primitive& out, Report& report) {
+    const std::size_t count = data.position.size() / 3;
+    out.position.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dvec3 p =
+            metres_per_unit * glm::dvec3(world * glm::dvec4(triple(data.position, i), 1.0));
+        out.position[i] = glm::vec3(p);
+        if (!is_finite(glm::dvec3(out.position[i]))) {
+            report.error(out.name,
+                         "vertex " + std::to_string(i) + " is too far away for single precision",
+                         "scale the scene down");
+            return;
+        }
+    }
+}
+
+/// Leaves {0,0,0} where the file gives no direction. Sets nothing if there is no NORMAL.
+void place_normals(const PrimitiveData& data, const glm::dmat4& world, Primitive& out) {
+    const glm::dmat3 linear(world);
+    const double sign = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+    const glm::dmat3 to_world = sign * cofactors(linear);
+    const std::size_t count = data.normal.size() / 3;
+    out.normal.assign(count, glm::vec3(0.0f));
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dvec3 stored = triple(data.normal, i);
+        // A file may hold a vector of any length; only one without a direction is a fault.
+        const double stored_length = glm::length(stored);
+        if (!std::isfinite(stored_length) || !(stored_length > 1e-6)) {
+            continue;
+        }
+        const glm::dvec3 n = to_world * (stored / stored_length);
+        const double length = glm::length(n);
+        if (std::isfinite(length) && length > 0.0) {
+            out.normal[i] = glm::vec3(n / length);
+        }
+    }
+}
+
+void place_texcoords(const PrimitiveData& data, const Material& material, Primitive& out,
+                     Report& report) {
+    if (material.base_color_image == kNone) {
+        return;
+    }
+    if (data.texcoord.empty()) {
+        report.warn(out.name,
+                    "its material has a base-colour texture, but TEXCOORD_" +
+                        std::to_string(material.base_color_texcoord) +
+                        " is missing: the texture is not used here",
+                    "unwrap the mesh before export");
+        return;
+    }
+    std::size_t bad = 0;
+    out.texcoord.resize(data.texcoord.size() / 2);
+    for (std::size_t i = 0; i < out.texcoord.size(); ++i) {
+        glm::vec2 uv = glm::vec2(material.base_color_uv_transform *
+                                 glm::vec3(data.texcoord[2 * i], data.texcoord[2 * i + 1], 1.0f));
+        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
+            uv = glm::vec2(0.0f);
+            ++bad;
+        }
+        out.texcoord[i] = uv;
+    }
+    if (bad > 0) {
+        report.warn(
+            out.name,
+            std::to_string(bad) + " texture coordinates are not finite and are taken as (0, 0)",
+            "repair the mesh before export");
+    }
+}
+
+void place_colors(const PrimitiveData& data, Primitive& out, Report& report) {
+    const std::size_t stride = data.color_components;
+    std::size_t bad = 0;
+    const auto reflectance = [&](float c) {
+        if (c >= 0.0f && c <= 1.0f) {
+            return c;
+        }
+        ++bad;
+        return c > 1.0f ? 1.0f : 0.0f;  // NaN becomes 0
+    };
+    out.color.resize(data.color.size() / stride);
+    for (std::size_t i = 0; i < out.color.size(); ++i) {
+        const float* c = data.color.data() + i * stride;
+        out.color[i] = {reflectance(c[0]), reflectance(c[1]), reflectance(c[2])};
+    }
+    if (bad > 0) {
+        report.warn(out.name,
+                    std::to_string(bad) + " values of COLOR_0 were outside [0, 1] and are clamped",
+                    "a surface cannot reflect more light than it receives");
+    }
+}
+
+void place_indices(const PrimitiveData& data, bool mirrored, Primitive& out, Report& report) {
+    out.index = data.index;
+    std::size_t flat = 0;
+    for (std::size_t t = 0; t + 2 < out.index.size(); t += 3) {
+        if (mirrored) {
+            std::swap(out.index[t + 1], out.index[t + 2]);
+        }
+        const glm::dvec3 a(out.position[out.index[t]]);
+        const glm::dvec3 n = glm::cross(glm::dvec3(out.position[out.index[t + 1]]) - a,
+                                        glm::dvec3(out.position[out.index[t + 2]]) - a);
+        flat += n == glm::dvec3(0.0) ? 1 : 0;
+    }
+    if (flat > 0) {
+        report.warn(out.name, std::to_string(flat) + " of " + std::to_string(out.index.size() / 3) +
+                                  " triangles have no area; they block no light");
+    }
+}
+
+bool lacks_direction(glm::vec3 n) {
+    return n == glm::vec3(0.0f);
+}
+
+/// Normals for what the file leaves open, over all primitives of one mesh instance together: a
+/// mesh split by material has its seams between primitives. Vertices with a good NORMAL keep it.
+void complete_normals(std::span<Primitive> instance, Report& report) {
+    const bool complete = std::all_of(instance.begin(), instance.end(), [](const Primitive& p) {
+        return p.normal.size() == p.position.size() &&
+               std::none_of(p.normal.begin(), p.normal.end(), lacks_direction);
+    });
+    if (complete) {
+        return;
+    }
+    std::vector<glm::vec3> position;
+    std::vector<std::uint32_t> index;
+    for (const Primitive& primitive : instance) {
+        const auto first = static_cast<std::uint32_t>(position.size());
+        position.insert(position.end(), primitive.position.begin(), primitive.position.end());
+        for (const std::uint32_t i : primitive.index) {
+            index.push_back(first + i);
+        }
+    }
+    const std::vector<glm::vec3> computed = smooth_normals(position, index);
+    std::size_t first = 0;
+    for (Primitive& primitive : instance) {
+        const bool stored = !primitive.normal.empty();
+        primitive.normal.resize(primitive.position.size(), glm::vec3(0.0f));
+        std::size_t repaired = 0, open = 0;
+        for (std::size_t v = 0; v < primitive.normal.size(); ++v) {
+            if (lacks_direction(primitive.normal[v])) {
+                primitive.normal[v] = computed[first + v];
+                ++repaired;
+                open += lacks_direction(primitive.normal[v]) ? 1 : 0;
+            }
+        }
+        first += primitive.position.size();
+        if (stored && repaired > open) {
+            report.warn(primitive.name,
+                        std::to_string(repaired - open) +
+                            " values of NORMAL had no direction and are computed "
+                            "from the faces",
+                        "recompute normals before export");
+        }
+        if (open > 0) {
+            report.warn(primitive.name,
+                        std::to_string(open) +
+                            " vertices have neither a normal nor a face to "
+                            "compute one from; they receive no light",
+                        "delete loose vertices and triangles without area");
+        }
+    }
+}
+
+}  // namespace
+
+void build_primitives(const Document& document, const std::vector<MeshInstance>& instances,
+                      const std::vector<Bytes>& buffers, double metres_per_unit, Scene& scene,
+                      Report& report) {
+    std::size_t morphed = 0;
+    for (const MeshInstance& instance : instances) {
+        const std::uint32_t mesh_index = document.nodes[instance.node].mesh;
+        const Mesh& mesh = document.meshes[mesh_index];
+        const std::size_t first = scene.primitives.size();
+        const bool mirrored = glm::determinant(glm::dmat3(instance.world)) < 0.0;
+        for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p) {
+            const MeshPrimitive& source = mesh.primitives[p];
+            Primitive& out = scene.primitives.emplace_back();
+            out.node = instance.node;
+            out.mesh = mesh_index;
+            out.primitive = p;
+            out.name = label("node", instance.node, document.nodes[instance.node].name) +
+                       " > mesh " + std::to_string(mesh_index) + " > primitive " +
+                       std::to_string(p);
+            out.material = source.material == kNone
+                               ? static_cast<std::uint32_t>(scene.materials.size() - 1)
+                               : source.material;
+            morphed += source.has_morph_targets ? 1 : 0;
+            if (source.mode < Mode::triangles) {
+                report.warn(out.name, "points and lines are not simulated: it is kept empty");
+                continue;
+            }
+            const Material& material = scene.materials[out.material];
+            const std::uint32_t texcoord_set =
+                material.base_color_image == kNone ? kNone : material.base_color_texcoord;
+            const auto data =
+                read_primitive(document, buffers, source, texcoord_set, out.name, report);
+            if (!data) {
+                continue;
+            }
+            place_positions(*data, instance.world, metres_per_unit, out, report);
+            place_normals(*data, instance.world, out);
+            place_texcoords(*data, material, out, report);
+            place_colors(*data, out, report);
+            place_indices(*data, mirrored, out, report);
+        }
+        if (!report.failed()) {
+            complete_normals(std::span(scene.primitives).subspan(first), report);
+        }
+    }
+    if (morphed > 0) {
+        report.warn("",
+                    "morph targets are not simulated: " + std::to_string(morphed) +
+                        " primitives are baked in their base shape",
+                    "apply the shape before export");
+    }
+}
+
+}  // namespace opaline::formats::gltf

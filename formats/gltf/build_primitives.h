@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "formats/gltf/document.h"
+#include "formats/gltf/report.h"
+#include "formats/gltf/resources.h"
+#include "formats/gltf/walk_scene.h"
+#include "formats/scene.h"
+
+namespace opaline::formats::gltf {
+
+/// Fills `scene.primitives` in running-number order, in world space and metres. Needs
+/// `scene.materials`. Precondition: validate_document found no fault.
+void build_primitives(const Document& document, const std::vector<MeshInstance>& instances,
+                      const std::vector<Bytes>& buffers, double metres_per_unit, Scene& scene,
+                      Report& report);
+
+}  // namespace opaline::formats::gltf

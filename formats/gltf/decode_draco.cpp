@@ -1,0 +1,219 @@
+#include "formats/gltf/decode_draco.h"
+
+#include <draco/compression/decode.h>
+
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace opaline::formats::gltf {
+
+namespace {
+
+using Json = nlohmann::json;
+constexpr const char* kExtension = "KHR_draco_mesh_compression";
+constexpr const char* kRemedy = "export without compression, or decompress with gltf-transform";
+
+std::optional<std::uint64_t> whole(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    return found != object.end() && found->is_number_unsigned()
+               ? std::optional(found->get<std::uint64_t>())
+               : std::nullopt;
+}
+
+std::optional<Bytes> compressed_bytes(const Json& root, const Json& extension,
+                                      const Resources& resources) {
+    const auto view_index = whole(extension, "bufferView");
+    const auto views = root.find("bufferViews");
+    if (!view_index || views == root.end() || *view_index >= views->size()) {
+        return std::nullopt;
+    }
+    const Json& view = (*views)[*view_index];
+    const auto buffer = whole(view, "buffer");
+    const auto length = whole(view, "byteLength");
+    const std::uint64_t offset = whole(view, "byteOffset").value_or(0);
+    if (!buffer || *buffer >= resources.buffers.size() || !length) {
+        return std::nullopt;
+    }
+    const Bytes bytes = resources.buffers[*buffer];
+    if (offset > bytes.size() || *length > bytes.size() - offset) {
+        return std::nullopt;
+    }
+    return bytes.subspan(offset, *length);
+}
+
+/// Adds one view of decoded bytes and an accessor on it; returns the accessor's index.
+std::size_t add_accessor(Json& root, Resources& resources, std::vector<std::byte> bytes,
+                         Json accessor) {
+    Json& views = root["bufferViews"];
+    accessor["bufferView"] = views.size();
+    accessor["byteOffset"] = 0u;
+    accessor.erase("sparse");
+    views.push_back({{"buffer", resources.buffers.size()}, {"byteLength", bytes.size()}});
+    resources.buffers.push_back(resources.keep(std::move(bytes)));
+    root["accessors"].push_back(std::move(accessor));
+    return root["accessors"].size() - 1;
+}
+
+template <class T>
+bool copy_values(const draco::PointAttribute& attribute, std::uint32_t points,
+                 std::uint32_t components, std::vector<std::byte>& out) {
+    out.resize(std::size_t{points} * components * sizeof(T));
+    for (std::uint32_t i = 0; i < points; ++i) {
+        T value[4] = {};
+        if (!attribute.ConvertValue<T>(attribute.mapped_index(draco::PointIndex(i)),
+                                       static_cast<std::int8_t>(components), value)) {
+            return false;
+        }
+        std::memcpy(out.data() + std::size_t{i} * components * sizeof(T), value,
+                    components * sizeof(T));
+    }
+    return true;
+}
+
+/// The attribute's values in the type that its accessor declares.
+bool attribute_bytes(const draco::PointAttribute& attribute, std::uint32_t points,
+                     std::uint64_t component_type, std::uint32_t components,
+                     std::vector<std::byte>& out) {
+    switch (component_type) {
+        case 5120:
+            return copy_values<std::int8_t>(attribute, points, components, out);
+        case 5121:
+            return copy_values<std::uint8_t>(attribute, points, components, out);
+        case 5122:
+            return copy_values<std::int16_t>(attribute, points, components, out);
+        case 5123:
+            return copy_values<std::uint16_t>(attribute, points, components, out);
+        case 5125:
+            return copy_values<std::uint32_t>(attribute, points, components, out);
+        case 5126:
+            return copy_values<float>(attribute, points, components, out);
+        default:
+            return false;
+    }
+}
+
+std::uint32_t component_count(const Json& accessor) {
+    const auto type = accessor.find("type");
+    if (type == accessor.end() || !type->is_string()) return 0;
+    const auto& name = type->get_ref<const std::string&>();
+    return name == "SCALAR" ? 1u
+           : name == "VEC2" ? 2u
+           : name == "VEC3" ? 3u
+           : name == "VEC4" ? 4u
+                            : 0u;
+}
+
+/// What must hold between the decoded mesh and the accessor that describes one attribute of it.
+std::string add_attribute(Json& root, Resources& resources, const draco::Mesh& mesh,
+                          const std::string& semantic, const Json& id, Json& primitive) {
+    const auto accessor_index = whole(primitive["attributes"], semantic.c_str());
+    if (!id.is_number_unsigned() || id.get<std::uint64_t>() > 0xffffffffu || !accessor_index ||
+        !root.contains("accessors") || *accessor_index >= root["accessors"].size()) {
+        return "attribute " + in_quotes(semantic) + " has no valid id and accessor";
+    }
+    const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id.get<std::uint32_t>());
+    const Json accessor = root["accessors"][*accessor_index];
+    const std::uint32_t components = component_count(accessor);
+    if (!attribute || components == 0 || attribute->num_components() != components) {
+        return "attribute " + in_quotes(semantic) + " is not in the compressed data as declared";
+    }
+    const std::uint32_t points = mesh.num_points();
+    if (whole(accessor, "count") != points) {
+        return "attribute " + in_quotes(semantic) + " has " + std::to_string(points) +
+               " decoded values, its accessor says otherwise";
+    }
+    for (std::uint32_t i = 0; i < points; ++i) {
+        if (attribute->mapped_index(draco::PointIndex(i)).value() >= attribute->size()) {
+            return "attribute " + in_quotes(semantic) + " refers past its values";
+        }
+    }
+    std::vector<std::byte> bytes;
+    if (!attribute_bytes(*attribute, points, whole(accessor, "componentType").value_or(0),
+                         components, bytes)) {
+        return "attribute " + in_quotes(semantic) + " cannot be converted to its component type";
+    }
+    primitive["attributes"][semantic] = add_accessor(root, resources, std::move(bytes), accessor);
+    return "";
+}
+
+std::size_t add_indices(Json& root, Resources& resources, const draco::Mesh& mesh) {
+    std::vector<std::byte> bytes(std::size_t{mesh.num_faces()} * 12);
+    for (std::uint32_t f = 0; f < mesh.num_faces(); ++f) {
+        const auto& face = mesh.face(draco::FaceIndex(f));
+        const std::uint32_t corner[3] = {face[0].value(), face[1].value(), face[2].value()};
+        std::memcpy(bytes.data() + std::size_t{f} * 12, corner, 12);
+    }
+    return add_accessor(root, resources, std::move(bytes),
+                        {{"componentType", 5125u},
+                         {"count", std::size_t{mesh.num_faces()} * 3},
+                         {"type", "SCALAR"}});
+}
+
+/// Empty, or what is wrong.
+std::string decode_primitive(Json& root, Resources& resources, const Json& extension,
+                             Json& primitive) {
+    const auto ids = extension.is_object() ? extension.find("attributes") : extension.end();
+    const auto bytes =
+        extension.is_object() ? compressed_bytes(root, extension, resources) : std::nullopt;
+    if (!bytes || ids == extension.end() || !ids->is_object() ||
+        !primitive.contains("attributes") || !primitive["attributes"].is_object()) {
+        return "its bufferView or attributes are missing or out of range";
+    }
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    draco::Decoder decoder;
+    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!decoded.ok()) {
+        return "the compressed data is damaged: " + in_quotes(decoded.status().error_msg_string());
+    }
+    const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
+    if (!mesh || mesh->num_faces() == 0 || mesh->num_points() == 0) {
+        return "the compressed data holds no triangles";
+    }
+    for (const auto& [semantic, id] : ids->items()) {
+        if (std::string fault = add_attribute(root, resources, *mesh, semantic, id, primitive);
+            !fault.empty()) {
+            return fault;
+        }
+    }
+    primitive["indices"] = add_indices(root, resources, *mesh);
+    primitive["mode"] = 4u;  // decoded strips are triangle lists
+    primitive["extensions"].erase(kExtension);
+    return "";
+}
+
+}  // namespace
+
+void decode_draco_primitives(nlohmann::json& root, Resources& resources, Report& report) {
+    const auto meshes = root.find("meshes");
+    if (meshes == root.end()) {
+        return;
+    }
+    for (std::size_t m = 0; m < meshes->size(); ++m) {
+        // `root` grows below, so nothing may hold on to a part of it meanwhile.
+        const std::size_t count =
+            root["meshes"][m].contains("primitives") ? root["meshes"][m]["primitives"].size() : 0;
+        for (std::size_t p = 0; p < count; ++p) {
+            Json primitive = root["meshes"][m]["primitives"][p];
+            if (!primitive.is_object() || !primitive.contains("extensions") ||
+                !primitive["extensions"].is_object() ||
+                !primitive["extensions"].contains(kExtension)) {
+                continue;
+            }
+            const Json extension = primitive["extensions"][kExtension];
+            const std::string fault = decode_primitive(root, resources, extension, primitive);
+            if (!fault.empty()) {
+                report.error("mesh " + std::to_string(m) + " > primitive " + std::to_string(p) +
+                                 " > " + kExtension,
+                             fault, kRemedy);
+                continue;
+            }
+            root["meshes"][m]["primitives"][p] = std::move(primitive);
+        }
+    }
+}
+
+}  // namespace opaline::formats::gltf

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/scene.h"
+
+namespace opaline::formats::gltf {
+
+/// The parts of a glTF file that Opaline uses, as plain values. Names and meanings are the
+/// specification's; indices are kNone where absent.
+
+enum class ComponentType : std::uint32_t {
+    int8 = 5120,
+    uint8 = 5121,
+    int16 = 5122,
+    uint16 = 5123,
+    uint32 = 5125,
+    float32 = 5126
+};
+
+struct BufferView {
+    std::uint32_t buffer = kNone;
+    std::uint64_t offset = 0, length = 0;
+    std::uint64_t stride = 0;  ///< 0: elements follow each other without gaps
+};
+
+struct Sparse {
+    std::uint64_t count = 0;
+    std::uint32_t index_view = kNone, value_view = kNone;
+    std::uint64_t index_offset = 0, value_offset = 0;
+    ComponentType index_type = ComponentType::uint16;
+};
+
+struct Accessor {
+    std::uint32_t view = kNone;  ///< kNone: all zero before the sparse values
+    std::uint64_t offset = 0, count = 0;
+    ComponentType type = ComponentType::float32;
+    std::uint32_t components = 1;  ///< 1 to 4; 4, 9, 16 for matrices
+    bool is_matrix = false;
+    bool normalized = false;
+    std::optional<Sparse> sparse;
+};
+
+enum class Mode : std::uint32_t {
+    points,
+    lines,
+    line_loop,
+    line_strip,
+    triangles,
+    triangle_strip,
+    triangle_fan
+};
+
+struct MeshPrimitive {
+    std::map<std::string, std::uint32_t> attributes;  ///< semantic -> accessor
+    std::uint32_t indices = kNone, material = kNone;
+    Mode mode = Mode::triangles;
+    bool has_morph_targets = false;
+};
+
+struct Mesh {
+    std::string name;
+    std::vector<MeshPrimitive> primitives;
+};
+
+struct Node {
+    std::string name;
+    std::uint32_t mesh = kNone;
+    std::vector<std::uint32_t> children;
+    glm::dmat4 local{1.0};  ///< to the parent's frame
+    bool has_skin = false, has_camera = false;
+    std::vector<std::string> extensions;
+};
+
+struct TextureUse {
+    std::uint32_t texture = kNone, texcoord = 0;
+    glm::mat3 transform{1.0f};  ///< KHR_texture_transform
+};
+
+struct MaterialSource {
+    std::string name;
+    glm::dvec4 base_color{1.0};
+    TextureUse base_color_texture;
+    double metallic = 1.0;
+    glm::dvec3 emissive{0.0};
+    bool double_sided = false, has_normal_map = false, has_occlusion_map = false;
+    std::string alpha_mode;
+    std::vector<std::string> extensions;
+};
+
+struct Texture {
+    std::uint32_t image = kNone, sampler = kNone;
+};
+
+struct Sampler {
+    std::uint32_t wrap_s = 10497, wrap_t = 10497;
+};
+
+struct ImageSource {
+    std::string name, uri;
+    std::uint32_t view = kNone;  ///< used where `uri` is empty
+};
+
+struct Document {
+    std::vector<BufferView> views;
+    std::vector<Accessor> accessors;
+    std::vector<Mesh> meshes;
+    std::vector<Node> nodes;
+    std::vector<std::vector<std::uint32_t>> scenes;  ///< root nodes of each
+    std::uint32_t default_scene = kNone;
+    std::vector<MaterialSource> materials;
+    std::vector<Texture> textures;
+    std::vector<Sampler> samplers;
+    std::vector<ImageSource> images;
+    bool has_animations = false;
+};
+
+/// Bytes of one component; 0 for a type that glTF does not have.
+constexpr std::uint32_t component_bytes(ComponentType type) {
+    switch (type) {
+        case ComponentType::int8:
+        case ComponentType::uint8:
+            return 1;
+        case ComponentType::int16:
+        case ComponentType::uint16:
+            return 2;
+        case ComponentType::uint32:
+        case ComponentType::float32:
+            return 4;
+    }
+    return 0;
+}
+
+}  // namespace opaline::formats::gltf

@@ -1,0 +1,113 @@
+#include "formats/gltf/import_gltf.h"
+
+#include <cmath>
+#include <exception>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "formats/gltf/build_materials.h"
+#include "formats/gltf/build_primitives.h"
+#include "formats/gltf/check_json.h"
+#include "formats/gltf/container.h"
+#include "formats/gltf/decode_draco.h"
+#include "formats/gltf/decode_meshopt.h"
+#include "formats/gltf/parse_document.h"
+#include "formats/gltf/resources.h"
+#include "formats/gltf/validate_document.h"
+#include "formats/gltf/walk_scene.h"
+
+namespace opaline::formats {
+
+namespace {
+
+using namespace gltf;
+
+/// The whole import; every fault is in `report`, and the scene counts only if there is none.
+Scene import(const std::filesystem::path& path, const ImportOptions& options, Report& report) {
+    Scene scene;
+    scene.source = path.string();
+    auto file = read_whole_file(path, "", report);
+    if (!file) {
+        return scene;
+    }
+    Resources resources;
+    resources.folder = path.parent_path();
+    resources.inputs.push_back(path);
+    const Bytes bytes = resources.keep(std::move(*file));
+    resources.hash.add(bytes);
+
+    const auto container = split_container(bytes, report);
+    auto json = container ? parse_checked_json(container->json, report) : std::nullopt;
+    if (!json) {
+        return scene;
+    }
+    check_member_types(*json, report);
+    if (report.failed()) {
+        return scene;
+    }
+    load_buffers(*json, *container, resources, report);
+    if (!report.failed()) {
+        decode_meshopt_views(*json, resources, report);
+        decode_draco_primitives(*json, resources, report);
+    }
+    if (report.failed()) {
+        return scene;
+    }
+    const auto document = parse_document(std::move(*json), report);
+    if (document) {
+        validate_document(*document, resources.buffers, report);
+    }
+    if (report.failed()) {
+        return scene;
+    }
+    const auto instances = walk_scene(*document, report);
+    if (report.failed()) {
+        return scene;
+    }
+    build_materials(*document, instances, resources, scene, report);
+    build_primitives(*document, instances, resources.buffers, options.metres_per_unit, scene,
+                     report);
+    std::size_t corners = 0;
+    for (const Primitive& primitive : scene.primitives) {
+        corners += primitive.index.size();
+    }
+    if (corners == 0 && !report.failed()) {
+        report.error("", "the scene has no triangles", "export at least one mesh with faces");
+    }
+    scene.inputs = std::move(resources.inputs);
+    scene.sha256 = resources.hash.finish();
+    return scene;
+}
+
+}  // namespace
+
+Result<ImportedScene> import_gltf(const std::filesystem::path& path, const ImportOptions& options) {
+    Report report;
+    report.file = path.string();
+    if (!(std::isfinite(options.metres_per_unit) && options.metres_per_unit > 0.0)) {
+        return make_error(ErrorKind::usage, report.file, "",
+                          "metres per unit is " + std::to_string(options.metres_per_unit),
+                          "give a number above 0");
+    }
+    try {
+        Scene scene = import(path, options, report);
+        if (report.failed()) {
+            return report.take_error();
+        }
+        return ImportedScene{std::move(scene), report.take_warnings()};
+    } catch (const std::bad_alloc&) {
+        return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
+                          "split or simplify the scene");
+    } catch (const std::length_error&) {
+        return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
+                          "split or simplify the scene");
+    } catch (const std::exception& problem) {
+        // The libraries behind throw on some malformed input that no check of ours names.
+        return make_error(ErrorKind::bad_input, report.file, "",
+                          "it cannot be read: " + in_quotes(problem.what()),
+                          "export the file again");
+    }
+}
+
+}  // namespace opaline::formats

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+namespace opaline::formats {
+
+/// How a glTF asset is brought into the baker's units.
+struct ImportOptions {
+    double metres_per_unit = 1.0;  ///< length of one file unit [m]; finite and > 0
+};
+
+/// A scene and everything worth telling the user about it.
+struct ImportedScene {
+    Scene scene;
+    std::vector<Diagnostic> warnings;  ///< what was repaired, and what the baker will not simulate
+};
+
+/// Reads a glTF 2.0 file, text or binary (told apart by content), with its buffers and the
+/// textures that base colours use, into world space and metres. Untrusted input is safe.
+///
+/// Primitives stand in the order of the default scene's nodes depth-first, then the mesh's
+/// primitives; vertices keep their number and order. Points and lines keep their running number as
+/// an entry without vertices. Where NORMAL is missing, smooth normals are computed over vertices
+/// at the same position.
+///
+/// Errors: `bad_input` for a file that is missing, damaged, not conforming, without a triangle, or
+/// that requires an unsupported extension; `resource` for one past the limits in limits.h or past
+/// memory; `usage` for options out of range. Every fault found before stopping is listed.
+Result<ImportedScene> import_gltf(const std::filesystem::path& path,
+                                  const ImportOptions& options = {});
+
+}  // namespace opaline::formats

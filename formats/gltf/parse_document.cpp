@@ -1,0 +1,302 @@
+#include "formats/gltf/parse_document.h"
+
+#include <tiny_gltf.h>
+
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <nlohmann/json.hpp>
+
+namespace opaline::formats::gltf {
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::uint32_t link(int index) {
+    return index < 0 ? kNone : static_cast<std::uint32_t>(index);
+}
+
+/// tinygltf refuses index accessors without a buffer view, which glTF allows. One more view at the
+/// end stands for "none" on the way through it. Returns that view's index.
+int give_every_accessor_a_view(Json& root) {
+    Json& views = root["bufferViews"];
+    if (!views.is_array()) {
+        views = Json::array();
+    }
+    const int none = static_cast<int>(views.size());
+    views.push_back({{"buffer", 0}, {"byteLength", 1}});
+    if (const auto accessors = root.find("accessors"); accessors != root.end()) {
+        for (Json& accessor : *accessors) {
+            if (!accessor.contains("bufferView")) {
+                accessor["bufferView"] = none;
+            }
+        }
+    }
+    return none;
+}
+
+std::vector<std::string> names_of(const tinygltf::ExtensionMap& extensions) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : extensions) {
+        names.push_back(name);
+    }
+    return names;
+}
+
+Accessor convert(const tinygltf::Accessor& in, int no_view) {
+    Accessor out;
+    out.view = in.bufferView == no_view ? kNone : link(in.bufferView);
+    out.offset = in.byteOffset;
+    out.count = in.count;
+    out.type = static_cast<ComponentType>(in.componentType);
+    out.components = static_cast<std::uint32_t>(
+        tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(in.type)));
+    out.is_matrix = in.type == TINYGLTF_TYPE_MAT2 || in.type == TINYGLTF_TYPE_MAT3 ||
+                    in.type == TINYGLTF_TYPE_MAT4;
+    out.normalized = in.normalized;
+    if (in.sparse.isSparse) {
+        Sparse sparse;
+        sparse.count = static_cast<std::uint64_t>(in.sparse.count);
+        sparse.index_view = link(in.sparse.indices.bufferView);
+        sparse.index_offset = static_cast<std::uint64_t>(in.sparse.indices.byteOffset);
+        sparse.index_type = static_cast<ComponentType>(in.sparse.indices.componentType);
+        sparse.value_view = link(in.sparse.values.bufferView);
+        sparse.value_offset = static_cast<std::uint64_t>(in.sparse.values.byteOffset);
+        out.sparse = sparse;
+    }
+    return out;
+}
+
+Mesh convert(const tinygltf::Mesh& in) {
+    Mesh out;
+    out.name = in.name;
+    for (const tinygltf::Primitive& primitive : in.primitives) {
+        MeshPrimitive& copy = out.primitives.emplace_back();
+        for (const auto& [semantic, accessor] : primitive.attributes) {
+            copy.attributes.emplace(semantic, link(accessor));
+        }
+        copy.indices = link(primitive.indices);
+        copy.material = link(primitive.material);
+        copy.mode = static_cast<Mode>(primitive.mode);
+        copy.has_morph_targets = !primitive.targets.empty();
+    }
+    return out;
+}
+
+/// glTF 2.0 specification, "Transformations": either the column-major matrix or T * R * S.
+glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& where, Report& report) {
+    glm::dmat4 local(1.0);
+    if (node.matrix.size() == 16) {
+        local = glm::make_mat4(node.matrix.data());
+        const glm::dvec4 last(local[0][3], local[1][3], local[2][3], local[3][3] - 1.0);
+        if (!(glm::dot(last, last) < 1e-12)) {
+            report.error(where, "the last row of its matrix is not 0 0 0 1",
+                         "apply the transform before export");
+        }
+    } else {
+        glm::dvec3 translation(0.0), scale(1.0);
+        glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
+        if (node.translation.size() == 3) {
+            translation = glm::make_vec3(node.translation.data());
+        }
+        if (node.scale.size() == 3) {
+            scale = glm::make_vec3(node.scale.data());
+        }
+        if (node.rotation.size() == 4) {
+            const auto& r = node.rotation;
+            rotation = glm::dquat(r[3], r[0], r[1], r[2]);
+            const double length = glm::length(rotation);
+            if (!(length > 1e-6 && length < 1e6)) {
+                report.error(where, "its rotation is not a unit quaternion",
+                             "apply the transform before export");
+                return local;
+            }
+            rotation = rotation / length;
+        }
+        local = glm::mat4_cast(rotation);
+        for (int axis = 0; axis < 3; ++axis) {
+            local[axis] *= scale[axis];
+        }
+        local[3] = glm::dvec4(translation, 1.0);
+    }
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            if (!std::isfinite(local[column][row])) {
+                report.error(where, "its transform is not finite",
+                             "apply the transform before export");
+                return glm::dmat4(1.0);
+            }
+        }
+    }
+    return local;
+}
+
+Node convert(const tinygltf::Node& in, std::size_t index, Report& report) {
+    Node out;
+    out.name = in.name;
+    out.mesh = link(in.mesh);
+    for (const int child : in.children) {
+        out.children.push_back(link(child));
+    }
+    out.local = local_transform(in, label("node", index, in.name), report);
+    out.has_skin = in.skin >= 0;
+    out.has_camera = in.camera >= 0;
+    out.extensions = names_of(in.extensions);
+    return out;
+}
+
+double number_in(const tinygltf::Value& value, const char* key, std::size_t element,
+                 double otherwise) {
+    if (!value.IsObject() || !value.Has(key)) {
+        return otherwise;
+    }
+    const tinygltf::Value* found = &value.Get(key);
+    if (found->IsArray()) {
+        if (element >= found->ArrayLen()) {
+            return otherwise;
+        }
+        found = &found->Get(static_cast<int>(element));
+    }
+    return found->IsNumber() ? found->GetNumberAsDouble() : otherwise;
+}
+
+/// KHR_texture_transform: translation * rotation * scale. Its example (offset 0 1, rotation pi/2,
+/// scale 1/2 is the lower left quadrant) holds for a rotation that is counter-clockwise with v
+/// pointing down, so sin enters with the opposite sign of a v-up plane.
+TextureUse convert(const tinygltf::TextureInfo& in, const std::string& where, Report& report) {
+    TextureUse out;
+    out.texture = link(in.index);
+    out.texcoord = static_cast<std::uint32_t>(in.texCoord);
+    const auto found = in.extensions.find("KHR_texture_transform");
+    if (found == in.extensions.end()) {
+        return out;
+    }
+    const tinygltf::Value& value = found->second;
+    const double angle = number_in(value, "rotation", 0, 0.0);
+    const glm::dvec2 offset(number_in(value, "offset", 0, 0.0), number_in(value, "offset", 1, 0.0));
+    const glm::dvec2 scale(number_in(value, "scale", 0, 1.0), number_in(value, "scale", 1, 1.0));
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    out.transform = glm::mat3(glm::dmat3(cosine * scale.x, -sine * scale.x, 0.0,  //
+                                         sine * scale.y, cosine * scale.y, 0.0,   //
+                                         offset.x, offset.y, 1.0));
+    const double texcoord = number_in(value, "texCoord", 0, out.texcoord);
+    if (!(texcoord >= 0 && texcoord <= 255 && texcoord == std::floor(texcoord))) {
+        report.error(where, "the texCoord of its KHR_texture_transform is not a small whole number",
+                     "export the file again");
+    } else {
+        out.texcoord = static_cast<std::uint32_t>(texcoord);
+    }
+    return out;
+}
+
+MaterialSource convert(const tinygltf::Material& in, std::size_t index, Report& report) {
+    MaterialSource out;
+    out.name = in.name;
+    const auto& pbr = in.pbrMetallicRoughness;
+    if (pbr.baseColorFactor.size() == 4) {
+        out.base_color = glm::make_vec4(pbr.baseColorFactor.data());
+    }
+    out.base_color_texture =
+        convert(pbr.baseColorTexture, label("material", index, in.name), report);
+    out.metallic = pbr.metallicFactor;
+    if (in.emissiveFactor.size() == 3) {
+        out.emissive = glm::make_vec3(in.emissiveFactor.data());
+    }
+    out.double_sided = in.doubleSided;
+    out.has_normal_map = in.normalTexture.index >= 0;
+    out.has_occlusion_map = in.occlusionTexture.index >= 0;
+    out.alpha_mode = in.alphaMode.empty() ? "OPAQUE" : in.alphaMode;
+    out.extensions = names_of(in.extensions);
+    return out;
+}
+
+std::vector<ImageSource> read_images(const Json& root, Report& report) {
+    std::vector<ImageSource> images;
+    const auto found = root.find("images");
+    if (found == root.end()) {
+        return images;
+    }
+    for (const Json& entry : *found) {
+        ImageSource& image = images.emplace_back();
+        const auto text = [&](const char* key) -> std::string {
+            const auto member = entry.find(key);
+            return member != entry.end() && member->is_string() ? member->get<std::string>() : "";
+        };
+        image.name = text("name");
+        image.uri = text("uri");
+        if (const auto view = entry.find("bufferView"); view != entry.end()) {
+            image.view = view->get<std::uint32_t>();
+        }
+        if (image.uri.empty() == (image.view == kNone)) {
+            report.error(label("image", images.size() - 1, image.name),
+                         "it needs exactly one of uri and bufferView", "export the file again");
+        }
+    }
+    return images;
+}
+
+}  // namespace
+
+std::optional<Document> parse_document(nlohmann::json root, Report& report) {
+    Document document;
+    document.images = read_images(root, report);
+    document.has_animations = root.contains("animations") && !root["animations"].empty();
+    if (const auto scene = root.find("scene"); scene != root.end()) {
+        document.default_scene = scene->get<std::uint32_t>();
+    }
+    // What Opaline reads itself, or not at all, tinygltf shall not touch.
+    for (const char* key :
+         {"buffers", "images", "animations", "skins", "cameras", "extensions", "extras", "scene"}) {
+        root.erase(key);
+    }
+    const int no_view = give_every_accessor_a_view(root);
+    const std::string text = root.dump(-1, ' ', true, Json::error_handler_t::replace);
+    root = nullptr;
+
+    tinygltf::TinyGLTF reader;
+    tinygltf::Model model;
+    std::string problems, remarks;
+    if (!reader.LoadASCIIFromString(&model, &problems, &remarks, text.data(),
+                                    static_cast<unsigned int>(text.size()), "", 0)) {
+        report.error("JSON", "it does not follow the glTF schema: " + in_quotes(problems),
+                     "export the file again");
+        return std::nullopt;
+    }
+    if (model.bufferViews.size() != static_cast<std::size_t>(no_view) + 1) {
+        report.error("bufferViews", "they cannot be read", "export the file again");
+        return std::nullopt;
+    }
+    model.bufferViews.pop_back();
+    for (const auto& view : model.bufferViews) {
+        document.views.push_back(
+            {link(view.buffer), view.byteOffset, view.byteLength, view.byteStride});
+    }
+    for (const auto& accessor : model.accessors) {
+        document.accessors.push_back(convert(accessor, no_view));
+    }
+    for (const auto& mesh : model.meshes) {
+        document.meshes.push_back(convert(mesh));
+    }
+    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+        document.nodes.push_back(convert(model.nodes[i], i, report));
+    }
+    for (const auto& scene : model.scenes) {
+        auto& roots = document.scenes.emplace_back();
+        for (const int node : scene.nodes) {
+            roots.push_back(link(node));
+        }
+    }
+    for (std::size_t i = 0; i < model.materials.size(); ++i) {
+        document.materials.push_back(convert(model.materials[i], i, report));
+    }
+    for (const auto& texture : model.textures) {
+        document.textures.push_back({link(texture.source), link(texture.sampler)});
+    }
+    for (const auto& sampler : model.samplers) {
+        document.samplers.push_back({link(sampler.wrapS), link(sampler.wrapT)});
+    }
+    return document;
+}
+
+}  // namespace opaline::formats::gltf

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/gltf/document.h"
+#include "formats/gltf/report.h"
+#include "formats/gltf/resources.h"
+
+namespace opaline::formats::gltf {
+
+/// What one mesh primitive stores, in the mesh's frame and file units.
+struct PrimitiveData {
+    std::vector<float> position;  ///< 3 per vertex, finite
+    std::vector<float> normal;    ///< 3 per vertex, as stored; empty if there is none
+    std::vector<float> texcoord;  ///< 2 per vertex, as stored; empty if there is none
+    std::vector<float> color;     ///< `color_components` per vertex; empty if there is none
+    std::uint32_t color_components = 3;
+    std::vector<std::uint32_t> index;  ///< triangles, each < vertex count
+};
+
+/// Reads the attributes that Opaline uses and makes a triangle list of strips, fans and
+/// primitives without indices. `texcoord_set` is kNone where no texture needs one. Nothing and
+/// errors named after `where` if the primitive does not conform. Precondition: a triangle mode.
+std::optional<PrimitiveData> read_primitive(const Document& document,
+                                            const std::vector<Bytes>& buffers,
+                                            const MeshPrimitive& primitive,
+                                            std::uint32_t texcoord_set, const std::string& where,
+                                            Report& report);
+
+}  // namespace opaline::formats::gltf

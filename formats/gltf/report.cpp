@@ -1,0 +1,63 @@
+#include "formats/gltf/report.h"
+
+#include <utility>
+
+namespace opaline::formats::gltf {
+
+void Report::error(std::string where, std::string fault, std::string remedy) {
+    if (errors.size() >= kMaxDiagnostics) {
+        ++errors_left_out;
+        return;
+    }
+    errors.push_back(
+        {Diagnostic::Severity::error, file, std::move(where), std::move(fault), std::move(remedy)});
+}
+
+void Report::warn(std::string where, std::string fault, std::string remedy) {
+    if (warnings.size() >= kMaxDiagnostics) {
+        ++warnings_left_out;
+        return;
+    }
+    warnings.push_back(make_warning(file, std::move(where), std::move(fault), std::move(remedy)));
+}
+
+void Report::over_limit(std::string where, std::string fault, std::string remedy) {
+    if (errors.empty()) {
+        kind = ErrorKind::resource;  // the first fault decides the exit code
+    }
+    error(std::move(where), std::move(fault), std::move(remedy));
+}
+
+Error Report::take_error() {
+    if (errors_left_out > 0) {
+        errors.push_back({Diagnostic::Severity::error, file, "",
+                          std::to_string(errors_left_out) + " more errors are left out", ""});
+    }
+    return {kind, std::move(errors)};
+}
+
+std::vector<Diagnostic> Report::take_warnings() {
+    if (warnings_left_out > 0) {
+        warnings.push_back(make_warning(
+            file, "", std::to_string(warnings_left_out) + " more warnings are left out"));
+    }
+    return std::move(warnings);
+}
+
+std::string in_quotes(std::string_view name) {
+    constexpr std::size_t kLongest = 80;
+    std::string text = "'";
+    for (const char c : name.substr(0, kLongest)) {
+        const auto byte = static_cast<unsigned char>(c);
+        text += byte < 0x20 || byte == 0x7f ? '?' : c;
+    }
+    return text + (name.size() > kLongest ? "...'" : "'");
+}
+
+std::string label(std::string_view kind, std::size_t index, std::string_view name) {
+    std::string text(kind);
+    text += ' ';
+    return text + (name.empty() ? std::to_string(index) : in_quotes(name));
+}
+
+}  // namespace opaline::formats::gltf

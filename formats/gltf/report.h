@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/gltf/limits.h"
+#include "formats/opal/result.h"
+
+namespace opaline::formats::gltf {
+
+/// Collects what is wrong with one file, so that the user hears of every fault at once. Past
+/// kMaxDiagnostics of either sort it only counts.
+struct Report {
+    std::string file;
+    ErrorKind kind = ErrorKind::bad_input;
+    std::vector<Diagnostic> errors, warnings;
+    std::size_t errors_left_out = 0, warnings_left_out = 0;
+
+    void error(std::string where, std::string fault, std::string remedy = {});
+    void warn(std::string where, std::string fault, std::string remedy = {});
+    /// An error that is about limits or memory, not about a damaged file.
+    void over_limit(std::string where, std::string fault, std::string remedy = {});
+
+    bool failed() const { return !errors.empty(); }
+    /// Precondition: failed().
+    Error take_error();
+    std::vector<Diagnostic> take_warnings();
+};
+
+/// A name from the file in quotes, made safe for a terminal: no control characters, bounded.
+std::string in_quotes(std::string_view name);
+
+/// "node 'Vase'", or "node 7" where it has no name.
+std::string label(std::string_view kind, std::size_t index, std::string_view name);
+
+}  // namespace opaline::formats::gltf

@@ -1,0 +1,216 @@
+#include "formats/gltf/resources.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+namespace opaline::formats::gltf {
+
+namespace {
+
+using Json = nlohmann::json;
+
+int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
+
+std::optional<std::string> percent_decode(std::string_view text) {
+    std::string decoded;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != '%') {
+            decoded += text[i];
+            continue;
+        }
+        const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
+        const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
+        if (high < 0 || low < 0) {
+            return std::nullopt;
+        }
+        decoded += static_cast<char>(high * 16 + low);
+        i += 2;
+    }
+    return decoded;
+}
+
+int base64_digit(char c) {
+    if (c >= 'A' && c <= 'Z') return c - 'A';
+    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+    if (c >= '0' && c <= '9') return c - '0' + 52;
+    if (c == '+' || c == '-') return 62;  // '-' and '_' are the URL-safe alphabet
+    if (c == '/' || c == '_') return 63;
+    return -1;
+}
+
+std::optional<std::vector<std::byte>> decode_base64(std::string_view text) {
+    while (text.ends_with('=')) {
+        text.remove_suffix(1);
+    }
+    std::vector<std::byte> bytes;
+    bytes.reserve(text.size() / 4 * 3 + 3);
+    std::uint32_t bits = 0;
+    int held = 0;
+    for (const char c : text) {
+        const int digit = base64_digit(c);
+        if (digit < 0) {
+            return std::nullopt;
+        }
+        bits = (bits << 6 | static_cast<std::uint32_t>(digit)) & 0xffffffu;
+        held += 6;
+        if (held >= 8) {
+            held -= 8;
+            bytes.push_back(static_cast<std::byte>(bits >> held & 0xffu));
+        }
+    }
+    return bytes;
+}
+
+bool has_scheme(std::string_view uri) {
+    const std::size_t colon = uri.find(':');
+    const std::size_t slash = uri.find('/');
+    return colon != std::string_view::npos && (slash == std::string_view::npos || colon < slash);
+}
+
+std::optional<Bytes> read_data_uri(Resources& resources, std::string_view uri,
+                                   const std::string& where, Report& report) {
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
+        report.error(where, "its data URI is not base64", "store the data as base64 or in a file");
+        return std::nullopt;
+    }
+    auto bytes = decode_base64(uri.substr(comma + 1));
+    if (!bytes) {
+        report.error(where, "its data URI holds characters that are not base64",
+                     "export the file again");
+        return std::nullopt;
+    }
+    return resources.keep(std::move(*bytes));
+}
+
+/// The path of `uri` if it names something inside the asset's folder.
+std::optional<std::filesystem::path> confined_path(const Resources& resources, std::string_view uri,
+                                                   const std::string& where, Report& report) {
+    const char* remedy = "keep buffers and textures in the asset's folder, with relative paths";
+    const auto decoded = percent_decode(uri);
+    if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos ||
+        decoded->size() > 4096) {
+        report.error(where, "its URI " + in_quotes(uri) + " is malformed", remedy);
+        return std::nullopt;
+    }
+    const std::filesystem::path relative(*decoded);
+    const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();
+    if (has_scheme(*decoded) || relative.is_absolute() || climbs ||
+        decoded->find('\\') != std::string::npos) {
+        report.error(where, "its URI " + in_quotes(*decoded) + " leaves the asset's folder",
+                     remedy);
+        return std::nullopt;
+    }
+    std::error_code code;
+    const auto base = std::filesystem::weakly_canonical(
+        resources.folder.empty() ? std::filesystem::path(".") : resources.folder, code);
+    const auto full = std::filesystem::weakly_canonical(base / relative, code);
+    const auto [end, unused] = std::mismatch(base.begin(), base.end(), full.begin(), full.end());
+    if (code || end != base.end()) {
+        report.error(where,
+                     "its URI " + in_quotes(*decoded) + " leaves the asset's folder through a link",
+                     remedy);
+        return std::nullopt;
+    }
+    return relative;
+}
+
+std::optional<Bytes> read_file_uri(Resources& resources, std::string_view uri,
+                                   const std::string& where, Report& report) {
+    const auto relative = confined_path(resources, uri, where, report);
+    if (!relative) {
+        return std::nullopt;
+    }
+    const auto path = resources.folder / *relative;
+    std::error_code code;
+    const auto key = std::filesystem::weakly_canonical(path, code);
+    if (const auto known = resources.files.find(key); known != resources.files.end()) {
+        return known->second;
+    }
+    auto bytes = read_whole_file(path, where + " (" + in_quotes(relative->string()) + ")", report);
+    if (!bytes) {
+        return std::nullopt;
+    }
+    if (resources.bytes_held + bytes->size() > kMaxTotalBytes) {
+        report.over_limit(
+            where, "the asset's files together pass " + std::to_string(kMaxTotalBytes) + " bytes",
+            "split the asset");
+        return std::nullopt;
+    }
+    const Bytes kept = resources.keep(std::move(*bytes));
+    resources.hash.add(kept);
+    resources.inputs.push_back(path);
+    resources.files.emplace(key, kept);
+    return kept;
+}
+
+bool is_meshopt_placeholder(const Json& buffer) {
+    const auto extensions = buffer.find("extensions");
+    if (extensions == buffer.end() || !extensions->is_object()) {
+        return false;
+    }
+    const auto meshopt = extensions->find("EXT_meshopt_compression");
+    return meshopt != extensions->end() && meshopt->is_object() &&
+           meshopt->value("fallback", Json(false)) == true;
+}
+
+}  // namespace
+
+Bytes Resources::keep(std::vector<std::byte> bytes) {
+    bytes_held += bytes.size();
+    storage.push_back(std::move(bytes));
+    return storage.back();
+}
+
+std::optional<Bytes> read_uri(Resources& resources, std::string_view uri, const std::string& where,
+                              Report& report) {
+    return uri.starts_with("data:") ? read_data_uri(resources, uri, where, report)
+                                    : read_file_uri(resources, uri, where, report);
+}
+
+void load_buffers(const nlohmann::json& root, const Container& container, Resources& resources,
+                  Report& report) {
+    const auto buffers = root.find("buffers");
+    if (buffers == root.end()) {
+        return;
+    }
+    for (std::size_t i = 0; i < buffers->size(); ++i) {
+        const Json& buffer = (*buffers)[i];
+        const std::string where = "buffer " + std::to_string(i);
+        const auto length = buffer.find("byteLength");
+        const auto uri = buffer.find("uri");
+        std::optional<Bytes> bytes;
+        if (length == buffer.end()) {
+            report.error(where, "byteLength is missing", "export the file again");
+        } else if (uri != buffer.end() && uri->is_string()) {
+            bytes = read_uri(resources, uri->get_ref<const std::string&>(), where, report);
+        } else if (uri != buffer.end()) {
+            report.error(where, "its uri is not a string", "export the file again");
+        } else if (is_meshopt_placeholder(buffer)) {
+            bytes.emplace();
+            resources.buffers.push_back(*bytes);
+            continue;
+        } else if (i == 0 && container.bin) {
+            bytes = container.bin;
+        } else {
+            report.error(where, "it has no uri and there is no binary chunk for it",
+                         "export the file again");
+        }
+        if (bytes && bytes->size() < length->get<std::uint64_t>()) {
+            report.error(where,
+                         "it has " + std::to_string(bytes->size()) + " bytes, but byteLength is " +
+                             std::to_string(length->get<std::uint64_t>()),
+                         "the data is cut off: copy or export it again");
+            bytes.reset();
+        }
+        resources.buffers.push_back(bytes ? bytes->first(length->get<std::uint64_t>()) : Bytes{});
+    }
+}
+
+}  // namespace opaline::formats::gltf

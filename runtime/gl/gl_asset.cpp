@@ -1,0 +1,114 @@
+#include "runtime/gl/gl_asset.h"
+
+#include <array>
+#include <string>
+
+#include "runtime/texture.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::AssetView;
+using formats::PreviewImage;
+
+GlTexture upload_image(const PreviewImage& image, std::size_t& resident) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &name);
+    GlTexture texture(name);
+    const auto width = static_cast<GLsizei>(image.width),
+               height = static_cast<GLsizei>(image.height);
+    glTextureStorage2D(name, 1, GL_RGBA8UI, width, height);
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTextureSubImage2D(name, 0, 0, 0, width, height, GL_RGB_INTEGER, GL_UNSIGNED_BYTE,
+                        image.rgb.data());
+    resident += std::size_t{4} * image.width * image.height;
+    return texture;
+}
+
+formats::Status upload_images(const AssetView& asset, GlAsset& gl) {
+    GLint limit = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+    for (std::size_t i = 0; i < asset.images.size(); ++i) {
+        const PreviewImage& image = asset.images[i];
+        if (image.width > static_cast<std::uint32_t>(limit) ||
+            image.height > static_cast<std::uint32_t>(limit)) {
+            return formats::make_error(
+                formats::ErrorKind::resource, {}, "image " + std::to_string(i),
+                "found " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+                    " pixels, the OpenGL driver takes at most " + std::to_string(limit),
+                "render on the CPU, or bake with a smaller texture");
+        }
+        gl.images.push_back(upload_image(image, gl.resident));
+    }
+    return formats::ok_status();
+}
+
+void bind_attribute(GLuint array, GLuint attribute, const GlBuffer& buffer, GLint floats,
+                    GLsizei stride) {
+    glVertexArrayVertexBuffer(array, attribute, buffer.name(), 0, stride);
+    glVertexArrayAttribFormat(array, attribute, floats, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(array, attribute, attribute);
+    glEnableVertexArrayAttrib(array, attribute);
+}
+
+void make_vertex_array(const AssetView& asset, GlAsset& gl) {
+    GLuint name = 0;
+    glCreateVertexArrays(1, &name);
+    gl.vertex_array = GlVertexArray(name);
+    bind_attribute(name, 0, gl.position, 3, sizeof(formats::Vec3));
+    bind_attribute(name, 1, gl.irradiance, 3, kIrradianceBytes);
+    bind_attribute(name, 2, gl.base_color, 3, sizeof(formats::Rgb));
+    if (!asset.texcoord.empty()) {
+        bind_attribute(name, 3, gl.texcoord, 2, sizeof(formats::Float2));
+    }
+    glVertexArrayElementBuffer(name, gl.triangle.name());
+}
+
+}  // namespace
+
+formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& limits) {
+    auto batches = plan_dot_batches(asset, limits);
+    if (!batches) return batches.error();
+
+    GlAsset gl;
+    gl.batches = std::move(batches).value();
+    gl.cubemap_size = asset.cubemap_size;
+    gl.vertices = asset.receivers();
+    gl.code_bits = asset.transport.code_bits;
+    gl.index_bytes = asset.transport.index_bytes;
+    gl.primitives.assign(asset.primitives.begin(), asset.primitives.end());
+    if (asset.texcoord.empty()) {  // nowhere to look up images: the CPU leaves them out too
+        for (formats::PrimitiveRecord& primitive : gl.primitives) {
+            primitive.base_color_image = formats::kNoImage;
+        }
+    }
+
+    const formats::SparseRowsView& rows = asset.transport;
+    gl.row_offset = make_buffer_of(rows.row_offset, gl.resident);
+    gl.index = gl.index_bytes == 2 ? make_buffer_of(rows.index16, gl.resident)
+                                   : make_buffer_of(rows.index32, gl.resident);
+    gl.code = gl.code_bits == 8 ? make_buffer_of(rows.code8, gl.resident)
+                                : make_buffer_of(rows.code16, gl.resident);
+    gl.average_scale = make_buffer_of(rows.average_scale, gl.resident);
+    gl.detail_scale = make_buffer_of(rows.detail_scale, gl.resident);
+    gl.average_code = make_buffer_of(rows.average_code, gl.resident);
+    gl.irradiance = make_zero_buffer(gl.vertices * kIrradianceBytes, gl.resident);
+    gl.position = make_buffer_of(asset.position, gl.resident);
+    gl.base_color = make_buffer_of(asset.base_color, gl.resident);
+    gl.texcoord = make_buffer_of(asset.texcoord, gl.resident);
+    gl.triangle = make_buffer_of(asset.index, gl.resident);
+
+    std::array<float, 256> linear{};
+    for (std::size_t code = 0; code < linear.size(); ++code) {
+        linear[code] = linear_from_srgb(static_cast<std::uint8_t>(code));
+    }
+    gl.srgb_table = make_buffer_of(std::span<const float>(linear), gl.resident);
+    make_vertex_array(asset, gl);
+    if (const auto status = upload_images(asset, gl); !status) return status.error();
+    if (const auto status = check_gl("uploading the asset"); !status) return status.error();
+    return gl;
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "formats/opal/asset.h"
+#include "formats/opal/result.h"
+#include "runtime/gl/dot_batches.h"
+#include "runtime/gl/gl_objects.h"
+
+namespace opaline::runtime {
+
+/// An asset on the GPU: transport as it stands in the file, and the mesh.
+struct GlAsset {
+    std::uint32_t cubemap_size = 0, vertices = 0, code_bits = 8, index_bytes = 2;
+    std::vector<formats::PrimitiveRecord> primitives;
+    std::vector<DotBatch> batches;
+
+    GlBuffer row_offset, index, code, average_scale, detail_scale, average_code;
+    GlBuffer irradiance;  ///< <T_0, L> of every vertex, four floats each; zeros at first
+    GlBuffer position, base_color, texcoord, triangle;
+    GlBuffer srgb_table;  ///< linear value of each 8-bit code, 256 floats
+    GlVertexArray vertex_array;
+    std::vector<GlTexture> images;  ///< 8-bit codes, undecoded
+    std::size_t resident = 0;       ///< [bytes]
+};
+
+/// Uploads. Errors: resource (memory, an image larger than the driver takes, a row larger than the
+/// limits).
+formats::Result<GlAsset> upload_asset(const formats::AssetView& asset, const DotLimits& limits);
+
+}  // namespace opaline::runtime

@@ -1,0 +1,116 @@
+#include "runtime/gl/gl_dot.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "shader_text.h"
+
+namespace opaline::runtime {
+namespace {
+
+// Locations of dot.comp.glsl.
+enum Uniform : GLint {
+    kVertices,
+    kTerms,
+    kFaceTexels,
+    kFirstDetail,
+    kRowOrigin,
+    kIndexOrigin,
+    kCodeOrigin,
+    kScaleOrigin,
+    kAverageOrigin,
+    kIrradianceOrigin
+};
+
+constexpr std::uint32_t kGroupSize = 64;  ///< threads: two warps, one wave
+
+formats::Result<GlProgram> make_dot_program(const GlAsset& asset, std::uint32_t lanes,
+                                            std::uint32_t bands) {
+    const auto define = [](const char* name, std::uint32_t value) {
+        return std::string("#define ") + name + " " + std::to_string(value) + "\n";
+    };
+    const StageSource stage{GL_COMPUTE_SHADER, dot_comp_text};
+    return make_program("dot products",
+                        define("LANES", lanes) + define("ROWS", rows_per_group(lanes)) +
+                            define("BANDS", bands) + define("CODE_BITS", asset.code_bits) +
+                            define("INDEX_BYTES", asset.index_bytes),
+                        {&stage, 1});
+}
+
+void bind(GLuint binding, const GlBuffer& buffer, const BoundRange& range) {
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, buffer.name(),
+                      static_cast<GLintptr>(range.offset), static_cast<GLsizeiptr>(range.size));
+}
+
+}  // namespace
+
+std::uint32_t rows_per_group(std::uint32_t lanes_per_row) {
+    return kGroupSize / lanes_per_row;
+}
+
+DotLimits query_dot_limits(std::size_t max_block_bytes, std::uint32_t lanes_per_row) {
+    GLint64 block = 0;
+    GLint alignment = 4, groups = 1;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
+    glGetIntegerv(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT, &alignment);
+    glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 1, &groups);
+    // Shaders count elements in 32 bits; a gigabyte stays clear of signed arithmetic in drivers.
+    const auto stated = static_cast<std::size_t>(std::clamp<GLint64>(block, 0, GLint64{1} << 30));
+    DotLimits limits;
+    limits.max_block_bytes = max_block_bytes == 0 ? stated : std::min(max_block_bytes, stated);
+    limits.alignment = static_cast<std::size_t>(std::max(alignment, 4));
+    limits.max_vertices =
+        static_cast<std::uint32_t>(std::clamp(groups, 1, 65535)) * rows_per_group(lanes_per_row);
+    return limits;
+}
+
+formats::Result<DotPrograms> make_dot_programs(const GlAsset& asset, std::uint32_t lanes_per_row) {
+    DotPrograms programs;
+    programs.lanes_per_row = lanes_per_row;
+    programs.rows_per_group = rows_per_group(lanes_per_row);
+    for (const std::uint32_t bands : {1u, 3u}) {
+        const auto has_bands = [bands](const DotBatch& batch) { return batch.bands == bands; };
+        if (std::none_of(asset.batches.begin(), asset.batches.end(), has_bands)) continue;
+        auto program = make_dot_program(asset, lanes_per_row, bands);
+        if (!program) return program.error();
+        (bands == 1 ? programs.grey : programs.rgb) = std::move(program).value();
+    }
+    return programs;
+}
+
+formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
+                              const GlBuffer& light) {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, light.name());
+    for (const DotBatch& batch : asset.batches) {
+        const GLuint program = (batch.bands == 1 ? programs.grey : programs.rgb).name();
+        glUseProgram(program);
+        const std::array<std::pair<Uniform, std::uint32_t>, 10> uniforms{
+            {{kVertices, batch.vertices},
+             {kTerms, batch.terms},
+             {kFaceTexels, asset.cubemap_size * asset.cubemap_size},
+             {kFirstDetail, batch.first_detail},
+             {kRowOrigin, batch.row_offset.origin},
+             {kIndexOrigin, batch.index.origin},
+             {kCodeOrigin, batch.code.origin},
+             {kScaleOrigin, batch.average_scale.origin},
+             {kAverageOrigin, batch.average_code.origin},
+             {kIrradianceOrigin, batch.irradiance.origin}}};
+        for (const auto& [location, value] : uniforms) {
+            glUniform1ui(location, value);
+        }
+        bind(0, asset.row_offset, batch.row_offset);
+        bind(1, asset.index, batch.index);
+        bind(2, asset.code, batch.code);
+        bind(3, asset.average_scale, batch.average_scale);
+        bind(4, asset.detail_scale, batch.detail_scale);
+        bind(5, asset.average_code, batch.average_code);
+        bind(7, asset.irradiance, batch.irradiance);
+        glDispatchCompute(
+            1, (batch.vertices + programs.rows_per_group - 1) / programs.rows_per_group, 1);
+    }
+    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    return check_gl("computing dot products");
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+#include "formats/opal/result.h"
+#include "runtime/gl/gl_asset.h"
+#include "runtime/gl/gl_objects.h"
+
+namespace opaline::runtime {
+
+/// The compute shader that evaluates <T_0, L>, specialised for one asset's code and index widths.
+struct DotPrograms {
+    GlProgram grey, rgb;  ///< for rows of one and of three bands; made where needed
+    std::uint32_t lanes_per_row = 1;
+    std::uint32_t rows_per_group = 1;
+};
+
+/// Rows that a workgroup of these many lanes a row takes.
+std::uint32_t rows_per_group(std::uint32_t lanes_per_row);
+
+/// What one dispatch may see on the current context; `max_block_bytes` 0: the driver's limit.
+DotLimits query_dot_limits(std::size_t max_block_bytes, std::uint32_t lanes_per_row);
+
+formats::Result<DotPrograms> make_dot_programs(const GlAsset& asset, std::uint32_t lanes_per_row);
+
+/// Fills asset.irradiance from `light`, a buffer of 6 n n vec4.
+formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
+                              const GlBuffer& light);
+
+}  // namespace opaline::runtime

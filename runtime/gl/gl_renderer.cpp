@@ -1,0 +1,191 @@
+#include "runtime/gl/gl_renderer.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <optional>
+
+#include "runtime/gl/egl_context.h"
+#include "runtime/gl/gl_asset.h"
+#include "runtime/gl/gl_dot.h"
+#include "runtime/gl/gl_draw.h"
+#include "runtime/gl/gl_environment.h"
+#include "runtime/picture/software_renderer.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::ErrorKind;
+using formats::make_error;
+
+// Seconds since it was made or last asked, all GL commands so far included.
+class GlClock {
+  public:
+    double lap() {
+        glFinish();
+        const auto now = std::chrono::steady_clock::now();
+        return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// What lives on the GPU, to be destroyed while the context is current.
+struct Resources {
+    GlAsset asset;
+    GlEnvironment environment;
+    DotPrograms dot_programs;
+    DrawPrograms draw_programs;
+};
+
+std::uint32_t largest_target() {
+    GLint texture = 0, viewport[2] = {};
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
+    return static_cast<std::uint32_t>(std::max(1, std::min({texture, viewport[0], viewport[1]})));
+}
+
+}  // namespace
+
+struct GlRenderer::State {
+    explicit State(EglContext made) : context(std::move(made)) {}
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State() {
+        const CurrentContext current(context);
+        // Without its context nothing can be deleted by name; it takes its objects along.
+        if (!current.status()) return;
+        resources.reset();
+    }
+
+    EglContext context;
+    std::optional<Resources> resources;
+    Rotation rotation;
+    GlStats stats;
+};
+
+GlRenderer::GlRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+GlRenderer::GlRenderer(GlRenderer&& other) noexcept = default;
+GlRenderer& GlRenderer::operator=(GlRenderer&& other) noexcept = default;
+GlRenderer::~GlRenderer() = default;
+
+formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
+                                               const formats::Environment& environment,
+                                               const GlOptions& options) {
+    if (options.lanes_per_row > 32 ||
+        (options.lanes_per_row != 0 && !std::has_single_bit(options.lanes_per_row))) {
+        return make_error(ErrorKind::usage, {}, "lanes per row",
+                          "found " + std::to_string(options.lanes_per_row) +
+                              ", expected a power of two up to 32, or 0");
+    }
+    auto context = EglContext::create();
+    if (!context) return context.error();
+    auto state = std::make_unique<State>(std::move(context).value());
+    const CurrentContext current(state->context);
+    if (auto status = current.status(); !status) return status.error();
+
+    GlClock clock;
+    const std::uint32_t lanes = options.lanes_per_row != 0     ? options.lanes_per_row
+                                : state->context.is_software() ? 8
+                                                               : 16;
+    auto gl_asset = upload_asset(asset, query_dot_limits(options.max_block_bytes, lanes));
+    if (!gl_asset) return gl_asset.error();
+    auto gl_environment = upload_environment(environment);
+    if (!gl_environment) return gl_environment.error();
+    state->stats.upload_seconds = clock.lap();
+
+    auto dot_programs = make_dot_programs(*gl_asset, lanes);
+    if (!dot_programs) return dot_programs.error();
+    auto draw_programs = make_draw_programs();
+    if (!draw_programs) return draw_programs.error();
+    state->stats.gpu_bytes = gl_asset->resident + gl_environment->resident;
+    state->stats.dispatches = static_cast<std::uint32_t>(gl_asset->batches.size());
+    state->stats.lanes_per_row = lanes;
+    state->stats.device = state->context.description();
+    state->resources.emplace(Resources{std::move(*gl_asset), std::move(*gl_environment),
+                                       std::move(*dot_programs), std::move(*draw_programs)});
+    return GlRenderer(std::move(state));
+}
+
+formats::Status GlRenderer::set_light(const LightVector& light, const Rotation& rotation) {
+    const Resources& resources = *state_->resources;
+    const std::size_t expected = std::size_t{24} * light.n * light.n;
+    if (light.n != resources.asset.cubemap_size || light.rgba.size() != expected) {
+        return make_error(ErrorKind::usage, {}, "light vector",
+                          "found a cube map of " + std::to_string(light.n) + " texels and " +
+                              std::to_string(light.rgba.size()) + " floats, expected " +
+                              std::to_string(resources.asset.cubemap_size) + " texels as the asset",
+                          "project the environment at the asset's cube map size");
+    }
+    const CurrentContext current(state_->context);
+    if (auto status = current.status(); !status) return status;
+
+    GlClock clock;
+    std::size_t resident = 0;
+    const GlBuffer buffer = make_buffer_of(std::span<const float>(light.rgba), resident);
+    if (auto status = check_gl("uploading the light"); !status) return status;
+    state_->stats.light_seconds = clock.lap();
+    if (auto status = dispatch_dots(resources.asset, resources.dot_programs, buffer); !status) {
+        return status;
+    }
+    state_->stats.dot_seconds = clock.lap();
+    state_->rotation = rotation;
+    return check_gl("computing dot products");
+}
+
+formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRenderOptions& options) {
+    if (auto status = check_camera(camera, options.supersampling); !status) return status.error();
+    const CurrentContext current(state_->context);
+    if (auto status = current.status(); !status) return status.error();
+
+    GlClock clock;
+    state_->stats.draw_seconds = state_->stats.readback_seconds = 0;
+    const Resources& resources = *state_->resources;
+    const std::uint32_t s = options.supersampling;
+    const std::uint32_t side =
+        std::max(1u, std::min(options.max_tile_samples, largest_target()) / s);
+    const auto target =
+        make_draw_target(std::min(side, camera.width), std::min(side, camera.height), s);
+    if (!target) return target.error();
+
+    auto picture = make_picture(camera.width, camera.height);
+    if (!picture) return picture;
+    const DrawScene scene{resources.asset, resources.environment, state_->rotation, camera, s};
+    for (std::uint32_t y = 0; y < camera.height; y += side) {
+        for (std::uint32_t x = 0; x < camera.width; x += side) {
+            const Tile tile{x, y, std::min(side, camera.width - x),
+                            std::min(side, camera.height - y)};
+            draw_tile(scene, resources.draw_programs, *target, tile);
+            state_->stats.draw_seconds += clock.lap();
+            read_tile(*target, tile, *picture);
+            state_->stats.readback_seconds += clock.lap();
+        }
+    }
+    if (auto status = check_gl("drawing"); !status) return status.error();
+    return picture;
+}
+
+formats::Result<std::vector<formats::Rgb>> GlRenderer::read_irradiance() {
+    const CurrentContext current(state_->context);
+    if (auto status = current.status(); !status) return status.error();
+    const GlAsset& asset = state_->resources->asset;
+    std::vector<float> padded(std::size_t{asset.vertices} * 4);
+    if (!padded.empty()) {
+        glGetNamedBufferSubData(asset.irradiance.name(), 0,
+                                static_cast<GLsizeiptr>(padded.size() * sizeof(float)),
+                                padded.data());
+    }
+    if (auto status = check_gl("reading irradiance"); !status) return status.error();
+    std::vector<formats::Rgb> irradiance(asset.vertices);
+    for (std::size_t v = 0; v < irradiance.size(); ++v) {
+        irradiance[v] = {padded[4 * v], padded[4 * v + 1], padded[4 * v + 2]};
+    }
+    return irradiance;
+}
+
+const GlStats& GlRenderer::stats() const {
+    return state_->stats;
+}
+
+}  // namespace opaline::runtime

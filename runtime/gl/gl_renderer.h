@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/opal/asset.h"
+#include "formats/opal/environment.h"
+#include "formats/opal/result.h"
+#include "runtime/light_vector.h"
+#include "runtime/picture/camera.h"
+#include "runtime/picture/picture.h"
+
+namespace opaline::runtime {
+
+struct GlOptions {
+    /// Invocations that share a row of the dot products: a power of two in [1, 32]. 0: 8 on
+    /// software renderers (a SIMD register, measured best on llvmpipe), 16 on GPUs (half a warp).
+    std::uint32_t lanes_per_row = 0;
+    /// Upper bound on bytes that one dispatch may see of one buffer; 0: what the driver states.
+    std::size_t max_block_bytes = 0;
+};
+
+struct GlRenderOptions {
+    std::uint32_t supersampling = 3;        ///< S: S x S samples a pixel, box filter; in [1, 8]
+    std::uint32_t max_tile_samples = 2048;  ///< side of the tiles drawn at once, >= S
+};
+
+/// Wall-clock seconds of the last upload, set_light and render; each ends with glFinish.
+struct GlStats {
+    double upload_seconds = 0;  ///< asset and environment to buffers and textures
+    double light_seconds = 0;   ///< light vector to its buffer
+    double dot_seconds = 0;     ///< all dot products
+    double draw_seconds = 0;    ///< geometry, background and box filter
+    double readback_seconds = 0;
+    std::size_t gpu_bytes = 0;        ///< in buffers and textures of the asset and environment
+    std::uint32_t dispatches = 0;     ///< of the compute shader, one per batch of rows
+    std::uint32_t lanes_per_row = 0;  ///< as used
+    std::string device;               ///< GL renderer and version
+};
+
+/// Pictures of an asset by OpenGL 4.5, without a window.
+///
+/// Owns its GL context, which is current only inside calls; the caller's context is restored. One
+/// thread at a time. The same image as render_software with the same irradiance, up to rounding
+/// and to which sample an edge falls on. Reads the asset and environment only in `create`.
+class GlRenderer {
+  public:
+    /// Uploads. Errors: resource (no EGL or GL, memory, or size limits, with the driver's name).
+    static formats::Result<GlRenderer> create(const formats::AssetView& asset,
+                                              const formats::Environment& environment,
+                                              const GlOptions& options = {});
+
+    GlRenderer(GlRenderer&& other) noexcept;
+    GlRenderer& operator=(GlRenderer&& other) noexcept;
+    ~GlRenderer();
+
+    /// Computes <T_0, L> of every vertex in a compute shader. `rotation` turns the background; the
+    /// light vector must have been made with the same one. Errors: usage (another cube map size
+    /// than the asset's), resource.
+    formats::Status set_light(const LightVector& light, const Rotation& rotation);
+
+    /// Draws and reads back; black surfaces before the first set_light. Errors: as check_camera;
+    /// resource.
+    formats::Result<Picture> render(const Camera& camera, const GlRenderOptions& options = {});
+
+    /// Reads back <T_0, L> of every vertex, as the last set_light left it.
+    formats::Result<std::vector<formats::Rgb>> read_irradiance();
+
+    const GlStats& stats() const;
+
+  private:
+    struct State;
+    explicit GlRenderer(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace opaline::runtime

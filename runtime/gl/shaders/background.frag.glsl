@@ -1,0 +1,124 @@
+// Radiance of the environment along the sample's ray, as formats::sample_radiance has it.
+layout(location = 0) out vec4 color;
+
+layout(location = 0) uniform vec2 tile_origin;  // [samples] of the picture
+layout(location = 1) uniform vec2 to_plane;     // samples to [0, 2] over the picture
+layout(location = 2) uniform vec3 right;        // times the half width of the image plane
+layout(location = 3) uniform vec3 down;         // times the half height
+layout(location = 4) uniform vec3 forward;
+layout(location = 5) uniform mat3 light_from_world;
+layout(location = 6) uniform int layout_kind;   // 0 no map, 1 lat-long, 2 cube
+layout(location = 7) uniform vec2 u_offset_sign;
+layout(location = 8) uniform int rows_include_poles;
+layout(location = 9) uniform int discs;
+
+layout(binding = 0) uniform sampler2DArray map;
+struct Disc {
+    vec4 direction_chord;
+    vec4 radiance;
+};
+layout(std430, binding = 0) readonly buffer Discs { Disc disc[]; };
+
+const float kPi = 3.14159265358979;
+
+// The built-in arc tangent may be off by 1e-4 rad, a texel of a large map. This one: reduction to
+// |t| <= tan(pi / 8), then the Taylor series; its first left-out term is below 2e-8.
+float arc_tangent(float y, float x) {
+    float a = abs(y), b = abs(x);
+    float t = max(a, b) > 0.0 ? min(a, b) / max(a, b) : 0.0;
+    bool far = t > 0.41421356;
+    t = far ? (t - 1.0) / (t + 1.0) : t;
+    float s = t * t;
+    float series = t * (1.0 - s * (1.0 / 3.0 - s * (1.0 / 5.0 - s * (1.0 / 7.0 - s *
+                   (1.0 / 9.0 - s * (1.0 / 11.0 - s * (1.0 / 13.0 - s / 15.0)))))));
+    float angle = far ? 0.25 * kPi + series : series;
+    angle = a > b ? 0.5 * kPi - angle : angle;
+    angle = x < 0.0 ? kPi - angle : angle;
+    return y < 0.0 ? -angle : angle;
+}
+
+vec3 lat_long_texel(int column, int row, ivec2 size) {
+    column = (column + size.x) % size.x;  // column >= -1; % of a negative number is undefined
+    return texelFetch(map, ivec3(column, clamp(row, 0, size.y - 1), 0), 0).rgb;
+}
+
+vec3 sample_lat_long(vec3 d) {
+    ivec2 size = textureSize(map, 0).xy;
+    float u = u_offset_sign.x + u_offset_sign.y * arc_tangent(d.z, d.x) / (2.0 * kPi);
+    float v = arc_tangent(length(d.xz), d.y) / kPi;
+    vec2 at = vec2((u - floor(u)) * float(size.x) - 0.5,
+                   rows_include_poles != 0 ? v * float(size.y - 1) : v * float(size.y) - 0.5);
+    vec2 low = floor(at), t = at - low;
+    ivec2 i = ivec2(low);
+    return mix(mix(lat_long_texel(i.x, i.y, size), lat_long_texel(i.x + 1, i.y, size), t.x),
+               mix(lat_long_texel(i.x, i.y + 1, size), lat_long_texel(i.x + 1, i.y + 1, size), t.x),
+               t.y);
+}
+
+// The cube map convention of formats/opal/cubemap.h.
+vec3 cube_position(int face, vec2 p) {
+    switch (face) {
+        case 0: return vec3(1.0, -p.y, -p.x);
+        case 1: return vec3(-1.0, -p.y, p.x);
+        case 2: return vec3(p.x, 1.0, p.y);
+        case 3: return vec3(p.x, -1.0, -p.y);
+        case 4: return vec3(p.x, -p.y, 1.0);
+        default: return vec3(-p.x, -p.y, -1.0);
+    }
+}
+
+int cube_point(vec3 d, out vec2 p) {
+    vec3 a = abs(d);
+    if (a.x >= a.y && a.x >= a.z) {
+        p = vec2(d.x > 0.0 ? -d.z : d.z, -d.y) / a.x;
+        return d.x > 0.0 ? 0 : 1;
+    }
+    if (a.y >= a.z) {
+        p = vec2(d.x, d.y > 0.0 ? d.z : -d.z) / a.y;
+        return d.y > 0.0 ? 2 : 3;
+    }
+    p = vec2(d.z > 0.0 ? d.x : -d.x, -d.y) / a.z;
+    return d.z > 0.0 ? 4 : 5;
+}
+
+vec3 cube_texel(int face, vec2 at, int n) {
+    if (min(at.x, at.y) < 0.0 || max(at.x, at.y) > float(n - 1)) {
+        // Over the edge: the texel of the neighbouring face that this direction falls into.
+        vec2 p;
+        face = cube_point(cube_position(face, 2.0 * (at + 0.5) / float(n) - 1.0), p);
+        at = floor((p * 0.5 + 0.5) * float(n));
+    }
+    return texelFetch(map, ivec3(clamp(ivec2(at), ivec2(0), ivec2(n - 1)), face), 0).rgb;
+}
+
+vec3 sample_cube(vec3 d) {
+    int n = textureSize(map, 0).x;
+    vec2 p;
+    int face = cube_point(d, p);
+    vec2 at = (p * 0.5 + 0.5) * float(n) - 0.5;
+    vec2 low = floor(at), t = at - low;
+    return mix(mix(cube_texel(face, low, n), cube_texel(face, low + vec2(1.0, 0.0), n), t.x),
+               mix(cube_texel(face, low + vec2(0.0, 1.0), n), cube_texel(face, low + vec2(1.0), n),
+                   t.x), t.y);
+}
+
+float tame(float value) {
+    return value > 0.0 ? min(value, 1e35) : 0.0;
+}
+
+void main() {
+    vec2 plane = (tile_origin + gl_FragCoord.xy) * to_plane - 1.0;
+    vec3 d = light_from_world * normalize(plane.x * right + plane.y * down + forward);
+    vec3 radiance = vec3(0.0);
+    if (layout_kind == 1) {
+        radiance = sample_lat_long(d);
+    } else if (layout_kind == 2) {
+        radiance = sample_cube(d);
+    }
+    for (int i = 0; i < discs; ++i) {
+        if (length(d - disc[i].direction_chord.xyz) <= disc[i].direction_chord.w) {
+            radiance += disc[i].radiance.rgb;
+        }
+    }
+    color = vec4(tame(radiance.r), tame(radiance.g), tame(radiance.b), 1.0);
+}

@@ -1,0 +1,28 @@
+// Homogeneous position without a projection matrix: w is the distance along the view axis, depth is
+// near / w (reversed, no far plane). y points down, so that row 0 is the top of the picture.
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 irradiance;
+layout(location = 2) in vec3 base_color;
+layout(location = 3) in vec2 texcoord;
+
+layout(location = 0) uniform vec3 eye;
+layout(location = 1) uniform vec3 right;      // over the half width of the image plane
+layout(location = 2) uniform vec3 down;       // over the half height
+layout(location = 3) uniform vec3 forward;
+layout(location = 4) uniform float unit;      // 1 / distance scale: keeps w near 1 for any scene
+layout(location = 5) uniform float near_plane;  // in that unit
+layout(location = 6) uniform vec4 tile;       // scale xy, offset zw: the tile out of the picture
+
+layout(location = 0) out vec3 v_irradiance;
+layout(location = 1) out vec3 v_base_color;
+layout(location = 2) out vec2 v_texcoord;
+
+void main() {
+    vec3 p = (position - eye) * unit;
+    float w = dot(forward, p);
+    gl_Position = vec4(dot(right, p) * tile.x + w * tile.z, dot(down, p) * tile.y + w * tile.w,
+                       near_plane, w);
+    v_irradiance = irradiance;
+    v_base_color = base_color;
+    v_texcoord = texcoord;
+}

@@ -1,0 +1,224 @@
+#include "runtime/picture/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace opaline::runtime {
+namespace {
+
+using formats::AssetView;
+using formats::PrimitiveRecord;
+using formats::Vec3;
+
+// Double precision: squares of coordinates near the float limit still fit.
+struct Double3 {
+    double x = 0, y = 0, z = 0;
+};
+
+Double3 widen(Vec3 v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+Double3 minus(Double3 a, Double3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+Double3 cross_product(Double3 a, Double3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double norm(Double3 v) {
+    return std::hypot(v.x, v.y, v.z);
+}
+bool is_finite(Vec3 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// A float that stays finite when a few of its kind are added up.
+float narrow(double value) {
+    return static_cast<float>(std::clamp(value, -3e37, 3e37));
+}
+
+struct Box {
+    Double3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+
+    bool is_empty() const { return low.x > high.x; }
+    Double3 size() const { return is_empty() ? Double3{} : minus(high, low); }
+};
+
+void extend(Box& box, Double3 p) {
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+}
+
+std::span<const Vec3> positions_of(const AssetView& asset, const PrimitiveRecord& primitive) {
+    return asset.position.subspan(primitive.first_vertex, primitive.vertex_count);
+}
+
+Box box_of(std::span<const Vec3> positions) {
+    Box box;
+    for (const Vec3 p : positions) {
+        if (is_finite(p)) extend(box, widen(p));
+    }
+    return box;
+}
+
+// Length of the summed area vectors over the summed areas: 1 for a plane, 0 for a closed surface.
+double sheet_coherence(const AssetView& asset, const PrimitiveRecord& primitive) {
+    const auto positions = positions_of(asset, primitive);
+    const auto indices = asset.index.subspan(primitive.first_index, primitive.index_count);
+    Double3 sum;
+    double area = 0;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+        const Vec3 a = positions[indices[i]], b = positions[indices[i + 1]],
+                   c = positions[indices[i + 2]];
+        if (!is_finite(a) || !is_finite(b) || !is_finite(c)) continue;
+        const Double3 n = cross_product(minus(widen(b), widen(a)), minus(widen(c), widen(a)));
+        sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
+        area += norm(n);
+    }
+    return area > 0 ? norm(sum) / area : 0;
+}
+
+bool is_flat(const AssetView& asset, const PrimitiveRecord& primitive, const Box& box) {
+    const Double3 size = box.size();
+    const double thickness = std::min({size.x, size.y, size.z});
+    return thickness < 0.05 * norm(size) || sheet_coherence(asset, primitive) > 0.98;
+}
+
+BoundingSphere bound_primitives(const AssetView& asset, std::span<const std::size_t> chosen) {
+    Box all;
+    for (const std::size_t p : chosen) {
+        const Box box = box_of(positions_of(asset, asset.primitives[p]));
+        if (!box.is_empty()) {
+            extend(all, box.low);
+            extend(all, box.high);
+        }
+    }
+    if (all.is_empty()) return {};
+    const Double3 centre{0.5 * (all.low.x + all.high.x), 0.5 * (all.low.y + all.high.y),
+                         0.5 * (all.low.z + all.high.z)};
+    double radius = 0;
+    for (const std::size_t p : chosen) {
+        for (const Vec3 v : positions_of(asset, asset.primitives[p])) {
+            if (is_finite(v)) radius = std::max(radius, norm(minus(widen(v), centre)));
+        }
+    }
+    return {centre.x, centre.y, centre.z, radius};
+}
+
+std::vector<std::size_t> all_primitives(const AssetView& asset) {
+    std::vector<std::size_t> all(asset.primitives.size());
+    for (std::size_t p = 0; p < all.size(); ++p) {
+        all[p] = p;
+    }
+    return all;
+}
+
+// A radius to work with: never 0, and not below what floats can tell apart at that distance from
+// the origin.
+double usable_radius(const BoundingSphere& sphere) {
+    const double away = std::max({std::abs(sphere.x), std::abs(sphere.y), std::abs(sphere.z)});
+    const double least = std::max(1e-6 * away, 1e-30);
+    return sphere.radius > 0 ? std::max(sphere.radius, least) : std::max(1e-2 * away, 1.0);
+}
+
+}  // namespace
+
+CameraFrame camera_frame(const Camera& camera) {
+    CameraFrame frame;
+    Double3 back = minus(widen(camera.eye), widen(camera.target));
+    const double distance = norm(back);
+    back = distance > 0 ? Double3{back.x / distance, back.y / distance, back.z / distance}
+                        : Double3{0, 0, 1};
+    Double3 up = widen(camera.up);
+    const double up_length = norm(up);
+    if (up_length > 0) up = {up.x / up_length, up.y / up_length, up.z / up_length};
+    Double3 right = cross_product(up, back);
+    // `up` along the view says nothing: then -Z is up on the image, as on a map.
+    if (norm(right) < 1e-6) {
+        right = cross_product(std::abs(back.y) > 0.5 ? Double3{0, 0, -1} : Double3{0, 1, 0}, back);
+    }
+    const double right_length = norm(right);
+    right = {right.x / right_length, right.y / right_length, right.z / right_length};
+    up = cross_product(back, right);
+    frame.right = {narrow(right.x), narrow(right.y), narrow(right.z)};
+    frame.up = {narrow(up.x), narrow(up.y), narrow(up.z)};
+    frame.backward = {narrow(back.x), narrow(back.y), narrow(back.z)};
+    frame.tan_half_y = std::tan(static_cast<double>(camera.fov_y) * std::numbers::pi / 360.0);
+    frame.tan_half_x = frame.tan_half_y * camera.width / std::max(camera.height, 1u);
+    return frame;
+}
+
+Vec3 view_ray(const Camera& camera, const CameraFrame& frame, double x, double y) {
+    const auto s = static_cast<float>((2.0 * x / camera.width - 1.0) * frame.tan_half_x);
+    const auto t = static_cast<float>((1.0 - 2.0 * y / camera.height) * frame.tan_half_y);
+    return normalize(s * frame.right + t * frame.up - frame.backward);
+}
+
+BoundingSphere bound_asset(const AssetView& asset) {
+    return bound_primitives(asset, all_primitives(asset));
+}
+
+BoundingSphere bound_object(const AssetView& asset) {
+    std::vector<std::size_t> chosen;
+    std::size_t largest = 0;
+    double largest_size = -1;
+    for (const std::size_t p : all_primitives(asset)) {
+        const Box box = box_of(positions_of(asset, asset.primitives[p]));
+        if (box.is_empty()) continue;
+        chosen.push_back(p);
+        if (norm(box.size()) > largest_size) {
+            largest_size = norm(box.size());
+            largest = p;
+        }
+    }
+    if (chosen.size() > 1) {
+        const PrimitiveRecord& primitive = asset.primitives[largest];
+        if (is_flat(asset, primitive, box_of(positions_of(asset, primitive)))) {
+            std::erase(chosen, largest);
+        }
+    }
+    return bound_primitives(asset, chosen);
+}
+
+float near_plane_for(const AssetView& asset, Vec3 eye) {
+    const BoundingSphere sphere = bound_asset(asset);
+    const double radius = usable_radius(sphere);
+    const double distance = norm(minus(widen(eye), {sphere.x, sphere.y, sphere.z}));
+    return narrow(std::max(0.5 * (distance - radius), 1e-3 * radius));
+}
+
+Camera frame_asset(const AssetView& asset, float fov_y, std::uint32_t width, std::uint32_t height) {
+    Camera camera;
+    camera.fov_y = fov_y;
+    camera.width = width;
+    camera.height = height;
+    const BoundingSphere sphere = bound_object(asset);
+    const CameraFrame frame = camera_frame(camera);
+    const double half = std::atan(std::min(frame.tan_half_x, frame.tan_half_y));
+    constexpr double kMargin = 1.04;
+    const double distance = kMargin * usable_radius(sphere) / std::max(std::sin(half), 1e-3);
+    constexpr double kAzimuth = 30.0 * std::numbers::pi / 180.0;
+    constexpr double kElevation = 18.0 * std::numbers::pi / 180.0;
+    camera.target = {narrow(sphere.x), narrow(sphere.y), narrow(sphere.z)};
+    camera.eye = {narrow(sphere.x + distance * std::sin(kAzimuth) * std::cos(kElevation)),
+                  narrow(sphere.y + distance * std::sin(kElevation)),
+                  narrow(sphere.z + distance * std::cos(kAzimuth) * std::cos(kElevation))};
+    camera.near_plane = near_plane_for(asset, camera.eye);
+    return camera;
+}
+
+Camera orbit(const Camera& camera, float degrees) {
+    const double radians = static_cast<double>(degrees) * std::numbers::pi / 180.0;
+    const double c = std::cos(radians), s = std::sin(radians);
+    const auto turn = [&](Double3 v) { return Double3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
+    const Double3 target = widen(camera.target);
+    const Double3 eye = turn(minus(widen(camera.eye), target));
+    const Double3 up = turn(widen(camera.up));
+    Camera turned = camera;
+    turned.eye = {narrow(target.x + eye.x), narrow(target.y + eye.y), narrow(target.z + eye.z)};
+    turned.up = {narrow(up.x), narrow(up.y), narrow(up.z)};
+    return turned;
+}
+
+}  // namespace opaline::runtime

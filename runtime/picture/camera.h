@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+
+#include "formats/opal/asset.h"
+#include "formats/opal/vec3.h"
+
+namespace opaline::runtime {
+
+/// A pinhole camera. World space, right-handed, +Y up, lengths in metres.
+/// Both backends keep 1/distance as depth, so there is no far plane.
+struct Camera {
+    formats::Vec3 eye{0, 0, 1};
+    formats::Vec3 target{0, 0, 0};
+    formats::Vec3 up{0, 1, 0};                ///< need not be perpendicular to the view
+    float fov_y = 40;                         ///< full vertical angle of view [deg], in (0, 180)
+    std::uint32_t width = 960, height = 720;  ///< of the picture, in pixels
+    float near_plane = 1e-3f;                 ///< nothing nearer along the view axis is drawn, > 0
+};
+
+/// Orthonormal frame of a camera: x to the right, y up, z toward the viewer. Defined for every
+/// camera, also with eye = target (then looking along -Z) or `up` along the view.
+struct CameraFrame {
+    formats::Vec3 right, up, backward;
+    double tan_half_x = 1, tan_half_y = 1;  ///< half extents of the image plane at distance 1
+};
+CameraFrame camera_frame(const Camera& camera);
+
+/// Unit direction, in world space, of the view ray through image point (x, y) in pixels, from the
+/// top left corner; pixel centres lie at half-integers.
+formats::Vec3 view_ray(const Camera& camera, const CameraFrame& frame, double x, double y);
+
+/// A sphere that holds a set of points; radius 0 and centre 0 for none.
+struct BoundingSphere {
+    double x = 0, y = 0, z = 0, radius = 0;
+};
+
+/// Around all vertices of the asset.
+BoundingSphere bound_asset(const formats::AssetView& asset);
+
+/// Around the object that a picture is about: all primitives but the ground it stands on. As long
+/// as something else is left, the largest primitive is ground if it is flat: a thin box, or a
+/// sheet whose triangles all face nearly the same way.
+BoundingSphere bound_object(const formats::AssetView& asset);
+
+/// The default view: the object fills the frame, seen from the front, 30 degrees from +Z toward +X
+/// and 18 degrees above the horizon. Defined for every asset: empty, a point, any size.
+Camera frame_asset(const formats::AssetView& asset, float fov_y, std::uint32_t width,
+                   std::uint32_t height);
+
+/// The near plane for a camera placed by the user: half way to the asset, or a thousandth of its
+/// radius where the eye is near or inside.
+float near_plane_for(const formats::AssetView& asset, formats::Vec3 eye);
+
+/// The camera moved around the vertical axis through its target by `degrees`, from +Z toward +X:
+/// one frame of a turntable.
+Camera orbit(const Camera& camera, float degrees);
+
+}  // namespace opaline::runtime

@@ -1,0 +1,197 @@
+#include "runtime/picture/software_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "runtime/parallel.h"
+#include "runtime/picture/band.h"
+#include "runtime/texture.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::AssetView;
+using formats::ErrorKind;
+using formats::Float2;
+using formats::PrimitiveRecord;
+using formats::Rgb;
+
+// Everything that the bands share, read-only.
+struct Job {
+    const AssetView& asset;
+    std::span<const Rgb> irradiance;
+    const formats::Environment& environment;
+    const Rotation& rotation;
+    const Camera& camera;
+    CameraFrame frame;
+    SampleGrid grid;
+    std::uint32_t supersampling = 1;
+    std::uint32_t band_rows = 1;  ///< samples
+    std::vector<GridVertex> vertices;
+    std::vector<GridTriangle> triangles;
+    std::vector<std::vector<std::uint32_t>> triangles_of_band;
+};
+
+// NaN fails the comparison and becomes 0; the limit keeps sums of samples finite.
+float tame(float value) {
+    return value > 0.0f ? std::min(value, 1e35f) : 0.0f;
+}
+Rgb tame(Rgb c) {
+    return {tame(c.r), tame(c.g), tame(c.b)};
+}
+
+template <class T>
+T interpolate(std::span<const T> values, const std::array<std::uint32_t, 3>& vertex,
+              const std::array<float, 3>& weight) {
+    return weight[0] * values[vertex[0]] + weight[1] * values[vertex[1]] +
+           weight[2] * values[vertex[2]];
+}
+
+Rgb shade_surface(const Job& job, const GridTriangle& triangle, double x, double y) {
+    const EdgeFunctions edges =
+        edge_functions({job.vertices[triangle.vertex[0]], job.vertices[triangle.vertex[1]],
+                        job.vertices[triangle.vertex[2]]});
+    const auto e = edges.at(x, y);
+    const double scale = 1.0 / (e[0] + e[1] + e[2]);
+    const std::array<float, 3> weight{static_cast<float>(e[0] * scale),
+                                      static_cast<float>(e[1] * scale),
+                                      static_cast<float>(e[2] * scale)};
+    Rgb radiance = interpolate(job.irradiance, triangle.vertex, weight) *
+                   interpolate(job.asset.base_color, triangle.vertex, weight);
+    const PrimitiveRecord& primitive = job.asset.primitives[triangle.primitive];
+    if (primitive.base_color_image != formats::kNoImage && !job.asset.texcoord.empty()) {
+        Float2 uv;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Float2 at = job.asset.texcoord[triangle.vertex[k]];
+            uv = {uv.x + weight[k] * at.x, uv.y + weight[k] * at.y};
+        }
+        radiance = radiance * sample_image_linear(job.asset.images[primitive.base_color_image], uv,
+                                                  primitive.wrap_u, primitive.wrap_v);
+    }
+    return tame(radiance);
+}
+
+Rgb shade_sample(const Job& job, const Band& band, std::uint32_t column, std::uint32_t row) {
+    const std::uint32_t number =
+        band.triangle[std::size_t{row - band.first_row} * band.columns + column];
+    const double x = column + 0.5, y = row + 0.5;
+    if (number != Band::kNothing) return shade_surface(job, job.triangles[number], x, y);
+    const formats::Vec3 ray =
+        view_ray(job.camera, job.frame, x / job.supersampling, y / job.supersampling);
+    return tame(formats::sample_radiance(job.environment, job.rotation.light_from_world(ray)));
+}
+
+void resolve_band(const Job& job, const Band& band, Picture& picture) {
+    const std::uint32_t s = job.supersampling;
+    const float share = 1.0f / static_cast<float>(s * s);
+    for (std::uint32_t y = band.first_row / s; y < (band.first_row + band.rows) / s; ++y) {
+        for (std::uint32_t x = 0; x < picture.width; ++x) {
+            Rgb sum;
+            for (std::uint32_t j = 0; j < s; ++j) {
+                for (std::uint32_t i = 0; i < s; ++i) {
+                    sum = sum + shade_sample(job, band, x * s + i, y * s + j);
+                }
+            }
+            picture.pixel[std::size_t{y} * picture.width + x] = share * sum;
+        }
+    }
+}
+
+// Rows of samples that a thread works on at once: whole pixels, and few enough that a band stays in
+// the megabytes however wide the picture is.
+std::uint32_t rows_of_band(const SampleGrid& grid, std::uint32_t supersampling) {
+    constexpr std::uint32_t kMostPixels = 16, kMostSamples = 1u << 20;
+    return std::clamp(kMostSamples / (grid.columns * supersampling), 1u, kMostPixels) *
+           supersampling;
+}
+
+void render_band(const Job& job, std::uint32_t number, Picture& picture) {
+    Band band;
+    const std::uint32_t first = number * job.band_rows;
+    reset_band(band, first, std::min(job.band_rows, job.grid.rows - first), job.grid.columns);
+    for (const std::uint32_t t : job.triangles_of_band[number]) {
+        draw_triangle(band, t, job.triangles[t], job.vertices, job.grid);
+    }
+    resolve_band(job, band, picture);
+}
+
+void sort_into_bands(Job& job) {
+    job.triangles_of_band.resize((job.grid.rows + job.band_rows - 1) / job.band_rows);
+    for (std::uint32_t t = 0; t < job.triangles.size(); ++t) {
+        const GridTriangle& triangle = job.triangles[t];
+        for (std::uint32_t b = triangle.first_row / job.band_rows;
+             b <= triangle.last_row / job.band_rows; ++b) {
+            job.triangles_of_band[b].push_back(t);
+        }
+    }
+}
+
+}  // namespace
+
+formats::Status check_camera(const Camera& camera, std::uint32_t supersampling) {
+    const auto refuse = [](const std::string& where, const std::string& fault,
+                           const std::string& remedy) {
+        return formats::make_error(ErrorKind::usage, {}, where, fault, remedy);
+    };
+    if (camera.width < 1 || camera.height < 1 || camera.width > kMaxPictureSize ||
+        camera.height > kMaxPictureSize) {
+        return refuse("picture size",
+                      "found " + std::to_string(camera.width) + "x" +
+                          std::to_string(camera.height) + ", expected 1 to " +
+                          std::to_string(kMaxPictureSize) + " pixels on each side",
+                      "choose another size");
+    }
+    if (supersampling < 1 || supersampling > 8) {
+        return refuse("supersampling",
+                      "found " + std::to_string(supersampling) + ", expected 1 to 8",
+                      "3 is a good choice");
+    }
+    if (!(camera.fov_y > 0.0f && camera.fov_y < 180.0f)) {
+        return refuse("field of view",
+                      "found " + std::to_string(camera.fov_y) +
+                          " degrees, expected more than 0 and less than 180",
+                      "40 is a good choice");
+    }
+    const formats::Vec3 sum = camera.eye + camera.target + camera.up;
+    if (!std::isfinite(sum.x) || !std::isfinite(sum.y) || !std::isfinite(sum.z) ||
+        !std::isfinite(camera.near_plane) || !(camera.near_plane > 0.0f)) {
+        return refuse("camera", "a position is not finite or the near plane is not above 0",
+                      "give finite coordinates");
+    }
+    return formats::ok_status();
+}
+
+formats::Result<Picture> render_software(const AssetView& asset, std::span<const Rgb> irradiance,
+                                         const formats::Environment& environment,
+                                         const Rotation& rotation, const Camera& camera,
+                                         const SoftwareOptions& options) {
+    if (const auto status = check_camera(camera, options.supersampling); !status) {
+        return status.error();
+    }
+    if (irradiance.size() != asset.position.size()) {
+        return formats::make_error(ErrorKind::usage, {}, "irradiance",
+                                   "found " + std::to_string(irradiance.size()) +
+                                       " values, expected one for each of " +
+                                       std::to_string(asset.position.size()) + " vertices");
+    }
+    auto picture = make_picture(camera.width, camera.height);
+    if (!picture) return picture;
+    const std::uint32_t s = options.supersampling;
+    const SampleGrid grid{camera.width * s, camera.height * s,
+                          static_cast<double>(camera.near_plane)};
+    Job job{asset, irradiance, environment,           rotation, camera, camera_frame(camera),
+            grid,  s,          rows_of_band(grid, s), {},       {},     {}};
+    job.vertices = project_vertices(asset.position, camera, grid);
+    job.triangles = select_triangles(asset, job.vertices, grid);
+    sort_into_bands(job);
+    const auto bands = static_cast<std::uint32_t>(job.triangles_of_band.size());
+    for_ranges(bands, 1, options.threads, [&](std::uint32_t first, std::uint32_t end) {
+        for (std::uint32_t band = first; band < end; ++band) {
+            render_band(job, band, *picture);
+        }
+    });
+    return picture;
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "formats/opal/asset.h"
+#include "formats/opal/environment.h"
+#include "formats/opal/result.h"
+#include "formats/opal/rgb.h"
+#include "runtime/light_vector.h"
+#include "runtime/picture/camera.h"
+#include "runtime/picture/picture.h"
+
+namespace opaline::runtime {
+
+struct SoftwareOptions {
+    std::uint32_t supersampling = 3;  ///< S: S x S samples a pixel, box filter; in [1, 8]
+    unsigned threads = 0;             ///< 0: all cores; the result has the same bits for any number
+};
+
+/// A picture of the asset in front of its environment, on the CPU.
+///
+/// `irradiance` holds, for each vertex, <T_0, L> per band: outgoing radiance without base colour.
+/// It is interpolated with perspective correction, then multiplied by the interpolated base colour
+/// and the bilinearly sampled base-colour image. Triangles show from both sides, shaded alike.
+/// Where no triangle is seen stands the radiance of the environment, turned by `rotation` like the
+/// light. Depth and clipping: what is nearest, from the near plane on.
+///
+/// Errors: usage (see check_camera; not one value per vertex), resource (memory).
+formats::Result<Picture> render_software(const formats::AssetView& asset,
+                                         std::span<const formats::Rgb> irradiance,
+                                         const formats::Environment& environment,
+                                         const Rotation& rotation, const Camera& camera,
+                                         const SoftwareOptions& options = {});
+
+/// What both backends refuse: picture sizes outside [1, kMaxPictureSize], S outside [1, 8], a
+/// field of view outside (0, 180), a near plane that is not positive, non-finite numbers.
+formats::Status check_camera(const Camera& camera, std::uint32_t supersampling);
+
+}  // namespace opaline::runtime

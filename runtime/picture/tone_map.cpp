@@ -1,0 +1,63 @@
+#include "runtime/picture/tone_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace opaline::runtime {
+namespace {
+
+// Far below the float limit, so that sums of two stay finite.
+constexpr float kLargest = 1e37f;
+
+// NaN fails the comparison and becomes 0.
+float tame(float value) {
+    return value > 0.0f ? std::min(value, kLargest) : 0.0f;
+}
+
+std::uint8_t encode_byte(float linear) {
+    return static_cast<std::uint8_t>(std::lround(255.0f * encode_srgb(linear)));
+}
+
+}  // namespace
+
+formats::Rgb tone_map_neutral(formats::Rgb radiance) {
+    constexpr float kReflectance = 0.04f;  // Fresnel reflectance at normal incidence, taken off
+    constexpr float kShoulder = 0.8f - kReflectance;
+    constexpr float kDesaturation = 0.15f;
+
+    formats::Rgb c{tame(radiance.r), tame(radiance.g), tame(radiance.b)};
+    const float least = std::min({c.r, c.g, c.b});
+    const float offset =
+        least < 2.0f * kReflectance ? least - least * least / (4.0f * kReflectance) : kReflectance;
+    c = {c.r - offset, c.g - offset, c.b - offset};
+
+    const float peak = std::max({c.r, c.g, c.b});
+    if (peak <= kShoulder) return c;
+    constexpr float kRoom = 1.0f - kShoulder;
+    const float new_peak = 1.0f - kRoom * kRoom / (peak + kRoom - kShoulder);
+    const float keep = 1.0f / (kDesaturation * (peak - new_peak) + 1.0f);
+    const auto compress = [&](float x) {
+        const float scaled = x / peak * new_peak;
+        return std::clamp(new_peak + keep * (scaled - new_peak), 0.0f, 1.0f);
+    };
+    return {compress(c.r), compress(c.g), compress(c.b)};
+}
+
+float encode_srgb(float linear) {
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
+DisplayPicture tone_map(const Picture& picture, float exposure_ev) {
+    const float scale = std::exp2(std::clamp(exposure_ev, -100.0f, 100.0f));
+    DisplayPicture display{picture.width, picture.height, {}};
+    display.rgba.reserve(picture.pixel.size() * 4);
+    for (const formats::Rgb pixel : picture.pixel) {
+        const formats::Rgb c = tone_map_neutral(scale * pixel);
+        display.rgba.insert(display.rgba.end(),
+                            {encode_byte(c.r), encode_byte(c.g), encode_byte(c.b), 255});
+    }
+    return display;
+}
+
+}  // namespace opaline::runtime

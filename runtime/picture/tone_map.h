@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "formats/opal/rgb.h"
+#include "runtime/picture/picture.h"
+
+namespace opaline::runtime {
+
+/// A picture ready for a screen or a PNG file: 8-bit sRGB, four bytes a pixel, alpha 255, row 0 on
+/// top.
+struct DisplayPicture {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+
+/// Linear display colour, each band in [0, 1], from linear radiance: the Khronos PBR Neutral tone
+/// mapper (Khronos Group, "PBR Neutral Tone Mapper" specification, 2024): base colours below 0.76
+/// keep their hue and saturation, brighter ones are compressed toward white. Any input: negative
+/// values and NaN count as 0, infinity as the largest number.
+formats::Rgb tone_map_neutral(formats::Rgb radiance);
+
+/// sRGB transfer function (IEC 61966-2-1), linear [0, 1] to encoded [0, 1].
+float encode_srgb(float linear);
+
+/// Radiance times 2^exposure_ev, tone-mapped, encoded, rounded to nearest.
+DisplayPicture tone_map(const Picture& picture, float exposure_ev);
+
+}  // namespace opaline::runtime

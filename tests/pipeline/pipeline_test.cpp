@@ -1,0 +1,159 @@
+#include "bake/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "formats/opal/write_opal.h"
+#include "tests/support/bake.h"
+#include "tests/support/temporary_folder.h"
+
+namespace opaline::bake {
+namespace {
+
+BakeOptions small_options() {
+    BakeOptions options;
+    options.cubemap_size = 16;
+    options.coefficients = 64;
+    options.threads = 2;
+    return options;
+}
+
+std::string file_bytes(const BakeResult& result) {
+    const tests::TemporaryFolder folder;
+    auto file = formats::AtomicFile::create(folder / "a.opal");
+    EXPECT_TRUE(file);
+    EXPECT_TRUE(formats::write_opal(result.asset.view(), std::move(*file)));
+    std::ifstream stream(folder / "a.opal", std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(Pipeline, BytesDoNotDependOnTheNumberOfThreads) {
+    const auto scene = tests::make_dented_ball();
+    BakeOptions options = small_options();
+    options.threads = 1;
+    const std::string one = file_bytes(tests::bake_scene(scene, options));
+    for (const unsigned threads : {2u, 5u}) {
+        options.threads = threads;
+        EXPECT_EQ(file_bytes(tests::bake_scene(scene, options)), one) << threads;
+    }
+}
+
+// A white furnace from end to end: scene, rays, wavelets, file rows, light, dot product.
+TEST(Pipeline, OpenSurfacesUnderWhiteShineWithTheirAlbedo) {
+    auto scene = tests::make_scene(
+        {tests::make_sphere(2, 0.3f, {0, 100, 0}),
+         tests::transformed(tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2),
+                            tests::some_rotation(), 1, {0, -100, 0})});
+    scene.materials[0].base_color = {0.2f, 0.5f, 0.8f};
+    double previous = 1;
+    for (const std::uint32_t n : {8u, 16u, 32u}) {
+        BakeOptions options;
+        options.quality = Quality::reference;  // all coefficients, 16 bits
+        options.cubemap_size = n;
+        const BakeResult result = tests::bake_scene(scene, options);
+        double worst = 0;
+        for (const formats::Rgb c : tests::relight(result.asset.view(), "white")) {
+            worst = std::max<double>({worst, std::abs(c.r / 0.2f - 1), std::abs(c.g / 0.5f - 1),
+                                      std::abs(c.b / 0.8f - 1)});
+        }
+        EXPECT_LT(worst, previous) << n;
+        previous = worst;
+    }
+    EXPECT_LT(previous, 1e-3);
+}
+
+TEST(Pipeline, AConvexBodyAloneUnderWhiteIsWithinATenthOfAPercent) {
+    const auto scene = tests::make_scene({tests::make_sphere(3, 0.05f)});
+    BakeOptions options;
+    options.quality = Quality::reference;
+    options.cubemap_size = 32;
+    const BakeResult result = tests::bake_scene(scene, options);
+    for (const formats::Rgb c : tests::relight(result.asset.view(), "white")) {
+        ASSERT_NEAR(c.r, 1, 1e-3);
+        ASSERT_EQ(c.r, c.g);
+    }
+}
+
+TEST(Pipeline, VertexOfAFloorLiesInTheShadowOfWhatStandsOnIt) {
+    const BakeResult result = tests::bake_scene(tests::make_dented_ball(), small_options());
+    const auto radiance = tests::relight(result.asset.view(), "sun:0,89");
+    const formats::PrimitiveRecord& floor = result.asset.primitives[1];
+    const formats::Rgb below = radiance[floor.first_vertex + 10 * 21 + 10];
+    const formats::Rgb corner = radiance[floor.first_vertex];
+    EXPECT_LT(below.g, 0.02f);
+    EXPECT_NEAR(corner.g, 1, 0.12f);  // 64 coefficients blur the sun
+}
+
+TEST(Pipeline, BlackSurfacesCostNoRays) {
+    auto scene = tests::make_dented_ball();
+    const BakeResult grey = tests::bake_scene(scene, small_options());
+    scene.materials[0].base_color = {0, 0, 0};
+    const BakeResult black = tests::bake_scene(scene, small_options());
+    const auto direct_rays = [](const BakeResult& result) {
+        for (const StageReport& stage : result.stages) {
+            if (stage.name == "direct") {
+                return stage.rays;
+            }
+        }
+        return std::uint64_t{1};
+    };
+    EXPECT_GT(direct_rays(grey), 100000u);
+    EXPECT_EQ(direct_rays(black), 0u);
+    EXPECT_TRUE(black.asset.transport.index16.empty());
+}
+
+TEST(Pipeline, CancellingEndsInAnInterruptedErrorAndNoResult) {
+    const std::atomic<bool> cancel = true;
+    Context context;
+    context.cancel = &cancel;
+    const auto result = run_bake(tests::make_dented_ball(), small_options(), context);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().kind, formats::ErrorKind::interrupted);
+}
+
+TEST(Pipeline, ProgressEndsAtTheNumberOfReceivers) {
+    const auto scene = tests::make_dented_ball();
+    Context context;
+    std::uint64_t last = 0, total = 0;
+    context.on_progress = [&](const Progress& progress) {
+        EXPECT_GT(progress.done, last);
+        last = progress.done;
+        total = progress.total;
+    };
+    ASSERT_TRUE(run_bake(scene, small_options(), context));
+    EXPECT_EQ(last, total);
+    EXPECT_EQ(total, scene.primitives[0].position.size() + scene.primitives[1].position.size());
+}
+
+TEST(Pipeline, MeasuredErrorHasAnIntervalAndFallsWithTheKnobs) {
+    const auto scene = tests::make_dented_ball();
+    double previous = 1;
+    for (const std::uint32_t kept : {16u, 64u, 384u}) {
+        BakeOptions options = small_options();
+        options.coefficients = kept;
+        const ErrorReport error = tests::bake_scene(scene, options).error;
+        EXPECT_GT(error.rms_relative, 0);
+        EXPECT_LT(error.rms_relative, previous);
+        EXPECT_LT(error.ci95[0], error.rms_relative);
+        EXPECT_GT(error.ci95[1], error.rms_relative);
+        EXPECT_GE(error.max_relative, error.p95_relative);
+        EXPECT_GE(error.receivers_checked, 16u);
+        previous = error.rms_relative;
+    }
+}
+
+TEST(Pipeline, TheSeedChoosesTheCheckedReceiversOnly) {
+    const auto scene = tests::make_dented_ball();
+    BakeOptions options = small_options();
+    const BakeResult a = tests::bake_scene(scene, options);
+    options.seed = 1;
+    const BakeResult b = tests::bake_scene(scene, options);
+    EXPECT_EQ(a.asset.transport.code8, b.asset.transport.code8);
+    EXPECT_NE(a.error.rms_relative, b.error.rms_relative);
+}
+
+}  // namespace
+}  // namespace opaline::bake

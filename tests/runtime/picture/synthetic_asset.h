@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "formats/opal/asset.h"
+#include "formats/opal/environment.h"
+
+namespace opaline::test {
+
+/// Mesh of one primitive, before it is put into an asset.
+struct TestMesh {
+    std::vector<formats::Vec3> position, normal;
+    std::vector<formats::Rgb> base_color;
+    std::vector<formats::Float2> texcoord;
+    std::vector<std::uint32_t> index;
+};
+
+/// Latitude-longitude sphere; base colour red at the top, blue at the bottom.
+TestMesh make_sphere(formats::Vec3 centre, float radius, std::uint32_t slices,
+                     std::uint32_t stacks);
+
+/// Rectangle centre + s a + t b for s, t in [-1, 1], cells x cells quads; texcoord 0 to `repeats`.
+TestMesh make_sheet(formats::Vec3 centre, formats::Vec3 a, formats::Vec3 b, std::uint32_t cells,
+                    float repeats);
+
+/// How a mesh becomes a primitive.
+struct TestPrimitive {
+    std::uint32_t bands = 1;
+    std::uint32_t details = 64;  ///< largest wavelet details kept of each row
+    std::uint32_t image = formats::kNoImage;
+    formats::Wrap wrap_u = formats::Wrap::repeat, wrap_v = formats::Wrap::repeat;
+};
+
+/// Empty asset over a cube map of n x n texels.
+formats::Asset make_asset(std::uint32_t n, std::uint32_t code_bits);
+
+/// Adds a primitive whose rows are those of an unoccluded surface, max(0, n.w) / pi; with three
+/// bands, green and blue see a wider and a narrower lobe.
+void add_primitive(formats::Asset& asset, const TestMesh& mesh, const TestPrimitive& options);
+
+/// Adds a primitive without transport details or averages: for tests that bring own irradiance.
+void add_bare_primitive(formats::Asset& asset, const TestMesh& mesh);
+
+/// Colourful noise, so that a mirrored or shifted image shows.
+formats::PreviewImageData make_noise_image(std::uint32_t width, std::uint32_t height);
+
+/// Lat-long map from a function of direction.
+formats::Environment make_lat_long(std::uint32_t width, std::uint32_t height,
+                                   const std::function<formats::Rgb(formats::Vec3)>& radiance);
+
+/// Cube map from a function of direction.
+formats::Environment make_cube(std::uint32_t n,
+                               const std::function<formats::Rgb(formats::Vec3)>& radiance);
+
+/// A smooth sky with a warm light from +X and a cool one from behind, different everywhere.
+formats::Rgb two_lights(formats::Vec3 direction);
+
+}  // namespace opaline::test

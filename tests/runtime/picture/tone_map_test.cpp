@@ -1,0 +1,80 @@
+#include "runtime/picture/tone_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Rgb;
+
+TEST(ToneMap, GreyIsMonotoneAndInRangeFromBlackToTheLargestFloat) {
+    float previous = -1;
+    for (double x = 1e-6; x < 1e38; x *= 1.05) {
+        const auto grey = static_cast<float>(x);
+        const Rgb c = tone_map_neutral({grey, grey, grey});
+        EXPECT_GE(c.g, previous) << x;
+        EXPECT_GE(c.g, 0.0f);
+        EXPECT_LE(c.g, 1.0f);
+        previous = c.g;
+    }
+    EXPECT_NEAR(previous, 1.0f, 1e-6f);
+}
+
+TEST(ToneMap, BaseColoursLoseTheFresnelOffsetOnly) {
+    // With every band above 0.08, the specification subtracts 0.04 and leaves the rest up to 0.76.
+    const Rgb c = tone_map_neutral({0.5f, 0.3f, 0.1f});
+    EXPECT_NEAR(c.r, 0.46f, 1e-6f);
+    EXPECT_NEAR(c.g, 0.26f, 1e-6f);
+    EXPECT_NEAR(c.b, 0.06f, 1e-6f);
+}
+
+TEST(ToneMap, IsContinuousAtItsTwoBreaks) {
+    for (const float x : {0.08f, 0.8f}) {
+        const Rgb below = tone_map_neutral({x * 0.9999f, x * 0.9999f, x * 0.9999f});
+        const Rgb above = tone_map_neutral({x * 1.0001f, x * 1.0001f, x * 1.0001f});
+        EXPECT_NEAR(below.r, above.r, 4e-4f * x);
+    }
+}
+
+TEST(ToneMap, VeryBrightColoursTendToWhite) {
+    const Rgb c = tone_map_neutral({1e6f, 10.0f, 10.0f});
+    EXPECT_GT(c.g, 0.99f);
+}
+
+TEST(ToneMap, AnyInputGivesAColour) {
+    const float inf = std::numeric_limits<float>::infinity();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const float r : {-inf, -1.0f, 0.0f, inf, nan, 3.4e38f}) {
+        for (const float g : {-1.0f, 0.5f, inf, nan}) {
+            const Rgb c = tone_map_neutral({r, g, 0.2f});
+            for (const float value : {c.r, c.g, c.b}) {
+                EXPECT_GE(value, 0.0f);
+                EXPECT_LE(value, 1.0f);
+            }
+        }
+    }
+}
+
+TEST(EncodeSrgb, HitsThePublishedEndsAndMiddle) {
+    EXPECT_EQ(encode_srgb(0.0f), 0.0f);
+    EXPECT_NEAR(encode_srgb(1.0f), 1.0f, 1e-6f);
+    EXPECT_NEAR(encode_srgb(0.0031308f), 0.04045f, 1e-5f);
+    EXPECT_NEAR(encode_srgb(0.2140411f), 0.5f, 1e-5f);  // ((0.5 + 0.055) / 1.055)^2.4
+}
+
+TEST(ToneMap, ExposureDoublesPerStopAndThePictureKeepsItsLayout) {
+    Picture picture{2, 1, {{0.1f, 0.2f, 0.3f}, {0.0f, 0.0f, 0.0f}}};
+    Picture doubled{2, 1, {{0.2f, 0.4f, 0.6f}, {0.0f, 0.0f, 0.0f}}};
+    const DisplayPicture a = tone_map(picture, 1.0f), b = tone_map(doubled, 0.0f);
+    EXPECT_EQ(a.rgba, b.rgba);
+    ASSERT_EQ(a.rgba.size(), 8u);
+    EXPECT_EQ(a.rgba[3], 255);
+    EXPECT_EQ(a.rgba[4], 0);
+    EXPECT_LT(a.rgba[0], a.rgba[2]);
+}
+
+}  // namespace
+}  // namespace opaline::runtime

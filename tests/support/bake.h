@@ -1,0 +1,51 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "bake/environment/builtin_environment.h"
+#include "bake/pipeline.h"
+#include "runtime/light_vector.h"
+#include "runtime/shade.h"
+#include "tests/support/scenes.h"
+
+namespace opaline::tests {
+
+inline bake::BakeResult bake_scene(const formats::Scene& scene, const bake::BakeOptions& options) {
+    bake::Context context;
+    context.threads = options.threads;
+    auto result = bake::run_bake(scene, options, context);
+    EXPECT_TRUE(result);
+    return std::move(result).value();
+}
+
+/// A built-in light in the basis of n x n texels a face.
+inline runtime::LightVector make_light(const char* name, std::uint32_t n) {
+    const auto environment = bake::make_environment(name);
+    EXPECT_TRUE(environment);
+    return runtime::project_environment(*environment, n);
+}
+
+/// Outgoing radiance of every receiver.
+inline std::vector<formats::Rgb> relight(const formats::AssetView& asset,
+                                         const runtime::LightVector& light) {
+    std::vector<formats::Rgb> radiance(asset.receivers());
+    runtime::shade(asset, light, radiance, {});
+    return radiance;
+}
+inline std::vector<formats::Rgb> relight(const formats::AssetView& asset, const char* light) {
+    return relight(asset, make_light(light, asset.cubemap_size));
+}
+
+/// A ball with dents that shadow each other, hovering over a floor.
+inline formats::Scene make_dented_ball() {
+    auto ball = make_sphere(3, 1, {0, 1.1f, 0});
+    for (std::size_t v = 0; v < ball.position.size(); ++v) {
+        const glm::vec3 n = ball.normal[v];
+        ball.position[v] += 0.15f * std::sin(7 * n.x) * std::sin(6 * n.y) * std::sin(8 * n.z) * n;
+    }
+    return make_scene({ball, make_quad({-3, 0, -3}, {0, 0, 6}, {6, 0, 0}, 20)});
+}
+
+}  // namespace opaline::tests
