@@ -77,6 +77,51 @@ void relax(const std::vector<double>& target, TriangleMesh& mesh) {
     mesh.position = std::move(moved);
 }
 
+/// Where the surface folds tighter than the mesh can follow (the ends of narrow notches), triangles
+/// may face away from the field's normal. Vertices there move to the middle of their neighbours and
+/// take the mean normal of their triangles: a fillet of about an edge length.
+void round_tight_folds(TriangleMesh& mesh) {
+    constexpr double kTightest = 0.4;  ///< cosine between a vertex's normal and its triangles'
+    const VertexTriangles ring = find_vertex_triangles(mesh);
+    for (int pass = 0; pass < 30; ++pass) {
+        std::vector<bool> folded(mesh.position.size(), false);
+        for (const Triangle& triangle : mesh.triangles) {
+            const glm::dvec3 area = area_vector(mesh, triangle);
+            for (const std::uint32_t v : triangle) {
+                if (glm::dot(area, mesh.normal[v]) >= kTightest * glm::length(area)) continue;
+                for (const std::uint32_t corner : triangle) {
+                    folded[corner] = true;
+                }
+            }
+        }
+        if (std::find(folded.begin(), folded.end(), true) == folded.end()) return;
+        const std::vector<glm::dvec3> before = mesh.position;
+        for (std::size_t v = 0; v < folded.size(); ++v) {
+            if (!folded[v]) continue;
+            glm::dvec3 sum(0.0);
+            double count = 0.0;
+            for (std::size_t i = ring.begin[v]; i < ring.begin[v + 1]; ++i) {
+                for (const std::uint32_t corner : mesh.triangles[ring.triangle[i]]) {
+                    if (corner == v) continue;
+                    sum += before[corner];
+                    count += 1.0;
+                }
+            }
+            mesh.position[v] = glm::mix(before[v], sum / count, 0.7);
+        }
+        for (std::size_t v = 0; v < folded.size(); ++v) {
+            if (!folded[v]) continue;
+            glm::dvec3 sum(0.0);
+            for (std::size_t i = ring.begin[v]; i < ring.begin[v + 1]; ++i) {
+                const glm::dvec3 area = area_vector(mesh, mesh.triangles[ring.triangle[i]]);
+                sum += area / std::max(glm::length(area), 1e-12);
+            }
+            const double length = glm::length(sum);
+            if (length > 1e-9) mesh.normal[v] = sum / length;
+        }
+    }
+}
+
 }  // namespace
 
 void remesh(const Field& field, const RemeshOptions& options, TriangleMesh& mesh) {
@@ -98,6 +143,7 @@ void remesh(const Field& field, const RemeshOptions& options, TriangleMesh& mesh
     }
     drop_onto_surface(field, step, mesh);
     drop_onto_surface(field, step, mesh);
+    round_tight_folds(mesh);
 }
 
 }  // namespace opaline::bake

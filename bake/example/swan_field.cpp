@@ -22,7 +22,7 @@ struct Feather {
     double thickness;  ///< half of it at the root [mm]
 };
 
-constexpr double kGroove = 1.2;            ///< fillet between feathers [mm]
+constexpr double kGroove = 1.6;            ///< fillet between feathers [mm]
 constexpr std::size_t kMostFeathers = 16;  ///< of one fan
 
 struct Swan {

@@ -16,12 +16,15 @@ constexpr int kNewtonSteps = 4;
 TaperedCurve::TaperedCurve(const std::vector<glm::dvec4>& control) {
     assert(control.size() >= 2);
     // A phantom point mirrored through the end makes the spline start in that end.
-    control_.push_back(2.0 * control[0] - control[1]);
-    control_.insert(control_.end(), control.begin(), control.end());
-    control_.push_back(2.0 * control.back() - control[control.size() - 2]);
-
-    const std::size_t spans = control.size() - 1;
-    for (std::size_t i = 0; i <= spans * kSamplesPerSpan; ++i) {
+    std::vector<glm::dvec4> p = {2.0 * control[0] - control[1]};
+    p.insert(p.end(), control.begin(), control.end());
+    p.push_back(2.0 * control.back() - control[control.size() - 2]);
+    for (std::size_t i = 0; i + 3 < p.size(); ++i) {
+        spans_.push_back({(p[i] + 4.0 * p[i + 1] + p[i + 2]) / 6.0, (p[i + 2] - p[i]) / 2.0,
+                          (p[i] - 2.0 * p[i + 1] + p[i + 2]) / 2.0,
+                          (p[i + 3] - 3.0 * p[i + 2] + 3.0 * p[i + 1] - p[i]) / 6.0});
+    }
+    for (std::size_t i = 0; i <= spans_.size() * kSamplesPerSpan; ++i) {
         samples_.emplace_back(evaluate(static_cast<double>(i) / double{kSamplesPerSpan}).value);
     }
     double largest = 0.0;
@@ -45,18 +48,10 @@ double TaperedCurve::distance_bound(const glm::dvec3& p) const {
 }
 
 TaperedCurve::Point TaperedCurve::evaluate(double t) const {
-    const std::size_t spans = control_.size() - 3;
-    const auto span = std::min(static_cast<std::size_t>(std::max(t, 0.0)), spans - 1);
+    const auto span = std::min(static_cast<std::size_t>(std::max(t, 0.0)), spans_.size() - 1);
     const double u = t - static_cast<double>(span);
-    const glm::dvec4* const p = &control_[span];
-    const double v = 1.0 - u;
-    return {(v * v * v * p[0] + (4.0 - 6.0 * u * u + 3.0 * u * u * u) * p[1] +
-             (4.0 - 6.0 * v * v + 3.0 * v * v * v) * p[2] + u * u * u * p[3]) /
-                6.0,
-            (-v * v * p[0] + (3.0 * u * u - 4.0 * u) * p[1] - (3.0 * v * v - 4.0 * v) * p[2] +
-             u * u * p[3]) /
-                2.0,
-            v * p[0] + (3.0 * u - 2.0) * p[1] + (3.0 * v - 2.0) * p[2] + u * p[3]};
+    const auto& [a, b, c, d] = spans_[span];
+    return {((d * u + c) * u + b) * u + a, (3.0 * u * d + 2.0 * c) * u + b, 6.0 * u * d + 2.0 * c};
 }
 
 TaperedCurve::Nearest TaperedCurve::nearest(const glm::dvec3& p) const {
@@ -70,7 +65,7 @@ TaperedCurve::Nearest TaperedCurve::nearest(const glm::dvec3& p) const {
             begin = i;
         }
     }
-    const double end = static_cast<double>(control_.size() - 3);
+    const double end = static_cast<double>(spans_.size());
     double t = static_cast<double>(begin) / double{kSamplesPerSpan};
     Point point = evaluate(t);
     for (int step = 0; step < kNewtonSteps; ++step) {
@@ -85,7 +80,7 @@ TaperedCurve::Nearest TaperedCurve::nearest(const glm::dvec3& p) const {
         const double moved = std::abs(next - t);
         t = next;
         point = evaluate(t);
-        if (moved < 1e-10) break;
+        if (moved < 1e-6) break;
     }
     return {glm::dvec3(point.value), glm::normalize(glm::dvec3(point.first)), point.value.w,
             t / end};

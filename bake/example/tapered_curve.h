@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -34,7 +35,7 @@ class TaperedCurve {
     };
     Point evaluate(double t) const;
 
-    std::vector<glm::dvec4> control_;  ///< with one phantom point before and after
+    std::vector<std::array<glm::dvec4, 4>> spans_;  ///< polynomials, constant term first
     std::vector<glm::dvec3> samples_;  ///< even in the parameter: where the search begins
     double reach_ = 0.0;               ///< no point of the tube is farther from its chord
     double chord_distance(const glm::dvec3& p) const;

@@ -84,7 +84,8 @@ std::vector<Candidate> scatter(const Scene& scene, const AreaTable& table, std::
     return candidates;
 }
 
-// Normals at more than 120 degrees belong to different sides of a sheet; those of a box's edge do not.
+// Normals at more than 120 degrees belong to different sides of a sheet; those of a box's edge do
+// not.
 constexpr float kOpposed = -0.5f;
 
 // Points in cubic cells of the search radius.

@@ -34,7 +34,8 @@ struct Fans {
     std::unordered_map<glm::vec3, std::uint32_t, PositionHash> point;
     std::vector<std::uint32_t> offset;
     std::vector<glm::vec3> normal;
-    std::vector<float> magnitude;  // largest coordinate among the triangles of the point
+    std::vector<glm::vec3> corner;  // the two other corners of each triangle
+    std::vector<float> magnitude;   // largest coordinate among the triangles of the point
 };
 
 // Normal of a triangle in double precision, so that slivers keep their direction; {0,0,0} if flat.
@@ -66,13 +67,14 @@ Fans collect_fans(const Scene& scene) {
                 const float magnitude =
                     std::max({largest_coordinate(corner[0]), largest_coordinate(corner[1]),
                               largest_coordinate(corner[2])});
-                for (const glm::vec3& c : corner) {
-                    visit(weld_key(c), normal, magnitude);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    visit(weld_key(corner[k]), normal, corner[(k + 1) % 3], corner[(k + 2) % 3],
+                          magnitude);
                 }
             }
         }
     };
-    for_each_corner([&](glm::vec3 at, glm::vec3, float magnitude) {
+    for_each_corner([&](glm::vec3 at, glm::vec3, glm::vec3, glm::vec3, float magnitude) {
         const auto [it, added] =
             fans.point.try_emplace(at, static_cast<std::uint32_t>(fans.point.size()));
         if (added) {
@@ -88,12 +90,26 @@ Fans collect_fans(const Scene& scene) {
         sum += std::exchange(entry, sum);
     }
     fans.normal.resize(sum);
+    fans.corner.resize(2 * std::size_t{sum});
     std::vector<std::uint32_t> filled(fans.magnitude.size(), 0);
-    for_each_corner([&](glm::vec3 at, glm::vec3 normal, float) {
+    for_each_corner([&](glm::vec3 at, glm::vec3 normal, glm::vec3 a, glm::vec3 b, float) {
         const std::uint32_t point = fans.point.find(at)->second;
-        fans.normal[fans.offset[point] + filled[point]++] = normal;
+        const std::size_t slot = fans.offset[point] + filled[point]++;
+        fans.normal[slot] = normal;
+        fans.corner[2 * slot] = a;
+        fans.corner[2 * slot + 1] = b;
     });
     return fans;
+}
+
+// How far the triangles of a point rise above its tangent plane [m].
+float fold_height(const Fans& fans, std::uint32_t point, glm::vec3 position, glm::vec3 normal) {
+    float height = 0;
+    for (std::size_t i = 2 * std::size_t{fans.offset[point]};
+         i < 2 * std::size_t{fans.offset[point + 1]}; ++i) {
+        height = std::max(height, glm::dot(fans.corner[i] - position, normal));
+    }
+    return height;
 }
 
 }  // namespace
@@ -154,8 +170,10 @@ std::vector<Receiver> make_vertex_receivers(const Scene& scene) {
             if (const auto it = fans.point.find(weld_key(position)); it != fans.point.end()) {
                 const Clearance c = clearance[it->second];
                 const float bound = intersection_error_bound(fans.magnitude[it->second]);
-                receiver.origin += c.cosine > kSmallestClearance ? (bound / c.cosine) * c.direction
-                                                                 : bound * normal;
+                receiver.origin +=
+                    c.cosine > kSmallestClearance
+                        ? (bound / c.cosine) * c.direction
+                        : (bound + fold_height(fans, it->second, position, normal)) * normal;
             }
             receivers.push_back(receiver);
         }

@@ -46,6 +46,19 @@ TEST(VertexReceivers, OffsetsAreOfTheOrderOfTheRoundingError) {
     }
 }
 
+// A scan's flap: two triangles folded onto each other rise above the surface they hang on. Rays that
+// started below it would make a black speck.
+TEST(VertexReceivers, RaysOfAFoldedVertexStartAboveTheFold) {
+    formats::Primitive flap;
+    flap.position = {{0, 0, 0}, {1, 0.1f, 0}, {0, 0.1f, 1}, {1, 0, 1}};
+    flap.normal.assign(4, {0, 1, 0});
+    flap.index = {0, 2, 1, 0, 1, 2};
+    const auto receivers = make_vertex_receivers(tests::make_scene({flap}));
+    EXPECT_GT(receivers[0].origin.y, 0.1f);
+    EXPECT_LT(receivers[0].origin.y, 0.1f + 1e-4f);
+    EXPECT_LT(receivers[1].origin.y, 0.1f + 1e-4f);
+}
+
 TEST(VertexReceivers, LooseVerticesAreReceiversToo) {
     auto scene = tests::make_scene({tests::make_sphere(0)});
     scene.primitives[0].position.push_back({9, 9, 9});

@@ -1,0 +1,145 @@
+// The files that `opaline example` leaves behind.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "bake/example/example_scenes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace opaline::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ExampleFiles : public testing::Test {
+  protected:
+    const tests::TemporaryFolder scratch_;
+    const fs::path folder_ = scratch_.path();
+};
+
+std::string contents(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<GltfObject> small_scene() {
+    TriangleMesh mesh;
+    mesh.position = {{0, 0, 0}, {1, 0, 0.25}, {0, 2, -1}};
+    mesh.normal = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    mesh.triangles = {{0, 1, 2}};
+    return {{"One", "Red", {0.5, 0.1, 0.1}, mesh}, {"Two", "Blue", {0.1, 0.1, 0.5}, mesh}};
+}
+
+TEST_F(ExampleFiles, AreAGltfAndItsBuffer) {
+    const fs::path target = folder_ / "new" / "folder";
+    const auto files = write_example("knot", target);
+    ASSERT_TRUE(files);
+    EXPECT_THAT(*files, testing::ElementsAre(target / "knot.gltf", target / "knot.bin"));
+    const auto document = nlohmann::json::parse(contents(target / "knot.gltf"));
+    EXPECT_EQ(document["asset"]["version"], "2.0");
+    EXPECT_EQ(document["asset"]["generator"], "Opaline");
+    EXPECT_EQ(document["buffers"][0]["uri"], "knot.bin");
+    EXPECT_EQ(document["buffers"][0]["byteLength"], fs::file_size(target / "knot.bin"));
+    EXPECT_EQ(document["nodes"][0]["name"], "Knot");
+    EXPECT_EQ(document["nodes"][1]["name"], "Floor");
+    EXPECT_EQ(document["materials"][0]["name"], "Knot");
+    EXPECT_EQ(document["materials"][1]["name"], "Floor");
+    EXPECT_EQ(std::distance(fs::directory_iterator(target), {}), 2) << "a temporary file is left";
+}
+
+TEST_F(ExampleFiles, HaveTheSameBytesOnEveryRun) {
+    for (const ExampleInfo& info : list_examples()) {
+        const auto first = write_example(info.name, folder_ / "a");
+        const auto second = write_example(info.name, folder_ / "b");
+        ASSERT_TRUE(first && second);
+        for (std::size_t i = 0; i < first->size(); ++i) {
+            EXPECT_TRUE(contents((*first)[i]) == contents((*second)[i])) << (*first)[i];
+        }
+    }
+}
+
+TEST_F(ExampleFiles, DescribeEveryByteOfTheBufferOnce) {
+    const auto files = write_gltf(folder_, "small", small_scene());
+    ASSERT_TRUE(files);
+    const std::string bytes = contents(folder_ / "small.bin");
+    const auto document = nlohmann::json::parse(contents(folder_ / "small.gltf"));
+    std::size_t end = 0;
+    for (const auto& accessor : document["accessors"]) {
+        const auto& view = document["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+        const bool vectors = accessor["type"] == "VEC3";
+        const std::size_t width = vectors ? 3 : 1;
+        EXPECT_EQ(view["byteOffset"], end);
+        EXPECT_EQ(end % 4, 0u);
+        EXPECT_EQ(view["byteLength"], accessor["count"].get<std::size_t>() * width * 4);
+        EXPECT_EQ(view["target"], vectors ? 34962 : 34963);
+        EXPECT_EQ(accessor["componentType"], vectors ? 5126 : 5125);
+        EXPECT_EQ(accessor["min"].size(), width);
+        EXPECT_EQ(accessor["max"].size(), width);
+        end += view["byteLength"].get<std::size_t>();
+    }
+    EXPECT_EQ(end, bytes.size());
+}
+
+TEST_F(ExampleFiles, HoldPositionsAsLittleEndianFloatsWithTheirBounds) {
+    ASSERT_TRUE(write_gltf(folder_, "small", small_scene()));
+    const std::string bytes = contents(folder_ / "small.bin");
+    const auto document = nlohmann::json::parse(contents(folder_ / "small.gltf"));
+    const auto& attributes = document["meshes"][1]["primitives"][0]["attributes"];
+    const auto& accessor = document["accessors"][attributes["POSITION"].get<std::size_t>()];
+    const auto& view = document["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+    const std::size_t offset = view["byteOffset"].get<std::size_t>() + 12;  // the second vertex
+    const auto coordinate = [&](std::size_t axis) {
+        std::uint32_t word = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            word |= std::uint32_t{static_cast<unsigned char>(bytes[offset + 4 * axis + i])}
+                    << (8 * i);
+        }
+        return std::bit_cast<float>(word);
+    };
+    EXPECT_EQ(coordinate(0), 1.0f);
+    EXPECT_EQ(coordinate(1), 0.0f);
+    EXPECT_EQ(coordinate(2), 0.25f);
+    EXPECT_EQ(accessor["min"], nlohmann::json({0.0, 0.0, -1.0}));
+    EXPECT_EQ(accessor["max"], nlohmann::json({1.0, 2.0, 0.25}));
+}
+
+TEST_F(ExampleFiles, RefuseAnUnknownNameAndListTheKnownOnes) {
+    const auto files = write_example("dragon", folder_ / "never");
+    ASSERT_FALSE(files);
+    EXPECT_EQ(files.error().kind, formats::ErrorKind::usage);
+    const formats::Diagnostic& diagnostic = files.error().diagnostics.front();
+    EXPECT_THAT(diagnostic.fault, testing::HasSubstr("'dragon'"));
+    for (const ExampleInfo& info : list_examples()) {
+        EXPECT_THAT(diagnostic.remedy, testing::HasSubstr(std::string(info.name)));
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "never"));
+}
+
+TEST_F(ExampleFiles, SayWhyAFolderCannotBeMade) {
+    // A file where the folder should go stops every user, root included.
+    std::ofstream(folder_ / "file") << "in the way";
+    for (const fs::path& target : {folder_ / "file", folder_ / "file" / "below"}) {
+        const auto files = write_example("knot", target);
+        ASSERT_FALSE(files) << target;
+        EXPECT_EQ(files.error().kind, formats::ErrorKind::resource);
+        EXPECT_THAT(files.error().diagnostics.front().file, testing::HasSubstr("file"));
+    }
+}
+
+TEST_F(ExampleFiles, LeaveNoGltfWithoutItsBuffer) {
+    fs::create_directories(folder_ / "small.bin");  // the buffer's place is taken
+    const auto files = write_gltf(folder_, "small", small_scene());
+    ASSERT_FALSE(files);
+    EXPECT_EQ(files.error().kind, formats::ErrorKind::resource);
+    EXPECT_FALSE(fs::exists(folder_ / "small.gltf"));
+}
+
+}  // namespace
+}  // namespace opaline::bake

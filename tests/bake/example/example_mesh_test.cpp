@@ -1,0 +1,286 @@
+// What makes the example scenes fit for baking: closed forms, outward faces, round triangles.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+
+#include "bake/example/example_scenes.h"
+#include "bake/example/polygonize.h"
+#include "bake/example/remesh.h"
+
+namespace opaline::bake {
+namespace {
+
+/// Scenes are made once for all tests: the statue takes seconds.
+const std::vector<GltfObject>& scene(std::string_view name) {
+    static std::map<std::string, std::vector<GltfObject>, std::less<>> made;
+    auto at = made.find(name);
+    if (at == made.end()) {
+        auto objects = make_example(name);
+        at = made.emplace(std::string(name), std::move(objects).value()).first;
+    }
+    return at->second;
+}
+
+const TriangleMesh& figure(std::string_view name) {
+    return scene(name).front().mesh;
+}
+
+const TriangleMesh& floor_of(std::string_view name) {
+    return scene(name).back().mesh;
+}
+
+/// How often each directed edge occurs.
+std::map<std::pair<std::uint32_t, std::uint32_t>, int> directed_edges(const TriangleMesh& mesh) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> count;
+    for (const Triangle& t : mesh.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            ++count[{t[i], t[(i + 1) % 3]}];
+        }
+    }
+    return count;
+}
+
+/// Edges that are not shared by exactly two triangles running along it in opposite directions.
+std::size_t open_edges(const TriangleMesh& mesh) {
+    const auto count = directed_edges(mesh);
+    return static_cast<std::size_t>(
+        std::count_if(count.begin(), count.end(), [&](const auto& entry) {
+            const auto& [edge, times] = entry;
+            return times != 1 || !count.contains({edge.second, edge.first});
+        }));
+}
+
+/// Vertices whose triangles form more than one fan: surfaces that touch in a point.
+std::size_t pinched_vertices(const TriangleMesh& mesh) {
+    std::vector<std::map<std::uint32_t, std::uint32_t>> link(mesh.position.size());
+    for (const Triangle& t : mesh.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            link[t[i]][t[(i + 1) % 3]] = t[(i + 2) % 3];
+        }
+    }
+    return static_cast<std::size_t>(std::count_if(link.begin(), link.end(), [](const auto& ring) {
+        if (ring.empty()) return true;
+        std::size_t steps = 0;
+        std::uint32_t at = ring.begin()->first;
+        do {
+            const auto next = ring.find(at);
+            if (next == ring.end()) return true;
+            at = next->second;
+        } while (++steps <= ring.size() && at != ring.begin()->first);
+        return steps != ring.size();
+    }));
+}
+
+long euler_characteristic(const TriangleMesh& mesh) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const auto& [edge, times] : directed_edges(mesh)) {
+        edges.insert(std::minmax(edge.first, edge.second));
+    }
+    return static_cast<long>(mesh.position.size()) - static_cast<long>(edges.size()) +
+           static_cast<long>(mesh.triangles.size());
+}
+
+double volume(const TriangleMesh& mesh) {
+    double sum = 0.0;
+    for (const Triangle& t : mesh.triangles) {
+        sum += glm::dot(mesh.position[t[0]], glm::cross(mesh.position[t[1]], mesh.position[t[2]])) /
+               6.0;
+    }
+    return sum;
+}
+
+glm::dvec3 face_normal(const TriangleMesh& mesh, const Triangle& t) {
+    return glm::normalize(glm::cross(mesh.position[t[1]] - mesh.position[t[0]],
+                                     mesh.position[t[2]] - mesh.position[t[0]]));
+}
+
+/// Smallest angle of each triangle, in degrees, sorted.
+std::vector<double> smallest_angles(const TriangleMesh& mesh) {
+    std::vector<double> angles;
+    for (const Triangle& t : mesh.triangles) {
+        double smallest = 180.0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec3 u = mesh.position[t[(i + 1) % 3]] - mesh.position[t[i]],
+                             v = mesh.position[t[(i + 2) % 3]] - mesh.position[t[i]];
+            const double angle = std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
+            smallest = std::min(smallest, angle * 180.0 / std::numbers::pi);
+        }
+        angles.push_back(smallest);
+    }
+    std::sort(angles.begin(), angles.end());
+    return angles;
+}
+
+/// Positions as the file holds them: rounding to float must not make two vertices one.
+std::size_t coinciding_vertices(const TriangleMesh& mesh) {
+    std::set<std::array<float, 3>> seen;
+    for (const glm::dvec3& p : mesh.position) {
+        const glm::vec3 rounded(p);
+        seen.insert({rounded.x, rounded.y, rounded.z});
+    }
+    return mesh.position.size() - seen.size();
+}
+
+std::pair<double, double> height_range(const TriangleMesh& mesh) {
+    const auto [low, high] =
+        std::minmax_element(mesh.position.begin(), mesh.position.end(),
+                            [](const auto& a, const auto& b) { return a.y < b.y; });
+    return {low->y, high->y};
+}
+
+TriangleMesh make_ball(double radius) {
+    const Field ball = [=](const glm::dvec3& p) { return glm::length(p) - radius; };
+    TriangleMesh mesh =
+        polygonize(ball, {glm::dvec3(-radius - 2.0), glm::dvec3(radius + 2.0)}, 0.9);
+    remesh(ball, RemeshOptions{}, mesh);
+    return mesh;
+}
+
+class ExampleFigure : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ExampleFigure, testing::Values("statue", "knot"),
+                         [](const auto& scene_name) { return std::string(scene_name.param); });
+
+TEST_P(ExampleFigure, IsAClosedTwoManifold) {
+    EXPECT_EQ(open_edges(figure(GetParam())), 0u);
+    EXPECT_EQ(pinched_vertices(figure(GetParam())), 0u);
+}
+
+TEST_P(ExampleFigure, FacesOutward) {
+    EXPECT_GT(volume(figure(GetParam())), 0.0);
+}
+
+TEST_P(ExampleFigure, HasUnitNormalsOnTheSideOfItsFaces) {
+    const TriangleMesh& mesh = figure(GetParam());
+    ASSERT_EQ(mesh.normal.size(), mesh.position.size());
+    for (const glm::dvec3& n : mesh.normal) {
+        ASSERT_NEAR(glm::length(n), 1.0, 1e-9);
+    }
+    double worst = 1.0;
+    for (const Triangle& t : mesh.triangles) {
+        for (const std::uint32_t v : t) {
+            worst = std::min(worst, glm::dot(face_normal(mesh, t), mesh.normal[v]));
+        }
+    }
+    // Feather rims and notches bend by up to a right angle within a triangle, but none folds over.
+    EXPECT_GT(worst, 0.2);
+}
+
+TEST_P(ExampleFigure, HasRoundTriangles) {
+    const std::vector<double> angles = smallest_angles(figure(GetParam()));
+    EXPECT_GT(angles.front(), 10.0);
+    EXPECT_GT(angles[angles.size() / 100], 25.0);
+}
+
+TEST_P(ExampleFigure, HasNoTwoVerticesInOnePlace) {
+    EXPECT_EQ(coinciding_vertices(figure(GetParam())), 0u);
+}
+
+TEST_P(ExampleFigure, RestsOnTheFloor) {
+    const auto [low, high] = height_range(figure(GetParam()));
+    // Sunk by 0.4 mm: deep enough that no face lies in the floor, too little to be seen.
+    EXPECT_NEAR(low, -0.0004, 0.0001);
+    const double height = GetParam() == std::string("statue") ? 0.12 : 0.24;
+    EXPECT_NEAR(high, height, 0.05 * height);
+}
+
+TEST_P(ExampleFigure, StandsInTheMiddleOfAFloorThatFacesUp) {
+    const TriangleMesh& floor = floor_of(GetParam());
+    for (const glm::dvec3& p : floor.position) {
+        ASSERT_EQ(p.y, 0.0);
+    }
+    for (const Triangle& t : floor.triangles) {
+        ASSERT_NEAR(face_normal(floor, t).y, 1.0, 1e-12);
+    }
+    for (const glm::dvec3& n : floor.normal) {
+        ASSERT_EQ(n, glm::dvec3(0.0, 1.0, 0.0));
+    }
+    EXPECT_THAT(floor.position.size(), testing::AllOf(testing::Ge(10000u), testing::Le(17000u)));
+    EXPECT_EQ(coinciding_vertices(floor), 0u);
+    EXPECT_GT(smallest_angles(floor).front(), 44.9);
+}
+
+TEST_P(ExampleFigure, StandsOnAFloorWithoutHolesOrHangingCorners) {
+    const TriangleMesh& floor = floor_of(GetParam());
+    const auto edges = directed_edges(floor);
+    double side = 0.0;
+    for (const glm::dvec3& p : floor.position) {
+        side = std::max(side, p.x);
+    }
+    double border = 0.0;
+    for (const auto& [edge, times] : edges) {
+        ASSERT_EQ(times, 1);
+        if (edges.contains({edge.second, edge.first})) continue;
+        const glm::dvec3 &a = floor.position[edge.first], &b = floor.position[edge.second];
+        // An edge of one triangle alone must lie on the rim of the square.
+        ASSERT_NEAR(std::max(std::abs(a.x + b.x), std::abs(a.z + b.z)), 2.0 * side, 1e-12);
+        border += glm::distance(a, b);
+    }
+    EXPECT_NEAR(border, 8.0 * side, 1e-9);
+    EXPECT_EQ(euler_characteristic(floor), 1);  // a disc
+}
+
+TEST(StatueExample, HasThirtyThousandVerticesAndNoHandles) {
+    EXPECT_GE(figure("statue").position.size(), 30000u);
+    EXPECT_LE(figure("statue").position.size(), 46000u);
+    EXPECT_EQ(euler_characteristic(figure("statue")), 2);
+}
+
+TEST(StatueExample, HasAThickBodyAndThinFeathers) {
+    // Water displaced by 45 mm of body: a hollow or inside-out figure would miss this by far.
+    EXPECT_GT(volume(figure("statue")), 1.5e-4);
+    EXPECT_LT(volume(figure("statue")), 3.0e-4);
+}
+
+TEST(KnotExample, IsATorus) {
+    EXPECT_EQ(euler_characteristic(figure("knot")), 0);
+}
+
+TEST(Examples, AreTheSameForAnyNumberOfThreads) {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const auto again = make_example("statue");
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->front().mesh.position, figure("statue").position);
+    EXPECT_EQ(again->front().mesh.normal, figure("statue").normal);
+    EXPECT_EQ(again->front().mesh.triangles, figure("statue").triangles);
+}
+
+TEST(Remesh, PutsABallOnItsSphere) {
+    constexpr double kRadius = 9.0;
+    const TriangleMesh ball = make_ball(kRadius);
+    EXPECT_EQ(open_edges(ball), 0u);
+    EXPECT_EQ(euler_characteristic(ball), 2);
+    for (std::size_t v = 0; v < ball.position.size(); ++v) {
+        ASSERT_NEAR(glm::length(ball.position[v]), kRadius, 1e-6);
+        ASSERT_NEAR(glm::dot(ball.normal[v], ball.position[v]), kRadius, 1e-3);
+    }
+    // Chords cut the volume by less than the area times the wanted deviation of 0.03 mm.
+    const double exact = 4.0 / 3.0 * std::numbers::pi * kRadius * kRadius * kRadius;
+    EXPECT_NEAR(volume(ball), exact, 4.0 * std::numbers::pi * kRadius * kRadius * 0.03);
+}
+
+TEST(Polygonize, StaysManifoldWhereTheSolidIsThinnerThanTheGrid) {
+    // Two sheets closer than a cell, and a rod along a cell diagonal: every ambiguous case occurs.
+    const Field field = [](const glm::dvec3& p) {
+        const glm::dvec3 d = glm::normalize(glm::dvec3(1.0, 1.1, 0.9));
+        const double rod = glm::length(p - glm::dot(p, d) * d) - 0.55;
+        const double sheets = std::abs(std::abs(p.x + 0.3 * p.y - 0.2 * p.z) - 0.7) - 0.45;
+        return smooth_intersection(std::min(rod, sheets), glm::length(p) - 8.0, 0.5);
+    };
+    const TriangleMesh mesh = polygonize(field, {glm::dvec3(-10.0), glm::dvec3(10.0)}, 1.0);
+    ASSERT_GT(mesh.triangles.size(), 500u);
+    EXPECT_EQ(open_edges(mesh), 0u);
+    EXPECT_EQ(pinched_vertices(mesh), 0u);
+}
+
+}  // namespace
+}  // namespace opaline::bake
