@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "bake/example/contact.h"
 #include "bake/example/floor.h"
 #include "bake/example/knot.h"
 #include "bake/example/polygonize.h"
@@ -28,21 +29,26 @@ TriangleMesh in_metres(TriangleMesh mesh) {
     return mesh;
 }
 
-GltfObject floor_object(const FloorOptions& options) {
-    return {"Floor", "Floor", {0.50, 0.48, 0.45}, in_metres(make_floor(options))};
+GltfObject floor_object(TriangleMesh floor) {
+    return {"Floor", "Floor", {0.50, 0.48, 0.45}, in_metres(std::move(floor))};
 }
 
 std::vector<GltfObject> make_statue() {
     const Solid swan = make_swan();
     TriangleMesh mesh = polygonize(swan.field, swan.bounds, 1.1);
     remesh(swan.field, RemeshOptions{}, mesh);
+    TriangleMesh floor =
+        make_floor({.finest = 1.7, .fine_radius = 55.0, .growth = 0.1, .levels = 9});
+    constexpr double kGap = 0.1;  // wider than the mesh's distance from the field
+    snap_to_contact(swan.field, kGap, floor);
     return {{"Statue", "Statue", {0.82, 0.81, 0.79}, in_metres(std::move(mesh))},
-            floor_object({.finest = 1.7, .fine_radius = 55.0, .growth = 0.1, .levels = 9})};
+            floor_object(std::move(floor))};
 }
 
 std::vector<GltfObject> make_trefoil() {
     return {{"Knot", "Knot", {0.80, 0.80, 0.80}, in_metres(make_knot({}))},
-            floor_object({.finest = 3.2, .fine_radius = 110.0, .growth = 0.1, .levels = 9})};
+            floor_object(
+                make_floor({.finest = 3.2, .fine_radius = 110.0, .growth = 0.1, .levels = 9}))};
 }
 
 constexpr Example kExamples[] = {
