@@ -66,11 +66,11 @@ struct Block {
 // Transport of a diffuse surface, T = V max(0, n.w) / pi, one receiver at a time: dense, Haar,
 // selection, quantisation. Only one dense vector per thread exists at any time.
 Block bake_block(const RayScene& rays, const DirectionSet& directions, const Selector& selector,
-                 const ReceiverSet& receivers, Range range, std::uint32_t code_bits) {
+                 std::span<const Receiver> receivers, std::uint32_t code_bits) {
     Block block{formats::make_sparse_rows(directions.cubemap_size, code_bits), 0};
-    std::vector<float> dense(selector.weight.size()), scratch(dense.size());
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-        block.rays += gather_irradiance(rays, directions, receivers, i, dense, scratch);
+    std::vector<float> dense(selector.weight.size());
+    for (const Receiver& receiver : receivers) {
+        block.rays += gather_irradiance(rays, directions, receiver, dense);
         for (float& value : dense) {
             value *= std::numbers::inv_pi_v<float>;
         }
@@ -81,7 +81,7 @@ Block bake_block(const RayScene& rays, const DirectionSet& directions, const Sel
 }
 
 formats::Result<formats::SparseRows> bake_direct(const RayScene& rays, const Knobs& knobs,
-                                                 const ReceiverSet& receivers,
+                                                 std::span<const Receiver> receivers,
                                                  const Context& context, std::uint64_t& traced) {
     constexpr std::size_t kReceiversPerBlock = 64;
     const DirectionSet directions = make_direction_set(knobs.cubemap_size);
@@ -91,7 +91,9 @@ formats::Result<formats::SparseRows> bake_direct(const RayScene& rays, const Kno
     for_each_block_in_order(
         receivers.size(), kReceiversPerBlock, context,
         [&](Range range) {
-            return bake_block(rays, directions, selector, receivers, range, knobs.code_bits);
+            return bake_block(rays, directions, selector,
+                              receivers.subspan(range.begin, range.end - range.begin),
+                              knobs.code_bits);
         },
         [&](Range range, Block block) {
             fits = fits && formats::append_rows(rows, block.rows);
@@ -135,7 +137,7 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
     if (!rays) {
         return std::move(rays).error();
     }
-    const ReceiverSet receivers = run_stage(result, "receivers", [&](std::uint64_t&) {
+    const std::vector<Receiver> receivers = run_stage(result, "receivers", [&](std::uint64_t&) {
         std::vector<Receiver> all = make_vertex_receivers(scene);
         leave_out_skipped(scene, result.plan, all);
         return take_over_hidden(*rays, scene, std::move(all));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,41 @@ glm::dvec3 find_crossing(const Field& solid, glm::dvec3 inside, glm::dvec3 outsi
         (solid(middle) < gap ? inside : outside) = middle;
     }
     return outside;
+}
+
+// Signed area [mm^2] seen from above, +y.
+double area_from_above(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+    return 0.5 * ((c.x - a.x) * (b.z - a.z) - (b.x - a.x) * (c.z - a.z));
+}
+
+// Makes the moves, short ones first, leaving out those that would crush a triangle or turn it over.
+void move_vertices(const std::vector<double>& distance, const std::vector<glm::dvec3>& target,
+                   TriangleMesh& floor) {
+    constexpr double kLeastShare = 0.1;  // of a triangle's area
+    std::vector<std::vector<std::size_t>> around(distance.size());
+    std::vector<double> least_area;
+    for (const auto& [a, b, c] : floor.triangles) {
+        for (const std::uint32_t v : {a, b, c}) {
+            around[v].push_back(least_area.size());
+        }
+        least_area.push_back(
+            kLeastShare * area_from_above(floor.position[a], floor.position[b], floor.position[c]));
+    }
+    std::vector<std::size_t> order(distance.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return distance[a] < distance[b]; });
+    for (const std::size_t v : order) {
+        const glm::dvec3 before = std::exchange(floor.position[v], target[v]);
+        for (const std::size_t t : around[v]) {
+            const auto& [a, b, c] = floor.triangles[t];
+            if (area_from_above(floor.position[a], floor.position[b], floor.position[c]) <
+                least_area[t]) {
+                floor.position[v] = before;
+                break;
+            }
+        }
+    }
 }
 
 }  // namespace
@@ -46,7 +82,7 @@ void snap_to_contact(const Field& solid, double gap, TriangleMesh& floor) {
             }
         }
     }
-    floor.position = std::move(target);
+    move_vertices(nearest, target, floor);
 }
 
 }  // namespace opaline::bake

@@ -49,14 +49,14 @@ struct Checked {
     std::uint64_t rays = 0;
 };
 
-Checked check_receiver(const RayScene& rays, const DirectionSet& fine, const ReceiverSet& receivers,
+Checked check_receiver(const RayScene& rays, const DirectionSet& fine, const Receiver& receiver,
                        std::uint32_t index, const formats::SparseRowsView& rows,
                        std::span<const TestLight> lights) {
     const std::size_t size = lights.front().coarse.size();
-    std::vector<float> stored(size), dense(4 * size), scratch(4 * size);
+    std::vector<float> stored(size), dense(4 * size);
     formats::decode_row(rows, {0, rows.rows(), 1, 0, 0}, index, 0, stored);
     Checked checked;
-    checked.rays = gather_irradiance(rays, fine, receivers, index, dense, scratch);
+    checked.rays = gather_irradiance(rays, fine, receiver, dense);
     formats::haar_forward_cube(std::span<float>(dense), fine.cubemap_size);
     for (const TestLight& light : lights) {
         const double reference = dot(dense, light.fine) * std::numbers::inv_pi;
@@ -100,7 +100,7 @@ void bootstrap(std::span<const Pair> pairs, std::size_t lights, std::uint64_t se
 
 }  // namespace
 
-ErrorReport measure_direct_error(const RayScene& rays, const ReceiverSet& receivers,
+ErrorReport measure_direct_error(const RayScene& rays, std::span<const Receiver> receivers,
                                  const formats::SparseRowsView& rows,
                                  std::span<const TestLight> lights, std::uint64_t seed,
                                  const Context& context) {
@@ -108,7 +108,7 @@ ErrorReport measure_direct_error(const RayScene& rays, const ReceiverSet& receiv
     report.reference =
         "dense, unquantised transport at twice the cube map resolution; luminance under white, "
         "sun:30,60, sun:150,35, sun:270,15, studio and sky:3,35";
-    if (receivers.size() == 0 || lights.empty()) {
+    if (receivers.empty() || lights.empty()) {
         return report;
     }
     const DirectionSet fine = make_direction_set(2 * rows.cubemap_size);
@@ -118,7 +118,7 @@ ErrorReport measure_direct_error(const RayScene& rays, const ReceiverSet& receiv
         drawn.size(), 1, context,
         [&](Range range) {
             const std::uint32_t index = drawn[range.begin];
-            return check_receiver(rays, fine, receivers, index, rows, lights);
+            return check_receiver(rays, fine, receivers[index], index, rows, lights);
         },
         [&](Range, Checked checked) {
             pairs.insert(pairs.end(), checked.pairs.begin(), checked.pairs.end());

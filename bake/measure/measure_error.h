@@ -33,7 +33,7 @@ struct ErrorReport {
 /// Checks grey rows, one per receiver, each holding V max(0, n.w) / pi.
 /// Receivers are drawn by (seed, draw), about one in forty and at most 256, so that the check costs
 /// at most a tenth of the bake.
-ErrorReport measure_direct_error(const RayScene& rays, const ReceiverSet& receivers,
+ErrorReport measure_direct_error(const RayScene& rays, std::span<const Receiver> receivers,
                                  const formats::SparseRowsView& rows,
                                  std::span<const TestLight> lights, std::uint64_t seed,
                                  const Context& context);

@@ -12,15 +12,6 @@ struct Receiver {
     glm::vec3 normal;  ///< unit shading normal; {0,0,0}: no normal exists, nothing is gathered
 };
 
-/// Output receivers in order, each the mean of what it gathers at its points: one point normally,
-/// several where a receiver takes over from its neighbours, none where it gathers nothing.
-struct ReceiverSet {
-    std::vector<Receiver> points;
-    std::vector<std::uint32_t> first{0};  ///< receiver i has points first[i] .. first[i + 1]
-
-    std::size_t size() const { return first.size() - 1; }
-};
-
 /// A point of a uniformly distributed set on the surface; the areas of a set add up to the surface.
 struct SurfaceSample {
     glm::vec3 position;           ///< [m], on the triangle

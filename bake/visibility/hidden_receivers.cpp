@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <span>
 #include <utility>
 
 namespace opaline::bake {
@@ -47,49 +46,51 @@ bool is_hidden(const RayScene& rays, const Receiver& receiver) {
     return std::all_of(back.begin(), back.end(), [](std::int32_t lane) { return lane != 0; });
 }
 
-// Visible vertices that share an edge with a hidden one, as sorted pairs (hidden, visible).
-using Link = std::pair<std::uint32_t, std::uint32_t>;
-std::vector<Link> link_to_visible(const formats::Scene& scene, const std::vector<bool>& hidden) {
-    std::vector<Link> links;
+constexpr std::uint32_t kNobody = 0xffffffffu;
+
+// For each vertex, the nearest visible one that shares an edge with it; the first of equally near
+// ones. Looked up for hidden vertices only.
+std::vector<std::uint32_t> nearest_visible(const formats::Scene& scene,
+                                           const std::vector<Receiver>& receivers,
+                                           const std::vector<bool>& hidden) {
+    std::vector<std::uint32_t> nearest(receivers.size(), kNobody);
+    std::vector<float> distance(receivers.size(), std::numeric_limits<float>::infinity());
+    const auto offer = [&](std::uint32_t from, std::uint32_t to) {
+        const float d = glm::distance(receivers[from].origin, receivers[to].origin);
+        if (hidden[from] && !hidden[to] && d < distance[from]) {
+            distance[from] = d;
+            nearest[from] = to;
+        }
+    };
     std::uint32_t base = 0;
     for (const formats::Primitive& p : scene.primitives) {
         for (std::size_t i = 0; i < p.index.size(); ++i) {
             const std::uint32_t a = base + p.index[i];
             const std::uint32_t b = base + p.index[i % 3 == 2 ? i - 2 : i + 1];
-            if (hidden[a] != hidden[b]) {
-                links.push_back(hidden[a] ? Link{a, b} : Link{b, a});
-            }
+            offer(a, b);
+            offer(b, a);
         }
         base += static_cast<std::uint32_t>(p.position.size());
     }
-    std::sort(links.begin(), links.end());
-    links.erase(std::unique(links.begin(), links.end()), links.end());
-    return links;
+    return nearest;
 }
 
 }  // namespace
 
-ReceiverSet take_over_hidden(const RayScene& rays, const formats::Scene& scene,
-                             std::vector<Receiver> receivers) {
+std::vector<Receiver> take_over_hidden(const RayScene& rays, const formats::Scene& scene,
+                                       std::vector<Receiver> receivers) {
     std::vector<bool> hidden(receivers.size());
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         hidden[i] = is_hidden(rays, receivers[i]);
     }
-    const std::vector<Link> links = link_to_visible(scene, hidden);
-    ReceiverSet set;
-    set.points.reserve(receivers.size());
-    set.first.reserve(receivers.size() + 1);
-    auto link = links.begin();
-    for (std::uint32_t i = 0; i < receivers.size(); ++i) {
-        if (link == links.end() || link->first != i) {
-            set.points.push_back(receivers[i]);
+    const std::vector<std::uint32_t> nearest = nearest_visible(scene, receivers, hidden);
+    std::vector<Receiver> result = receivers;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        if (nearest[i] != kNobody) {
+            result[i].origin = receivers[nearest[i]].origin;
         }
-        for (; link != links.end() && link->first == i; ++link) {
-            set.points.push_back({receivers[link->second].origin, receivers[i].normal});
-        }
-        set.first.push_back(static_cast<std::uint32_t>(set.points.size()));
     }
-    return set;
+    return result;
 }
 
 }  // namespace opaline::bake

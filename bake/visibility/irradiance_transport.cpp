@@ -68,23 +68,4 @@ std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& direct
     return traced;
 }
 
-std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& directions,
-                                const ReceiverSet& receivers, std::size_t index,
-                                std::span<float> transport, std::span<float> scratch) {
-    const std::uint32_t begin = receivers.first[index], end = receivers.first[index + 1];
-    if (end - begin == 1) {
-        return gather_irradiance(rays, directions, receivers.points[begin], transport);
-    }
-    std::fill(transport.begin(), transport.end(), 0.0f);
-    std::uint64_t traced = 0;
-    const float share = 1.0f / static_cast<float>(std::max(1u, end - begin));
-    for (std::uint32_t point = begin; point < end; ++point) {
-        traced += gather_irradiance(rays, directions, receivers.points[point], scratch);
-        for (std::size_t j = 0; j < transport.size(); ++j) {
-            transport[j] += share * scratch[j];
-        }
-    }
-    return traced;
-}
-
 }  // namespace opaline::bake

@@ -19,9 +19,4 @@ namespace opaline::bake {
 std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& directions,
                                 const Receiver& receiver, std::span<float> transport);
 
-/// The same for a receiver of a set: the mean over its points. `scratch` is as long as `transport`.
-std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& directions,
-                                const ReceiverSet& receivers, std::size_t index,
-                                std::span<float> transport, std::span<float> scratch);
-
 }  // namespace opaline::bake

@@ -206,7 +206,10 @@ TEST_P(ExampleFigure, StandsInTheMiddleOfAFloorThatFacesUp) {
     }
     EXPECT_THAT(floor.position.size(), testing::AllOf(testing::Ge(10000u), testing::Le(17000u)));
     EXPECT_EQ(coinciding_vertices(floor), 0u);
-    EXPECT_GT(smallest_angles(floor).front(), 44.9);
+    // Right-angled, but for the few that are snapped to the statue's foot.
+    EXPECT_GT(smallest_angles(floor).front(), 4.0);
+    const std::vector<double> angles = smallest_angles(floor);
+    EXPECT_GT(angles[angles.size() / 50], 44.9);
 }
 
 TEST_P(ExampleFigure, StandsOnAFloorWithoutHolesOrHangingCorners) {
