@@ -28,7 +28,7 @@ bool within_bounds(std::string_view text, Report& report) {
         return false;
     }
     int depth = 0;
-    std::size_t values = 1;
+    std::size_t values = 1, objects = 0;
     bool in_string = false;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
@@ -44,6 +44,7 @@ bool within_bounds(std::string_view text, Report& report) {
             in_string = true;
         } else if (c == '[' || c == '{') {
             ++values;
+            objects += c == '{' ? 1 : 0;
             if (++depth > kMaxJsonDepth) {
                 report.error("JSON",
                              "it nests deeper than " + std::to_string(kMaxJsonDepth) +
@@ -57,8 +58,10 @@ bool within_bounds(std::string_view text, Report& report) {
             ++values;
         }
     }
-    if (values > kMaxJsonValues) {
-        report.over_limit("JSON", "it has more than " + std::to_string(kMaxJsonValues) + " values",
+    if (values > kMaxJsonValues || objects > kMaxJsonObjects) {
+        report.over_limit("JSON",
+                          "it has more than " + std::to_string(kMaxJsonValues) + " values or " +
+                              std::to_string(kMaxJsonObjects) + " objects",
                           "split the asset");
         return false;
     }

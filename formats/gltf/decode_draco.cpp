@@ -2,6 +2,7 @@
 
 #include <draco/compression/decode.h>
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -55,6 +56,39 @@ std::size_t add_accessor(Json& root, Resources& resources, std::vector<std::byte
     resources.buffers.push_back(resources.keep(std::move(bytes)));
     root["accessors"].push_back(std::move(accessor));
     return root["accessors"].size() - 1;
+}
+
+/// The counts at the head of a Draco mesh (bitstream 2.2, the one that glTF allows), checked before
+/// the decoder allocates by them: an edgebreaker face takes about a bit, so more than 64 faces or
+/// vertices a byte are not a mesh but an attempt to exhaust memory. Empty where it is sound.
+std::string header_fault(Bytes bytes) {
+    const auto byte = [&](std::size_t i) { return std::to_integer<std::uint32_t>(bytes[i]); };
+    if (bytes.size() < 16 || std::memcmp(bytes.data(), "DRACO", 5) != 0) {
+        return "the compressed data does not start with a Draco header";
+    }
+    if (byte(5) != 2 || byte(6) != 2 || byte(7) != 1 || byte(8) > 1 || (byte(10) & 0x80) != 0) {
+        return "the compressed data is not a plain mesh of Draco bitstream 2.2";
+    }
+    std::size_t at = 11 + byte(8);  // edgebreaker stores one more byte, its traversal
+    const auto varint = [&] {
+        std::uint64_t value = 0;
+        for (int shift = 0; at < bytes.size() && shift < 35; shift += 7) {
+            const std::uint64_t digit = byte(at++);
+            value |= (digit & 0x7f) << shift;
+            if (digit < 0x80) {
+                return value;
+            }
+        }
+        return ~std::uint64_t{0};
+    };
+    std::uint64_t largest = std::max(varint(), varint());  // vertices and faces
+    if (byte(8) == 1) {
+        ++at;                                               // number of attribute decoders
+        largest = std::max({largest, varint(), varint()});  // symbols, split symbols
+    }
+    return largest > 64 * std::uint64_t{bytes.size()}
+               ? "the compressed data claims more faces or vertices than it can hold"
+               : "";
 }
 
 template <class T>
@@ -161,6 +195,9 @@ std::string decode_primitive(Json& root, Resources& resources, const Json& exten
     if (!bytes || ids == extension.end() || !ids->is_object() ||
         !primitive.contains("attributes") || !primitive["attributes"].is_object()) {
         return "its bufferView or attributes are missing or out of range";
+    }
+    if (std::string fault = header_fault(*bytes); !fault.empty()) {
+        return fault;
     }
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes->data()), bytes->size());

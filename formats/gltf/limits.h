@@ -10,7 +10,8 @@ namespace opaline::formats::gltf {
 inline constexpr std::uint64_t kMaxFileBytes = 8ull << 30;    ///< one file
 inline constexpr std::uint64_t kMaxTotalBytes = 16ull << 30;  ///< all buffers together
 inline constexpr std::size_t kMaxJsonBytes = 256u << 20;
-inline constexpr std::size_t kMaxJsonValues = 16'000'000;
+inline constexpr std::size_t kMaxJsonValues = 4'000'000;
+inline constexpr std::size_t kMaxJsonObjects = 1'000'000;
 inline constexpr int kMaxJsonDepth = 64;
 inline constexpr std::uint64_t kMaxWorldVertices = 200'000'000;  ///< over all instances
 inline constexpr std::uint64_t kMaxWorldIndices = 1'200'000'000;

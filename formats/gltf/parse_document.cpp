@@ -1,5 +1,15 @@
 #include "formats/gltf/parse_document.h"
 
+#include <fstream>  // tiny_gltf.h uses it even where TINYGLTF_NO_FS leaves it out
+
+// Debian's libdraco exports a tinygltf of its own with other struct layouts, and the dynamic linker
+// may choose either. So ours is compiled here, under a name of its own, and reads no file or image.
+#define tinygltf opaline_tinygltf
+#define TINYGLTF_IMPLEMENTATION
+#define TINYGLTF_NO_FS
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
 #include <tiny_gltf.h>
 
 #include <cmath>
@@ -34,6 +44,18 @@ int give_every_accessor_a_view(Json& root) {
         }
     }
     return none;
+}
+
+/// Applications' own data; nothing of Opaline's. Recursion is bounded by kMaxJsonDepth.
+void drop_extras(Json& value) {
+    if (value.is_object()) {
+        value.erase("extras");
+    }
+    if (value.is_structured()) {
+        for (Json& member : value) {
+            drop_extras(member);
+        }
+    }
 }
 
 std::vector<std::string> names_of(const tinygltf::ExtensionMap& extensions) {
@@ -250,6 +272,7 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
          {"buffers", "images", "animations", "skins", "cameras", "extensions", "extras", "scene"}) {
         root.erase(key);
     }
+    drop_extras(root);
     const int no_view = give_every_accessor_a_view(root);
     const std::string text = root.dump(-1, ' ', true, Json::error_handler_t::replace);
     root = nullptr;

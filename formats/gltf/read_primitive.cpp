@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 
 #include "formats/gltf/read_accessor.h"
 
@@ -117,11 +116,9 @@ std::vector<std::uint32_t> triangulate(Mode mode, std::vector<std::uint32_t> dra
     std::vector<std::uint32_t> triangles;
     for (std::size_t i = 0; i + 2 < drawn.size(); ++i) {
         const bool strip = mode == Mode::triangle_strip;
-        const std::initializer_list<std::uint32_t> corners =
-            strip ? std::initializer_list<std::uint32_t>{drawn[i], drawn[i + 1 + i % 2],
-                                                         drawn[i + 2 - i % 2]}
-                  : std::initializer_list<std::uint32_t>{drawn[i + 1], drawn[i + 2], drawn[0]};
-        triangles.insert(triangles.end(), corners);
+        triangles.push_back(strip ? drawn[i] : drawn[i + 1]);
+        triangles.push_back(strip ? drawn[i + 1 + i % 2] : drawn[i + 2]);
+        triangles.push_back(strip ? drawn[i + 2 - i % 2] : drawn[0]);
     }
     return triangles;
 }

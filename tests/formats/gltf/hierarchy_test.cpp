@@ -1,0 +1,217 @@
+#include "tests/formats/gltf/asset_builder.h"
+
+namespace opaline::tests {
+namespace {
+
+using formats::ErrorKind;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+glm::vec3 face_normal(const formats::Primitive& p) {
+    const glm::vec3 a = p.position[p.index[0]];
+    return glm::normalize(glm::cross(p.position[p.index[1]] - a, p.position[p.index[2]] - a));
+}
+
+void expect_near(glm::vec3 a, glm::vec3 b, float tolerance) {
+    EXPECT_LE(glm::length(a - b), tolerance) << a.x << ' ' << a.y << ' ' << a.z;
+}
+
+TEST(GltfHierarchy, TransformsComposeFromRootToLeaf) {
+    AssetBuilder asset = triangle_asset();
+    // Child: +1 along x. Parent: a quarter turn about y (x to -z), then twice as large, then up.
+    asset.json["nodes"][0]["translation"] = {1, 0, 0};
+    const double h = std::sqrt(0.5);
+    asset.json["nodes"].push_back({{"children", {0u}},
+                                   {"rotation", {0, h, 0, h}},
+                                   {"scale", {2, 2, 2}},
+                                   {"translation", {0, 10, 0}}});
+    asset.json["scenes"][0]["nodes"] = {1u};
+    const auto imported = must_import(asset);
+    const auto& p = imported.scene.primitives.at(0);
+    EXPECT_EQ(p.node, 0u);
+    expect_near(p.position[0], {0, 10, -2}, 1e-6f);  // rounding of the quaternion's digits
+    expect_near(p.position[1], {0, 10, -4}, 1e-6f);
+    expect_near(p.position[2], {0, 12, -2}, 1e-6f);
+    expect_near(p.normal[0], {1, 0, 0}, 1e-6f);
+}
+
+TEST(GltfHierarchy, MatrixIsColumnMajor) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1};
+    EXPECT_EQ(must_import(asset).scene.primitives.at(0).position[0], glm::vec3(5, 6, 7));
+    asset.json["nodes"][0]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("the last row of its matrix"));
+    asset.json["nodes"][0]["matrix"] = {1, 2, 3};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("matrix is not an array of 16 numbers"));
+}
+
+TEST(GltfHierarchy, MirroredInstancesStayCounterClockwiseOutside) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+        asset.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+    asset.add_node(0, {{"scale", {-1, 1, 1}}});
+    asset.add_node(0, {{"scale", {1, 1, -3}}});
+    asset.add_node(0, {{"scale", {-1, -1, 1}}});
+    const auto scene = must_import(asset).scene;
+    ASSERT_EQ(scene.primitives.size(), 4u);
+    for (const auto& p : scene.primitives) {
+        EXPECT_GT(glm::dot(face_normal(p), p.normal[0]), 0.99f) << p.name;
+    }
+    EXPECT_EQ(face_normal(scene.primitives[1]), glm::vec3(0, 0, 1));
+    EXPECT_EQ(face_normal(scene.primitives[2]), glm::vec3(0, 0, -1));
+}
+
+TEST(GltfHierarchy, NormalsFollowTheInverseTranspose) {
+    // The plane x + y = 1 scaled by 4 along x is x/4 + y = 1, whose normal is (1/4, 1).
+    AssetBuilder asset;
+    const auto position = asset.add<float>({1, 0, 0, 0, 1, 0, 1, 0, 1}, "VEC3");
+    const float h = std::sqrt(0.5f);
+    const auto normal = asset.add<float>({h, h, 0, h, h, 0, h, h, 0}, "VEC3");
+    asset.add_node(asset.add_mesh({{"POSITION", position}, {"NORMAL", normal}}),
+                   {{"scale", {4, 1, 1}}});
+    expect_near(must_import(asset).scene.primitives.at(0).normal[0],
+                glm::normalize(glm::vec3(0.25f, 1, 0)), 1e-6f);
+}
+
+TEST(GltfHierarchy, RunningNumberIsDepthFirstThenPrimitives) {
+    AssetBuilder asset = triangle_asset();
+    Json& mesh = asset.json["meshes"][0];
+    mesh["primitives"].push_back(mesh["primitives"][0]);
+    mesh["primitives"][0]["mode"] = 1u;  // lines keep their number
+    asset.json["nodes"] = Json::array({{{"name", "leaf"}, {"mesh", 0u}},
+                                       {{"children", {3u, 0u}}},
+                                       {{"name", "last"}, {"mesh", 0u}},
+                                       {{"name", "first"}, {"mesh", 0u}}});
+    asset.json["scenes"][0]["nodes"] = {1u, 2u};
+    const auto imported = must_import(asset);
+    std::vector<std::string> names;
+    for (const auto& p : imported.scene.primitives) {
+        names.push_back(p.name);
+    }
+    EXPECT_THAT(
+        names,
+        ElementsAre("node 'first' > mesh 0 > primitive 0", "node 'first' > mesh 0 > primitive 1",
+                    "node 'leaf' > mesh 0 > primitive 0", "node 'leaf' > mesh 0 > primitive 1",
+                    "node 'last' > mesh 0 > primitive 0", "node 'last' > mesh 0 > primitive 1"));
+    EXPECT_TRUE(imported.scene.primitives[0].position.empty());
+    EXPECT_EQ(imported.scene.primitives[1].position.size(), 3u);
+    EXPECT_THAT(lines(imported.warnings), HasSubstr("points and lines are not simulated"));
+}
+
+TEST(GltfHierarchy, WithoutScenesAllRootsAreRead) {
+    AssetBuilder asset = triangle_asset();
+    asset.json.erase("scenes");
+    asset.json.erase("scene");
+    asset.json["nodes"].push_back({{"mesh", 0u}});
+    EXPECT_EQ(must_import(asset).scene.primitives.size(), 2u);
+}
+
+TEST(GltfHierarchy, OnlyTheDefaultSceneIsReadAndTheOthersAreNamed) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["nodes"].push_back({{"mesh", 0u}});
+    asset.json["scenes"].push_back({{"nodes", {1u}}});
+    asset.json["scene"] = 1u;
+    const auto imported = must_import(asset);
+    ASSERT_EQ(imported.scene.primitives.size(), 1u);
+    EXPECT_EQ(imported.scene.primitives[0].node, 1u);
+    EXPECT_THAT(lines(imported.warnings), HasSubstr("only this scene is read: the file has 2"));
+}
+
+TEST(GltfHierarchy, CyclesSharedChildrenAndLostNodesAreErrors) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["nodes"][0]["children"] = {0u};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("node 0"));
+
+    asset = triangle_asset();
+    asset.json["nodes"].push_back({{"children", {2u}}});
+    asset.json["nodes"].push_back({{"children", {1u}}});
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("its own ancestor"));
+
+    asset = triangle_asset();
+    asset.json["nodes"].push_back({{"children", {0u}}});
+    asset.json["nodes"].push_back({{"children", {0u}}});
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("also a child of node 1"));
+
+    asset = triangle_asset();
+    asset.json["nodes"][0]["children"] = {9u};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("child node 9 does not exist"));
+
+    asset = triangle_asset();
+    asset.json["nodes"][0]["mesh"] = 9u;
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("mesh 9 does not exist"));
+
+    asset = triangle_asset();
+    asset.json["scene"] = 9u;
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("scene 9 does not exist"));
+}
+
+TEST(GltfHierarchy, ChainOf100000NodesNeedsNoStack) {
+    AssetBuilder asset = triangle_asset();
+    constexpr unsigned kDepth = 100000;
+    for (unsigned i = 1; i <= kDepth; ++i) {
+        Json node = {{"children", {i + 1}}};
+        if (i == kDepth) {
+            node = {{"children", {0u}}};
+        }
+        asset.json["nodes"].push_back(node);
+    }
+    asset.json["scenes"][0]["nodes"] = {1u};
+    EXPECT_EQ(must_import(asset).scene.primitives.size(), 1u);
+}
+
+TEST(GltfHierarchy, TooManyInstancedVerticesAreRefusedBeforeTheyAreMade) {
+    AssetBuilder asset;
+    const std::vector<float> many(3 * 100000, 0.0f);
+    asset.add_node(asset.add_mesh({{"POSITION", asset.add<float>(many, "VEC3")}}));
+    for (int i = 0; i < 3000; ++i) {
+        asset.add_node(0);
+    }
+    const auto result = import_asset(asset);
+    ASSERT_FALSE(result.has_value());
+    EXPECT_EQ(result.error().kind, ErrorKind::resource);
+}
+
+TEST(GltfHierarchy, SceneWithoutTrianglesIsAnError) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["scenes"][0]["nodes"] = Json::array();
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("the scene has no triangles"));
+    AssetBuilder lines_only = triangle_asset();
+    lines_only.json["meshes"][0]["primitives"][0]["mode"] = 3u;
+    EXPECT_THAT(errors_of(import_asset(lines_only)), HasSubstr("the scene has no triangles"));
+}
+
+TEST(GltfHierarchy, PositionsThatOverflowSinglePrecisionAreErrors) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["nodes"][0]["scale"] = {1e300, 1, 1};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("too far away for single precision"));
+}
+
+TEST(GltfHierarchy, FlattenedNodesImportWithoutNan) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+        asset.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+    asset.json["nodes"][0]["scale"] = {0, 0, 0};
+    const auto imported = must_import(asset);
+    EXPECT_THAT(imported.scene.primitives.at(0).normal, ::testing::Each(glm::vec3(0)));
+    EXPECT_THAT(lines(imported.warnings), HasSubstr("1 of 1 triangles have no area"));
+    EXPECT_THAT(lines(imported.warnings), HasSubstr("3 vertices have neither a normal nor a face"));
+}
+
+TEST(GltfHierarchy, WhatNodesCarryAndIsNotSimulatedIsNamed) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["skins"] = Json::array({{{"joints", {0u}}}});
+    asset.json["cameras"] = Json::array({{{"type", "perspective"}}});
+    asset.json["nodes"][0]["skin"] = 0u;
+    asset.json["nodes"][0]["camera"] = 0u;
+    asset.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0u;
+    asset.json["animations"] = Json::array({Json::object()});
+    asset.json["meshes"][0]["primitives"][0]["targets"] = Json::array({{{"POSITION", 0u}}});
+    const std::string warnings = lines(must_import(asset).warnings);
+    for (const char* word :
+         {"skins", "animations", "morph targets", "KHR_lights_punctual", "cameras"}) {
+        EXPECT_THAT(warnings, HasSubstr(word));
+    }
+}
+
+}  // namespace
+}  // namespace opaline::tests
