@@ -1,0 +1,159 @@
+#include "formats/image/exr.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "tests/formats/image/image_files.h"
+
+namespace opaline::formats {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Exr, RoundTripKeepsEveryBit) {
+    Image image = ramp(37, 21);
+    image.pixel[3] = {-1.5f, std::numeric_limits<float>::infinity(), 3e38f};
+    const auto path = temporary("round.exr");
+    ASSERT_TRUE(write_exr(path, image));
+    const Result<Image> read = read_exr(path);
+    ASSERT_TRUE(read) << message(read.error());
+    EXPECT_EQ(read->width, 37u);
+    EXPECT_EQ(read->height, 21u);
+    EXPECT_EQ(read->pixel, image.pixel);
+    std::filesystem::remove(path);
+}
+
+TEST(Exr, ReadsEveryLosslessCompressionTypeAndLayout) {
+    // Powers of two survive the 16-bit and 24-bit types exactly.
+    Image image{40, 35, {}};
+    for (int i = 0; i < 40 * 35; ++i) {
+        image.pixel.push_back(
+            {std::ldexp(1.0f, i % 9), std::ldexp(1.0f, -(i % 5)), std::ldexp(1.0f, i % 3)});
+    }
+    for (const int compression : {0, 1, 2, 3, 4, 5}) {
+        for (int bits = 0; bits < 16; ++bits) {
+            const ExrStyle style{.compression = compression,
+                                 .is_half = (bits & 1) != 0,
+                                 .is_tiled = (bits & 2) != 0,
+                                 .has_alpha = (bits & 4) != 0,
+                                 .min_x = (bits & 8) != 0 ? -7 : 0,
+                                 .min_y = (bits & 8) != 0 ? 1000 : 0};
+            const std::string bytes = make_exr(image, style);
+            const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");
+            ASSERT_TRUE(read) << message(read.error()) << compression << " " << bits;
+            EXPECT_EQ(read->image.pixel, image.pixel) << compression << " " << bits;
+            EXPECT_TRUE(read->warnings.empty());
+        }
+    }
+}
+
+TEST(Exr, ReadsLossyCompressionsClosely) {
+    Image image{64, 300, std::vector<Rgb>(64 * 300, {0.5f, 2.0f, 8.0f})};
+    for (const int compression : {6, 7, 8, 9}) {
+        const std::string bytes = make_exr(image, {.compression = compression, .is_half = true});
+        const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");
+        ASSERT_TRUE(read) << message(read.error());
+        for (const Rgb& c : read->image.pixel) {  // a constant costs these codecs about 1 %
+            ASSERT_NEAR(c.r, 0.5f, 0.01f);
+            ASSERT_NEAR(c.g, 2.0f, 0.04f);
+            ASSERT_NEAR(c.b, 8.0f, 0.16f);
+        }
+    }
+}
+
+TEST(Exr, LuminanceAloneBecomesGrey) {
+    const Image image = ramp(8, 4);
+    const std::string bytes = make_exr(image, {.is_grey = true});
+    const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");
+    ASSERT_TRUE(read);
+    for (std::size_t i = 0; i < image.pixel.size(); ++i) {
+        const float y = image.pixel[i].r;
+        EXPECT_EQ(read->image.pixel[i], (Rgb{y, y, y}));
+    }
+}
+
+TEST(Exr, WithoutColourChannelsTheMessageNamesThoseFound) {
+    const std::string bytes = make_exr(ramp(8, 4), {.prefix = "beauty."});
+    const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().kind, ErrorKind::bad_input);
+    EXPECT_THAT(message(read.error()), HasSubstr("beauty.R"));
+}
+
+TEST(Exr, ForeignPrimariesAndLayersAreNamedInWarnings) {
+    const std::string bytes = make_exr(ramp(8, 4), {.has_layer = true, .is_rec2020 = true});
+    const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");
+    ASSERT_TRUE(read);
+    ASSERT_EQ(read->warnings.size(), 2u);
+    EXPECT_THAT(read->warnings[0].fault, HasSubstr("chromaticities"));
+    EXPECT_THAT(read->warnings[1].fault, HasSubstr("layers"));
+}
+
+TEST(Exr, WhatIsNoExrIsRefusedByName) {
+    const auto path = temporary("text.exr");
+    write_bytes(path, "this is a poem");
+    const Result<Image> read = read_exr(path);
+    ASSERT_FALSE(read);
+    EXPECT_THAT(message(read.error()), HasSubstr("is not an OpenEXR file"));
+    EXPECT_THAT(message(read.error()), HasSubstr(path.string()));
+    std::filesystem::remove(path);
+}
+
+TEST(Exr, UnwritableFolderAndEmptyImageAreErrors) {
+    EXPECT_EQ(write_exr("/nonexistent/x.exr", ramp(2, 2)).error().kind, ErrorKind::resource);
+    EXPECT_EQ(write_exr(temporary("empty.exr"), Image{}).error().kind, ErrorKind::usage);
+}
+
+// Overwrites the value of a header attribute found by name and type.
+std::string with_attribute(std::string bytes, const std::string& name, const std::string& type,
+                           std::size_t offset, const void* value, std::size_t size) {
+    const std::string key = name + '\0' + type + '\0';
+    const std::size_t at = bytes.find(key);
+    EXPECT_NE(at, std::string::npos);
+    std::memcpy(bytes.data() + at + key.size() + 4 + offset, value, size);
+    return bytes;
+}
+
+TEST(Exr, HeadersThatClaimTooMuchAreRefusedBeforeAllocating) {
+    const std::string honest = make_exr(ramp(16, 16), {.is_tiled = true});
+    const auto refused = [](const std::string& bytes) {
+        const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");
+        return read ? std::string("accepted") : message(read.error());
+    };
+    const std::int32_t huge = 1 << 20, edge = std::numeric_limits<std::int32_t>::max();
+    const auto window = [&](std::size_t offset, std::int32_t value) {
+        return with_attribute(honest, "dataWindow", "box2i", offset, &value, 4);
+    };
+    EXPECT_THAT(refused(window(8, huge)), HasSubstr("claims"));
+    EXPECT_THAT(refused(window(12, edge)), HasSubstr("claims"));
+    EXPECT_THAT(refused(window(0, 100)), HasSubstr("claims"));  // x from 100 to 15
+    const std::uint32_t tile = 16384;
+    const std::string wide = with_attribute(honest, "tiles", "tiledesc", 0, &tile, 4);
+    EXPECT_THAT(refused(with_attribute(wide, "tiles", "tiledesc", 4, &tile, 4)),
+                HasSubstr("chunks would take"));
+    const std::uint32_t zero = 0, one = 1;
+    EXPECT_THAT(refused(with_attribute(honest, "tiles", "tiledesc", 0, &zero, 4)),
+                HasSubstr("tile description"));
+    // 2000 x 2000 tiles of one pixel: a table of 32 MB in a file of a few kB.
+    const std::int32_t side = 1999;
+    std::string many = with_attribute(honest, "tiles", "tiledesc", 0, &one, 4);
+    many = with_attribute(many, "tiles", "tiledesc", 4, &one, 4);
+    many = with_attribute(many, "dataWindow", "box2i", 8, &side, 4);
+    many = with_attribute(many, "dataWindow", "box2i", 12, &side, 4);
+    EXPECT_THAT(refused(many), HasSubstr("table of"));
+    // A preview that claims 2^31 pixels is never parsed: the image itself is fine.
+    const std::uint32_t claim = 1u << 16;
+    std::string preview = with_attribute(honest, "preview", "preview", 0, &claim, 4);
+    preview = with_attribute(preview, "preview", "preview", 4, &claim, 4);
+    EXPECT_EQ(refused(preview), "accepted");
+    std::string parts = honest;
+    parts[5] = static_cast<char>(parts[5] | 0x10);
+    EXPECT_THAT(refused(parts), HasSubstr("several parts"));
+}
+
+}  // namespace
+}  // namespace opaline::formats
