@@ -71,11 +71,11 @@ Rgb eval_room(Vec3 d) {
 Environment make_studio() {
     const Rgb warm{1.08f, 0.99f, 0.86f}, neutral{1.0f, 1.0f, 1.0f}, cool{0.84f, 0.98f, 1.20f};
     const SoftBox boxes[] = {
-        make_soft_box(-42, 38, 46, 38, 0.06f, 8.5f * warm),     // key
-        make_soft_box(62, 12, 50, 60, 0.16f, 0.9f * neutral),   // fill
-        make_soft_box(148, 18, 11, 58, 0.035f, 11.0f * cool),   // rim, right
-        make_soft_box(-142, 22, 9, 54, 0.035f, 12.0f * cool),   // rim, left
-        make_soft_box(180, 74, 50, 26, 0.10f, 2.2f * neutral),  // overhead
+        make_soft_box(-44, 40, 44, 36, 0.10f, 7.0f * warm),     // key
+        make_soft_box(64, 10, 46, 56, 0.20f, 0.6f * neutral),   // fill
+        make_soft_box(146, 16, 10, 54, 0.06f, 8.5f * cool),     // rim, right
+        make_soft_box(-140, 24, 8, 50, 0.06f, 9.5f * cool),     // rim, left
+        make_soft_box(180, 78, 44, 20, 0.12f, 1.4f * neutral),  // overhead
     };
     Environment environment;
     environment.width = kWidth;

@@ -5,11 +5,10 @@
 
 namespace opaline::bake {
 
-/// Moves floor vertices onto the curve where a solid meets the floor (y = 0): of every edge that
-/// crosses it, the nearer end. Each triangle then lies on one side, and the shadow that begins at
-/// the curve is interpolated along it instead of in a zigzag across it. Vertices are moved by less
-/// than half an edge and end up `gap` [mm] outside the solid; a move that would turn a triangle
-/// over is left out.
-void snap_to_contact(const Field& solid, double gap, TriangleMesh& floor);
+/// Fits floor triangles to the curve where a solid meets the floor (y = 0): vertices near it move
+/// onto it, triangles that still lie on both sides are split along it. The shadow that begins at
+/// the curve is then interpolated along it and not in a zigzag across it, and no triangle that is
+/// seen has a corner inside the solid. The curve followed is `gap` [mm] outside the solid.
+void cut_at_contact(const Field& solid, double gap, TriangleMesh& floor);
 
 }  // namespace opaline::bake

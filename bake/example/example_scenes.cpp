@@ -40,7 +40,7 @@ std::vector<GltfObject> make_statue() {
     TriangleMesh floor =
         make_floor({.finest = 1.7, .fine_radius = 55.0, .growth = 0.1, .levels = 9});
     constexpr double kGap = 0.1;  // wider than the mesh's distance from the field
-    snap_to_contact(swan.field, kGap, floor);
+    cut_at_contact(swan.field, kGap, floor);
     return {{"Statue", "Statue", {0.82, 0.81, 0.79}, in_metres(std::move(mesh))},
             floor_object(std::move(floor))};
 }

@@ -65,11 +65,10 @@ TEST(DamagedImages, EveryPrefixIsRefusedOrHarmless) {
         for (std::size_t length = 0; length < file.size(); ++length) {
             decode_all(file.substr(0, length));
         }
-        const bool is_exr = file.starts_with("\x76\x2f");
-        if (is_exr) {  // OpenEXR calls such a file complete
-            EXPECT_FALSE(decode_exr(as_bytes(file.substr(0, file.size() - 1)), "x"));
-        }
     }
+    // Every byte of these carries the image; a tiled file ends with smaller levels, not looked at.
+    const std::string exr = make_exr(ramp(12, 6), {});
+    EXPECT_FALSE(decode_exr(as_bytes(exr.substr(0, exr.size() - 1)), "x"));
     const std::string hdr = small_hdr();
     EXPECT_FALSE(decode_hdr(as_bytes(hdr.substr(0, hdr.size() - 1)), "x"));
 }
