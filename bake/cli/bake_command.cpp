@@ -3,6 +3,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
@@ -12,6 +15,7 @@
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/pipeline.h"
+#include "formats/opal/atomic_file.h"
 #include "formats/opal/write_opal.h"
 
 namespace opaline::cli {
@@ -35,6 +39,26 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
                                : "; " + std::to_string(warnings) + " warnings");
 }
 
+// Nothing where no path was given.
+formats::Result<std::optional<formats::AtomicFile>> create_output(const std::string& path) {
+    if (path.empty()) {
+        return std::optional<formats::AtomicFile>();
+    }
+    auto file = formats::AtomicFile::create(path);
+    if (!file) {
+        return std::move(file).error();
+    }
+    return std::optional(std::move(*file));
+}
+
+formats::Status write_output(std::optional<formats::AtomicFile>& file, std::string_view text) {
+    if (!file) {
+        return formats::ok_status();
+    }
+    const formats::Status status = file->write(text);
+    return status ? file->commit() : status;
+}
+
 int run(const Options& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     if (auto status = check_effects(options.scene); !status) {
@@ -54,9 +78,13 @@ int run(const Options& options) {
         }
     }
     // Before the work, so that an unwritable folder is found out at once.
-    auto file = formats::AtomicFile::create(options.output);
-    if (!file) {
-        return report_error(file.error());
+    auto file = create_output(options.output);
+    auto report_file = create_output(options.report);
+    auto depfile = create_output(options.depfile);
+    for (const auto* output : {&file, &report_file, &depfile}) {
+        if (!*output) {
+            return report_error(output->error());
+        }
     }
     bake::Context context;
     context.threads = options.scene.bake.threads;
@@ -66,7 +94,7 @@ int run(const Options& options) {
     if (!result) {
         return report_error(result.error());
     }
-    if (auto status = formats::write_opal(result->asset.view(), std::move(*file)); !status) {
+    if (auto status = formats::write_opal(result->asset.view(), std::move(**file)); !status) {
         return report_error(status.error());
     }
     std::error_code ignored;
@@ -76,15 +104,10 @@ int run(const Options& options) {
     std::vector<formats::Diagnostic> warnings = imported->warnings;
     warnings.insert(warnings.end(), result->warnings.begin(), result->warnings.end());
     print_warnings(result->warnings);
-    if (!options.report.empty()) {
-        const std::string report = make_report(imported->scene, *result, warnings, bytes);
-        if (auto status = formats::write_file_atomically(options.report, report); !status) {
-            return report_error(status.error());
-        }
-    }
-    if (!options.depfile.empty()) {
-        const std::string rule = make_depfile(options.output, imported->scene.inputs);
-        if (auto status = formats::write_file_atomically(options.depfile, rule); !status) {
+    const std::string report = make_report(imported->scene, *result, warnings, bytes);
+    const std::string rule = make_depfile(options.output, imported->scene.inputs);
+    for (const auto& [output, text] : {std::pair{&*report_file, &report}, {&*depfile, &rule}}) {
+        if (auto status = write_output(*output, *text); !status) {
             return report_error(status.error());
         }
     }

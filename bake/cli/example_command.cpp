@@ -95,7 +95,7 @@ void add_example_command(CLI::App& app, Job& job) {
         ->option_text("DIR");
     command->add_flag("--list", options->list, "say what there is");
     command->footer(
-        "Examples:\n  opaline example statue -o scenes\n  opaline example studio -o lights");
+        "Example:\n  opaline example statue -o scenes\n  opaline example studio -o lights");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 

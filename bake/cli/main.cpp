@@ -1,8 +1,11 @@
 #include <fmt/core.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "bake/cli/command.h"
 
@@ -44,7 +47,14 @@ int run_program(int argc, char** argv) {
                    chosen.empty() ? "" : " " + chosen.front()->get_name());
         return kExitUsage;
     }
-    return job();
+    const int code = job();
+    // Buffered data may still not fit where it goes.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+        fmt::print(stderr, "opaline: error: standard output: cannot write: {}\n",
+                   std::strerror(errno));
+        return kExitResource;
+    }
+    return code;
 }
 
 }  // namespace
@@ -55,6 +65,8 @@ int main(int argc, char** argv) {
         return opaline::cli::run_program(argc, argv);
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "opaline: error: out of memory (free some, or lower the knobs)\n");
+    } catch (const std::system_error& error) {
+        fmt::print(stderr, "opaline: error: {}\n", error.what());
     } catch (const std::exception& error) {
         fmt::print(stderr, "opaline: error: {} (this is a fault of Opaline: please report it)\n",
                    error.what());

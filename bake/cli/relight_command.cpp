@@ -99,6 +99,7 @@ void add_relight_command(CLI::App& app, Job& job) {
     command
         ->add_option("--rotate-light", options->rotate_light,
                      "turn the light about +Y, from +Z toward +X [degrees]")
+        ->check(CLI::Range(-1e6, 1e6))
         ->option_text("DEG [0]");
     command->add_option("--threads", options->threads, "0: one per core")
         ->check(CLI::Range(0u, 1024u))

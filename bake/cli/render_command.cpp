@@ -70,6 +70,10 @@ Result<runtime::Camera> make_camera(const Options& options, const formats::Asset
         }
         camera.eye = *eye;
     }
+    if (formats::length(camera.target - camera.eye) == 0) {
+        return make_error(ErrorKind::usage, "", "--eye", "lies in the target",
+                          "move one of them: the camera has no direction");
+    }
     if (!options.eye.empty() || !options.target.empty()) {
         camera.near_plane = runtime::near_plane_for(view, camera.eye);
     }
@@ -238,6 +242,7 @@ void add_render_command(CLI::App& app, Job& job) {
     command
         ->add_option("--rotate-light", options->rotate_light,
                      "turn the light about +Y, from +Z toward +X [degrees]")
+        ->check(CLI::Range(-1e6, 1e6))
         ->option_text("DEG [0]");
     command
         ->add_option("--frames", options->frames,

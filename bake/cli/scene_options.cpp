@@ -65,6 +65,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
     command
         .add_option("--seed", options.bake.seed,
                     "of everything random: which receivers the error is measured at")
+        ->check(CLI::NonNegativeNumber)
         ->option_text("S [0]");
     command
         .add_option("--threads", options.bake.threads,

@@ -113,9 +113,14 @@ Result<Environment> make_environment(std::string_view spec) {
 
 Result<LoadedEnvironment> open_environment(std::string_view spec_or_path) {
     if (!is_builtin(spec_or_path)) {
-        Result<LoadedEnvironment> loaded =
-            formats::load_environment(std::filesystem::path(spec_or_path));
-        return loaded;
+        const std::filesystem::path path(spec_or_path);
+        std::error_code ignored;
+        if (!std::filesystem::exists(path, ignored)) {
+            return formats::make_error(ErrorKind::bad_input, path.string(), "",
+                                       "is neither a file nor a built-in light",
+                                       std::string(kForms));
+        }
+        return formats::load_environment(path);
     }
     Result<Environment> made = make_environment(spec_or_path);
     if (!made) return std::move(made).error();

@@ -118,6 +118,14 @@ void place_colors(const PrimitiveData& data, Primitive& out, Report& report) {
     }
 }
 
+// Of the triangle whose corners begin at index `t`.
+bool is_flat(const Primitive& primitive, std::size_t t) {
+    const glm::dvec3 a(primitive.position[primitive.index[t]]);
+    const glm::dvec3 b(primitive.position[primitive.index[t + 1]]);
+    const glm::dvec3 c(primitive.position[primitive.index[t + 2]]);
+    return glm::cross(b - a, c - a) == glm::dvec3(0.0);
+}
+
 void place_indices(const PrimitiveData& data, bool mirrored, Primitive& out, Report& report) {
     out.index = data.index;
     std::size_t flat = 0;
@@ -125,10 +133,7 @@ void place_indices(const PrimitiveData& data, bool mirrored, Primitive& out, Rep
         if (mirrored) {
             std::swap(out.index[t + 1], out.index[t + 2]);
         }
-        const glm::dvec3 a(out.position[out.index[t]]);
-        const glm::dvec3 n = glm::cross(glm::dvec3(out.position[out.index[t + 1]]) - a,
-                                        glm::dvec3(out.position[out.index[t + 2]]) - a);
-        flat += n == glm::dvec3(0.0) ? 1 : 0;
+        flat += is_flat(out, t) ? 1 : 0;
     }
     if (flat > 0) {
         report.warn(out.name, std::to_string(flat) + " of " + std::to_string(out.index.size() / 3) +
@@ -191,6 +196,15 @@ void complete_normals(std::span<Primitive> instance, Report& report) {
 }
 
 }  // namespace
+
+bool has_area(const Primitive& primitive) {
+    for (std::size_t t = 0; t + 2 < primitive.index.size(); t += 3) {
+        if (!is_flat(primitive, t)) {
+            return true;
+        }
+    }
+    return false;
+}
 
 void build_primitives(const Document& document, const std::vector<MeshInstance>& instances,
                       const std::vector<Bytes>& buffers, double metres_per_unit, Scene& scene,

@@ -1,5 +1,6 @@
 #include "formats/gltf/import_gltf.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <new>
@@ -68,12 +69,14 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, Re
     build_materials(*document, instances, resources, scene, report);
     build_primitives(*document, instances, resources.buffers, options.metres_per_unit, scene,
                      report);
-    std::size_t corners = 0;
-    for (const Primitive& primitive : scene.primitives) {
-        corners += primitive.index.size();
+    const auto is_empty = [](const Primitive& primitive) { return primitive.index.empty(); };
+    if (report.failed()) {
+        return scene;
     }
-    if (corners == 0 && !report.failed()) {
+    if (std::all_of(scene.primitives.begin(), scene.primitives.end(), is_empty)) {
         report.error("", "the scene has no triangles", "export at least one mesh with faces");
+    } else if (std::none_of(scene.primitives.begin(), scene.primitives.end(), has_area)) {
+        report.error("", "no triangle of the scene has an area", "check its scale and its faces");
     }
     scene.inputs = std::move(resources.inputs);
     scene.sha256 = resources.hash.finish();

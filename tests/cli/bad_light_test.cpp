@@ -1,0 +1,87 @@
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "formats/image/exr.h"
+#include "tests/cli/small_scene.h"
+
+namespace opaline::tests {
+namespace {
+
+using formats::Rgb;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class BadLight : public ::testing::Test {
+  protected:
+    Outcome relight(const std::string& light) {
+        return run_opaline({"relight", small_.baked(), "--light", light, "-o", out()});
+    }
+    std::string refuse(const std::string& light, int exit_code = 3) {
+        const Outcome outcome = relight(light);
+        EXPECT_EQ(outcome.exit_code, exit_code) << light << outcome.err;
+        EXPECT_THAT(outcome.err, StartsWith("opaline: error: "));
+        EXPECT_FALSE(std::filesystem::exists(out()));
+        return outcome.err;
+    }
+    std::string out() const { return small_.path("out.csv"); }
+    /// A map of 8 x 4 texels of radiance 1, but for the texel in the middle of the sky.
+    std::string write_map(Rgb odd) {
+        formats::Image image{8, 4, std::vector<Rgb>(32, Rgb{1, 1, 1})};
+        image.pixel[4] = odd;
+        const std::string path = small_.path("map.exr");
+        EXPECT_TRUE(formats::write_exr(path, image));
+        return path;
+    }
+    SmallScene small_;
+};
+
+TEST_F(BadLight, UnknownNameListsTheBuiltInOnes) {
+    EXPECT_THAT(refuse("moon"), HasSubstr("studio"));
+}
+
+TEST_F(BadLight, BuiltInParametersOutOfRangeAreUsageErrors) {
+    for (const char* light : {"sun:", "sun:a,b", "sun:10", "sun:10,95", "sun:nan,3", "sky:3",
+                              "sky:0.5,30", "sky:3,0", "sky:3,91", "sky:3,30,4", "white:2"}) {
+        refuse(light, 2);
+    }
+}
+
+TEST_F(BadLight, FileThatIsNoExrIsRefusedWhateverItsName) {
+    write_file(small_.path("fake.exr"), std::string("PNG? no. EXR? no."));
+    EXPECT_THAT(refuse(small_.path("fake.exr")), HasSubstr("fake.exr"));
+    write_file(small_.path("empty.exr"), std::string());
+    refuse(small_.path("empty.exr"));
+    refuse(small_.path("nowhere.exr"));
+}
+
+TEST_F(BadLight, TruncatedExrIsRefused) {
+    const std::string bytes = read_text(write_map({1, 1, 1}));
+    write_file(small_.path("cut.exr"), bytes.substr(0, bytes.size() - 20));
+    EXPECT_THAT(refuse(small_.path("cut.exr")), HasSubstr("cut.exr"));
+}
+
+TEST_F(BadLight, TexelsThatAreNoNumbersOrNegativeBecomeBlackWithAWarning) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    ASSERT_EQ(relight(write_map({0, 0, 0})).exit_code, 0);
+    const std::string black = read_text(out());
+    for (const Rgb& odd : {Rgb{nan, nan, nan}, Rgb{-3, -3, -3}}) {
+        const Outcome outcome = relight(write_map(odd));
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_THAT(outcome.err, StartsWith("opaline: warning: "));
+        EXPECT_EQ(read_text(out()), black);
+    }
+}
+
+TEST_F(BadLight, InfiniteTexelsGiveFiniteRadianceAndAWarning) {
+    const float inf = std::numeric_limits<float>::infinity();
+    const Outcome outcome = relight(write_map({inf, inf, inf}));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, StartsWith("opaline: warning: "));
+    const std::string table = read_text(out());
+    EXPECT_THAT(table, ::testing::Not(HasSubstr("inf")));
+    EXPECT_THAT(table, ::testing::Not(HasSubstr("nan")));
+}
+
+}  // namespace
+}  // namespace opaline::tests

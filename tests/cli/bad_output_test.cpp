@@ -1,0 +1,115 @@
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include "tests/cli/small_scene.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(BadOutput, MissingFolderIsNamedBeforeAnyWork) {
+    SmallScene small;
+    const std::string nowhere = small.path("no/such/out");
+    for (const std::string option : {"-o", "--report", "--depfile"}) {
+        Arguments arguments = {"bake", small.scene(), option, nowhere};
+        if (option != "-o") {
+            arguments.insert(arguments.end(), {"-o", small.path("out.opal")});
+        }
+        const Outcome bake = run_opaline(arguments);
+        EXPECT_EQ(bake.exit_code, 4) << bake.err;
+        EXPECT_THAT(bake.err, StartsWith("opaline: error: " + nowhere));
+        EXPECT_EQ(list_folder(small.folder()), Arguments{"scene.glb"});
+    }
+}
+
+TEST(BadOutput, UnwritableFolderIsNamed) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+    SmallScene small;
+    const TemporaryFolder locked;
+    std::filesystem::permissions(locked.path(), std::filesystem::perms::owner_read);
+    const Outcome bake = run_opaline({"bake", small.scene(), "-o", locked / "out.opal"});
+    std::filesystem::permissions(locked.path(), std::filesystem::perms::owner_all);
+    EXPECT_EQ(bake.exit_code, 4) << bake.err;
+    EXPECT_THAT(bake.err, HasSubstr("out.opal"));
+}
+
+TEST(BadOutput, PathThroughAFileIsNamed) {
+    SmallScene small;
+    const Outcome bake = run_opaline({"bake", small.scene(), "-o", small.scene() + "/out.opal"});
+    EXPECT_EQ(bake.exit_code, 4) << bake.err;
+    EXPECT_THAT(bake.err, HasSubstr("out.opal"));
+}
+
+TEST(BadOutput, FolderInPlaceOfTheOutputIsLeftAlone) {
+    SmallScene small;
+    std::filesystem::create_directory(small.path("out.opal"));
+    const Outcome bake = run_opaline({"bake", small.scene(), "-o", small.path("out.opal")});
+    EXPECT_EQ(bake.exit_code, 4) << bake.err;
+    EXPECT_EQ(list_folder(small.folder()), (Arguments{"out.opal", "scene.glb"}));
+}
+
+TEST(BadOutput, DeviceThatIsFullIsAnError) {
+    SmallScene small;
+    const Outcome bake = run_opaline({"bake", small.scene(), "-o", "/dev/full"});
+    EXPECT_EQ(bake.exit_code, 4) << bake.err;
+    EXPECT_THAT(bake.err, HasSubstr("No space left on device"));
+}
+
+TEST(BadOutput, DataThatStandardOutputCannotTakeIsAnError) {
+    SmallScene small;
+    for (const std::string& command :
+         {"info '" + small.baked() + "'", "plan '" + small.scene() + "'",
+          std::string("example --list")}) {
+        const Outcome outcome =
+            run_any({"sh", "-c", OPALINE_PROGRAM " " + command + " >/dev/full"});
+        EXPECT_EQ(outcome.exit_code, 4) << command << outcome.err;
+    }
+}
+
+/// Runs a shell line on a file system of 64 kB mounted on $1, seen by that shell alone.
+Outcome run_on_small_disk(const std::string& folder, const std::string& line) {
+    return run_any({"unshare", "--map-root-user", "--mount", "sh", "-c",
+                    "mount -t tmpfs -o size=64k none \"$1\" || exit 99; " + line, "sh", folder});
+}
+
+TEST(BadOutput, FullDiskLeavesTheFormerFileAndNothingElse) {
+    SmallScene small;
+    write_file(small.path("sheet.glb"), wavy_sheet(64).glb());
+    const TemporaryFolder disk;
+    const std::string out = disk / "out.opal";
+    if (run_on_small_disk(disk.path(), "true").exit_code != 0) {
+        GTEST_SKIP() << "no right to mount a small disk here";
+    }
+    const Outcome outcome = run_on_small_disk(
+        disk.path(), "echo former > '" + out + "'; " OPALINE_PROGRAM " bake '" +
+                         small.path("sheet.glb") + "' --quality draft -o '" + out +
+                         "'; code=$?; cat \"$1\"/*; ls -A \"$1\"; exit $code");
+    EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+    EXPECT_THAT(outcome.err, StartsWith("opaline: error: " + out));
+    EXPECT_THAT(outcome.err, HasSubstr("No space left on device"));
+    EXPECT_EQ(outcome.out, "former\nout.opal\n");
+}
+
+TEST(BadOutput, PictureOnAFullDiskLeavesNothing) {
+    SmallScene small;
+    const std::string file = small.baked();
+    const TemporaryFolder disk;
+    if (run_on_small_disk(disk.path(), "true").exit_code != 0) {
+        GTEST_SKIP() << "no right to mount a small disk here";
+    }
+    for (const std::string name : {"a.exr", "a.png"}) {
+        const Outcome outcome = run_on_small_disk(
+            disk.path(),
+            "dd if=/dev/zero of=\"$1\"/ballast bs=1k count=60 2>/dev/null; " OPALINE_PROGRAM
+            " render '" +
+                file + "' --light studio --backend cpu -o '" + (disk / name).string() +
+                "'; code=$?; ls -A \"$1\"; exit $code");
+        EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+        EXPECT_EQ(outcome.out, "ballast\n");
+    }
+}
+
+}  // namespace
+}  // namespace opaline::tests

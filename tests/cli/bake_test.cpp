@@ -1,0 +1,213 @@
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/cli/small_scene.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(Bake, ReportHasTheKeysOfTheContract) {
+    SmallScene small;
+    const Outcome bake =
+        run_opaline({"bake", small.scene(), "-o", small.path("a.opal"), "--report",
+                     small.path("r.json"), "--quality", "draft", "--seed", "7", "--threads", "2"});
+    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+    EXPECT_EQ(bake.out, "");
+    const Json report = Json::parse(read_text(small.path("r.json")));
+    EXPECT_THAT(report.at("version").get<std::string>(), ::testing::MatchesRegex("[0-9.]+"));
+    EXPECT_EQ(report.at("scene").at("sha256").get<std::string>().size(), 64u);
+    EXPECT_EQ(report.at("seed"), 7);
+    EXPECT_EQ(report.at("threads"), 2);
+    EXPECT_EQ(report.at("knobs").at("cubemap"), 16);
+    EXPECT_EQ(report.at("knobs").at("coefficients"), 64);
+    ASSERT_FALSE(report.at("plan").empty());
+    for (const Json& entry : report.at("plan")) {
+        EXPECT_EQ(entry.at("effect"), "direct");
+        EXPECT_FALSE(entry.at("subject").get<std::string>().empty());
+        EXPECT_EQ(entry.at("decision"), "on");
+        EXPECT_FALSE(entry.at("reason").get<std::string>().empty());
+        EXPECT_GT(entry.at("bound").get<double>(), 0);
+        EXPECT_GT(entry.at("predicted_seconds").get<double>(), 0);
+    }
+    ASSERT_FALSE(report.at("stages").empty());
+    double seconds = 0;
+    for (const Json& stage : report.at("stages")) {
+        EXPECT_FALSE(stage.at("name").get<std::string>().empty());
+        EXPECT_GE(stage.at("rays").get<double>(), 0);
+        EXPECT_GT(stage.at("peak_rss_bytes").get<double>(), 1e6);
+        seconds += stage.at("seconds").get<double>();
+    }
+    EXPECT_LE(seconds, report.at("seconds_total").get<double>() * 1.001);
+    const Json& error = report.at("error");
+    EXPECT_GE(error.at("rms_relative").get<double>(), error.at("ci95").at(0).get<double>());
+    EXPECT_LE(error.at("rms_relative").get<double>(), error.at("ci95").at(1).get<double>());
+    EXPECT_LE(error.at("p95_relative").get<double>(), error.at("max_relative").get<double>());
+    EXPECT_EQ(error.at("receivers_checked"), 8);
+    EXPECT_FALSE(error.at("reference").get<std::string>().empty());
+    EXPECT_TRUE(error.at("by_effect").contains("direct"));
+    const Json& output = report.at("output");
+    EXPECT_EQ(output.at("bytes"), std::filesystem::file_size(small.path("a.opal")));
+    EXPECT_EQ(output.at("receivers"), 8);
+    EXPECT_EQ(output.at("terms"), 1);
+    EXPECT_EQ(output.at("coefficients_per_term"), 64);
+    EXPECT_TRUE(report.at("warnings").is_array());
+}
+
+TEST(Bake, AnyNumberOfThreadsWritesTheSameBytes) {
+    const TemporaryFolder folder;
+    write_file(folder / "sheet.glb", wavy_sheet(24).glb());
+    std::string first;
+    for (const std::string threads : {"1", "2", "5"}) {
+        const std::string out = folder / (threads + ".opal");
+        const Outcome bake = run_opaline(
+            {"bake", folder / "sheet.glb", "-o", out, "--quality", "draft", "--threads", threads});
+        ASSERT_EQ(bake.exit_code, 0) << bake.err;
+        const std::string bytes = read_text(out);
+        first = first.empty() ? bytes : first;
+        EXPECT_EQ(bytes, first) << threads;
+    }
+    EXPECT_GT(first.size(), 10000u);
+}
+
+TEST(Bake, SameBytesWhereverTheSceneLies) {
+    SmallScene here, there;
+    EXPECT_EQ(read_text(here.baked()), read_text(there.baked()));
+}
+
+TEST(Bake, DepfileTellsMakeWhenToBakeAgain) {
+    const TemporaryFolder folder;
+    const AssetBuilder asset = two_squares();
+    write_file(folder / "a scene.gltf", asset.text_with_external_buffer());
+    write_file(folder / "buffer.bin", asset.bin);
+    std::ofstream(folder / "Makefile")
+        << "out.opal:\n\t" OPALINE_PROGRAM
+           " bake 'a scene.gltf' -o out.opal --depfile out.d --quality draft\n-include out.d\n";
+    const Arguments make = {"make", "-C", folder.path().string()};
+    const Arguments is_current = {"make", "-q", "-C", folder.path().string()};
+    ASSERT_EQ(run_any(make).exit_code, 0);
+    EXPECT_EQ(run_any(is_current).exit_code, 0);
+    for (const char* input : {"a scene.gltf", "buffer.bin"}) {
+        const auto after =
+            std::filesystem::last_write_time(folder / "out.opal") + std::chrono::seconds(2);
+        std::filesystem::last_write_time(folder / input, after);
+        EXPECT_EQ(run_any(is_current).exit_code, 1) << input << read_text(folder / "out.d");
+        std::filesystem::last_write_time(folder / input, after - std::chrono::hours(1));
+    }
+}
+
+TEST(Bake, ProgressIsJsonLinesOnRequestAndSilentOffATerminal) {
+    SmallScene small;
+    const std::string out = small.path("a.opal");
+    const Outcome json = run_opaline({"bake", small.scene(), "-o", out, "--progress", "json"});
+    ASSERT_EQ(json.exit_code, 0);
+    std::istringstream lines(json.err);
+    std::string line;
+    int steps = 0;
+    while (std::getline(lines, line)) {
+        if (line.empty() || line[0] != '{') continue;
+        const Json step = Json::parse(line);
+        EXPECT_LE(step.at("done").get<double>(), step.at("total").get<double>());
+        EXPECT_FALSE(step.at("stage").get<std::string>().empty());
+        ++steps;
+    }
+    EXPECT_GT(steps, 0);
+    const Outcome silent = run_opaline({"bake", small.scene(), "-o", out});
+    EXPECT_THAT(silent.err, StartsWith(out + ": 8 receivers, "));
+    EXPECT_EQ(std::count(silent.err.begin(), silent.err.end(), '\n'), 1);
+}
+
+TEST(Bake, InterruptedBakeLeavesNothing) {
+    const TemporaryFolder folder;
+    write_file(folder / "sheet.glb", wavy_sheet(200).glb());
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const Outcome bake =
+            run_opaline({"bake", folder / "sheet.glb", "-o", folder / "out.opal", "--report",
+                         folder / "r.json", "--quality", "reference"},
+                        [&](int process) {
+                            // Once its temporary files are there, work has begun.
+                            while (list_folder(folder.path()).size() < 3) {
+                                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+                            }
+                            std::this_thread::sleep_for(std::chrono::milliseconds(200));
+                            ::kill(process, signal);
+                        });
+        EXPECT_EQ(bake.exit_code, 130) << bake.err;
+        EXPECT_THAT(bake.err, HasSubstr("interrupted"));
+        EXPECT_EQ(list_folder(folder.path()), Arguments{"sheet.glb"});
+    }
+}
+
+TEST(Bake, MetresPerUnitScalesTheGeometryAndNothingElse) {
+    SmallScene small;
+    const Outcome bake =
+        run_opaline({"bake", small.scene(), "-o", small.path("mm.opal"), "--cubemap", "16",
+                     "--coefficients", "all", "--metres-per-unit", "0.001"});
+    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+    for (const std::string& file : {small.path("mm.opal"), small.baked()}) {
+        ASSERT_EQ(
+            run_opaline({"relight", file, "--light", "studio", "-o", file + ".csv"}).exit_code, 0);
+    }
+    EXPECT_EQ(read_text(small.path("mm.opal.csv")), read_text(small.baked() + ".csv"));
+}
+
+TEST(Plan, NamesEffectSubjectAndReasonAsTableAndAsJson) {
+    SmallScene small;
+    const Outcome table = run_opaline({"plan", small.scene()});
+    EXPECT_EQ(table.exit_code, 0);
+    EXPECT_THAT(table.out, HasSubstr("direct"));
+    EXPECT_THAT(table.out, HasSubstr("Brick"));
+    const Outcome json = run_opaline({"plan", small.scene(), "--json"});
+    EXPECT_EQ(json.exit_code, 0);
+    const Json plan = Json::parse(json.out).at("plan");
+    ASSERT_FALSE(plan.empty());
+    for (const Json& entry : plan) {
+        for (const char* key : {"effect", "subject", "decision", "reason", "bound",
+                                "predicted_seconds", "predicted_bytes"}) {
+            EXPECT_TRUE(entry.contains(key)) << key;
+        }
+    }
+}
+
+TEST(Example, EveryListedSceneBakes) {
+    const TemporaryFolder folder;
+    const Outcome list = run_opaline({"example", "--list"});
+    EXPECT_EQ(list.exit_code, 0);
+    for (const std::string name : {"statue", "knot", "studio", "white", "sun:", "sky:"}) {
+        EXPECT_THAT(list.out, HasSubstr(name));
+    }
+    // The statue takes a while; its bake is the quick start's.
+    const Outcome knot = run_opaline({"example", "knot", "-o", folder.path().string()});
+    EXPECT_EQ(knot.exit_code, 0) << knot.err;
+    const Outcome plan = run_opaline({"plan", folder / "knot.gltf"});
+    EXPECT_EQ(plan.exit_code, 0) << plan.err;
+}
+
+TEST(Example, LightSavedAsExrLightsAsTheBuiltInOneDoes) {
+    SmallScene small;
+    // A sun that straddles two texels of a coarse cube map is shared out by its shape, which
+    // pixels change a little; soft lights are the same.
+    for (const auto& [light, tolerance] : {std::pair{"studio", "1e-3"},
+                                           {"white", "1e-6"},
+                                           {"sun:40,30", "2e-2"},
+                                           {"sky:3,35", "2e-2"}}) {
+        const Outcome example = run_opaline({"example", light, "-o", small.folder().string()});
+        ASSERT_EQ(example.exit_code, 0) << light << example.err;
+        const std::string file = example.out.substr(0, example.out.find('\n'));
+        EXPECT_THAT(file, ::testing::EndsWith(".exr"));
+        const std::string a = small.path("a.csv"), b = small.path("b.csv");
+        ASSERT_EQ(run_opaline({"relight", small.baked(), "--light", light, "-o", a}).exit_code, 0);
+        ASSERT_EQ(run_opaline({"relight", small.baked(), "--light", file, "-o", b}).exit_code, 0);
+        const Outcome same = run_opaline({"compare", a, b, "--max-rel", tolerance});
+        EXPECT_EQ(same.exit_code, 0) << light << same.out << same.err;
+    }
+}
+
+}  // namespace
+}  // namespace opaline::tests

@@ -1,0 +1,63 @@
+#include "tests/cli/run_program.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "tests/support/temporary_folder.h"
+
+namespace opaline::tests {
+
+Outcome run_any(const Arguments& command, const std::function<void(int)>& when_started) {
+    const TemporaryFolder folder;
+    const std::string out = folder / "out", err = folder / "err";
+    std::vector<char*> argv;
+    for (const std::string& argument : command) {
+        argv.push_back(const_cast<char*>(argument.c_str()));
+    }
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    ::posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
+    ::posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT, 0600);
+    pid_t process = 0;
+    const int fault = ::posix_spawnp(&process, argv[0], &actions, nullptr, argv.data(), environ);
+    ::posix_spawn_file_actions_destroy(&actions);
+    if (fault != 0) {
+        throw std::runtime_error("cannot run " + command[0]);
+    }
+    if (when_started) {
+        when_started(process);
+    }
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return {code, read_text(out), read_text(err)};
+}
+
+Outcome run_opaline(Arguments arguments, const std::function<void(int)>& when_started) {
+    arguments.insert(arguments.begin(), OPALINE_PROGRAM);
+    return run_any(arguments, when_started);
+}
+
+std::vector<std::string> list_folder(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::string read_text(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace opaline::tests

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace opaline::tests {
+
+struct Outcome {
+    int exit_code = -1;  ///< 128 + signal number where a signal ended it
+    std::string out, err;
+};
+
+using Arguments = std::vector<std::string>;
+
+/// Runs a program of the PATH and waits for it. `when_started` gets its process id; what it prints
+/// is kept in files, so that it never waits for a reader.
+Outcome run_any(const Arguments& command, const std::function<void(int)>& when_started = {});
+
+/// Runs `opaline` with these arguments.
+Outcome run_opaline(Arguments arguments, const std::function<void(int)>& when_started = {});
+
+/// Names of everything in a folder, sorted.
+std::vector<std::string> list_folder(const std::filesystem::path& folder);
+
+std::string read_text(const std::filesystem::path& path);
+
+}  // namespace opaline::tests

@@ -1,0 +1,68 @@
+#include "tests/cli/small_scene.h"
+
+#include <cmath>
+
+namespace opaline::tests {
+namespace {
+
+/// Facing up at height y, corners at +-half.
+Json add_square(AssetBuilder& asset, float y, float half, unsigned material) {
+    const auto position =
+        asset.add<float>({-half, y, -half, -half, y, half, half, y, half, half, y, -half}, "VEC3");
+    const auto index = asset.add<std::uint16_t>({0, 1, 2, 0, 2, 3}, "SCALAR");
+    return {{"attributes", {{"POSITION", position}}}, {"indices", index}, {"material", material}};
+}
+
+}  // namespace
+
+AssetBuilder two_squares() {
+    AssetBuilder asset;
+    const Json low = add_square(asset, 0, 1, 0), high = add_square(asset, 0.5f, 0.5f, 1);
+    asset.json["meshes"] = Json::array({{{"primitives", {low, high}}}});
+    asset.json["materials"] = {
+        {{"name", "Chalk"},
+         {"pbrMetallicRoughness",
+          {{"metallicFactor", 0}, {"baseColorFactor", {0.8, 0.8, 0.8, 1}}}}},
+        {{"name", "Brick"},
+         {"doubleSided", true},
+         {"pbrMetallicRoughness",
+          {{"metallicFactor", 0}, {"baseColorFactor", {0.7, 0.2, 0.1, 1}}}}}};
+    asset.add_node(0);
+    return asset;
+}
+
+AssetBuilder wavy_sheet(unsigned n) {
+    std::vector<float> position;
+    std::vector<std::uint32_t> index;
+    for (unsigned z = 0; z < n; ++z) {
+        for (unsigned x = 0; x < n; ++x) {
+            const auto u = static_cast<float>(x), v = static_cast<float>(z);
+            position.insert(position.end(), {u, 3 * std::sin(0.3f * u) * std::sin(0.3f * v), v});
+            if (x + 1 < n && z + 1 < n) {
+                const unsigned a = z * n + x;
+                index.insert(index.end(), {a, a + n, a + n + 1, a, a + n + 1, a + 1});
+            }
+        }
+    }
+    AssetBuilder asset;
+    const auto positions = asset.add<float>(position, "VEC3");
+    const auto indices = asset.add<std::uint32_t>(index, "SCALAR");
+    asset.add_node(asset.add_mesh({{"POSITION", positions}}, {{"indices", indices}}));
+    return asset;
+}
+
+SmallScene::SmallScene() {
+    write_file(scene(), two_squares().glb());
+}
+
+std::string SmallScene::baked() {
+    const std::string file = path("scene.opal");
+    if (!std::filesystem::exists(file)) {
+        const Outcome bake =
+            run_opaline({"bake", scene(), "-o", file, "--cubemap", "16", "--coefficients", "all"});
+        EXPECT_EQ(bake.exit_code, 0) << bake.err;
+    }
+    return file;
+}
+
+}  // namespace opaline::tests
