@@ -12,7 +12,7 @@ file(REMOVE_RECURSE ${BINARY})
 set(bake_packages embree OpenMesh OpenEXR Imath TinyGLTF glm TBB PNG JPEG CLI11 fmt nlohmann_json)
 list(TRANSFORM bake_packages REPLACE "(.+)" "-DCMAKE_DISABLE_FIND_PACKAGE_\\1=ON")
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${BINARY}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release
-    -DOPALINE_BUILD_BAKE=OFF -DOPALINE_BUILD_GL=OFF -DOPALINE_BUILD_TESTS=OFF ${bake_packages}
+    -DOPALINE_BUILD_BAKE=OFF -DOPALINE_BUILD_TESTS=OFF ${bake_packages}
     -DCMAKE_INSTALL_PREFIX=${BINARY}/prefix ${LAUNCHER})
 run(${CMAKE_COMMAND} --build ${BINARY}/build -j 2)
 run(${CMAKE_COMMAND} --install ${BINARY}/build)
