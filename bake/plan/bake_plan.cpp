@@ -31,7 +31,7 @@ Preset preset(Quality quality) {
 
 // Occlusion rays per second and thread on a mesh of one triangle, and how it falls as the hierarchy
 // grows a level: a fit to the visibility benchmark, good to a factor of two on another machine.
-constexpr double kRaysPerSecond = 16e6;
+constexpr double kRaysPerSecond = 36e6;
 constexpr double kSlowdownPerLevel = 0.11;
 
 double predict_trace_seconds(double receivers, double triangles, const Knobs& knobs,

@@ -1,0 +1,147 @@
+#include "bake/environment/builtin_environment.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "bake/environment/rasterise.h"
+#include "tests/support/temporary_folder.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Environment;
+using formats::Rgb;
+using formats::Vec3;
+
+constexpr double kPi = std::numbers::pi;
+
+double luminance_of(const Rgb& c) {
+    return 0.2126 * double{c.r} + 0.7152 * double{c.g} + 0.0722 * double{c.b};
+}
+
+Environment make(const std::string& name) {
+    const auto made = make_environment(name);
+    EXPECT_TRUE(made) << name;
+    return made ? *made : Environment{};
+}
+
+/// Luminance of the light on a plane facing `normal`, by summation over a fine map.
+double irradiance(const Environment& environment, Vec3 normal) {
+    constexpr std::uint32_t kWidth = 2048, kHeight = 1024;
+    const formats::Image image = rasterise_lat_long(environment, kWidth, kHeight);
+    double sum = 0;
+    for (std::uint32_t row = 0; row < kHeight; ++row) {
+        const double solid_angle = lat_long_pixel_solid_angle(kWidth, kHeight, row);
+        const double theta = kPi * (row + 0.5) / kHeight;
+        for (std::uint32_t column = 0; column < kWidth; ++column) {
+            const double phi = kPi * (2 * (column + 0.5) / kWidth - 1);
+            const double cosine = std::sin(theta) * std::cos(phi) * double{normal.x} +
+                                  std::cos(theta) * double{normal.y} +
+                                  std::sin(theta) * std::sin(phi) * double{normal.z};
+            sum += solid_angle * std::max(cosine, 0.0) *
+                   luminance_of(image.pixel[std::size_t{row} * kWidth + column]);
+        }
+    }
+    return sum;
+}
+
+TEST(BuiltinEnvironment, WhiteLightsEveryPlaneWithPi) {
+    const Environment white = make("white");
+    for (const Vec3 normal : {Vec3{0, 1, 0}, Vec3{1, 0, 0}, Vec3{0.6f, 0, -0.8f}}) {
+        EXPECT_NEAR(irradiance(white, normal), kPi, 1e-5);
+    }
+}
+
+TEST(BuiltinEnvironment, SunHasIrradiancePiAndHalfADegree) {
+    for (const char* name : {"sun:0,90", "sun:40,30", "sun:-170,2"}) {
+        const Environment sun = make(name);
+        EXPECT_TRUE(sun.pixel.empty());
+        ASSERT_EQ(sun.discs.size(), 1u);
+        const auto& disc = sun.discs[0];
+        EXPECT_NEAR(2 * double{disc.angular_radius} * 180 / kPi, 0.53, 1e-6);
+        EXPECT_NEAR(double{disc.radiance.g} * formats::disc_solid_angle(disc.angular_radius), kPi,
+                    1e-5);
+        EXPECT_NEAR(irradiance(sun, disc.direction), kPi, 2e-5 * kPi);
+    }
+}
+
+TEST(BuiltinEnvironment, AzimuthTurnsFromPlusZToPlusX) {
+    const auto towards = [](const char* name) { return make(name).discs[0].direction; };
+    const auto expect = [](Vec3 found, Vec3 wanted) {
+        EXPECT_NEAR(found.x, wanted.x, 1e-7);
+        EXPECT_NEAR(found.y, wanted.y, 1e-7);
+        EXPECT_NEAR(found.z, wanted.z, 1e-7);
+    };
+    expect(towards("sun:0,0"), {0, 0, 1});
+    expect(towards("sun:90,0"), {1, 0, 0});
+    expect(towards("sun:180,0"), {0, 0, -1});
+    expect(towards("sun:12,90"), {0, 1, 0});
+    expect(towards("sun:0,-90"), {0, -1, 0});
+}
+
+TEST(BuiltinEnvironment, SkyGivesAHorizontalWhiteSurfaceLuminanceOne) {
+    for (const char* name : {"sky:1.7,90", "sky:3,35", "sky:6,20", "sky:10,3"}) {
+        EXPECT_NEAR(irradiance(make(name), {0, 1, 0}) / kPi, 1, 2e-3) << name;
+    }
+}
+
+TEST(BuiltinEnvironment, SkyIsFiniteAndNotNegativeOverItsWholeRange) {
+    for (const double turbidity : {1.7, 4.0, 10.0}) {
+        for (const double elevation : {1e-3, 0.5, 10.0, 45.0, 89.9, 90.0}) {
+            const Environment sky =
+                make("sky:" + std::to_string(turbidity) + "," + std::to_string(elevation));
+            ASSERT_EQ(sky.discs.size(), 1u);
+            const Rgb& disc = sky.discs[0].radiance;
+            ASSERT_TRUE(std::isfinite(disc.r + disc.g + disc.b) && disc.b >= 0);
+            for (const Rgb& c : sky.pixel) {
+                ASSERT_TRUE(c.r >= 0 && c.g >= 0 && c.b >= 0);
+                ASSERT_TRUE(std::isfinite(c.r + c.g + c.b));
+            }
+        }
+    }
+}
+
+TEST(BuiltinEnvironment, LowSunIsRedderThanHighSunAndZenithBluerThanHorizon) {
+    const auto redness = [](const Rgb& c) { return c.r / c.b; };
+    const Environment low = make("sky:3,5"), high = make("sky:3,60");
+    EXPECT_GT(redness(low.discs[0].radiance), 1.5f * redness(high.discs[0].radiance));
+    // Away from the sun, whose azimuth is -40 degrees.
+    const Vec3 horizon = direction_of(140, 2), zenith = direction_of(0, 90);
+    EXPECT_GT(redness(sample_map(high, horizon)), 1.2f * redness(sample_map(high, zenith)));
+}
+
+TEST(BuiltinEnvironment, StudioIsBoundedAndBrightestAtTheKeyLight) {
+    const Environment studio = make("studio");
+    float brightest = 0;
+    for (const Rgb& c : studio.pixel) {
+        ASSERT_TRUE(c.r >= 0 && c.r <= 15 && c.g >= 0 && c.g <= 15 && c.b >= 0 && c.b <= 15);
+        brightest = std::max({brightest, c.r, c.g, c.b});
+    }
+    EXPECT_GT(brightest, 5);
+    // The key stands at the left front: it lights that side most.
+    EXPECT_GT(irradiance(studio, direction_of(-44, 0)), irradiance(studio, direction_of(64, 0)));
+}
+
+TEST(BuiltinEnvironment, MalformedNamesAreUsageErrorsThatListTheForms) {
+    for (const char* name : {"sun", "sun:", "sun:1", "sun:1,2,3", "sun:1,91", "sun:inf,0", "sky",
+                             "sky:1.6,10", "sky:11,10", "sky:3,0", "white:1", "studio:2", "moon"}) {
+        const auto made = make_environment(name);
+        ASSERT_FALSE(made) << name;
+        EXPECT_EQ(made.error().kind, formats::ErrorKind::usage);
+        EXPECT_THAT(made.error().diagnostics[0].remedy, testing::HasSubstr("sky:TURBIDITY,EL"));
+    }
+}
+
+TEST(BuiltinEnvironment, FileNamedLikeALightIsOpenedByItsPath) {
+    EXPECT_TRUE(is_builtin("white"));
+    EXPECT_FALSE(is_builtin("./white"));
+    EXPECT_FALSE(is_builtin("whiteout.exr"));
+    const auto missing = open_environment("./white");
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().kind, formats::ErrorKind::bad_input);
+}
+
+}  // namespace
+}  // namespace opaline::bake
