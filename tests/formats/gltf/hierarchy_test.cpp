@@ -191,10 +191,17 @@ TEST(GltfHierarchy, FlattenedNodesImportWithoutNan) {
     asset.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
         asset.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
     asset.json["nodes"][0]["scale"] = {0, 0, 0};
+    asset.add_node(0);
     const auto imported = must_import(asset);
     EXPECT_THAT(imported.scene.primitives.at(0).normal, ::testing::Each(glm::vec3(0)));
     EXPECT_THAT(lines(imported.warnings), HasSubstr("1 of 1 triangles have no area"));
     EXPECT_THAT(lines(imported.warnings), HasSubstr("3 vertices have neither a normal nor a face"));
+}
+
+TEST(GltfHierarchy, SceneFlattenedAltogetherIsRefused) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["nodes"][0]["scale"] = {1, 0, 0};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("no triangle of the scene has an area"));
 }
 
 TEST(GltfHierarchy, WhatNodesCarryAndIsNotSimulatedIsNamed) {
