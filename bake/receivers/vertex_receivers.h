@@ -20,8 +20,8 @@ namespace opaline::bake {
 /// bound: the rounding error of the intersection test, a multiple of the coordinates' ulp.
 /// Duplicated vertices therefore get identical origins, and no seam.
 /// Where no d is in front of all triangles (a point whose triangles are folded over each other, as
-/// scans and decimation leave them), rays start along the shading normal above the fold, which would
-/// else be a black speck.
+/// scans and decimation leave them), rays start along the shading normal above the fold, which
+/// would else be a black speck.
 std::vector<Receiver> make_vertex_receivers(const formats::Scene& scene);
 
 /// Bound [m] on how far the computed intersection of a ray with a triangle may lie from the true

@@ -44,8 +44,10 @@ int main(int argc, char** argv) {
     const size_t floats = 3 * (size_t)opaline_asset_receiver_count(asset);
     float* radiance = malloc((floats + 1) * sizeof(float));
     double sum = 0;
-    if (opaline_shade(asset, light, OPALINE_SHADE_DEFAULT, radiance, floats) != OPALINE_OK) return 3;
-    for (size_t i = 0; i < floats; ++i) sum += radiance[i];
+    if (opaline_shade(asset, light, OPALINE_SHADE_DEFAULT, radiance, floats) != OPALINE_OK)
+        return 3;
+    for (size_t i = 0; i < floats; ++i)
+        sum += radiance[i];
     printf("%lu receivers, mean radiance %g\n", (unsigned long)(floats / 3),
            floats > 0 ? sum / (double)floats : 0.0);
     free(radiance);

@@ -46,8 +46,8 @@ TEST(VertexReceivers, OffsetsAreOfTheOrderOfTheRoundingError) {
     }
 }
 
-// A scan's flap: two triangles folded onto each other rise above the surface they hang on. Rays that
-// started below it would make a black speck.
+// A scan's flap: two triangles folded onto each other rise above the surface they hang on. Rays
+// that started below it would make a black speck.
 TEST(VertexReceivers, RaysOfAFoldedVertexStartAboveTheFold) {
     formats::Primitive flap;
     flap.position = {{0, 0, 0}, {1, 0.1f, 0}, {0, 0.1f, 1}, {1, 0, 1}};

@@ -214,7 +214,8 @@ TEST(LoadEnvironment, AssetEnvironmentsLoadWithNothingWorseThanNegativeTexels) {
         const Result<LoadedEnvironment> loaded = load_environment(entry.path());
         ASSERT_TRUE(loaded) << message(loaded.error());
         for (const Diagnostic& warning : loaded->warnings) {
-            EXPECT_THAT(warning.fault, HasSubstr("values are negative, taken as 0")) << entry.path();
+            EXPECT_THAT(warning.fault, HasSubstr("values are negative, taken as 0"))
+                << entry.path();
         }
         EXPECT_EQ(loaded->environment.width, 2 * loaded->environment.height);
         double mean = 0;
