@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,15 +15,50 @@ namespace opaline::formats {
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
 
+/// How a medium redirects light at one scattering event; int p dw = 1 over the sphere. All are
+/// functions of the cosine between propagation directions.
+struct PhaseFunction {
+    enum class Type {
+        isotropic,
+        henyey_greenstein,
+        rayleigh,
+        gaussian,
+        tabulated
+    } type = Type::isotropic;
+    float g = 0;          ///< henyey_greenstein: mean cosine, |g| <= 0.99; > 0: forward
+    float rms_angle = 0;  ///< gaussian: root mean square angle [rad], in (0, 1]
+    std::vector<float> cosine, value;  ///< tabulated: ascending from -1 to 1, p >= 0 [1/sr]
+};
+
+/// A homogeneous scattering medium that fills the closed surface of its material. SI units.
+struct Medium {
+    Rgb sigma_s, sigma_a;  ///< scattering, absorption [1/m], finite, >= 0, not all zero
+    PhaseFunction phase;
+    float eta = 1.3f;        ///< index of refraction relative to the outside, in [1/3, 3]
+    float roughness = 0.2f;  ///< of the specular reflection at its surface, GGX, in [0, 1]
+    enum class Profile {
+        automatic,
+        classic,
+        better,
+        beams,
+        normalized
+    } profile = Profile::automatic;
+    enum class Fidelity {
+        physical,  ///< corrected formulas (translucency.md 5)
+        paper      ///< [Wang2005] to the letter
+    } fidelity = Fidelity::physical;
+};
+
 /// Surface appearance, as the input formats mean it. Colours are linear Rec. 709.
 struct Material {
     std::string name;
-    Rgb base_color{1, 1, 1};                    ///< factor, each in [0,1]
-    std::uint32_t base_color_image = kNone;     ///< index into Scene::images
-    std::uint32_t base_color_texcoord = 0;      ///< which texture coordinate set it uses
-    glm::mat3 base_color_uv_transform{1.0f};    ///< KHR_texture_transform, applied to (u, v, 1)
+    Rgb base_color{1, 1, 1};                  ///< factor, each in [0,1]
+    std::uint32_t base_color_image = kNone;   ///< index into Scene::images
+    std::uint32_t base_color_texcoord = 0;    ///< which texture coordinate set it uses
+    glm::mat3 base_color_uv_transform{1.0f};  ///< KHR_texture_transform, applied to (u, v, 1)
     enum class Wrap { repeat, clamp, mirror } wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool double_sided = false;
+    std::optional<Medium> medium;  ///< translucent; none: opaque and diffuse
 };
 
 /// One glTF primitive of one node instance, in world space and metres. Vertices keep the original
@@ -32,9 +68,10 @@ struct Primitive {
     std::string name;                                 ///< "node 'Vase' > mesh 3 > primitive 0"
     std::uint32_t material = 0;                       ///< index into Scene::materials, always valid
     std::vector<glm::vec3> position;                  ///< [m], finite
-    std::vector<glm::vec3> normal;   ///< unit; one per vertex; {0,0,0} where none can be defined
-    std::vector<glm::vec2> texcoord; ///< base-colour set, transform applied; empty or one per vertex
-    std::vector<Rgb> color;          ///< COLOR_0, linear; empty or one per vertex
+    std::vector<glm::vec3> normal;  ///< unit; one per vertex; {0,0,0} where none can be defined
+    std::vector<glm::vec2>
+        texcoord;            ///< base-colour set, transform applied; empty or one per vertex
+    std::vector<Rgb> color;  ///< COLOR_0, linear; empty or one per vertex
     std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();
                                        ///< counter-clockwise seen from outside
 };

@@ -29,6 +29,12 @@ enum class Wrap : std::uint32_t { repeat = 0, clamp = 1, mirror = 2 };
 enum class Shading : std::uint32_t {
     /// L_o = base_color * <T_0, L>; T_0 = V max(0, n.w) / pi, one term, grey or RGB.
     diffuse = 1,
+    /// L_o = base_color * Ft(eta, n.w_o) * sum_k h_k(w_o') <T_k, L> (translucency.md 3.6, 3.8),
+    /// with
+    /// w_o' the direction to the eye refracted into the medium and h_k = Y_lm(w_o'), the real
+    /// orthonormal spherical harmonics, k = l (l + 1) + m; terms = 1, 4, 9, 16 or 25. With
+    /// one term h_0 = 1, so T_0 carries the factor. RGB.
+    translucent = 2,
 };
 
 /// One glTF primitive of one node instance. Receivers and vertices are the same thing: row
@@ -44,8 +50,8 @@ struct PrimitiveRecord {
     Shading shading = Shading::diffuse;
     std::uint32_t base_color_image = kNoImage;  ///< index into images
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    std::uint32_t flags = 0;     ///< kDoubleSided
-    std::uint32_t reserved = 0;  ///< zero
+    std::uint32_t flags = 0;  ///< kDoubleSided
+    float eta = 0;            ///< translucent: index of refraction in [1/3, 3]; else 0
 
     static constexpr std::uint32_t kDoubleSided = 1;
 
