@@ -39,7 +39,4 @@ MediumProfile make_medium_profile(const formats::Medium& medium, double largest_
 /// scale R_d(r) of the three bands [1/m^2] at squared distance r2 [m^2]; 0 beyond the table.
 std::array<float, 3> eval_profile(const MediumProfile& profile, float r2);
 
-/// Mean cosine of the phase function.
-double mean_cosine(const formats::PhaseFunction& phase);
-
 }  // namespace opaline::bake
