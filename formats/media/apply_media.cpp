@@ -43,7 +43,9 @@ std::vector<Diagnostic> apply_media(const MediaFile& media, Scene& scene) {
         found = found == by_name.end() ? others : found;
         if (found != by_name.end()) {
             material.medium = found->second->medium;
-            material.base_color = found->second->base_color.value_or(material.base_color);
+            // The medium has its own colour; the factor was for the surface it replaces.
+            material.base_color = found->second->base_color.value_or(
+                material.medium ? Rgb{1, 1, 1} : material.base_color);
         }
     }
     std::vector<Diagnostic> warnings;
