@@ -49,7 +49,7 @@ TEST(Usage, BadCommandLinesExitWithTwoAndSayWhereHelpIs) {
         {"bake", scene, "-o", out, "--coefficients", "3"},
         {"bake", scene, "-o", out, "--coefficients", "many"},
         {"bake", scene, "-o", out, "--effects", "sparkle"},
-        {"bake", scene, "-o", out, "--effects", "multiple"},
+        {"bake", scene, "-o", out, "--effects", "cloud"},
         {"bake", scene, "-o", out, "--threads", "-1"},
         {"bake", scene, "-o", out, "--threads", "x"},
         {"bake", scene, "-o", out, "--seed", "-1"},
