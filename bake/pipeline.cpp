@@ -224,7 +224,11 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
                                             m, asset, drawn, *lights, context));
         }
         traced = checks.front().rays;
-        return summarise_checks(checks, lights->size(), knobs->seed);
+        std::vector<std::string> names;
+        for (const TestLight& light : *lights) {
+            names.push_back(light.name);
+        }
+        return summarise_checks(checks, names, knobs->seed);
     });
     if (context.cancelled()) {
         return interrupted();
