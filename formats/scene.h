@@ -58,7 +58,7 @@ struct Material {
     glm::mat3 base_color_uv_transform{1.0f};  ///< KHR_texture_transform, applied to (u, v, 1)
     enum class Wrap { repeat, clamp, mirror } wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool double_sided = false;
-    std::optional<Medium> medium;  ///< translucent; none: opaque and diffuse
+    std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque and diffuse
 };
 
 /// One glTF primitive of one node instance, in world space and metres. Vertices keep the original
