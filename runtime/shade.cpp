@@ -1,10 +1,13 @@
 #include "runtime/shade.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "runtime/parallel.h"
 #include "runtime/texture.h"
+#include "runtime/view_terms.h"
 
 namespace opaline::runtime {
 namespace {
@@ -34,6 +37,49 @@ void shade_block(const formats::AssetView& asset, const formats::PrimitiveRecord
     }
 }
 
+// What is still to be multiplied keeps its sign.
+float finite(float x) {
+    constexpr float kLargest = std::numeric_limits<float>::max();
+    return std::isnan(x) ? 0.0f : std::clamp(x, -kLargest, kLargest);
+}
+
+Rgb shade_translucent(const formats::AssetView& asset, const formats::PrimitiveRecord& primitive,
+                      std::uint32_t vertex, std::span<const Rgb> product,
+                      const ShadeOptions& options) {
+    const ViewOfReceiver view =
+        view_receiver(primitive, asset.position[vertex], asset.normal[vertex], options.eye);
+    Rgb radiance = sum_view_terms(view, primitive.eta, product);
+    if (options.base_color) {
+        radiance = radiance * vertex_base_color(asset, primitive, vertex);
+    }
+    if (!options.fresnel) {
+        return {finite(radiance.r), finite(radiance.g), finite(radiance.b)};
+    }
+    radiance = fresnel_transmittance(view.cosine, primitive.eta) * radiance;
+    return {displayable(radiance.r), displayable(radiance.g), displayable(radiance.b)};
+}
+
+// The same for rows of several terms: as many vertices at a time as fill a block.
+void shade_translucent_block(const formats::AssetView& asset,
+                             const formats::PrimitiveRecord& primitive, const LightVector& light,
+                             std::uint32_t first_vertex, std::span<Rgb> out,
+                             const ShadeOptions& options) {
+    static_assert(kBlock >= formats::kMaxHarmonics);
+    std::array<Rgb, kBlock> products;
+    const std::uint32_t terms = primitive.terms, step = kBlock / terms;
+    for (std::uint32_t done = 0; done < out.size(); done += step) {
+        const std::uint32_t count = std::min(step, static_cast<std::uint32_t>(out.size()) - done);
+        const std::span<Rgb> block = std::span<Rgb>(products).first(std::size_t{count} * terms);
+        dot_rows(asset.transport, primitive.rows(), light,
+                 (first_vertex + done - primitive.first_vertex) * terms, block, options.path);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            out[done + i] =
+                shade_translucent(asset, primitive, first_vertex + done + i,
+                                  block.subspan(std::size_t{i} * terms, terms), options);
+        }
+    }
+}
+
 }  // namespace
 
 void shade_range(const formats::AssetView& asset, const LightVector& light, std::uint32_t first,
@@ -45,8 +91,10 @@ void shade_range(const formats::AssetView& asset, const LightVector& light, std:
             std::min(last, std::uint64_t{primitive.first_vertex} + primitive.vertex_count);
         for (std::uint64_t v = std::max(first, primitive.first_vertex); v < end; v += kBlock) {
             const std::size_t count = std::min<std::uint64_t>(kBlock, end - v);
-            shade_block(asset, primitive, light, static_cast<std::uint32_t>(v),
-                        out.subspan(v - first, count), options);
+            (primitive.shading == formats::Shading::translucent
+                 ? shade_translucent_block
+                 : shade_block)(asset, primitive, light, static_cast<std::uint32_t>(v),
+                                out.subspan(v - first, count), options);
         }
     }
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "formats/opal/asset.h"
 #include "formats/opal/rgb.h"
+#include "formats/opal/vec3.h"
 #include "runtime/dot.h"
 #include "runtime/light_vector.h"
 
@@ -14,12 +16,19 @@ struct ShadeOptions {
     unsigned threads = 0;    ///< 0: all cores; results have the same bits for any number
     bool base_color = true;  ///< false: as if every base colour were white
     DotPath path = best_dot_path();
+    /// Where translucent receivers are seen from [m, world]; nothing: each along its own normal.
+    /// Diffuse ones look the same from everywhere.
+    std::optional<formats::Vec3> eye = std::nullopt;
+    /// false: translucent receivers without their factor Ft and with their sign. That is what a
+    /// renderer interpolates, to multiply by Ft per pixel and to clamp at the end.
+    bool fresnel = true;
 };
 
 /// Outgoing radiance [W m^-2 sr^-1] of every receiver: L_o = base_color * <T_0, L>
-/// (Shading::diffuse). The final value is clamped to [0, largest float]; what belongs to no
-/// primitive is black. Preconditions: light.n == asset.cubemap_size, out.size() ==
-/// asset.receivers(), the asset passed read_opal's checks.
+/// (Shading::diffuse) or base_color * Ft * sum_k h_k(w_o') <T_k, L> (Shading::translucent). The
+/// final value is clamped to [0, largest float]; what belongs to no primitive is black, and so are
+/// translucent receivers that face away or have no normal. Preconditions: light.n ==
+/// asset.cubemap_size, out.size() == asset.receivers(), the asset passed read_opal's checks.
 void shade(const formats::AssetView& asset, const LightVector& light, std::span<formats::Rgb> out,
            const ShadeOptions& options = {});
 

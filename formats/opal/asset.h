@@ -25,6 +25,10 @@ enum class Pairing : std::uint32_t { light_carries_solid_angle = 1 };
 /// How a texture coordinate outside [0, 1] is brought back inside.
 enum class Wrap : std::uint32_t { repeat = 0, clamp = 1, mirror = 2 };
 
+/// Relative indices of refraction of a translucent primitive; outside them the exact hemispherical
+/// moments and the fits that bakers use lose their digits (translucency.md 3.2).
+inline constexpr float kMinEta = 1.0f / 3.0f, kMaxEta = 3.0f;
+
 /// What row values mean and how a receiver is shaded from them.
 enum class Shading : std::uint32_t {
     /// L_o = base_color * <T_0, L>; T_0 = V max(0, n.w) / pi, one term, grey or RGB.
@@ -87,6 +91,9 @@ struct AssetView {
 
     std::uint32_t receivers() const { return static_cast<std::uint32_t>(position.size()); }
 };
+
+/// The primitive that a receiver belongs to. Precondition: receiver < asset.receivers().
+const PrimitiveRecord& primitive_of(const AssetView& asset, std::uint32_t receiver);
 
 /// Owning twin of `PreviewImage`.
 struct PreviewImageData {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "formats/opal/cubemap.h"
+#include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::formats {
 namespace {
@@ -40,11 +42,34 @@ Fault find_transport_fault(const AssetView& asset) {
     return {};
 }
 
+// Empty where all is well. `!(>=)` refuses NaN too.
+std::string find_shading_fault(const PrimitiveRecord& p) {
+    const auto number = [](auto value) { return std::to_string(value); };
+    switch (p.shading) {
+        case Shading::diffuse:
+            if (p.terms != 1 || (p.bands != 1 && p.bands != 3) || p.eta != 0.0f) {
+                return "diffuse shading with " + number(p.terms) + " terms, " + number(p.bands) +
+                       " bands and index of refraction " + number(p.eta) +
+                       "; expected 1 term, 1 or 3 bands and index 0";
+            }
+            return {};
+        case Shading::translucent:
+            if (!is_harmonic_count(p.terms) || p.bands != 3 || !(p.eta >= kMinEta) ||
+                !(p.eta <= kMaxEta)) {
+                return "translucent shading with " + number(p.terms) + " terms, " +
+                       number(p.bands) + " bands and index of refraction " + number(p.eta) +
+                       "; expected 1, 4, 9, 16 or 25 terms, 3 bands and an index in 1/3 ... 3";
+            }
+            return {};
+    }
+    return "unknown shading " + number(static_cast<std::uint32_t>(p.shading));
+}
+
 Fault find_primitive_fault(const AssetView& asset, std::size_t i) {
     const PrimitiveRecord& p = asset.primitives[i];
     const SparseRowsView& rows = asset.transport;
-    if (p.shading != Shading::diffuse || p.terms != 1 || (p.bands != 1 && p.bands != 3)) {
-        return {primitive_name(i), "unknown shading, or impossible numbers of terms and bands"};
+    if (std::string fault = find_shading_fault(p); !fault.empty()) {
+        return {primitive_name(i), std::move(fault)};
     }
     const std::uint64_t row_count = std::uint64_t{p.vertex_count} * p.terms;
     if (!inside(p.first_vertex, p.vertex_count, asset.position.size()) ||

@@ -7,6 +7,7 @@
 #include "runtime/parallel.h"
 #include "runtime/picture/band.h"
 #include "runtime/texture.h"
+#include "runtime/view_terms.h"
 
 namespace opaline::runtime {
 namespace {
@@ -48,6 +49,19 @@ T interpolate(std::span<const T> values, const std::array<std::uint32_t, 3>& ver
            weight[2] * values[vertex[2]];
 }
 
+// Fresnel factor at a sample, with the interpolated normal: it falls too steeply toward grazing
+// views to be interpolated itself.
+float transmittance_at(const Job& job, const PrimitiveRecord& primitive,
+                       const GridTriangle& triangle, const std::array<float, 3>& weight) {
+    formats::Vec3 normal = interpolate(job.asset.normal, triangle.vertex, weight);
+    const float norm = length(normal);
+    normal = norm > 0 ? (1 / norm) * normal : formats::Vec3{};
+    const ViewOfReceiver view =
+        view_receiver(primitive, interpolate(job.asset.position, triangle.vertex, weight), normal,
+                      job.camera.eye);
+    return fresnel_transmittance(view.cosine, primitive.eta);
+}
+
 Rgb shade_surface(const Job& job, const GridTriangle& triangle, double x, double y) {
     const EdgeFunctions edges =
         edge_functions({job.vertices[triangle.vertex[0]], job.vertices[triangle.vertex[1]],
@@ -68,6 +82,9 @@ Rgb shade_surface(const Job& job, const GridTriangle& triangle, double x, double
         }
         radiance = radiance * sample_image_linear(job.asset.images[primitive.base_color_image], uv,
                                                   primitive.wrap_u, primitive.wrap_v);
+    }
+    if (primitive.shading == formats::Shading::translucent) {
+        radiance = transmittance_at(job, primitive, triangle, weight) * radiance;
     }
     return tame(radiance);
 }

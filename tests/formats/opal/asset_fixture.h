@@ -56,4 +56,47 @@ inline formats::Asset make_small_asset(std::uint32_t code_bits = 8) {
     return asset;
 }
 
+/// Adds a translucent triangle of three vertices, `terms` random RGB rows each; n = 8.
+inline void add_translucent_triangle(formats::Asset& asset, std::uint32_t terms, float eta) {
+    using namespace formats;
+    std::mt19937 generator(8);
+    std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);
+    PrimitiveRecord record;
+    record.shading = Shading::translucent;
+    record.terms = terms;
+    record.bands = 3;
+    record.eta = eta;
+    record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
+    record.vertex_count = 3;
+    record.first_index = static_cast<std::uint32_t>(asset.index.size());
+    record.index_count = 3;
+    record.first_row = asset.transport.view().rows();
+    record.first_band_row = static_cast<std::uint32_t>(asset.transport.detail_scale.size());
+    record.first_code = asset.transport.code8.size() + asset.transport.code16.size();
+    asset.primitives.push_back(record);
+    for (std::uint32_t v = 0; v < 3; ++v) {
+        asset.position.push_back({static_cast<float>(v == 1), static_cast<float>(v == 2), 0});
+        asset.normal.push_back({0, 0, 1});
+        asset.base_color.push_back({1, 1, 1});
+        asset.texcoord.push_back({0, 0});
+        asset.index.push_back(v);
+        for (std::uint32_t k = 0; k < terms; ++k) {
+            SparseRow row;
+            row.bands = 3;
+            for (std::uint32_t i = 1 + k; i < cubemap_texels(8); i += 5 + v) {
+                if (i % 64 != 0) {
+                    row.index.push_back(i);
+                }
+            }
+            for (std::size_t i = 0; i < 3 * row.index.size(); ++i) {
+                row.value.push_back(uniform(generator));
+            }
+            for (std::size_t i = 0; i < 18; ++i) {
+                row.average.push_back(uniform(generator));
+            }
+            append_row(asset.transport, row);
+        }
+    }
+}
+
 }  // namespace opaline::tests

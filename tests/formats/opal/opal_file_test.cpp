@@ -1,9 +1,11 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "formats/opal/mapped_file.h"
@@ -81,6 +83,60 @@ TEST(OpalFile, ReturnsEveryValueItWasGiven) {
             EXPECT_EQ(section.offset % kSectionAlignment, 0u);
         }
     }
+}
+
+TEST(OpalFile, TranslucentPrimitivesComeBackWithEveryTerm) {
+    for (const std::uint32_t terms : {1u, 4u, 9u, 16u, 25u}) {
+        for (const float eta : {kMinEta, 1.0f, 1.3f, kMaxEta}) {
+            Asset asset = tests::make_small_asset();
+            tests::add_translucent_triangle(asset, terms, eta);
+            AlignedBytes stored(encode(asset));
+            const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+            ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
+            ASSERT_EQ(loaded->view.primitives.size(), 3u);
+            const PrimitiveRecord& p = loaded->view.primitives[2];
+            expect_same_bytes(loaded->view.primitives, asset.primitives);
+            ASSERT_EQ(p.rows().rows, 3 * terms);
+            std::vector<float> stored_row(cubemap_texels(8)), own_row(cubemap_texels(8));
+            for (std::uint32_t row = 0; row < p.rows().rows; ++row) {
+                decode_row(loaded->view.transport, p.rows(), row, 1, stored_row);
+                decode_row(asset.transport.view(), p.rows(), row, 1, own_row);
+                EXPECT_EQ(stored_row, own_row);
+            }
+        }
+    }
+}
+
+TEST(OpalFile, ImpossibleShadingIsRefusedByName) {
+    const auto fault_of = [](auto change) {
+        Asset asset = tests::make_small_asset();
+        tests::add_translucent_triangle(asset, 4, 1.3f);
+        change(asset.primitives);
+        AlignedBytes stored(encode(asset));
+        const auto loaded = read_opal(stored.bytes(), "a.opal");
+        return loaded ? std::string() : loaded.error().diagnostics.front().fault;
+    };
+    using Primitives = std::vector<PrimitiveRecord>;
+    EXPECT_EQ(fault_of([](Primitives&) {}), "");
+    for (const std::uint32_t terms : {0u, 2u, 3u, 5u, 36u, 0xffffffffu}) {
+        EXPECT_THAT(fault_of([terms](Primitives& p) { p[2].terms = terms; }),
+                    testing::HasSubstr("terms"));
+    }
+    EXPECT_THAT(fault_of([](Primitives& p) { p[2].bands = 1; }), testing::HasSubstr("bands"));
+    for (const float eta : {0.0f, 0.33f, 3.01f, -1.3f, std::numeric_limits<float>::quiet_NaN(),
+                            std::numeric_limits<float>::infinity()}) {
+        EXPECT_THAT(fault_of([eta](Primitives& p) { p[2].eta = eta; }),
+                    testing::HasSubstr("index of refraction"));
+        if (eta != 0) {
+            EXPECT_THAT(fault_of([eta](Primitives& p) { p[0].eta = eta; }),
+                        testing::HasSubstr("index of refraction"));
+        }
+    }
+    EXPECT_THAT(fault_of([](Primitives& p) { p[0].terms = 4; }), testing::HasSubstr("terms"));
+    EXPECT_THAT(fault_of([](Primitives& p) { p[1].shading = static_cast<Shading>(3); }),
+                testing::HasSubstr("shading 3"));
+    // More rows than there are, by the number of terms.
+    EXPECT_NE(fault_of([](Primitives& p) { p[2].terms = 9; }), "");
 }
 
 TEST(OpalFile, TransportIsUsedInPlace) {

@@ -1,0 +1,200 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "runtime/shade.h"
+#include "runtime/view_terms.h"
+#include "tests/runtime/row_test_support.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Asset;
+using formats::PrimitiveRecord;
+using formats::Rgb;
+using formats::Vec3;
+
+/// A grey diffuse primitive, then a translucent one of random rows with `terms` rows a vertex and
+/// normals in all directions.
+Asset make_asset(std::uint32_t terms, float eta = 1.3f, std::uint32_t flags = 0) {
+    Asset asset;
+    asset.transport = tests::random_rows(8, 8, 1, 31);
+    PrimitiveRecord grey;
+    grey.vertex_count = asset.transport.view().rows();
+    PrimitiveRecord record;
+    record.shading = formats::Shading::translucent;
+    record.terms = terms;
+    record.bands = 3;
+    record.eta = eta;
+    record.flags = flags;
+    record.first_vertex = grey.vertex_count;
+    record.first_row = grey.vertex_count;
+    record.first_band_row = grey.vertex_count;
+    record.first_code = asset.transport.code8.size();
+    for (std::uint32_t k = 0; k < 2 * terms; ++k) {  // 82 vertices: over a block for many terms
+        formats::append_rows(asset.transport, tests::random_rows(8, 8, 3, 40 + k));
+    }
+    record.vertex_count = (asset.transport.view().rows() - grey.vertex_count) / terms;
+    asset.primitives = {grey, record};
+    const std::uint32_t vertices = grey.vertex_count + record.vertex_count;
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+        const float t = static_cast<float>(v);
+        asset.normal.push_back(
+            normalize(Vec3{std::sin(2 * t), std::cos(3 * t), std::sin(5 * t + 1)}));
+        asset.position.push_back(0.5f * asset.normal.back());
+        asset.base_color.push_back({0.5f, 0.25f, 1});
+    }
+    return asset;
+}
+
+Rgb product(const Asset& asset, const LightVector& light, std::uint32_t vertex,
+            std::uint32_t term) {
+    const PrimitiveRecord& p = asset.primitives[1];
+    std::vector<Rgb> out(1);
+    dot_rows(asset.transport.view(), p.rows(), light, (vertex - p.first_vertex) * p.terms + term,
+             out, best_dot_path());
+    return out[0];
+}
+
+TEST(TranslucentShade, AddsAllTermsAtTheRefractedDirectionToTheEye) {
+    const Vec3 eye{3, 2, -4};
+    for (const std::uint32_t terms : {1u, 4u, 9u, 16u, 25u}) {
+        const Asset asset = make_asset(terms);
+        const LightVector light = tests::random_light(8, 5);
+        std::vector<Rgb> out(asset.position.size());
+        shade(asset.view(), light, out, {.eye = eye});
+        std::size_t lit = 0;
+        for (std::uint32_t v = asset.primitives[1].first_vertex; v < out.size(); ++v) {
+            const Vec3 w = normalize(eye - asset.position[v]), n = asset.normal[v];
+            const double c = dot(n, w), eta = 1.3;
+            double expected = 0;
+            if (c > 0) {
+                const double inside = std::sqrt(1 - (1 - c * c) / (eta * eta));
+                const Vec3 refracted =
+                    static_cast<float>(1 / eta) * (w - static_cast<float>(c) * n) +
+                    static_cast<float>(inside) * n;
+                std::vector<float> h(terms);
+                formats::eval_spherical_harmonics(refracted, h);
+                for (std::uint32_t k = 0; k < terms; ++k) {
+                    expected += static_cast<double>(product(asset, light, v, k).g) *
+                                (terms == 1 ? 1.0 : static_cast<double>(h[k]));
+                }
+                const double rs = (c - eta * inside) / (c + eta * inside);
+                const double rp = (eta * c - inside) / (eta * c + inside);
+                expected *= 0.25 * (1 - (rs * rs + rp * rp) / 2);
+            }
+            EXPECT_NEAR(out[v].g, std::max(0.0, expected), 1e-5 * (1 + std::abs(expected)))
+                << "terms " << terms << ", vertex " << v;
+            lit += out[v].g > 0 ? 1u : 0u;
+        }
+        EXPECT_GT(lit, 10u);
+    }
+}
+
+TEST(TranslucentShade, WithoutAnEyeEachReceiverIsSeenAlongItsNormal) {
+    const Asset asset = make_asset(4);
+    const LightVector light = tests::random_light(8, 6);
+    std::vector<Rgb> out(asset.position.size()), near(out.size());
+    shade(asset.view(), light, out);
+    for (std::uint32_t v = asset.primitives[1].first_vertex; v < out.size(); v += 3) {
+        std::vector<Rgb> all(out.size());
+        shade(asset.view(), light, all, {.eye = asset.position[v] + 2.0f * asset.normal[v]});
+        EXPECT_NEAR(out[v].r, all[v].r, 1e-5f * (1 + out[v].r));
+        EXPECT_NEAR(out[v].b, all[v].b, 1e-5f * (1 + out[v].b));
+    }
+}
+
+TEST(TranslucentShade, DiffuseReceiversDoNotDependOnTheEyeByABit) {
+    const Asset asset = make_asset(4);
+    const LightVector light = tests::random_light(8, 7);
+    std::vector<Rgb> here(asset.position.size()), there(here.size());
+    shade(asset.view(), light, here);
+    shade(asset.view(), light, there, {.eye = Vec3{1, 2, 3}, .fresnel = false});
+    const std::uint32_t first = asset.primitives[1].first_vertex;
+    EXPECT_TRUE(std::equal(here.begin(), here.begin() + first, there.begin()));
+    EXPECT_FALSE(std::equal(here.begin() + first, here.end(), there.begin() + first));
+}
+
+TEST(TranslucentShade, BackFacesAreBlackUnlessDoubleSided) {
+    const Vec3 eye{0, 20, 0};
+    const Asset single = make_asset(4), both = make_asset(4, 1.3f, PrimitiveRecord::kDoubleSided);
+    const LightVector light = tests::random_light(8, 8);
+    std::vector<Rgb> a(single.position.size()), b(a.size());
+    shade(single.view(), light, a, {.eye = eye});
+    shade(both.view(), light, b, {.eye = eye});
+    std::size_t behind = 0, seen = 0;
+    for (std::uint32_t v = single.primitives[1].first_vertex; v < a.size(); ++v) {
+        if (dot(single.normal[v], eye - single.position[v]) > 0) {
+            EXPECT_EQ(a[v], b[v]);
+        } else {
+            ++behind;
+            EXPECT_EQ(a[v], Rgb{});
+            seen += b[v] == Rgb{} ? 0u : 1u;
+        }
+    }
+    EXPECT_GT(behind, 10u);
+    EXPECT_GT(seen, behind / 2);  // random rows: the rest is negative in all bands
+}
+
+TEST(TranslucentShade, ThreadsRangesAndPathsAgree) {
+    const Asset asset = make_asset(25);
+    const formats::AssetView view = asset.view();
+    const LightVector light = tests::random_light(8, 9);
+    const ShadeOptions options{.threads = 1, .eye = Vec3{0, 3, 3}};
+    std::vector<Rgb> one(view.receivers());
+    shade(view, light, one, options);
+    for (std::uint32_t first = 0; first < one.size(); first += 17) {
+        std::vector<Rgb> part(std::min<std::size_t>(30, one.size() - first));
+        shade_range(view, light, first, part, options);
+        EXPECT_TRUE(std::equal(part.begin(), part.end(), one.begin() + first)) << first;
+    }
+    ShadeOptions other = options;
+    other.threads = 3;
+    std::vector<Rgb> many(view.receivers());
+    shade(view, light, many, other);
+    EXPECT_EQ(many, one);
+    other.path = DotPath::scalar;
+    shade(view, light, many, other);
+    for (std::size_t v = 0; v < one.size(); ++v) {
+        EXPECT_NEAR(many[v].r, one[v].r, 1e-4f) << v;  // sums of 25 dot products of order 1
+    }
+}
+
+TEST(TranslucentShade, WithoutFresnelKeepsTheSignThatAPixelClampsLater) {
+    const Asset asset = make_asset(1);
+    const LightVector light = tests::random_light(8, 10);
+    std::vector<Rgb> out(asset.position.size());
+    shade(asset.view(), light, out, {.base_color = false, .eye = Vec3{0, 3, 3}, .fresnel = false});
+    std::size_t negative = 0;
+    for (std::uint32_t v = asset.primitives[1].first_vertex; v < out.size(); ++v) {
+        EXPECT_EQ(out[v], product(asset, light, v, 0));
+        negative += out[v].r < 0 ? 1u : 0u;
+    }
+    EXPECT_GT(negative, 10u);
+}
+
+TEST(TranslucentShade, NothingButFiniteNumbersComesOut) {
+    Asset asset = make_asset(9);
+    const float largest = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < asset.transport.detail_scale.size(); i += 2) {
+        asset.transport.detail_scale[i] = largest;
+    }
+    asset.normal[60] = {};
+    asset.normal[61] = {std::nanf(""), 0, 0};
+    asset.position[62] = {largest, -largest, largest};
+    for (const bool fresnel : {true, false}) {
+        std::vector<Rgb> out(asset.position.size());
+        shade(asset.view(), tests::random_light(8, 11), out,
+              {.eye = Vec3{-largest, 0, 0}, .fresnel = fresnel});
+        for (const Rgb c : out) {
+            EXPECT_TRUE(std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b));
+        }
+        if (fresnel) {
+            EXPECT_EQ(out[60], Rgb{});
+        }
+    }
+}
+
+}  // namespace
+}  // namespace opaline::runtime

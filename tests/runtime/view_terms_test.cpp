@@ -1,0 +1,203 @@
+#include "runtime/view_terms.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Rgb;
+using formats::Vec3;
+
+constexpr std::array<float, 8> kEtas{formats::kMinEta, 0.7f, 0.99999f, 1.0f,
+                                     1.00001f,         1.3f, 1.5f,     formats::kMaxEta};
+
+// The formula of translucency.md 3.2 as it stands, in double precision.
+double textbook_transmittance(double c, double eta) {
+    const double s2 = (1 - c * c) / (eta * eta);
+    if (s2 >= 1) return 0;
+    const double ct = std::sqrt(1 - s2);
+    const double rs = (c - eta * ct) / (c + eta * ct), rp = (eta * c - ct) / (eta * c + ct);
+    return 1 - (rs * rs + rp * rp) / 2;
+}
+
+Vec3 random_direction(std::mt19937& generator) {
+    std::normal_distribution<float> normal;
+    return normalize(Vec3{normal(generator), normal(generator), normal(generator)});
+}
+
+TEST(FresnelTransmittance, AtNormalIncidenceIsTheClosedForm) {
+    for (const float eta : kEtas) {
+        const double r = (static_cast<double>(eta) - 1) / (static_cast<double>(eta) + 1);
+        EXPECT_NEAR(fresnel_transmittance(1, eta), 1 - r * r, 3e-7) << eta;
+    }
+    EXPECT_NEAR(1 - fresnel_transmittance(1, 1.3f), 0.01701, 1e-5);
+    EXPECT_NEAR(1 - fresnel_transmittance(1, 1.5f), 0.04, 1e-6);
+}
+
+TEST(FresnelTransmittance, IsTheFormulaAtEveryAngleWithoutItsCancellation) {
+    for (const float eta : kEtas) {
+        for (int i = 1; i <= 2000; ++i) {
+            const float c = static_cast<float>(i) / 2000.0f;
+            const double expected = textbook_transmittance(c, eta);
+            // Toward the critical angle Ft goes as the root of this; so does its rounding.
+            const double under_root = (eta - 1.0) * (eta + 1.0) + static_cast<double>(c) * c;
+            const double slack = 2e-7 / std::sqrt(std::max(under_root, 1e-7));
+            EXPECT_NEAR(fresnel_transmittance(c, eta), expected, 2e-6 + slack)
+                << "c " << c << ", eta " << eta;
+        }
+    }
+}
+
+TEST(FresnelTransmittance, IsTheSameOnBothSidesOfTheBoundary) {
+    for (const float eta : kEtas) {
+        for (int i = 1; i <= 100; ++i) {
+            const double c = i / 100.0, e = static_cast<double>(eta);
+            const double squared = 1 - (1 - c * c) / (e * e);
+            if (squared < 1e-3) continue;  // total reflection, or beside it
+            const double behind = std::sqrt(squared);
+            // A rounding of c' moves c by up to eta^2 c' / c times as much, and the other way
+            // round.
+            const double slack = 5e-7 * std::max(e * e, 1 / (e * e)) / std::min(c, behind);
+            EXPECT_NEAR(fresnel_transmittance(static_cast<float>(c), eta),
+                        fresnel_transmittance(static_cast<float>(behind), 1 / eta), 2e-6 + slack)
+                << "c " << c << ", eta " << eta;
+        }
+    }
+}
+
+TEST(FresnelTransmittance, OfAnIndexMatchedBoundaryIsOneDownToGrazing) {
+    for (const float c : {1.0f, 0.1f, 1e-3f, 1e-8f, 1e-15f}) {
+        EXPECT_NEAR(fresnel_transmittance(c, 1), 1, 1e-6) << c;
+    }
+}
+
+TEST(FresnelTransmittance, IsZeroBehindAtTotalReflectionAndForNonsense) {
+    for (const float c : {0.0f, -0.0f, -0.5f, -1.0f, std::numeric_limits<float>::quiet_NaN()}) {
+        EXPECT_EQ(fresnel_transmittance(c, 1.3f), 0) << c;
+        EXPECT_EQ(fresnel_transmittance(c, 1.0f), 0) << c;
+    }
+    EXPECT_EQ(fresnel_transmittance(0.5f, 0.7f), 0);  // sin = 0.87 > 0.7
+    EXPECT_GT(fresnel_transmittance(0.8f, 0.7f), 0);  // sin = 0.6
+    EXPECT_EQ(fresnel_transmittance(2, 1.3f), fresnel_transmittance(1, 1.3f));
+}
+
+TEST(Refraction, ObeysSnellInThePlaneOfIncidence) {
+    std::mt19937 generator(1);
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3 n = random_direction(generator);
+        Vec3 w = random_direction(generator);
+        float c = dot(n, w);
+        if (c < 0) {
+            w = -1.0f * w;
+            c = -c;
+        }
+        for (const float eta : kEtas) {
+            const double sine = length(cross(n, w));
+            if (sine / eta > 0.999) continue;
+            const Vec3 inside = refract_to_eye(n, w, c, eta);
+            EXPECT_NEAR(length(inside), 1, 3e-6);
+            EXPECT_NEAR(length(cross(n, inside)), sine / eta, 3e-6);
+            EXPECT_GT(dot(n, inside), 0);
+            EXPECT_NEAR(dot(inside, cross(n, w)), 0, 3e-6);
+            // And back through the boundary.
+            const Vec3 back = refract_to_eye(n, inside, dot(n, inside), 1 / eta);
+            // Toward grazing a rounding of c' moves c by eta^2 c' / c times as much.
+            EXPECT_NEAR(length(back - w), 0, 2e-6 + 1e-6 * std::max(1.0f, eta * eta) / c)
+                << eta;  // a root of roundings near grazing
+        }
+    }
+}
+
+TEST(Refraction, ContinuesAcrossTheSilhouetteAndTotalReflection) {
+    const Vec3 n{0, 0, 1};
+    for (const float eta : kEtas) {
+        const auto refract = [&](float c) {
+            return refract_to_eye(n, {std::sqrt(1 - c * c), 0, c}, c, eta);
+        };
+        EXPECT_NEAR(length(refract(1e-7f) - refract(-1e-7f)), 0, 1e-3) << eta;
+        for (const float c : {-1.0f, -0.9f, -0.1f, 0.0f, 0.1f}) {
+            EXPECT_NEAR(length(refract(c)), 1, 3e-6) << eta << ", " << c;
+            EXPECT_GE(dot(n, refract(c)), -1e-6f);
+        }
+    }
+}
+
+TEST(ViewOfReceiver, IsTowardTheEyeOrAlongTheNormal) {
+    formats::PrimitiveRecord single, both;
+    both.flags = formats::PrimitiveRecord::kDoubleSided;
+    const Vec3 n{0, 1, 0};
+    const ViewOfReceiver none = view_receiver(single, {1, 2, 3}, n, {});
+    EXPECT_EQ(none.to_eye, n);
+    EXPECT_EQ(none.cosine, 1);
+    EXPECT_EQ(view_receiver(single, {1, 2, 3}, n, Vec3{1, 2, 3}).to_eye, n);
+    const ViewOfReceiver front = view_receiver(single, {1, 2, 3}, n, Vec3{4, 6, 3});
+    EXPECT_NEAR(front.cosine, 0.8f, 1e-6f);
+    EXPECT_NEAR(length(front.to_eye - Vec3{0.6f, 0.8f, 0}), 0, 1e-6f);
+    const ViewOfReceiver behind = view_receiver(single, {1, 2, 3}, n, Vec3{4, -2, 3});
+    EXPECT_NEAR(behind.cosine, -0.8f, 1e-6f);
+    EXPECT_EQ(behind.normal, n);
+    const ViewOfReceiver flipped = view_receiver(both, {1, 2, 3}, n, Vec3{4, -2, 3});
+    EXPECT_NEAR(flipped.cosine, 0.8f, 1e-6f);
+    EXPECT_EQ(flipped.normal, (Vec3{0, -1, 0}));
+    // Squares of these leave the range of floats.
+    const ViewOfReceiver far = view_receiver(single, {0, -1e30f, 0}, n, Vec3{1e30f, 0, 0});
+    EXPECT_NEAR(far.cosine, std::numbers::sqrt2 / 2, 1e-6);
+    // Without a normal there is nothing to refract through: black, but finite.
+    const ViewOfReceiver bare = view_receiver(single, {}, {}, {});
+    EXPECT_EQ(fresnel_transmittance(bare.cosine, 1.3f), 0);
+    const std::array<Rgb, 4> product{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
+    EXPECT_TRUE(std::isfinite(sum_view_terms(bare, 1.3f, product).r));
+}
+
+TEST(ViewTerms, OneTermIsOneAndSeveralAreHarmonics) {
+    float one = 0;
+    eval_view_terms({0, 0, 1}, {&one, 1});
+    EXPECT_EQ(one, 1);
+    std::array<float, 4> four{};
+    eval_view_terms({0.6f, 0, 0.8f}, four);
+    const float y1 = std::sqrt(3 / (4 * std::numbers::pi_v<float>));
+    EXPECT_NEAR(four[0], std::sqrt(1 / (4 * std::numbers::pi_v<float>)), 1e-6f);
+    EXPECT_NEAR(four[1], 0, 1e-6f);
+    EXPECT_NEAR(four[2], 0.8f * y1, 1e-6f);
+    EXPECT_NEAR(four[3], 0.6f * y1, 1e-6f);
+}
+
+// Henyey-Greenstein is diagonal in spherical harmonics with eigenvalues g^l (translucency.md 3.8):
+// rows g^l Y_lm(-w_i') give back the phase function, up to the degrees left out.
+TEST(ViewTerms, SumToTheTruncatedPhaseFunctionOfTheRefractedDirection) {
+    constexpr double g = 0.25, eta = 1.3;
+    std::mt19937 generator(2);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 n = random_direction(generator), w_in = random_direction(generator);
+        Vec3 w_out = random_direction(generator);
+        if (dot(n, w_out) < 0) w_out = -1.0f * w_out;
+        const ViewOfReceiver view{n, w_out, dot(n, w_out)};
+        const Vec3 inside = refract_to_eye(n, w_out, view.cosine, static_cast<float>(eta));
+        std::array<float, 25> y{};
+        formats::eval_spherical_harmonics(-1.0f * w_in, y);
+        std::array<Rgb, 25> product{};
+        for (std::size_t k = 0; k < product.size(); ++k) {
+            const double row = std::pow(g, std::floor(std::sqrt(static_cast<double>(k)))) * y[k];
+            product[k] = {static_cast<float>(row), 0, static_cast<float>(2 * row)};
+        }
+        // Propagation directions: in -w_in, out along `inside`.
+        const double cosine = -dot(w_in, inside);
+        const double expected =
+            (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+        const Rgb sum = sum_view_terms(view, static_cast<float>(eta), product);
+        // What is left out is at most sum_{l > 4} (2 l + 1) g^l / (4 pi) = 0.0012.
+        EXPECT_NEAR(sum.r, expected, 1.3e-3);
+        EXPECT_FLOAT_EQ(sum.b, 2 * sum.r);
+        EXPECT_EQ(sum.g, 0);
+    }
+}
+
+}  // namespace
+}  // namespace opaline::runtime
