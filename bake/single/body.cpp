@@ -159,6 +159,9 @@ PacketEntries find_entries(const RayScene& rays, std::uint32_t material, LaneMas
             if (shells[lane] == 0) {
                 entries.distance[lane] = hits.distance[lane];
                 entries.cosine[lane] = cosine;
+                entries.normal_x[lane] = hits.normal_x[lane];
+                entries.normal_y[lane] = hits.normal_y[lane];
+                entries.normal_z[lane] = hits.normal_z[lane];
                 beyond[lane] = -1;
                 lanes[lane] = 0;
             }

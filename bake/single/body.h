@@ -55,6 +55,7 @@ struct PacketEntries {
     LaneMask lit;              ///< -1: reached by light from that direction, 0: not
     RayPacket::Lane distance;  ///< s_i [m], straight
     RayPacket::Lane cosine;    ///< n_i . w > 0
+    RayPacket::Lane normal_x, normal_y, normal_z;  ///< n_i
 };
 
 /// Counters of a gather.

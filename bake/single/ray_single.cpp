@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <utility>
+
+#include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::bake {
 namespace {
@@ -29,7 +31,7 @@ RayPacket packet_from(glm::vec3 origin, const DirectionBlock& block) {
 }  // namespace
 
 SingleMedium make_single_medium(const formats::Scene& scene, std::uint32_t material,
-                                std::uint32_t depth_samples) {
+                                std::uint32_t depth_samples, PhaseTerms phase) {
     const formats::Medium& medium = *scene.materials[material].medium;
     const bool paper = medium.fidelity == formats::Medium::Fidelity::paper;
     SingleMedium single;
@@ -37,6 +39,7 @@ SingleMedium make_single_medium(const formats::Scene& scene, std::uint32_t mater
     single.path = make_path_medium(medium);
     single.rule = paper ? make_midpoint_rule(depth_samples) : make_gauss_rule(depth_samples);
     single.boundary = {medium.eta, !paper};
+    single.phase = std::move(phase);
     single.path_limit =
         static_cast<float>(path_limit(single.path, double{body_diagonals(scene)[material]}));
     return single;
@@ -44,7 +47,6 @@ SingleMedium make_single_medium(const formats::Scene& scene, std::uint32_t mater
 
 std::vector<InteriorNode> place_interior_nodes(const SingleMedium& medium, const BodyPoint& point,
                                                const InwardPath& path) {
-    constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
     std::vector<InteriorNode> nodes;
     // On the edge of a box the normal runs along its other sides: keep clear of them.
     const glm::vec3 inward = point.inner - point.position;
@@ -57,7 +59,7 @@ std::vector<InteriorNode> place_interior_nodes(const SingleMedium& medium, const
         }
         InteriorNode interior{point.position + aside - depth * point.normal, {}, shells};
         for (std::size_t c = 0; c < 3; ++c) {
-            interior.weight[c] = static_cast<float>(kIsotropic * node.weight[c]);
+            interior.weight[c] = static_cast<float>(node.weight[c]);
         }
         nodes.push_back(interior);
     }
@@ -92,9 +94,11 @@ EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
     EntryCounts counts;
     const InwardPath path = trace_inward_path(rays, point, medium.path_limit);
     const std::vector<InteriorNode> nodes = place_interior_nodes(medium, point, path);
-    const std::size_t texels = transport.size() / 3;
+    const std::size_t terms = medium.phase.count(), texels = transport.size() / (3 * terms);
     std::array<float, 3> sigma_t;
     std::copy(medium.path.sigma_t.begin(), medium.path.sigma_t.end(), sigma_t.begin());
+    std::array<float, formats::kMaxHarmonics> room;
+    const std::span<float> g = std::span<float>(room).first(terms);
     LaneMask all;
     all.fill(-1);
     for (const InteriorNode& node : nodes) {
@@ -112,9 +116,17 @@ EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
                 const Entry<float> entry = enter(entries.cosine[lane], medium.boundary);
                 const float length = entries.distance[lane] * entry.path_ratio;
                 const float lit = shares[b][lane] * entry.throughput;
+                eval_phase_terms(
+                    medium.phase, medium.boundary.eta,
+                    {block.dir_x[lane], block.dir_y[lane], block.dir_z[lane]},
+                    {entries.normal_x[lane], entries.normal_y[lane], entries.normal_z[lane]}, entry,
+                    entries.cosine[lane], g);
                 for (std::size_t c = 0; c < 3; ++c) {
-                    transport[c * texels + block.texel[lane]] +=
+                    const float arrives =
                         node.weight[c] * lit * exp_of_negative(-sigma_t[c] * length);
+                    for (std::size_t k = 0; k < terms; ++k) {
+                        transport[(3 * k + c) * texels + block.texel[lane]] += g[k] * arrives;
+                    }
                 }
             }
         }

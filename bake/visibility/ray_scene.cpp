@@ -153,7 +153,11 @@ PacketHits RayScene::closest(const LaneMask& lanes, const RayPacket& packet) con
         hits.hit[i] = -1;
         hits.distance[i] = ray.ray.tfar[i];
         // A normal too short for floats is that of a triangle without area: seen edge on.
-        hits.cosine[i] = length > 0 ? along / length : 0.0f;
+        const float inverse = length > 0 ? 1.0f / length : 0.0f;
+        hits.cosine[i] = along * inverse;
+        hits.normal_x[i] = x * inverse;
+        hits.normal_y[i] = y * inverse;
+        hits.normal_z[i] = z * inverse;
         hits.material[i] = handles_->material[ray.hit.geomID[i]];
     }
     return hits;

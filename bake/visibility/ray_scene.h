@@ -32,7 +32,8 @@ struct PacketHits {
     LaneMask hit;              ///< -1 yes, 0 no
     RayPacket::Lane distance;  ///< along the ray [m]
     RayPacket::Lane cosine;  ///< of the ray with the triangle's normal: > 0 leaves through the back
-    RayPacket::LaneBits material;  ///< index into Scene::materials
+    RayPacket::LaneBits material;                  ///< index into Scene::materials
+    RayPacket::Lane normal_x, normal_y, normal_z;  ///< unit, of the triangle; 0 without area
 };
 
 /// All triangles of a scene, ready for rays. Immutable once built; any thread may trace.
