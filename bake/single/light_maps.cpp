@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/single/spatial_order.h"
 #include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::bake {
@@ -223,7 +224,7 @@ void gather_node(const Job& job, const Direction& direction, std::uint32_t recei
         return;
     }
     const glm::vec3 p = project(work.view.frame, node.position - job.mesh.centre);
-    const LightAnswer answer = look_up(job.mesh, work.view, p, job.tolerance);
+    const LightAnswer answer = look_up(work.view, p, job.tolerance);
     ++work.look_ups;
     float factor = direction.share;
     if (!answer.sure) {
@@ -265,14 +266,26 @@ std::uint32_t light_view_size(const BodyMesh& mesh) {
 
 SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::uint32_t size,
                               const DirectionSet& directions, const SingleMedium& medium,
-                              std::span<const BodyPoint> points, const Context& context) {
+                              std::span<const BodyPoint> given, const Context& context) {
     SingleRows result;
+    std::vector<glm::vec3> positions;
+    for (const BodyPoint& point : given) {
+        positions.push_back(point.position);
+    }
+    const std::vector<std::uint32_t> order = spatial_order(positions);
+    std::vector<BodyPoint> points;
+    for (const std::uint32_t index : order) {
+        points.push_back(given[index]);
+    }
     const NodeList list = collect_nodes(rays, medium, points, context);
     const auto texels = directions_by_texel(directions);
     const std::size_t terms = medium.phase.count(), stride = 3 * terms;
     result.rows.texels = static_cast<std::uint32_t>(texels.size());
     result.rows.largest_term = largest_phase_terms(medium.phase);
-    result.rows.scale = list.scale;
+    result.rows.scale.resize(points.size());
+    for (std::size_t r = 0; r < points.size(); ++r) {
+        result.rows.scale[order[r]] = list.scale[r];
+    }
     result.rows.packed.resize(texels.size() * points.size() * terms);
     Job job{rays, mesh, size, medium, list, medium.phase.count(), {}, 0};
     std::copy(medium.path.sigma_t.begin(), medium.path.sigma_t.end(), job.sigma_t.begin());
@@ -299,7 +312,7 @@ SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::u
                 for (std::size_t c = 0; c < 3; ++c) {
                     value[c] = std::clamp(scale * work.value[r * stride + 3 * k + c], lowest, 1.0f);
                 }
-                result.rows.packed[(j * points.size() + r) * terms + k] =
+                result.rows.packed[(j * points.size() + order[r]) * terms + k] =
                     pack_shared_exponent(value, k > 0);
             }
         }

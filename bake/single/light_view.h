@@ -38,20 +38,30 @@ LightFrame make_light_frame(glm::vec3 toward_light, float radius, std::uint32_t 
 
 glm::vec3 project(const LightFrame& frame, glm::vec3 position);
 
-/// The triangle on top of each pixel, seen from the light, and its depth.
-struct LightLayer {
-    std::vector<std::uint32_t> triangle;  ///< index into BodyMesh::triangle, or kNone
-    std::vector<float> z;                 ///< [m] at the pixel's centre; -infinity: none
+/// The triangle on top of a pixel, seen from the light, and its depth.
+struct LightPixel {
+    float z = 0;                 ///< [m] at the pixel's centre; -infinity: none
+    std::uint32_t triangle = 0;  ///< index into BodyMesh::triangle, or kNone
+};
+
+/// A triangle in a view, its plane and its edges.
+struct ProjectedTriangle {
+    glm::vec2 corner;         ///< [pixels]
+    float z = 0;              ///< [m] at that corner
+    glm::vec2 slope;          ///< dz/dx, dz/dy [m/pixel]
+    glm::vec2 second, third;  ///< how the weights of the other corners change, per pixel
+    float cosine = 0;         ///< of its normal with the light
 };
 
 /// Views of a body along one direction.
 struct LightView {
     std::uint32_t size = 0;  ///< pixels across
     LightFrame frame;
-    std::vector<glm::vec3> projected;  ///< vertices
-    LightLayer front;                  ///< of the body, facing the light: where light enters
-    LightLayer back;                   ///< of the body, facing away: where it would leave
-    LightLayer blocker;                ///< everything else, both sides; empty if there is nothing
+    std::vector<glm::vec3> projected;         ///< vertices
+    std::vector<ProjectedTriangle> triangle;  ///< where one is drawn anywhere
+    std::vector<LightPixel> front;            ///< of the body, facing the light: light enters
+    std::vector<LightPixel> back;             ///< of the body, facing away: it would leave
+    std::vector<LightPixel> blocker;  ///< everything else, both sides; empty if there is nothing
 };
 
 /// Renders the three layers; pixel (i, j) is sampled in (i + 1/2, j + 1/2). Reuses `view`'s memory.
@@ -72,7 +82,6 @@ struct LightAnswer {
 /// above it, and neither a back nor a blocker layer in between. Not sure: no triangle seen at the
 /// four nearest pixels holds the column, and their planes differ there by more than `tolerance`
 /// [m].
-LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 projected,
-                    float tolerance);
+LightAnswer look_up(const LightView& view, glm::vec3 projected, float tolerance);
 
 }  // namespace opaline::bake
