@@ -33,8 +33,7 @@ Span pixel_span(float low, float high, std::uint32_t size) {
             static_cast<std::int32_t>(std::floor(std::clamp(high - 0.5f, -1.0f, end)))};
 }
 
-ProjectedTriangle project_triangle(const LightFrame& frame, glm::vec3 a, glm::vec3 b, glm::vec3 c,
-                                   float area) {
+ProjectedTriangle project_triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c, float area) {
     const glm::vec2 ab(b - a), ac(c - a);
     const float inverse = 1.0f / area, zb = b.z - a.z, zc = c.z - a.z;
     ProjectedTriangle t;
@@ -43,21 +42,19 @@ ProjectedTriangle project_triangle(const LightFrame& frame, glm::vec3 a, glm::ve
     t.second = inverse * glm::vec2(ac.y, -ac.x);
     t.third = inverse * glm::vec2(-ab.y, ab.x);
     t.slope = zb * t.second + zc * t.third;
-    const glm::vec2 metric = frame.pixels_per_metre * t.slope;
-    t.cosine = 1.0f / std::sqrt(1.0f + glm::dot(metric, metric));
     return t;
 }
 
-// Draws a triangle; the record of it is made where it is on top of something.
-void draw(LightView& view, std::vector<LightPixel>& layer, std::uint32_t id, glm::vec3 a,
+// Draws a triangle and keeps its record if it is on top of something; whether it is.
+bool draw(LightView& view, std::vector<LightPixel>& layer, std::uint32_t id, glm::vec3 a,
           glm::vec3 b, glm::vec3 c, float area) {
     const std::uint32_t size = view.size;
     const Span rows = pixel_span(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), size);
     const Span columns = pixel_span(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), size);
     if (rows.first > rows.last || columns.first > columns.last) {
-        return;
+        return false;
     }
-    const ProjectedTriangle t = project_triangle(view.frame, a, b, c, area);
+    const ProjectedTriangle t = project_triangle(a, b, c, area);
     bool drawn = false;
     for (std::int32_t j = rows.first; j <= rows.last; ++j) {
         LightPixel* row = &layer[static_cast<std::size_t>(j) * size];
@@ -76,6 +73,7 @@ void draw(LightView& view, std::vector<LightPixel>& layer, std::uint32_t id, glm
     if (drawn) {
         view.triangle[id] = t;
     }
+    return drawn;
 }
 
 // The column through a point, on the plane of a triangle.
@@ -237,7 +235,7 @@ glm::vec3 project(const LightFrame& frame, glm::vec3 position) {
 }
 
 void render_light_view(const BodyMesh& mesh, const LightFrame& frame, std::uint32_t size,
-                       LightView& view) {
+                       const Interface<float>& boundary, LightView& view) {
     view.size = size;
     view.frame = frame;
     view.projected.resize(mesh.position.size());
@@ -262,7 +260,12 @@ void render_light_view(const BodyMesh& mesh, const LightFrame& frame, std::uint3
         std::vector<LightPixel>& layer = id >= mesh.body_triangles ? view.blocker
                                          : area > 0                ? view.front
                                                                    : view.back;
-        draw(view, layer, id, a, b, c, area);
+        if (draw(view, layer, id, a, b, c, area) && &layer == &view.front) {
+            ProjectedTriangle& drawn = view.triangle[id];
+            const glm::vec2 slope = frame.pixels_per_metre * drawn.slope;
+            drawn.cosine = 1.0f / std::sqrt(1.0f + glm::dot(slope, slope));
+            drawn.entry = enter(drawn.cosine, boundary);
+        }
     }
 }
 
@@ -317,6 +320,7 @@ LightAnswer look_up(const LightView& view, glm::vec3 p, float tolerance) {
         answer.distance = std::max(crossing.z - p.z, 0.0f);
         answer.nearest = known ? answer.distance : std::max(low - (high - low) - p.z, 0.0f);
         answer.cosine = entry->cosine;
+        answer.entry = entry->entry;
         const LightFrame& frame = view.frame;
         const glm::vec2 slope = frame.pixels_per_metre * entry->slope;
         answer.normal = answer.cosine * (frame.w - slope.x * frame.u - slope.y * frame.v);

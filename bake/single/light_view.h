@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/single/entry.h"
 #include "bake/visibility/ray_scene.h"
 #include "formats/scene.h"
 
@@ -44,13 +45,14 @@ struct LightPixel {
     std::uint32_t triangle = 0;  ///< index into BodyMesh::triangle, or kNone
 };
 
-/// A triangle in a view, its plane and its edges.
-struct ProjectedTriangle {
+/// A triangle in a view: its plane, its edges, and how light enters through it. A cache line.
+struct alignas(64) ProjectedTriangle {
     glm::vec2 corner;         ///< [pixels]
     float z = 0;              ///< [m] at that corner
     glm::vec2 slope;          ///< dz/dx, dz/dy [m/pixel]
     glm::vec2 second, third;  ///< how the weights of the other corners change, per pixel
-    float cosine = 0;         ///< of its normal with the light
+    float cosine = 0;         ///< of its normal with the light, for those of the body that face it
+    Entry<float> entry;       ///< at that cosine
 };
 
 /// Views of a body along one direction.
@@ -64,9 +66,10 @@ struct LightView {
     std::vector<LightPixel> blocker;  ///< everything else, both sides; empty if there is nothing
 };
 
-/// Renders the three layers; pixel (i, j) is sampled in (i + 1/2, j + 1/2). Reuses `view`'s memory.
+/// Renders the three layers; pixel (i, j) is sampled in (i + 1/2, j + 1/2). `boundary`: of the
+/// medium. Reuses `view`'s memory.
 void render_light_view(const BodyMesh& mesh, const LightFrame& frame, std::uint32_t size,
-                       LightView& view);
+                       const Interface<float>& boundary, LightView& view);
 
 /// The light's way from a point inside the body.
 struct LightAnswer {
@@ -76,6 +79,7 @@ struct LightAnswer {
     float nearest = 0;   ///< [m] what the distance may come down to, where that is not sure
     glm::vec3 normal;    ///< n_i, world
     float cosine = 0;    ///< n_i . w
+    Entry<float> entry;  ///< at that cosine
 };
 
 /// Looks a projected point up. Lit: the column through it meets a known triangle of the front layer

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/single/inner_triangles.h"
+#include "bake/single/texel_directions.h"
 #include "tests/bake/single/single_support.h"
 
 namespace opaline::bake {
@@ -176,6 +177,35 @@ TEST(LightMaps, RowsDependNeitherOnThreadsNorOnHowPointsAreCut) {
         read_packed_row(one.rows, 100 + p, b);
         EXPECT_EQ(a, b) << p;
     }
+}
+
+TEST(TexelDirections, ThoseOfTexelsAreAsGoodAsFourInEachForSmoothLights) {
+    const auto setup =
+        set_up(make_translucent_scene({tests::make_bumpy_body(4)}, make_grey_medium(8, 0.8f)));
+    const DirectionSet four = make_direction_set(16), one = make_texel_directions(16);
+    ASSERT_EQ(one.blocks.size() * 4, four.blocks.size());
+    std::vector<int> met(1536, 0);
+    for (const DirectionBlock& block : one.blocks) {
+        for (const std::uint32_t texel : block.texel) {
+            ++met[texel];
+        }
+    }
+    EXPECT_EQ(met, std::vector<int>(1536, 1));
+    const auto lights = smooth_lights(four);
+    double difference = 0, reference = 0;
+    for (const std::size_t p : {0u, 100u, 777u, 1500u, 2222u}) {
+        const auto a = tests::gather(setup, four, p), b = tests::gather(setup, one, p);
+        for (const auto& light : lights) {
+            double fine = 0, coarse = 0;
+            for (std::size_t j = 0; j < a.size(); ++j) {
+                fine += light[j % 1536] * a[j];
+                coarse += light[j % 1536] * b[j];
+            }
+            reference += fine * fine;
+            difference += (fine - coarse) * (fine - coarse);
+        }
+    }
+    EXPECT_LT(std::sqrt(difference / reference), 0.01);
 }
 
 TEST(LightMaps, ShellsWithinShellsAreNoBoundary) {
