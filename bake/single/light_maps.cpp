@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/single/spatial_order.h"
 #include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::bake {
@@ -126,28 +127,38 @@ struct Job {
     const SingleMedium& medium;
     const NodeList& list;
     std::uint32_t terms;
-    std::array<float, 3> sigma_t;
-    float tolerance;  // [m]
+    std::array<float, 4> sigma_t;  // and a fourth channel that nobody reads
+    float isotropic;               // the only term where there is one
+    float tolerance;               // [m]
 };
 
 // Where light enters on its way to a node.
 struct Arrival {
     float distance, cosine;
+    Entry<float> entry;
     glm::vec3 normal;
 };
 
 // Adds what arrives at a node, times a factor, to its receiver's terms.
 void add(const Job& job, const InteriorNode& node, glm::vec3 w, const Arrival& arrival,
          float factor, float* value) {
-    const Entry<float> entry = enter(arrival.cosine, job.medium.boundary);
-    const float length = arrival.distance * entry.path_ratio;
-    std::array<float, 3> lit;
+    const float length = arrival.distance * arrival.entry.path_ratio;
+    const float enters = factor * arrival.entry.throughput;
+    std::array<float, 4> lit;  // a vector's worth
+    for (std::size_t c = 0; c < 4; ++c) {
+        lit[c] = enters * exp_of_negative(-job.sigma_t[c] * length);
+    }
     for (std::size_t c = 0; c < 3; ++c) {
-        lit[c] =
-            factor * entry.throughput * node.weight[c] * exp_of_negative(-job.sigma_t[c] * length);
+        lit[c] *= node.weight[c];
+    }
+    if (job.terms == 1) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            value[c] += job.isotropic * lit[c];
+        }
+        return;
     }
     std::array<float, formats::kMaxHarmonics> g;
-    eval_phase_terms(job.medium.phase, job.medium.boundary.eta, w, arrival.normal, entry,
+    eval_phase_terms(job.medium.phase, job.medium.boundary.eta, w, arrival.normal, arrival.entry,
                      arrival.cosine, std::span<float>(g).first(job.terms));
     for (std::size_t k = 0; k < job.terms; ++k) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -169,8 +180,7 @@ float number_of(const InteriorNode& node, glm::vec3 w) {
 // How likely an unsure look-up is traced: surely where it matters.
 float trace_probability(const Job& job, const InteriorNode& node, const LightAnswer& answer,
                         float scale) {
-    const float ratio =
-        answer.cosine > 0 ? enter(answer.cosine, job.medium.boundary).path_ratio : 0;
+    const float ratio = answer.cosine > 0 ? answer.entry.path_ratio : 0.0f;
     float brightest = 0;
     for (std::size_t c = 0; c < 3; ++c) {
         brightest = std::max(
@@ -208,6 +218,7 @@ void trace_open(const Job& job, const Direction& direction, Workspace& work) {
                 add(job, job.list.node[open.node], direction.w,
                     {entries.distance[lane],
                      entries.cosine[lane],
+                     enter(entries.cosine[lane], job.medium.boundary),
                      {entries.normal_x[lane], entries.normal_y[lane], entries.normal_z[lane]}},
                     open.factor, &work.value[3 * job.terms * std::size_t{open.receiver}]);
             }
@@ -223,7 +234,7 @@ void gather_node(const Job& job, const Direction& direction, std::uint32_t recei
         return;
     }
     const glm::vec3 p = project(work.view.frame, node.position - job.mesh.centre);
-    const LightAnswer answer = look_up(job.mesh, work.view, p, job.tolerance);
+    const LightAnswer answer = look_up(work.view, p, job.tolerance);
     ++work.look_ups;
     float factor = direction.share;
     if (!answer.sure) {
@@ -236,8 +247,8 @@ void gather_node(const Job& job, const Direction& direction, std::uint32_t recei
         }
     }
     if (answer.lit && factor != 0) {
-        add(job, node, direction.w, {answer.distance, answer.cosine, answer.normal}, factor,
-            &work.value[3 * job.terms * std::size_t{receiver}]);
+        add(job, node, direction.w, {answer.distance, answer.cosine, answer.entry, answer.normal},
+            factor, &work.value[3 * job.terms * std::size_t{receiver}]);
     }
 }
 
@@ -245,7 +256,7 @@ void gather_direction(const Job& job, const Direction& direction, glm::vec2 jitt
                       Workspace& work) {
     work.open.clear();
     render_light_view(job.mesh, make_light_frame(direction.w, job.mesh.radius, job.size, jitter),
-                      job.size, work.view);
+                      job.size, job.medium.boundary, work.view);
     const NodeList& list = job.list;
     for (std::uint32_t r = 0; r + 1 < list.first.size(); ++r) {
         for (std::uint32_t i = list.first[r]; i < list.first[r + 1]; ++i) {
@@ -259,22 +270,35 @@ void gather_direction(const Job& job, const Direction& direction, glm::vec2 jitt
 
 std::uint32_t light_view_size(const BodyMesh& mesh) {
     constexpr float kSmallest = 128, kLargest = 2048;
-    const float wanted = mesh.mean_edge > 0 ? 4.0f * mesh.radius / mesh.mean_edge : kSmallest;
+    const float wanted = mesh.mean_edge > 0 ? 8.0f * mesh.radius / mesh.mean_edge : kSmallest;
     return static_cast<std::uint32_t>(std::clamp(wanted, kSmallest, kLargest));
 }
 
 SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::uint32_t size,
                               const DirectionSet& directions, const SingleMedium& medium,
-                              std::span<const BodyPoint> points, const Context& context) {
+                              std::span<const BodyPoint> given, const Context& context) {
     SingleRows result;
+    std::vector<glm::vec3> positions;
+    for (const BodyPoint& point : given) {
+        positions.push_back(point.position);
+    }
+    const std::vector<std::uint32_t> order = spatial_order(positions);
+    std::vector<BodyPoint> points;
+    for (const std::uint32_t index : order) {
+        points.push_back(given[index]);
+    }
     const NodeList list = collect_nodes(rays, medium, points, context);
     const auto texels = directions_by_texel(directions);
     const std::size_t terms = medium.phase.count(), stride = 3 * terms;
     result.rows.texels = static_cast<std::uint32_t>(texels.size());
     result.rows.largest_term = largest_phase_terms(medium.phase);
-    result.rows.scale = list.scale;
+    result.rows.scale.resize(points.size());
+    for (std::size_t r = 0; r < points.size(); ++r) {
+        result.rows.scale[order[r]] = list.scale[r];
+    }
     result.rows.packed.resize(texels.size() * points.size() * terms);
-    Job job{rays, mesh, size, medium, list, medium.phase.count(), {}, 0};
+    Job job{rays, mesh, size, medium, list, medium.phase.count(), {}, result.rows.largest_term[0],
+            0};
     std::copy(medium.path.sigma_t.begin(), medium.path.sigma_t.end(), job.sigma_t.begin());
     constexpr float kOpticalTolerance = 0.02f;
     job.tolerance =
@@ -299,7 +323,7 @@ SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::u
                 for (std::size_t c = 0; c < 3; ++c) {
                     value[c] = std::clamp(scale * work.value[r * stride + 3 * k + c], lowest, 1.0f);
                 }
-                result.rows.packed[(j * points.size() + r) * terms + k] =
+                result.rows.packed[(j * points.size() + order[r]) * terms + k] =
                     pack_shared_exponent(value, k > 0);
             }
         }

@@ -19,7 +19,7 @@ struct SingleRows {
     std::uint64_t unsure = 0;    ///< of them, those that maps could not surely answer
 };
 
-/// Pixels across at which a pixel is half a mean edge, in [128, 2048].
+/// Pixels across at which a pixel is a quarter of a mean edge, in [128, 2048].
 std::uint32_t light_view_size(const BodyMesh& mesh);
 
 /// T_k of all `points`, which must be of the medium's material; the result of gather_single for

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "bake/single/inner_triangles.h"
+#include "bake/single/spatial_order.h"
 
 namespace opaline::bake {
 namespace {
@@ -16,9 +18,8 @@ float cross2(glm::vec2 a, glm::vec2 b) {
     return a.x * b.y - a.y * b.x;
 }
 
-void clear(LightLayer& layer, std::size_t pixels) {
-    layer.triangle.assign(pixels, formats::kNone);
-    layer.z.assign(pixels, -kInfinity);
+void clear(std::vector<LightPixel>& layer, std::size_t pixels) {
+    layer.assign(pixels, {-kInfinity, formats::kNone});
 }
 
 // Pixels whose centres lie in [low, high], clipped to the map.
@@ -32,64 +33,61 @@ Span pixel_span(float low, float high, std::uint32_t size) {
             static_cast<std::int32_t>(std::floor(std::clamp(high - 0.5f, -1.0f, end)))};
 }
 
-void draw(LightLayer& layer, std::uint32_t size, std::uint32_t id, glm::vec3 a, glm::vec3 b,
-          glm::vec3 c, float area) {
+ProjectedTriangle project_triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c, float area) {
+    const glm::vec2 ab(b - a), ac(c - a);
+    const float inverse = 1.0f / area, zb = b.z - a.z, zc = c.z - a.z;
+    ProjectedTriangle t;
+    t.corner = glm::vec2(a);
+    t.z = a.z;
+    t.second = inverse * glm::vec2(ac.y, -ac.x);
+    t.third = inverse * glm::vec2(-ab.y, ab.x);
+    t.slope = zb * t.second + zc * t.third;
+    return t;
+}
+
+// Draws a triangle and keeps its record if it is on top of something; whether it is.
+bool draw(LightView& view, std::vector<LightPixel>& layer, std::uint32_t id, glm::vec3 a,
+          glm::vec3 b, glm::vec3 c, float area) {
+    const std::uint32_t size = view.size;
     const Span rows = pixel_span(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), size);
     const Span columns = pixel_span(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), size);
     if (rows.first > rows.last || columns.first > columns.last) {
-        return;
+        return false;
     }
-    const float inverse = 1.0f / area;
-    const glm::vec2 ab(b - a), ac(c - a);
-    const glm::vec2 start(static_cast<float>(columns.first) + 0.5f - a.x,
-                          static_cast<float>(rows.first) + 0.5f - a.y);
-    // Barycentric coordinates of b and c at the first centre, and their steps.
-    float tb_row = cross2(start, ac) * inverse, tc_row = cross2(ab, start) * inverse;
-    const float tb_x = ac.y * inverse, tb_y = -ac.x * inverse;
-    const float tc_x = -ab.y * inverse, tc_y = ab.x * inverse;
-    const float zb = b.z - a.z, zc = c.z - a.z;
+    const ProjectedTriangle t = project_triangle(a, b, c, area);
+    bool drawn = false;
     for (std::int32_t j = rows.first; j <= rows.last; ++j) {
-        float tb = tb_row, tc = tc_row;
-        const std::size_t row = static_cast<std::size_t>(j) * size;
+        LightPixel* row = &layer[static_cast<std::size_t>(j) * size];
         for (std::int32_t i = columns.first; i <= columns.last; ++i) {
+            const glm::vec2 from = glm::vec2(i, j) + 0.5f - t.corner;
+            const float tb = glm::dot(from, t.second), tc = glm::dot(from, t.third);
             if (tb >= 0 && tc >= 0 && tb + tc <= 1) {
-                const float z = a.z + tb * zb + tc * zc;
-                const std::size_t pixel = row + static_cast<std::size_t>(i);
-                if (z > layer.z[pixel]) {
-                    layer.z[pixel] = z;
-                    layer.triangle[pixel] = id;
+                const float z = t.z + glm::dot(from, t.slope);
+                if (z > row[i].z) {
+                    row[i] = {z, id};
+                    drawn = true;
                 }
             }
-            tb += tb_x;
-            tc += tc_x;
         }
-        tb_row += tb_y;
-        tc_row += tc_y;
     }
+    if (drawn) {
+        view.triangle[id] = t;
+    }
+    return drawn;
 }
 
 // The column through a point, on the plane of a triangle.
 struct Crossing {
     bool holds = false;  // the column goes through the triangle itself
     float z = 0;
-    glm::vec2 slope{0};  // dz/dx, dz/dy, [m/m]
 };
 
-Crossing cross_triangle(const BodyMesh& mesh, const LightView& view, std::uint32_t id,
-                        glm::vec3 p) {
-    const glm::uvec3 t = mesh.triangle[id];
-    const glm::vec3 a = view.projected[t.x], b = view.projected[t.y], c = view.projected[t.z];
-    const glm::vec2 ab(b - a), ac(c - a), ap(p - a);
-    const float area = cross2(ab, ac), inverse = 1.0f / area;
-    const float tb = cross2(ap, ac) * inverse, tc = cross2(ab, ap) * inverse;
-    const float zb = b.z - a.z, zc = c.z - a.z;
-    Crossing crossing;
+Crossing cross_triangle(const ProjectedTriangle& t, glm::vec3 p) {
+    const glm::vec2 from = glm::vec2(p) - t.corner;
+    const float tb = glm::dot(from, t.second), tc = glm::dot(from, t.third);
     constexpr float kMargin = 1e-4f;  // neighbours overlap rather than leave a gap by rounding
-    crossing.holds = tb >= -kMargin && tc >= -kMargin && tb + tc <= 1 + kMargin;
-    crossing.z = a.z + tb * zb + tc * zc;
-    const float scale = inverse * view.frame.pixels_per_metre;
-    crossing.slope = scale * glm::vec2(ac.y * zb - ab.y * zc, ab.x * zc - ac.x * zb);
-    return crossing;
+    return {tb >= -kMargin && tc >= -kMargin && tb + tc <= 1 + kMargin,
+            t.z + glm::dot(from, t.slope)};
 }
 
 using Corner = std::array<std::size_t, 4>;
@@ -111,12 +109,12 @@ struct Above {
     bool yes = false, sure = true;
 };
 
-Above passes_above(const BodyMesh& mesh, const LightView& view, const LightLayer& layer,
+Above passes_above(const LightView& view, const std::vector<LightPixel>& layer,
                    const Corner& pixels, glm::vec3 p) {
     float low = kInfinity, high = -kInfinity;
     bool all = true;
     for (const std::size_t pixel : pixels) {
-        const float z = layer.z[pixel];
+        const float z = layer[pixel].z;
         all = all && z > -kInfinity;
         low = std::min(low, z);
         high = std::max(high, z);
@@ -133,14 +131,35 @@ Above passes_above(const BodyMesh& mesh, const LightView& view, const LightLayer
         return {false, true};
     }
     for (const std::size_t pixel : pixels) {
-        if (layer.triangle[pixel] != formats::kNone) {
-            const Crossing c = cross_triangle(mesh, view, layer.triangle[pixel], p);
+        if (layer[pixel].triangle != formats::kNone) {
+            const Crossing c = cross_triangle(view.triangle[layer[pixel].triangle], p);
             if (c.holds) {
                 return {c.z > p.z, true};
             }
         }
     }
-    return {layer.z[pixels[0]] > p.z, false};
+    return {layer[pixels[0]].z > p.z, false};
+}
+
+// So that what is near in space is near in memory; the body's triangles stay the first.
+void sort_in_space(BodyMesh& mesh) {
+    const std::vector<std::uint32_t> order = spatial_order(mesh.position);
+    std::vector<glm::vec3> position;
+    std::vector<std::uint32_t> rank(order.size());
+    for (const std::uint32_t v : order) {
+        rank[v] = static_cast<std::uint32_t>(position.size());
+        position.push_back(mesh.position[v]);
+    }
+    mesh.position = std::move(position);
+    for (glm::uvec3& t : mesh.triangle) {
+        t = {rank[t.x], rank[t.y], rank[t.z]};
+    }
+    const auto middle = mesh.triangle.begin() + mesh.body_triangles;
+    const auto before = [](glm::uvec3 a, glm::uvec3 b) {
+        return std::min({a.x, a.y, a.z}) < std::min({b.x, b.y, b.z});
+    };
+    std::stable_sort(mesh.triangle.begin(), middle, before);
+    std::stable_sort(middle, mesh.triangle.end(), before);
 }
 
 }  // namespace
@@ -182,6 +201,7 @@ BodyMesh make_body_mesh(const formats::Scene& scene, const RayScene& rays, std::
         mesh.centre = 0.5f * low + 0.5f * high;
         mesh.mean_edge = static_cast<float>(edges / mesh.body_triangles);
     }
+    sort_in_space(mesh);
     for (glm::vec3& v : mesh.position) {
         v -= mesh.centre;
     }
@@ -215,13 +235,14 @@ glm::vec3 project(const LightFrame& frame, glm::vec3 position) {
 }
 
 void render_light_view(const BodyMesh& mesh, const LightFrame& frame, std::uint32_t size,
-                       LightView& view) {
+                       const Interface<float>& boundary, LightView& view) {
     view.size = size;
     view.frame = frame;
     view.projected.resize(mesh.position.size());
     for (std::size_t i = 0; i < mesh.position.size(); ++i) {
         view.projected[i] = project(frame, mesh.position[i]);
     }
+    view.triangle.resize(mesh.triangle.size());
     const std::size_t pixels = std::size_t{size} * size;
     clear(view.front, pixels);
     clear(view.back, pixels);
@@ -236,22 +257,27 @@ void render_light_view(const BodyMesh& mesh, const LightFrame& frame, std::uint3
         if (!(std::abs(area) > kEdgeOn)) {
             continue;
         }
-        LightLayer& layer = id >= mesh.body_triangles ? view.blocker
-                            : area > 0                ? view.front
-                                                      : view.back;
-        draw(layer, size, id, a, b, c, area);
+        std::vector<LightPixel>& layer = id >= mesh.body_triangles ? view.blocker
+                                         : area > 0                ? view.front
+                                                                   : view.back;
+        if (draw(view, layer, id, a, b, c, area) && &layer == &view.front) {
+            ProjectedTriangle& drawn = view.triangle[id];
+            const glm::vec2 slope = frame.pixels_per_metre * drawn.slope;
+            drawn.cosine = 1.0f / std::sqrt(1.0f + glm::dot(slope, slope));
+            drawn.entry = enter(drawn.cosine, boundary);
+        }
     }
 }
 
-LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 p, float tolerance) {
+LightAnswer look_up(const LightView& view, glm::vec3 p, float tolerance) {
     const Corner pixels = nearest_pixels(view, p);
     LightAnswer answer;
     Above blocked;
-    if (!view.blocker.z.empty()) {
-        blocked = passes_above(mesh, view, view.blocker, pixels, p);
+    if (!view.blocker.empty()) {
+        blocked = passes_above(view, view.blocker, pixels, p);
     }
     if (!blocked.yes || !blocked.sure) {
-        const Above back = passes_above(mesh, view, view.back, pixels, p);
+        const Above back = passes_above(view, view.back, pixels, p);
         const bool surely = back.yes && back.sure;
         blocked = {blocked.yes || back.yes, surely || (blocked.sure && back.sure)};
     }
@@ -260,11 +286,12 @@ LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 p, fl
         return answer;
     }
     float low = kInfinity, high = -kInfinity;
-    bool all = true, known = false, found = false;
+    bool all = true, known = false;
     Crossing crossing;
+    const ProjectedTriangle* entry = nullptr;
     std::uint32_t previous = formats::kNone;
     for (const std::size_t pixel : pixels) {
-        const std::uint32_t id = view.front.triangle[pixel];
+        const std::uint32_t id = view.front[pixel].triangle;
         if (id == formats::kNone) {
             all = false;
             continue;
@@ -273,10 +300,10 @@ LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 p, fl
             continue;
         }
         previous = id;
-        const Crossing c = cross_triangle(mesh, view, id, p);
-        if (c.holds || !found) {
+        const Crossing c = cross_triangle(view.triangle[id], p);
+        if (c.holds || entry == nullptr) {
             crossing = c;
-            found = true;
+            entry = &view.triangle[id];
         }
         low = std::min(low, c.z);
         high = std::max(high, c.z);
@@ -288,13 +315,14 @@ LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 p, fl
     }
     known = known || (all && low > p.z && high - low < tolerance);
     answer.sure = blocked.sure && known;
-    answer.lit = answer.lit && found;
-    if (found) {
+    answer.lit = answer.lit && entry != nullptr;
+    if (entry != nullptr) {
         answer.distance = std::max(crossing.z - p.z, 0.0f);
         answer.nearest = known ? answer.distance : std::max(low - (high - low) - p.z, 0.0f);
-        const glm::vec2 slope = crossing.slope;
-        answer.cosine = 1.0f / std::sqrt(1.0f + glm::dot(slope, slope));
+        answer.cosine = entry->cosine;
+        answer.entry = entry->entry;
         const LightFrame& frame = view.frame;
+        const glm::vec2 slope = frame.pixels_per_metre * entry->slope;
         answer.normal = answer.cosine * (frame.w - slope.x * frame.u - slope.y * frame.v);
     }
     return answer;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/single/entry.h"
 #include "bake/visibility/ray_scene.h"
 #include "formats/scene.h"
 
@@ -38,25 +39,37 @@ LightFrame make_light_frame(glm::vec3 toward_light, float radius, std::uint32_t 
 
 glm::vec3 project(const LightFrame& frame, glm::vec3 position);
 
-/// The triangle on top of each pixel, seen from the light, and its depth.
-struct LightLayer {
-    std::vector<std::uint32_t> triangle;  ///< index into BodyMesh::triangle, or kNone
-    std::vector<float> z;                 ///< [m] at the pixel's centre; -infinity: none
+/// The triangle on top of a pixel, seen from the light, and its depth.
+struct LightPixel {
+    float z = 0;                 ///< [m] at the pixel's centre; -infinity: none
+    std::uint32_t triangle = 0;  ///< index into BodyMesh::triangle, or kNone
+};
+
+/// A triangle in a view: its plane, its edges, and how light enters through it. A cache line.
+struct alignas(64) ProjectedTriangle {
+    glm::vec2 corner;         ///< [pixels]
+    float z = 0;              ///< [m] at that corner
+    glm::vec2 slope;          ///< dz/dx, dz/dy [m/pixel]
+    glm::vec2 second, third;  ///< how the weights of the other corners change, per pixel
+    float cosine = 0;         ///< of its normal with the light, for those of the body that face it
+    Entry<float> entry;       ///< at that cosine
 };
 
 /// Views of a body along one direction.
 struct LightView {
     std::uint32_t size = 0;  ///< pixels across
     LightFrame frame;
-    std::vector<glm::vec3> projected;  ///< vertices
-    LightLayer front;                  ///< of the body, facing the light: where light enters
-    LightLayer back;                   ///< of the body, facing away: where it would leave
-    LightLayer blocker;                ///< everything else, both sides; empty if there is nothing
+    std::vector<glm::vec3> projected;         ///< vertices
+    std::vector<ProjectedTriangle> triangle;  ///< where one is drawn anywhere
+    std::vector<LightPixel> front;            ///< of the body, facing the light: light enters
+    std::vector<LightPixel> back;             ///< of the body, facing away: it would leave
+    std::vector<LightPixel> blocker;  ///< everything else, both sides; empty if there is nothing
 };
 
-/// Renders the three layers; pixel (i, j) is sampled in (i + 1/2, j + 1/2). Reuses `view`'s memory.
+/// Renders the three layers; pixel (i, j) is sampled in (i + 1/2, j + 1/2). `boundary`: of the
+/// medium. Reuses `view`'s memory.
 void render_light_view(const BodyMesh& mesh, const LightFrame& frame, std::uint32_t size,
-                       LightView& view);
+                       const Interface<float>& boundary, LightView& view);
 
 /// The light's way from a point inside the body.
 struct LightAnswer {
@@ -66,13 +79,13 @@ struct LightAnswer {
     float nearest = 0;   ///< [m] what the distance may come down to, where that is not sure
     glm::vec3 normal;    ///< n_i, world
     float cosine = 0;    ///< n_i . w
+    Entry<float> entry;  ///< at that cosine
 };
 
 /// Looks a projected point up. Lit: the column through it meets a known triangle of the front layer
 /// above it, and neither a back nor a blocker layer in between. Not sure: no triangle seen at the
 /// four nearest pixels holds the column, and their planes differ there by more than `tolerance`
 /// [m].
-LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 projected,
-                    float tolerance);
+LightAnswer look_up(const LightView& view, glm::vec3 projected, float tolerance);
 
 }  // namespace opaline::bake

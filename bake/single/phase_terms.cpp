@@ -16,12 +16,13 @@ std::vector<float> largest_phase_terms(const PhaseTerms& phase) {
     if (phase.lambda.size() == 1) {
         return {kIsotropic};
     }
+    constexpr float kRounding = 1.000001f;
     std::vector<float> largest;
     for (std::size_t l = 0; l < phase.lambda.size(); ++l) {
         // The squares of a degree's harmonics sum to (2 l + 1) / (4 pi) in every direction.
         const float orders = static_cast<float>(2 * l + 1);
         largest.insert(largest.end(), 2 * l + 1,
-                       std::abs(phase.lambda[l]) * std::sqrt(kIsotropic * orders));
+                       kRounding * std::abs(phase.lambda[l]) * std::sqrt(kIsotropic * orders));
     }
     return largest;
 }

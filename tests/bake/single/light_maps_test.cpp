@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/single/inner_triangles.h"
+#include "bake/single/texel_directions.h"
 #include "tests/bake/single/single_support.h"
 
 namespace opaline::bake {
@@ -67,17 +68,21 @@ Comparison compare(const SingleSetup& setup, std::size_t count) {
     const auto lights = smooth_lights(directions);
     const std::vector<BodyPoint> points = some_points(setup, count);
     const SingleRows maps = gather_all(setup, directions, points, 1);
-    std::vector<float> exact(3 * lights[0].size()), fast(exact.size());
+    const std::uint32_t terms = setup.medium.phase.count();
+    std::vector<float> exact(3 * lights[0].size() * terms), fast(exact.size());
     std::vector<double> difference(lights.size(), 0.0), reference(lights.size(), 0.0);
     double sum = 0, sum_exact = 0;
     for (std::size_t p = 0; p < points.size(); ++p) {
         gather_single(setup.rays, directions, shares, setup.medium, points[p], exact);
         read_packed_row(maps.rows, p, fast);
+        // From straight above, where it is seen brightest.
+        const std::vector<float> seen = tests::seen_from(exact, terms, points[p].normal);
+        const std::vector<float> seen_fast = tests::seen_from(fast, terms, points[p].normal);
         for (std::size_t l = 0; l < lights.size(); ++l) {
             double a = 0, b = 0;
-            for (std::size_t j = 0; j < exact.size(); ++j) {
-                a += lights[l][j % lights[l].size()] * exact[j];
-                b += lights[l][j % lights[l].size()] * fast[j];
+            for (std::size_t j = 0; j < seen.size(); ++j) {
+                a += lights[l][j % lights[l].size()] * seen[j];
+                b += lights[l][j % lights[l].size()] * seen_fast[j];
             }
             reference[l] += a * a;
             difference[l] += (b - a) * (b - a);
@@ -142,7 +147,19 @@ TEST(LightMaps, ThinSheetAgreesWithRaysWithin1Percent) {
     EXPECT_LT(std::abs(c.bias), 0.005);
 }
 
-TEST(LightMaps, RowsDoNotDependOnTheNumberOfThreads) {
+TEST(LightMaps, HarmonicsTermsAgreeWithRaysWithin1Percent) {
+    for (const std::size_t degrees : {2u, 3u}) {
+        auto setup =
+            set_up(make_translucent_scene({tests::make_bumpy_body(4)}, make_grey_medium(8, 0.8f)));
+        setup.medium.phase.lambda = {1, 0.6f, 0.36f};
+        setup.medium.phase.lambda.resize(degrees);
+        const Comparison c = compare(setup, 100);
+        EXPECT_LT(c.rms, 0.01);
+        EXPECT_LT(std::abs(c.bias), 0.005);
+    }
+}
+
+TEST(LightMaps, RowsDependNeitherOnThreadsNorOnHowPointsAreCut) {
     const auto setup =
         set_up(make_translucent_scene({tests::make_bumpy_body(3)}, make_grey_medium(8, 0.2f)));
     const DirectionSet directions = make_direction_set(8);
@@ -152,6 +169,43 @@ TEST(LightMaps, RowsDoNotDependOnTheNumberOfThreads) {
     EXPECT_EQ(one.rows.packed, two.rows.packed);
     EXPECT_EQ(one.rows.scale, two.rows.scale);
     EXPECT_EQ(one.counts.rays, two.counts.rays);
+    const auto rest = std::span(points).subspan(100);
+    const SingleRows cut = gather_all(setup, directions, rest, 2);
+    std::vector<float> a(3 * 384), b(a.size());
+    for (const std::size_t p : {0u, 7u, 150u}) {
+        read_packed_row(cut.rows, p, a);
+        read_packed_row(one.rows, 100 + p, b);
+        EXPECT_EQ(a, b) << p;
+    }
+}
+
+TEST(TexelDirections, ThoseOfTexelsAreAsGoodAsFourInEachForSmoothLights) {
+    const auto setup =
+        set_up(make_translucent_scene({tests::make_bumpy_body(4)}, make_grey_medium(8, 0.8f)));
+    const DirectionSet four = make_direction_set(16), one = make_texel_directions(16);
+    ASSERT_EQ(one.blocks.size() * 4, four.blocks.size());
+    std::vector<int> met(1536, 0);
+    for (const DirectionBlock& block : one.blocks) {
+        for (const std::uint32_t texel : block.texel) {
+            ++met[texel];
+        }
+    }
+    EXPECT_EQ(met, std::vector<int>(1536, 1));
+    const auto lights = smooth_lights(four);
+    double difference = 0, reference = 0;
+    for (const std::size_t p : {0u, 100u, 777u, 1500u, 2222u}) {
+        const auto a = tests::gather(setup, four, p), b = tests::gather(setup, one, p);
+        for (const auto& light : lights) {
+            double fine = 0, coarse = 0;
+            for (std::size_t j = 0; j < a.size(); ++j) {
+                fine += light[j % 1536] * a[j];
+                coarse += light[j % 1536] * b[j];
+            }
+            reference += fine * fine;
+            difference += (fine - coarse) * (fine - coarse);
+        }
+    }
+    EXPECT_LT(std::sqrt(difference / reference), 0.01);
 }
 
 TEST(LightMaps, ShellsWithinShellsAreNoBoundary) {

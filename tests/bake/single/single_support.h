@@ -8,6 +8,7 @@
 
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/single/ray_single.h"
+#include "formats/opal/spherical_harmonics.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::tests {
@@ -48,13 +49,27 @@ inline SingleSetup set_up(Scene scene, std::uint32_t depth_samples = 8) {
 inline std::vector<float> gather(const SingleSetup& setup, const bake::DirectionSet& directions,
                                  std::size_t point, bake::EntryCounts* counts = nullptr) {
     const std::size_t n = directions.cubemap_size;
-    std::vector<float> transport(18 * n * n);
+    std::vector<float> transport(18 * n * n * setup.medium.phase.count());
     const auto counted = bake::gather_single(setup.rays, directions, bake::texel_shares(directions),
                                              setup.medium, setup.points[point], transport);
     if (counts != nullptr) {
         *counts = counted;
     }
     return transport;
+}
+
+/// sum_k h_k(w_o') T_k from the rows of all terms; `inside`: w_o', refracted.
+inline std::vector<float> seen_from(const std::vector<float>& transport, std::uint32_t terms,
+                                    glm::vec3 inside) {
+    std::vector<float> h(terms, 1.0f);
+    if (terms > 1) {
+        formats::eval_spherical_harmonics({inside.x, inside.y, inside.z}, h);
+    }
+    std::vector<float> seen(transport.size() / terms, 0.0f);
+    for (std::size_t i = 0; i < transport.size(); ++i) {
+        seen[i % seen.size()] += h[i / seen.size()] * transport[i];
+    }
+    return seen;
 }
 
 /// <T, 1> of each channel over all directions.
