@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "shader_text.h"
 
@@ -11,6 +12,11 @@ namespace opaline::runtime {
 namespace {
 
 using formats::Vec3;
+
+// Index of a surface's program in DrawPrograms.
+std::size_t surface_kind(bool is_textured, bool is_translucent) {
+    return (is_textured ? 1u : 0u) + (is_translucent ? 2u : 0u);
+}
 
 void set_vec3(GLuint program, GLint location, Vec3 v) {
     glProgramUniform3f(program, location, v.x, v.y, v.z);
@@ -50,11 +56,7 @@ TileGrid tile_grid(const DrawScene& scene, const Tile& tile) {
 void set_view(const DrawScene& scene, const CameraFrame& frame, const TileGrid& grid,
               GLuint program) {
     const Camera& camera = scene.camera;
-    const Vec3 to_target = camera.target - camera.eye;
-    const double distance =
-        std::hypot(static_cast<double>(to_target.x), static_cast<double>(to_target.y),
-                   static_cast<double>(to_target.z));
-    const double unit = 1.0 / std::max(distance, static_cast<double>(camera.near_plane));
+    const double unit = view_unit(camera);
     set_vec3(program, 0, camera.eye);
     set_vec3(program, 1, static_cast<float>(1.0 / frame.tan_half_x) * frame.right);
     set_vec3(program, 2, static_cast<float>(-1.0 / frame.tan_half_y) * frame.up);
@@ -71,18 +73,23 @@ void set_view(const DrawScene& scene, const CameraFrame& frame, const TileGrid& 
 void draw_surfaces(const DrawScene& scene, const DrawPrograms& programs, const CameraFrame& frame,
                    const TileGrid& grid) {
     const GlAsset& asset = scene.asset;
-    set_view(scene, frame, grid, programs.plain.name());
-    set_view(scene, frame, grid, programs.textured.name());
+    for (const GlProgram& program : programs.surface) {
+        if (program.name() != 0) set_view(scene, frame, grid, program.name());
+    }
     glBindVertexArray(asset.vertex_array.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, asset.srgb_table.name());
     for (const formats::PrimitiveRecord& primitive : asset.primitives) {
-        if (primitive.base_color_image < asset.images.size()) {
-            glUseProgram(programs.textured.name());
+        const bool is_textured = primitive.base_color_image < asset.images.size();
+        const bool is_translucent = primitive.shading == formats::Shading::translucent;
+        glUseProgram(programs.surface[surface_kind(is_textured, is_translucent)].name());
+        if (is_textured) {
             glUniform2i(8, static_cast<GLint>(primitive.wrap_u),
                         static_cast<GLint>(primitive.wrap_v));
             glBindTextureUnit(0, asset.images[primitive.base_color_image].name());
-        } else {
-            glUseProgram(programs.plain.name());
+        }
+        if (is_translucent) {
+            glUniform1f(9, primitive.eta);
+            glUniform1ui(10, primitive.flags & formats::PrimitiveRecord::kDoubleSided);
         }
         // In pieces that a signed count holds; each a whole number of triangles.
         constexpr std::uint32_t kPiece = 3u << 28;
@@ -122,7 +129,15 @@ void draw_background(const DrawScene& scene, const DrawPrograms& programs, const
 
 }  // namespace
 
-formats::Result<DrawPrograms> make_draw_programs() {
+double view_unit(const Camera& camera) {
+    const Vec3 to_target = camera.target - camera.eye;
+    const double distance =
+        std::hypot(static_cast<double>(to_target.x), static_cast<double>(to_target.y),
+                   static_cast<double>(to_target.z));
+    return 1.0 / std::max(distance, static_cast<double>(camera.near_plane));
+}
+
+formats::Result<DrawPrograms> make_draw_programs(bool with_translucent) {
     DrawPrograms programs;
     const std::string wraps = "#define TEXTURED\n#define WRAP_CLAMP " +
                               std::to_string(static_cast<int>(formats::Wrap::clamp)) +
@@ -134,11 +149,18 @@ formats::Result<DrawPrograms> make_draw_programs() {
         std::string defines;
         const char *vertex, *fragment;
     };
-    const std::array<Job, 4> jobs{
-        {{programs.plain, "surface", "", surface_vert_text, surface_frag_text},
-         {programs.textured, "textured surface", wraps, surface_vert_text, surface_frag_text},
-         {programs.background, "background", "", screen_vert_text, background_frag_text},
-         {programs.resolve, "box filter", "", screen_vert_text, resolve_frag_text}}};
+    std::vector<Job> jobs{
+        {programs.background, "background", "", screen_vert_text, background_frag_text},
+        {programs.resolve, "box filter", "", screen_vert_text, resolve_frag_text}};
+    for (const bool is_textured : {false, true}) {
+        for (const bool is_translucent : {false, true}) {
+            if (is_translucent && !with_translucent) continue;
+            jobs.push_back({programs.surface[surface_kind(is_textured, is_translucent)], "surface",
+                            (is_textured ? wraps : std::string()) +
+                                (is_translucent ? "#define TRANSLUCENT\n" : ""),
+                            surface_vert_text, surface_frag_text});
+        }
+    }
     for (const Job& job : jobs) {
         const std::array<StageSource, 2> stages{
             {{GL_VERTEX_SHADER, job.vertex}, {GL_FRAGMENT_SHADER, job.fragment}}};

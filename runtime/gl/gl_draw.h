@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "formats/opal/result.h"
@@ -13,10 +14,12 @@
 namespace opaline::runtime {
 
 struct DrawPrograms {
-    GlProgram plain, textured, background, resolve;
+    std::array<GlProgram, 4> surface;  ///< plain, textured; translucent, both
+    GlProgram background, resolve;
     GlVertexArray nothing;  ///< for passes without vertex data
 };
-formats::Result<DrawPrograms> make_draw_programs();
+/// The two programs for translucent surfaces only on request. Errors: resource.
+formats::Result<DrawPrograms> make_draw_programs(bool with_translucent);
 
 /// Where a tile is drawn: samples with depth, and the box-filtered pixels.
 struct DrawTarget {
@@ -31,6 +34,9 @@ formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t 
 struct Tile {
     std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
+
+/// About 1 / the distances in the picture: the scale at which shaders measure them.
+double view_unit(const Camera& camera);
 
 /// Everything a tile is drawn from.
 struct DrawScene {

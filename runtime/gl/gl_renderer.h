@@ -33,7 +33,7 @@ struct GlStats {
     double upload_seconds = 0;  ///< asset and environment to buffers and textures
     double light_seconds = 0;   ///< light vector to its buffer
     double dot_seconds = 0;     ///< all dot products
-    double draw_seconds = 0;    ///< geometry, background and box filter
+    double draw_seconds = 0;    ///< view terms, geometry, background and box filter
     double readback_seconds = 0;
     std::size_t gpu_bytes = 0;        ///< in buffers and textures of the asset and environment
     std::uint32_t dispatches = 0;     ///< of the compute shader, one per batch of rows
@@ -57,7 +57,7 @@ class GlRenderer {
     GlRenderer& operator=(GlRenderer&& other) noexcept;
     ~GlRenderer();
 
-    /// Computes <T_0, L> of every vertex in a compute shader. `rotation` turns the background; the
+    /// Computes <T_k, L> of every vertex in a compute shader. `rotation` turns the background; the
     /// light vector must have been made with the same one. Errors: usage (another cube map size
     /// than the asset's), resource.
     formats::Status set_light(const LightVector& light, const Rotation& rotation);
@@ -66,7 +66,8 @@ class GlRenderer {
     /// resource.
     formats::Result<Picture> render(const Camera& camera, const GlRenderOptions& options = {});
 
-    /// Reads back <T_0, L> of every vertex, as the last set_light left it.
+    /// Reads back <T_0, L> of every vertex, as the last set_light left it; of translucent vertices
+    /// sum_k h_k(w_o') <T_k, L> toward the eye of the last render (0 before it).
     formats::Result<std::vector<formats::Rgb>> read_irradiance();
 
     const GlStats& stats() const;

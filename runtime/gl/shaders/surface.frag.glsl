@@ -1,4 +1,5 @@
-// Outgoing radiance: irradiance transport times base colour, and its image where TEXTURED.
+// Outgoing radiance: irradiance transport times base colour, and its image where TEXTURED, and the
+// Fresnel transmittance where TRANSLUCENT.
 layout(location = 0) in vec3 v_irradiance;
 layout(location = 1) in vec3 v_base_color;
 layout(location = 2) in vec2 v_texcoord;
@@ -48,10 +49,38 @@ vec3 sample_image(vec2 uv) {
 }
 #endif
 
+#ifdef TRANSLUCENT
+layout(location = 3) in vec3 v_normal;
+layout(location = 4) in vec3 v_to_eye;
+layout(location = 9) uniform float eta;
+layout(location = 10) uniform uint is_double_sided;
+
+vec3 unit_or_zero(vec3 v) {
+    float size = length(v);
+    return size > 0.0 ? v / size : vec3(0.0);
+}
+
+// As fresnel_transmittance of view_terms.cpp.
+float transmittance() {
+    float c = dot(unit_or_zero(v_normal), unit_or_zero(v_to_eye));
+    c = min(is_double_sided != 0u ? abs(c) : c, 1.0);
+    float under_root = (eta - 1.0) * (eta + 1.0) + c * c;
+    if (!(c > 0.0) || !(under_root > 0.0)) {
+        return 0.0;
+    }
+    float behind = sqrt(under_root);
+    float s = c + behind, p = eta * eta * c + behind;
+    return min(2.0 * c * behind * (1.0 / (s * s) + eta * eta / (p * p)), 1.0);
+}
+#endif
+
 void main() {
     vec3 radiance = v_irradiance * v_base_color;
 #ifdef TEXTURED
     radiance *= sample_image(v_texcoord);
+#endif
+#ifdef TRANSLUCENT
+    radiance *= transmittance();
 #endif
     color = vec4(tame(radiance.r), tame(radiance.g), tame(radiance.b), 1.0);
 }

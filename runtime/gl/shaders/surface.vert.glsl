@@ -4,6 +4,11 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 irradiance;
 layout(location = 2) in vec3 base_color;
 layout(location = 3) in vec2 texcoord;
+#ifdef TRANSLUCENT
+layout(location = 4) in vec3 normal;
+layout(location = 3) out vec3 v_normal;
+layout(location = 4) out vec3 v_to_eye;
+#endif
 
 layout(location = 0) uniform vec3 eye;
 layout(location = 1) uniform vec3 right;      // over the half width of the image plane
@@ -25,4 +30,8 @@ void main() {
     v_irradiance = irradiance;
     v_base_color = base_color;
     v_texcoord = texcoord;
+#ifdef TRANSLUCENT
+    v_normal = normal;
+    v_to_eye = -p;
+#endif
 }
