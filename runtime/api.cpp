@@ -202,6 +202,23 @@ opaline_status opaline_asset_primitive(const opaline_asset* asset, uint32_t inde
     return OPALINE_OK;
 }
 
+opaline_status opaline_asset_primitive_shading(const opaline_asset* asset, uint32_t index,
+                                               opaline_primitive_shading* shading) {
+    if (asset == nullptr || shading == nullptr) {
+        return null_argument();
+    }
+    if (shading->struct_size != sizeof(opaline_primitive_shading)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+    }
+    if (index >= opaline_asset_primitive_count(asset)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
+    }
+    const formats::PrimitiveRecord& p = asset->loaded.view.primitives[index];
+    *shading = {sizeof(opaline_primitive_shading), static_cast<std::uint32_t>(p.shading), p.terms,
+                p.eta};
+    return OPALINE_OK;
+}
+
 opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** out) {
     if (asset == nullptr || out == nullptr) {
         return null_argument();
@@ -329,6 +346,12 @@ opaline_status opaline_shade(const opaline_asset* asset, const opaline_light* li
 opaline_status opaline_shade_range(const opaline_asset* asset, const opaline_light* light,
                                    uint32_t flags, uint32_t first, uint32_t count, float* out_rgb,
                                    size_t out_count) {
+    return opaline_shade_from(asset, light, flags, nullptr, first, count, out_rgb, out_count);
+}
+
+opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_light* light,
+                                  uint32_t flags, const float eye[3], uint32_t first,
+                                  uint32_t count, float* out_rgb, size_t out_count) {
     if (asset == nullptr || light == nullptr || out_rgb == nullptr) {
         return null_argument();
     }
@@ -337,8 +360,14 @@ opaline_status opaline_shade_range(const opaline_asset* asset, const opaline_lig
         return fail(OPALINE_INVALID_ARGUMENT,
                     "the light was made for an asset of another cube map size");
     }
-    if ((flags & ~std::uint32_t{OPALINE_SHADE_WITHOUT_BASE_COLOR}) != 0) {
+    constexpr std::uint32_t kKnown =
+        OPALINE_SHADE_WITHOUT_BASE_COLOR | OPALINE_SHADE_WITHOUT_FRESNEL;
+    if ((flags & ~kKnown) != 0) {
         return fail(OPALINE_INVALID_ARGUMENT, "unknown flags");
+    }
+    if (eye != nullptr &&
+        !(std::isfinite(eye[0]) && std::isfinite(eye[1]) && std::isfinite(eye[2]))) {
+        return fail(OPALINE_INVALID_ARGUMENT, "the eye's coordinates must be finite");
     }
     if (first > view.receivers() || count > view.receivers() - first) {
         return fail(OPALINE_INVALID_ARGUMENT, "the range goes past the last receiver");
@@ -348,6 +377,10 @@ opaline_status opaline_shade_range(const opaline_asset* asset, const opaline_lig
     }
     runtime::ShadeOptions options;
     options.base_color = (flags & OPALINE_SHADE_WITHOUT_BASE_COLOR) == 0;
+    options.fresnel = (flags & OPALINE_SHADE_WITHOUT_FRESNEL) == 0;
+    if (eye != nullptr) {
+        options.eye = formats::Vec3{eye[0], eye[1], eye[2]};
+    }
     static_assert(sizeof(formats::Rgb) == 3 * sizeof(float));
     runtime::shade_range(view, light->vector, first,
                          {reinterpret_cast<formats::Rgb*>(out_rgb), count}, options);

@@ -44,11 +44,14 @@ int run(const Options& options) {
         !status) {
         return report_error(status.error());
     }
+    runtime::ShadeOptions shading;
+    shading.threads = options.threads;
     if (!options.eye.empty()) {
-        // Diffuse rows look the same from everywhere; the option is checked all the same.
-        if (const auto eye = parse_vec3("--eye", options.eye); !eye) {
+        const auto eye = parse_vec3("--eye", options.eye);
+        if (!eye) {
             return report_error(eye.error());
         }
+        shading.eye = *eye;
     }
     const auto asset = open_asset(options.path);
     if (!asset) {
@@ -60,8 +63,6 @@ int run(const Options& options) {
     }
     const formats::AssetView& view = asset->loaded.view;
     std::vector<formats::Rgb> radiance(view.receivers());
-    runtime::ShadeOptions shading;
-    shading.threads = options.threads;
     runtime::shade(view,
                    runtime::project_environment(light->environment, view.cubemap_size,
                                                 light->rotation, options.threads),
@@ -94,7 +95,7 @@ void add_relight_command(CLI::App& app, Job& job) {
     command
         ->add_option("--eye", options->eye,
                      "the point everything is seen from [m]; default: each receiver along its own "
-                     "normal. Diffuse surfaces look the same from everywhere")
+                     "normal. Only translucent surfaces depend on it")
         ->option_text("X,Y,Z");
     command
         ->add_option("--rotate-light", options->rotate_light,

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -149,11 +150,19 @@ int render_on_cpu(const Options& options, const formats::AssetView& view, const 
     std::vector<formats::Rgb> irradiance(view.receivers());
     runtime::ShadeOptions shading;
     shading.threads = options.threads;
-    shading.base_color = false;
+    shading.base_color = shading.fresnel = false;
+    shading.eye = camera.eye;
     const auto start = Clock::now();
     runtime::shade(view, vector, irradiance, shading);
     print_stat(options, "dot products", seconds_since(start));
+    const bool depends_on_eye = std::ranges::any_of(view.primitives, [](const auto& primitive) {
+        return primitive.shading == formats::Shading::translucent;
+    });
     return render_frames(options, camera, [&](const runtime::Camera& at) {
+        if (depends_on_eye && shading.eye != at.eye) {
+            shading.eye = at.eye;
+            runtime::shade(view, vector, irradiance, shading);
+        }
         runtime::SoftwareOptions software;
         software.threads = options.threads;
         return runtime::render_software(view, irradiance, light.environment, light.rotation, at,

@@ -1,9 +1,13 @@
 #include <gmock/gmock.h>
 
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "formats/image/exr.h"
+#include "formats/opal/write_opal.h"
 #include "tests/cli/small_scene.h"
+#include "tests/formats/opal/asset_fixture.h"
 
 namespace opaline::tests {
 namespace {
@@ -57,6 +61,78 @@ TEST(Relight, TurningTheLightOnceAroundChangesNothing) {
     ASSERT_EQ(relight(c, "180"), 0);
     EXPECT_EQ(run_opaline({"compare", a, b, "--max-rel", "1e-4"}).exit_code, 0);
     EXPECT_EQ(run_opaline({"compare", a, c, "--max-rel", "1e-2"}).exit_code, 1);
+}
+
+/// A file with two diffuse squares and a translucent triangle, normals +Z, K = 9.
+std::string write_translucent(const SmallScene& small) {
+    formats::Asset asset = make_small_asset();
+    add_translucent_triangle(asset, 9, 1.3f);
+    const std::string path = small.path("translucent.opal");
+    auto file = formats::AtomicFile::create(path);
+    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    return path;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) {
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+TEST(Relight, TheEyeChangesTranslucentReceiversAlone) {
+    SmallScene small;
+    const std::string file = write_translucent(small);
+    ASSERT_EQ(run_opaline({"verify", file}).exit_code, 0);
+    int run = 0;
+    const auto table = [&](const Arguments& eye) {
+        const std::string out = small.path("table" + std::to_string(run++) + ".csv");
+        Arguments arguments{"relight", file, "--light", "sky:3,40", "-o", out};
+        arguments.insert(arguments.end(), eye.begin(), eye.end());
+        const Outcome outcome = run_opaline(arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return lines_of(read_text(out));
+    };
+    const auto own = table({}), aside = table({"--eye", "5,1,2"}),
+               behind = table({"--eye", "0,0,-4"});
+    ASSERT_EQ(own.size(), 12u);  // head, 8 diffuse, 3 translucent
+    for (std::size_t i = 1; i < 9; ++i) {
+        EXPECT_EQ(own[i], aside[i]);
+        EXPECT_EQ(own[i], behind[i]);
+    }
+    std::size_t lit = 0;
+    for (std::size_t i = 9; i < 12; ++i) {
+        EXPECT_THAT(behind[i], ::testing::EndsWith(",0,0,0"));
+        lit += own[i].ends_with(",0,0,0") ? 0u : 1u;
+        if (!own[i].ends_with(",0,0,0")) {
+            EXPECT_NE(own[i], aside[i]);
+        }
+    }
+    EXPECT_GT(lit, 0u);
+    // From far away along the normal: as without an eye, up to the angle of a metre in 1e6.
+    const std::string a = small.path("own.csv"), b = small.path("far.csv");
+    ASSERT_EQ(run_opaline({"relight", file, "--light", "white", "-o", a}).exit_code, 0);
+    ASSERT_EQ(
+        run_opaline({"relight", file, "--light", "white", "--eye", "0,0,1e6", "-o", b}).exit_code,
+        0);
+    EXPECT_EQ(run_opaline({"compare", a, b, "--max-rel", "1e-4"}).exit_code, 0);
+    const Outcome bad = run_opaline({"relight", file, "--light", "white", "--eye", "1,2", "-o", a});
+    EXPECT_EQ(bad.exit_code, 2);
+}
+
+TEST(Render, BackendsAgreeOnTranslucentPrimitives) {
+    SmallScene small;
+    const std::string file = write_translucent(small);
+    const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
+    for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
+        const Outcome render = run_opaline({"render", file, "--light", "studio", "--size", "83x57",
+                                            "--eye", "2,1,3", "--backend", backend, "-o", out});
+        ASSERT_EQ(render.exit_code, 0) << render.err;
+    }
+    const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "2e-3"});
+    EXPECT_EQ(same.exit_code, 0) << same.out;
 }
 
 TEST(Render, PicturesHaveTheSizeAskedForAndAgreeBetweenBackends) {

@@ -180,7 +180,7 @@ TEST_F(Api, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
     EXPECT_EQ(opaline_light_set_cubemap(l, white, 0), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_light_set_threads(l, 257), OPALINE_INVALID_ARGUMENT);
     std::vector<float> out(3 * receivers);
-    EXPECT_EQ(opaline_shade(asset.get(), l, 2, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_shade(asset.get(), l, 4, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_shade(asset.get(), l, 0, out.data(), out.size() - 1),
               OPALINE_BUFFER_TOO_SMALL);
     EXPECT_EQ(opaline_shade(asset.get(), l, 0, nullptr, out.size()), OPALINE_INVALID_ARGUMENT);
@@ -224,6 +224,59 @@ TEST_F(Api, DamagedFilesAreRefusedWhereverTheDamageIs) {
         }
         file.data()[at] = static_cast<char>(file.data()[at] ^ 0x10);
     }
+}
+
+TEST_F(Api, TranslucentPrimitivesAreShadedFromTheEyeThatIsGiven) {
+    formats::Asset source = make_asset(8);
+    formats::PrimitiveRecord& p = source.primitives[0];
+    p.shading = formats::Shading::translucent;
+    p.eta = 1.4f;
+    p.terms = 4;
+    p.vertex_count /= 4;
+    source.position.resize(p.vertex_count);
+    source.normal.resize(p.vertex_count);
+    source.base_color.resize(p.vertex_count);
+    FileBytes bytes = write(source, "api-translucent");
+    auto translucent = load_asset(bytes.data(), bytes.size);
+    ASSERT_TRUE(translucent) << opaline_last_error();
+    const opaline_asset* const a = translucent.handle.get();
+    opaline_primitive_shading shading{};
+    EXPECT_EQ(opaline_asset_primitive_shading(a, 0, &shading), OPALINE_INVALID_ARGUMENT);
+    shading.struct_size = sizeof shading;
+    ASSERT_EQ(opaline_asset_primitive_shading(a, 0, &shading), OPALINE_OK);
+    EXPECT_EQ(shading.shading, std::uint32_t{OPALINE_SHADING_TRANSLUCENT});
+    EXPECT_EQ(shading.terms, 4u);
+    EXPECT_EQ(shading.eta, 1.4f);
+    EXPECT_EQ(opaline_asset_primitive_shading(a, 1, &shading), OPALINE_INVALID_ARGUMENT);
+    ASSERT_EQ(opaline_asset_primitive_shading(asset.get(), 0, &shading), OPALINE_OK);
+    EXPECT_EQ(shading.shading, std::uint32_t{OPALINE_SHADING_DIFFUSE});
+    EXPECT_EQ(shading.eta, 0.0f);
+
+    const formats::Environment map = tests::lat_long_map(64, 32, tests::smooth_sky);
+    ASSERT_EQ(opaline_light_set_lat_long(light.get(), &map.pixel[0].r, 64, 32), OPALINE_OK);
+    const LightVector vector = project_environment(map, 8);
+    const auto count = p.vertex_count;
+    const float eye[3] = {1, 2, -1};
+    const auto expect = [&](std::uint32_t flags, const float* from, const ShadeOptions& options) {
+        std::vector<Rgb> expected(count);
+        shade(source.view(), vector, expected, options);
+        std::vector<float> out(3 * std::size_t{count});
+        ASSERT_EQ(opaline_shade_from(a, light.get(), flags, from, 0, count, out.data(), out.size()),
+                  OPALINE_OK)
+            << opaline_last_error();
+        EXPECT_EQ(std::memcmp(out.data(), expected.data(), out.size() * sizeof(float)), 0) << flags;
+    };
+    const formats::Vec3 at{1, 2, -1};
+    expect(0, nullptr, {});
+    expect(0, eye, {.eye = at});
+    expect(OPALINE_SHADE_WITHOUT_BASE_COLOR, eye, {.base_color = false, .eye = at});
+    expect(OPALINE_SHADE_WITHOUT_BASE_COLOR | OPALINE_SHADE_WITHOUT_FRESNEL, eye,
+           {.base_color = false, .eye = at, .fresnel = false});
+    std::vector<float> out(3 * std::size_t{count});
+    const float nowhere[3] = {0, INFINITY, 0};
+    EXPECT_EQ(opaline_shade_from(a, light.get(), 0, nowhere, 0, count, out.data(), out.size()),
+              OPALINE_INVALID_ARGUMENT);
+    EXPECT_THAT(opaline_last_error(), HasSubstr("eye"));
 }
 
 TEST_F(Api, StatusesHaveNames) {
