@@ -3,17 +3,22 @@
 #include <sys/resource.h>
 
 #include <chrono>
-#include <numbers>
+#include <cmath>
+#include <map>
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/direct/bake_direct.h"
 #include "bake/encode/pack_asset.h"
 #include "bake/encode/provenance.h"
 #include "bake/encode/select_coefficients.h"
+#include "bake/measure/check_direct.h"
+#include "bake/measure/check_multiple.h"
+#include "bake/multiple/bake_multiple.h"
+#include "bake/receivers/surface_samples.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/visibility/hidden_receivers.h"
 #include "bake/visibility/irradiance_transport.h"
-#include "formats/opal/haar.h"
 
 namespace opaline::bake {
 namespace {
@@ -47,65 +52,96 @@ void leave_out_skipped(const formats::Scene& scene, const std::vector<PlanEntry>
                        std::vector<Receiver>& receivers) {
     std::size_t v = 0;
     for (const formats::Primitive& p : scene.primitives) {
-        const std::string subject = material_subject(scene.materials[p.material]);
-        bool on = false;
-        for (const PlanEntry& entry : plan) {
-            on = on || (entry.effect == "direct" && entry.subject == subject && entry.on);
-        }
+        const bool on = is_planned(plan, "direct", material_subject(scene.materials[p.material]));
         for (std::size_t i = 0; i < p.position.size(); ++i, ++v) {
             receivers[v].normal = on ? receivers[v].normal : glm::vec3(0);
         }
     }
 }
 
-struct Block {
-    formats::SparseRows rows;
-    std::uint64_t rays = 0;
+// What the gather inside one medium needs.
+struct MediumStage {
+    MediumProfile profile;
+    SampleTransport transport;
+    ClusterTree tree;
 };
 
-// Transport of a diffuse surface, T = V max(0, n.w) / pi, one receiver at a time: dense, Haar,
-// selection, quantisation. Only one dense vector per thread exists at any time.
-Block bake_block(const RayScene& rays, const DirectionSet& directions, const Selector& selector,
-                 std::span<const Receiver> receivers, std::uint32_t code_bits) {
-    Block block{formats::make_sparse_rows(directions.cubemap_size, code_bits), 0};
-    std::vector<float> dense(selector.weight.size());
-    for (const Receiver& receiver : receivers) {
-        block.rays += gather_irradiance(rays, directions, receiver, dense);
-        for (float& value : dense) {
-            value *= std::numbers::inv_pi_v<float>;
+double scene_diagonal(const formats::Scene& scene) {
+    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+    for (const formats::Primitive& p : scene.primitives) {
+        for (const glm::vec3 x : p.position) {
+            low = glm::min(low, glm::dvec3(x));
+            high = glm::max(high, glm::dvec3(x));
         }
-        formats::haar_forward_cube(std::span<float>(dense), directions.cubemap_size);
-        formats::append_row(block.rows, select_coefficients(selector, dense, 1));
     }
-    return block;
+    return glm::length(high - low);
 }
 
-formats::Result<formats::SparseRows> bake_direct(const RayScene& rays, const Knobs& knobs,
-                                                 std::span<const Receiver> receivers,
-                                                 const Context& context, std::uint64_t& traced) {
-    constexpr std::size_t kReceiversPerBlock = 64;
+// Everything that the vertices of a material share. Where the effect is off the tree is empty and
+// every vertex gathers nothing.
+MediumStage prepare_medium(const formats::Scene& scene, std::uint32_t material, bool on,
+                           const RayScene& rays, const Knobs& knobs,
+                           std::span<const TestLight> lights, const Context& context) {
+    MediumStage stage;
+    if (!on) {
+        return stage;
+    }
+    const formats::Medium& medium = *scene.materials[material].medium;
+    std::vector<std::uint32_t> primitives;
+    double area = 0;
+    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
+        if (scene.primitives[p].material == material) {
+            primitives.push_back(p);
+            area += formats::surface_area(scene.primitives[p]);
+        }
+    }
+    stage.profile = make_medium_profile(medium, scene_diagonal(scene), knobs.seed, context);
+    const std::vector<SurfaceSample> samples = sample_surface(
+        scene, primitives, count_samples(area, stage.profile, knobs.samples), knobs.seed);
+    std::vector<std::span<const float>> vectors;
+    for (const TestLight& light : lights) {
+        vectors.push_back(light.coarse);
+    }
+    const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
+    stage.transport = bake_sample_transport(
+        rays, samples, {knobs.cubemap_size, kept, stage.profile.eta}, vectors, context);
+    if (!context.cancelled()) {
+        stage.tree = build_cluster_tree(samples, stage.transport, knobs.cubemap_size,
+                                        std::min(2 * kept, 4096u), context);
+    }
+    return stage;
+}
+
+using MediumStages = std::map<std::uint32_t, MediumStage>;  // by material
+
+// The rows of all primitives, in their order.
+formats::Result<formats::SparseRows> bake_rows(const formats::Scene& scene, const RayScene& rays,
+                                               std::span<const Receiver> receivers,
+                                               const MediumStages& media, const Knobs& knobs,
+                                               const Context& context, std::uint64_t& traced) {
     const DirectionSet directions = make_direction_set(knobs.cubemap_size);
     const Selector selector = make_selector(knobs.cubemap_size, knobs.coefficients);
     formats::SparseRows rows = formats::make_sparse_rows(knobs.cubemap_size, knobs.code_bits);
-    bool fits = true;
-    for_each_block_in_order(
-        receivers.size(), kReceiversPerBlock, context,
-        [&](Range range) {
-            return bake_block(rays, directions, selector,
-                              receivers.subspan(range.begin, range.end - range.begin),
-                              knobs.code_bits);
-        },
-        [&](Range range, Block block) {
-            fits = fits && formats::append_rows(rows, block.rows);
-            traced += block.rays;
-            if (context.on_progress) {
-                context.on_progress({"direct", range.end, receivers.size()});
-            }
-        });
-    if (!fits) {
-        return make_error(ErrorKind::resource, "", "transport",
-                          "more than 2^32 coefficients do not fit into one file",
-                          "lower --coefficients, or split the scene");
+    std::size_t first = 0;
+    for (const formats::Primitive& primitive : scene.primitives) {
+        const std::size_t count = primitive.position.size();
+        const auto medium = media.find(primitive.material);
+        const formats::SparseRows part =
+            medium == media.end()
+                ? bake_direct(rays, directions, selector, knobs.code_bits,
+                              receivers.subspan(first, count), {first, receivers.size()}, context,
+                              traced)
+                : bake_multiple(medium->second.tree, medium->second.profile, {knobs.tolerance},
+                                selector, knobs.code_bits, primitive, context);
+        if (context.cancelled()) {
+            break;
+        }
+        if (part.row_offset.size() != count + 1 || !formats::append_rows(rows, part)) {
+            return make_error(ErrorKind::resource, "", "transport",
+                              "more than 2^32 coefficients do not fit into one file",
+                              "lower --coefficients, or split the scene");
+        }
+        first += count;
     }
     return rows;
 }
@@ -142,9 +178,29 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
         leave_out_skipped(scene, result.plan, all);
         return take_over_hidden(*rays, scene, std::move(all));
     });
+    formats::Result<std::vector<TestLight>> lights = run_stage(
+        result, "test lights",
+        [&](std::uint64_t&) { return make_test_lights(knobs->cubemap_size, context.threads); });
+    if (!lights) {
+        return std::move(lights).error();
+    }
+    MediumStages media;
+    for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
+        const formats::Material& material = scene.materials[m];
+        if (material.medium) {
+            const std::string subject = material_subject(material);
+            media[m] = run_stage(result, "medium of " + subject, [&](std::uint64_t& traced) {
+                MediumStage stage =
+                    prepare_medium(scene, m, is_planned(result.plan, "multiple", subject), *rays,
+                                   *knobs, *lights, context);
+                traced = stage.transport.rays;
+                return stage;
+            });
+        }
+    }
     formats::Result<formats::SparseRows> rows =
-        run_stage(result, "direct", [&](std::uint64_t& traced) {
-            return bake_direct(*rays, *knobs, receivers, context, traced);
+        run_stage(result, "receivers' rows", [&](std::uint64_t& traced) {
+            return bake_rows(scene, *rays, receivers, media, *knobs, context, traced);
         });
     if (context.cancelled()) {
         return interrupted();
@@ -152,22 +208,22 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
     if (!rows) {
         return std::move(rows).error();
     }
-    formats::Result<std::vector<TestLight>> lights = run_stage(
-        result, "test lights",
-        [&](std::uint64_t&) { return make_test_lights(knobs->cubemap_size, context.threads); });
-    if (!lights) {
-        return std::move(lights).error();
-    }
+    result.asset = pack_asset(scene, std::move(*rows));
     result.error = run_stage(result, "self-check", [&](std::uint64_t& traced) {
-        ErrorReport report =
-            measure_direct_error(*rays, receivers, rows->view(), *lights, knobs->seed, context);
-        traced = report.rays;
-        return report;
+        const formats::AssetView asset = result.asset.view();
+        const std::vector<std::uint32_t> drawn = draw_receivers(receivers.size(), knobs->seed);
+        std::vector<EffectCheck> checks{
+            check_direct(*rays, receivers, asset, drawn, *lights, context)};
+        for (const auto& [m, stage] : media) {
+            checks.push_back(check_multiple(stage.tree, stage.profile, stage.transport, m, asset,
+                                            drawn, *lights, context));
+        }
+        traced = checks.front().rays;
+        return summarise_checks(checks, lights->size(), knobs->seed);
     });
     if (context.cancelled()) {
         return interrupted();
     }
-    result.asset = pack_asset(scene, std::move(*rows));
     result.asset.provenance = make_provenance(scene, options.quality, *knobs, result.plan,
                                               result.error, RayScene::description());
     result.seconds_total = seconds_since(start);

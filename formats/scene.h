@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -58,7 +59,7 @@ struct Material {
     glm::mat3 base_color_uv_transform{1.0f};  ///< KHR_texture_transform, applied to (u, v, 1)
     enum class Wrap { repeat, clamp, mirror } wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool double_sided = false;
-    std::optional<Medium> medium;  ///< translucent; none: opaque and diffuse
+    std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque and diffuse
 };
 
 /// One glTF primitive of one node instance, in world space and metres. Vertices keep the original
@@ -75,6 +76,18 @@ struct Primitive {
     std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();
                                        ///< counter-clockwise seen from outside
 };
+
+/// Sum of the areas of its triangles [m^2].
+inline double surface_area(const Primitive& primitive) {
+    double sum = 0;
+    for (std::size_t i = 0; i + 2 < primitive.index.size(); i += 3) {
+        const glm::dvec3 a = primitive.position[primitive.index[i]];
+        const glm::dvec3 b = primitive.position[primitive.index[i + 1]];
+        const glm::dvec3 c = primitive.position[primitive.index[i + 2]];
+        sum += 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    return sum;
+}
 
 /// Everything the baker knows about its input. Plain values; links are indices.
 struct Scene {

@@ -11,7 +11,8 @@ namespace opaline::bake {
 enum class RandomStage : std::uint32_t {
     held_back_receivers = 1,
     surface_samples = 2,
-    bootstrap = 3
+    bootstrap = 3,
+    half_space_walk = 4
 };
 
 /// Four uniform numbers in [0, 1), a pure function of its arguments: no state, hence the same for

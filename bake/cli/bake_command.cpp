@@ -61,10 +61,13 @@ formats::Status write_output(std::optional<formats::AtomicFile>& file, std::stri
 
 int run(const Options& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
-    if (auto status = check_effects(options.scene); !status) {
-        return report_error(status.error());
+    auto effects = parse_effects(options.scene);
+    if (!effects) {
+        return report_error(effects.error());
     }
-    const auto knobs = bake::resolve_knobs(options.scene.bake);
+    bake::BakeOptions wanted = options.scene.bake;
+    wanted.effects = std::move(*effects);
+    const auto knobs = bake::resolve_knobs(wanted);
     if (!knobs) {
         return report_error(knobs.error());
     }
@@ -90,7 +93,7 @@ int run(const Options& options) {
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
     context.on_progress = make_progress_printer(options.progress);
-    auto result = bake::run_bake(imported->scene, options.scene.bake, context);
+    auto result = bake::run_bake(imported->scene, wanted, context);
     if (!result) {
         return report_error(result.error());
     }

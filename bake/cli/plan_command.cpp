@@ -18,10 +18,13 @@ struct Options {
 };
 
 int run(const Options& options) {
-    if (auto status = check_effects(options.scene); !status) {
-        return report_error(status.error());
+    auto effects = parse_effects(options.scene);
+    if (!effects) {
+        return report_error(effects.error());
     }
-    const auto knobs = bake::resolve_knobs(options.scene.bake);
+    bake::BakeOptions wanted = options.scene.bake;
+    wanted.effects = std::move(*effects);
+    const auto knobs = bake::resolve_knobs(wanted);
     if (!knobs) {
         return report_error(knobs.error());
     }

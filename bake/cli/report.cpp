@@ -45,7 +45,9 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     report["threads"] = result.threads;
     report["knobs"] = {{"cubemap", result.knobs.cubemap_size},
                        {"coefficients", coefficients_json(result.knobs)},
-                       {"code_bits", result.knobs.code_bits}};
+                       {"code_bits", result.knobs.code_bits},
+                       {"samples", result.knobs.samples},
+                       {"epsilon", result.knobs.tolerance}};
     report["plan"] = plan_array(result.plan);
     report["stages"] = Json::array();
     for (const bake::StageReport& stage : result.stages) {

@@ -59,8 +59,21 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->transform(CLI::Validator(parse_coefficients, ""))
         ->option_text("M");
     command
-        .add_option("--effects", options.effects,
-                    "what to simulate: auto, or a list of effects; this version has: direct")
+        .add_option("--samples", options.bake.samples,
+                    "at most this many samples on the surface of each medium; default as the "
+                    "quality says")
+        ->check(CLI::Range(100u, 10000000u))
+        ->option_text("N");
+    command
+        .add_option("--epsilon", options.bake.tolerance,
+                    "error that taking a cluster of samples as one may make, as a share of what a "
+                    "half space returns; 0: none; default as the quality says")
+        ->check(CLI::Range(0.0, 1.0))
+        ->option_text("E");
+    command
+        .add_option(
+            "--effects", options.effects,
+            "what to simulate: auto, or a list of effects; this version has: direct, multiple")
         ->option_text("auto|LIST [auto]");
     command
         .add_option("--seed", options.bake.seed,
@@ -78,30 +91,34 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->option_text("X [1]");
 }
 
-formats::Status check_effects(const SceneOptions& options) {
+formats::Result<std::vector<std::string>> parse_effects(const SceneOptions& options) {
     constexpr std::array<std::string_view, 11> kKnown{
         "direct",    "multiple",      "single",          "interreflection", "emitters", "specular",
         "filtering", "volume-single", "volume-multiple", "cloud",           "radiosity"};
+    constexpr std::array<std::string_view, 2> kHere{"direct", "multiple"};
+    std::vector<std::string> effects;
     if (options.effects == "auto") {
-        return formats::ok_status();
+        return effects;
     }
-    bool direct = false;
+    const auto refuse = [](std::string fault) {
+        return formats::make_error(formats::ErrorKind::usage, "", "--effects", std::move(fault),
+                                   "give auto, or some of direct,multiple");
+    };
     std::stringstream list(options.effects);
     for (std::string name; std::getline(list, name, ',');) {
-        const bool known = std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end();
-        direct = direct || name == "direct";
-        if (name != "direct") {
-            return formats::make_error(formats::ErrorKind::usage, "", "--effects",
-                                       known ? "this version does not simulate '" + name + "'"
-                                             : "there is no effect named '" + name + "'",
-                                       "give auto or direct");
+        const auto is_among = [&](const auto& names) {
+            return std::find(names.begin(), names.end(), name) != names.end();
+        };
+        if (!is_among(kHere)) {
+            return refuse(is_among(kKnown) ? "this version does not simulate '" + name + "'"
+                                           : "there is no effect named '" + name + "'");
         }
+        effects.push_back(name);
     }
-    if (!direct) {
-        return formats::make_error(formats::ErrorKind::usage, "", "--effects", "the list is empty",
-                                   "give auto or direct");
+    if (effects.empty()) {
+        return refuse("the list is empty");
     }
-    return formats::ok_status();
+    return effects;
 }
 
 }  // namespace opaline::cli

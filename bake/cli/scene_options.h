@@ -18,7 +18,8 @@ struct SceneOptions {
 
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
-/// Refuses effects that are unknown or that this version does not simulate (usage error).
-formats::Status check_effects(const SceneOptions& options);
+/// The effects to simulate, empty for `auto`. Errors: usage, for those that are unknown or that
+/// this version does not simulate.
+formats::Result<std::vector<std::string>> parse_effects(const SceneOptions& options);
 
 }  // namespace opaline::cli

@@ -50,6 +50,8 @@ PreviewImageData to_preview(const Image8& image) {
 Asset pack_asset(const Scene& scene, SparseRows transport) {
     Asset asset;
     const bool textured = !scene.images.empty();
+    std::uint32_t band_rows = 0;
+    std::uint64_t codes = 0;
     for (const Primitive& p : scene.primitives) {
         const Material& material = scene.materials[p.material];
         PrimitiveRecord record;
@@ -61,9 +63,17 @@ Asset pack_asset(const Scene& scene, SparseRows transport) {
         record.vertex_count = static_cast<std::uint32_t>(p.position.size());
         record.first_index = static_cast<std::uint32_t>(asset.index.size());
         record.index_count = static_cast<std::uint32_t>(p.index.size());
-        // Grey rows, one per vertex: rows, band rows and codes are numbered alike.
-        record.first_row = record.first_band_row = record.first_vertex;
-        record.first_code = transport.row_offset[record.first_row];
+        // One row per vertex; band rows and codes are numbered on from primitive to primitive.
+        record.first_row = record.first_vertex;
+        record.bands = material.medium ? 3 : 1;
+        record.shading = material.medium ? Shading::translucent : Shading::diffuse;
+        record.eta = material.medium ? material.medium->eta : 0.0f;
+        record.first_band_row = band_rows;
+        record.first_code = codes;
+        band_rows += record.vertex_count * record.bands;
+        codes += std::uint64_t{transport.row_offset[record.first_row + record.vertex_count] -
+                               transport.row_offset[record.first_row]} *
+                 record.bands;
         if (material.base_color_image != kNone && !p.texcoord.empty()) {
             record.base_color_image = material.base_color_image;
             record.wrap_u = to_wrap(material.wrap_u);

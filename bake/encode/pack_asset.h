@@ -5,9 +5,9 @@
 
 namespace opaline::bake {
 
-/// Puts a scene's preview geometry and its finished transport rows into one asset: one grey row
-/// (one term) per vertex, primitives in scene order. `transport` has as many rows as the scene has
-/// vertices.
+/// Puts a scene's preview geometry and its finished transport rows into one asset: one row
+/// (one term) per vertex, primitives in scene order; grey, or RGB where the material has a medium.
+/// `transport` has as many rows as the scene has vertices.
 formats::Asset pack_asset(const formats::Scene& scene, formats::SparseRows transport);
 
 }  // namespace opaline::bake

@@ -19,7 +19,9 @@ std::string make_provenance(const formats::Scene& scene, Quality quality, const 
     root["seed"] = knobs.seed;
     root["knobs"] = {{"quality", quality_name(quality)},
                      {"cubemap", knobs.cubemap_size},
-                     {"code_bits", knobs.code_bits}};
+                     {"code_bits", knobs.code_bits},
+                     {"samples", knobs.samples},
+                     {"epsilon", knobs.tolerance}};
     if (knobs.coefficients == kAllCoefficients) {
         root["knobs"]["coefficients"] = "all";
     } else {

@@ -2,72 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 
-#include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
-#include "bake/visibility/irradiance_transport.h"
-#include "formats/opal/haar.h"
 
 namespace opaline::bake {
 namespace {
 
 constexpr std::size_t kLeastChecked = 16, kMostChecked = 256, kReceiversPerCheck = 40;
 
-double dot(std::span<const float> a, std::span<const float> b) {
-    double sum = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) {
-        sum += static_cast<double>(a[k]) * static_cast<double>(b[k]);
-    }
-    return sum;
-}
-
-// Different receivers, in ascending order.
-std::vector<std::uint32_t> draw_receivers(std::size_t count, std::uint64_t seed) {
-    const std::size_t wanted =
-        std::min(count, std::clamp(count / kReceiversPerCheck, kLeastChecked, kMostChecked));
-    std::vector<std::uint32_t> drawn;
-    // One from each of `wanted` equal runs: spread over all primitives, never twice the same.
-    for (std::size_t i = 0; i < wanted; ++i) {
-        const std::size_t begin = count * i / wanted, end = count * (i + 1) / wanted;
-        const double u =
-            static_cast<double>(random_uniform(seed, RandomStage::held_back_receivers, i)[0]);
-        drawn.push_back(static_cast<std::uint32_t>(
-            begin + static_cast<std::size_t>(u * static_cast<double>(end - begin))));
-    }
-    return drawn;
-}
-
-// One receiver under one light.
-struct Pair {
+double relative_rms(std::span<const CheckedPair> pairs) {
     double error = 0, reference = 0;
-};
-
-struct Checked {
-    std::vector<Pair> pairs;
-    std::uint64_t rays = 0;
-};
-
-Checked check_receiver(const RayScene& rays, const DirectionSet& fine, const Receiver& receiver,
-                       std::uint32_t index, const formats::SparseRowsView& rows,
-                       std::span<const TestLight> lights) {
-    const std::size_t size = lights.front().coarse.size();
-    std::vector<float> stored(size), dense(4 * size);
-    formats::decode_row(rows, {0, rows.rows(), 1, 0, 0}, index, 0, stored);
-    Checked checked;
-    checked.rays = gather_irradiance(rays, fine, receiver, dense);
-    formats::haar_forward_cube(std::span<float>(dense), fine.cubemap_size);
-    for (const TestLight& light : lights) {
-        const double reference = dot(dense, light.fine) * std::numbers::inv_pi;
-        checked.pairs.push_back({dot(stored, light.coarse) - reference, reference});
-    }
-    return checked;
-}
-
-double relative_rms(std::span<const Pair> pairs) {
-    double error = 0, reference = 0;
-    for (const Pair& p : pairs) {
+    for (const CheckedPair& p : pairs) {
         error += p.error * p.error;
         reference += p.reference * p.reference;
     }
@@ -76,12 +21,12 @@ double relative_rms(std::span<const Pair> pairs) {
 
 // Percentile bootstrap: resampling whole receivers, since one receiver's lights are not
 // independent.
-void bootstrap(std::span<const Pair> pairs, std::size_t lights, std::uint64_t seed,
+void bootstrap(std::span<const CheckedPair> pairs, std::size_t lights, std::uint64_t seed,
                double (&interval)[2]) {
     constexpr std::uint32_t kResamples = 1000;
     const std::size_t receivers = pairs.size() / lights;
     std::vector<double> estimate(kResamples);
-    std::vector<Pair> resample;
+    std::vector<CheckedPair> resample;
     for (std::uint32_t r = 0; r < kResamples; ++r) {
         resample.clear();
         for (std::size_t i = 0; i < receivers; ++i) {
@@ -100,39 +45,45 @@ void bootstrap(std::span<const Pair> pairs, std::size_t lights, std::uint64_t se
 
 }  // namespace
 
-ErrorReport measure_direct_error(const RayScene& rays, std::span<const Receiver> receivers,
-                                 const formats::SparseRowsView& rows,
-                                 std::span<const TestLight> lights, std::uint64_t seed,
-                                 const Context& context) {
+std::vector<std::uint32_t> draw_receivers(std::size_t count, std::uint64_t seed) {
+    const std::size_t wanted =
+        std::min(count, std::clamp(count / kReceiversPerCheck, kLeastChecked, kMostChecked));
+    std::vector<std::uint32_t> drawn;
+    // One from each of `wanted` equal runs: spread over all primitives, never twice the same.
+    for (std::size_t i = 0; i < wanted; ++i) {
+        const std::size_t begin = count * i / wanted, end = count * (i + 1) / wanted;
+        const double u =
+            static_cast<double>(random_uniform(seed, RandomStage::held_back_receivers, i)[0]);
+        drawn.push_back(static_cast<std::uint32_t>(
+            begin + static_cast<std::size_t>(u * static_cast<double>(end - begin))));
+    }
+    return drawn;
+}
+
+ErrorReport summarise_checks(std::span<const EffectCheck> checks, std::size_t lights,
+                             std::uint64_t seed) {
     ErrorReport report;
-    report.reference =
-        "dense, unquantised transport at twice the cube map resolution; luminance under white, "
-        "sun:30,60, sun:150,35, sun:270,15, studio and sky:3,35";
-    if (receivers.empty() || lights.empty()) {
+    std::vector<CheckedPair> pairs;
+    for (const EffectCheck& check : checks) {
+        if (check.pairs.empty()) {
+            continue;
+        }
+        pairs.insert(pairs.end(), check.pairs.begin(), check.pairs.end());
+        report.by_effect.push_back({check.effect, relative_rms(check.pairs)});
+        report.reference +=
+            (report.reference.empty() ? "" : "; ") + check.effect + ": " + check.reference;
+    }
+    if (pairs.empty()) {
         return report;
     }
-    const DirectionSet fine = make_direction_set(2 * rows.cubemap_size);
-    const std::vector<std::uint32_t> drawn = draw_receivers(receivers.size(), seed);
-    std::vector<Pair> pairs;
-    for_each_block_in_order(
-        drawn.size(), 1, context,
-        [&](Range range) {
-            const std::uint32_t index = drawn[range.begin];
-            return check_receiver(rays, fine, receivers[index], index, rows, lights);
-        },
-        [&](Range, Checked checked) {
-            pairs.insert(pairs.end(), checked.pairs.begin(), checked.pairs.end());
-            report.rays += checked.rays;
-        });
-    if (pairs.empty()) {
-        return report;  // cancelled
-    }
-    report.receivers_checked = static_cast<std::uint32_t>(pairs.size() / lights.size());
+    report.reference +=
+        "; luminance under white, sun:30,60, sun:150,35, sun:270,15, studio and sky:3,35";
+    report.receivers_checked = static_cast<std::uint32_t>(pairs.size() / lights);
     report.rms_relative = relative_rms(pairs);
-    bootstrap(pairs, lights.size(), seed, report.ci95);
+    bootstrap(pairs, lights, seed, report.ci95);
     double squares = 0;
     std::vector<double> magnitude;
-    for (const Pair& p : pairs) {
+    for (const CheckedPair& p : pairs) {
         squares += p.reference * p.reference;
         magnitude.push_back(std::abs(p.error));
     }
@@ -144,7 +95,6 @@ ErrorReport measure_direct_error(const RayScene& rays, std::span<const Receiver>
             rms;
         report.max_relative = magnitude.back() / rms;
     }
-    report.by_effect = {{"direct", report.rms_relative}};
     return report;
 }
 

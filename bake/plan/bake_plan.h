@@ -21,15 +21,23 @@ struct BakeOptions {
     std::uint32_t cubemap_size = 0;  ///< N: power of two in [8, 128]
     std::uint32_t coefficients = 0;  ///< M per receiver, the six face averages included; >= 7, or
                                      ///< kAllCoefficients
-    std::uint64_t seed = 0;          ///< of everything random
-    unsigned threads = 0;            ///< 0: one per core; never changes the result
+    std::uint32_t samples = 0;       ///< at most this many on the surface of each medium
+    double tolerance = -1;           ///< of the hierarchical gather, >= 0; negative: as the quality
+                                     ///< says
+    std::vector<std::string>
+        effects;             ///< the only ones to simulate; empty: what the scene calls for
+    std::uint64_t seed = 0;  ///< of everything random
+    unsigned threads = 0;    ///< 0: one per core; never changes the result
 };
 
 /// What is going to be done: every knob has its value.
 struct Knobs {
     std::uint32_t cubemap_size = 32;
     std::uint32_t coefficients = 128;
-    std::uint32_t code_bits = 8;  ///< of the stored detail coefficients
+    std::uint32_t code_bits = 8;     ///< of the stored detail coefficients
+    std::uint32_t samples = 100000;  ///< at most, on the surface of each medium
+    double tolerance = 1e-3;         ///< GatherOptions::tolerance
+    std::vector<std::string> effects;
     std::uint64_t seed = 0;
 };
 
@@ -54,5 +62,9 @@ std::string material_subject(const formats::Material& material);
 
 /// Decides what to simulate, from the scene alone: traces nothing.
 std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const Knobs& knobs, unsigned threads);
+
+/// Whether an effect is on for a subject.
+bool is_planned(const std::vector<PlanEntry>& plan, std::string_view effect,
+                std::string_view subject);
 
 }  // namespace opaline::bake

@@ -14,7 +14,10 @@ glm::vec3 to_glm(formats::Vec3 v) {
 
 }  // namespace
 
-DirectionSet make_direction_set(std::uint32_t n) {
+namespace {
+
+// `fine`: cells along a face, n or 2 n; rays through quarter `quarter` of each texel if n.
+DirectionSet make_set(std::uint32_t n, std::uint32_t fine, std::uint32_t quarter) {
     DirectionSet set;
     set.cubemap_size = n;
     const std::vector<double> solid_angle = formats::texel_solid_angles(n);
@@ -23,7 +26,6 @@ DirectionSet make_direction_set(std::uint32_t n) {
             set.inverse_solid_angle.push_back(static_cast<float>(1.0 / omega));
         }
     }
-    const std::uint32_t fine = 2 * n;
     const std::vector<formats::Vec3> moments = formats::texel_moments(fine);
     for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
         for (std::uint32_t row = 0; row < fine; row += 4) {
@@ -32,13 +34,16 @@ DirectionSet make_direction_set(std::uint32_t n) {
                 glm::vec3 sum(0);
                 for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
                     const std::uint32_t i = row + lane / 4, j = column + lane % 4;
-                    const glm::vec3 d = to_glm(formats::texel_direction(fine, face, i, j));
+                    const glm::vec3 d = to_glm(
+                        fine == n ? formats::texel_direction(2 * n, face, 2 * i + quarter / 2,
+                                                             2 * j + quarter % 2)
+                                  : formats::texel_direction(fine, face, i, j));
                     const formats::Vec3 m = moments[(std::size_t{face} * fine + i) * fine + j];
                     block.dir_x[lane] = d.x, block.dir_y[lane] = d.y, block.dir_z[lane] = d.z;
                     block.moment_x[lane] = m.x;
                     block.moment_y[lane] = m.y;
                     block.moment_z[lane] = m.z;
-                    block.texel[lane] = (face * n + i / 2) * n + j / 2;
+                    block.texel[lane] = (face * n + i * n / fine) * n + j * n / fine;
                     sum += d;
                 }
                 block.axis = glm::normalize(sum);
@@ -60,6 +65,16 @@ DirectionSet make_direction_set(std::uint32_t n) {
         }
     }
     return set;
+}
+
+}  // namespace
+
+DirectionSet make_direction_set(std::uint32_t n) {
+    return make_set(n, 2 * n, 0);
+}
+
+DirectionSet make_sparse_direction_set(std::uint32_t n, std::uint32_t quarter) {
+    return make_set(n, n, quarter);
 }
 
 }  // namespace opaline::bake

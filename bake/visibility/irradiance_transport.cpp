@@ -21,10 +21,24 @@ bool integrate_cosine(const DirectionBlock& block, glm::vec3 normal, RayPacket::
     return any != 0;
 }
 
+void weight_by_boundary(const DirectionBlock& block, glm::vec3 normal,
+                        std::span<const float> transmittance, RayPacket::Lane& cosine) {
+    const float steps = static_cast<float>(transmittance.size() - 1);
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        const float c = normal.x * block.dir_x[lane] + normal.y * block.dir_y[lane] +
+                        normal.z * block.dir_z[lane];
+        const float at = std::clamp(c, 0.0f, 1.0f) * steps;
+        const auto i = std::min(static_cast<std::size_t>(at), transmittance.size() - 2);
+        const float f = at - static_cast<float>(i);
+        cosine[lane] *= transmittance[i] + f * (transmittance[i + 1] - transmittance[i]);
+    }
+}
+
 }  // namespace
 
 std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& directions,
-                                const Receiver& receiver, std::span<float> transport) {
+                                const Receiver& receiver, std::span<float> transport,
+                                std::span<const float> transmittance) {
     std::fill(transport.begin(), transport.end(), 0.0f);
     if (receiver.normal == glm::vec3(0)) {
         return 0;
@@ -50,6 +64,9 @@ std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& direct
         LaneMask lanes;
         if (!integrate_cosine(block, receiver.normal, cosine, lanes)) {
             continue;
+        }
+        if (!transmittance.empty()) {
+            weight_by_boundary(block, receiver.normal, transmittance, cosine);
         }
         packet.dir_x = block.dir_x;
         packet.dir_y = block.dir_y;

@@ -14,59 +14,13 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kMaxIndex = 0x7ffffffe;   // what an int can hold
 constexpr std::uint64_t kMaxOffset = 1ull << 40;  // past any file we read
 
-constexpr std::array<std::string_view, 4> kRequirable = {
-    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_draco_mesh_compression",
-    "EXT_meshopt_compression"};
-
-/// One pass over the characters, so that no recursive reader meets a hostile depth.
-bool within_bounds(std::string_view text, Report& report) {
-    if (text.size() > kMaxJsonBytes) {
-        report.over_limit("JSON",
-                          "it has " + std::to_string(text.size()) + " bytes, the limit is " +
-                              std::to_string(kMaxJsonBytes),
-                          "store the data in a .bin file or as .glb");
-        return false;
-    }
-    int depth = 0;
-    std::size_t values = 1, objects = 0;
-    bool in_string = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (in_string) {
-            if (c == '\\') {
-                ++i;
-            } else if (c == '"') {
-                in_string = false;
-            }
-            continue;
-        }
-        if (c == '"') {
-            in_string = true;
-        } else if (c == '[' || c == '{') {
-            ++values;
-            objects += c == '{' ? 1 : 0;
-            if (++depth > kMaxJsonDepth) {
-                report.error("JSON",
-                             "it nests deeper than " + std::to_string(kMaxJsonDepth) +
-                                 " levels at byte " + std::to_string(i),
-                             "export the file again");
-                return false;
-            }
-        } else if (c == ']' || c == '}') {
-            --depth;
-        } else if (c == ',') {
-            ++values;
-        }
-    }
-    if (values > kMaxJsonValues || objects > kMaxJsonObjects) {
-        report.over_limit("JSON",
-                          "it has more than " + std::to_string(kMaxJsonValues) + " values or " +
-                              std::to_string(kMaxJsonObjects) + " objects",
-                          "split the asset");
-        return false;
-    }
-    return true;
-}
+constexpr std::array<std::string_view, 12> kRequirable = {
+    "KHR_mesh_quantization",        "KHR_texture_transform",
+    "KHR_draco_mesh_compression",   "EXT_meshopt_compression",
+    "KHR_materials_volume",         "KHR_materials_scatter",
+    "KHR_materials_volume_scatter", "KHR_materials_diffuse_transmission",
+    "KHR_materials_transmission",   "KHR_materials_ior",
+    "KHR_materials_specular",       "OPALINE_media"};
 
 void check_version(const Json& root, Report& report) {
     const auto asset = root.find("asset");
@@ -194,8 +148,57 @@ void check_number_array(const Json& object, const char* key, std::size_t length,
 
 }  // namespace
 
+bool within_json_bounds(std::string_view text, Report& report) {
+    if (text.size() > kMaxJsonBytes) {
+        report.over_limit("JSON",
+                          "it has " + std::to_string(text.size()) + " bytes, the limit is " +
+                              std::to_string(kMaxJsonBytes),
+                          "store the data in a .bin file or as .glb");
+        return false;
+    }
+    int depth = 0;
+    std::size_t values = 1, objects = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string) {
+            if (c == '\\') {
+                ++i;
+            } else if (c == '"') {
+                in_string = false;
+            }
+            continue;
+        }
+        if (c == '"') {
+            in_string = true;
+        } else if (c == '[' || c == '{') {
+            ++values;
+            objects += c == '{' ? 1 : 0;
+            if (++depth > kMaxJsonDepth) {
+                report.error("JSON",
+                             "it nests deeper than " + std::to_string(kMaxJsonDepth) +
+                                 " levels at byte " + std::to_string(i),
+                             "export the file again");
+                return false;
+            }
+        } else if (c == ']' || c == '}') {
+            --depth;
+        } else if (c == ',') {
+            ++values;
+        }
+    }
+    if (values > kMaxJsonValues || objects > kMaxJsonObjects) {
+        report.over_limit("JSON",
+                          "it has more than " + std::to_string(kMaxJsonValues) + " values or " +
+                              std::to_string(kMaxJsonObjects) + " objects",
+                          "split the asset");
+        return false;
+    }
+    return true;
+}
+
 std::optional<nlohmann::json> parse_checked_json(std::string_view text, Report& report) {
-    if (!within_bounds(text, report)) {
+    if (!within_json_bounds(text, report)) {
         return std::nullopt;
     }
     Json root;

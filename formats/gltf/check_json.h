@@ -8,6 +8,10 @@
 
 namespace opaline::formats::gltf {
 
+/// Bounds on depth and number of values, in one pass over the characters: JSON that passes can be
+/// given to a recursive parser. Errors in `report` otherwise.
+bool within_json_bounds(std::string_view text, Report& report);
+
 /// The gate in front of every JSON reader: bounds on depth and number of values, well-formed text,
 /// glTF version 2, and no required extension that Opaline would not honour.
 /// Returns the parsed text, or nothing and errors in `report`.

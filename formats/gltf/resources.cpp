@@ -89,22 +89,22 @@ std::optional<Bytes> read_data_uri(Resources& resources, std::string_view uri,
     return resources.keep(std::move(*bytes));
 }
 
-/// The path of `uri` if it names something inside the asset's folder.
-std::optional<std::filesystem::path> confined_path(const Resources& resources, std::string_view uri,
-                                                   const std::string& where, Report& report) {
-    const char* remedy = "keep buffers and textures in the asset's folder, with relative paths";
-    const auto decoded = percent_decode(uri);
-    if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos ||
-        decoded->size() > 4096) {
-        report.error(where, "its URI " + in_quotes(uri) + " is malformed", remedy);
+constexpr const char* kKeepInside = "keep what a file refers to in its folder, with relative paths";
+
+/// `name` as a path if it stays inside the asset's folder.
+std::optional<std::filesystem::path> confined_path(const Resources& resources,
+                                                   std::string_view name, const std::string& where,
+                                                   Report& report) {
+    if (name.empty() || name.find('\0') != std::string_view::npos || name.size() > 4096) {
+        report.error(where, "its URI " + in_quotes(name) + " is malformed", kKeepInside);
         return std::nullopt;
     }
-    const std::filesystem::path relative(*decoded);
+    const std::filesystem::path relative(name);
     const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();
-    if (has_scheme(*decoded) || relative.is_absolute() || climbs ||
-        decoded->find('\\') != std::string::npos) {
-        report.error(where, "its URI " + in_quotes(*decoded) + " leaves the asset's folder",
-                     remedy);
+    if (has_scheme(name) || relative.is_absolute() || climbs ||
+        name.find('\\') != std::string_view::npos) {
+        report.error(where, "its URI " + in_quotes(name) + " leaves the asset's folder",
+                     kKeepInside);
         return std::nullopt;
     }
     std::error_code code;
@@ -114,16 +114,34 @@ std::optional<std::filesystem::path> confined_path(const Resources& resources, s
     const auto [end, unused] = std::mismatch(base.begin(), base.end(), full.begin(), full.end());
     if (code || end != base.end()) {
         report.error(where,
-                     "its URI " + in_quotes(*decoded) + " leaves the asset's folder through a link",
-                     remedy);
+                     "its URI " + in_quotes(name) + " leaves the asset's folder through a link",
+                     kKeepInside);
         return std::nullopt;
     }
     return relative;
 }
 
-std::optional<Bytes> read_file_uri(Resources& resources, std::string_view uri,
-                                   const std::string& where, Report& report) {
-    const auto relative = confined_path(resources, uri, where, report);
+bool is_meshopt_placeholder(const Json& buffer) {
+    const auto extensions = buffer.find("extensions");
+    if (extensions == buffer.end() || !extensions->is_object()) {
+        return false;
+    }
+    const auto meshopt = extensions->find("EXT_meshopt_compression");
+    return meshopt != extensions->end() && meshopt->is_object() &&
+           meshopt->value("fallback", Json(false)) == true;
+}
+
+}  // namespace
+
+Bytes Resources::keep(std::vector<std::byte> bytes) {
+    bytes_held += bytes.size();
+    storage.push_back(std::move(bytes));
+    return storage.back();
+}
+
+std::optional<Bytes> read_inside(Resources& resources, std::string_view name,
+                                 const std::string& where, Report& report) {
+    const auto relative = confined_path(resources, name, where, report);
     if (!relative) {
         return std::nullopt;
     }
@@ -150,28 +168,17 @@ std::optional<Bytes> read_file_uri(Resources& resources, std::string_view uri,
     return kept;
 }
 
-bool is_meshopt_placeholder(const Json& buffer) {
-    const auto extensions = buffer.find("extensions");
-    if (extensions == buffer.end() || !extensions->is_object()) {
-        return false;
-    }
-    const auto meshopt = extensions->find("EXT_meshopt_compression");
-    return meshopt != extensions->end() && meshopt->is_object() &&
-           meshopt->value("fallback", Json(false)) == true;
-}
-
-}  // namespace
-
-Bytes Resources::keep(std::vector<std::byte> bytes) {
-    bytes_held += bytes.size();
-    storage.push_back(std::move(bytes));
-    return storage.back();
-}
-
 std::optional<Bytes> read_uri(Resources& resources, std::string_view uri, const std::string& where,
                               Report& report) {
-    return uri.starts_with("data:") ? read_data_uri(resources, uri, where, report)
-                                    : read_file_uri(resources, uri, where, report);
+    if (uri.starts_with("data:")) {
+        return read_data_uri(resources, uri, where, report);
+    }
+    const auto name = percent_decode(uri);
+    if (!name) {
+        report.error(where, "its URI " + in_quotes(uri) + " is malformed", kKeepInside);
+        return std::nullopt;
+    }
+    return read_inside(resources, *name, where, report);
 }
 
 void load_buffers(const nlohmann::json& root, const Container& container, Resources& resources,

@@ -34,8 +34,13 @@ struct Resources {
     Bytes keep(std::vector<std::byte> bytes);
 };
 
-/// The bytes that a `uri` of the asset stands for: base64 data URI, or a relative path that stays
-/// inside the asset's folder after percent-decoding and symbolic links.
+/// The bytes of a file named relative to the asset's folder, which it must not leave, neither by
+/// its name nor through symbolic links.
+std::optional<Bytes> read_inside(Resources& resources, std::string_view name,
+                                 const std::string& where, Report& report);
+
+/// The bytes that a `uri` of the asset stands for: base64 data URI, or a percent-encoded
+/// name for read_inside.
 std::optional<Bytes> read_uri(Resources& resources, std::string_view uri, const std::string& where,
                               Report& report);
 

@@ -1,5 +1,7 @@
 #include "formats/opal/asset.h"
 
+#include <algorithm>
+
 namespace opaline::formats {
 
 AssetView Asset::view() const {
@@ -18,6 +20,13 @@ AssetView Asset::view() const {
         view.images.push_back({image.width, image.height, image.rgb});
     }
     return view;
+}
+
+const PrimitiveRecord& primitive_of(const AssetView& asset, std::uint32_t receiver) {
+    return *std::upper_bound(asset.primitives.begin(), asset.primitives.end(), receiver,
+                             [](std::uint32_t v, const PrimitiveRecord& p) {
+                                 return v < p.first_vertex + p.vertex_count;
+                             });
 }
 
 }  // namespace opaline::formats

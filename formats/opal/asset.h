@@ -92,6 +92,9 @@ struct AssetView {
     std::uint32_t receivers() const { return static_cast<std::uint32_t>(position.size()); }
 };
 
+/// The primitive that a receiver belongs to. Precondition: receiver < asset.receivers().
+const PrimitiveRecord& primitive_of(const AssetView& asset, std::uint32_t receiver);
+
 /// Owning twin of `PreviewImage`.
 struct PreviewImageData {
     std::uint32_t width = 0, height = 0;

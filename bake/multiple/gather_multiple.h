@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/multiple/cluster_tree.h"
+#include "bake/multiple/medium_profile.h"
+
+namespace opaline::bake {
+
+/// How much of one node or sample reaches a receiver, per band [1/m^2].
+struct ClusterWeight {
+    std::uint32_t id = 0;  ///< a node, or nodes + sample
+    std::array<float, 3> weight{};
+};
+
+struct GatherOptions {
+    /// A node is taken whole if that errs by at most this share of R ||E||: its sum times how far
+    /// R_d varies over its box (translucency.md 3.10, bound criterion). 0: every sample by itself.
+    double tolerance = 1e-3;
+};
+
+/// The weights of T_d(x) = sum A_i R_d(|x_i - x|) E_i at a point with unit normal (any if the
+/// surface is not flat there). Where samples are farther apart than the source is deep, the near
+/// ones are normalised to the profile's integral over their disc (translucency.md 3.7).
+/// Overwrites `weights`.
+void collect_weights(const ClusterTree& tree, const MediumProfile& profile, glm::vec3 position,
+                     glm::vec3 normal, const GatherOptions& options,
+                     std::vector<ClusterWeight>& weights);
+
+/// sum of weight times vector: the Haar vector of T_d in three bands, interleaved as RGBx, 4 * 6 n
+/// n values, overwritten.
+void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
+                std::span<float> rgbx);
+
+}  // namespace opaline::bake

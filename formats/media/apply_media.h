@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "formats/media/media_file.h"
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+namespace opaline::formats {
+
+/// Gives the scene's materials the media that the file names for them: by glTF material name, and
+/// "*" for every other one. A medium that is there already, from glTF extensions, is replaced.
+/// Files read join `scene.inputs`, their bytes `scene.sha256`: the hash of both hashes' digits.
+/// Warnings: for each name that no material of the scene has.
+std::vector<Diagnostic> apply_media(const MediaFile& media, Scene& scene);
+
+}  // namespace opaline::formats

@@ -1,0 +1,144 @@
+#include "formats/media/fields.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+namespace opaline::formats::media {
+
+namespace {
+
+using Json = nlohmann::json;
+using gltf::in_quotes;
+
+// As in the file, bounded.
+std::string shown(const Json& value) {
+    return in_quotes(value.dump(-1, ' ', true, Json::error_handler_t::replace));
+}
+
+std::string plain(double value) {
+    return Json(value).dump();
+}
+
+std::string listed(std::initializer_list<std::string_view> names) {
+    std::string list;
+    for (const std::string_view name : names) {
+        list += (list.empty() ? "" : ", ") + std::string(name);
+    }
+    return list;
+}
+
+const Json* find(const Fields& fields, const char* key) {
+    const auto found = fields.object.find(key);
+    return found == fields.object.end() ? nullptr : &*found;
+}
+
+void wrong(const Fields& fields, const char* key, const Json& value, const std::string& expected) {
+    fields.report.error(place(fields.where, key),
+                        "it is " + shown(value) + ", expected " + expected,
+                        "correct it or leave it out");
+}
+
+// NaN fails both comparisons.
+bool is_within(const Json& value, double least, double greatest) {
+    return value.is_number() && value.get<double>() >= least && value.get<double>() <= greatest;
+}
+
+std::string range(double least, double greatest) {
+    return "from " + plain(least) + " to " + plain(greatest);
+}
+
+}  // namespace
+
+std::string place(const std::string& where, std::string_view key) {
+    const std::string quoted = in_quotes(key);
+    const std::string name = quoted.substr(1, quoted.size() - 2);
+    return where.empty() ? name : where + " > " + name;
+}
+
+bool has(const Fields& fields, const char* key) {
+    return find(fields, key) != nullptr;
+}
+
+void refuse_unknown_keys(const Fields& fields, std::initializer_list<std::string_view> known) {
+    for (const auto& [key, value] : fields.object.items()) {
+        if (std::find(known.begin(), known.end(), key) == known.end()) {
+            fields.report.error(place(fields.where, key), "there is no such key here",
+                                "known are: " + listed(known));
+        }
+    }
+}
+
+std::optional<double> number(const Fields& fields, const char* key, double least, double greatest) {
+    const Json* value = find(fields, key);
+    if (!value) {
+        return std::nullopt;
+    }
+    if (!is_within(*value, least, greatest)) {
+        wrong(fields, key, *value, "a number " + range(least, greatest));
+        return std::nullopt;
+    }
+    return value->get<double>();
+}
+
+std::optional<Rgb> rgb(const Fields& fields, const char* key, double least, double greatest,
+                       double scale) {
+    const Json* value = find(fields, key);
+    if (!value) {
+        return std::nullopt;
+    }
+    const auto good = [&](const Json& band) { return is_within(band, least, greatest); };
+    if (!value->is_array() || value->size() != 3 ||
+        !std::all_of(value->begin(), value->end(), good)) {
+        wrong(fields, key, *value,
+              "three numbers [red, green, blue], each " + range(least, greatest));
+        return std::nullopt;
+    }
+    std::array<float, 3> band{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        band[i] = static_cast<float>(scale * (*value)[i].get<double>());
+    }
+    return Rgb{band[0], band[1], band[2]};
+}
+
+std::optional<std::string> text(const Fields& fields, const char* key) {
+    const Json* value = find(fields, key);
+    if (!value) {
+        return std::nullopt;
+    }
+    if (!value->is_string()) {
+        wrong(fields, key, *value, "a text");
+        return std::nullopt;
+    }
+    return value->get<std::string>();
+}
+
+std::optional<bool> truth(const Fields& fields, const char* key) {
+    const Json* value = find(fields, key);
+    if (!value) {
+        return std::nullopt;
+    }
+    if (!value->is_boolean()) {
+        wrong(fields, key, *value, "true or false");
+        return std::nullopt;
+    }
+    return value->get<bool>();
+}
+
+std::optional<std::size_t> choice(const Fields& fields, const char* key,
+                                  std::initializer_list<std::string_view> names) {
+    const Json* value = find(fields, key);
+    if (!value) {
+        return std::nullopt;
+    }
+    const auto found = value->is_string() ? std::find(names.begin(), names.end(),
+                                                      value->get_ref<const std::string&>())
+                                          : names.end();
+    if (found == names.end()) {
+        wrong(fields, key, *value, "one of " + listed(names));
+        return std::nullopt;
+    }
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+}  // namespace opaline::formats::media

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <initializer_list>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "formats/gltf/report.h"
+#include "formats/opal/rgb.h"
+
+namespace opaline::formats::media {
+
+/// Reads the members of one JSON object and reports every fault with the member's place.
+struct Fields {
+    const nlohmann::json& object;  ///< is_object()
+    std::string where;             ///< "materials > Wax"
+    gltf::Report& report;
+};
+
+/// The place of a member: "materials > Wax > sigma_a". Names lose their control characters.
+std::string place(const std::string& where, std::string_view key);
+
+bool has(const Fields& fields, const char* key);
+
+/// One error for each member whose name is not among `known`.
+void refuse_unknown_keys(const Fields& fields, std::initializer_list<std::string_view> known);
+
+/// Absent members give nothing; so do faulty ones, and then the report has an error. Bounds are
+/// inclusive.
+std::optional<double> number(const Fields& fields, const char* key, double least, double greatest);
+std::optional<Rgb> rgb(const Fields& fields, const char* key, double least, double greatest,
+                       double scale = 1.0);
+std::optional<std::string> text(const Fields& fields, const char* key);
+std::optional<bool> truth(const Fields& fields, const char* key);
+/// The position of a text among `names`.
+std::optional<std::size_t> choice(const Fields& fields, const char* key,
+                                  std::initializer_list<std::string_view> names);
+
+}  // namespace opaline::formats::media

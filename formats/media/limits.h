@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+
+namespace opaline::formats::media {
+
+/// Bounds on what a media file may say, so that everything derived from it stays finite.
+inline constexpr double kMaxCoefficientPerM = 1e12;  ///< far above any real scattering coefficient
+inline constexpr double kMaxMeanCosine = 0.99;       ///< beyond, a phase function is nearly a delta
+inline constexpr double kMinRmsAngle = 1e-3;         ///< [rad]
+inline constexpr double kMinEta = 1.0 / 3.0, kMaxEta = 3.0;
+inline constexpr double kMaxTableValue = 1e30, kMinTableIntegral = 1e-30;
+inline constexpr std::size_t kMaxTableRows = 65536;
+
+}  // namespace opaline::formats::media

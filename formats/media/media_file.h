@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/scene.h"
+
+namespace opaline::formats {
+
+/// What a media file says of one material.
+struct MaterialMedium {
+    std::string name;               ///< of the glTF material; "*": all that no other entry names
+    std::optional<Medium> medium;   ///< none: opaque, whatever the glTF file says
+    std::optional<Rgb> base_color;  ///< replaces the material's factor; linear, each in [0, 1]
+};
+
+/// A media file, checked.
+struct MediaFile {
+    std::string file;                           ///< for messages
+    std::vector<MaterialMedium> materials;      ///< no name stands twice
+    std::vector<std::filesystem::path> inputs;  ///< files read
+    std::string sha256;                         ///< of their bytes, in reading order
+};
+
+}  // namespace opaline::formats

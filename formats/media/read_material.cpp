@@ -1,0 +1,151 @@
+#include "formats/media/read_material.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "formats/media/fields.h"
+#include "formats/media/limits.h"
+#include "formats/media/mean_cosine.h"
+#include "formats/media/presets.h"
+#include "formats/media/read_phase.h"
+
+namespace opaline::formats::media {
+
+namespace {
+
+using gltf::in_quotes;
+using gltf::Report;
+
+std::string preset_list() {
+    std::string list;
+    for (const std::string_view name : media_preset_names()) {
+        list += (list.empty() ? "" : ", ") + std::string(name);
+    }
+    return list;
+}
+
+bool is_black(Rgb c) {
+    return c == Rgb{};
+}
+
+/// Keys of the contract that this version does not honour must not be passed over in silence.
+void refuse_unsupported(const Fields& fields) {
+    for (const char* key : {"albedo_texture", "marble"}) {
+        if (has(fields, key)) {
+            fields.report.error(place(fields.where, key),
+                                "media that vary in space are not supported yet",
+                                "leave it out; base_color and the material's texture are used");
+        }
+    }
+}
+
+/// Each key of `others` beside `key` contradicts it.
+void refuse_beside(const Fields& fields, const char* key, std::initializer_list<const char*> others,
+                   const char* remedy) {
+    if (!has(fields, key)) {
+        return;
+    }
+    for (const char* other : others) {
+        if (has(fields, other)) {
+            fields.report.error(place(fields.where, other),
+                                std::string("it contradicts ") + key + ", which is given too",
+                                remedy);
+        }
+    }
+}
+
+/// True where sigma_s holds sigma_s' = (1 - g) sigma_s.
+bool read_coefficients(const Fields& fields, Medium& medium) {
+    Report& report = fields.report;
+    if (const auto name = text(fields, "preset")) {
+        if (const auto preset = media_preset(*name)) {
+            medium = *preset;
+        } else {
+            report.error(place(fields.where, "preset"), "there is no preset " + in_quotes(*name),
+                         "known are: " + preset_list());
+        }
+    }
+    if (has(fields, "preset")) {
+        return true;
+    }
+    const bool reduced = has(fields, "sigma_s_prime");
+    if (!reduced && !has(fields, "sigma_s")) {
+        report.error(fields.where, "it has no scattering coefficient",
+                     "give preset, or sigma_s or sigma_s_prime with sigma_a, or \"opaque\": true");
+    }
+    if (!has(fields, "sigma_a")) {
+        report.error(fields.where, "sigma_a is missing",
+                     "give absorption, [0, 0, 0] where there is none");
+    }
+    const double per_metre = choice(fields, "unit", {"1/mm", "1/m"}).value_or(0) == 0 ? 1000 : 1;
+    const double most = kMaxCoefficientPerM / per_metre;
+    medium.sigma_s =
+        rgb(fields, reduced ? "sigma_s_prime" : "sigma_s", 0, most, per_metre).value_or(Rgb{});
+    medium.sigma_a = rgb(fields, "sigma_a", 0, most, per_metre).value_or(Rgb{});
+    if (!report.failed() && is_black(medium.sigma_s) && is_black(medium.sigma_a)) {
+        report.error(fields.where, "scattering and absorption are zero in every channel",
+                     "give a coefficient above 0, or \"opaque\": true");
+    }
+    return reduced;
+}
+
+std::optional<Medium> read_medium(const Fields& fields, gltf::Resources& resources) {
+    Medium medium;
+    const bool reduced = read_coefficients(fields, medium);
+    if (const auto phase = fields.object.find("phase"); phase != fields.object.end()) {
+        const std::string where = place(fields.where, "phase");
+        if (phase->is_object()) {
+            medium.phase =
+                read_phase({*phase, where, fields.report}, resources).value_or(PhaseFunction{});
+        } else {
+            fields.report.error(where, "it is not an object",
+                                "give an object such as {\"type\": \"hg\", \"g\": 0.3}");
+        }
+    }
+    if (reduced) {
+        medium.sigma_s = static_cast<float>(1 / (1 - mean_cosine(medium.phase))) * medium.sigma_s;
+    }
+    medium.eta = static_cast<float>(
+        number(fields, "eta", kMinEta, kMaxEta).value_or(static_cast<double>(medium.eta)));
+    medium.roughness = static_cast<float>(
+        number(fields, "roughness", 0, 1).value_or(static_cast<double>(medium.roughness)));
+    medium.profile = static_cast<Medium::Profile>(
+        choice(fields, "profile", {"auto", "classic", "better", "beams", "normalized"})
+            .value_or(0));
+    medium.fidelity = static_cast<Medium::Fidelity>(
+        choice(fields, "fidelity", {"physical", "paper"}).value_or(0));
+    return medium;
+}
+
+}  // namespace
+
+MaterialMedium read_material(const std::string& name, const nlohmann::json& entry,
+                             const std::string& where, gltf::Resources& resources, Report& report) {
+    MaterialMedium material;
+    material.name = name;
+    if (!entry.is_object()) {
+        report.error(where, "it is not an object",
+                     "give an object such as {\"preset\": \"marble\"}");
+        return material;
+    }
+    const Fields fields{entry, where, report};
+    refuse_unknown_keys(fields, {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase",
+                                 "eta", "roughness", "base_color", "albedo_texture", "marble",
+                                 "profile", "fidelity", "opaque"});
+    refuse_unsupported(fields);
+    refuse_beside(fields, "preset", {"sigma_s", "sigma_s_prime", "sigma_a", "unit"},
+                  "give the preset or coefficients");
+    refuse_beside(fields, "sigma_s", {"sigma_s_prime"}, "give one of them");
+    material.base_color = rgb(fields, "base_color", 0, 1);
+    if (truth(fields, "opaque").value_or(false)) {
+        refuse_beside(fields, "opaque",
+                      {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta",
+                       "roughness", "profile", "fidelity"},
+                      "give a medium or \"opaque\": true");
+    } else {
+        material.medium = read_medium(fields, resources);
+    }
+    return material;
+}
+
+}  // namespace opaline::formats::media

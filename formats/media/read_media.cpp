@@ -1,0 +1,136 @@
+#include "formats/media/read_media.h"
+
+#include <exception>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "formats/gltf/check_json.h"
+#include "formats/gltf/container.h"
+#include "formats/gltf/resources.h"
+#include "formats/media/fields.h"
+#include "formats/media/read_material.h"
+
+namespace opaline::formats {
+
+namespace {
+
+using Json = nlohmann::json;
+using gltf::in_quotes;
+using gltf::Report;
+using gltf::Resources;
+
+/// The parser keeps the last of two members with one name and says nothing: that would drop what
+/// the user wrote.
+Json::parser_callback_t refuse_twice(std::vector<std::set<std::string>>& open, Report& report) {
+    return [&open, &report](int, Json::parse_event_t event, Json& parsed) {
+        if (event == Json::parse_event_t::object_start) {
+            open.emplace_back();
+        } else if (event == Json::parse_event_t::object_end) {
+            open.pop_back();
+        } else if (event == Json::parse_event_t::key &&
+                   !open.back().insert(parsed.get<std::string>()).second) {
+            report.error("JSON",
+                         "the key " + in_quotes(parsed.get_ref<const std::string&>()) +
+                             " stands twice in one object",
+                         "keep one of them");
+        }
+        return true;
+    };
+}
+
+std::optional<Json> parse_strict(std::string_view text, Report& report) {
+    if (!gltf::within_json_bounds(text, report)) {
+        return std::nullopt;
+    }
+    std::vector<std::set<std::string>> open;
+    try {
+        Json root = Json::parse(text, refuse_twice(open, report));
+        return report.failed() ? std::nullopt : std::optional(std::move(root));
+    } catch (const Json::exception& problem) {
+        report.error("JSON", "it cannot be parsed: " + in_quotes(problem.what()),
+                     "correct it where the message says");
+        return std::nullopt;
+    }
+}
+
+void read_root(const Json& root, const std::string& where, Resources& resources, MediaFile& media,
+               Report& report) {
+    if (!root.is_object()) {
+        report.error(where, "the outermost value is not an object", "give {\"materials\": {...}}");
+        return;
+    }
+    media::refuse_unknown_keys({root, where, report}, {"materials", "volumes", "clouds"});
+    for (const char* key : {"volumes", "clouds"}) {
+        if (root.contains(key)) {
+            report.error(media::place(where, key), "they are not supported yet", "leave them out");
+        }
+    }
+    const std::string at = media::place(where, "materials");
+    const auto materials = root.find("materials");
+    if (materials == root.end() || !materials->is_object()) {
+        report.error(at, materials == root.end() ? "it is missing" : "it is not an object",
+                     "give {\"materials\": {\"NAME\": {...}}}");
+        return;
+    }
+    for (const auto& [name, entry] : materials->items()) {
+        media.materials.push_back(
+            media::read_material(name, entry, media::place(at, name), resources, report));
+    }
+}
+
+/// Turns what a library throws into a message.
+template <class Read>
+Result<MediaFile> guarded(const std::filesystem::path& path, const Read& read) {
+    Report report;
+    report.file = path.string();
+    try {
+        MediaFile media;
+        media.file = report.file;
+        Resources resources;
+        resources.folder = path.parent_path();
+        read(resources, media, report);
+        if (report.failed()) {
+            return report.take_error();
+        }
+        media.inputs = std::move(resources.inputs);
+        media.sha256 = resources.hash.finish();
+        return media;
+    } catch (const std::bad_alloc&) {
+        return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
+                          "make it smaller");
+    } catch (const std::exception& problem) {
+        return make_error(ErrorKind::bad_input, report.file, "",
+                          "it cannot be read: " + in_quotes(problem.what()), "correct the file");
+    }
+}
+
+}  // namespace
+
+Result<MediaFile> read_media(const std::filesystem::path& path) {
+    return guarded(path, [&](Resources& resources, MediaFile& media, Report& report) {
+        auto bytes = gltf::read_whole_file(path, "", report);
+        if (!bytes) {
+            return;
+        }
+        resources.inputs.push_back(path);
+        const gltf::Bytes kept = resources.keep(std::move(*bytes));
+        resources.hash.add(kept);
+        const std::string_view text(reinterpret_cast<const char*>(kept.data()), kept.size());
+        if (const auto root = parse_strict(text, report)) {
+            read_root(*root, "", resources, media, report);
+        }
+    });
+}
+
+Result<MediaFile> parse_media(std::string_view json, const std::filesystem::path& file,
+                              const std::string& where) {
+    return guarded(file, [&](Resources& resources, MediaFile& media, Report& report) {
+        if (const auto root = parse_strict(json, report)) {
+            read_root(*root, where, resources, media, report);
+        }
+    });
+}
+
+}  // namespace opaline::formats

@@ -1,0 +1,213 @@
+#include "bake/multiple/gather_multiple.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "bake/scattering/fresnel.h"
+#include "tests/support/reference_table.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// A set of samples whose "transport" is one number each, kept in the first of six entries: the tree
+// and the gather do not care what the entries mean.
+struct Samples {
+    std::vector<SurfaceSample> samples;
+    SampleTransport transport;
+
+    void add(glm::dvec3 position, glm::dvec3 normal, double area, double irradiance) {
+        SurfaceSample s{};
+        s.position = position;
+        s.geometric_normal = s.normal = normal;
+        s.area = static_cast<float>(area);
+        samples.push_back(s);
+        const std::vector<float> dense{static_cast<float>(irradiance), 0, 0, 0, 0, 0};
+        append_truncated(transport.rows, dense, 6);
+        transport.mean.push_back(static_cast<float>(irradiance));
+    }
+    ClusterTree tree() const { return build_cluster_tree(samples, transport, 1, 6, {}); }
+};
+
+// A spherical Fibonacci lattice: nearly uniform, deterministic.
+template <class Irradiance>
+Samples make_sphere(double radius, int count, Irradiance&& irradiance) {
+    Samples set;
+    for (int i = 0; i < count; ++i) {
+        const double z = 1 - (2 * i + 1.0) / count;
+        const double phi = i * kPi * (3 - std::sqrt(5.0));
+        const double s = std::sqrt(1 - z * z);
+        const glm::dvec3 n(s * std::cos(phi), s * std::sin(phi), z);
+        set.add(radius * n, n, 4 * kPi * radius * radius / count, irradiance(n));
+    }
+    return set;
+}
+
+template <class Irradiance>
+Samples make_plane(double side, int count, Irradiance&& irradiance) {
+    Samples set;
+    const double h = side / count;
+    for (int i = 0; i < count; ++i) {
+        for (int j = 0; j < count; ++j) {
+            const double x = (i + 0.5) * h - side / 2, z = (j + 0.5) * h - side / 2;
+            set.add({x, 0, z}, {0, 1, 0}, h * h, irradiance(x, z));
+        }
+    }
+    return set;
+}
+
+MediumProfile classic_profile(double sigma_s, double sigma_a, double eta, double reach) {
+    formats::Medium medium;
+    const auto s = static_cast<float>(sigma_s), a = static_cast<float>(sigma_a);
+    medium.sigma_s = {s, s, s};
+    medium.sigma_a = {a, a, a};
+    medium.eta = static_cast<float>(eta);
+    medium.profile = formats::Medium::Profile::classic;
+    return make_medium_profile(medium, reach, 0, {});
+}
+
+double gather(const ClusterTree& tree, const MediumProfile& profile, glm::vec3 x, glm::vec3 n,
+              double tolerance, std::size_t* count = nullptr) {
+    std::vector<ClusterWeight> weights;
+    collect_weights(tree, profile, x, n, {tolerance}, weights);
+    std::vector<float> rgbx(24);
+    accumulate(tree, weights, rgbx);
+    if (count != nullptr) *count = weights.size();
+    return static_cast<double>(rgbx[0]);
+}
+
+TEST(GatherMultiple, SphereUnderUniformIrradianceHasItsClosedForm) {
+    OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "sphere_int_Rd");
+    for (const auto& row : rows) {
+        const double radius = row.number("radius");
+        const auto profile = classic_profile(row.number("sigma_s_prime"), row.number("sigma_a"),
+                                             row.number("eta"), 2.1 * radius);
+        const Samples set = make_sphere(radius, 40000, [](glm::dvec3) { return 1.0; });
+        const double found =
+            gather(set.tree(), profile, {0, static_cast<float>(radius), 0}, {0, 1, 0}, 1e-4);
+        EXPECT_NEAR(found, row.expected, 2e-3 * row.expected) << row.name();
+    }
+}
+
+TEST(GatherMultiple, SphereUnderDirectionalLightIsThatOfTheTable) {
+    OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "sphere_Td");
+    for (const auto& row : rows) {
+        const double radius = row.number("radius"), eta = row.number("eta");
+        const auto profile =
+            classic_profile(row.number("sigma_s_prime"), row.number("sigma_a"), eta, 2.1 * radius);
+        const double c = row.number("cos_light"), s = std::sqrt(1 - c * c);
+        const Samples set = make_sphere(radius, 60000, [&](glm::dvec3 n) {
+            const double cosine = s * n.x + c * n.y;
+            return cosine > 0 ? fresnel_transmittance(cosine, eta) * cosine : 0.0;
+        });
+        const double found =
+            gather(set.tree(), profile, {0, static_cast<float>(radius), 0}, {0, 1, 0}, 1e-5);
+        EXPECT_NEAR(found, row.expected, 3e-3 * row.expected) << row.name();
+    }
+}
+
+TEST(GatherMultiple, HierarchyTendsToBruteForceWithTheTolerance) {
+    const Samples set = make_sphere(
+        1, 20000, [](glm::dvec3 n) { return std::max(0.0, n.x) * (1 + 0.5 * std::sin(5 * n.z)); });
+    const ClusterTree tree = set.tree();
+    const auto profile = classic_profile(20, 0.5, 1.3, 2.1);
+    const glm::vec3 receivers[] = {{0, 1, 0}, {1, 0, 0}, {-0.6f, 0.8f, 0}, {0, 0, -1}};
+    double before = 1;
+    std::size_t most = 0;
+    for (const double tolerance : {3e-2, 3e-3, 3e-4, 0.0}) {
+        double error = 0, reference = 0;
+        std::size_t used = 0;
+        for (const glm::vec3 x : receivers) {
+            double exact = 0;
+            for (std::size_t i = 0; i < set.samples.size(); ++i) {
+                const double r = glm::distance(glm::dvec3(x), glm::dvec3(set.samples[i].position));
+                exact += static_cast<double>(set.samples[i].area) *
+                         static_cast<double>(set.transport.mean[i]) *
+                         eval_dipole(profile.dipole[0], r);
+            }
+            std::size_t count = 0;
+            error += std::pow(gather(tree, profile, x, x, tolerance, &count) - exact, 2);
+            reference += exact * exact;
+            used += count;
+        }
+        const double relative = std::sqrt(error / reference);
+        EXPECT_LT(relative, std::max(before, 2e-4));
+        EXPECT_LT(relative, tolerance == 0 ? 2e-4 : 0.3 * std::sqrt(tolerance));
+        EXPECT_GT(used, most);
+        before = relative;
+        most = used;
+    }
+    EXPECT_EQ(most, 4 * set.samples.size()) << "without tolerance every sample counts by itself";
+}
+
+TEST(GatherMultiple, PlaneSampledFinelyReturnsTheTotal) {
+    const auto profile = classic_profile(1, 0.05, 1.3, 200);
+    const Samples set = make_plane(60, 120, [](double, double) { return 1.0; });
+    // Beyond the plane's rim lies the tail of a disc of about the same size.
+    const double found = gather(set.tree(), profile, {0, 0, 0}, {0, 1, 0}, 1e-5);
+    EXPECT_NEAR(found, profile.total(0) - profile.tail(0, 60 / std::sqrt(kPi)), 2e-3);
+}
+
+TEST(GatherMultiple, SamplesFartherApartThanTheSourceIsDeepStillConserveEnergy) {
+    // Without the near-field rule these miss the peak: tens to thousands of per cent.
+    for (const double spacing : {1.5, 3.0, 10.0, 100.0}) {
+        const auto profile = classic_profile(1, 0.05, 1.3, 1e4);
+        const double side = 40 * spacing * profile.smallest_z;
+        const Samples set = make_plane(side, 40, [](double, double) { return 1.0; });
+        const ClusterTree tree = set.tree();
+        for (const double shift : {0.0, 0.25, 0.5}) {
+            const auto x = static_cast<float>(shift * spacing * profile.smallest_z);
+            const double found = gather(tree, profile, {x, 0, x}, {0, 1, 0}, 1e-4);
+            EXPECT_NEAR(found, profile.total(0), 0.02 * profile.total(0)) << spacing << shift;
+        }
+    }
+}
+
+TEST(GatherMultiple, TransportIsReciprocal) {
+    const auto profile = classic_profile(30, 1, 1.4, 3);
+    const auto f = [](glm::dvec3 n) { return 1 + n.x * n.y; };
+    const auto g = [](glm::dvec3 n) { return std::max(0.0, n.z); };
+    const Samples f_set = make_sphere(1, 3000, f), g_set = make_sphere(1, 3000, g);
+    const ClusterTree f_tree = f_set.tree(), g_tree = g_set.tree();
+    double g_of_f = 0, f_of_g = 0;
+    for (std::size_t i = 0; i < f_set.samples.size(); ++i) {
+        const glm::vec3 x = f_set.samples[i].position;
+        const auto area = static_cast<double>(f_set.samples[i].area);
+        g_of_f += area * g(glm::dvec3(x)) * gather(f_tree, profile, x, x, 0);
+        f_of_g += area * f(glm::dvec3(x)) * gather(g_tree, profile, x, x, 0);
+    }
+    EXPECT_NEAR(g_of_f / f_of_g, 1, 1e-4);
+}
+
+TEST(GatherMultiple, SameBytesForAnyNumberOfThreads) {
+    const Samples set = make_sphere(1, 5000, [](glm::dvec3 n) { return std::max(0.0, n.y); });
+    Context one, four;
+    one.threads = 1;
+    four.threads = 4;
+    const ClusterTree a = build_cluster_tree(set.samples, set.transport, 1, 6, one);
+    const ClusterTree b = build_cluster_tree(set.samples, set.transport, 1, 6, four);
+    EXPECT_EQ(a.sums.value, b.sums.value);
+    EXPECT_EQ(a.order, b.order);
+}
+
+TEST(GatherMultiple, CoincidentSamplesAndNoSamplesAreHarmless) {
+    Samples same;
+    for (int i = 0; i < 100; ++i) {
+        same.add({0, 0, 0}, {0, 1, 0}, 0.01, 1);
+    }
+    const auto profile = classic_profile(1, 0.1, 1.3, 10);
+    EXPECT_TRUE(std::isfinite(gather(same.tree(), profile, {0, 0, 0}, {0, 1, 0}, 1e-3)));
+    EXPECT_EQ(gather(Samples{}.tree(), profile, {0, 0, 0}, {0, 1, 0}, 1e-3), 0);
+}
+
+TEST(GatherMultiple, UnlitSamplesGiveZeroNotNan) {
+    const Samples dark = make_sphere(1, 1000, [](glm::dvec3) { return 0.0; });
+    const auto profile = classic_profile(10, 0.1, 1.3, 3);
+    EXPECT_EQ(gather(dark.tree(), profile, {0, 1, 0}, {0, 1, 0}, 1e-3), 0);
+}
+
+}  // namespace
+}  // namespace opaline::bake

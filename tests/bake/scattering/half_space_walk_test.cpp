@@ -1,0 +1,61 @@
+#include "bake/scattering/half_space_walk.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bake/scattering/fresnel.h"
+#include "tests/support/reference_table.h"
+
+namespace opaline::bake {
+namespace {
+
+TEST(HalfSpaceWalk, AgreesWithIndependentlyMeasuredReflectances) {
+    // translucency.md 3.4, table "Which one": eta, albedo, single, multiple; noise about 0.001.
+    const double rows[][4] = {{1.0, .80, .164, .178},
+                              {1.3, .30, .0235, .0072},
+                              {1.3, .80, .0629, .1188},
+                              {1.3, .95, .0740, .3263},
+                              {1.5, .80, .0411, .0893}};
+    for (const auto& [eta, albedo, single, multiple] : rows) {
+        const HalfSpaceReflectance r = walk_half_space(albedo, 0, eta, 100000, 1, {});
+        EXPECT_NEAR(r.single, single, 0.003) << eta << " " << albedo;
+        EXPECT_NEAR(r.multiple, multiple, 0.004) << eta << " " << albedo;
+    }
+}
+
+TEST(HalfSpaceWalk, SingleScatteringPerAlbedoIsThatOfTheTable) {
+    OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "ss_halfspace_reflectance_per_albedo");
+    for (const auto& row : rows) {
+        if (row.input.at("jac") != "exact") continue;
+        const auto r = walk_half_space(1e-2, 0, row.number("eta"), 200000, 3, {});
+        EXPECT_NEAR(r.single / 1e-2, row.expected, 0.005) << row.name();
+    }
+}
+
+TEST(HalfSpaceWalk, NothingIsLostWithoutAbsorption) {
+    for (const double eta : {1.0, 1.3}) {
+        const auto r = walk_half_space(1, 0, eta, 4000, 1, {});
+        // Paths that wander deep return late; all of them do within the event limit or nearly so.
+        EXPECT_NEAR(r.single + r.multiple, 1 - fresnel_moments(eta).external, 0.03) << eta;
+    }
+}
+
+TEST(HalfSpaceWalk, ForwardScatteringReturnsLess) {
+    const auto forward = walk_half_space(0.9, 0.8, 1.3, 20000, 1, {});
+    const auto backward = walk_half_space(0.9, -0.8, 1.3, 20000, 1, {});
+    EXPECT_LT(forward.single + forward.multiple, 0.5 * (backward.single + backward.multiple));
+}
+
+TEST(HalfSpaceWalk, SameForAnyNumberOfThreads) {
+    Context one, three;
+    one.threads = 1;
+    three.threads = 3;
+    const auto a = walk_half_space(0.9, 0.3, 1.3, 10000, 5, one);
+    const auto b = walk_half_space(0.9, 0.3, 1.3, 10000, 5, three);
+    EXPECT_EQ(a.single, b.single);
+    EXPECT_EQ(a.multiple, b.multiple);
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,103 @@
+#include "formats/media/apply_media.h"
+
+#include "tests/formats/media/media_text.h"
+
+namespace opaline::tests {
+namespace {
+
+using formats::apply_media;
+using formats::Medium;
+using formats::Rgb;
+using formats::Scene;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Scene scene_of(const std::vector<std::string>& names) {
+    Scene scene;
+    scene.sha256 = std::string(64, 'a');
+    scene.inputs = {"scene.glb"};
+    for (const std::string& name : names) {
+        scene.materials.emplace_back().name = name;
+    }
+    return scene;
+}
+
+formats::MediaFile media_of(const std::string& materials) {
+    const auto media = read_text_as_media("{\"materials\": {" + materials + "}}");
+    EXPECT_TRUE(media.has_value()) << faults(media);
+    return media ? *media : formats::MediaFile{};
+}
+
+TEST(ApplyMedia, MatchesByNameAndStarTakesTheOthers) {
+    Scene scene = scene_of({"Body", "Eye", "Floor", ""});
+    const auto warnings =
+        apply_media(media_of(R"("Body": {"preset": "marble"}, "Floor": {"opaque": true},
+                    "*": {"preset": "skin1"})"),
+                    scene);
+    EXPECT_TRUE(warnings.empty());
+    EXPECT_EQ(scene.materials[0].medium->eta, 1.5f);
+    EXPECT_EQ(scene.materials[1].medium->eta, 1.3f);
+    EXPECT_FALSE(scene.materials[2].medium.has_value());
+    EXPECT_EQ(scene.materials[3].medium->eta, 1.3f);
+}
+
+TEST(ApplyMedia, WithoutStarTheOthersStayAsTheyAre) {
+    Scene scene = scene_of({"Body", "Glass"});
+    scene.materials[1].medium = Medium{};
+    scene.materials[1].medium->eta = 1.7f;
+    (void)apply_media(media_of(R"("Body": {"preset": "marble"})"), scene);
+    EXPECT_EQ(scene.materials[1].medium->eta, 1.7f);
+}
+
+TEST(ApplyMedia, ReplacesWhatTheSceneSaysAndOpaqueRemovesIt) {
+    Scene scene = scene_of({"Body", "Glass"});
+    scene.materials[0].medium = scene.materials[1].medium = Medium{};
+    (void)apply_media(media_of(R"("Body": {"preset": "marble"}, "Glass": {"opaque": true})"),
+                      scene);
+    EXPECT_EQ(scene.materials[0].medium->eta, 1.5f);
+    EXPECT_FALSE(scene.materials[1].medium.has_value());
+}
+
+TEST(ApplyMedia, BaseColourReplacesTheFactorOnlyWhereItIsGiven) {
+    Scene scene = scene_of({"A", "B"});
+    scene.materials[0].base_color = scene.materials[1].base_color = {0.1f, 0.2f, 0.3f};
+    (void)apply_media(media_of(R"("A": {"preset": "cream", "base_color": [1, 1, 0]},
+                                  "B": {"preset": "cream"})"),
+                      scene);
+    EXPECT_EQ(scene.materials[0].base_color, (Rgb{1, 1, 0}));
+    EXPECT_EQ(scene.materials[1].base_color, (Rgb{0.1f, 0.2f, 0.3f}));
+}
+
+TEST(ApplyMedia, NameThatNoMaterialHasIsAWarningThatListsTheScenes) {
+    Scene scene = scene_of({"Body"});
+    const auto warnings =
+        apply_media(media_of(R"("Bodi": {"preset": "marble"}, "*": {"preset": "cream"})"), scene);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].severity, formats::Diagnostic::Severity::warning);
+    EXPECT_EQ(warnings[0].where, "materials > Bodi");
+    EXPECT_THAT(warnings[0].remedy, HasSubstr("'Body'"));
+}
+
+TEST(ApplyMedia, SeveralMaterialsOfOneNameAllGetTheMedium) {
+    Scene scene = scene_of({"Body", "Body"});
+    EXPECT_TRUE(apply_media(media_of(R"("Body": {"preset": "cream"})"), scene).empty());
+    EXPECT_TRUE(scene.materials[0].medium && scene.materials[1].medium);
+}
+
+TEST(ApplyMedia, FilesJoinTheInputsAndTheHash) {
+    const auto marble = media_of(R"("*": {"preset": "marble"})");
+    const auto cream = media_of(R"("*": {"preset": "cream"})");
+    Scene a = scene_of({"Body"}), b = a, c = a;
+    const std::string before = a.sha256;
+    (void)apply_media(marble, a);
+    (void)apply_media(cream, b);
+    (void)apply_media(marble, c);
+    EXPECT_THAT(a.inputs, ElementsAre("scene.glb", marble.inputs.at(0)));
+    EXPECT_EQ(a.sha256.size(), 64u);
+    EXPECT_NE(a.sha256, before);
+    EXPECT_NE(a.sha256, b.sha256);
+    EXPECT_EQ(a.sha256, c.sha256);
+}
+
+}  // namespace
+}  // namespace opaline::tests

@@ -1,0 +1,98 @@
+#include <nlohmann/json.hpp>
+
+#include "tests/formats/media/media_text.h"
+
+namespace opaline::tests {
+namespace {
+
+using formats::ErrorKind;
+using Json = nlohmann::json;
+
+/// Something of everything.
+const std::string kRich = R"({"materials": {
+    "Body": {"preset": "marble", "phase": {"type": "gaussian", "rms_angle": 0.3}},
+    "Wax": {"sigma_s_prime": [1, 2, 3], "sigma_a": [0.1, 0, 4e-2], "unit": "1/mm", "eta": 1.44,
+            "phase": {"type": "hg", "g": 0.3}, "roughness": 0.2, "base_color": [1, 0.5, 0],
+            "profile": "better", "fidelity": "paper"},
+    "*": {"opaque": true}}})";
+
+void expect_sound_or_refused(const formats::Result<formats::MediaFile>& media) {
+    if (!media) {
+        ASSERT_FALSE(media.error().diagnostics.empty());
+        return;
+    }
+    for (const auto& material : media->materials) {
+        ASSERT_TRUE(!material.medium || is_sound(*material.medium)) << material.name;
+    }
+}
+
+TEST(HostileMedia, EveryTruncatedPrefixIsRefused) {
+    ASSERT_TRUE(read_text_as_media(kRich).has_value()) << faults(read_text_as_media(kRich));
+    for (std::size_t size = 0; size < kRich.size(); ++size) {
+        const auto media = read_text_as_media(kRich.substr(0, size));
+        ASSERT_FALSE(media.has_value()) << size;
+        ASSERT_EQ(media.error().kind, ErrorKind::bad_input) << size;
+    }
+}
+
+TEST(HostileMedia, EverySingleFlippedBitGivesSoundMediaOrAMessage) {
+    std::size_t refused = 0;
+    for (std::size_t bit = 0; bit < kRich.size() * 8; ++bit) {
+        std::string damaged = kRich;
+        damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
+        const auto media = read_text_as_media(damaged);
+        expect_sound_or_refused(media);
+        refused += media ? 0 : 1;
+        ASSERT_FALSE(HasFatalFailure()) << bit;
+    }
+    EXPECT_GT(refused, kRich.size());  // keys are strict: most bits matter
+}
+
+TEST(HostileMedia, ReplacedValuesGiveSoundMediaOrAMessage) {
+    const Json values = {0,       1,    -1,   0.5,           -0.99,          1e-300, 1e300, nullptr,
+                         "table", true, "hg", Json::array(), Json::object(), 3.0,    1e9,   0.99};
+    const Json whole = Json::parse(kRich);
+    const Json flat = whole.flatten();
+    for (const auto& [path, old] : flat.items()) {
+        for (const Json& value : values) {
+            Json damaged = whole;
+            damaged[Json::json_pointer(path)] = value;
+            expect_sound_or_refused(read_text_as_media(damaged.dump()));
+            ASSERT_FALSE(HasFatalFailure()) << path << " = " << value;
+        }
+    }
+}
+
+TEST(HostileMedia, DeepNestingIsRefusedBeforeAnyParser) {
+    std::string text = R"({"materials": )";
+    for (int i = 0; i < 20000; ++i) {
+        text += "[";
+    }
+    EXPECT_THAT(faults(read_text_as_media(text)), ::testing::HasSubstr("nests deeper"));
+}
+
+TEST(HostileMedia, ErrorsAreBoundedInNumber) {
+    Json json;
+    for (int i = 0; i < 1000; ++i) {
+        json["materials"][std::to_string(i)] = 5;
+    }
+    const auto media = read_text_as_media(json.dump());
+    ASSERT_FALSE(media.has_value());
+    EXPECT_LE(media.error().diagnostics.size(), 65u);
+}
+
+TEST(HostileMedia, TooManyRowsOfATableAreRefused) {
+    const TemporaryFolder folder;
+    std::string table;
+    for (int i = 0; i <= 70000; ++i) {
+        table += std::to_string(-1 + i * 2.0 / 70000) + " 1\n";
+    }
+    write_text(folder / "t", table);
+    write_text(folder / "media.json",
+               wax(R"("preset": "skin1", "phase": {"type": "table", "file": "t"})"));
+    EXPECT_THAT(faults(formats::read_media(folder / "media.json")),
+                ::testing::HasSubstr("more than 65536 rows"));
+}
+
+}  // namespace
+}  // namespace opaline::tests
