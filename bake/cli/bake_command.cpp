@@ -71,7 +71,8 @@ int run(const Options& options) {
     if (!knobs) {
         return report_error(knobs.error());
     }
-    auto imported = open_scene(options.scene.scene, options.scene.metres_per_unit);
+    auto imported =
+        open_scene(options.scene.scene, options.scene.metres_per_unit, options.scene.media);
     if (!imported) {
         return report_error(imported.error());
     }

@@ -7,6 +7,8 @@
 
 #include "bake/cli/messages.h"
 #include "bake/environment/builtin_environment.h"
+#include "formats/media/apply_media.h"
+#include "formats/media/read_media.h"
 
 namespace opaline::cli {
 
@@ -26,15 +28,26 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
 }
 
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
-                                                   double metres_per_unit) {
+                                                   double metres_per_unit,
+                                                   const std::filesystem::path& media) {
     if (path.extension() == ".vdb") {
         return make_error(ErrorKind::bad_input, path.string(), "", "volumes are not supported yet",
                           "give a .gltf or .glb file");
     }
     auto imported = formats::import_gltf(path, {metres_per_unit});
-    if (imported) {
-        print_warnings(imported->warnings);
+    if (!imported || media.empty()) {
+        if (imported) {
+            print_warnings(imported->warnings);
+        }
+        return imported;
     }
+    const auto file = formats::read_media(media);
+    if (!file) {
+        return file.error();
+    }
+    const std::vector<formats::Diagnostic> warnings = formats::apply_media(*file, imported->scene);
+    imported->warnings.insert(imported->warnings.end(), warnings.begin(), warnings.end());
+    print_warnings(imported->warnings);
     return imported;
 }
 

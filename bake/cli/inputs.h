@@ -21,9 +21,11 @@ struct OpenedAsset {
 formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path,
                                         formats::Checks checks = formats::Checks::structure);
 
-/// Reads a scene and prints its warnings. `.vdb` is refused: volumes are not supported yet.
+/// Reads a scene, fills its materials with the media of a media file (none if the path is empty)
+/// and prints the warnings. `.vdb` is refused: volumes are not supported yet.
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
-                                                   double metres_per_unit);
+                                                   double metres_per_unit,
+                                                   const std::filesystem::path& media);
 
 /// A light as `--light` names it, turned by `--rotate-light` degrees about +Y.
 struct OpenedLight {

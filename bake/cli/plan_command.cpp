@@ -28,7 +28,8 @@ int run(const Options& options) {
     if (!knobs) {
         return report_error(knobs.error());
     }
-    const auto imported = open_scene(options.scene.scene, options.scene.metres_per_unit);
+    const auto imported =
+        open_scene(options.scene.scene, options.scene.metres_per_unit, options.scene.media);
     if (!imported) {
         return report_error(imported.error());
     }

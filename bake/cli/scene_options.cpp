@@ -40,6 +40,11 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
     command.add_option("scene", options.scene, "the scene, .gltf or .glb")
         ->required()
         ->option_text("SCENE");
+    command
+        .add_option(
+            "--media", options.media,
+            "what translucent materials are made of; formats/media/README.md lists the keys")
+        ->option_text("FILE.json");
     command.add_option("--quality", options.bake.quality, quality_help())
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, Quality>{{"draft", Quality::draft},

@@ -10,7 +10,7 @@ namespace opaline::cli {
 
 /// What `bake` and `plan` have in common.
 struct SceneOptions {
-    std::string scene;
+    std::string scene, media;
     double metres_per_unit = 1.0;
     std::string effects = "auto";
     bake::BakeOptions bake;
