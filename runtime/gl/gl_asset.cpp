@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 
+#include "runtime/specular.h"
 #include "runtime/texture.h"
 
 namespace opaline::runtime {
@@ -67,6 +69,18 @@ void make_vertex_array(const AssetView& asset, GlAsset& gl) {
     if (gl.has_translucent) {
         bind_attribute(name, 4, gl.normal, 3, sizeof(formats::Vec3));
     }
+    if (!gl.roughness.empty()) {
+        // Openness: the octahedral axis and the fraction, scaled to [-1, 1] and [0, 1] on the way.
+        for (const GLuint attribute : {5u, 6u}) {
+            glVertexArrayVertexBuffer(name, attribute, gl.openness.name(), 0,
+                                      sizeof(formats::Openness));
+            glVertexArrayAttribBinding(name, attribute, attribute);
+            glEnableVertexArrayAttrib(name, attribute);
+        }
+        glVertexArrayAttribFormat(name, 5, 2, GL_BYTE, GL_TRUE, 0);
+        glVertexArrayAttribFormat(name, 6, 1, GL_UNSIGNED_BYTE, GL_TRUE,
+                                  offsetof(formats::Openness, fraction));
+    }
     glVertexArrayElementBuffer(name, gl.triangle.name());
 }
 
@@ -110,6 +124,10 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& l
     if (gl.has_translucent) {
         gl.product = make_zero_buffer(rows.rows() * kIrradianceBytes, gl.resident);
         gl.normal = make_buffer_of(asset.normal, gl.resident);
+    }
+    if (!roughness_levels(asset).empty()) {
+        gl.roughness.assign(asset.roughness.begin(), asset.roughness.end());
+        gl.openness = make_buffer_of(asset.openness, gl.resident);
     }
     gl.position = make_buffer_of(asset.position, gl.resident);
     gl.base_color = make_buffer_of(asset.base_color, gl.resident);

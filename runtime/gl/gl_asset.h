@@ -23,8 +23,10 @@ struct GlAsset {
     GlBuffer irradiance;
     GlBuffer position, base_color, texcoord, triangle;
     bool has_translucent = false;
-    GlBuffer product, normal;  ///< where has_translucent: <T_k, L> of every row; normals
-    GlBuffer srgb_table;       ///< linear value of each 8-bit code, 256 floats
+    std::vector<float> roughness;  ///< of each primitive; empty: none is glossy
+    GlBuffer openness;             ///< where one is: formats::Openness of each vertex
+    GlBuffer product, normal;      ///< where has_translucent: <T_k, L> of every row; normals
+    GlBuffer srgb_table;           ///< linear value of each 8-bit code, 256 floats
     GlVertexArray vertex_array;
     std::vector<GlTexture> images;  ///< 8-bit codes, undecoded
     std::size_t resident = 0;       ///< [bytes]

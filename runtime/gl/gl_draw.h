@@ -10,16 +10,17 @@
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/picture.h"
+#include "runtime/terms.h"
 
 namespace opaline::runtime {
 
 struct DrawPrograms {
-    std::array<GlProgram, 4> surface;  ///< plain, textured; translucent, both
+    std::array<GlProgram, 6> surface;  ///< plain, textured; translucent, both; glossy, both
     GlProgram background, resolve;
     GlVertexArray nothing;  ///< for passes without vertex data
 };
-/// The two programs for translucent surfaces only on request. Errors: resource.
-formats::Result<DrawPrograms> make_draw_programs(bool with_translucent);
+/// Only those that the asset has surfaces for. Errors: resource.
+formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset);
 
 /// Where a tile is drawn: samples with depth, and the box-filtered pixels.
 struct DrawTarget {
@@ -42,9 +43,12 @@ double view_unit(const Camera& camera);
 struct DrawScene {
     const GlAsset& asset;
     const GlEnvironment& environment;
+    const GlSpecular& specular;
     const Rotation& rotation;
     const Camera& camera;
     std::uint32_t supersampling = 1;
+    std::uint32_t terms = kAllTerms;  ///< terms.h
+    bool background = true;           ///< false: black
 };
 
 /// Surfaces, then the background where none is seen, then the box filter.

@@ -1,5 +1,6 @@
 #include "runtime/gl/gl_view.h"
 
+#include "runtime/terms.h"
 #include "shader_text.h"
 
 namespace opaline::runtime {
@@ -15,7 +16,9 @@ enum Uniform : GLint {
     kVertices,
     kProductOrigin,
     kPointOrigin,
-    kIrradianceOrigin
+    kIrradianceOrigin,
+    kIsSeparate,
+    kShows
 };
 
 constexpr std::uint32_t kGroupSize = 64;  ///< local_size_x of the shader
@@ -33,16 +36,18 @@ formats::Result<ViewProgram> make_view_program(const GlAsset& asset) {
 }
 
 formats::Status dispatch_views(const GlAsset& asset, const ViewProgram& program, formats::Vec3 eye,
-                               float unit) {
+                               float unit, std::uint32_t terms) {
     if (!asset.has_translucent) return formats::ok_status();
     glUseProgram(program.sum.name());
     glUniform3f(kEye, eye.x, eye.y, eye.z);
     glUniform1f(kUnit, unit);
+    glUniform2ui(kShows, terms & kMultipleTerm, terms & kSingleTerm);
     for (const DotBatch& batch : asset.batches) {
         const formats::PrimitiveRecord& primitive = asset.primitives[batch.primitive];
         if (primitive.shading != formats::Shading::translucent) continue;
         glUniform1f(kEta, primitive.eta);
         glUniform1ui(kIsDoubleSided, primitive.flags & formats::PrimitiveRecord::kDoubleSided);
+        glUniform1ui(kIsSeparate, primitive.is_separate() ? 1u : 0u);
         glUniform1ui(kTerms, batch.terms);
         glUniform1ui(kVertices, batch.vertices);
         glUniform1ui(kProductOrigin, batch.product.origin);

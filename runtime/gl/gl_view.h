@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "formats/opal/result.h"
 #include "formats/opal/vec3.h"
 #include "runtime/gl/gl_asset.h"
@@ -15,9 +17,9 @@ struct ViewProgram {
 formats::Result<ViewProgram> make_view_program(const GlAsset& asset);
 
 /// Fills the translucent vertices' part of asset.irradiance from asset.product: what they show
-/// `eye` without their Fresnel factor. `unit` is about 1 / the distances in the scene.
-/// Errors: resource.
+/// `eye` of the components `terms` (terms.h) without their Fresnel factor. `unit` is about 1 / the
+/// distances in the scene. Errors: resource.
 formats::Status dispatch_views(const GlAsset& asset, const ViewProgram& program, formats::Vec3 eye,
-                               float unit);
+                               float unit, std::uint32_t terms);
 
 }  // namespace opaline::runtime

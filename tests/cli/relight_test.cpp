@@ -1,5 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cstdio>
+#include <filesystem>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -120,6 +123,115 @@ TEST(Relight, TheEyeChangesTranslucentReceiversAlone) {
     EXPECT_EQ(run_opaline({"compare", a, b, "--max-rel", "1e-4"}).exit_code, 0);
     const Outcome bad = run_opaline({"relight", file, "--light", "white", "--eye", "1,2", "-o", a});
     EXPECT_EQ(bad.exit_code, 2);
+}
+
+/// The same with gloss, and with multiple scattering apart if asked for.
+std::string write_glossy(const SmallScene& small, bool is_separate) {
+    formats::Asset asset = make_small_asset();
+    add_translucent_triangle(asset, is_separate ? 10 : 9, 1.3f, is_separate);
+    add_gloss(asset);
+    const std::string path = small.path(is_separate ? "separate.opal" : "merged.opal");
+    auto file = formats::AtomicFile::create(path);
+    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    return path;
+}
+
+TEST(Terms, UnknownNamesAreRefusedWithTheList) {
+    SmallScene small;
+    const std::string file = write_glossy(small, true);
+    for (const char* command : {"relight", "render"}) {
+        const std::string out = small.path(command == std::string("relight") ? "o.csv" : "o.png");
+        for (const char* terms : {"sparkle", "multiple,", ",single", "diffuse;single", "Diffuse"}) {
+            const Outcome bad =
+                run_opaline({command, file, "--light", "white", "--terms", terms, "-o", out});
+            EXPECT_EQ(bad.exit_code, 2) << terms;
+            EXPECT_THAT(bad.err, HasSubstr("multiple,single,specular,diffuse"));
+            EXPECT_FALSE(std::filesystem::exists(out));
+        }
+    }
+}
+
+TEST(Terms, MergedFilesSayWhatToDoForOneOfTheirTerms) {
+    SmallScene small;
+    const std::string merged = write_glossy(small, false), out = small.path("o.png");
+    for (const char* terms : {"multiple", "single,specular,diffuse"}) {
+        const Outcome bad =
+            run_opaline({"render", merged, "--light", "white", "--terms", terms, "-o", out});
+        EXPECT_EQ(bad.exit_code, 3) << terms;
+        EXPECT_THAT(bad.err, HasSubstr("merged.opal: primitive 2: "));
+        EXPECT_THAT(bad.err, HasSubstr("(bake with --separate-terms"));
+    }
+    for (const char* terms : {"multiple,single", "specular", "diffuse,specular"}) {
+        EXPECT_EQ(run_opaline({"render", merged, "--light", "white", "--terms", terms, "--size",
+                               "16x16", "-o", out})
+                      .exit_code,
+                  0);
+    }
+}
+
+// Tables hold nine digits, and the random rows of the translucent triangle may be negative: only
+// components that nothing was clamped from are compared, which the whole tells by being their sum.
+TEST(Terms, TablesOfAllComponentsAddUpToTheWhole) {
+    SmallScene small;
+    const std::string file = write_glossy(small, true);
+    const auto table = [&](const std::string& terms) {
+        const std::string out = small.path("t-" + terms + ".csv");
+        Arguments arguments{"relight", file, "--light", "sky:3,40", "--eye", "1,1,3", "-o", out};
+        if (!terms.empty()) arguments.insert(arguments.end(), {"--terms", terms});
+        const Outcome outcome = run_opaline(arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        std::vector<std::array<double, 3>> values;
+        for (const std::string& line : lines_of(read_text(out))) {
+            std::array<double, 3> v{};
+            if (std::sscanf(line.c_str(), "%*u,%*u,%lf,%lf,%lf", &v[0], &v[1], &v[2]) == 3) {
+                values.push_back(v);
+            }
+        }
+        return values;
+    };
+    const auto whole = table(""), all = table("diffuse,specular,single,multiple"),
+               opaque = table("diffuse"), mirrored = table("specular"),
+               inside = table("multiple,single");
+    ASSERT_EQ(whole.size(), 11u);
+    EXPECT_EQ(whole, all);
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_NEAR(whole[i][c], opaque[i][c] + mirrored[i][c] + inside[i][c],
+                        1e-6 * (1 + whole[i][c]));
+            EXPECT_EQ(i<8, opaque[i][c]> 0 || whole[i][c] == 0) << i;
+        }
+    }
+    EXPECT_GT(mirrored.back()[2], 0);
+    EXPECT_EQ(mirrored.front()[2], 0);
+}
+
+TEST(Terms, BackendsAgreeOnComponentsOverBlack) {
+    SmallScene small;
+    const std::string file = write_glossy(small, true);
+    for (const char* terms : {"multiple", "specular", "diffuse", "single,specular"}) {
+        const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
+        for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
+            const Outcome render =
+                run_opaline({"render", file, "--light", "studio", "--size", "83x57", "--eye",
+                             "2,1,3", "--terms", terms, "--backend", backend, "-o", out});
+            ASSERT_EQ(render.exit_code, 0) << render.err;
+        }
+        const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "2e-3"});
+        EXPECT_EQ(same.exit_code, 0) << terms << "\n" << same.out;
+        const auto image = formats::read_exr(gl);
+        ASSERT_TRUE(image);
+        EXPECT_EQ(image->pixel.front(), formats::Rgb{});
+    }
+}
+
+TEST(Info, SaysWhatIsGlossyAndSeparate) {
+    SmallScene small;
+    const std::string file = write_glossy(small, true);
+    ASSERT_EQ(run_opaline({"verify", file}).exit_code, 0);
+    const Outcome info = run_opaline({"info", file});
+    EXPECT_THAT(info.out, HasSubstr("multiple and single separate, roughness 0.3"));
+    EXPECT_THAT(info.out, HasSubstr("SPEC"));
+    EXPECT_THAT(run_opaline({"info", file, "--json"}).out, HasSubstr("\"separate\": true"));
 }
 
 TEST(Render, BackendsAgreeOnTranslucentPrimitives) {

@@ -17,6 +17,9 @@ layout(location = 5) uniform uint vertices;
 layout(location = 6) uniform uint product_origin;
 layout(location = 7) uniform uint point_origin;  // of positions and normals
 layout(location = 8) uniform uint irradiance_origin;
+// Multiple scattering in a row of its own, before those of single scattering; which to add up.
+layout(location = 9) uniform uint is_separate;
+layout(location = 10) uniform uvec2 shows;  // multiple, single
 
 vec3 refract_to_eye(vec3 n, vec3 w, float c) {
     vec3 tangent = w - c * n;
@@ -75,15 +78,15 @@ vec3 add_degree_4(uint at, vec3 w) {
            0.6258357354 * (xx * (xx - 3.0 * yy) - yy * (3.0 * xx - yy)) * product[at + 8u].rgb;
 }
 
-vec3 sum_harmonics(uint at, vec3 w) {
+vec3 sum_harmonics(uint at, uint count, vec3 w) {
     vec3 sum = 0.2820947918 * product[at].rgb + add_degree_1(at + 1u, w);
-    if (terms >= 9u) {
+    if (count >= 9u) {
         sum += add_degree_2(at + 4u, w);
     }
-    if (terms >= 16u) {
+    if (count >= 16u) {
         sum += add_degree_3(at + 9u, w);
     }
-    if (terms >= 25u) {
+    if (count >= 25u) {
         sum += add_degree_4(at + 16u, w);
     }
     return sum;
@@ -95,8 +98,20 @@ void main() {
         return;
     }
     uint at = product_origin + vertex * terms;
-    vec3 sum = product[at].rgb;
-    if (terms > 1u) {
+    vec3 sum = vec3(0.0);
+    uint count = terms;
+    if (is_separate != 0u) {
+        if (shows.x != 0u) {
+            sum = product[at].rgb;
+        }
+        at += 1u;
+        count -= 1u;
+    }
+    // Rows that hold both need both.
+    bool shows_rest = shows.y != 0u && (is_separate != 0u || shows.x != 0u);
+    if (count == 1u && shows_rest) {
+        sum += product[at].rgb;
+    } else if (count > 1u && shows_rest) {
         uint p = point_origin + 3u * vertex;
         vec3 n = vec3(normal[p], normal[p + 1u], normal[p + 2u]);
         vec3 to_eye = (eye - vec3(position[p], position[p + 1u], position[p + 2u])) * unit;
@@ -107,7 +122,7 @@ void main() {
             n = -n;
             c = -c;
         }
-        sum = sum_harmonics(at, refract_to_eye(n, w, c));
+        sum += sum_harmonics(at, count, refract_to_eye(n, w, c));
     }
     irradiance[irradiance_origin + vertex] = vec4(sum, 0.0);
 }

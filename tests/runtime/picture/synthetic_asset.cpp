@@ -153,6 +153,7 @@ void add_primitive(formats::Asset& asset, const TestMesh& mesh, const TestPrimit
         primitive.shading = formats::Shading::translucent;
         primitive.eta = options.eta;
         primitive.terms = options.terms;
+        primitive.flags |= options.is_separate ? formats::PrimitiveRecord::kSeparate : 0;
     }
     for (const Vec3 normal : mesh.normal) {
         for (std::uint32_t k = 0; k < primitive.terms; ++k) {
@@ -162,7 +163,7 @@ void add_primitive(formats::Asset& asset, const TestMesh& mesh, const TestPrimit
                 cosine_row(normalize(normal + 0.5f * tilt), asset.transport.cubemap_size,
                            options.bands, options.details);
             if (k > 0) {
-                scale_row(row, 0.8f * std::cos(2 * t));
+                scale_row(row, options.is_separate && k == 1 ? 0.4f : 0.8f * std::cos(2 * t));
             }
             append_row(asset.transport, row);
         }

@@ -35,6 +35,7 @@ struct TestPrimitive {
     float eta = 0;  ///< above 0: translucent, with `terms` rows a vertex; needs three bands
     std::uint32_t terms = 1;
     bool is_double_sided = false;
+    bool is_separate = false;  ///< translucent: PrimitiveRecord::kSeparate
 };
 
 /// Empty asset over a cube map of n x n texels.
@@ -42,7 +43,8 @@ formats::Asset make_asset(std::uint32_t n, std::uint32_t code_bits);
 
 /// Adds a primitive whose rows are those of an unoccluded surface, max(0, n.w) / pi; with three
 /// bands, green and blue see a wider and a narrower lobe. Further rows of a translucent vertex are
-/// of the same kind about tilted normals and of either sign.
+/// of the same kind about tilted normals and of either sign, but for the first of single scattering
+/// in rows of its own.
 void add_primitive(formats::Asset& asset, const TestMesh& mesh, const TestPrimitive& options);
 
 /// Adds a primitive without transport details or averages: for tests that bring own irradiance.
