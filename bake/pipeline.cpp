@@ -61,7 +61,8 @@ void leave_out_skipped(const formats::Scene& scene, const std::vector<PlanEntry>
 
 // What the gather inside one medium needs.
 struct MediumStage {
-    MediumProfile profile;
+    double exit = 1;  // c_exit
+    GatherProfile profile;
     SampleTransport transport;
     ClusterTree tree;
 };
@@ -95,16 +96,20 @@ MediumStage prepare_medium(const formats::Scene& scene, std::uint32_t material, 
             area += formats::surface_area(scene.primitives[p]);
         }
     }
-    stage.profile = make_medium_profile(medium, scene_diagonal(scene), knobs.seed, context);
-    const std::vector<SurfaceSample> samples = sample_surface(
-        scene, primitives, count_samples(area, stage.profile, knobs.samples), knobs.seed);
+    const MediumProfile profile = make_medium_profile(medium, knobs.seed, context);
+    const std::vector<SurfaceSample> samples =
+        sample_surface(scene, primitives, count_samples(area, profile, knobs.samples), knobs.seed);
+    const double spacing =
+        std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, samples.size())));
+    stage.exit = profile.exit;
+    stage.profile = make_gather_profile(profile, spacing, scene_diagonal(scene));
     std::vector<std::span<const float>> vectors;
     for (const TestLight& light : lights) {
         vectors.push_back(light.coarse);
     }
     const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
-    stage.transport = bake_sample_transport(
-        rays, samples, {knobs.cubemap_size, kept, stage.profile.eta}, vectors, context);
+    stage.transport = bake_sample_transport(rays, samples, {knobs.cubemap_size, kept, profile.eta},
+                                            vectors, context);
     if (!context.cancelled()) {
         stage.tree = build_cluster_tree(samples, stage.transport, knobs.cubemap_size,
                                         std::min(2 * kept, 4096u), context);
@@ -131,8 +136,8 @@ formats::Result<formats::SparseRows> bake_rows(const formats::Scene& scene, cons
                 ? bake_direct(rays, directions, selector, knobs.code_bits,
                               receivers.subspan(first, count), {first, receivers.size()}, context,
                               traced)
-                : bake_multiple(medium->second.tree, medium->second.profile, {knobs.tolerance},
-                                selector, knobs.code_bits, primitive, context);
+                : bake_multiple(medium->second.tree, medium->second.profile, medium->second.exit,
+                                {knobs.tolerance}, selector, knobs.code_bits, primitive, context);
         if (context.cancelled()) {
             break;
         }
@@ -215,11 +220,15 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
         std::vector<EffectCheck> checks{
             check_direct(*rays, receivers, asset, drawn, *lights, context)};
         for (const auto& [m, stage] : media) {
-            checks.push_back(check_multiple(stage.tree, stage.profile, stage.transport, m, asset,
-                                            drawn, *lights, context));
+            checks.push_back(check_multiple(stage.tree, stage.profile, stage.exit, stage.transport,
+                                            m, asset, drawn, *lights, context));
         }
         traced = checks.front().rays;
-        return summarise_checks(checks, lights->size(), knobs->seed);
+        std::vector<std::string> names;
+        for (const TestLight& light : *lights) {
+            names.push_back(light.name);
+        }
+        return summarise_checks(checks, names, knobs->seed);
     });
     if (context.cancelled()) {
         return interrupted();

@@ -83,7 +83,7 @@ void print_provenance(const Json& provenance) {
     if (provenance.contains("knobs") && provenance["knobs"].is_object()) {
         const Json& knobs = provenance["knobs"];
         fmt::print("knobs         quality {}, cube map {}, coefficients {}, {} bits, seed {}\n",
-                   text_of(knobs, "quality"), text_of(knobs, "cubemap"),
+                   text_of(provenance, "quality"), text_of(knobs, "cubemap"),
                    text_of(knobs, "coefficients"), text_of(knobs, "code_bits"),
                    text_of(provenance, "seed"));
     }

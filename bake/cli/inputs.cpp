@@ -18,6 +18,15 @@ namespace opaline::cli {
 using formats::ErrorKind;
 using formats::make_error;
 
+namespace {
+
+void fill_materials(const formats::MediaFile& media, formats::ImportedScene& imported) {
+    const std::vector<formats::Diagnostic> warnings = formats::apply_media(media, imported.scene);
+    imported.warnings.insert(imported.warnings.end(), warnings.begin(), warnings.end());
+}
+
+}  // namespace
+
 formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, formats::Checks checks) {
     auto file = formats::MappedFile::open(path);
     if (!file) {
@@ -38,18 +47,24 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
                           "give a .gltf or .glb file");
     }
     auto imported = formats::import_gltf(path, {metres_per_unit});
-    if (!imported || media.empty()) {
-        if (imported) {
-            print_warnings(imported->warnings);
-        }
+    if (!imported) {
         return imported;
     }
-    const auto file = formats::read_media(media);
-    if (!file) {
-        return file.error();
+    // The file on the command line comes last: it overrules what the scene says.
+    if (!imported->media.empty()) {
+        const auto own = formats::parse_media(imported->media, path, "extensions > OPALINE_media");
+        if (!own) {
+            return own.error();
+        }
+        fill_materials(*own, *imported);
     }
-    const std::vector<formats::Diagnostic> warnings = formats::apply_media(*file, imported->scene);
-    imported->warnings.insert(imported->warnings.end(), warnings.begin(), warnings.end());
+    if (!media.empty()) {
+        const auto file = formats::read_media(media);
+        if (!file) {
+            return file.error();
+        }
+        fill_materials(*file, *imported);
+    }
     print_warnings(imported->warnings);
     return imported;
 }

@@ -21,8 +21,9 @@ struct OpenedAsset {
 formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path,
                                         formats::Checks checks = formats::Checks::structure);
 
-/// Reads a scene, fills its materials with the media of a media file (none if the path is empty)
-/// and prints the warnings. `.vdb` is refused: volumes are not supported yet.
+/// Reads a scene, fills its materials with the media of its extension OPALINE_media, then of a
+/// media file (none if the path is empty), and prints the warnings. `.vdb` is refused: volumes are
+/// not supported yet.
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
                                                    double metres_per_unit,
                                                    const std::filesystem::path& media);

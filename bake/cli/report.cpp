@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/cli/messages.h"
+#include "bake/encode/provenance.h"
 
 namespace opaline::cli {
 namespace {
@@ -30,10 +31,6 @@ Json plan_array(const std::vector<bake::PlanEntry>& plan) {
     return array;
 }
 
-Json coefficients_json(const bake::Knobs& knobs) {
-    return knobs.coefficients == bake::kAllCoefficients ? Json("all") : Json(knobs.coefficients);
-}
-
 }  // namespace
 
 std::string make_report(const formats::Scene& scene, const bake::BakeResult& result,
@@ -43,11 +40,7 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     report["scene"]["sha256"] = scene.sha256;
     report["seed"] = result.knobs.seed;
     report["threads"] = result.threads;
-    report["knobs"] = {{"cubemap", result.knobs.cubemap_size},
-                       {"coefficients", coefficients_json(result.knobs)},
-                       {"code_bits", result.knobs.code_bits},
-                       {"samples", result.knobs.samples},
-                       {"epsilon", result.knobs.tolerance}};
+    report["knobs"] = bake::knobs_json(result.knobs);
     report["plan"] = plan_array(result.plan);
     report["stages"] = Json::array();
     for (const bake::StageReport& stage : result.stages) {
@@ -57,22 +50,12 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
                                     {"peak_rss_bytes", stage.peak_rss_bytes}});
     }
     report["seconds_total"] = result.seconds_total;
-    const bake::ErrorReport& error = result.error;
-    report["error"] = {{"rms_relative", error.rms_relative},
-                       {"ci95", {error.ci95[0], error.ci95[1]}},
-                       {"p95_relative", error.p95_relative},
-                       {"max_relative", error.max_relative},
-                       {"receivers_checked", error.receivers_checked},
-                       {"reference", error.reference},
-                       {"by_effect", Json::object()}};
-    for (const auto& effect : error.by_effect) {
-        report["error"]["by_effect"][effect.effect] = effect.rms_relative;
-    }
+    report["error"] = bake::error_json(result.error);
     report["output"] = {
         {"bytes", bytes},
         {"receivers", result.asset.position.size()},
         {"terms", result.asset.primitives.empty() ? 0 : result.asset.primitives[0].terms},
-        {"coefficients_per_term", coefficients_json(result.knobs)}};
+        {"coefficients_per_term", report["knobs"]["coefficients"]}};
     report["warnings"] = Json::array();
     for (const formats::Diagnostic& warning : warnings) {
         report["warnings"].push_back(format_diagnostic(warning));

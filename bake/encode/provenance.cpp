@@ -4,10 +4,38 @@
 
 namespace opaline::bake {
 
+using Json = nlohmann::ordered_json;
+
+Json knobs_json(const Knobs& knobs) {
+    return {{"cubemap", knobs.cubemap_size},
+            {"coefficients",
+             knobs.coefficients == kAllCoefficients ? Json("all") : Json(knobs.coefficients)},
+            {"code_bits", knobs.code_bits},
+            {"samples", knobs.samples},
+            {"epsilon", knobs.tolerance}};
+}
+
+Json error_json(const ErrorReport& error) {
+    Json json = {{"rms_relative", error.rms_relative},
+                 {"ci95", {error.ci95[0], error.ci95[1]}},
+                 {"p95_relative", error.p95_relative},
+                 {"max_relative", error.max_relative},
+                 {"receivers_checked", error.receivers_checked},
+                 {"reference", error.reference},
+                 {"by_effect", Json::object()},
+                 {"by_light", Json::object()}};
+    for (const ErrorReport::Part& effect : error.by_effect) {
+        json["by_effect"][effect.name] = effect.rms_relative;
+    }
+    for (const ErrorReport::Part& light : error.by_light) {
+        json["by_light"][light.name] = light.rms_relative;
+    }
+    return json;
+}
+
 std::string make_provenance(const formats::Scene& scene, Quality quality, const Knobs& knobs,
                             const std::vector<PlanEntry>& plan, const ErrorReport& error,
                             std::string_view ray_tracer) {
-    using Json = nlohmann::ordered_json;
     Json root;
     root["generator"] = std::string("Opaline ") + OPALINE_VERSION;
     root["ray_tracer"] = ray_tracer;
@@ -17,16 +45,8 @@ std::string make_provenance(const formats::Scene& scene, Quality quality, const 
             {{"name", p.name}, {"material", scene.materials[p.material].name}});
     }
     root["seed"] = knobs.seed;
-    root["knobs"] = {{"quality", quality_name(quality)},
-                     {"cubemap", knobs.cubemap_size},
-                     {"code_bits", knobs.code_bits},
-                     {"samples", knobs.samples},
-                     {"epsilon", knobs.tolerance}};
-    if (knobs.coefficients == kAllCoefficients) {
-        root["knobs"]["coefficients"] = "all";
-    } else {
-        root["knobs"]["coefficients"] = knobs.coefficients;
-    }
+    root["quality"] = quality_name(quality);
+    root["knobs"] = knobs_json(knobs);
     root["plan"] = Json::array();
     for (const PlanEntry& entry : plan) {
         root["plan"].push_back({{"effect", entry.effect},
@@ -35,16 +55,7 @@ std::string make_provenance(const formats::Scene& scene, Quality quality, const 
                                 {"reason", entry.reason},
                                 {"bound", entry.bound}});
     }
-    root["error"] = {{"rms_relative", error.rms_relative},
-                     {"ci95", {error.ci95[0], error.ci95[1]}},
-                     {"p95_relative", error.p95_relative},
-                     {"max_relative", error.max_relative},
-                     {"receivers_checked", error.receivers_checked},
-                     {"reference", error.reference},
-                     {"by_effect", Json::object()}};
-    for (const ErrorReport::ByEffect& effect : error.by_effect) {
-        root["error"]["by_effect"][effect.effect] = effect.rms_relative;
-    }
+    root["error"] = error_json(error);
     // Names come from the user's file: bytes that are not UTF-8 must not stop the bake.
     return root.dump(2, ' ', false, Json::error_handler_t::replace);
 }

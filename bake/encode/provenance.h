@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,10 @@
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// The knobs and the measured error as they stand in provenance and report.
+nlohmann::ordered_json knobs_json(const Knobs& knobs);
+nlohmann::ordered_json error_json(const ErrorReport& error);
 
 /// The PROV section: how the file came about, as JSON. Nothing that differs between two runs of the
 /// same bake: no seconds, dates, paths or thread counts.

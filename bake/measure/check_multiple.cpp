@@ -31,7 +31,7 @@ std::vector<double> relight_stored(const formats::AssetView& asset,
 
 }  // namespace
 
-EffectCheck check_multiple(const ClusterTree& tree, const MediumProfile& profile,
+EffectCheck check_multiple(const ClusterTree& tree, const GatherProfile& profile, double exit,
                            const SampleTransport& transport, std::uint32_t material,
                            const formats::AssetView& asset, std::span<const std::uint32_t> drawn,
                            std::span<const TestLight> lights, const Context& context) {
@@ -57,7 +57,7 @@ EffectCheck check_multiple(const ClusterTree& tree, const MediumProfile& profile
                 for (std::size_t band = 0; band < 3; ++band) {
                     luminance += kLuminance[band] * static_cast<double>(w.weight[band]);
                 }
-                luminance *= static_cast<double>(tree.area[s]) / (std::numbers::pi * profile.exit);
+                luminance *= static_cast<double>(tree.area[s]) / (std::numbers::pi * exit);
                 for (std::size_t l = 0; l < lights.size(); ++l) {
                     reference[l] +=
                         luminance * transport.response[tree.order[s] * lights.size() + l];

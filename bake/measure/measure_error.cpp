@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bake/base/rng.h"
 
@@ -60,27 +61,42 @@ std::vector<std::uint32_t> draw_receivers(std::size_t count, std::uint64_t seed)
     return drawn;
 }
 
-ErrorReport summarise_checks(std::span<const EffectCheck> checks, std::size_t lights,
-                             std::uint64_t seed) {
+ErrorReport summarise_checks(std::span<const EffectCheck> checks,
+                             std::span<const std::string> lights, std::uint64_t seed) {
     ErrorReport report;
     std::vector<CheckedPair> pairs;
+    std::vector<std::pair<std::string, std::vector<CheckedPair>>> by_effect;
     for (const EffectCheck& check : checks) {
         if (check.pairs.empty()) {
             continue;
         }
         pairs.insert(pairs.end(), check.pairs.begin(), check.pairs.end());
-        report.by_effect.push_back({check.effect, relative_rms(check.pairs)});
-        report.reference +=
-            (report.reference.empty() ? "" : "; ") + check.effect + ": " + check.reference;
+        auto same = std::find_if(by_effect.begin(), by_effect.end(),
+                                 [&](const auto& effect) { return effect.first == check.effect; });
+        if (same == by_effect.end()) {
+            same = by_effect.insert(same, {check.effect, {}});
+            report.reference +=
+                (report.reference.empty() ? "" : "; ") + check.effect + ": " + check.reference;
+        }
+        same->second.insert(same->second.end(), check.pairs.begin(), check.pairs.end());
     }
     if (pairs.empty()) {
         return report;
     }
-    report.reference +=
-        "; luminance under white, sun:30,60, sun:150,35, sun:270,15, studio and sky:3,35";
-    report.receivers_checked = static_cast<std::uint32_t>(pairs.size() / lights);
+    for (const auto& [effect, own] : by_effect) {
+        report.by_effect.push_back({effect, relative_rms(own)});
+    }
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+        std::vector<CheckedPair> own;
+        for (std::size_t i = l; i < pairs.size(); i += lights.size()) {
+            own.push_back(pairs[i]);
+        }
+        report.by_light.push_back({lights[l], relative_rms(own)});
+        report.reference += (l == 0 ? "; luminance under " : ", ") + lights[l];
+    }
+    report.receivers_checked = static_cast<std::uint32_t>(pairs.size() / lights.size());
     report.rms_relative = relative_rms(pairs);
-    bootstrap(pairs, lights, seed, report.ci95);
+    bootstrap(pairs, lights.size(), seed, report.ci95);
     double squares = 0;
     std::vector<double> magnitude;
     for (const CheckedPair& p : pairs) {

@@ -16,11 +16,12 @@ struct ErrorReport {
     double p95_relative = 0, max_relative = 0;
     std::uint32_t receivers_checked = 0;
     std::string reference;  ///< what it was measured against, in words
-    struct ByEffect {
-        std::string effect;
+    struct Part {
+        std::string name;
         double rms_relative = 0;
     };
-    std::vector<ByEffect> by_effect;
+    std::vector<Part> by_effect;  ///< pairs of one effect, over all lights
+    std::vector<Part> by_light;   ///< pairs of one test light, over all effects
 };
 
 /// One receiver under one light: luminance.
@@ -39,8 +40,9 @@ struct EffectCheck {
 /// (seed, draw) so that the check costs at most a tenth of the bake.
 std::vector<std::uint32_t> draw_receivers(std::size_t count, std::uint64_t seed);
 
-/// All effects together and each by itself.
-ErrorReport summarise_checks(std::span<const EffectCheck> checks, std::size_t lights,
-                             std::uint64_t seed);
+/// All effects together, each by itself, and each light by itself. Checks of one effect in several
+/// materials count as one. `lights`: names, in the order of the pairs.
+ErrorReport summarise_checks(std::span<const EffectCheck> checks,
+                             std::span<const std::string> lights, std::uint64_t seed);
 
 }  // namespace opaline::bake

@@ -9,12 +9,12 @@
 
 namespace opaline::bake {
 
-formats::SparseRows bake_multiple(const ClusterTree& tree, const MediumProfile& profile,
-                                  const GatherOptions& options, const Selector& selector,
-                                  std::uint32_t code_bits, const formats::Primitive& primitive,
-                                  const Context& context) {
+formats::SparseRows bake_multiple(const ClusterTree& tree, const GatherProfile& profile,
+                                  double exit, const GatherOptions& options,
+                                  const Selector& selector, std::uint32_t code_bits,
+                                  const formats::Primitive& primitive, const Context& context) {
     const std::size_t size = selector.weight.size();
-    const auto scale = static_cast<float>(1 / (std::numbers::pi * profile.exit));
+    const auto scale = static_cast<float>(1 / (std::numbers::pi * exit));
     formats::SparseRows rows = formats::make_sparse_rows(selector.cubemap_size, code_bits);
     for_each_block_in_order(
         primitive.position.size(), 64, context,
@@ -46,8 +46,8 @@ formats::SparseRows bake_multiple(const ClusterTree& tree, const MediumProfile& 
 
 std::uint32_t count_samples(double area, const MediumProfile& profile, std::uint32_t most) {
     constexpr double kLeast = 2000;
-    const double z = profile.smallest_z;
-    const double wanted = std::isfinite(z) ? std::ceil(area / (z * z)) : 0.0;
+    const double z = profile.smallest;
+    const double wanted = z > 0 ? std::ceil(area / (z * z)) : 0.0;
     return static_cast<std::uint32_t>(
         std::clamp(wanted, std::min(kLeast, static_cast<double>(most)), static_cast<double>(most)));
 }

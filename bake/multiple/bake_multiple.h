@@ -12,11 +12,12 @@
 namespace opaline::bake {
 
 /// RGB rows of a primitive's vertices inside a medium, T_0 = T_d / (pi c_exit), to be seen through
-/// Ft (translucency.md 3.5, 3.6). One row each, in order. Fewer if the context is cancelled.
-formats::SparseRows bake_multiple(const ClusterTree& tree, const MediumProfile& profile,
-                                  const GatherOptions& options, const Selector& selector,
-                                  std::uint32_t code_bits, const formats::Primitive& primitive,
-                                  const Context& context);
+/// Ft (translucency.md 3.5, 3.6); `exit` = c_exit. One row each, in order. Fewer if the context is
+/// cancelled.
+formats::SparseRows bake_multiple(const ClusterTree& tree, const GatherProfile& profile,
+                                  double exit, const GatherOptions& options,
+                                  const Selector& selector, std::uint32_t code_bits,
+                                  const formats::Primitive& primitive, const Context& context);
 
 /// How many samples the surface of a medium needs: one per square of the depth of its source, so
 /// that their sum has converged (translucency.md 3.7), at least 2000, at most `most`.

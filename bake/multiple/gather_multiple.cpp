@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace opaline::bake {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kNearSpacings = 6;  // radius of the near field in sample spacings
+// Keeps the mean defined where all samples around face another way.
+constexpr float kLeastFacing = 1e-3f;
 
 float squared_distance(glm::vec3 a, glm::vec3 b) {
     const glm::vec3 d = a - b;
@@ -27,20 +26,20 @@ BoxDistance box_distance(const ClusterNode& node, glm::vec3 x) {
 
 struct Gather {
     const ClusterTree& tree;
-    const MediumProfile& profile;
+    const GatherProfile& profile;
     glm::vec3 position;
     std::array<float, 3> allowed;  // tolerance R ||E|| per band
-    float near_squared;            // radius of the near field, 0 if there is none
+    float near_squared;            // radius of the near part, 0 if there is none
     std::vector<ClusterWeight>& weights;
-    std::vector<std::uint32_t> near;  // samples
+    std::vector<std::size_t> near;  // places in `weights`
 
     bool may_take(std::size_t v, const ClusterNode& node) const {
         const BoxDistance d = box_distance(node, position);
-        if (d.nearest <= near_squared) {
+        if (d.nearest < near_squared) {
             return false;
         }
-        const std::array<float, 3> most = eval_profile(profile, d.nearest);
-        const std::array<float, 3> least = eval_profile(profile, d.farthest);
+        const std::array<float, 3> most = eval_far(profile, d.nearest);
+        const std::array<float, 3> least = eval_far(profile, d.farthest);
         const float norm = tree.sums.norm[v];
         return norm * (most[0] - least[0]) <= allowed[0] &&
                norm * (most[1] - least[1]) <= allowed[1] &&
@@ -56,60 +55,38 @@ struct Gather {
             const std::uint32_t v = stack[--height];
             const ClusterNode& node = tree.nodes[v];
             if (may_take(v, node)) {
-                weights.push_back(
-                    {v, eval_profile(profile, squared_distance(position, node.centre))});
+                weights.push_back({v, eval_far(profile, squared_distance(position, node.centre))});
             } else if (node.right != 0) {
                 stack[height++] = node.right;
                 stack[height++] = v + 1;
             } else {
                 for (std::uint32_t s = node.first; s < node.first + node.count; ++s) {
                     const float r2 = squared_distance(position, tree.position[s]);
-                    if (r2 <= near_squared) {
-                        near.push_back(s);
-                    } else {
-                        weights.push_back({node_count + s, eval_profile(profile, r2)});
+                    if (r2 < near_squared) {
+                        near.push_back(weights.size());
                     }
+                    weights.push_back({node_count + s, eval_far(profile, r2)});
                 }
             }
         }
     }
 
-    // Near samples, with weights that add up to the profile's integral over the disc where the
-    // surface is one, else capped by its mean over a sample's own disc.
-    void add_near(glm::vec3 normal, double spacing) {
-        const double radius = std::sqrt(static_cast<double>(near_squared));
-        double area = 0, facing = 0;
-        std::array<double, 3> sum{};
-        const std::size_t first = weights.size();
-        for (const std::uint32_t s : near) {
-            const auto a = static_cast<double>(tree.area[s]);
-            area += a;
-            facing += a * static_cast<double>(std::max(0.0f, glm::dot(normal, tree.normal[s])));
-            ClusterWeight w{static_cast<std::uint32_t>(tree.nodes.size()) + s,
-                            eval_profile(profile, squared_distance(position, tree.position[s]))};
-            for (std::size_t band = 0; band < 3; ++band) {
-                sum[band] += a * static_cast<double>(w.weight[band]);
-            }
-            weights.push_back(w);
+    // Adds the near part: E averaged over the samples around, as far as they face the same way.
+    // Weights fall smoothly to zero at the rim, so that no sample enters or leaves with a jump.
+    void add_near(glm::vec3 normal) {
+        const std::size_t node_count = tree.nodes.size();
+        std::vector<float> share(near.size());
+        float sum = 0;
+        for (std::size_t i = 0; i < near.size(); ++i) {
+            const std::size_t s = weights[near[i]].id - node_count;
+            const float inside = 1 - squared_distance(position, tree.position[s]) / near_squared;
+            const float facing = std::max(kLeastFacing, glm::dot(normal, tree.normal[s]));
+            share[i] = inside * inside * facing * facing;
+            sum += share[i] * tree.area[s];
         }
-        const double share = area / (kPi * radius * radius);
-        const bool is_disc = share > 0.8 && share < 1.3 && facing > 0.8 * area;
-        for (std::size_t band = 0; band < 3; ++band) {
-            if (spacing <= profile.dipole[band].z_real || sum[band] == 0) {
-                continue;  // the plain sum is better than one per cent
-            }
-            if (is_disc) {
-                const double scale = (profile.total(band) - profile.tail(band, radius)) / sum[band];
-                for (std::size_t i = first; i < weights.size(); ++i) {
-                    weights[i].weight[band] *= static_cast<float>(scale);
-                }
-                continue;
-            }
-            const double own = spacing / std::sqrt(kPi);
-            const auto cap = static_cast<float>((profile.total(band) - profile.tail(band, own)) /
-                                                (kPi * own * own));
-            for (std::size_t i = first; i < weights.size(); ++i) {
-                weights[i].weight[band] = std::min(weights[i].weight[band], cap);
+        for (std::size_t i = 0; i < near.size() && sum > 0; ++i) {
+            for (std::size_t band = 0; band < 3; ++band) {
+                weights[near[i]].weight[band] += profile.near_mass[band] * share[i] / sum;
             }
         }
     }
@@ -117,29 +94,31 @@ struct Gather {
 
 }  // namespace
 
-void collect_weights(const ClusterTree& tree, const MediumProfile& profile, glm::vec3 position,
+void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm::vec3 position,
                      glm::vec3 normal, const GatherOptions& options,
                      std::vector<ClusterWeight>& weights) {
     weights.clear();
     if (tree.nodes.empty() || profile.table.empty()) {
         return;
     }
-    const double spacing = std::sqrt(tree.total_area / static_cast<double>(tree.position.size()));
-    Gather gather{tree, profile, position, {}, 0, weights, {}};
+    const float radius = profile.near_radius;
+    Gather gather{tree, profile, position, {}, radius * radius, weights, {}};
     for (std::size_t band = 0; band < 3; ++band) {
         // A negative allowance for nothing: no node is taken whole, whatever its sum.
         gather.allowed[band] =
             options.tolerance > 0
-                ? static_cast<float>(options.tolerance * profile.total(band) * tree.mean_norm)
+                ? static_cast<float>(options.tolerance * profile.total[band] * tree.mean_norm)
                 : -1.0f;
     }
-    const bool is_coarse = spacing > profile.smallest_z;
-    if (is_coarse) {
-        gather.near_squared = static_cast<float>(std::pow(kNearSpacings * spacing, 2));
-    }
     gather.visit();
-    if (!gather.near.empty()) {
-        gather.add_near(normal, spacing);
+    while (radius > 0 && gather.near.empty()) {
+        // A part of the surface too small to have a sample of its own takes the nearest ones.
+        gather.near_squared *= 4;
+        weights.clear();
+        gather.visit();
+    }
+    if (radius > 0) {
+        gather.add_near(normal);
     }
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/multiple/cluster_tree.h"
-#include "bake/multiple/medium_profile.h"
+#include "bake/multiple/gather_profile.h"
 
 namespace opaline::bake {
 
@@ -23,11 +23,10 @@ struct GatherOptions {
     double tolerance = 1e-3;
 };
 
-/// The weights of T_d(x) = sum A_i R_d(|x_i - x|) E_i at a point with unit normal (any if the
-/// surface is not flat there). Where samples are farther apart than the source is deep, the near
-/// ones are normalised to the profile's integral over their disc (translucency.md 3.7).
-/// Overwrites `weights`.
-void collect_weights(const ClusterTree& tree, const MediumProfile& profile, glm::vec3 position,
+/// The weights of T_d(x) = sum A_i R_far(|x_i - x|) E_i + near_mass mean E at a point with unit
+/// normal. The mean is over the samples around it that face the same way; so a thin part's two
+/// sides do not mix, and where the samples are dense it has no weight. Overwrites `weights`.
+void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm::vec3 position,
                      glm::vec3 normal, const GatherOptions& options,
                      std::vector<ClusterWeight>& weights);
 

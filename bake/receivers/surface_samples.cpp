@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <queue>
-#include <unordered_map>
 
-#include "bake/base/rng.h"
+#include "bake/receivers/centre_in_cells.h"
+#include "bake/receivers/point_grid.h"
+#include "bake/receivers/surface_points.h"
 #include "bake/receivers/vertex_receivers.h"
 
 namespace opaline::bake {
@@ -15,128 +15,12 @@ namespace {
 using formats::Primitive;
 using formats::Scene;
 
-struct Triangle {
-    std::uint32_t primitive = 0;
-    std::uint32_t first_index = 0;
-};
-
-struct Candidate {
-    Triangle triangle;
-    glm::vec3 barycentric;
-    glm::vec3 position, normal;
-};
-
-struct AreaTable {
-    std::vector<Triangle> triangle;
-    std::vector<double> cumulative;  // area of all triangles up to and including this one [m^2]
-    double total() const { return cumulative.empty() ? 0.0 : cumulative.back(); }
-};
-
-AreaTable make_area_table(const Scene& scene, const std::vector<std::uint32_t>& primitives) {
-    AreaTable table;
-    double sum = 0;
-    for (const std::uint32_t index : primitives) {
-        const Primitive& p = scene.primitives[index];
-        for (std::uint32_t i = 0; i + 2 < p.index.size(); i += 3) {
-            const glm::dvec3 a = p.position[p.index[i]];
-            const glm::dvec3 b = p.position[p.index[i + 1]];
-            const glm::dvec3 c = p.position[p.index[i + 2]];
-            const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
-            if (area > 0) {
-                sum += area;
-                table.triangle.push_back({index, i});
-                table.cumulative.push_back(sum);
-            }
-        }
-    }
-    return table;
-}
-
-glm::vec3 facet_normal(const Primitive& p, std::uint32_t i) {
-    const glm::dvec3 a = p.position[p.index[i]];
-    return glm::vec3(glm::normalize(glm::cross(glm::dvec3(p.position[p.index[i + 1]]) - a,
-                                               glm::dvec3(p.position[p.index[i + 2]]) - a)));
-}
-
-std::vector<Candidate> scatter(const Scene& scene, const AreaTable& table, std::size_t count,
-                               std::uint64_t seed) {
-    std::vector<Candidate> candidates(count);
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-        const auto u = random_uniform(seed, RandomStage::surface_samples, k);
-        const double target = table.total() * (static_cast<double>(k) + static_cast<double>(u[0])) /
-                              static_cast<double>(count);
-        while (at + 1 < table.cumulative.size() && table.cumulative[at] <= target) {
-            ++at;
-        }
-        // Uniform barycentric coordinates by the square-root warp.
-        const float root = std::sqrt(u[1]);
-        Candidate& c = candidates[k];
-        c.triangle = table.triangle[at];
-        c.barycentric = {1.0f - root, root * (1.0f - u[2]), root * u[2]};
-        const Primitive& p = scene.primitives[c.triangle.primitive];
-        const std::uint32_t i = c.triangle.first_index;
-        c.position = c.barycentric.x * p.position[p.index[i]] +
-                     c.barycentric.y * p.position[p.index[i + 1]] +
-                     c.barycentric.z * p.position[p.index[i + 2]];
-        c.normal = facet_normal(p, i);
-    }
-    return candidates;
-}
-
-// Normals at more than 120 degrees belong to different sides of a sheet; those of a box's edge do
-// not.
-constexpr float kOpposed = -0.5f;
-
-// Points in cubic cells of the search radius.
-class Grid {
-  public:
-    Grid(const std::vector<Candidate>& points, float cell) : points_(points), cell_(cell) {
-        for (std::uint32_t i = 0; i < points.size(); ++i) {
-            cells_[key(coordinates(points[i].position))].push_back(i);
-        }
-    }
-
-    template <class Visit>
-    void for_each_near(std::uint32_t i, float radius, Visit&& visit) const {
-        const glm::ivec3 centre = coordinates(points_[i].position);
-        for (int dz = -1; dz <= 1; ++dz) {
-            for (int dy = -1; dy <= 1; ++dy) {
-                for (int dx = -1; dx <= 1; ++dx) {
-                    const auto cell = cells_.find(key(centre + glm::ivec3(dx, dy, dz)));
-                    if (cell == cells_.end()) {
-                        continue;
-                    }
-                    for (const std::uint32_t j : cell->second) {
-                        const float d = glm::distance(points_[i].position, points_[j].position);
-                        if (j != i && d < radius &&
-                            glm::dot(points_[i].normal, points_[j].normal) > kOpposed) {
-                            visit(j, d);
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-  private:
-    glm::ivec3 coordinates(glm::vec3 p) const { return glm::ivec3(glm::floor(p / cell_)); }
-    static std::uint64_t key(glm::ivec3 c) {
-        const auto part = [](int x) { return static_cast<std::uint64_t>(x) & 0x1fffffu; };
-        return part(c.x) | part(c.y) << 21 | part(c.z) << 42;
-    }
-
-    const std::vector<Candidate>& points_;
-    float cell_;
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
-};
-
 // Removes the most crowded point until `count` are left [Yuksel2015, section 3].
-std::vector<std::uint32_t> eliminate(const std::vector<Candidate>& points, std::size_t count,
+std::vector<std::uint32_t> eliminate(const std::vector<SurfacePoint>& points, std::size_t count,
                                      double area) {
     const double r_max = std::sqrt(area / (2.0 * std::sqrt(3.0) * static_cast<double>(count)));
     const float radius = static_cast<float>(2.0 * r_max);
-    const Grid grid(points, radius);
+    const PointGrid grid(points, radius);
     const auto crowding = [radius](float distance) {
         const float x = 1.0f - distance / radius, x2 = x * x, x4 = x2 * x2;
         return static_cast<double>(x4 * x4);
@@ -179,27 +63,27 @@ std::vector<std::uint32_t> eliminate(const std::vector<Candidate>& points, std::
 
 // Where the smooth surface suggested by the vertex normals lies above the facet: the point, moved
 // out of each vertex's tangent plane, averaged [Hanika2021].
-glm::vec3 lift_to_smooth_surface(const Primitive& p, const Candidate& c) {
+glm::vec3 lift_to_smooth_surface(const Primitive& p, const SurfacePoint& c) {
     glm::vec3 lift(0);
     for (glm::length_t k = 0; k < 3; ++k) {
-        const std::uint32_t v = p.index[c.triangle.first_index + static_cast<std::uint32_t>(k)];
+        const std::uint32_t v = p.index[c.first_index + static_cast<std::uint32_t>(k)];
         const float below = std::min(0.0f, glm::dot(c.position - p.position[v], p.normal[v]));
         lift -= c.barycentric[k] * below * p.normal[v];
     }
     return lift;
 }
 
-SurfaceSample finish(const Scene& scene, const Candidate& c, float area) {
-    const Primitive& p = scene.primitives[c.triangle.primitive];
+SurfaceSample finish(const Scene& scene, const SurfacePoint& c, float area) {
+    const Primitive& p = scene.primitives[c.primitive];
     SurfaceSample sample;
     sample.position = c.position;
     sample.geometric_normal = c.normal;
     sample.area = area;
-    sample.primitive = c.triangle.primitive;
+    sample.primitive = c.primitive;
     glm::vec3 normal(0);
     float magnitude = 0;
     for (glm::length_t k = 0; k < 3; ++k) {
-        const std::uint32_t v = p.index[c.triangle.first_index + static_cast<std::uint32_t>(k)];
+        const std::uint32_t v = p.index[c.first_index + static_cast<std::uint32_t>(k)];
         normal += c.barycentric[k] * p.normal[v];
         const glm::vec3 a = glm::abs(p.position[v]);
         magnitude = std::max({magnitude, a.x, a.y, a.z});
@@ -222,13 +106,19 @@ std::vector<SurfaceSample> sample_surface(const Scene& scene,
         return {};
     }
     const std::size_t per_sample = count < 64 ? 5 : 4;
-    const std::vector<Candidate> candidates =
-        scatter(scene, table, std::size_t{count} * per_sample, seed);
-    const float area = static_cast<float>(table.total() / count);
-    std::vector<SurfaceSample> samples;
-    samples.reserve(count);
+    const std::vector<SurfacePoint> candidates =
+        scatter_points(scene, table, std::size_t{count} * per_sample, false, seed);
+    std::vector<SurfacePoint> points;
     for (const std::uint32_t i : eliminate(candidates, count, table.total())) {
-        samples.push_back(finish(scene, candidates[i], area));
+        points.push_back(candidates[i]);
+    }
+    const std::vector<float> area =
+        centre_in_cells(scene, table, std::sqrt(table.total() / count), seed, points);
+    std::vector<SurfaceSample> samples;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (area[i] > 0) {
+            samples.push_back(finish(scene, points[i], area[i]));
+        }
     }
     return samples;
 }

@@ -4,7 +4,51 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/scattering/gauss_legendre.h"
+
 namespace opaline::bake {
+
+namespace {
+
+using formats::PhaseFunction;
+
+constexpr double kPi = std::numbers::pi;
+
+double gaussian_integral(double rms_angle) {
+    // Beyond 8 widths the weight is below 1e-27; on the rest the integrand is smooth.
+    const GaussLegendre rule = make_gauss_legendre(96);
+    const double end = std::min(kPi, 8 * rms_angle);
+    double sum = 0;
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+        const double angle = end * rule.node[i], x = angle / rms_angle;
+        sum += end * rule.weight[i] * std::exp(-x * x) * std::sin(angle);
+    }
+    return 2 * kPi * sum;
+}
+
+/// Near 1 already: what rounding to single precision took is given back.
+double table_integral(const PhaseFunction& phase) {
+    double sum = 0;
+    for (std::size_t i = 1; i < phase.cosine.size(); ++i) {
+        const double from = phase.cosine[i - 1], to = phase.cosine[i];
+        const double p = phase.value[i - 1], q = phase.value[i];
+        sum += (to - from) * (p + q) / 2;
+    }
+    return 2 * kPi * sum;
+}
+
+/// Linear in the cosine.
+double interpolate(const PhaseFunction& phase, double cosine) {
+    const auto above = std::upper_bound(phase.cosine.begin() + 1, phase.cosine.end() - 1,
+                                        static_cast<float>(cosine));
+    const auto i = static_cast<std::size_t>(above - phase.cosine.begin());
+    const double from = phase.cosine[i - 1], to = phase.cosine[i];
+    const double p = phase.value[i - 1], q = phase.value[i];
+    const double t = std::clamp((cosine - from) / (to - from), 0.0, 1.0);
+    return (1 - t) * p + t * q;
+}
+
+}  // namespace
 
 double henyey_greenstein(double cosine, double g) {
     // (1 - g)^2 + 2 g (1 - cos) is 1 + g^2 - 2 g cos without its cancellation.
@@ -12,16 +56,34 @@ double henyey_greenstein(double cosine, double g) {
     return (1 - g) * (1 + g) / (4 * std::numbers::pi * base * std::sqrt(base));
 }
 
-double henyey_greenstein_rms(double g, unsigned terms) {
-    const double q = g * g;
-    const double total = (1 + q) / ((1 - q) * (1 - q));
-    double kept = 0, power = 1;
-    for (unsigned l = 0, left = terms; left > 0; ++l, power *= q) {
-        const unsigned take = std::min(left, 2 * l + 1);
-        kept += take * power;
-        left -= take;
+PhaseDensity make_phase_density(const PhaseFunction& phase) {
+    double integral = 1;
+    if (phase.type == PhaseFunction::Type::gaussian) {
+        integral = gaussian_integral(static_cast<double>(phase.rms_angle));
+    } else if (phase.type == PhaseFunction::Type::tabulated) {
+        integral = table_integral(phase);
     }
-    return std::sqrt(std::max(0.0, 1 - kept / total));
+    return {phase, 1 / integral};
+}
+
+double eval_phase(const PhaseDensity& density, double cosine) {
+    const PhaseFunction& phase = density.function;
+    switch (phase.type) {
+        case PhaseFunction::Type::isotropic:
+            break;
+        case PhaseFunction::Type::henyey_greenstein:
+            return henyey_greenstein(cosine, static_cast<double>(phase.g));
+        case PhaseFunction::Type::rayleigh:
+            return 3 / (16 * kPi) * (1 + cosine * cosine);
+        case PhaseFunction::Type::gaussian: {
+            const double x =
+                std::acos(std::clamp(cosine, -1.0, 1.0)) / static_cast<double>(phase.rms_angle);
+            return density.scale * std::exp(-x * x);
+        }
+        case PhaseFunction::Type::tabulated:
+            return density.scale * interpolate(phase, cosine);
+    }
+    return 1 / (4 * kPi);
 }
 
 }  // namespace opaline::bake

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "formats/gltf/decode_image8.h"
+#include "formats/gltf/map_medium.h"
 
 namespace opaline::formats::gltf {
 
@@ -14,7 +15,7 @@ namespace {
 
 /// What is lost when an extension is not simulated.
 std::string unsimulated_extension(const std::string& name) {
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kKnown = {{
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 17> kKnown = {{
         {"KHR_materials_volume", "absorption inside the object"},
         {"KHR_materials_scatter", "scattering inside the object"},
         {"KHR_materials_volume_scatter", "scattering inside the object"},
@@ -32,7 +33,6 @@ std::string unsimulated_extension(const std::string& name) {
         {"KHR_materials_pbrSpecularGlossiness", "specular-glossiness shading"},
         {"KHR_materials_variants", "material variants"},
         {"KHR_texture_basisu", "Basis Universal textures"},
-        {"OPALINE_media", "media"},
     }};
     for (const auto& [known, meaning] : kKnown) {
         if (name == known) {
@@ -42,10 +42,22 @@ std::string unsimulated_extension(const std::string& name) {
     return "extension " + in_quotes(name) + " is not simulated";
 }
 
-std::vector<std::string> unsimulated(const MaterialSource& material) {
+/// The extensions that a medium stands for.
+bool is_part_of_medium(std::string_view name) {
+    constexpr std::array<std::string_view, 7> kParts = {
+        "KHR_materials_volume",         "KHR_materials_scatter",
+        "KHR_materials_volume_scatter", "KHR_materials_diffuse_transmission",
+        "KHR_materials_transmission",   "KHR_materials_ior",
+        "KHR_materials_specular"};
+    return std::find(kParts.begin(), kParts.end(), name) != kParts.end();
+}
+
+std::vector<std::string> unsimulated(const MaterialSource& material, bool has_medium) {
     std::vector<std::string> faults;
     for (const std::string& name : material.extensions) {
-        faults.push_back(unsimulated_extension(name));
+        if (!has_medium || !is_part_of_medium(name)) {
+            faults.push_back(unsimulated_extension(name));
+        }
     }
     if (material.alpha_mode != "OPAQUE") {
         faults.push_back("alphaMode " + in_quotes(material.alpha_mode) +
@@ -55,7 +67,9 @@ std::vector<std::string> unsimulated(const MaterialSource& material) {
         faults.push_back("emissiveFactor is not simulated: the surface sends out no light");
     }
     if (material.metallic > 0.0) {
-        faults.push_back("metallicFactor above 0 is not simulated: the surface is baked diffuse");
+        faults.push_back(
+            std::string("metallicFactor above 0 is not simulated: the surface is baked ") +
+            (has_medium ? "as a dielectric" : "diffuse"));
     }
     if (material.has_normal_map) {
         faults.push_back("normalTexture is not simulated: vertex normals are used alone");
@@ -144,7 +158,7 @@ Material convert(const MaterialSource& source, const std::string& where, Report&
 }  // namespace
 
 void build_materials(const Document& document, const std::vector<MeshInstance>& instances,
-                     Resources& resources, Scene& scene, Report& report) {
+                     double metres_per_unit, Resources& resources, Scene& scene, Report& report) {
     std::vector<bool> used(document.materials.size(), false);
     bool needs_default = document.materials.empty();
     for (const MeshInstance& instance : instances) {
@@ -164,9 +178,14 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
         const std::string where = label("material", i, source.name);
         Material material = convert(source, where, report);
         const TextureUse& use = source.base_color_texture;
+        std::vector<std::string> remarks;
+        material.medium = map_medium(source.translucency, metres_per_unit, remarks);
         if (used[i]) {
-            for (const std::string& fault : unsimulated(source)) {
+            for (const std::string& fault : unsimulated(source, material.medium.has_value())) {
                 lost[fault].push_back(where);
+            }
+            for (const std::string& remark : remarks) {
+                lost[remark].push_back(where);
             }
         }
         if (used[i] && use.texture != kNone) {

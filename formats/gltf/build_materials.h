@@ -15,7 +15,8 @@ namespace opaline::formats::gltf {
 /// them where a primitive needs it or there is none, and `scene.images` with the decoded
 /// base-colour textures. Textures are read and warnings given only for materials that an instance
 /// uses. Everything that a material asks for and Opaline does not simulate is named once.
+/// Extensions that describe a scattering medium become Material::medium (map_medium.h).
 void build_materials(const Document& document, const std::vector<MeshInstance>& instances,
-                     Resources& resources, Scene& scene, Report& report);
+                     double metres_per_unit, Resources& resources, Scene& scene, Report& report);
 
 }  // namespace opaline::formats::gltf

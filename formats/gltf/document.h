@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -82,6 +83,27 @@ struct TextureUse {
     glm::mat3 transform{1.0f};  ///< KHR_texture_transform
 };
 
+/// The extensions that say what is inside a material, with the defaults of their specifications.
+struct TranslucencySource {
+    bool has_volume = false, has_transmission = false, has_diffuse_transmission = false;
+    bool has_specular = false, has_ior = false;
+    bool has_scatter = false;         ///< KHR_materials_scatter
+    bool has_volume_scatter = false;  ///< its predecessor, KHR_materials_volume_scatter
+    double transmission = 0.0, diffuse_transmission = 0.0;
+    glm::dvec3 diffuse_transmission_color{1.0};
+    double thickness = 0.0;                                                 ///< 0: thin-walled
+    double attenuation_distance = std::numeric_limits<double>::infinity();  ///< file units
+    glm::dvec3 attenuation_color{1.0};
+    double ior = 1.5;  ///< 0: of infinite Fresnel reflectance
+    double specular = 1.0;
+    glm::dvec3 specular_color{1.0};
+    std::optional<double> scatter_strength;  ///< default 0
+    glm::dvec3 multiscatter_color{1.0};      ///< of whichever scatter extension there is
+    double anisotropy = 0.0;
+    double roughness = 1.0;
+    std::vector<std::string> textures;  ///< names of the members above that a texture modulates
+};
+
 struct MaterialSource {
     std::string name;
     glm::dvec4 base_color{1.0};
@@ -91,6 +113,7 @@ struct MaterialSource {
     bool double_sided = false, has_normal_map = false, has_occlusion_map = false;
     std::string alpha_mode;
     std::vector<std::string> extensions;
+    TranslucencySource translucency;
 };
 
 struct Texture {

@@ -24,8 +24,18 @@ namespace {
 
 using namespace gltf;
 
+std::string media_text(const nlohmann::json& root) {
+    const auto extensions = root.find("extensions");
+    if (extensions == root.end() || !extensions->is_object()) {
+        return {};
+    }
+    const auto media = extensions->find("OPALINE_media");
+    return media == extensions->end() ? std::string() : media->dump();
+}
+
 /// The whole import; every fault is in `report`, and the scene counts only if there is none.
-Scene import(const std::filesystem::path& path, const ImportOptions& options, Report& report) {
+Scene import(const std::filesystem::path& path, const ImportOptions& options, std::string& media,
+             Report& report) {
     Scene scene;
     scene.source = path.string();
     auto file = read_whole_file(path, "", report);
@@ -47,6 +57,7 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, Re
     if (report.failed()) {
         return scene;
     }
+    media = media_text(*json);
     load_buffers(*json, *container, resources, report);
     if (!report.failed()) {
         decode_meshopt_views(*json, resources, report);
@@ -66,7 +77,7 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, Re
     if (report.failed()) {
         return scene;
     }
-    build_materials(*document, instances, resources, scene, report);
+    build_materials(*document, instances, options.metres_per_unit, resources, scene, report);
     build_primitives(*document, instances, resources.buffers, options.metres_per_unit, scene,
                      report);
     const auto is_empty = [](const Primitive& primitive) { return primitive.index.empty(); };
@@ -94,11 +105,12 @@ Result<ImportedScene> import_gltf(const std::filesystem::path& path, const Impor
                           "give a number above 0");
     }
     try {
-        Scene scene = import(path, options, report);
+        std::string media;
+        Scene scene = import(path, options, media, report);
         if (report.failed()) {
             return report.take_error();
         }
-        return ImportedScene{std::move(scene), report.take_warnings()};
+        return ImportedScene{std::move(scene), report.take_warnings(), std::move(media)};
     } catch (const std::bad_alloc&) {
         return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
                           "split or simplify the scene");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "formats/opal/result.h"
@@ -17,6 +18,8 @@ struct ImportOptions {
 struct ImportedScene {
     Scene scene;
     std::vector<Diagnostic> warnings;  ///< what was repaired, and what the baker will not simulate
+    std::string media;  ///< the root extension OPALINE_media as text, not yet applied: see
+                        ///< parse_media and apply_media of formats/media; empty: none
 };
 
 /// Reads a glTF 2.0 file, text or binary (told apart by content), with its buffers and the

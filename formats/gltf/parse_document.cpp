@@ -17,6 +17,8 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
 
+#include "formats/gltf/read_translucency.h"
+
 namespace opaline::formats::gltf {
 
 namespace {
@@ -275,6 +277,7 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     drop_extras(root);
     const int no_view = give_every_accessor_a_view(root);
     const std::string text = root.dump(-1, ' ', true, Json::error_handler_t::replace);
+    const std::vector<TranslucencySource> translucency = read_translucency(root, report);
     root = nullptr;
 
     tinygltf::TinyGLTF reader;
@@ -312,6 +315,7 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     }
     for (std::size_t i = 0; i < model.materials.size(); ++i) {
         document.materials.push_back(convert(model.materials[i], i, report));
+        document.materials.back().translucency = translucency.at(i);
     }
     for (const auto& texture : model.textures) {
         document.textures.push_back({link(texture.source), link(texture.sampler)});

@@ -8,8 +8,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const Arguments kCommands = {"bake",    "plan",   "info",    "verify",
-                             "relight", "render", "compare", "example"};
+const Arguments kCommands = {"bake",   "plan",    "info",  "verify", "relight",
+                             "render", "compare", "phase", "example"};
 
 TEST(Usage, HelpListsEveryCommandAndTheExitCodes) {
     const Outcome help = run_opaline({"--help"});
@@ -49,7 +49,7 @@ TEST(Usage, BadCommandLinesExitWithTwoAndSayWhereHelpIs) {
         {"bake", scene, "-o", out, "--coefficients", "3"},
         {"bake", scene, "-o", out, "--coefficients", "many"},
         {"bake", scene, "-o", out, "--effects", "sparkle"},
-        {"bake", scene, "-o", out, "--effects", "multiple"},
+        {"bake", scene, "-o", out, "--effects", "cloud"},
         {"bake", scene, "-o", out, "--threads", "-1"},
         {"bake", scene, "-o", out, "--threads", "x"},
         {"bake", scene, "-o", out, "--seed", "-1"},
@@ -65,6 +65,19 @@ TEST(Usage, BadCommandLinesExitWithTwoAndSayWhereHelpIs) {
         {"relight", out},
         {"render", out, "--light", "white"},
         {"compare", "a.exr"},
+        {"phase"},  // hg without g
+        {"phase", "--g", "1"},
+        {"phase", "--g", "nan"},
+        {"phase", "--g", "x"},
+        {"phase", "--type", "mie"},
+        {"phase", "--type", "rayleigh", "--g", "0.5"},
+        {"phase", "--type", "gaussian"},
+        {"phase", "--type", "gaussian", "--rms-angle", "0"},
+        {"phase", "--type", "gaussian", "--rms-angle", "2"},
+        {"phase", "--type", "table"},
+        {"phase", "--g", "0.5", "--table", "file.csv"},
+        {"phase", "--g", "0.5", "--samples", "1"},
+        {"phase", "--g", "0.5", "--format", "xml"},
         {"example", "no-such-scene", "-o", small.path("")},
     };
     for (const Arguments& arguments : bad) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "bake/multiple/gather_profile.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/half_space_walk.h"
 
@@ -11,6 +13,8 @@ namespace opaline::bake {
 namespace {
 
 using formats::Medium;
+
+constexpr double kPi = std::numbers::pi;
 
 Medium make_medium(formats::Rgb sigma_s, formats::Rgb sigma_a, float eta) {
     Medium medium;
@@ -20,22 +24,61 @@ Medium make_medium(formats::Rgb sigma_s, formats::Rgb sigma_a, float eta) {
     return medium;
 }
 
-TEST(MediumProfile, TableAgreesWithTheDipole) {
+TEST(GatherProfile, TableOfDenseSamplesIsTheProfileItself) {
     const MediumProfile p =
-        make_medium_profile(make_medium({2190, 2620, 3000}, {2.1f, 4.1f, 7.1f}, 1.5f), 0.3, 0, {});
+        make_medium_profile(make_medium({2190, 2620, 3000}, {2.1f, 4.1f, 7.1f}, 1.5f), 0, {});
+    const GatherProfile dense = make_gather_profile(p, 0.5 * p.smallest, 0.3);
+    EXPECT_EQ(dense.near_radius, 0);
     for (double r = 0; r < 0.29; r = 1.3 * r + 1e-5) {
-        const auto value = eval_profile(p, static_cast<float>(r * r));
+        const auto value = eval_far(dense, static_cast<float>(r * r));
         for (std::size_t band = 0; band < 3; ++band) {
-            const double peak = eval_dipole(p.dipole[band], 0);
-            const double exact = p.scale[band] * eval_dipole(p.dipole[band], r);
-            EXPECT_NEAR(static_cast<double>(value[band]), exact, 2e-4 * exact + 1e-7 * peak) << r;
+            const double exact = p.eval(band, r);
+            EXPECT_NEAR(static_cast<double>(value[band]), exact,
+                        2e-4 * exact + 1e-7 * p.eval(band, 0))
+                << r;
         }
     }
 }
 
+TEST(GatherProfile, FarAndNearPartTogetherAreTheTotal) {
+    for (const Medium::Profile kind : {Medium::Profile::classic, Medium::Profile::better,
+                                       Medium::Profile::beams, Medium::Profile::normalized}) {
+        Medium medium = make_medium({900, 500, 2000}, {2, 50, 5}, 1.3f);
+        medium.profile = kind;
+        const MediumProfile p = make_medium_profile(medium, 0, {});
+        for (const double spacing : {0.3, 2.0, 30.0}) {
+            const double h = spacing * p.smallest, reach = 3e4 * p.smallest;
+            const GatherProfile split = make_gather_profile(p, h, reach);
+            std::array<double, 3> sum{};
+            double low = 0;
+            for (double high = 1e-3 * h; high < reach; low = high, high *= 1.002) {
+                const double r = 0.5 * (low + high);
+                const auto value = eval_far(split, static_cast<float>(r * r));
+                for (std::size_t b = 0; b < 3; ++b) {
+                    sum[b] += static_cast<double>(value[b]) * kPi * (high * high - low * low);
+                }
+            }
+            for (std::size_t b = 0; b < 3; ++b) {
+                EXPECT_NEAR(sum[b] + static_cast<double>(split.near_mass[b]), p.total(b),
+                            3e-3 * p.total(b))
+                    << static_cast<int>(kind) << " " << spacing << " " << b;
+            }
+        }
+    }
+}
+
+TEST(MediumProfile, NormalizedDiffusionHasTheWholeResponse) {
+    Medium medium = make_medium({800, 950, 100}, {200, 50, 900}, 1.3f);
+    medium.profile = Medium::Profile::normalized;
+    const MediumProfile p = make_medium_profile(medium, 0, {});
+    const double escape = 1 - fresnel_moments(1.3f).external;
+    const auto walked = walk_half_space(0.8, 0, 1.3, 200000, 9, {});
+    EXPECT_NEAR(p.total(0) * escape, walked.single + walked.multiple, 4e-3);
+}
+
 TEST(MediumProfile, HalfSpaceReturnsWhatTheRandomWalkDoes) {
     const MediumProfile p =
-        make_medium_profile(make_medium({800, 500, 0}, {200, 500, 10}, 1.3f), 1, 0, {});
+        make_medium_profile(make_medium({800, 500, 0}, {200, 500, 10}, 1.3f), 0, {});
     const double escape = 1 - fresnel_moments(1.3f).external;
     EXPECT_NEAR(p.total(0) * escape, walk_half_space(0.8, 0, 1.3, 200000, 9, {}).multiple, 3e-3);
     EXPECT_NEAR(p.total(1) * escape, walk_half_space(0.5, 0, 1.3, 200000, 9, {}).multiple, 3e-3);
@@ -45,8 +88,7 @@ TEST(MediumProfile, HalfSpaceReturnsWhatTheRandomWalkDoes) {
 TEST(MediumProfile, WithoutAbsorptionNothingIsLost) {
     // Multiple and single parts together are all that entered (translucency.md 7.6).
     for (const float eta : {1.0f, 1.3f, 1.5f}) {
-        const MediumProfile p =
-            make_medium_profile(make_medium({5, 5, 5}, {0, 0, 0}, eta), 1, 0, {});
+        const MediumProfile p = make_medium_profile(make_medium({5, 5, 5}, {0, 0, 0}, eta), 0, {});
         const double escape = 1 - fresnel_moments(static_cast<double>(eta)).external;
         const double single =
             walk_half_space(1e-3, 0, static_cast<double>(eta), 200000, 4, {}).single / 1e-3;
@@ -57,18 +99,18 @@ TEST(MediumProfile, WithoutAbsorptionNothingIsLost) {
 TEST(MediumProfile, ClassicAndPaperAreLeftAsTheyAre) {
     Medium medium = make_medium({2190, 2620, 3000}, {2.1f, 4.1f, 7.1f}, 1.5f);
     medium.profile = Medium::Profile::classic;
-    const MediumProfile classic = make_medium_profile(medium, 1, 0, {});
+    const MediumProfile classic = make_medium_profile(medium, 0, {});
     EXPECT_NEAR(classic.total(0), 0.83031, 1e-4);
     EXPECT_NEAR(classic.exit, 1 - 0.091778, 1e-5);
     medium.fidelity = Medium::Fidelity::paper;
-    EXPECT_EQ(make_medium_profile(medium, 1, 0, {}).exit, 1);
+    EXPECT_EQ(make_medium_profile(medium, 0, {}).exit, 1);
 }
 
 TEST(MediumProfile, AnisotropyReducesScattering) {
     Medium medium = make_medium({1000, 1000, 1000}, {1, 1, 1}, 1.3f);
     medium.profile = Medium::Profile::classic;
     medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.8f, 0, {}, {}};
-    EXPECT_NEAR(make_medium_profile(medium, 1, 0, {}).smallest_z, 1 / 201.0, 1e-6);
+    EXPECT_NEAR(make_medium_profile(medium, 0, {}).smallest, 1 / 201.0, 1e-6);
 }
 
 }  // namespace

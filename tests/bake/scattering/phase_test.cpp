@@ -20,22 +20,6 @@ TEST(HenyeyGreenstein, ValuesAreThoseOfTheTable) {
     }
 }
 
-TEST(HenyeyGreenstein, FactorisationErrorIsThatOfTheTable) {
-    OPALINE_REFERENCE_ROWS(relative, "translucency.csv", "hg_rms_rel");
-    OPALINE_REFERENCE_ROWS(absolute, "translucency.csv", "hg_rms_abs");
-    const auto rms = [](const tests::ReferenceRow& row) {
-        return henyey_greenstein_rms(row.number("g"), static_cast<unsigned>(row.number("K")));
-    };
-    for (const auto& row : relative) {
-        EXPECT_NEAR(rms(row), row.expected, row.tolerance()) << row.name();
-    }
-    for (const auto& row : absolute) {
-        const double q = std::pow(row.number("g"), 2);
-        const double norm = std::sqrt((1 + q) / ((1 - q) * (1 - q))) / (4 * std::numbers::pi);
-        EXPECT_NEAR(rms(row) * norm, row.expected, row.tolerance()) << row.name();
-    }
-}
-
 TEST(HenyeyGreenstein, IntegratesToOneWithMeanCosineG) {
     const GaussLegendre rule = make_gauss_legendre(400);
     for (const double g : {-0.9, -0.3, 0.0, 0.5, 0.95}) {

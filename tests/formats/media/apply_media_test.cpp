@@ -58,14 +58,17 @@ TEST(ApplyMedia, ReplacesWhatTheSceneSaysAndOpaqueRemovesIt) {
     EXPECT_FALSE(scene.materials[1].medium.has_value());
 }
 
-TEST(ApplyMedia, BaseColourReplacesTheFactorOnlyWhereItIsGiven) {
-    Scene scene = scene_of({"A", "B"});
-    scene.materials[0].base_color = scene.materials[1].base_color = {0.1f, 0.2f, 0.3f};
+TEST(ApplyMedia, BaseColourIsThatOfTheEntryThenWhiteInAMediumThenTheFactor) {
+    Scene scene = scene_of({"A", "B", "C"});
+    for (formats::Material& material : scene.materials) {
+        material.base_color = {0.1f, 0.2f, 0.3f};
+    }
     (void)apply_media(media_of(R"("A": {"preset": "cream", "base_color": [1, 1, 0]},
-                                  "B": {"preset": "cream"})"),
+                                  "B": {"preset": "cream"}, "C": {"opaque": true})"),
                       scene);
     EXPECT_EQ(scene.materials[0].base_color, (Rgb{1, 1, 0}));
-    EXPECT_EQ(scene.materials[1].base_color, (Rgb{0.1f, 0.2f, 0.3f}));
+    EXPECT_EQ(scene.materials[1].base_color, (Rgb{1, 1, 1}));
+    EXPECT_EQ(scene.materials[2].base_color, (Rgb{0.1f, 0.2f, 0.3f}));
 }
 
 TEST(ApplyMedia, NameThatNoMaterialHasIsAWarningThatListsTheScenes) {

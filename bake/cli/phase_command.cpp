@@ -1,0 +1,234 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "bake/cli/command.h"
+#include "bake/cli/messages.h"
+#include "bake/scattering/phase.h"
+#include "bake/scattering/phase_maps.h"
+#include "bake/scattering/phase_series.h"
+#include "formats/media/limits.h"
+#include "formats/media/read_phase_table.h"
+
+namespace opaline::cli {
+namespace {
+
+using formats::make_error;
+using formats::PhaseFunction;
+using Json = nlohmann::ordered_json;
+
+enum class Format { json, csv };
+
+struct Options {
+    PhaseFunction::Type type = PhaseFunction::Type::henyey_greenstein;
+    double g = std::nan(""), rms_angle = std::nan("");
+    std::string table;
+    unsigned samples = 181;
+    Format format = Format::json;
+    CLI::Option *g_option = nullptr, *rms_angle_option = nullptr, *table_option = nullptr;
+};
+
+/// The function itself, its series, and the object that names it in a media file.
+struct Subject {
+    std::function<double(double)> p;
+    bake::PhaseSeries series;
+    Json json;
+};
+
+constexpr unsigned kDegrees = 32, kMostTerms = 25, kCubemapSize = 16;
+constexpr std::size_t kSingularValues = 100;  ///< shown; the errors take in all of them
+
+formats::Status check_options(const Options& options) {
+    using Type = PhaseFunction::Type;
+    const auto refuse = [](const char* option, std::string fault, const char* remedy) {
+        return make_error(formats::ErrorKind::usage, "", option, std::move(fault), remedy);
+    };
+    struct Rule {
+        const CLI::Option* option;
+        const char* name;
+        Type type;
+        const char* remedy;
+    };
+    const Rule rules[] = {
+        {options.g_option, "--g", Type::henyey_greenstein, "give it with --type hg alone"},
+        {options.rms_angle_option, "--rms-angle", Type::gaussian,
+         "give it with --type gaussian alone"},
+        {options.table_option, "--table", Type::tabulated, "give it with --type table alone"}};
+    for (const Rule& rule : rules) {
+        const bool given = rule.option->count() > 0, needed = options.type == rule.type;
+        if (given != needed) {
+            return refuse(rule.name, given ? "this type has no such value" : "it is missing",
+                          rule.remedy);
+        }
+    }
+    if (options.type == Type::henyey_greenstein &&
+        !(std::abs(options.g) <= formats::media::kMaxMeanCosine)) {
+        return refuse("--g", fmt::format("{} is not a mean cosine", options.g),
+                      "give one from -0.99 to 0.99");
+    }
+    if (options.type == Type::gaussian &&
+        !(options.rms_angle >= formats::media::kMinRmsAngle && options.rms_angle <= 1)) {
+        return refuse("--rms-angle", fmt::format("{} is out of range", options.rms_angle),
+                      "give radians from 0.001 to 1");
+    }
+    return formats::ok_status();
+}
+
+formats::Result<Subject> make_subject(const Options& options) {
+    using Type = PhaseFunction::Type;
+    if (options.type == Type::henyey_greenstein) {
+        const double g = options.g;  // not rounded to the single precision of PhaseFunction
+        return Subject{[g](double cosine) { return bake::henyey_greenstein(cosine, g); },
+                       bake::expand_henyey_greenstein(g, kDegrees),
+                       {{"type", "hg"}, {"g", g}}};
+    }
+    PhaseFunction phase;
+    phase.type = options.type;
+    Json json;
+    if (options.type == Type::gaussian) {
+        phase.rms_angle = static_cast<float>(options.rms_angle);
+        json = {{"type", "gaussian"}, {"rms_angle", options.rms_angle}};
+    } else if (options.type == Type::tabulated) {
+        auto table = formats::read_phase_table(options.table);
+        if (!table) {
+            return std::move(table).error();
+        }
+        phase = std::move(*table);
+        json = {{"type", "table"}, {"file", options.table}};
+    } else {
+        json = {{"type", options.type == Type::rayleigh ? "rayleigh" : "isotropic"}};
+    }
+    bake::PhaseSeries series = bake::expand_phase(phase, kDegrees);
+    const bake::PhaseDensity density = bake::make_phase_density(phase);
+    return Subject{[density](double cosine) { return bake::eval_phase(density, cosine); },
+                   std::move(series), std::move(json)};
+}
+
+/// Everything that is printed, in order.
+Json describe(const Subject& subject, const bake::PhaseMaps& maps, unsigned samples) {
+    Json all;
+    all["phase"] = subject.json;
+    all["mean_cosine"] = subject.series.lambda[1];
+    Json& function = all["function"];
+    for (unsigned i = 0; i < samples; ++i) {
+        const double angle = std::numbers::pi * (1 - i / (samples - 1.0));
+        const double cosine = i == 0 ? -1 : i + 1 == samples ? 1 : std::cos(angle);
+        function["cosine"].push_back(cosine);
+        function["value"].push_back(subject.p(cosine));
+    }
+    all["lambda"] = subject.series.lambda;
+    Json& rms = all["rms"];
+    for (unsigned terms = 1; terms <= kMostTerms; ++terms) {
+        rms["terms"].push_back(terms);
+        rms["harmonics"].push_back(bake::phase_rms_relative(subject.series, terms));
+        rms["harmonics_absolute"].push_back(bake::phase_rms(subject.series, terms));
+        rms["svd"].push_back(bake::phase_rms_relative(maps, terms));
+    }
+    all["cubemap"] = kCubemapSize;
+    all["row_error"] = maps.row_error;
+    all["singular_values"] = std::vector<double>(maps.singular_value.begin(),
+                                                 maps.singular_value.begin() + kSingularValues);
+    return all;
+}
+
+void print_csv(const Json& all) {
+    fmt::print("quantity,at,value\n");
+    const auto print = [](const char* quantity, const Json& at, const Json& value) {
+        for (std::size_t i = 0; i < value.size(); ++i) {
+            const std::string place = at.is_null() ? std::to_string(i) : at[i].dump();
+            fmt::print("{},{},{}\n", quantity, place, value[i].dump());
+        }
+    };
+    print("p", all["function"]["cosine"], all["function"]["value"]);
+    print("lambda", nullptr, all["lambda"]);
+    for (const char* name : {"harmonics", "harmonics_absolute", "svd"}) {
+        print(fmt::format("rms_{}", name).c_str(), all["rms"]["terms"], all["rms"][name]);
+    }
+    print("singular_value", nullptr, all["singular_values"]);
+}
+
+int run(const Options& options) {
+    if (const auto status = check_options(options); !status) {
+        return report_error(status.error());
+    }
+    const auto subject = make_subject(options);
+    if (!subject) {
+        return report_error(subject.error());
+    }
+    const bake::PhaseMaps maps = bake::factor_phase(subject->p, kCubemapSize, 0);
+    constexpr double kMostRowError = 0.01;
+    if (maps.row_error > kMostRowError) {
+        print_warnings({formats::make_warning(
+            options.table, "",
+            fmt::format("the lobe is too narrow for a cube map of {} x {} texels, whose rows "
+                        "integrate to 1 within {:.2g} only",
+                        kCubemapSize, kCubemapSize, maps.row_error),
+            "use the harmonics' errors, not those of the svd")});
+    }
+    const Json all = describe(*subject, maps, options.samples);
+    if (options.format == Format::csv) {
+        print_csv(all);
+    } else {
+        // A file name need not be UTF-8.
+        fmt::print("{}\n", all.dump(2, ' ', false, Json::error_handler_t::replace));
+    }
+    return kExitSuccess;
+}
+
+}  // namespace
+
+void add_phase_command(CLI::App& app, Job& job) {
+    using Type = PhaseFunction::Type;
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "phase", "Tabulate a phase function and say how many terms its factors need");
+    command->add_option("--type", options->type, "as in media files: formats/media/README.md")
+        ->transform(
+            CLI::CheckedTransformer(std::map<std::string, Type>{{"hg", Type::henyey_greenstein},
+                                                                {"isotropic", Type::isotropic},
+                                                                {"rayleigh", Type::rayleigh},
+                                                                {"gaussian", Type::gaussian},
+                                                                {"table", Type::tabulated}}))
+        ->option_text("hg|isotropic|rayleigh|gaussian|table [hg]");
+    options->g_option =
+        command->add_option("--g", options->g, "mean cosine of hg, -0.99 to 0.99; above 0: forward")
+            ->option_text("G");
+    options->rms_angle_option =
+        command
+            ->add_option("--rms-angle", options->rms_angle,
+                         "root mean square angle of the gaussian, in radians, 0.001 to 1")
+            ->option_text("A");
+    options->table_option =
+        command
+            ->add_option("--table", options->table,
+                         "measured function: lines of a cosine and a value, cosines ascending from "
+                         "-1 to 1, values relative")
+            ->option_text("FILE");
+    command
+        ->add_option("--samples", options->samples,
+                     "angles at which the function is printed, equally spaced")
+        ->check(CLI::Range(2u, 100001u))
+        ->option_text("N [181]");
+    command->add_option("--format", options->format, "csv: lines of quantity,at,value")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, Format>{{"json", Format::json}, {"csv", Format::csv}}))
+        ->option_text("json|csv [json]");
+    command->footer(
+        "Prints p(cosine) per steradian, the cosine between propagation directions; lambda_l, its\n"
+        "Legendre coefficients, p = sum (2 l + 1) / (4 pi) lambda_l P_l; the RMS error, over all\n"
+        "pairs of directions, of the first 1 to 25 spherical harmonics (relative, and per\n"
+        "steradian) and of as many terms of the singular value decomposition between the texels "
+        "of\n"
+        "a 6 x 16 x 16 cube map, weighted by solid angle; its 100 largest singular values.\n"
+        "Example:\n  opaline phase --type hg --g 0.6 --format csv");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

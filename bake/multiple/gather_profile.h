@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "bake/multiple/medium_profile.h"
+
+namespace opaline::bake {
+
+/// A medium's profile made fit for sums over samples `spacing` apart.
+///
+/// Samples farther apart than the profile is wide miss its peak or hit it: sums err by tens to
+/// thousands of per cent. So it is split in two,
+///     R_d(r) = R_far(r) + R_near(r),    R_far(r) = R_d(sqrt(r^2 + b^2)),
+/// with b chosen per band so that R_far is as wide as the spacing asks for, and zero where R_d is
+/// already. On a plane R_far integrates to exactly R_>(b), for r dr = rho d rho; what is left,
+/// R - R_>(b), goes to E around the receiver. Nothing is gained or lost, the limits are the plain
+/// sum (b = 0) and an opaque surface (T_d = R E), and nothing is asked of the surface's shape.
+/// Instead of translucency.md 3.7, whose disc must be flat.
+struct GatherProfile {
+    std::vector<std::array<float, 3>> table;  ///< R_far over log2(1 + r^2 / z^2), evenly spaced
+    double steps_per_octave = 1, inverse_z_squared = 1;
+    std::array<double, 3> total{};     ///< R per band
+    std::array<float, 3> near_mass{};  ///< R - R_>(b) per band
+    float near_radius = 0;             ///< [m] within which E is averaged; 0: no near part
+};
+
+/// `spacing` [m] between samples, `largest_distance` [m]: the table's reach.
+GatherProfile make_gather_profile(const MediumProfile& medium, double spacing,
+                                  double largest_distance);
+
+/// R_far of the three bands [1/m^2] at squared distance r2 [m^2]; 0 beyond the table.
+std::array<float, 3> eval_far(const GatherProfile& profile, float r2);
+
+}  // namespace opaline::bake

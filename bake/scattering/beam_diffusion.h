@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "bake/scattering/dipole.h"
+
+namespace opaline::bake {
+
+/// Photon beam diffusion [Habel2013], multiple part: the better dipole averaged over the depth at
+/// which a beam entering at a right angle first scatters (translucency.md 3.4),
+///   R_d(r) = mean over t of kappa(r, t) R_d^t(r), kappa = 1 - exp(-2 sigma_t' (d_r + t)).
+struct BeamDiffusion {
+    std::vector<Dipole> source;  ///< one per depth t, all of the same weight; empty: black
+    double sigma_t_prime = 0;
+};
+
+/// Arguments as for make_dipole.
+BeamDiffusion make_beam_diffusion(double sigma_s_prime, double sigma_a, double eta);
+
+/// R_d(r) [1/length^2], r >= 0.
+double eval_beam_diffusion(const BeamDiffusion& profile, double r);
+/// int_a^inf R_d 2 pi r dr, to 1e-6 of the total: where kappa differs from one by quadrature,
+/// beyond in closed form.
+double beam_diffusion_tail(const BeamDiffusion& profile, double a);
+
+}  // namespace opaline::bake
