@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -15,8 +16,10 @@
 #include "bake/encode/select_coefficients.h"
 #include "bake/measure/check_direct.h"
 #include "bake/measure/check_translucent.h"
+#include "bake/plan/plan_rules.h"
 #include "bake/plan/row_layout.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/specular/bake_openness.h"
 #include "bake/translucent/translucent_rows.h"
 #include "bake/visibility/hidden_receivers.h"
 #include "bake/visibility/irradiance_transport.h"
@@ -153,6 +156,32 @@ formats::Result<formats::SparseRows> bake_rows(const formats::Scene& scene, cons
     return rows;
 }
 
+// Of all vertices; empty where nothing is glossy. `receivers` of all, with their normals.
+std::vector<formats::Openness> bake_all_openness(const formats::Scene& scene, const RayScene& rays,
+                                                 std::span<const RowLayout> layouts,
+                                                 std::span<const Receiver> receivers,
+                                                 const Context& context, BakeResult& result) {
+    std::vector<formats::Openness> openness;
+    if (std::none_of(layouts.begin(), layouts.end(), [](const RowLayout& l) { return l.glossy; })) {
+        return openness;
+    }
+    return run_stage(result, "openness", [&](std::uint64_t& traced) {
+        const DirectionSet directions = make_sparse_direction_set(kOpennessCubemap, 0);
+        std::size_t first = 0;
+        for (const formats::Primitive& primitive : scene.primitives) {
+            const std::size_t count = primitive.position.size();
+            if (layouts[primitive.material].glossy) {
+                const auto part = bake_openness(rays, directions, receivers.subspan(first, count),
+                                                context, traced);
+                openness.insert(openness.end(), part.begin(), part.end());
+            }
+            first += count;
+            openness.resize(first);
+        }
+        return std::move(openness);
+    });
+}
+
 ErrorReport check_rows(const formats::Scene& scene, const RayScene& rays,
                        std::span<const Receiver> receivers, std::span<const BodyPoint> points,
                        const MediaStages& media, const Knobs& knobs,
@@ -207,12 +236,14 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
             layouts[m].tint = half_space_albedo(*scene.materials[m].medium, knobs->seed, context);
         }
     }
+    std::vector<Receiver> all;
     std::vector<BodyPoint> points;
     const std::vector<Receiver> receivers = run_stage(result, "receivers", [&](std::uint64_t&) {
-        std::vector<Receiver> all = make_vertex_receivers(scene);
+        all = make_vertex_receivers(scene);
         points = make_body_points(scene, all);
-        leave_out_skipped(scene, layouts, all);
-        return take_over_hidden(*rays, scene, std::move(all));
+        std::vector<Receiver> diffuse = all;
+        leave_out_skipped(scene, layouts, diffuse);
+        return take_over_hidden(*rays, scene, std::move(diffuse));
     });
     formats::Result<std::vector<TestLight>> lights = run_stage(
         result, "test lights",
@@ -233,7 +264,12 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
     if (!rows) {
         return std::move(rows).error();
     }
-    result.asset = pack_asset(scene, layouts, std::move(*rows));
+    std::vector<formats::Openness> openness =
+        bake_all_openness(scene, *rays, layouts, all, context, result);
+    if (context.cancelled()) {
+        return interrupted();
+    }
+    result.asset = pack_asset(scene, layouts, std::move(*rows), std::move(openness));
     result.error = run_stage(result, "self-check", [&](std::uint64_t& traced) {
         return check_rows(scene, *rays, receivers, points, media, *knobs, *lights,
                           result.asset.view(), context, traced);

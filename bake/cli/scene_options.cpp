@@ -115,14 +115,14 @@ formats::Result<std::vector<std::string>> parse_effects(const SceneOptions& opti
     constexpr std::array<std::string_view, 11> kKnown{
         "direct",    "multiple",      "single",          "interreflection", "emitters", "specular",
         "filtering", "volume-single", "volume-multiple", "cloud",           "radiosity"};
-    constexpr std::array<std::string_view, 3> kHere{"direct", "multiple", "single"};
+    constexpr std::array<std::string_view, 4> kHere{"direct", "multiple", "single", "specular"};
     std::vector<std::string> effects;
     if (options.effects == "auto") {
         return effects;
     }
     const auto refuse = [](std::string fault) {
         return formats::make_error(formats::ErrorKind::usage, "", "--effects", std::move(fault),
-                                   "give auto, or some of direct,multiple,single");
+                                   "give auto, or some of direct,multiple,single,specular");
     };
     std::stringstream list(options.effects);
     for (std::string name; std::getline(list, name, ',');) {

@@ -46,7 +46,8 @@ PreviewImageData to_preview(const Image8& image) {
 
 }  // namespace
 
-Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseRows transport) {
+Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseRows transport,
+                 std::vector<Openness> openness) {
     Asset asset;
     const bool textured = !scene.images.empty();
     std::uint32_t rows = 0, band_rows = 0;
@@ -84,6 +85,9 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         }
         record.flags = (material.double_sided ? PrimitiveRecord::kDoubleSided : 0) |
                        (layout.separate ? PrimitiveRecord::kSeparate : 0);
+        if (!openness.empty()) {
+            asset.roughness.push_back(layout.glossy ? material.medium->roughness : kNotGlossy);
+        }
         asset.primitives.push_back(record);
         append_vertices(asset, p, material.base_color * layout.tint, textured);
         asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
@@ -91,6 +95,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
     for (const Image8& image : scene.images) {
         asset.images.push_back(to_preview(image));
     }
+    asset.openness = std::move(openness);
     asset.transport = std::move(transport);
     return asset;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "bake/plan/row_layout.h"
 #include "formats/opal/asset.h"
@@ -10,8 +11,9 @@ namespace opaline::bake {
 
 /// Puts a scene's preview geometry and its finished transport rows into one asset, primitives in
 /// scene order. `layouts`: one per material. `transport` has the rows of all vertices, as many per
-/// vertex and with as many bands as the layout of its material says.
+/// vertex and with as many bands as the layout of its material says. `openness`: one per vertex, or
+/// empty where no material is glossy.
 formats::Asset pack_asset(const formats::Scene& scene, std::span<const RowLayout> layouts,
-                          formats::SparseRows transport);
+                          formats::SparseRows transport, std::vector<formats::Openness> openness);
 
 }  // namespace opaline::bake

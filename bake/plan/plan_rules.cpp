@@ -12,6 +12,7 @@
 #include "bake/scattering/phase_series.h"
 #include "formats/media/mean_cosine.h"
 #include "formats/opal/cubemap.h"
+#include "formats/opal/openness.h"
 
 namespace opaline::bake {
 namespace {
@@ -194,9 +195,32 @@ PlanEntry decide_single(const PlanInput& input) {
     return entry;
 }
 
-constexpr std::array<PlanRule, 3> kRules{{{"direct", any_material, decide_direct},
+PlanEntry decide_specular(const PlanInput& input) {
+    const formats::Medium& medium = *input.material.medium;
+    PlanEntry entry;
+    // At grazing angles everything is reflected, where there is a boundary at all.
+    entry.bound = medium.eta == 1 ? 0 : 1;
+    if (is_comparison(input.knobs) || !is_wanted(input.knobs, "specular")) {
+        entry.reason = "left out by --effects";
+    } else if (entry.bound == 0) {
+        entry.reason = "the index of refraction is that of the air: nothing is mirrored";
+    } else {
+        entry.on = true;
+        entry.reason = "the boundary of the medium mirrors its surroundings";
+        // One ray a texel of a small cube map.
+        constexpr double kShare = 0.25 * kOpennessCubemap * kOpennessCubemap;
+        entry.predicted_seconds = kShare / (input.knobs.cubemap_size * input.knobs.cubemap_size) *
+                                  predict_trace_seconds(input.subject.receivers, input);
+        entry.predicted_bytes =
+            static_cast<std::uint64_t>(input.subject.receivers) * sizeof(formats::Openness);
+    }
+    return entry;
+}
+
+constexpr std::array<PlanRule, 4> kRules{{{"direct", any_material, decide_direct},
                                           {"multiple", has_medium, decide_multiple},
-                                          {"single", has_medium, decide_single}}};
+                                          {"single", has_medium, decide_single},
+                                          {"specular", has_medium, decide_specular}}};
 
 // L1 of a half space under uniform light, integrated over all exit directions:
 // translucency.md 3.6 on a plane, isotropic, where 1/(sigma_t (1 + mu_o'/mu_i')) is what the

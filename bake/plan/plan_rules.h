@@ -8,6 +8,9 @@
 
 namespace opaline::bake {
 
+/// Cube map over which openness is measured for specular reflection.
+inline constexpr std::uint32_t kOpennessCubemap = 16;
+
 /// What the rules ask about one material's surfaces.
 struct PlanSubject {
     double receivers = 0, triangles = 0;

@@ -22,7 +22,9 @@ std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vecto
         layout.translucent = scene.materials[m].medium.has_value() && !layout.direct;
         layout.multiple = is_on("multiple");
         layout.single_terms = is_on("single") ? find_entry(plan, "single", m)->terms : 0;
-        layout.separate = layout.translucent && knobs.separate_terms;
+        // Multiple scattering alone in its row is told to be so.
+        layout.separate = layout.translucent && (knobs.separate_terms || layout.single_terms == 0);
+        layout.glossy = layout.translucent && is_on("specular");
     }
     return layouts;
 }

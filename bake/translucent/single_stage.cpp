@@ -4,6 +4,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/scattering/phase_series.h"
+#include "bake/single/texel_directions.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -39,8 +40,7 @@ SingleStage prepare_single(const formats::Scene& scene, const RayScene& rays,
         stage.directions = make_direction_set(options.cubemap_size);
         return stage;
     }
-    // One render a direction: the smooth transport of single scattering needs no more.
-    stage.directions = make_sparse_direction_set(options.cubemap_size, 0);
+    stage.directions = make_texel_directions(options.cubemap_size);
     stage.mesh = make_body_mesh(scene, rays, material, context);
     stage.view_size = light_view_size(stage.mesh);
     return stage;
