@@ -101,7 +101,7 @@ void prepare_media(const formats::Scene& scene, const RayScene& rays,
         if (layout.single_terms > 0) {
             stages.single = run_stage(result, "light maps" + of, [&](std::uint64_t&) {
                 return prepare_single(scene, rays, m,
-                                      {knobs.single_cubemap(), knobs.depth_samples,
+                                      {knobs.single_cubemap, knobs.depth_samples,
                                        layout.single_terms, knobs.single_by_rays},
                                       context);
             });

@@ -1,5 +1,6 @@
 #include "bake/plan/knobs.h"
 
+#include <algorithm>
 #include <array>
 
 #include "formats/opal/cubemap.h"
@@ -30,6 +31,7 @@ Knobs preset(Quality quality) {
             knobs.tolerance = 3e-4;
             knobs.depth_samples = 8;
             knobs.phase_tolerance = 0.01;
+            knobs.single_cubemap = 32;
             return knobs;
         default:
             knobs.cubemap_size = 64;
@@ -39,6 +41,7 @@ Knobs preset(Quality quality) {
             knobs.tolerance = 1e-5;
             knobs.depth_samples = 16;
             knobs.phase_tolerance = 1e-3;
+            knobs.single_cubemap = 64;
             knobs.single_by_rays = true;
             return knobs;
     }
@@ -95,6 +98,7 @@ formats::Result<Knobs> resolve_knobs(const BakeOptions& options) {
         }
         knobs.coefficients = options.coefficients;
     }
+    knobs.single_cubemap = std::min(knobs.single_cubemap, knobs.cubemap_size);
     if (knobs.coefficients >= formats::cubemap_texels(knobs.cubemap_size)) {
         knobs.coefficients = kAllCoefficients;
     }

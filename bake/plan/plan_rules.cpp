@@ -179,7 +179,7 @@ PlanEntry decide_single(const PlanInput& input) {
     entry.reason = entry.terms == 1 ? "light scatters once inside, alike in all directions"
                                     : "light scatters once inside; " + std::to_string(entry.terms) +
                                           " terms of the phase function";
-    const double n = input.knobs.single_cubemap();
+    const double n = input.knobs.single_cubemap;
     const double views = 6 * n * n, nodes = input.subject.receivers * input.knobs.depth_samples;
     const double level = std::log2(std::max(input.all_triangles, 1.0));
     entry.predicted_seconds =
