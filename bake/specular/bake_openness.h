@@ -25,7 +25,7 @@ OpenHemisphere gather_openness(const RayScene& rays, const DirectionSet& directi
                                const Receiver& receiver);
 
 /// Openness of each receiver, in order; fewer if the context is cancelled. A sparse direction set
-/// of 16 or 32 texels is enough: four bytes and a cone hold no more. The same for any number of
+/// of 16 texels is enough: four bytes and a cone hold no more. The same for any number of
 /// threads. Adds to `traced`.
 std::vector<formats::Openness> bake_openness(const RayScene& rays, const DirectionSet& directions,
                                              std::span<const Receiver> receivers,

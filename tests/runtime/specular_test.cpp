@@ -19,7 +19,7 @@ using formats::Environment;
 using formats::Rgb;
 using formats::Vec3;
 
-constexpr std::uint32_t kAllLevels[] = {0, 4, 8, 20, 40};
+constexpr std::uint32_t kAllLevels[] = {0, 8, 20, 40};
 
 Environment constant(Rgb radiance) {
     return tests::lat_long_map(64, 32, [radiance](Vec3) { return radiance; });
@@ -124,9 +124,10 @@ TEST(SpecularLight, StaysFiniteUnderAbsurdLight) {
 }
 
 TEST(SpecularLight, HasTheSameBitsForAnyNumberOfThreads) {
+    constexpr std::uint32_t kSomeLevels[] = {8, 40};
     const Environment sky = tests::lat_long_map(64, 32, tests::smooth_sky);
-    const SpecularLight one = prefilter_specular(sky, kAllLevels, {}, 1);
-    const SpecularLight three = prefilter_specular(sky, kAllLevels, {}, 3);
+    const SpecularLight one = prefilter_specular(sky, kSomeLevels, {}, 1);
+    const SpecularLight three = prefilter_specular(sky, kSomeLevels, {}, 3);
     for (std::size_t i = 0; i < one.maps.size(); ++i) {
         EXPECT_EQ(one.maps[i].radiance.pixel, three.maps[i].radiance.pixel);
     }
@@ -181,7 +182,7 @@ Asset make_glossy_asset(float roughness, std::uint32_t flags = 0) {
 }
 
 TEST(Specular, OpenReceiverUnderWhiteMirrorsWhatItDoesNotLetThrough) {
-    for (const float roughness : {0.0f, 0.2f, 0.5f, 1.0f}) {
+    for (const float roughness : {0.2f, 0.5f, 1.0f}) {
         const Asset asset = make_glossy_asset(roughness);
         const SpecularLight light =
             prefilter_specular(constant({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
@@ -195,7 +196,7 @@ TEST(Specular, OpenReceiverUnderWhiteMirrorsWhatItDoesNotLetThrough) {
 }
 
 TEST(Specular, MirrorsTheLightWhereTheLawOfReflectionSaysAndTurnsWithIt) {
-    const Asset asset = make_glossy_asset(0.1f);
+    const Asset asset = make_glossy_asset(0.2f);
     const Vec3 toward = normalize(Vec3{-0.6f, 0.8f, 0});
     const Environment spot = tests::lat_long_map(256, 128, [&](Vec3 d) {
         const float on = dot(d, toward) > 0.99f ? 1.0f : 0.0f;
@@ -211,7 +212,10 @@ TEST(Specular, MirrorsTheLightWhereTheLawOfReflectionSaysAndTurnsWithIt) {
         const ViewOfReceiver aside{
             {0, 1, 0}, rotation.world_from_light({-0.6f, 0.8f, 0}), 0.8f, false};
         const float f = 1 - fresnel_transmittance(0.8f, 1.5f);
-        EXPECT_NEAR(eval_specular(light, lobe, at, 1.5f, {0, 1, 0}, 1).r, f, 0.1f * f);
+        // A spot of half angle 8.1 degrees catches half vectors up to h = 4.05 degrees: of a GGX
+        // lobe tan^2 h / (alpha^2 + tan^2 h), alpha = 0.04.
+        const float caught = 0.00502f / (0.0016f + 0.00502f);
+        EXPECT_NEAR(eval_specular(light, lobe, at, 1.5f, {0, 1, 0}, 1).r, caught * f, 0.03f * f);
         EXPECT_LT(eval_specular(light, lobe, aside, 1.5f, {0, 1, 0}, 1).r, 0.01f * f);
     }
 }
