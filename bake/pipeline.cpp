@@ -156,10 +156,9 @@ formats::Result<formats::SparseRows> bake_rows(const formats::Scene& scene, cons
     return rows;
 }
 
-// Of all vertices; empty where nothing is glossy. `receivers` of all, with their normals.
+// Of all vertices; empty where nothing is glossy.
 std::vector<formats::Openness> bake_all_openness(const formats::Scene& scene, const RayScene& rays,
                                                  std::span<const RowLayout> layouts,
-                                                 std::span<const Receiver> receivers,
                                                  const Context& context, BakeResult& result) {
     std::vector<formats::Openness> openness;
     if (std::none_of(layouts.begin(), layouts.end(), [](const RowLayout& l) { return l.glossy; })) {
@@ -167,6 +166,9 @@ std::vector<formats::Openness> bake_all_openness(const formats::Scene& scene, co
     }
     return run_stage(result, "openness", [&](std::uint64_t& traced) {
         const DirectionSet directions = make_sparse_direction_set(kOpennessCubemap, 0);
+        const std::vector<Receiver> all =
+            take_over_hidden(rays, scene, make_vertex_receivers(scene));
+        const std::span<const Receiver> receivers = all;
         std::size_t first = 0;
         for (const formats::Primitive& primitive : scene.primitives) {
             const std::size_t count = primitive.position.size();
@@ -236,14 +238,12 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
             layouts[m].tint = half_space_albedo(*scene.materials[m].medium, knobs->seed, context);
         }
     }
-    std::vector<Receiver> all;
     std::vector<BodyPoint> points;
     const std::vector<Receiver> receivers = run_stage(result, "receivers", [&](std::uint64_t&) {
-        all = make_vertex_receivers(scene);
+        std::vector<Receiver> all = make_vertex_receivers(scene);
         points = make_body_points(scene, all);
-        std::vector<Receiver> diffuse = all;
-        leave_out_skipped(scene, layouts, diffuse);
-        return take_over_hidden(*rays, scene, std::move(diffuse));
+        leave_out_skipped(scene, layouts, all);
+        return take_over_hidden(*rays, scene, std::move(all));
     });
     formats::Result<std::vector<TestLight>> lights = run_stage(
         result, "test lights",
@@ -265,7 +265,7 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
         return std::move(rows).error();
     }
     std::vector<formats::Openness> openness =
-        bake_all_openness(scene, *rays, layouts, all, context, result);
+        bake_all_openness(scene, *rays, layouts, context, result);
     if (context.cancelled()) {
         return interrupted();
     }

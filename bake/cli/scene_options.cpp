@@ -79,7 +79,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         .add_option("--depth-samples", options.bake.depth_samples,
                     "points along the inward normal at which light is looked for that scatters "
                     "once; default as the quality says")
-        ->check(CLI::Range(1u, 64u))
+        ->check(CLI::Range(1u, 256u))
         ->option_text("D");
     command
         .add_option("--phase-terms", options.bake.phase_terms,
