@@ -92,8 +92,9 @@ void prepare_media(const formats::Scene& scene, const RayScene& rays,
             stages.multiple = run_stage(result, "samples" + of, [&](std::uint64_t& traced) {
                 const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
                 MultipleStage stage = prepare_multiple(
-                    scene, rays, m, {knobs.cubemap_size, knobs.samples, kept, knobs.seed}, vectors,
-                    context);
+                    scene, rays, m,
+                    {knobs.cubemap_size, knobs.samples, knobs.exact_samples, kept, knobs.seed},
+                    vectors, context);
                 traced = stage.transport.rays;
                 return stage;
             });

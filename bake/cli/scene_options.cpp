@@ -65,8 +65,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->option_text("M");
     command
         .add_option("--samples", options.bake.samples,
-                    "at most this many samples on the surface of each medium; default as the "
-                    "quality says")
+                    "samples on the surface of each medium; default: as many as its mean free path "
+                    "asks for, up to a limit that the quality sets")
         ->check(CLI::Range(100u, 10000000u))
         ->option_text("N");
     command

@@ -35,8 +35,10 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     }
     const MediumProfile profile =
         make_medium_profile(*scene.materials[material].medium, options.seed, context);
-    const std::vector<SurfaceSample> samples = sample_surface(
-        scene, primitives, count_samples(area, profile, options.samples), options.seed);
+    const std::uint32_t count =
+        options.exact_samples ? options.samples : count_samples(area, profile, options.samples);
+    const std::vector<SurfaceSample> samples =
+        sample_surface(scene, primitives, count, options.seed);
     const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
     MultipleStage stage;
     stage.exit = profile.exit;

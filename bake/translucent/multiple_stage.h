@@ -23,8 +23,9 @@ struct MultipleStage {
 
 struct MultipleOptions {
     std::uint32_t cubemap_size = 32;
-    std::uint32_t samples = 60000;  ///< at most
-    std::uint32_t kept = 128;       ///< coefficients of each sample; each node keeps twice as many
+    std::uint32_t samples = 60000;  ///< at most, or exactly
+    bool exact_samples = false;
+    std::uint32_t kept = 128;  ///< coefficients of each sample; each node keeps twice as many
     std::uint64_t seed = 0;
 };
 
