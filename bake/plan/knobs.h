@@ -38,7 +38,8 @@ struct Knobs {
     std::uint32_t cubemap_size = 32;
     std::uint32_t coefficients = 128;
     std::uint32_t code_bits = 8;    ///< of the stored detail coefficients
-    std::uint32_t samples = 60000;  ///< at most, on the surface of each medium
+    std::uint32_t samples = 60000;  ///< on the surface of each medium
+    bool exact_samples = false;     ///< otherwise `samples` is the most there may be
     double tolerance = 1e-3;        ///< GatherOptions::tolerance
     std::uint32_t depth_samples = 6;
     std::uint32_t phase_terms = 0;  ///< 0: chosen per medium
