@@ -2,9 +2,11 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
@@ -13,10 +15,12 @@
 #include "bake/encode/provenance.h"
 #include "bake/encode/select_coefficients.h"
 #include "bake/measure/check_direct.h"
-#include "bake/measure/check_multiple.h"
-#include "bake/multiple/bake_multiple.h"
-#include "bake/receivers/surface_samples.h"
+#include "bake/measure/check_translucent.h"
+#include "bake/plan/plan_rules.h"
+#include "bake/plan/row_layout.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/specular/bake_openness.h"
+#include "bake/translucent/translucent_rows.h"
 #include "bake/visibility/hidden_receivers.h"
 #include "bake/visibility/irradiance_transport.h"
 
@@ -47,83 +51,77 @@ auto run_stage(BakeResult& result, std::string name, Stage&& stage) {
     return value;
 }
 
-// Receivers of materials for which the effect is off gather nothing.
-void leave_out_skipped(const formats::Scene& scene, const std::vector<PlanEntry>& plan,
+// Receivers whose material has no diffuse row gather nothing.
+void leave_out_skipped(const formats::Scene& scene, std::span<const RowLayout> layouts,
                        std::vector<Receiver>& receivers) {
     std::size_t v = 0;
     for (const formats::Primitive& p : scene.primitives) {
-        const bool on = is_planned(plan, "direct", material_subject(scene.materials[p.material]));
         for (std::size_t i = 0; i < p.position.size(); ++i, ++v) {
-            receivers[v].normal = on ? receivers[v].normal : glm::vec3(0);
+            if (!layouts[p.material].direct) {
+                receivers[v].normal = glm::vec3(0);
+            }
         }
     }
 }
 
-// What the gather inside one medium needs.
-struct MediumStage {
-    double exit = 1;  // c_exit
-    GatherProfile profile;
-    SampleTransport transport;
-    ClusterTree tree;
+// The stages that the receivers of one medium share, and the recipe that uses them.
+struct MediumStages {
+    std::optional<MultipleStage> multiple;
+    std::optional<SingleStage> single;
+    TranslucentRecipe recipe;
 };
 
-double scene_diagonal(const formats::Scene& scene) {
-    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
-    for (const formats::Primitive& p : scene.primitives) {
-        for (const glm::vec3 x : p.position) {
-            low = glm::min(low, glm::dvec3(x));
-            high = glm::max(high, glm::dvec3(x));
-        }
-    }
-    return glm::length(high - low);
-}
+using MediaStages = std::map<std::uint32_t, MediumStages>;  // by material
 
-// Everything that the vertices of a material share. Where the effect is off the tree is empty and
-// every vertex gathers nothing.
-MediumStage prepare_medium(const formats::Scene& scene, std::uint32_t material, bool on,
-                           const RayScene& rays, const Knobs& knobs,
-                           std::span<const TestLight> lights, const Context& context) {
-    MediumStage stage;
-    if (!on) {
-        return stage;
-    }
-    const formats::Medium& medium = *scene.materials[material].medium;
-    std::vector<std::uint32_t> primitives;
-    double area = 0;
-    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
-        if (scene.primitives[p].material == material) {
-            primitives.push_back(p);
-            area += formats::surface_area(scene.primitives[p]);
-        }
-    }
-    const MediumProfile profile = make_medium_profile(medium, knobs.seed, context);
-    const std::vector<SurfaceSample> samples =
-        sample_surface(scene, primitives, count_samples(area, profile, knobs.samples), knobs.seed);
-    const double spacing =
-        std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, samples.size())));
-    stage.exit = profile.exit;
-    stage.profile = make_gather_profile(profile, spacing, scene_diagonal(scene));
+void prepare_media(const formats::Scene& scene, const RayScene& rays,
+                   std::span<const RowLayout> layouts, const Knobs& knobs,
+                   std::span<const TestLight> lights, const Context& context, BakeResult& result,
+                   MediaStages& media) {
     std::vector<std::span<const float>> vectors;
     for (const TestLight& light : lights) {
         vectors.push_back(light.coarse);
     }
-    const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
-    stage.transport = bake_sample_transport(rays, samples, {knobs.cubemap_size, kept, profile.eta},
-                                            vectors, context);
-    if (!context.cancelled()) {
-        stage.tree = build_cluster_tree(samples, stage.transport, knobs.cubemap_size,
-                                        std::min(2 * kept, 4096u), context);
+    for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+        const RowLayout& layout = layouts[m];
+        if (!layout.translucent) {
+            continue;
+        }
+        MediumStages& stages = media[m];
+        const std::string of = " of material '" + scene.materials[m].name + "'";
+        if (layout.multiple) {
+            stages.multiple = run_stage(result, "samples" + of, [&](std::uint64_t& traced) {
+                const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
+                MultipleStage stage = prepare_multiple(
+                    scene, rays, m, {knobs.cubemap_size, knobs.samples, kept, knobs.seed}, vectors,
+                    context);
+                traced = stage.transport.rays;
+                return stage;
+            });
+        }
+        if (layout.single_terms > 0) {
+            stages.single = run_stage(result, "light maps" + of, [&](std::uint64_t&) {
+                return prepare_single(scene, rays, m,
+                                      {knobs.single_cubemap, knobs.depth_samples,
+                                       layout.single_terms, knobs.single_by_rays},
+                                      context);
+            });
+        }
+        stages.recipe = {layout,
+                         stages.multiple ? &*stages.multiple : nullptr,
+                         stages.single ? &*stages.single : nullptr,
+                         {knobs.tolerance},
+                         make_selector(knobs.cubemap_size, knobs.coefficients),
+                         knobs.code_bits};
     }
-    return stage;
 }
 
-using MediumStages = std::map<std::uint32_t, MediumStage>;  // by material
-
-// The rows of all primitives, in their order.
+// The rows of all primitives, in their order; one stage of the report for each primitive.
 formats::Result<formats::SparseRows> bake_rows(const formats::Scene& scene, const RayScene& rays,
                                                std::span<const Receiver> receivers,
-                                               const MediumStages& media, const Knobs& knobs,
-                                               const Context& context, std::uint64_t& traced) {
+                                               std::span<const BodyPoint> points,
+                                               std::span<const RowLayout> layouts,
+                                               const MediaStages& media, const Knobs& knobs,
+                                               const Context& context, BakeResult& result) {
     const DirectionSet directions = make_direction_set(knobs.cubemap_size);
     const Selector selector = make_selector(knobs.cubemap_size, knobs.coefficients);
     formats::SparseRows rows = formats::make_sparse_rows(knobs.cubemap_size, knobs.code_bits);
@@ -132,16 +130,23 @@ formats::Result<formats::SparseRows> bake_rows(const formats::Scene& scene, cons
         const std::size_t count = primitive.position.size();
         const auto medium = media.find(primitive.material);
         const formats::SparseRows part =
-            medium == media.end()
-                ? bake_direct(rays, directions, selector, knobs.code_bits,
-                              receivers.subspan(first, count), {first, receivers.size()}, context,
-                              traced)
-                : bake_multiple(medium->second.tree, medium->second.profile, medium->second.exit,
-                                {knobs.tolerance}, selector, knobs.code_bits, primitive, context);
+            run_stage(result, "rows of '" + primitive.name + "'", [&](std::uint64_t& traced) {
+                if (medium == media.end()) {
+                    return bake_direct(rays, directions, selector, knobs.code_bits,
+                                       receivers.subspan(first, count), {first, receivers.size()},
+                                       context, traced);
+                }
+                EntryCounts counts;
+                formats::SparseRows baked = bake_translucent(
+                    medium->second.recipe, rays, points.subspan(first, count), context, counts);
+                traced = counts.rays;
+                return baked;
+            });
         if (context.cancelled()) {
             break;
         }
-        if (part.row_offset.size() != count + 1 || !formats::append_rows(rows, part)) {
+        const std::size_t terms = layouts[primitive.material].terms();
+        if (part.row_offset.size() != terms * count + 1 || !formats::append_rows(rows, part)) {
             return make_error(ErrorKind::resource, "", "transport",
                               "more than 2^32 coefficients do not fit into one file",
                               "lower --coefficients, or split the scene");
@@ -149,6 +154,53 @@ formats::Result<formats::SparseRows> bake_rows(const formats::Scene& scene, cons
         first += count;
     }
     return rows;
+}
+
+// Of all vertices; empty where nothing is glossy. `receivers` of all, with their normals.
+std::vector<formats::Openness> bake_all_openness(const formats::Scene& scene, const RayScene& rays,
+                                                 std::span<const RowLayout> layouts,
+                                                 std::span<const Receiver> receivers,
+                                                 const Context& context, BakeResult& result) {
+    std::vector<formats::Openness> openness;
+    if (std::none_of(layouts.begin(), layouts.end(), [](const RowLayout& l) { return l.glossy; })) {
+        return openness;
+    }
+    return run_stage(result, "openness", [&](std::uint64_t& traced) {
+        const DirectionSet directions = make_sparse_direction_set(kOpennessCubemap, 0);
+        std::size_t first = 0;
+        for (const formats::Primitive& primitive : scene.primitives) {
+            const std::size_t count = primitive.position.size();
+            if (layouts[primitive.material].glossy) {
+                const auto part = bake_openness(rays, directions, receivers.subspan(first, count),
+                                                context, traced);
+                openness.insert(openness.end(), part.begin(), part.end());
+            }
+            first += count;
+            openness.resize(first);
+        }
+        return std::move(openness);
+    });
+}
+
+ErrorReport check_rows(const formats::Scene& scene, const RayScene& rays,
+                       std::span<const Receiver> receivers, std::span<const BodyPoint> points,
+                       const MediaStages& media, const Knobs& knobs,
+                       std::span<const TestLight> lights, const formats::AssetView& asset,
+                       const Context& context, std::uint64_t& traced) {
+    const std::vector<std::uint32_t> drawn = draw_receivers(receivers.size(), knobs.seed);
+    std::vector<EffectCheck> checks{check_direct(rays, receivers, asset, drawn, lights, context)};
+    for (const auto& [m, stages] : media) {
+        checks.push_back(check_translucent(stages.recipe, scene, rays, m, knobs.depth_samples,
+                                           points, asset, drawn, lights, context));
+    }
+    std::vector<std::string> names;
+    for (const TestLight& light : lights) {
+        names.push_back(light.name);
+    }
+    for (const EffectCheck& check : checks) {
+        traced += check.rays;
+    }
+    return summarise_checks(checks, names, knobs.seed);
 }
 
 formats::Error interrupted() {
@@ -178,10 +230,20 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
     if (!rays) {
         return std::move(rays).error();
     }
+    std::vector<RowLayout> layouts = layout_rows(scene, result.plan, *knobs);
+    for (std::size_t m = 0; m < layouts.size(); ++m) {
+        if (layouts[m].direct && scene.materials[m].medium) {
+            layouts[m].tint = half_space_albedo(*scene.materials[m].medium, knobs->seed, context);
+        }
+    }
+    std::vector<Receiver> all;
+    std::vector<BodyPoint> points;
     const std::vector<Receiver> receivers = run_stage(result, "receivers", [&](std::uint64_t&) {
-        std::vector<Receiver> all = make_vertex_receivers(scene);
-        leave_out_skipped(scene, result.plan, all);
-        return take_over_hidden(*rays, scene, std::move(all));
+        all = make_vertex_receivers(scene);
+        points = make_body_points(scene, all);
+        std::vector<Receiver> diffuse = all;
+        leave_out_skipped(scene, layouts, diffuse);
+        return take_over_hidden(*rays, scene, std::move(diffuse));
     });
     formats::Result<std::vector<TestLight>> lights = run_stage(
         result, "test lights",
@@ -189,46 +251,28 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
     if (!lights) {
         return std::move(lights).error();
     }
-    MediumStages media;
-    for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
-        const formats::Material& material = scene.materials[m];
-        if (material.medium) {
-            const std::string subject = material_subject(material);
-            media[m] = run_stage(result, "medium of " + subject, [&](std::uint64_t& traced) {
-                MediumStage stage =
-                    prepare_medium(scene, m, is_planned(result.plan, "multiple", subject), *rays,
-                                   *knobs, *lights, context);
-                traced = stage.transport.rays;
-                return stage;
-            });
-        }
+    MediaStages media;
+    prepare_media(scene, *rays, layouts, *knobs, *lights, context, result, media);
+    if (context.cancelled()) {
+        return interrupted();
     }
     formats::Result<formats::SparseRows> rows =
-        run_stage(result, "receivers' rows", [&](std::uint64_t& traced) {
-            return bake_rows(scene, *rays, receivers, media, *knobs, context, traced);
-        });
+        bake_rows(scene, *rays, receivers, points, layouts, media, *knobs, context, result);
     if (context.cancelled()) {
         return interrupted();
     }
     if (!rows) {
         return std::move(rows).error();
     }
-    result.asset = pack_asset(scene, std::move(*rows));
+    std::vector<formats::Openness> openness =
+        bake_all_openness(scene, *rays, layouts, all, context, result);
+    if (context.cancelled()) {
+        return interrupted();
+    }
+    result.asset = pack_asset(scene, layouts, std::move(*rows), std::move(openness));
     result.error = run_stage(result, "self-check", [&](std::uint64_t& traced) {
-        const formats::AssetView asset = result.asset.view();
-        const std::vector<std::uint32_t> drawn = draw_receivers(receivers.size(), knobs->seed);
-        std::vector<EffectCheck> checks{
-            check_direct(*rays, receivers, asset, drawn, *lights, context)};
-        for (const auto& [m, stage] : media) {
-            checks.push_back(check_multiple(stage.tree, stage.profile, stage.exit, stage.transport,
-                                            m, asset, drawn, *lights, context));
-        }
-        traced = checks.front().rays;
-        std::vector<std::string> names;
-        for (const TestLight& light : *lights) {
-            names.push_back(light.name);
-        }
-        return summarise_checks(checks, names, knobs->seed);
+        return check_rows(scene, *rays, receivers, points, media, *knobs, *lights,
+                          result.asset.view(), context, traced);
     });
     if (context.cancelled()) {
         return interrupted();

@@ -15,6 +15,8 @@
 #include "runtime/opaline.h"
 #include "runtime/parallel.h"
 #include "runtime/shade.h"
+#include "runtime/specular.h"
+#include "runtime/terms.h"
 
 namespace formats = opaline::formats;
 namespace runtime = opaline::runtime;
@@ -30,6 +32,8 @@ struct opaline_light {
     formats::Environment environment;
     std::vector<double> map_integral;  // kept, so that a sun does not cost a map
     runtime::LightVector vector;
+    std::vector<std::uint32_t> roughness;  // levels that its asset uses
+    runtime::SpecularLight specular;
 };
 
 namespace {
@@ -85,6 +89,22 @@ void project_map(opaline_light& light) {
                            light.map_integral);
 }
 
+// What it holds once its map or suns have changed: turning it does not change these maps.
+void prefilter(opaline_light& light) {
+    light.specular = runtime::prefilter_specular(light.environment, light.roughness, light.rotation,
+                                                 light.threads);
+}
+
+// A black one that keeps everything else.
+opaline_light without_environment(const opaline_light& light) {
+    opaline_light black;
+    black.n = light.n;
+    black.threads = light.threads;
+    black.rotation = light.rotation;
+    black.roughness = light.roughness;
+    return black;
+}
+
 void project(opaline_light& light) {
     std::vector<double> integral = light.map_integral;
     runtime::integrate_discs(light.environment.discs, light.n, light.rotation, integral);
@@ -98,7 +118,7 @@ opaline_status set_map(opaline_light* light, const float* rgb, formats::Environm
         if (!is_radiance(rgb, 3 * pixels)) {
             return fail(OPALINE_INVALID_ARGUMENT, "radiance must be finite and not negative");
         }
-        opaline_light changed{light->n, light->threads, light->rotation, {}, {}, {}};
+        opaline_light changed = without_environment(*light);
         changed.environment.discs = light->environment.discs;
         changed.environment.layout = layout;
         changed.environment.width = width;
@@ -109,8 +129,27 @@ opaline_status set_map(opaline_light* light, const float* rgb, formats::Environm
         }
         project_map(changed);
         project(changed);
+        prefilter(changed);
         *light = std::move(changed);
         return OPALINE_OK;
+    });
+}
+
+std::uint32_t terms_of(std::uint32_t flags) {
+    const auto keep = [flags](std::uint32_t without, std::uint32_t term) {
+        return (flags & without) == 0 ? term : 0;
+    };
+    return keep(OPALINE_SHADE_WITHOUT_MULTIPLE, runtime::kMultipleTerm) |
+           keep(OPALINE_SHADE_WITHOUT_SINGLE, runtime::kSingleTerm) |
+           keep(OPALINE_SHADE_WITHOUT_SPECULAR, runtime::kSpecularTerm) |
+           keep(OPALINE_SHADE_WITHOUT_DIFFUSE, runtime::kDiffuseTerm);
+}
+
+// Without allocating: shading is called per frame.
+bool is_prefiltered_for(const opaline_light& light, const formats::AssetView& asset) {
+    return std::ranges::all_of(asset.roughness, [&](float roughness) {
+        return roughness < 0 ||
+               std::ranges::binary_search(light.roughness, runtime::roughness_level(roughness));
     });
 }
 
@@ -202,6 +241,23 @@ opaline_status opaline_asset_primitive(const opaline_asset* asset, uint32_t inde
     return OPALINE_OK;
 }
 
+opaline_status opaline_asset_primitive_shading(const opaline_asset* asset, uint32_t index,
+                                               opaline_primitive_shading* shading) {
+    if (asset == nullptr || shading == nullptr) {
+        return null_argument();
+    }
+    if (shading->struct_size != sizeof(opaline_primitive_shading)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+    }
+    if (index >= opaline_asset_primitive_count(asset)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
+    }
+    const formats::PrimitiveRecord& p = asset->loaded.view.primitives[index];
+    *shading = {sizeof(opaline_primitive_shading), static_cast<std::uint32_t>(p.shading), p.terms,
+                p.eta};
+    return OPALINE_OK;
+}
+
 opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** out) {
     if (asset == nullptr || out == nullptr) {
         return null_argument();
@@ -209,8 +265,10 @@ opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** 
     return guarded([&] {
         auto light = std::make_unique<opaline_light>();
         light->n = asset->loaded.view.cubemap_size;
+        light->roughness = runtime::roughness_levels(asset->loaded.view);
         project_map(*light);
         project(*light);
+        prefilter(*light);
         *out = light.release();
         return OPALINE_OK;
     });
@@ -244,7 +302,7 @@ opaline_status opaline_light_set_rotation(opaline_light* light, const float worl
     }
     return guarded([&] {
         opaline_light changed = *light;
-        changed.rotation = rotation;
+        changed.rotation = changed.specular.rotation = rotation;
         project_map(changed);
         project(changed);
         *light = std::move(changed);
@@ -302,6 +360,7 @@ opaline_status opaline_light_add_sun(opaline_light* light, const float direction
                                              angular_radius,
                                              {radiance[0], radiance[1], radiance[2]}});
         project(changed);
+        prefilter(changed);
         *light = std::move(changed);
         return OPALINE_OK;
     });
@@ -312,9 +371,10 @@ opaline_status opaline_light_clear(opaline_light* light) {
         return null_argument();
     }
     return guarded([&] {
-        opaline_light changed{light->n, light->threads, light->rotation, {}, {}, {}};
+        opaline_light changed = without_environment(*light);
         project_map(changed);
         project(changed);
+        prefilter(changed);
         *light = std::move(changed);
         return OPALINE_OK;
     });
@@ -329,6 +389,12 @@ opaline_status opaline_shade(const opaline_asset* asset, const opaline_light* li
 opaline_status opaline_shade_range(const opaline_asset* asset, const opaline_light* light,
                                    uint32_t flags, uint32_t first, uint32_t count, float* out_rgb,
                                    size_t out_count) {
+    return opaline_shade_from(asset, light, flags, nullptr, first, count, out_rgb, out_count);
+}
+
+opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_light* light,
+                                  uint32_t flags, const float eye[3], uint32_t first,
+                                  uint32_t count, float* out_rgb, size_t out_count) {
     if (asset == nullptr || light == nullptr || out_rgb == nullptr) {
         return null_argument();
     }
@@ -337,8 +403,16 @@ opaline_status opaline_shade_range(const opaline_asset* asset, const opaline_lig
         return fail(OPALINE_INVALID_ARGUMENT,
                     "the light was made for an asset of another cube map size");
     }
-    if ((flags & ~std::uint32_t{OPALINE_SHADE_WITHOUT_BASE_COLOR}) != 0) {
+    constexpr std::uint32_t kKnown = OPALINE_SHADE_WITHOUT_BASE_COLOR |
+                                     OPALINE_SHADE_WITHOUT_FRESNEL |
+                                     OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE |
+                                     OPALINE_SHADE_WITHOUT_SPECULAR | OPALINE_SHADE_WITHOUT_DIFFUSE;
+    if ((flags & ~kKnown) != 0) {
         return fail(OPALINE_INVALID_ARGUMENT, "unknown flags");
+    }
+    if (eye != nullptr &&
+        !(std::isfinite(eye[0]) && std::isfinite(eye[1]) && std::isfinite(eye[2]))) {
+        return fail(OPALINE_INVALID_ARGUMENT, "the eye's coordinates must be finite");
     }
     if (first > view.receivers() || count > view.receivers() - first) {
         return fail(OPALINE_INVALID_ARGUMENT, "the range goes past the last receiver");
@@ -348,6 +422,24 @@ opaline_status opaline_shade_range(const opaline_asset* asset, const opaline_lig
     }
     runtime::ShadeOptions options;
     options.base_color = (flags & OPALINE_SHADE_WITHOUT_BASE_COLOR) == 0;
+    options.fresnel = (flags & OPALINE_SHADE_WITHOUT_FRESNEL) == 0;
+    options.terms = terms_of(flags);
+    if ((options.terms & runtime::kSpecularTerm) != 0 && options.fresnel) {
+        if (!is_prefiltered_for(*light, view)) {
+            return fail(OPALINE_INVALID_ARGUMENT,
+                        "the light was made for an asset of other roughnesses: make one for this "
+                        "asset, or leave out specular reflection");
+        }
+        options.specular = &light->specular;
+    }
+    if (runtime::find_merged(view, options.terms) != view.primitives.size()) {
+        return fail(OPALINE_INVALID_ARGUMENT,
+                    "multiple and single scattering share their rows in this asset: show both or "
+                    "none, or bake it with --separate-terms");
+    }
+    if (eye != nullptr) {
+        options.eye = formats::Vec3{eye[0], eye[1], eye[2]};
+    }
     static_assert(sizeof(formats::Rgb) == 3 * sizeof(float));
     runtime::shade_range(view, light->vector, first,
                          {reinterpret_cast<formats::Rgb*>(out_rgb), count}, options);

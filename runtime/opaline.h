@@ -78,12 +78,30 @@ typedef struct opaline_primitive_info {
 OPALINE_API opaline_status opaline_asset_primitive(const opaline_asset* asset, uint32_t index,
                                                    opaline_primitive_info* info);
 
+typedef enum opaline_shading {
+    OPALINE_SHADING_DIFFUSE = 1,    /* looks the same from everywhere */
+    OPALINE_SHADING_TRANSLUCENT = 2 /* depends on the eye: Fresnel, and directions inside */
+} opaline_shading;
+
+typedef struct opaline_primitive_shading {
+    size_t struct_size; /* in: sizeof(opaline_primitive_shading) */
+    uint32_t shading;   /* an opaline_shading */
+    uint32_t terms;     /* transport vectors per receiver; cost goes with them */
+    float eta;          /* translucent: index of refraction relative to outside; else 0 */
+} opaline_primitive_shading;
+
+/* Fills `shading`. Any thread, concurrently. */
+OPALINE_API opaline_status opaline_asset_primitive_shading(const opaline_asset* asset,
+                                                           uint32_t index,
+                                                           opaline_primitive_shading* shading);
+
 /* --- Lights ------------------------------------------------------------------------------- */
 
 /* A light starts black: no map, no suns, no rotation. Functions that change a light project it on
    the basis at once, which takes time in proportion to map and basis: set the rotation before the
-   map to pay once. One thread at a time may change a light, and none may read it meanwhile;
-   different lights are independent. */
+   map to pay once. For assets with glossy surfaces it is also blurred to their roughnesses, which
+   takes some tenths of a second more (seconds for mirrors), whenever map or suns change. One thread at a time may change
+   a light, and none may read it meanwhile; different lights are independent. */
 OPALINE_API opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** out);
 
 /* NULL is fine. No other thread may be using the light. */
@@ -123,14 +141,26 @@ OPALINE_API opaline_status opaline_light_clear(opaline_light* light);
 
 typedef enum opaline_shade_flags {
     OPALINE_SHADE_DEFAULT = 0,
-    OPALINE_SHADE_WITHOUT_BASE_COLOR = 1 /* as if white: multiply by your own texture per pixel */
+    OPALINE_SHADE_WITHOUT_BASE_COLOR = 1, /* as if white: multiply by your own texture per pixel */
+    /* Translucent receivers without their Fresnel factor, which falls steeply toward the
+       silhouette: interpolate, multiply per pixel by 1 - F(normal . to eye; eta), clamp at 0. These
+       values alone may be negative. Diffuse ones stay as they are. No specular reflection, which
+       changes as fast. */
+    OPALINE_SHADE_WITHOUT_FRESNEL = 2,
+    /* Components left out. An asset that was not baked with separate terms holds multiple and
+       single scattering as one: leave out both or none. */
+    OPALINE_SHADE_WITHOUT_MULTIPLE = 4,  /* scattered often inside a translucent body */
+    OPALINE_SHADE_WITHOUT_SINGLE = 8,    /* scattered once */
+    OPALINE_SHADE_WITHOUT_SPECULAR = 16, /* mirrored at its surface */
+    OPALINE_SHADE_WITHOUT_DIFFUSE = 32   /* reflected by opaque surfaces */
 } opaline_shade_flags;
 
 /* out_rgb[3 i .. 3 i + 2]: outgoing radiance [W m^-2 sr^-1] of receiver i, finite and not
-   negative. `out_count` floats, at least 3 * receiver_count. The light must have been made for an
-   asset of the same cube map size. `flags` is a sum of opaline_shade_flags. Runs on the calling
-   thread, never allocates, costs in proportion to the stored coefficients. Any thread,
-   concurrently; the light must not change meanwhile. */
+   negative. Translucent receivers are seen along their own normals; see opaline_shade_from.
+   `out_count` floats, at least 3 * receiver_count. The light must have been made for an asset of
+   the same cube map size and, where it is glossy, the same roughnesses. `flags` is a sum of
+   opaline_shade_flags. Runs on the calling thread, never allocates, costs in proportion to the
+   stored coefficients. Any thread, concurrently; the light must not change meanwhile. */
 OPALINE_API opaline_status opaline_shade(const opaline_asset* asset, const opaline_light* light,
                                          uint32_t flags, float* out_rgb, size_t out_count);
 
@@ -140,6 +170,15 @@ OPALINE_API opaline_status opaline_shade_range(const opaline_asset* asset,
                                                const opaline_light* light, uint32_t flags,
                                                uint32_t first, uint32_t count, float* out_rgb,
                                                size_t out_count);
+
+/* The same as opaline_shade_range, seen from the point `eye`: three finite floats [m], in world
+   space as the mesh is. NULL: each receiver along its own normal. Only translucent receivers look
+   different; those that face away are black unless their primitive is double-sided, but for a rim
+   of specular reflection that fades just behind the silhouette. */
+OPALINE_API opaline_status opaline_shade_from(const opaline_asset* asset,
+                                              const opaline_light* light, uint32_t flags,
+                                              const float eye[3], uint32_t first, uint32_t count,
+                                              float* out_rgb, size_t out_count);
 
 #ifdef __cplusplus
 }

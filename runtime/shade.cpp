@@ -26,6 +26,7 @@ constexpr std::uint32_t kBlock = 512;
 void shade_block(const formats::AssetView& asset, const formats::PrimitiveRecord& primitive,
                  const LightVector& light, std::uint32_t first_vertex, std::span<Rgb> out,
                  const ShadeOptions& options) {
+    if ((options.terms & kDiffuseTerm) == 0) return;  // out is black
     dot_rows(asset.transport, primitive.rows(), light, first_vertex - primitive.first_vertex, out,
              options.path);
     for (std::uint32_t i = 0; i < out.size(); ++i) {
@@ -44,11 +45,11 @@ float finite(float x) {
 }
 
 Rgb shade_translucent(const formats::AssetView& asset, const formats::PrimitiveRecord& primitive,
-                      std::uint32_t vertex, std::span<const Rgb> product,
+                      std::uint32_t vertex, std::span<const Rgb> product, const SpecularLobe& lobe,
                       const ShadeOptions& options) {
     const ViewOfReceiver view =
         view_receiver(primitive, asset.position[vertex], asset.normal[vertex], options.eye);
-    Rgb radiance = sum_view_terms(view, primitive.eta, product);
+    Rgb radiance = sum_view_terms(view, primitive, product, options.terms);
     if (options.base_color) {
         radiance = radiance * vertex_base_color(asset, primitive, vertex);
     }
@@ -56,7 +57,18 @@ Rgb shade_translucent(const formats::AssetView& asset, const formats::PrimitiveR
         return {finite(radiance.r), finite(radiance.g), finite(radiance.b)};
     }
     radiance = fresnel_transmittance(view.cosine, primitive.eta) * radiance;
+    radiance = {displayable(radiance.r), displayable(radiance.g), displayable(radiance.b)};
+    if (lobe.radiance != nullptr) {
+        const formats::Openness openness = asset.openness[vertex];
+        radiance = radiance + eval_specular(*options.specular, lobe, view, primitive.eta,
+                                            formats::open_axis(openness),
+                                            formats::open_fraction(openness));
+    }
     return {displayable(radiance.r), displayable(radiance.g), displayable(radiance.b)};
+}
+
+bool wants_specular(const ShadeOptions& options) {
+    return options.specular != nullptr && options.fresnel && (options.terms & kSpecularTerm) != 0;
 }
 
 // The same for rows of several terms: as many vertices at a time as fill a block.
@@ -64,7 +76,10 @@ void shade_translucent_block(const formats::AssetView& asset,
                              const formats::PrimitiveRecord& primitive, const LightVector& light,
                              std::uint32_t first_vertex, std::span<Rgb> out,
                              const ShadeOptions& options) {
-    static_assert(kBlock >= formats::kMaxHarmonics);
+    static_assert(kBlock > formats::kMaxHarmonics);
+    const auto number = static_cast<std::size_t>(&primitive - asset.primitives.data());
+    const SpecularLobe lobe =
+        wants_specular(options) ? specular_lobe(*options.specular, asset, number) : SpecularLobe{};
     std::array<Rgb, kBlock> products;
     const std::uint32_t terms = primitive.terms, step = kBlock / terms;
     for (std::uint32_t done = 0; done < out.size(); done += step) {
@@ -75,7 +90,7 @@ void shade_translucent_block(const formats::AssetView& asset,
         for (std::uint32_t i = 0; i < count; ++i) {
             out[done + i] =
                 shade_translucent(asset, primitive, first_vertex + done + i,
-                                  block.subspan(std::size_t{i} * terms, terms), options);
+                                  block.subspan(std::size_t{i} * terms, terms), lobe, options);
         }
     }
 }

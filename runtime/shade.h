@@ -9,6 +9,8 @@
 #include "formats/opal/vec3.h"
 #include "runtime/dot.h"
 #include "runtime/light_vector.h"
+#include "runtime/specular.h"
+#include "runtime/terms.h"
 
 namespace opaline::runtime {
 
@@ -22,13 +24,18 @@ struct ShadeOptions {
     /// false: translucent receivers without their factor Ft and with their sign. That is what a
     /// renderer interpolates, to multiply by Ft per pixel and to clamp at the end.
     bool fresnel = true;
+    std::uint32_t terms = kAllTerms;  ///< components (terms.h); see check_terms
+    /// Light for specular reflections, of the same environment; nothing: none are added. Nor are
+    /// they without `fresnel`: a renderer adds them per pixel.
+    const SpecularLight* specular = nullptr;
 };
 
 /// Outgoing radiance [W m^-2 sr^-1] of every receiver: L_o = base_color * <T_0, L>
-/// (Shading::diffuse) or base_color * Ft * sum_k h_k(w_o') <T_k, L> (Shading::translucent). The
-/// final value is clamped to [0, largest float]; what belongs to no primitive is black, and so are
-/// translucent receivers that face away or have no normal. Preconditions: light.n ==
-/// asset.cubemap_size, out.size() == asset.receivers(), the asset passed read_opal's checks.
+/// (Shading::diffuse) or base_color * Ft * sum_k h_k(w_o') <T_k, L> (Shading::translucent),
+/// plus L_spec where it is glossy (specular.h). Each of these values is clamped to [0, largest
+/// float]; what belongs to no primitive is black, and so are translucent receivers that face away
+/// or have no normal. Preconditions: light.n == asset.cubemap_size, out.size() ==
+/// asset.receivers(), the asset passed read_opal's checks.
 void shade(const formats::AssetView& asset, const LightVector& light, std::span<formats::Rgb> out,
            const ShadeOptions& options = {});
 

@@ -60,7 +60,7 @@ Vec3 refract_to_eye(Vec3 n, Vec3 w, float c, float eta) {
 
 ViewOfReceiver view_receiver(const formats::PrimitiveRecord& primitive, Vec3 position, Vec3 normal,
                              const std::optional<Vec3>& eye) {
-    ViewOfReceiver view{normal, eye ? direction(position, *eye) : Vec3{}, 0};
+    ViewOfReceiver view{normal, eye ? direction(position, *eye) : Vec3{}, 0, false};
     if (view.to_eye == Vec3{}) {
         view.to_eye = normal;
     }
@@ -68,6 +68,7 @@ ViewOfReceiver view_receiver(const formats::PrimitiveRecord& primitive, Vec3 pos
     if (view.cosine < 0 && (primitive.flags & formats::PrimitiveRecord::kDoubleSided) != 0) {
         view.normal = -1.0f * view.normal;
         view.cosine = -view.cosine;
+        view.is_turned = true;
     }
     return view;
 }
@@ -80,7 +81,9 @@ void eval_view_terms(Vec3 refracted, std::span<float> value) {
     }
 }
 
-Rgb sum_view_terms(const ViewOfReceiver& view, float eta, std::span<const Rgb> product) {
+namespace {
+
+Rgb sum_harmonics(const ViewOfReceiver& view, float eta, std::span<const Rgb> product) {
     if (product.size() == 1) return product[0];
     std::array<float, formats::kMaxHarmonics> terms;
     const std::span<float> h = std::span<float>(terms).first(product.size());
@@ -88,6 +91,21 @@ Rgb sum_view_terms(const ViewOfReceiver& view, float eta, std::span<const Rgb> p
     Rgb sum;
     for (std::size_t k = 0; k < h.size(); ++k) {
         sum = sum + h[k] * product[k];
+    }
+    return sum;
+}
+
+}  // namespace
+
+Rgb sum_view_terms(const ViewOfReceiver& view, const formats::PrimitiveRecord& primitive,
+                   std::span<const Rgb> product, std::uint32_t terms) {
+    const bool multiple = (terms & kMultipleTerm) != 0, single = (terms & kSingleTerm) != 0;
+    if (!primitive.is_separate()) {
+        return multiple && single ? sum_harmonics(view, primitive.eta, product) : Rgb{};
+    }
+    Rgb sum = multiple ? product[0] : Rgb{};
+    if (single && product.size() > 1) {
+        sum = sum + sum_harmonics(view, primitive.eta, product.subspan(1));
     }
     return sum;
 }

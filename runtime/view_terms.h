@@ -8,6 +8,7 @@
 #include "formats/opal/rgb.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "formats/opal/vec3.h"
+#include "runtime/terms.h"
 
 namespace opaline::runtime {
 
@@ -28,9 +29,10 @@ formats::Vec3 refract_to_eye(formats::Vec3 n, formats::Vec3 w, float c, float et
 
 /// The normal that a receiver is shaded with, and the direction it is seen from.
 struct ViewOfReceiver {
-    formats::Vec3 normal;  ///< toward the eye where the primitive is double-sided; unit or zero
-    formats::Vec3 to_eye;  ///< unit, or zero where normal is zero and no eye is given
-    float cosine = 0;      ///< of the two; below 0 where a single-sided surface faces away
+    formats::Vec3 normal;    ///< toward the eye where the primitive is double-sided; unit or zero
+    formats::Vec3 to_eye;    ///< unit, or zero where normal is zero and no eye is given
+    float cosine = 0;        ///< of the two; below 0 where a single-sided surface faces away
+    bool is_turned = false;  ///< whether the normal was turned toward the eye
 };
 
 /// `eye` [m, world]; without one, or with one in the receiver itself, it is seen along its normal.
@@ -41,8 +43,10 @@ ViewOfReceiver view_receiver(const formats::PrimitiveRecord& primitive, formats:
 /// spherical harmonics otherwise.
 void eval_view_terms(formats::Vec3 refracted, std::span<float> value);
 
-/// sum_k h_k(w_o') <T_k, L>, from `product` = <T_k, L>, one for each term.
-formats::Rgb sum_view_terms(const ViewOfReceiver& view, float eta,
-                            std::span<const formats::Rgb> product);
+/// sum_k h_k(w_o') <T_k, L> of a translucent primitive, from `product` = <T_k, L>, one for each of
+/// its terms. `terms` (terms.h): which of multiple and single scattering; rows that hold both count
+/// if both are asked for.
+formats::Rgb sum_view_terms(const ViewOfReceiver& view, const formats::PrimitiveRecord& primitive,
+                            std::span<const formats::Rgb> product, std::uint32_t terms = kAllTerms);
 
 }  // namespace opaline::runtime

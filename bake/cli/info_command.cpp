@@ -17,6 +17,10 @@ struct Options {
     bool json = false;
 };
 
+bool is_glossy(const formats::AssetView& view, std::size_t primitive) {
+    return !view.roughness.empty() && view.roughness[primitive] >= 0;
+}
+
 Json describe(const OpenedAsset& asset) {
     const formats::AssetView& view = asset.loaded.view;
     Json info;
@@ -37,6 +41,13 @@ Json describe(const OpenedAsset& asset) {
                                       {"triangles", p.index_count / 3},
                                       {"terms", p.terms},
                                       {"bands", p.bands}});
+        Json& entry = info["primitives"].back();
+        if (p.shading == formats::Shading::translucent) {
+            const std::size_t i = info["primitives"].size() - 1;
+            entry["eta"] = p.eta;
+            entry["separate"] = p.is_separate();
+            entry["roughness"] = is_glossy(view, i) ? Json(view.roughness[i]) : Json(nullptr);
+        }
     }
     info["sections"] = Json::array();
     for (const formats::SectionEntry& section : asset.loaded.sections) {
@@ -116,8 +127,10 @@ int run(const Options& options) {
     fmt::print("primitives\n");
     for (std::size_t i = 0; i < view.primitives.size(); ++i) {
         const formats::PrimitiveRecord& p = view.primitives[i];
-        fmt::print("  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}\n", i, p.vertex_count,
-                   p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
+        fmt::print("  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}{}{}\n", i,
+                   p.vertex_count, p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
+                   p.is_separate() ? ", multiple and single separate" : "",
+                   is_glossy(view, i) ? fmt::format(", roughness {:.2g}", view.roughness[i]) : "",
                    p.base_color_image == formats::kNoImage ? "" : ", textured");
     }
     fmt::print("sections\n");

@@ -4,11 +4,14 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <string_view>
+#include <utility>
 
 #include "bake/cli/messages.h"
 #include "bake/environment/builtin_environment.h"
 #include "formats/media/apply_media.h"
 #include "formats/media/read_media.h"
+#include "runtime/terms.h"
 
 namespace opaline::cli {
 
@@ -120,6 +123,37 @@ formats::Status check_output(const std::filesystem::path& output,
         }
     }
     return formats::ok_status();
+}
+
+namespace {
+
+constexpr std::pair<std::string_view, std::uint32_t> kTermNames[] = {
+    {"multiple", runtime::kMultipleTerm},
+    {"single", runtime::kSingleTerm},
+    {"specular", runtime::kSpecularTerm},
+    {"diffuse", runtime::kDiffuseTerm}};
+
+}  // namespace
+
+formats::Result<std::uint32_t> parse_terms(const std::string& text) {
+    if (text.empty()) {
+        return runtime::kAllTerms;
+    }
+    std::uint32_t terms = 0;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        const std::string name = text.substr(begin, end - begin);
+        const auto known =
+            std::ranges::find(kTermNames, name, [](const auto& t) { return t.first; });
+        if (known == std::end(kTermNames)) {
+            return make_error(ErrorKind::usage, "", "--terms",
+                              "'" + name + "' is not a component of a picture",
+                              "give some of multiple,single,specular,diffuse");
+        }
+        terms |= known->second;
+        begin = end + 1;
+    }
+    return terms;
 }
 
 }  // namespace opaline::cli

@@ -36,6 +36,10 @@ struct OpenedLight {
 /// Prints warnings about repaired pixels.
 formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees);
 
+/// The components named by `--terms`, "multiple,single,specular,diffuse" or some of them, as bits
+/// of runtime/terms.h; all of them if the text is empty. Errors: usage, listing the names.
+formats::Result<std::uint32_t> parse_terms(const std::string& text);
+
 /// Help text of `--light`.
 std::string light_help();
 

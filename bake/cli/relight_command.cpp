@@ -10,7 +10,7 @@ namespace opaline::cli {
 namespace {
 
 struct Options {
-    std::string path, light, output, eye;
+    std::string path, light, output, eye, terms;
     double rotate_light = 0;
     unsigned threads = 0;
 };
@@ -44,24 +44,37 @@ int run(const Options& options) {
         !status) {
         return report_error(status.error());
     }
+    runtime::ShadeOptions shading;
+    shading.threads = options.threads;
     if (!options.eye.empty()) {
-        // Diffuse rows look the same from everywhere; the option is checked all the same.
-        if (const auto eye = parse_vec3("--eye", options.eye); !eye) {
+        const auto eye = parse_vec3("--eye", options.eye);
+        if (!eye) {
             return report_error(eye.error());
         }
+        shading.eye = *eye;
+    }
+    const auto terms = parse_terms(options.terms);
+    if (!terms) {
+        return report_error(terms.error());
     }
     const auto asset = open_asset(options.path);
     if (!asset) {
         return report_error(asset.error());
+    }
+    if (auto status = runtime::check_terms(asset->loaded.view, *terms, options.path); !status) {
+        return report_error(status.error());
     }
     const auto light = open_light(options.light, options.rotate_light);
     if (!light) {
         return report_error(light.error());
     }
     const formats::AssetView& view = asset->loaded.view;
+    const std::vector<std::uint32_t> levels = runtime::roughness_levels(view);
+    const runtime::SpecularLight specular =
+        runtime::prefilter_specular(light->environment, levels, light->rotation, options.threads);
+    shading.terms = *terms;
+    shading.specular = levels.empty() ? nullptr : &specular;
     std::vector<formats::Rgb> radiance(view.receivers());
-    runtime::ShadeOptions shading;
-    shading.threads = options.threads;
     runtime::shade(view,
                    runtime::project_environment(light->environment, view.cubemap_size,
                                                 light->rotation, options.threads),
@@ -94,8 +107,13 @@ void add_relight_command(CLI::App& app, Job& job) {
     command
         ->add_option("--eye", options->eye,
                      "the point everything is seen from [m]; default: each receiver along its own "
-                     "normal. Diffuse surfaces look the same from everywhere")
+                     "normal. Only translucent surfaces depend on it")
         ->option_text("X,Y,Z");
+    command
+        ->add_option("--terms", options->terms,
+                     "components to add up: multiple,single,specular,diffuse or some of them. "
+                     "multiple and single apart need a bake with --separate-terms")
+        ->option_text("LIST [all]");
     command
         ->add_option("--rotate-light", options->rotate_light,
                      "turn the light about +Y, from +Z toward +X [degrees]")

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -28,12 +29,18 @@ using formats::Status;
 using Clock = std::chrono::steady_clock;
 
 struct Options {
-    std::string path, light, output, size = "960x720", eye, target, backend = "gl";
+    std::string path, light, output, size = "960x720", eye, target, terms, backend = "gl";
     float fov = 32, exposure = 0;
     double rotate_light = 0;
     std::uint32_t frames = 1;
     unsigned threads = 0;
     bool stats = false;
+};
+
+// What of the picture to show.
+struct Shown {
+    std::uint32_t terms = runtime::kAllTerms;
+    bool background() const { return terms == runtime::kAllTerms; }
 };
 
 double seconds_since(Clock::time_point start) {
@@ -145,17 +152,36 @@ void print_stat(const Options& options, const char* name, double seconds) {
 }
 
 int render_on_cpu(const Options& options, const formats::AssetView& view, const OpenedLight& light,
-                  const runtime::LightVector& vector, const runtime::Camera& camera) {
+                  const runtime::LightVector& vector, const runtime::Camera& camera, Shown shown) {
     std::vector<formats::Rgb> irradiance(view.receivers());
     runtime::ShadeOptions shading;
     shading.threads = options.threads;
-    shading.base_color = false;
-    const auto start = Clock::now();
+    shading.base_color = shading.fresnel = false;
+    shading.eye = camera.eye;
+    shading.terms = shown.terms;
+    auto start = Clock::now();
     runtime::shade(view, vector, irradiance, shading);
     print_stat(options, "dot products", seconds_since(start));
+    runtime::SoftwareOptions software;
+    software.threads = options.threads;
+    software.background = shown.background();
+    runtime::SpecularLight specular;
+    if (const auto levels = runtime::roughness_levels(view);
+        !levels.empty() && (shown.terms & runtime::kSpecularTerm) != 0) {
+        start = Clock::now();
+        specular =
+            runtime::prefilter_specular(light.environment, levels, light.rotation, options.threads);
+        software.specular = &specular;
+        print_stat(options, "specular light", seconds_since(start));
+    }
+    const bool depends_on_eye = std::ranges::any_of(view.primitives, [](const auto& primitive) {
+        return primitive.shading == formats::Shading::translucent;
+    });
     return render_frames(options, camera, [&](const runtime::Camera& at) {
-        runtime::SoftwareOptions software;
-        software.threads = options.threads;
+        if (depends_on_eye && shading.eye != at.eye) {
+            shading.eye = at.eye;
+            runtime::shade(view, vector, irradiance, shading);
+        }
         return runtime::render_software(view, irradiance, light.environment, light.rotation, at,
                                         software);
     });
@@ -165,7 +191,7 @@ int render_on_gpu([[maybe_unused]] const Options& options,
                   [[maybe_unused]] const formats::AssetView& view,
                   [[maybe_unused]] const OpenedLight& light,
                   [[maybe_unused]] const runtime::LightVector& vector,
-                  [[maybe_unused]] const runtime::Camera& camera) {
+                  [[maybe_unused]] const runtime::Camera& camera, [[maybe_unused]] Shown shown) {
 #ifdef OPALINE_HAS_GL
     auto renderer = runtime::GlRenderer::create(view, light.environment);
     if (!renderer) {
@@ -178,10 +204,14 @@ int render_on_gpu([[maybe_unused]] const Options& options,
         fmt::print("{:<16} {}\n", "device", renderer->stats().device);
     }
     print_stat(options, "upload", renderer->stats().upload_seconds);
+    print_stat(options, "specular light", renderer->stats().specular_seconds);
     print_stat(options, "light upload", renderer->stats().light_seconds);
     print_stat(options, "dot products", renderer->stats().dot_seconds);
+    runtime::GlRenderOptions drawing;
+    drawing.terms = shown.terms;
+    drawing.background = shown.background();
     return render_frames(options, camera,
-                         [&](const runtime::Camera& at) { return renderer->render(at); });
+                         [&](const runtime::Camera& at) { return renderer->render(at, drawing); });
 #else
     return report_error(make_error(ErrorKind::resource, "", "--backend",
                                    "this program was built without OpenGL", "use --backend cpu"));
@@ -193,9 +223,16 @@ int run(const Options& options) {
         !status) {
         return report_error(status.error());
     }
+    const auto terms = parse_terms(options.terms);
+    if (!terms) {
+        return report_error(terms.error());
+    }
     const auto asset = open_asset(options.path);
     if (!asset) {
         return report_error(asset.error());
+    }
+    if (auto status = runtime::check_terms(asset->loaded.view, *terms, options.path); !status) {
+        return report_error(status.error());
     }
     const formats::AssetView& view = asset->loaded.view;
     const auto camera = make_camera(options, view);
@@ -210,8 +247,8 @@ int run(const Options& options) {
     const runtime::LightVector vector = runtime::project_environment(
         light->environment, view.cubemap_size, light->rotation, options.threads);
     print_stat(options, "light vector", seconds_since(start));
-    return options.backend == "cpu" ? render_on_cpu(options, view, *light, vector, *camera)
-                                    : render_on_gpu(options, view, *light, vector, *camera);
+    return (options.backend == "cpu" ? render_on_cpu : render_on_gpu)(options, view, *light, vector,
+                                                                      *camera, Shown{*terms});
 }
 
 }  // namespace
@@ -249,6 +286,12 @@ void add_render_command(CLI::App& app, Job& job) {
                      "a turntable: N pictures OUT-0001.png ... once around the target")
         ->check(CLI::Range(1u, 9999u))
         ->option_text("N [1]");
+    command
+        ->add_option("--terms", options->terms,
+                     "components to show: multiple,single,specular,diffuse or some of them; the "
+                     "background is black unless all are. multiple and single apart need a bake "
+                     "with --separate-terms")
+        ->option_text("LIST [all]");
     command->add_option("--exposure", options->exposure, "brighter by a factor of 2^EV")
         ->check(CLI::Range(-64.0f, 64.0f))
         ->option_text("EV [0]");

@@ -76,9 +76,24 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->check(CLI::Range(0.0, 1.0))
         ->option_text("E");
     command
-        .add_option(
-            "--effects", options.effects,
-            "what to simulate: auto, or a list of effects; this version has: direct, multiple")
+        .add_option("--depth-samples", options.bake.depth_samples,
+                    "points along the inward normal at which light is looked for that scatters "
+                    "once; default as the quality says")
+        ->check(CLI::Range(1u, 64u))
+        ->option_text("D");
+    command
+        .add_option("--phase-terms", options.bake.phase_terms,
+                    "terms of the phase function: 1, 4, 9, 16 or 25; default: as many as it and "
+                    "the quality ask for")
+        ->check(CLI::IsMember({1, 4, 9, 16, 25}))
+        ->option_text("K");
+    command.add_flag("--separate-terms", options.bake.separate_terms,
+                     "keep multiple scattering apart from single, so that `render --terms` can "
+                     "show each");
+    command
+        .add_option("--effects", options.effects,
+                    "what to simulate: auto, or a list of effects; this version has: direct, "
+                    "multiple, single")
         ->option_text("auto|LIST [auto]");
     command
         .add_option("--seed", options.bake.seed,
@@ -100,14 +115,14 @@ formats::Result<std::vector<std::string>> parse_effects(const SceneOptions& opti
     constexpr std::array<std::string_view, 11> kKnown{
         "direct",    "multiple",      "single",          "interreflection", "emitters", "specular",
         "filtering", "volume-single", "volume-multiple", "cloud",           "radiosity"};
-    constexpr std::array<std::string_view, 2> kHere{"direct", "multiple"};
+    constexpr std::array<std::string_view, 4> kHere{"direct", "multiple", "single", "specular"};
     std::vector<std::string> effects;
     if (options.effects == "auto") {
         return effects;
     }
     const auto refuse = [](std::string fault) {
         return formats::make_error(formats::ErrorKind::usage, "", "--effects", std::move(fault),
-                                   "give auto, or some of direct,multiple");
+                                   "give auto, or some of direct,multiple,single,specular");
     };
     std::stringstream list(options.effects);
     for (std::string name; std::getline(list, name, ',');) {

@@ -22,12 +22,11 @@ Vec3 to_vec3(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
-void append_vertices(Asset& asset, const Primitive& p, const Material& material, bool textured) {
+void append_vertices(Asset& asset, const Primitive& p, Rgb base_color, bool textured) {
     for (std::size_t v = 0; v < p.position.size(); ++v) {
         asset.position.push_back(to_vec3(p.position[v]));
         asset.normal.push_back(to_vec3(p.normal[v]));
-        asset.base_color.push_back(p.color.empty() ? material.base_color
-                                                   : material.base_color * p.color[v]);
+        asset.base_color.push_back(p.color.empty() ? base_color : base_color * p.color[v]);
         if (textured) {
             asset.texcoord.push_back(p.texcoord.empty() ? Float2{}
                                                         : Float2{p.texcoord[v].x, p.texcoord[v].y});
@@ -47,13 +46,15 @@ PreviewImageData to_preview(const Image8& image) {
 
 }  // namespace
 
-Asset pack_asset(const Scene& scene, SparseRows transport) {
+Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseRows transport,
+                 std::vector<Openness> openness) {
     Asset asset;
     const bool textured = !scene.images.empty();
-    std::uint32_t band_rows = 0;
+    std::uint32_t rows = 0, band_rows = 0;
     std::uint64_t codes = 0;
     for (const Primitive& p : scene.primitives) {
         const Material& material = scene.materials[p.material];
+        const RowLayout& layout = layouts[p.material];
         PrimitiveRecord record;
         record.node = p.node;
         record.mesh = p.mesh;
@@ -63,15 +64,18 @@ Asset pack_asset(const Scene& scene, SparseRows transport) {
         record.vertex_count = static_cast<std::uint32_t>(p.position.size());
         record.first_index = static_cast<std::uint32_t>(asset.index.size());
         record.index_count = static_cast<std::uint32_t>(p.index.size());
-        // One row per vertex; band rows and codes are numbered on from primitive to primitive.
-        record.first_row = record.first_vertex;
-        record.bands = material.medium ? 3 : 1;
-        record.shading = material.medium ? Shading::translucent : Shading::diffuse;
-        record.eta = material.medium ? material.medium->eta : 0.0f;
+        // Rows, band rows and codes are numbered on from primitive to primitive.
+        const std::uint32_t count = record.vertex_count * layout.terms();
+        record.first_row = rows;
+        record.terms = layout.terms();
+        record.bands = layout.bands();
+        record.shading = layout.translucent ? Shading::translucent : Shading::diffuse;
+        record.eta = layout.translucent ? material.medium->eta : 0.0f;
         record.first_band_row = band_rows;
         record.first_code = codes;
-        band_rows += record.vertex_count * record.bands;
-        codes += std::uint64_t{transport.row_offset[record.first_row + record.vertex_count] -
+        rows += count;
+        band_rows += count * record.bands;
+        codes += std::uint64_t{transport.row_offset[record.first_row + count] -
                                transport.row_offset[record.first_row]} *
                  record.bands;
         if (material.base_color_image != kNone && !p.texcoord.empty()) {
@@ -79,14 +83,19 @@ Asset pack_asset(const Scene& scene, SparseRows transport) {
             record.wrap_u = to_wrap(material.wrap_u);
             record.wrap_v = to_wrap(material.wrap_v);
         }
-        record.flags = material.double_sided ? PrimitiveRecord::kDoubleSided : 0;
+        record.flags = (material.double_sided ? PrimitiveRecord::kDoubleSided : 0) |
+                       (layout.separate ? PrimitiveRecord::kSeparate : 0);
+        if (!openness.empty()) {
+            asset.roughness.push_back(layout.glossy ? material.medium->roughness : kNotGlossy);
+        }
         asset.primitives.push_back(record);
-        append_vertices(asset, p, material, textured);
+        append_vertices(asset, p, material.base_color * layout.tint, textured);
         asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
     }
     for (const Image8& image : scene.images) {
         asset.images.push_back(to_preview(image));
     }
+    asset.openness = std::move(openness);
     asset.transport = std::move(transport);
     return asset;
 }

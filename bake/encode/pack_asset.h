@@ -1,13 +1,19 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
+#include "bake/plan/row_layout.h"
 #include "formats/opal/asset.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
-/// Puts a scene's preview geometry and its finished transport rows into one asset: one row
-/// (one term) per vertex, primitives in scene order; grey, or RGB where the material has a medium.
-/// `transport` has as many rows as the scene has vertices.
-formats::Asset pack_asset(const formats::Scene& scene, formats::SparseRows transport);
+/// Puts a scene's preview geometry and its finished transport rows into one asset, primitives in
+/// scene order. `layouts`: one per material. `transport` has the rows of all vertices, as many per
+/// vertex and with as many bands as the layout of its material says. `openness`: one per vertex, or
+/// empty where no material is glossy.
+formats::Asset pack_asset(const formats::Scene& scene, std::span<const RowLayout> layouts,
+                          formats::SparseRows transport, std::vector<formats::Openness> openness);
 
 }  // namespace opaline::bake

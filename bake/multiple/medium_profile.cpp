@@ -90,4 +90,26 @@ MediumProfile make_medium_profile(const Medium& medium, std::uint64_t seed,
     return profile;
 }
 
+formats::Rgb half_space_albedo(const Medium& medium, std::uint64_t seed, const Context& context) {
+    const auto eta = static_cast<double>(medium.eta), g = formats::mean_cosine(medium.phase);
+    const double escape = 1 - fresnel_moments(eta).external;
+    std::array<float, 3> albedo{};
+    for (std::size_t b = 0; b < 3; ++b) {
+        const double sigma_s = band_of(medium.sigma_s, b), sigma_a = band_of(medium.sigma_a, b);
+        if (sigma_s > 0) {
+            const auto walked = half_space(sigma_s, sigma_a, g, eta, escape, seed, context);
+            albedo[b] = static_cast<float>(walked.single + walked.multiple);
+        }
+    }
+    return {albedo[0], albedo[1], albedo[2]};
+}
+
+std::uint32_t count_samples(double area, const MediumProfile& profile, std::uint32_t most) {
+    constexpr double kLeast = 2000;
+    const double z = profile.smallest;
+    const double wanted = z > 0 ? std::ceil(area / (z * z)) : 0.0;
+    return static_cast<std::uint32_t>(
+        std::clamp(wanted, std::min(kLeast, static_cast<double>(most)), static_cast<double>(most)));
+}
+
 }  // namespace opaline::bake

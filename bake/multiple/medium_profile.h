@@ -30,4 +30,14 @@ struct MediumProfile {
 MediumProfile make_medium_profile(const formats::Medium& medium, std::uint64_t seed,
                                   const Context& context);
 
+/// Share of uniform light that a half space of the medium returns, by a random walk: the albedo of
+/// the diffuse surface to compare the medium with (translucency.md 3.11).
+formats::Rgb half_space_albedo(const formats::Medium& medium, std::uint64_t seed,
+                               const Context& context);
+
+/// How many samples the surface of a medium needs: one per square of the depth of its source, so
+/// that their sum has converged (translucency.md 3.7), at least 2000, at most `most`.
+/// `area` [m^2].
+std::uint32_t count_samples(double area, const MediumProfile& profile, std::uint32_t most);
+
 }  // namespace opaline::bake

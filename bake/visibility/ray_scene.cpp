@@ -4,10 +4,13 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <iterator>
 #include <limits>
+
+#include "bake/receivers/vertex_receivers.h"
 
 namespace opaline::bake {
 namespace {
@@ -23,7 +26,12 @@ static_assert(offsetof(RayPacket, dir_x) == offsetof(RTCRay16, dir_x) &&
 
 constexpr const char* kInstructionSet = "avx2";
 
-glm::vec3 scene_centre(const Scene& scene) {
+struct Extent {
+    glm::vec3 centre{0};
+    float radius = 0;  // largest coordinate relative to the centre
+};
+
+Extent scene_extent(const Scene& scene) {
     glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
     for (const Primitive& p : scene.primitives) {
         for (const glm::vec3& v : p.position) {
@@ -31,7 +39,11 @@ glm::vec3 scene_centre(const Scene& scene) {
             high = glm::max(high, v);
         }
     }
-    return low.x <= high.x ? 0.5f * low + 0.5f * high : glm::vec3(0);
+    if (low.x > high.x) {
+        return {};
+    }
+    const glm::vec3 half = 0.5f * high - 0.5f * low;
+    return {0.5f * low + 0.5f * high, std::max({half.x, half.y, half.z})};
 }
 
 }  // namespace
@@ -40,7 +52,8 @@ struct RayScene::Handles {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     RTCIntersectContext coherent{};
-    std::vector<bool> double_sided;  // by Embree geometry id
+    std::vector<bool> double_sided;       // by Embree geometry id
+    std::vector<std::uint32_t> material;  // by Embree geometry id
 
     Handles() {
         rtcInitIntersectContext(&coherent);
@@ -65,7 +78,9 @@ RayScene::~RayScene() = default;
 
 formats::Result<RayScene> RayScene::build(const Scene& scene, unsigned threads) {
     RayScene rays;
-    rays.centre_ = scene_centre(scene);
+    const Extent extent = scene_extent(scene);
+    rays.centre_ = extent.centre;
+    rays.error_bound_ = intersection_error_bound(extent.radius);
     Handles& h = *rays.handles_;
     h.device = rtcNewDevice((std::string("isa=") + kInstructionSet).c_str());
     const auto failed = [&](const char* what) {
@@ -104,6 +119,7 @@ formats::Result<RayScene> RayScene::build(const Scene& scene, unsigned threads) 
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(h.scene, geometry);  // ids count up from 0
         h.double_sided.push_back(scene.materials[p.material].double_sided);
+        h.material.push_back(p.material);
         rtcReleaseGeometry(geometry);
     }
     // In an arena of its own: Embree's `threads` setting would limit TBB in the whole process.
@@ -118,6 +134,33 @@ formats::Result<RayScene> RayScene::build(const Scene& scene, unsigned threads) 
 void RayScene::occluded(const LaneMask& lanes, RayPacket& packet) const {
     RTCIntersectContext context = handles_->coherent;
     rtcOccluded16(lanes.data(), handles_->scene, &context, reinterpret_cast<RTCRay16*>(&packet));
+}
+
+PacketHits RayScene::closest(const LaneMask& lanes, const RayPacket& packet) const {
+    RTCIntersectContext context = handles_->coherent;
+    RTCRayHit16 ray;
+    std::memcpy(&ray.ray, &packet, sizeof packet);
+    std::fill(std::begin(ray.hit.geomID), std::end(ray.hit.geomID), RTC_INVALID_GEOMETRY_ID);
+    rtcIntersect16(lanes.data(), handles_->scene, &context, &ray);
+    PacketHits hits{};
+    for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
+        if (lanes[i] == 0 || ray.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+            continue;
+        }
+        const float x = ray.hit.Ng_x[i], y = ray.hit.Ng_y[i], z = ray.hit.Ng_z[i];
+        const float along = x * packet.dir_x[i] + y * packet.dir_y[i] + z * packet.dir_z[i];
+        const float length = std::sqrt(x * x + y * y + z * z);
+        hits.hit[i] = -1;
+        hits.distance[i] = ray.ray.tfar[i];
+        // A normal too short for floats is that of a triangle without area: seen edge on.
+        const float inverse = length > 0 ? 1.0f / length : 0.0f;
+        hits.cosine[i] = along * inverse;
+        hits.normal_x[i] = x * inverse;
+        hits.normal_y[i] = y * inverse;
+        hits.normal_z[i] = z * inverse;
+        hits.material[i] = handles_->material[ray.hit.geomID[i]];
+    }
+    return hits;
 }
 
 LaneMask RayScene::meets_back_face(const LaneMask& lanes, const RayPacket& packet) const {

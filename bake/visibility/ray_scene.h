@@ -27,6 +27,15 @@ struct alignas(64) RayPacket {
 /// Which lanes of a packet to trace: -1 yes, 0 no.
 using LaneMask = std::array<std::int32_t, RayPacket::kSize>;
 
+/// What each ray of a packet meets first. Meaningful only in lanes that hit something.
+struct PacketHits {
+    LaneMask hit;              ///< -1 yes, 0 no
+    RayPacket::Lane distance;  ///< along the ray [m]
+    RayPacket::Lane cosine;  ///< of the ray with the triangle's normal: > 0 leaves through the back
+    RayPacket::LaneBits material;                  ///< index into Scene::materials
+    RayPacket::Lane normal_x, normal_y, normal_z;  ///< unit, of the triangle; 0 without area
+};
+
 /// All triangles of a scene, ready for rays. Immutable once built; any thread may trace.
 /// Coordinates are taken relative to the scene's centre, so a scene far from the origin loses no
 /// precision beyond what its own numbers lost.
@@ -43,6 +52,10 @@ class RayScene {
     /// about one origin, or about one direction.
     void occluded(const LaneMask& lanes, RayPacket& packet) const;
 
+    /// The nearest hit of the rays in `lanes` beyond tnear, up to tfar. A triangle exactly at tnear
+    /// is not hit again.
+    PacketHits closest(const LaneMask& lanes, const RayPacket& packet) const;
+
     /// Which of the rays in `lanes` meet the back of a single-sided triangle first: -1 yes, 0 no.
     /// Inside a closed body all do.
     LaneMask meets_back_face(const LaneMask& lanes, const RayPacket& packet) const;
@@ -51,6 +64,9 @@ class RayScene {
     glm::vec3 centre() const { return centre_; }
 
     std::uint64_t triangles() const { return triangles_; }
+
+    /// Bound [m] on the error of a hit's position.
+    float error_bound() const { return error_bound_; }
 
     /// Embree's version and the instruction set it is pinned to: hit distances differ between
     /// instruction sets, so both belong into the provenance.
@@ -62,6 +78,7 @@ class RayScene {
     std::unique_ptr<Handles> handles_;
     glm::vec3 centre_{0};
     std::uint64_t triangles_ = 0;
+    float error_bound_ = 0;
 };
 
 }  // namespace opaline::bake

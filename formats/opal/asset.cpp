@@ -19,6 +19,8 @@ AssetView Asset::view() const {
     for (const PreviewImageData& image : images) {
         view.images.push_back({image.width, image.height, image.rgb});
     }
+    view.roughness = roughness;
+    view.openness = openness;
     return view;
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/opal/openness.h"
 #include "formats/opal/rgb.h"
 #include "formats/opal/sparse_rows.h"
 #include "formats/opal/vec3.h"
@@ -21,6 +22,9 @@ inline constexpr std::uint32_t kNoImage = 0xffffffffu;
 
 /// Which side of <T, L> carries the solid angle (translucency.md 3.9). Only A is defined so far.
 enum class Pairing : std::uint32_t { light_carries_solid_angle = 1 };
+
+/// Roughness of a primitive without specular reflection.
+inline constexpr float kNotGlossy = -1.0f;
 
 /// How a texture coordinate outside [0, 1] is brought back inside.
 enum class Wrap : std::uint32_t { repeat = 0, clamp = 1, mirror = 2 };
@@ -38,6 +42,9 @@ enum class Shading : std::uint32_t {
     /// w_o' the direction to the eye refracted into the medium and h_k = Y_lm(w_o'), the real
     /// orthonormal spherical harmonics, k = l (l + 1) + m; terms = 1, 4, 9, 16 or 25. With
     /// one term h_0 = 1, so T_0 carries the factor. RGB.
+    /// Separate (PrimitiveRecord::kSeparate): row 0 is multiple scattering by itself, with h = 1;
+    /// the other terms - 1, none or any of the numbers above, are single scattering with the h_k
+    /// of that number.
     translucent = 2,
 };
 
@@ -54,10 +61,13 @@ struct PrimitiveRecord {
     Shading shading = Shading::diffuse;
     std::uint32_t base_color_image = kNoImage;  ///< index into images
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    std::uint32_t flags = 0;  ///< kDoubleSided
+    std::uint32_t flags = 0;  ///< kDoubleSided, kSeparate
     float eta = 0;            ///< translucent: index of refraction in [1/3, 3]; else 0
 
     static constexpr std::uint32_t kDoubleSided = 1;
+    static constexpr std::uint32_t kSeparate = 2;  ///< translucent: multiple scattering in row 0
+
+    bool is_separate() const { return (flags & kSeparate) != 0; }
 
     RowRange rows() const {
         return {first_row, vertex_count * terms, bands, first_band_row, first_code};
@@ -88,6 +98,10 @@ struct AssetView {
     std::span<const Float2> texcoord;  ///< empty, or one per vertex
     std::span<const std::uint32_t> index;
     std::vector<PreviewImage> images;
+    /// Specular reflection: both empty (none), or GGX roughness in [0, 1] per primitive, kNotGlossy
+    /// where a primitive has none, and openness per vertex.
+    std::span<const float> roughness;
+    std::span<const Openness> openness;
 
     std::uint32_t receivers() const { return static_cast<std::uint32_t>(position.size()); }
 };
@@ -111,6 +125,8 @@ struct Asset {
     std::vector<Float2> texcoord;
     std::vector<std::uint32_t> index;
     std::vector<PreviewImageData> images;
+    std::vector<float> roughness;    ///< empty, or one per primitive; only translucent ones gloss
+    std::vector<Openness> openness;  ///< empty, or one per vertex
 
     AssetView view() const;
 };

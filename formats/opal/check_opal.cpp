@@ -42,6 +42,11 @@ Fault find_transport_fault(const AssetView& asset) {
     return {};
 }
 
+bool has_possible_terms(const PrimitiveRecord& p) {
+    return p.is_separate() ? p.terms == 1 || (p.terms > 1 && is_harmonic_count(p.terms - 1))
+                           : is_harmonic_count(p.terms);
+}
+
 // Empty where all is well. `!(>=)` refuses NaN too.
 std::string find_shading_fault(const PrimitiveRecord& p) {
     const auto number = [](auto value) { return std::to_string(value); };
@@ -52,13 +57,14 @@ std::string find_shading_fault(const PrimitiveRecord& p) {
                        " bands and index of refraction " + number(p.eta) +
                        "; expected 1 term, 1 or 3 bands and index 0";
             }
-            return {};
+            return p.is_separate() ? "diffuse shading with separate scattering" : std::string();
         case Shading::translucent:
-            if (!is_harmonic_count(p.terms) || p.bands != 3 || !(p.eta >= kMinEta) ||
+            if (!has_possible_terms(p) || p.bands != 3 || !(p.eta >= kMinEta) ||
                 !(p.eta <= kMaxEta)) {
                 return "translucent shading with " + number(p.terms) + " terms, " +
                        number(p.bands) + " bands and index of refraction " + number(p.eta) +
-                       "; expected 1, 4, 9, 16 or 25 terms, 3 bands and an index in 1/3 ... 3";
+                       "; expected 1, 4, 9, 16 or 25 terms (with separate multiple scattering 1, "
+                       "or one more than these), 3 bands and an index in 1/3 ... 3";
             }
             return {};
     }
@@ -96,6 +102,30 @@ Fault find_primitive_fault(const AssetView& asset, std::size_t i) {
     return {};
 }
 
+// Roughness decides what a renderer allocates: part of the structure.
+Fault find_specular_fault(const AssetView& asset) {
+    if (asset.roughness.empty() && asset.openness.empty()) {
+        return {};
+    }
+    if (asset.roughness.size() != asset.primitives.size() ||
+        asset.openness.size() != asset.position.size()) {
+        return {"section SPEC", "it has " + std::to_string(asset.roughness.size()) +
+                                    " primitives and " + std::to_string(asset.openness.size()) +
+                                    " vertices, not " + std::to_string(asset.primitives.size()) +
+                                    " and " + std::to_string(asset.position.size())};
+    }
+    for (std::size_t i = 0; i < asset.roughness.size(); ++i) {
+        const float roughness = asset.roughness[i];
+        if (roughness != kNotGlossy && (asset.primitives[i].shading != Shading::translucent ||
+                                        !(roughness >= 0.0f && roughness <= 1.0f))) {
+            return {"section SPEC, primitive " + std::to_string(i),
+                    "roughness " + std::to_string(roughness) +
+                        "; expected 0 ... 1, or -1 for none, as diffuse primitives must have"};
+        }
+    }
+    return {};
+}
+
 bool finite(Vec3 v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -111,6 +141,9 @@ Fault find_structure_fault(const AssetView& asset) {
         return {"section MESH", "texture coordinates and positions differ in number"};
     }
     if (const Fault fault = find_transport_fault(asset); !fault.what.empty()) {
+        return fault;
+    }
+    if (const Fault fault = find_specular_fault(asset); !fault.what.empty()) {
         return fault;
     }
     for (std::size_t i = 0; i < asset.primitives.size(); ++i) {

@@ -37,6 +37,11 @@ struct ImageSize {
     std::uint32_t width = 0, height = 0;
 };
 
+struct SpecularHead {
+    std::uint32_t primitives = 0, vertices = 0, reserved[2] = {};
+};
+static_assert(sizeof(SpecularHead) == 16);
+
 struct TransportHead {
     std::uint32_t rows = 0, code_bits = 0, index_bytes = 0, reserved = 0;
     std::uint64_t band_rows = 0, details = 0, codes = 0, reserved_wide = 0;

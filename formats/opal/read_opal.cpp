@@ -90,6 +90,12 @@ bool read_images(Cursor cursor, AssetView& view) {
     return cursor.at_end();
 }
 
+bool read_specular(Cursor cursor, AssetView& view) {
+    SpecularHead head;
+    return cursor.take_one(head) && cursor.take(head.primitives, view.roughness) &&
+           cursor.take(head.vertices, view.openness) && cursor.at_end();
+}
+
 bool read_transport(Cursor cursor, AssetView& view) {
     TransportHead head;
     if (!cursor.take_one(head) || (head.code_bits != 8 && head.code_bits != 16) ||
@@ -149,6 +155,9 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 break;
             case kImagSection:
                 read = read_images;
+                break;
+            case kSpecSection:
+                read = read_specular;
                 break;
             case kProvSection:
                 break;

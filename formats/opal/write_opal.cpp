@@ -125,6 +125,20 @@ Stored store_images(const AssetView& asset) {
     return stored;
 }
 
+Stored store_specular(const AssetView& asset) {
+    const SpecularHead head{static_cast<std::uint32_t>(asset.roughness.size()),
+                            static_cast<std::uint32_t>(asset.openness.size()),
+                            {}};
+    const std::span<const std::byte> arrays[] = {bytes_of(head), std::as_bytes(asset.roughness),
+                                                 std::as_bytes(asset.openness)};
+    Stored stored = store(kSpecSection, Codec::zstd, arrays);
+    if (stored.entry.codec == 0) {
+        stored.compressed.assign(reinterpret_cast<const char*>(&head), sizeof head);
+        stored.parts.front() = std::as_bytes(std::span(stored.compressed));
+    }
+    return stored;
+}
+
 Status write_padded(AtomicFile& file, std::uint64_t& position, std::uint64_t target) {
     while (position < target) {
         const std::size_t step = std::min<std::uint64_t>(target - position, sizeof kZeros);
@@ -164,7 +178,7 @@ Status write_opal(const AssetView& asset, AtomicFile file) {
         rows.code_bits == 8 ? std::as_bytes(rows.code8) : std::as_bytes(rows.code16)};
 
     std::vector<Stored> sections;
-    sections.reserve(6);
+    sections.reserve(7);
     sections.push_back(store_provenance(asset));
     sections.push_back(store(kBasiSection, Codec::none, basis_arrays));
     sections.push_back(store(kPrimSection, Codec::none, primitive_arrays));
@@ -172,6 +186,9 @@ Status write_opal(const AssetView& asset, AtomicFile file) {
     sections.push_back(store_mesh(asset));
     if (!asset.images.empty()) {
         sections.push_back(store_images(asset));
+    }
+    if (!asset.roughness.empty()) {
+        sections.push_back(store_specular(asset));
     }
 
     std::vector<SectionEntry> table;

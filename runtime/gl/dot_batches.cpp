@@ -21,8 +21,10 @@ BoundRange bind_elements(std::uint64_t first, std::uint64_t count, std::size_t s
     return range;
 }
 
-DotBatch make_batch(const SparseRowsView& rows, const PrimitiveRecord& primitive,
-                    std::uint32_t first, std::uint32_t vertices, std::size_t alignment) {
+DotBatch make_batch(const formats::AssetView& asset, std::uint32_t number, std::uint32_t first,
+                    std::uint32_t vertices, std::size_t alignment) {
+    const SparseRowsView& rows = asset.transport;
+    const PrimitiveRecord& primitive = asset.primitives[number];
     const std::uint32_t bands = primitive.bands, terms = primitive.terms;
     const std::uint64_t row = std::uint64_t{primitive.first_row} + std::uint64_t{first} * terms;
     const std::uint64_t row_count = std::uint64_t{vertices} * terms;
@@ -37,6 +39,7 @@ DotBatch make_batch(const SparseRowsView& rows, const PrimitiveRecord& primitive
     batch.bands = bands;
     batch.terms = terms;
     batch.first_detail = begin;
+    batch.primitive = number;
     batch.row_offset = bind_elements(row, row_count + 1, 4, alignment);
     batch.index = bind_elements(begin, end - begin, rows.index_bytes, alignment);
     batch.code =
@@ -45,14 +48,19 @@ DotBatch make_batch(const SparseRowsView& rows, const PrimitiveRecord& primitive
     batch.detail_scale = batch.average_scale;
     batch.average_code = bind_elements(band_row * 6, row_count * bands * 6, 2, alignment);
     batch.irradiance = bind_elements(batch.first_vertex, vertices, kIrradianceBytes, alignment);
+    if (primitive.shading == formats::Shading::translucent) {
+        batch.product = bind_elements(row, row_count, kIrradianceBytes, alignment);
+        batch.point = bind_elements(std::uint64_t{3} * batch.first_vertex,
+                                    std::uint64_t{3} * vertices, sizeof(float), alignment);
+    }
     return batch;
 }
 
 bool fits(const DotBatch& batch, const DotLimits& limits) {
-    return batch.vertices <= limits.max_vertices &&
+    return std::uint64_t{batch.vertices} * batch.terms <= limits.max_vertices &&
            std::max({batch.row_offset.size, batch.index.size, batch.code.size,
-                     batch.average_scale.size, batch.average_code.size, batch.irradiance.size}) <=
-               limits.max_block_bytes;
+                     batch.average_scale.size, batch.average_code.size, batch.irradiance.size,
+                     batch.product.size, batch.point.size}) <= limits.max_block_bytes;
 }
 
 }  // namespace
@@ -60,11 +68,11 @@ bool fits(const DotBatch& batch, const DotLimits& limits) {
 formats::Result<std::vector<DotBatch>> plan_dot_batches(const formats::AssetView& asset,
                                                         const DotLimits& limits) {
     std::vector<DotBatch> batches;
-    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+    for (std::uint32_t p = 0; p < asset.primitives.size(); ++p) {
         const PrimitiveRecord& primitive = asset.primitives[p];
         for (std::uint32_t first = 0; first < primitive.vertex_count;) {
             const auto batch_of = [&](std::uint32_t vertices) {
-                return make_batch(asset.transport, primitive, first, vertices, limits.alignment);
+                return make_batch(asset, p, first, vertices, limits.alignment);
             };
             // The most vertices that fit: ranges grow with their number.
             std::uint32_t fitting = 0, too_many = primitive.vertex_count - first + 1;
@@ -76,7 +84,8 @@ formats::Result<std::vector<DotBatch>> plan_dot_batches(const formats::AssetView
                 return formats::make_error(
                     formats::ErrorKind::resource, {},
                     "primitive " + std::to_string(p) + ", vertex " + std::to_string(first),
-                    "one row of transport exceeds the " + std::to_string(limits.max_block_bytes) +
+                    "one vertex's rows of transport exceed the " +
+                        std::to_string(limits.max_block_bytes) +
                         " bytes that a shader may see at once",
                     "render on the CPU");
             }

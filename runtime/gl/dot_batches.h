@@ -21,16 +21,19 @@ struct DotBatch {
     std::uint32_t first_vertex = 0, vertices = 0;  ///< in the whole asset's numbering
     std::uint32_t bands = 1, terms = 1;
     std::uint32_t first_detail = 0;  ///< row_offset of the first row
+    std::uint32_t primitive = 0;
     BoundRange row_offset, index, code, average_scale, detail_scale, average_code, irradiance;
+    BoundRange product;  ///< translucent: <T_k, L> of every row
+    BoundRange point;    ///< translucent: positions and normals, counted in floats
 };
 
 struct DotLimits {
     std::size_t max_block_bytes = 0;  ///< of one bound range
     std::size_t alignment = 1;        ///< of offsets, a power of two, at least 4
-    std::uint32_t max_vertices = 0;   ///< of one dispatch
+    std::uint32_t max_vertices = 0;   ///< of one dispatch; translucent: of rows
 };
 
-/// Bytes of one vertex's result: four floats, the fourth unused.
+/// Bytes of one vertex's or row's result: four floats, the fourth unused.
 inline constexpr std::size_t kIrradianceBytes = 16;
 
 /// Splits all primitives' rows so that every range of every batch keeps the limits; covers every

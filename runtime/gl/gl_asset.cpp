@@ -1,8 +1,11 @@
 #include "runtime/gl/gl_asset.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 
+#include "runtime/specular.h"
 #include "runtime/texture.h"
 
 namespace opaline::runtime {
@@ -63,10 +66,30 @@ void make_vertex_array(const AssetView& asset, GlAsset& gl) {
     if (!asset.texcoord.empty()) {
         bind_attribute(name, 3, gl.texcoord, 2, sizeof(formats::Float2));
     }
+    if (gl.has_translucent) {
+        bind_attribute(name, 4, gl.normal, 3, sizeof(formats::Vec3));
+    }
+    if (!gl.roughness.empty()) {
+        // Openness: the octahedral axis and the fraction, scaled to [-1, 1] and [0, 1] on the way.
+        for (const GLuint attribute : {5u, 6u}) {
+            glVertexArrayVertexBuffer(name, attribute, gl.openness.name(), 0,
+                                      sizeof(formats::Openness));
+            glVertexArrayAttribBinding(name, attribute, attribute);
+            glEnableVertexArrayAttrib(name, attribute);
+        }
+        glVertexArrayAttribFormat(name, 5, 2, GL_BYTE, GL_TRUE, 0);
+        glVertexArrayAttribFormat(name, 6, 1, GL_UNSIGNED_BYTE, GL_TRUE,
+                                  offsetof(formats::Openness, fraction));
+    }
     glVertexArrayElementBuffer(name, gl.triangle.name());
 }
 
 }  // namespace
+
+void bind_storage(GLuint binding, const GlBuffer& buffer, const BoundRange& range) {
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, buffer.name(),
+                      static_cast<GLintptr>(range.offset), static_cast<GLsizeiptr>(range.size));
+}
 
 formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& limits) {
     auto batches = plan_dot_batches(asset, limits);
@@ -95,6 +118,17 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& l
     gl.detail_scale = make_buffer_of(rows.detail_scale, gl.resident);
     gl.average_code = make_buffer_of(rows.average_code, gl.resident);
     gl.irradiance = make_zero_buffer(gl.vertices * kIrradianceBytes, gl.resident);
+    gl.has_translucent = std::ranges::any_of(gl.primitives, [](const auto& primitive) {
+        return primitive.shading == formats::Shading::translucent;
+    });
+    if (gl.has_translucent) {
+        gl.product = make_zero_buffer(rows.rows() * kIrradianceBytes, gl.resident);
+        gl.normal = make_buffer_of(asset.normal, gl.resident);
+    }
+    if (!roughness_levels(asset).empty()) {
+        gl.roughness.assign(asset.roughness.begin(), asset.roughness.end());
+        gl.openness = make_buffer_of(asset.openness, gl.resident);
+    }
     gl.position = make_buffer_of(asset.position, gl.resident);
     gl.base_color = make_buffer_of(asset.base_color, gl.resident);
     gl.texcoord = make_buffer_of(asset.texcoord, gl.resident);

@@ -18,9 +18,15 @@ struct GlAsset {
     std::vector<DotBatch> batches;
 
     GlBuffer row_offset, index, code, average_scale, detail_scale, average_code;
-    GlBuffer irradiance;  ///< <T_0, L> of every vertex, four floats each; zeros at first
+    /// <T_0, L> of every vertex, four floats each; zeros at first. Of translucent ones what they
+    /// show the eye, without Fresnel's factor.
+    GlBuffer irradiance;
     GlBuffer position, base_color, texcoord, triangle;
-    GlBuffer srgb_table;  ///< linear value of each 8-bit code, 256 floats
+    bool has_translucent = false;
+    std::vector<float> roughness;  ///< of each primitive; empty: none is glossy
+    GlBuffer openness;             ///< where one is: formats::Openness of each vertex
+    GlBuffer product, normal;      ///< where has_translucent: <T_k, L> of every row; normals
+    GlBuffer srgb_table;           ///< linear value of each 8-bit code, 256 floats
     GlVertexArray vertex_array;
     std::vector<GlTexture> images;  ///< 8-bit codes, undecoded
     std::size_t resident = 0;       ///< [bytes]
@@ -29,5 +35,8 @@ struct GlAsset {
 /// Uploads. Errors: resource (memory, an image larger than the driver takes, a row larger than the
 /// limits).
 formats::Result<GlAsset> upload_asset(const formats::AssetView& asset, const DotLimits& limits);
+
+/// Binds part of a buffer for the shaders of the next dispatch.
+void bind_storage(GLuint binding, const GlBuffer& buffer, const BoundRange& range);
 
 }  // namespace opaline::runtime

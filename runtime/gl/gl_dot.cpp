@@ -11,8 +11,7 @@ namespace {
 
 // Locations of dot.comp.glsl.
 enum Uniform : GLint {
-    kVertices,
-    kTerms,
+    kResults,
     kFaceTexels,
     kFirstDetail,
     kRowOrigin,
@@ -20,7 +19,8 @@ enum Uniform : GLint {
     kCodeOrigin,
     kScaleOrigin,
     kAverageOrigin,
-    kIrradianceOrigin
+    kResultOrigin,
+    kKeepsSign
 };
 
 constexpr std::uint32_t kGroupSize = 64;  ///< threads: two warps, one wave
@@ -36,11 +36,6 @@ formats::Result<GlProgram> make_dot_program(const GlAsset& asset, std::uint32_t 
                             define("BANDS", bands) + define("CODE_BITS", asset.code_bits) +
                             define("INDEX_BYTES", asset.index_bytes),
                         {&stage, 1});
-}
-
-void bind(GLuint binding, const GlBuffer& buffer, const BoundRange& range) {
-    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, buffer.name(),
-                      static_cast<GLintptr>(range.offset), static_cast<GLsizeiptr>(range.size));
 }
 
 }  // namespace
@@ -85,9 +80,15 @@ formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
     for (const DotBatch& batch : asset.batches) {
         const GLuint program = (batch.bands == 1 ? programs.grey : programs.rgb).name();
         glUseProgram(program);
+        // Diffuse: a result for each vertex. Translucent: for each row, to be added up toward an
+        // eye.
+        const bool is_translucent =
+            asset.primitives[batch.primitive].shading == formats::Shading::translucent;
+        const std::uint32_t results =
+            is_translucent ? batch.vertices * batch.terms : batch.vertices;
+        const BoundRange& result = is_translucent ? batch.product : batch.irradiance;
         const std::array<std::pair<Uniform, std::uint32_t>, 10> uniforms{
-            {{kVertices, batch.vertices},
-             {kTerms, batch.terms},
+            {{kResults, results},
              {kFaceTexels, asset.cubemap_size * asset.cubemap_size},
              {kFirstDetail, batch.first_detail},
              {kRowOrigin, batch.row_offset.origin},
@@ -95,21 +96,22 @@ formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
              {kCodeOrigin, batch.code.origin},
              {kScaleOrigin, batch.average_scale.origin},
              {kAverageOrigin, batch.average_code.origin},
-             {kIrradianceOrigin, batch.irradiance.origin}}};
+             {kResultOrigin, result.origin},
+             {kKeepsSign, is_translucent ? 1u : 0u}}};
         for (const auto& [location, value] : uniforms) {
             glUniform1ui(location, value);
         }
-        bind(0, asset.row_offset, batch.row_offset);
-        bind(1, asset.index, batch.index);
-        bind(2, asset.code, batch.code);
-        bind(3, asset.average_scale, batch.average_scale);
-        bind(4, asset.detail_scale, batch.detail_scale);
-        bind(5, asset.average_code, batch.average_code);
-        bind(7, asset.irradiance, batch.irradiance);
-        glDispatchCompute(
-            1, (batch.vertices + programs.rows_per_group - 1) / programs.rows_per_group, 1);
+        bind_storage(0, asset.row_offset, batch.row_offset);
+        bind_storage(1, asset.index, batch.index);
+        bind_storage(2, asset.code, batch.code);
+        bind_storage(3, asset.average_scale, batch.average_scale);
+        bind_storage(4, asset.detail_scale, batch.detail_scale);
+        bind_storage(5, asset.average_code, batch.average_code);
+        bind_storage(7, is_translucent ? asset.product : asset.irradiance, result);
+        glDispatchCompute(1, (results + programs.rows_per_group - 1) / programs.rows_per_group, 1);
     }
-    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
+                    GL_BUFFER_UPDATE_BARRIER_BIT);
     return check_gl("computing dot products");
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "formats/opal/result.h"
@@ -9,14 +10,17 @@
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/picture.h"
+#include "runtime/terms.h"
 
 namespace opaline::runtime {
 
 struct DrawPrograms {
-    GlProgram plain, textured, background, resolve;
+    std::array<GlProgram, 6> surface;  ///< plain, textured; translucent, both; glossy, both
+    GlProgram background, resolve;
     GlVertexArray nothing;  ///< for passes without vertex data
 };
-formats::Result<DrawPrograms> make_draw_programs();
+/// Only those that the asset has surfaces for. Errors: resource.
+formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset);
 
 /// Where a tile is drawn: samples with depth, and the box-filtered pixels.
 struct DrawTarget {
@@ -32,13 +36,19 @@ struct Tile {
     std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
+/// About 1 / the distances in the picture: the scale at which shaders measure them.
+double view_unit(const Camera& camera);
+
 /// Everything a tile is drawn from.
 struct DrawScene {
     const GlAsset& asset;
     const GlEnvironment& environment;
+    const GlSpecular& specular;
     const Rotation& rotation;
     const Camera& camera;
     std::uint32_t supersampling = 1;
+    std::uint32_t terms = kAllTerms;  ///< terms.h
+    bool background = true;           ///< false: black
 };
 
 /// Surfaces, then the background where none is seen, then the box filter.

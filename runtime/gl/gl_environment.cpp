@@ -12,6 +12,21 @@ using formats::Environment;
 using formats::ErrorKind;
 using formats::make_error;
 
+GlTexture upload_layers(const Environment& map, std::uint32_t width, std::uint32_t height,
+                        std::uint32_t layers, std::size_t& resident) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &name);
+    glTextureStorage3D(name, 1, GL_RGBA32F, static_cast<GLsizei>(width),
+                       static_cast<GLsizei>(height), static_cast<GLsizei>(layers));
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTextureSubImage3D(name, 0, 0, 0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
+                        static_cast<GLsizei>(layers), GL_RGB, GL_FLOAT, map.pixel.data());
+    resident += 16 * map.pixel.size();
+    return GlTexture(name);
+}
+
 formats::Status upload_map(const Environment& environment, GlEnvironment& gl) {
     const bool is_cube = environment.layout == Environment::Layout::cube;
     const std::uint32_t width = environment.width,
@@ -31,17 +46,7 @@ formats::Status upload_map(const Environment& environment, GlEnvironment& gl) {
                               " pixels, the OpenGL driver takes at most " + std::to_string(limit),
                           "render on the CPU, or use a smaller map");
     }
-    GLuint name = 0;
-    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &name);
-    gl.texture = GlTexture(name);
-    glTextureStorage3D(name, 1, GL_RGBA32F, static_cast<GLsizei>(width),
-                       static_cast<GLsizei>(height), static_cast<GLsizei>(layers));
-    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTextureSubImage3D(name, 0, 0, 0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
-                        static_cast<GLsizei>(layers), GL_RGB, GL_FLOAT, environment.pixel.data());
-    gl.resident += 16 * environment.pixel.size();
+    gl.texture = upload_layers(environment, width, height, layers, gl.resident);
     gl.map = is_cube ? GlEnvironment::Map::cube : GlEnvironment::Map::lat_long;
     return formats::ok_status();
 }
@@ -65,6 +70,18 @@ formats::Result<GlEnvironment> upload_environment(const Environment& environment
     gl.discs = make_buffer_of(std::span<const float>(discs), gl.resident);
     gl.disc_count = static_cast<std::int32_t>(environment.discs.size());
     if (const auto status = check_gl("uploading the environment"); !status) return status.error();
+    return gl;
+}
+
+formats::Result<GlSpecular> upload_specular(SpecularLight light) {
+    GlSpecular gl;
+    for (SpecularLight::Map& map : light.maps) {
+        const std::uint32_t size = map.radiance.width;
+        gl.texture.push_back(upload_layers(map.radiance, size, size, 6, gl.resident));
+        map.radiance.pixel = {};
+    }
+    gl.light = std::move(light);
+    if (const auto status = check_gl("uploading specular light"); !status) return status.error();
     return gl;
 }
 

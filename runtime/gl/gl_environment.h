@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "formats/opal/environment.h"
 #include "formats/opal/result.h"
 #include "runtime/gl/gl_objects.h"
+#include "runtime/specular.h"
 
 namespace opaline::runtime {
 
@@ -23,5 +25,15 @@ struct GlEnvironment {
 /// Errors: resource (memory, a map larger than the driver takes), usage (pixel count and size
 /// disagree).
 formats::Result<GlEnvironment> upload_environment(const formats::Environment& environment);
+
+/// Specular light on the GPU: for each map of a SpecularLight an array of six layers.
+struct GlSpecular {
+    SpecularLight light;  ///< for its levels; its pixels are on the GPU
+    std::vector<GlTexture> texture;
+    std::size_t resident = 0;  ///< [bytes]
+};
+
+/// Errors: resource.
+formats::Result<GlSpecular> upload_specular(SpecularLight light);
 
 }  // namespace opaline::runtime

@@ -10,7 +10,9 @@
 #include "runtime/gl/gl_dot.h"
 #include "runtime/gl/gl_draw.h"
 #include "runtime/gl/gl_environment.h"
+#include "runtime/gl/gl_view.h"
 #include "runtime/picture/software_renderer.h"
+#include "runtime/specular.h"
 
 namespace opaline::runtime {
 namespace {
@@ -35,7 +37,9 @@ class GlClock {
 struct Resources {
     GlAsset asset;
     GlEnvironment environment;
+    GlSpecular specular;
     DotPrograms dot_programs;
+    ViewProgram view_program;
     DrawPrograms draw_programs;
 };
 
@@ -94,17 +98,24 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     auto gl_environment = upload_environment(environment);
     if (!gl_environment) return gl_environment.error();
     state->stats.upload_seconds = clock.lap();
+    auto gl_specular =
+        upload_specular(prefilter_specular(environment, roughness_levels(asset), {}, 0));
+    if (!gl_specular) return gl_specular.error();
+    state->stats.specular_seconds = clock.lap();
 
     auto dot_programs = make_dot_programs(*gl_asset, lanes);
     if (!dot_programs) return dot_programs.error();
-    auto draw_programs = make_draw_programs();
+    auto view_program = make_view_program(*gl_asset);
+    if (!view_program) return view_program.error();
+    auto draw_programs = make_draw_programs(*gl_asset);
     if (!draw_programs) return draw_programs.error();
-    state->stats.gpu_bytes = gl_asset->resident + gl_environment->resident;
+    state->stats.gpu_bytes = gl_asset->resident + gl_environment->resident + gl_specular->resident;
     state->stats.dispatches = static_cast<std::uint32_t>(gl_asset->batches.size());
     state->stats.lanes_per_row = lanes;
     state->stats.device = state->context.description();
     state->resources.emplace(Resources{std::move(*gl_asset), std::move(*gl_environment),
-                                       std::move(*dot_programs), std::move(*draw_programs)});
+                                       std::move(*gl_specular), std::move(*dot_programs),
+                                       std::move(*view_program), std::move(*draw_programs)});
     return GlRenderer(std::move(state));
 }
 
@@ -151,7 +162,14 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
 
     auto picture = make_picture(camera.width, camera.height);
     if (!picture) return picture;
-    const DrawScene scene{resources.asset, resources.environment, state_->rotation, camera, s};
+    if (auto status = dispatch_views(resources.asset, resources.view_program, camera.eye,
+                                     static_cast<float>(view_unit(camera)), options.terms);
+        !status) {
+        return status.error();
+    }
+    const DrawScene scene{
+        resources.asset, resources.environment, resources.specular, state_->rotation, camera, s,
+        options.terms,   options.background};
     for (std::uint32_t y = 0; y < camera.height; y += side) {
         for (std::uint32_t x = 0; x < camera.width; x += side) {
             const Tile tile{x, y, std::min(side, camera.width - x),

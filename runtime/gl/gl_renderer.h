@@ -12,6 +12,7 @@
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/picture.h"
+#include "runtime/terms.h"
 
 namespace opaline::runtime {
 
@@ -26,14 +27,17 @@ struct GlOptions {
 struct GlRenderOptions {
     std::uint32_t supersampling = 3;        ///< S: S x S samples a pixel, box filter; in [1, 8]
     std::uint32_t max_tile_samples = 2048;  ///< side of the tiles drawn at once, >= S
+    std::uint32_t terms = kAllTerms;        ///< components (terms.h); see check_terms
+    bool background = true;                 ///< false: black where no triangle is seen
 };
 
 /// Wall-clock seconds of the last upload, set_light and render; each ends with glFinish.
 struct GlStats {
-    double upload_seconds = 0;  ///< asset and environment to buffers and textures
-    double light_seconds = 0;   ///< light vector to its buffer
-    double dot_seconds = 0;     ///< all dot products
-    double draw_seconds = 0;    ///< geometry, background and box filter
+    double upload_seconds = 0;    ///< asset and environment to buffers and textures
+    double specular_seconds = 0;  ///< environment to specular light, on the CPU, and its upload
+    double light_seconds = 0;     ///< light vector to its buffer
+    double dot_seconds = 0;       ///< all dot products
+    double draw_seconds = 0;      ///< view terms, geometry, background and box filter
     double readback_seconds = 0;
     std::size_t gpu_bytes = 0;        ///< in buffers and textures of the asset and environment
     std::uint32_t dispatches = 0;     ///< of the compute shader, one per batch of rows
@@ -44,8 +48,9 @@ struct GlStats {
 /// Pictures of an asset by OpenGL 4.5, without a window.
 ///
 /// Owns its GL context, which is current only inside calls; the caller's context is restored. One
-/// thread at a time. The same image as render_software with the same irradiance, up to rounding
-/// and to which sample an edge falls on. Reads the asset and environment only in `create`.
+/// thread at a time. The same image as render_software with the same irradiance and specular light,
+/// up to rounding and to which sample an edge falls on. Reads the asset and environment only in
+/// `create`.
 class GlRenderer {
   public:
     /// Uploads. Errors: resource (no EGL or GL, memory, or size limits, with the driver's name).
@@ -57,7 +62,7 @@ class GlRenderer {
     GlRenderer& operator=(GlRenderer&& other) noexcept;
     ~GlRenderer();
 
-    /// Computes <T_0, L> of every vertex in a compute shader. `rotation` turns the background; the
+    /// Computes <T_k, L> of every vertex in a compute shader. `rotation` turns the background; the
     /// light vector must have been made with the same one. Errors: usage (another cube map size
     /// than the asset's), resource.
     formats::Status set_light(const LightVector& light, const Rotation& rotation);
@@ -66,7 +71,8 @@ class GlRenderer {
     /// resource.
     formats::Result<Picture> render(const Camera& camera, const GlRenderOptions& options = {});
 
-    /// Reads back <T_0, L> of every vertex, as the last set_light left it.
+    /// Reads back <T_0, L> of every vertex, as the last set_light left it; of translucent vertices
+    /// sum_k h_k(w_o') <T_k, L> toward the eye of the last render (0 before it).
     formats::Result<std::vector<formats::Rgb>> read_irradiance();
 
     const GlStats& stats() const;

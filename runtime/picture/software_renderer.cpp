@@ -32,6 +32,9 @@ struct Job {
     std::vector<GridVertex> vertices;
     std::vector<GridTriangle> triangles;
     std::vector<std::vector<std::uint32_t>> triangles_of_band;
+    const SpecularLight* specular = nullptr;
+    std::vector<SpecularLobe> lobes;  // of each primitive, where there is specular light
+    bool background = true;
 };
 
 // NaN fails the comparison and becomes 0; the limit keeps sums of samples finite.
@@ -49,17 +52,30 @@ T interpolate(std::span<const T> values, const std::array<std::uint32_t, 3>& ver
            weight[2] * values[vertex[2]];
 }
 
-// Fresnel factor at a sample, with the interpolated normal: it falls too steeply toward grazing
-// views to be interpolated itself.
-float transmittance_at(const Job& job, const PrimitiveRecord& primitive,
+formats::Vec3 unit_or_zero(formats::Vec3 v) {
+    const float norm = length(v);
+    return norm > 0 ? (1 / norm) * v : formats::Vec3{};
+}
+
+// How a sample is seen, with the interpolated normal: Fresnel's factors change too steeply toward
+// grazing views to be interpolated themselves.
+ViewOfReceiver view_at(const Job& job, const PrimitiveRecord& primitive,
                        const GridTriangle& triangle, const std::array<float, 3>& weight) {
-    formats::Vec3 normal = interpolate(job.asset.normal, triangle.vertex, weight);
-    const float norm = length(normal);
-    normal = norm > 0 ? (1 / norm) * normal : formats::Vec3{};
-    const ViewOfReceiver view =
-        view_receiver(primitive, interpolate(job.asset.position, triangle.vertex, weight), normal,
-                      job.camera.eye);
-    return fresnel_transmittance(view.cosine, primitive.eta);
+    return view_receiver(primitive, interpolate(job.asset.position, triangle.vertex, weight),
+                         unit_or_zero(interpolate(job.asset.normal, triangle.vertex, weight)),
+                         job.camera.eye);
+}
+
+Rgb mirrored_at(const Job& job, const SpecularLobe& lobe, const ViewOfReceiver& view, float eta,
+                const GridTriangle& triangle, const std::array<float, 3>& weight) {
+    formats::Vec3 axis;
+    float open = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const formats::Openness openness = job.asset.openness[triangle.vertex[k]];
+        axis = axis + weight[k] * formats::open_axis(openness);
+        open += weight[k] * formats::open_fraction(openness);
+    }
+    return eval_specular(*job.specular, lobe, view, eta, unit_or_zero(axis), open);
 }
 
 Rgb shade_surface(const Job& job, const GridTriangle& triangle, double x, double y) {
@@ -84,7 +100,12 @@ Rgb shade_surface(const Job& job, const GridTriangle& triangle, double x, double
                                                   primitive.wrap_u, primitive.wrap_v);
     }
     if (primitive.shading == formats::Shading::translucent) {
-        radiance = transmittance_at(job, primitive, triangle, weight) * radiance;
+        const ViewOfReceiver view = view_at(job, primitive, triangle, weight);
+        radiance = tame(fresnel_transmittance(view.cosine, primitive.eta) * radiance);
+        if (!job.lobes.empty() && job.lobes[triangle.primitive].radiance != nullptr) {
+            radiance = radiance + mirrored_at(job, job.lobes[triangle.primitive], view,
+                                              primitive.eta, triangle, weight);
+        }
     }
     return tame(radiance);
 }
@@ -94,6 +115,7 @@ Rgb shade_sample(const Job& job, const Band& band, std::uint32_t column, std::ui
         band.triangle[std::size_t{row - band.first_row} * band.columns + column];
     const double x = column + 0.5, y = row + 0.5;
     if (number != Band::kNothing) return shade_surface(job, job.triangles[number], x, y);
+    if (!job.background) return {};
     const formats::Vec3 ray =
         view_ray(job.camera, job.frame, x / job.supersampling, y / job.supersampling);
     return tame(formats::sample_radiance(job.environment, job.rotation.light_from_world(ray)));
@@ -197,8 +219,26 @@ formats::Result<Picture> render_software(const AssetView& asset, std::span<const
     const std::uint32_t s = options.supersampling;
     const SampleGrid grid{camera.width * s, camera.height * s,
                           static_cast<double>(camera.near_plane)};
-    Job job{asset, irradiance, environment,           rotation, camera, camera_frame(camera),
-            grid,  s,          rows_of_band(grid, s), {},       {},     {}};
+    Job job{asset,
+            irradiance,
+            environment,
+            rotation,
+            camera,
+            camera_frame(camera),
+            grid,
+            s,
+            rows_of_band(grid, s),
+            {},
+            {},
+            {},
+            options.specular,
+            {},
+            options.background};
+    if (options.specular != nullptr) {
+        for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+            job.lobes.push_back(specular_lobe(*options.specular, asset, p));
+        }
+    }
     job.vertices = project_vertices(asset.position, camera, grid);
     job.triangles = select_triangles(asset, job.vertices, grid);
     sort_into_bands(job);

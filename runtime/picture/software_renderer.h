@@ -10,12 +10,16 @@
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/picture.h"
+#include "runtime/specular.h"
 
 namespace opaline::runtime {
 
 struct SoftwareOptions {
     std::uint32_t supersampling = 3;  ///< S: S x S samples a pixel, box filter; in [1, 8]
     unsigned threads = 0;             ///< 0: all cores; the result has the same bits for any number
+    /// Light for specular reflections, of the same environment and rotation; nothing: none.
+    const SpecularLight* specular = nullptr;
+    bool background = true;  ///< false: black where no triangle is seen
 };
 
 /// A picture of the asset in front of its environment, on the CPU.
@@ -24,11 +28,11 @@ struct SoftwareOptions {
 /// for translucent vertices sum_k h_k(w_o') <T_k, L> toward the camera's eye (`shade` with
 /// `base_color` and `fresnel` false and that eye). It is interpolated with perspective correction,
 /// then multiplied by the interpolated base colour and the bilinearly sampled base-colour image,
-/// and where translucent by the Fresnel transmittance under the interpolated normal. Triangles show
-/// from both sides; diffuse ones are shaded alike, translucent ones face away with one of them
-/// unless they are double-sided.
-/// Where no triangle is seen stands the radiance of the environment, turned by `rotation` like the
-/// light. Depth and clipping: what is nearest, from the near plane on.
+/// and where translucent by the Fresnel transmittance under the interpolated normal; glossy ones
+/// add their specular reflection (specular.h). Triangles show from both sides; diffuse ones are
+/// shaded alike, translucent ones face away with one of them unless they are double-sided. Where no
+/// triangle is seen stands the radiance of the environment, turned by `rotation` like the light.
+/// Depth and clipping: what is nearest, from the near plane on.
 ///
 /// Errors: usage (see check_camera; not one value per vertex), resource (memory).
 formats::Result<Picture> render_software(const formats::AssetView& asset,

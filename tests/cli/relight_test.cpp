@@ -1,9 +1,16 @@
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cstdio>
+#include <filesystem>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "formats/image/exr.h"
+#include "formats/opal/write_opal.h"
 #include "tests/cli/small_scene.h"
+#include "tests/formats/opal/asset_fixture.h"
 
 namespace opaline::tests {
 namespace {
@@ -57,6 +64,187 @@ TEST(Relight, TurningTheLightOnceAroundChangesNothing) {
     ASSERT_EQ(relight(c, "180"), 0);
     EXPECT_EQ(run_opaline({"compare", a, b, "--max-rel", "1e-4"}).exit_code, 0);
     EXPECT_EQ(run_opaline({"compare", a, c, "--max-rel", "1e-2"}).exit_code, 1);
+}
+
+/// A file with two diffuse squares and a translucent triangle, normals +Z, K = 9.
+std::string write_translucent(const SmallScene& small) {
+    formats::Asset asset = make_small_asset();
+    add_translucent_triangle(asset, 9, 1.3f);
+    const std::string path = small.path("translucent.opal");
+    auto file = formats::AtomicFile::create(path);
+    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    return path;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) {
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+TEST(Relight, TheEyeChangesTranslucentReceiversAlone) {
+    SmallScene small;
+    const std::string file = write_translucent(small);
+    ASSERT_EQ(run_opaline({"verify", file}).exit_code, 0);
+    int run = 0;
+    const auto table = [&](const Arguments& eye) {
+        const std::string out = small.path("table" + std::to_string(run++) + ".csv");
+        Arguments arguments{"relight", file, "--light", "sky:3,40", "-o", out};
+        arguments.insert(arguments.end(), eye.begin(), eye.end());
+        const Outcome outcome = run_opaline(arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return lines_of(read_text(out));
+    };
+    const auto own = table({}), aside = table({"--eye", "5,1,2"}),
+               behind = table({"--eye", "0,0,-4"});
+    ASSERT_EQ(own.size(), 12u);  // head, 8 diffuse, 3 translucent
+    for (std::size_t i = 1; i < 9; ++i) {
+        EXPECT_EQ(own[i], aside[i]);
+        EXPECT_EQ(own[i], behind[i]);
+    }
+    std::size_t lit = 0;
+    for (std::size_t i = 9; i < 12; ++i) {
+        EXPECT_THAT(behind[i], ::testing::EndsWith(",0,0,0"));
+        lit += own[i].ends_with(",0,0,0") ? 0u : 1u;
+        if (!own[i].ends_with(",0,0,0")) {
+            EXPECT_NE(own[i], aside[i]);
+        }
+    }
+    EXPECT_GT(lit, 0u);
+    // From far away along the normal: as without an eye, up to the angle of a metre in 1e6.
+    const std::string a = small.path("own.csv"), b = small.path("far.csv");
+    ASSERT_EQ(run_opaline({"relight", file, "--light", "white", "-o", a}).exit_code, 0);
+    ASSERT_EQ(
+        run_opaline({"relight", file, "--light", "white", "--eye", "0,0,1e6", "-o", b}).exit_code,
+        0);
+    EXPECT_EQ(run_opaline({"compare", a, b, "--max-rel", "1e-4"}).exit_code, 0);
+    const Outcome bad = run_opaline({"relight", file, "--light", "white", "--eye", "1,2", "-o", a});
+    EXPECT_EQ(bad.exit_code, 2);
+}
+
+/// The same with gloss, and with multiple scattering apart if asked for.
+std::string write_glossy(const SmallScene& small, bool is_separate) {
+    formats::Asset asset = make_small_asset();
+    add_translucent_triangle(asset, is_separate ? 10 : 9, 1.3f, is_separate);
+    add_gloss(asset);
+    const std::string path = small.path(is_separate ? "separate.opal" : "merged.opal");
+    auto file = formats::AtomicFile::create(path);
+    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    return path;
+}
+
+TEST(Terms, UnknownNamesAreRefusedWithTheList) {
+    SmallScene small;
+    const std::string file = write_glossy(small, true);
+    for (const char* command : {"relight", "render"}) {
+        const std::string out = small.path(command == std::string("relight") ? "o.csv" : "o.png");
+        for (const char* terms : {"sparkle", "multiple,", ",single", "diffuse;single", "Diffuse"}) {
+            const Outcome bad =
+                run_opaline({command, file, "--light", "white", "--terms", terms, "-o", out});
+            EXPECT_EQ(bad.exit_code, 2) << terms;
+            EXPECT_THAT(bad.err, HasSubstr("multiple,single,specular,diffuse"));
+            EXPECT_FALSE(std::filesystem::exists(out));
+        }
+    }
+}
+
+TEST(Terms, MergedFilesSayWhatToDoForOneOfTheirTerms) {
+    SmallScene small;
+    const std::string merged = write_glossy(small, false), out = small.path("o.png");
+    for (const char* terms : {"multiple", "single,specular,diffuse"}) {
+        const Outcome bad =
+            run_opaline({"render", merged, "--light", "white", "--terms", terms, "-o", out});
+        EXPECT_EQ(bad.exit_code, 3) << terms;
+        EXPECT_THAT(bad.err, HasSubstr("merged.opal: primitive 2: "));
+        EXPECT_THAT(bad.err, HasSubstr("(bake with --separate-terms"));
+    }
+    for (const char* terms : {"multiple,single", "specular", "diffuse,specular"}) {
+        EXPECT_EQ(run_opaline({"render", merged, "--light", "white", "--terms", terms, "--size",
+                               "16x16", "-o", out})
+                      .exit_code,
+                  0);
+    }
+}
+
+// Tables hold nine digits, and the random rows of the translucent triangle may be negative: only
+// components that nothing was clamped from are compared, which the whole tells by being their sum.
+TEST(Terms, TablesOfAllComponentsAddUpToTheWhole) {
+    SmallScene small;
+    const std::string file = write_glossy(small, true);
+    const auto table = [&](const std::string& terms) {
+        const std::string out = small.path("t-" + terms + ".csv");
+        Arguments arguments{"relight", file, "--light", "sky:3,40", "--eye", "1,1,3", "-o", out};
+        if (!terms.empty()) arguments.insert(arguments.end(), {"--terms", terms});
+        const Outcome outcome = run_opaline(arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        std::vector<std::array<double, 3>> values;
+        for (const std::string& line : lines_of(read_text(out))) {
+            std::array<double, 3> v{};
+            if (std::sscanf(line.c_str(), "%*u,%*u,%lf,%lf,%lf", &v[0], &v[1], &v[2]) == 3) {
+                values.push_back(v);
+            }
+        }
+        return values;
+    };
+    const auto whole = table(""), all = table("diffuse,specular,single,multiple"),
+               opaque = table("diffuse"), mirrored = table("specular"),
+               inside = table("multiple,single");
+    ASSERT_EQ(whole.size(), 11u);
+    EXPECT_EQ(whole, all);
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_NEAR(whole[i][c], opaque[i][c] + mirrored[i][c] + inside[i][c],
+                        1e-6 * (1 + whole[i][c]));
+            EXPECT_EQ(i<8, opaque[i][c]> 0 || whole[i][c] == 0) << i;
+        }
+    }
+    EXPECT_GT(mirrored.back()[2], 0);
+    EXPECT_EQ(mirrored.front()[2], 0);
+}
+
+TEST(Terms, BackendsAgreeOnComponentsOverBlack) {
+    SmallScene small;
+    const std::string file = write_glossy(small, true);
+    for (const char* terms : {"multiple", "specular", "diffuse", "single,specular"}) {
+        const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
+        for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
+            const Outcome render =
+                run_opaline({"render", file, "--light", "studio", "--size", "83x57", "--eye",
+                             "2,1,3", "--terms", terms, "--backend", backend, "-o", out});
+            ASSERT_EQ(render.exit_code, 0) << render.err;
+        }
+        const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "2e-3"});
+        EXPECT_EQ(same.exit_code, 0) << terms << "\n" << same.out;
+        const auto image = formats::read_exr(gl);
+        ASSERT_TRUE(image);
+        EXPECT_EQ(image->pixel.front(), formats::Rgb{});
+    }
+}
+
+TEST(Info, SaysWhatIsGlossyAndSeparate) {
+    SmallScene small;
+    const std::string file = write_glossy(small, true);
+    ASSERT_EQ(run_opaline({"verify", file}).exit_code, 0);
+    const Outcome info = run_opaline({"info", file});
+    EXPECT_THAT(info.out, HasSubstr("multiple and single separate, roughness 0.3"));
+    EXPECT_THAT(info.out, HasSubstr("SPEC"));
+    EXPECT_THAT(run_opaline({"info", file, "--json"}).out, HasSubstr("\"separate\": true"));
+}
+
+TEST(Render, BackendsAgreeOnTranslucentPrimitives) {
+    SmallScene small;
+    const std::string file = write_translucent(small);
+    const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
+    for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
+        const Outcome render = run_opaline({"render", file, "--light", "studio", "--size", "83x57",
+                                            "--eye", "2,1,3", "--backend", backend, "-o", out});
+        ASSERT_EQ(render.exit_code, 0) << render.err;
+    }
+    const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "2e-3"});
+    EXPECT_EQ(same.exit_code, 0) << same.out;
 }
 
 TEST(Render, PicturesHaveTheSizeAskedForAndAgreeBetweenBackends) {

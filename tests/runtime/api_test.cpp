@@ -180,7 +180,7 @@ TEST_F(Api, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
     EXPECT_EQ(opaline_light_set_cubemap(l, white, 0), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_light_set_threads(l, 257), OPALINE_INVALID_ARGUMENT);
     std::vector<float> out(3 * receivers);
-    EXPECT_EQ(opaline_shade(asset.get(), l, 2, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_shade(asset.get(), l, 64, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_shade(asset.get(), l, 0, out.data(), out.size() - 1),
               OPALINE_BUFFER_TOO_SMALL);
     EXPECT_EQ(opaline_shade(asset.get(), l, 0, nullptr, out.size()), OPALINE_INVALID_ARGUMENT);
@@ -224,6 +224,124 @@ TEST_F(Api, DamagedFilesAreRefusedWhereverTheDamageIs) {
         }
         file.data()[at] = static_cast<char>(file.data()[at] ^ 0x10);
     }
+}
+
+TEST_F(Api, TranslucentPrimitivesAreShadedFromTheEyeThatIsGiven) {
+    formats::Asset source = make_asset(8);
+    formats::PrimitiveRecord& p = source.primitives[0];
+    p.shading = formats::Shading::translucent;
+    p.eta = 1.4f;
+    p.terms = 4;
+    p.vertex_count /= 4;
+    source.position.resize(p.vertex_count);
+    source.normal.resize(p.vertex_count);
+    source.base_color.resize(p.vertex_count);
+    FileBytes bytes = write(source, "api-translucent");
+    auto translucent = load_asset(bytes.data(), bytes.size);
+    ASSERT_TRUE(translucent) << opaline_last_error();
+    const opaline_asset* const a = translucent.handle.get();
+    opaline_primitive_shading shading{};
+    EXPECT_EQ(opaline_asset_primitive_shading(a, 0, &shading), OPALINE_INVALID_ARGUMENT);
+    shading.struct_size = sizeof shading;
+    ASSERT_EQ(opaline_asset_primitive_shading(a, 0, &shading), OPALINE_OK);
+    EXPECT_EQ(shading.shading, std::uint32_t{OPALINE_SHADING_TRANSLUCENT});
+    EXPECT_EQ(shading.terms, 4u);
+    EXPECT_EQ(shading.eta, 1.4f);
+    EXPECT_EQ(opaline_asset_primitive_shading(a, 1, &shading), OPALINE_INVALID_ARGUMENT);
+    ASSERT_EQ(opaline_asset_primitive_shading(asset.get(), 0, &shading), OPALINE_OK);
+    EXPECT_EQ(shading.shading, std::uint32_t{OPALINE_SHADING_DIFFUSE});
+    EXPECT_EQ(shading.eta, 0.0f);
+
+    const formats::Environment map = tests::lat_long_map(64, 32, tests::smooth_sky);
+    ASSERT_EQ(opaline_light_set_lat_long(light.get(), &map.pixel[0].r, 64, 32), OPALINE_OK);
+    const LightVector vector = project_environment(map, 8);
+    const auto count = p.vertex_count;
+    const float eye[3] = {1, 2, -1};
+    const auto expect = [&](std::uint32_t flags, const float* from, const ShadeOptions& options) {
+        std::vector<Rgb> expected(count);
+        shade(source.view(), vector, expected, options);
+        std::vector<float> out(3 * std::size_t{count});
+        ASSERT_EQ(opaline_shade_from(a, light.get(), flags, from, 0, count, out.data(), out.size()),
+                  OPALINE_OK)
+            << opaline_last_error();
+        EXPECT_EQ(std::memcmp(out.data(), expected.data(), out.size() * sizeof(float)), 0) << flags;
+    };
+    const formats::Vec3 at{1, 2, -1};
+    expect(0, nullptr, {});
+    expect(0, eye, {.eye = at});
+    expect(OPALINE_SHADE_WITHOUT_BASE_COLOR, eye, {.base_color = false, .eye = at});
+    expect(OPALINE_SHADE_WITHOUT_BASE_COLOR | OPALINE_SHADE_WITHOUT_FRESNEL, eye,
+           {.base_color = false, .eye = at, .fresnel = false});
+    std::vector<float> out(3 * std::size_t{count});
+    const float nowhere[3] = {0, INFINITY, 0};
+    EXPECT_EQ(opaline_shade_from(a, light.get(), 0, nowhere, 0, count, out.data(), out.size()),
+              OPALINE_INVALID_ARGUMENT);
+    EXPECT_THAT(opaline_last_error(), HasSubstr("eye"));
+}
+
+TEST_F(Api, ComponentsAndGlossAreThoseOfTheLibrary) {
+    formats::Asset source = make_asset(8);
+    formats::PrimitiveRecord& p = source.primitives[0];
+    p.shading = formats::Shading::translucent;
+    p.eta = 1.4f;
+    p.terms = 5;
+    p.flags = formats::PrimitiveRecord::kSeparate;
+    p.vertex_count /= 5;
+    source.position.resize(p.vertex_count);
+    source.normal.resize(p.vertex_count);
+    source.base_color.resize(p.vertex_count);
+    source.roughness = {0.5f};
+    source.openness.resize(p.vertex_count, formats::encode_openness({0, 1, 0}, 0.9f));
+    FileBytes bytes = write(source, "api-glossy");
+    auto glossy = load_asset(bytes.data(), bytes.size);
+    ASSERT_TRUE(glossy) << opaline_last_error();
+    auto created = create_light(glossy.handle);
+    ASSERT_TRUE(created);
+    const opaline_asset* const a = glossy.handle.get();
+    opaline_light* const l = created.handle.get();
+    // Map, sun, rotation: all three reach the mirrored light.
+    formats::Environment map = tests::lat_long_map(64, 32, tests::smooth_sky);
+    map.discs = {{{0, 0.6f, 0.8f}, 0.01f, {900, 800, 700}}};
+    ASSERT_EQ(opaline_light_set_lat_long(l, &map.pixel[0].r, 64, 32), OPALINE_OK);
+    const float direction[3] = {0, 0.6f, 0.8f}, radiance[3] = {900, 800, 700};
+    ASSERT_EQ(opaline_light_add_sun(l, direction, 0.01f, radiance), OPALINE_OK);
+    const float turn[9] = {0, 0, -1, 0, 1, 0, 1, 0, 0};
+    ASSERT_EQ(opaline_light_set_rotation(l, turn), OPALINE_OK);
+    const Rotation rotation{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}};
+    const LightVector vector = project_environment(map, 8, rotation);
+    const std::uint32_t level = roughness_level(0.5f);
+    const SpecularLight specular = prefilter_specular(map, {&level, 1}, rotation, 1);
+    const auto expect = [&](std::uint32_t flags, std::uint32_t terms) {
+        std::vector<Rgb> expected(p.vertex_count);
+        shade(source.view(), vector, expected, {.terms = terms, .specular = &specular});
+        std::vector<float> out(3 * std::size_t{p.vertex_count});
+        ASSERT_EQ(opaline_shade(a, l, flags, out.data(), out.size()), OPALINE_OK)
+            << opaline_last_error();
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            EXPECT_NEAR(out[3 * i + 1], expected[i].g, 1e-5f * (1 + expected[i].g)) << flags;
+        }
+    };
+    expect(0, kAllTerms);
+    expect(OPALINE_SHADE_WITHOUT_SPECULAR, kAllTerms & ~kSpecularTerm);
+    expect(OPALINE_SHADE_WITHOUT_SINGLE | OPALINE_SHADE_WITHOUT_SPECULAR, kMultipleTerm);
+    expect(OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SPECULAR, kSingleTerm);
+    expect(OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE, kSpecularTerm);
+    // A light of an asset without gloss has nothing to mirror.
+    std::vector<float> out(3 * std::size_t{p.vertex_count});
+    EXPECT_EQ(opaline_shade(a, light.get(), 0, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
+    EXPECT_THAT(opaline_last_error(), HasSubstr("roughness"));
+    EXPECT_EQ(opaline_shade(a, light.get(), OPALINE_SHADE_WITHOUT_SPECULAR, out.data(), out.size()),
+              OPALINE_OK);
+    // Merged rows cannot be taken apart.
+    source.primitives[0].flags = 0;
+    source.primitives[0].terms = 4;
+    FileBytes merged_bytes = write(source, "api-merged");
+    auto merged = load_asset(merged_bytes.data(), merged_bytes.size);
+    ASSERT_TRUE(merged) << opaline_last_error();
+    EXPECT_EQ(
+        opaline_shade(merged.handle.get(), l, OPALINE_SHADE_WITHOUT_SINGLE, out.data(), out.size()),
+        OPALINE_INVALID_ARGUMENT);
+    EXPECT_THAT(opaline_last_error(), HasSubstr("--separate-terms"));
 }
 
 TEST_F(Api, StatusesHaveNames) {

@@ -32,6 +32,13 @@ Vec3 random_direction(std::mt19937& generator) {
     return normalize(Vec3{normal(generator), normal(generator), normal(generator)});
 }
 
+formats::PrimitiveRecord translucent(float eta) {
+    formats::PrimitiveRecord primitive;
+    primitive.shading = formats::Shading::translucent;
+    primitive.eta = eta;
+    return primitive;
+}
+
 TEST(FresnelTransmittance, AtNormalIncidenceIsTheClosedForm) {
     for (const float eta : kEtas) {
         const double r = (static_cast<double>(eta) - 1) / (static_cast<double>(eta) + 1);
@@ -153,7 +160,7 @@ TEST(ViewOfReceiver, IsTowardTheEyeOrAlongTheNormal) {
     const ViewOfReceiver bare = view_receiver(single, {}, {}, {});
     EXPECT_EQ(fresnel_transmittance(bare.cosine, 1.3f), 0);
     const std::array<Rgb, 4> product{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
-    EXPECT_TRUE(std::isfinite(sum_view_terms(bare, 1.3f, product).r));
+    EXPECT_TRUE(std::isfinite(sum_view_terms(bare, translucent(1.3f), product).r));
 }
 
 TEST(ViewTerms, OneTermIsOneAndSeveralAreHarmonics) {
@@ -191,7 +198,7 @@ TEST(ViewTerms, SumToTheTruncatedPhaseFunctionOfTheRefractedDirection) {
         const double cosine = -dot(w_in, inside);
         const double expected =
             (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
-        const Rgb sum = sum_view_terms(view, static_cast<float>(eta), product);
+        const Rgb sum = sum_view_terms(view, translucent(static_cast<float>(eta)), product);
         // What is left out is at most sum_{l > 4} (2 l + 1) g^l / (4 pi) = 0.0012.
         EXPECT_NEAR(sum.r, expected, 1.3e-3);
         EXPECT_FLOAT_EQ(sum.b, 2 * sum.r);

@@ -1,4 +1,4 @@
-// <T_0, L> for the vertices of one batch: LANES invocations share a row.
+// <T_k, L> for the rows of one batch: LANES invocations share a row.
 // Specialised by LANES, ROWS (rows of a workgroup), BANDS, CODE_BITS, INDEX_BYTES.
 layout(local_size_x = LANES, local_size_y = ROWS) in;
 
@@ -9,19 +9,19 @@ layout(std430, binding = 3) readonly buffer AverageScales { float average_scale[
 layout(std430, binding = 4) readonly buffer DetailScales { float detail_scale[]; };
 layout(std430, binding = 5) readonly buffer AverageCodes { uint average_word[]; };
 layout(std430, binding = 6) readonly buffer Light { vec4 light[]; };
-layout(std430, binding = 7) writeonly buffer Irradiance { vec4 irradiance[]; };
+layout(std430, binding = 7) writeonly buffer Results { vec4 result[]; };
 
-layout(location = 0) uniform uint vertices;
-layout(location = 1) uniform uint terms;
-layout(location = 2) uniform uint face_texels;
-layout(location = 3) uniform uint first_detail;
+layout(location = 0) uniform uint results;
+layout(location = 1) uniform uint face_texels;
+layout(location = 2) uniform uint first_detail;
 // Where the batch's data begin in the bound ranges.
-layout(location = 4) uniform uint row_origin;
-layout(location = 5) uniform uint index_origin;
-layout(location = 6) uniform uint code_origin;
-layout(location = 7) uniform uint scale_origin;
-layout(location = 8) uniform uint average_origin;
-layout(location = 9) uniform uint irradiance_origin;
+layout(location = 3) uniform uint row_origin;
+layout(location = 4) uniform uint index_origin;
+layout(location = 5) uniform uint code_origin;
+layout(location = 6) uniform uint scale_origin;
+layout(location = 7) uniform uint average_origin;
+layout(location = 8) uniform uint result_origin;
+layout(location = 9) uniform uint keeps_sign;  // several terms make a radiance, one may be negative
 
 int signed_half(uint word, uint element) {
     return bitfieldExtract(int(word), int((element & 1u) * 16u), 16);
@@ -92,32 +92,33 @@ float tame(float value) {
     return value > 0.0 ? min(value, 3.4e38) : 0.0;
 }
 
-void store(uint vertex, vec3 sum) {
-    irradiance[irradiance_origin + vertex] = vec4(tame(sum.r), tame(sum.g), tame(sum.b), 0.0);
+void store(uint row, vec3 sum) {
+    vec3 tamed = vec3(tame(sum.r), tame(sum.g), tame(sum.b));
+    result[result_origin + row] = vec4(keeps_sign != 0u ? sum : tamed, 0.0);
 }
 
 #if LANES == 1
 void main() {
-    uint vertex = gl_GlobalInvocationID.y;
-    if (vertex < vertices) {
-        store(vertex, lane_sum(vertex * terms, 0u));
+    uint row = gl_GlobalInvocationID.y;
+    if (row < results) {
+        store(row, lane_sum(row, 0u));
     }
 }
 #else
 shared vec3 partial[ROWS][LANES];
 
 void main() {
-    uint vertex = gl_GlobalInvocationID.y, lane = gl_LocalInvocationID.x;
+    uint row = gl_GlobalInvocationID.y, lane = gl_LocalInvocationID.x;
     uint slot = gl_LocalInvocationID.y;
-    partial[slot][lane] = vertex < vertices ? lane_sum(vertex * terms, lane) : vec3(0.0);
+    partial[slot][lane] = row < results ? lane_sum(row, lane) : vec3(0.0);
     for (uint half_lanes = uint(LANES) / 2u; half_lanes > 0u; half_lanes /= 2u) {
         barrier();
         if (lane < half_lanes) {
             partial[slot][lane] += partial[slot][lane + half_lanes];
         }
     }
-    if (lane == 0u && vertex < vertices) {
-        store(vertex, partial[slot][0]);
+    if (lane == 0u && row < results) {
+        store(row, partial[slot][0]);
     }
 }
 #endif

@@ -1,4 +1,6 @@
-// Outgoing radiance: irradiance transport times base colour, and its image where TEXTURED.
+// Outgoing radiance: irradiance transport times base colour, and its image where TEXTURED, and the
+// Fresnel transmittance where TRANSLUCENT, and a specular reflection on top where GLOSSY (then
+// cube_map.glsl comes before this).
 layout(location = 0) in vec3 v_irradiance;
 layout(location = 1) in vec3 v_base_color;
 layout(location = 2) in vec2 v_texcoord;
@@ -48,10 +50,93 @@ vec3 sample_image(vec2 uv) {
 }
 #endif
 
+#ifdef TRANSLUCENT
+layout(location = 3) in vec3 v_normal;
+layout(location = 4) in vec3 v_to_eye;
+layout(location = 9) uniform float eta;
+layout(location = 10) uniform uint is_double_sided;
+
+vec3 unit_or_zero(vec3 v) {
+    float size = length(v);
+    return size > 0.0 ? v / size : vec3(0.0);
+}
+
+// As fresnel_transmittance of view_terms.cpp.
+float transmittance(float c) {
+    c = min(c, 1.0);
+    float under_root = (eta - 1.0) * (eta + 1.0) + c * c;
+    if (!(c > 0.0) || !(under_root > 0.0)) {
+        return 0.0;
+    }
+    float behind = sqrt(under_root);
+    float s = c + behind, p = eta * eta * c + behind;
+    return min(2.0 * c * behind * (1.0 / (s * s) + eta * eta / (p * p)), 1.0);
+}
+#else
+layout(location = 11) uniform float shown;  // 1, or 0: left out
+#endif
+
+#ifdef GLOSSY
+layout(location = 5) in vec4 v_open;
+layout(binding = 1) uniform sampler2DArray mirrored_light;
+layout(location = 12) uniform mat3 light_from_world;
+layout(location = 13) uniform vec2 lobe;          // cosine and sine of its half angle
+layout(location = 14) uniform uint has_specular;  // 0: left out
+
+// The next two as in specular.cpp.
+float specular_visibility(vec3 axis, float open, vec3 mirrored) {
+    float cosine = sqrt(1.0 - open), sine = sqrt(open);
+    float low = cosine * lobe.x - sine * lobe.y, high = cosine * lobe.x + sine * lobe.y;
+    float at = high > low ? clamp((dot(axis, mirrored) - low) / (high - low), 0.0, 1.0) : 0.0;
+    float fits = min(1.0, (1.0 - cosine) / (1.0 - lobe.x));
+    float inside = fits * at * at * (3.0 - 2.0 * at);
+    float squared = open * open, fourth = squared * squared;
+    return 1.0 - (1.0 - inside) * (1.0 - fourth * fourth);
+}
+
+vec3 specular(vec3 n, vec3 w, float cosine, bool is_turned) {
+    if (has_specular == 0u || !(dot(n, n) > 0.0) || !(cosine > -0.2)) {
+        return vec3(0.0);
+    }
+    float c = clamp(cosine, 0.0, 1.0);
+    float fade = 1.0 + min(cosine, 0.0) / 0.2;
+    vec3 mirrored = unit_or_zero(2.0 * c * n - w);
+    if (!(dot(mirrored, mirrored) > 0.0)) {
+        return vec3(0.0);
+    }
+    vec3 axis = unit_or_zero(v_open.xyz);
+    if (is_turned) {
+        axis -= 2.0 * dot(axis, n) * n;
+    }
+    float share = fade * (1.0 - transmittance(c)) *
+                  specular_visibility(axis, clamp(v_open.w, 0.0, 1.0), mirrored);
+    return share * sample_cube(mirrored_light, light_from_world * mirrored);
+}
+#endif
+
+vec3 tame(vec3 v) {
+    return vec3(tame(v.r), tame(v.g), tame(v.b));
+}
+
 void main() {
     vec3 radiance = v_irradiance * v_base_color;
 #ifdef TEXTURED
     radiance *= sample_image(v_texcoord);
 #endif
-    color = vec4(tame(radiance.r), tame(radiance.g), tame(radiance.b), 1.0);
+#ifdef TRANSLUCENT
+    vec3 n = unit_or_zero(v_normal), w = unit_or_zero(v_to_eye);
+    float c = dot(n, w);
+    bool is_turned = c < 0.0 && is_double_sided != 0u;
+    if (is_turned) {
+        n = -n;
+        c = -c;
+    }
+    radiance *= transmittance(c);
+#else
+    radiance *= shown;
+#endif
+#ifdef GLOSSY
+    radiance = tame(radiance) + specular(n, w, c, is_turned);
+#endif
+    color = vec4(tame(radiance), 1.0);
 }

@@ -4,6 +4,24 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 irradiance;
 layout(location = 2) in vec3 base_color;
 layout(location = 3) in vec2 texcoord;
+#ifdef TRANSLUCENT
+layout(location = 4) in vec3 normal;
+layout(location = 3) out vec3 v_normal;
+layout(location = 4) out vec3 v_to_eye;
+#endif
+
+#ifdef GLOSSY
+layout(location = 5) in vec2 open_axis;
+layout(location = 6) in float open_fraction;
+layout(location = 5) out vec4 v_open;  // mean open direction, open fraction
+
+// Octahedral, as formats/opal/openness.cpp.
+vec3 decode_axis(vec2 p) {
+    float z = 1.0 - abs(p.x) - abs(p.y);
+    vec2 folded = (1.0 - abs(p.yx)) * vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
+    return normalize(vec3(z < 0.0 ? folded : p, z));
+}
+#endif
 
 layout(location = 0) uniform vec3 eye;
 layout(location = 1) uniform vec3 right;      // over the half width of the image plane
@@ -25,4 +43,11 @@ void main() {
     v_irradiance = irradiance;
     v_base_color = base_color;
     v_texcoord = texcoord;
+#ifdef TRANSLUCENT
+    v_normal = normal;
+    v_to_eye = -p;
+#endif
+#ifdef GLOSSY
+    v_open = vec4(decode_axis(open_axis), open_fraction);
+#endif
 }

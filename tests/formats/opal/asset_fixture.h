@@ -57,7 +57,8 @@ inline formats::Asset make_small_asset(std::uint32_t code_bits = 8) {
 }
 
 /// Adds a translucent triangle of three vertices, `terms` random RGB rows each; n = 8.
-inline void add_translucent_triangle(formats::Asset& asset, std::uint32_t terms, float eta) {
+inline void add_translucent_triangle(formats::Asset& asset, std::uint32_t terms, float eta,
+                                     bool is_separate = false) {
     using namespace formats;
     std::mt19937 generator(8);
     std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);
@@ -65,6 +66,7 @@ inline void add_translucent_triangle(formats::Asset& asset, std::uint32_t terms,
     record.shading = Shading::translucent;
     record.terms = terms;
     record.bands = 3;
+    record.flags = is_separate ? PrimitiveRecord::kSeparate : 0;
     record.eta = eta;
     record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
     record.vertex_count = 3;
@@ -96,6 +98,19 @@ inline void add_translucent_triangle(formats::Asset& asset, std::uint32_t terms,
             }
             append_row(asset.transport, row);
         }
+    }
+}
+
+/// Makes translucent primitives glossy: roughness 0.3, openness from closed to open along the
+/// vertices.
+inline void add_gloss(formats::Asset& asset) {
+    using namespace formats;
+    for (const PrimitiveRecord& p : asset.primitives) {
+        asset.roughness.push_back(p.shading == Shading::translucent ? 0.3f : kNotGlossy);
+    }
+    for (std::size_t v = 0; v < asset.position.size(); ++v) {
+        const float open = static_cast<float>(v) / static_cast<float>(asset.position.size() - 1);
+        asset.openness.push_back(encode_openness({0.2f, 0, 1}, open));
     }
 }
 

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -137,6 +138,99 @@ TEST(OpalFile, ImpossibleShadingIsRefusedByName) {
                 testing::HasSubstr("shading 3"));
     // More rows than there are, by the number of terms.
     EXPECT_NE(fault_of([](Primitives& p) { p[2].terms = 9; }), "");
+}
+
+TEST(OpalFile, SeparateScatteringHasOneRowMoreThanItsHarmonics) {
+    const auto fault_of = [](std::uint32_t terms, bool is_separate) {
+        Asset asset = tests::make_small_asset();
+        tests::add_translucent_triangle(asset, terms, 1.3f, is_separate);
+        AlignedBytes stored(encode(asset));
+        const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+        if (loaded) {
+            EXPECT_EQ(loaded->view.primitives[2].is_separate(), is_separate);
+        }
+        return loaded ? std::string() : loaded.error().diagnostics.front().fault;
+    };
+    for (const std::uint32_t single : {0u, 1u, 4u, 9u, 16u, 25u}) {
+        EXPECT_EQ(fault_of(1 + single, true), "") << single;
+    }
+    for (const std::uint32_t terms : {3u, 4u, 6u, 9u, 25u, 27u}) {
+        EXPECT_THAT(fault_of(terms, true), testing::HasSubstr("terms"));
+    }
+    EXPECT_NE(fault_of(26, false), "");
+    Asset asset = tests::make_small_asset();
+    asset.primitives[0].flags |= PrimitiveRecord::kSeparate;
+    AlignedBytes stored(encode(asset));
+    EXPECT_FALSE(read_opal(stored.bytes(), "a.opal"));
+}
+
+TEST(OpalFile, SpecularComesBackAndIsAbsentWithoutIt) {
+    Asset asset = tests::make_small_asset();
+    tests::add_translucent_triangle(asset, 4, 1.3f);
+    {
+        AlignedBytes stored(encode(asset));
+        const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+        ASSERT_TRUE(loaded);
+        EXPECT_TRUE(loaded->view.roughness.empty() && loaded->view.openness.empty());
+        EXPECT_EQ(loaded->sections.size(), 6u);
+    }
+    tests::add_gloss(asset);
+    AlignedBytes stored(encode(asset));
+    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+    ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
+    expect_same_bytes(loaded->view.roughness, asset.roughness);
+    expect_same_bytes(loaded->view.openness, asset.openness);
+    EXPECT_EQ(loaded->sections.back().id, kSpecSection);
+}
+
+TEST(OpalFile, ImpossibleSpecularIsRefusedByName) {
+    const auto fault_of = [](auto change) {
+        Asset asset = tests::make_small_asset();
+        tests::add_translucent_triangle(asset, 4, 1.3f);
+        tests::add_gloss(asset);
+        change(asset);
+        AlignedBytes stored(encode(asset));
+        const auto loaded = read_opal(stored.bytes(), "a.opal");
+        return loaded ? std::string() : loaded.error().diagnostics.front().where;
+    };
+    EXPECT_EQ(fault_of([](Asset&) {}), "");
+    for (const float roughness : {-0.5f, 1.01f, std::numeric_limits<float>::quiet_NaN(),
+                                  std::numeric_limits<float>::infinity()}) {
+        EXPECT_EQ(fault_of([roughness](Asset& a) { a.roughness[2] = roughness; }),
+                  "section SPEC, primitive 2");
+    }
+    EXPECT_EQ(fault_of([](Asset& a) { a.roughness[0] = 0.2f; }), "section SPEC, primitive 0");
+    EXPECT_EQ(fault_of([](Asset& a) { a.roughness.pop_back(); }), "section SPEC");
+    EXPECT_EQ(fault_of([](Asset& a) { a.openness.pop_back(); }), "section SPEC");
+}
+
+TEST(Openness, ComesBackWithinItsBits) {
+    for (int i = 0; i < 2000; ++i) {
+        const float t = static_cast<float>(i);
+        const Vec3 axis = normalize({std::sin(t), std::cos(2.3f * t), std::sin(3.1f * t + 1)});
+        const float fraction = 0.5f + 0.5f * std::sin(0.7f * t);
+        const Openness openness = encode_openness(3.0f * axis, fraction);
+        EXPECT_LT(length(open_axis(openness) - axis), 0.0175f);  // 1 degree
+        EXPECT_NEAR(open_fraction(openness), fraction, 1.0f / 255);
+    }
+    for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0},
+                            Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
+        EXPECT_EQ(open_axis(encode_openness(axis, 1)), axis);
+    }
+    // What is exactly open or closed stays so, and nothing else becomes so.
+    EXPECT_EQ(open_fraction(encode_openness({0, 0, 1}, 1)), 1.0f);
+    EXPECT_EQ(open_fraction(encode_openness({0, 0, 1}, 0)), 0.0f);
+    EXPECT_LT(open_fraction(encode_openness({0, 0, 1}, 0.99999f)), 1.0f);
+    EXPECT_GT(open_fraction(encode_openness({0, 0, 1}, 1e-6f)), 0.0f);
+    // Absurd input gives something that can be decoded.
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(open_axis(encode_openness({0, 0, 0}, nan)), (Vec3{0, 0, 1}));
+    EXPECT_EQ(encode_openness({nan, 1, 0}, nan).fraction, 0);
+    for (int x = -128; x < 128; x += 5) {
+        Openness any;
+        any.axis[0] = any.axis[1] = static_cast<std::int8_t>(x);
+        EXPECT_NEAR(length(open_axis(any)), 1, 1e-6f);
+    }
 }
 
 TEST(OpalFile, TransportIsUsedInPlace) {

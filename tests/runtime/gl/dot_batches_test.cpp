@@ -40,6 +40,40 @@ TEST(DotBatches, CoverEveryVertexOnceWithinTheLimits) {
     }
 }
 
+TEST(DotBatches, OfTranslucentPrimitivesBindEveryRowsResult) {
+    formats::Asset asset = two_primitives(8);
+    test::add_primitive(asset, test::make_sphere({4, 0, 0}, 1, 6, 4),
+                        {.bands = 3, .details = 20, .eta = 1.3f, .terms = 9});
+    const formats::PrimitiveRecord& p = asset.primitives[2];
+    for (const DotLimits limits :
+         {DotLimits{1 << 20, 256, 1000}, DotLimits{1 << 20, 4, 20}, DotLimits{2000, 32, 1000}}) {
+        const auto batches = plan_dot_batches(asset.view(), limits);
+        ASSERT_TRUE(batches.has_value());
+        std::uint32_t next = p.first_vertex;
+        for (const DotBatch& batch : *batches) {
+            if (batch.primitive != 2) {
+                EXPECT_EQ(batch.product.size, 0u);
+                continue;
+            }
+            EXPECT_EQ(batch.first_vertex, next);
+            next += batch.vertices;
+            EXPECT_LE(batch.vertices * batch.terms, limits.max_vertices);
+            const std::uint32_t first = batch.first_vertex - p.first_vertex;
+            EXPECT_EQ(batch.product.offset + 16 * batch.product.origin,
+                      16 * (p.first_row + first * std::size_t{9}));
+            EXPECT_EQ(batch.point.offset + 4 * batch.point.origin,
+                      12 * std::size_t{batch.first_vertex});
+            for (const BoundRange& range : {batch.product, batch.point}) {
+                EXPECT_EQ(range.offset % limits.alignment, 0u);
+                EXPECT_LE(range.size, limits.max_block_bytes);
+            }
+            EXPECT_GE(batch.product.size, 16 * (batch.product.origin + batch.vertices * 9u));
+            EXPECT_GE(batch.point.size, 4 * (batch.point.origin + batch.vertices * 3u));
+        }
+        EXPECT_EQ(next, asset.position.size());
+    }
+}
+
 TEST(DotBatches, OneDispatchPerPrimitiveWhereAllFits) {
     const formats::Asset asset = two_primitives(8);
     const auto batches = plan_dot_batches(asset.view(), {1 << 20, 256, 1 << 20});

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <limits>
 #include <numbers>
 
-#include "runtime/gl/egl_context.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/shade.h"
+#include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
 namespace opaline::runtime {
@@ -20,23 +19,10 @@ using formats::Asset;
 using formats::AssetView;
 using formats::Environment;
 using formats::Rgb;
-
-// Skips only where no context can be made: a fault of ours further on must fail.
-class Gl : public testing::Test {
-  protected:
-    void SetUp() override {
-        const auto context = EglContext::create();
-        if (!context) {
-            std::cerr << "NO OPENGL ON THIS MACHINE: the GPU half is NOT tested: "
-                      << context.error().diagnostics[0].fault << "\n";
-            GTEST_SKIP() << context.error().diagnostics[0].fault;
-        }
-    }
-};
-
-std::string text_of(const formats::Error& error) {
-    return error.diagnostics[0].where + ": " + error.diagnostics[0].fault;
-}
+using test::expect_same_irradiance;
+using test::expect_same_picture;
+using test::Gl;
+using test::text_of;
 
 struct Variant {
     std::uint32_t n, code_bits, bands, details;
@@ -73,42 +59,6 @@ std::vector<Rgb> irradiance_on_cpu(const AssetView& asset, const LightVector& li
     options.base_color = false;
     shade(asset, light, irradiance, options);
     return irradiance;
-}
-
-void expect_same_irradiance(const std::vector<Rgb>& cpu, const std::vector<Rgb>& gl) {
-    ASSERT_EQ(cpu.size(), gl.size());
-    for (std::size_t v = 0; v < cpu.size(); ++v) {
-        // Float sums of a few hundred products in another order.
-        EXPECT_NEAR(cpu[v].r, gl[v].r, 2e-5f * (cpu[v].r + 1)) << "vertex " << v;
-        EXPECT_NEAR(cpu[v].g, gl[v].g, 2e-5f * (cpu[v].g + 1)) << "vertex " << v;
-        EXPECT_NEAR(cpu[v].b, gl[v].b, 2e-5f * (cpu[v].b + 1)) << "vertex " << v;
-    }
-}
-
-// Mean absolute difference below 1e-3 of the mean, and all but one pixel in a thousand within
-// 0.5 %: both backends take the same samples, but GL snaps vertices to a subpixel grid, which
-// moves a few samples across an edge.
-void expect_same_picture(const Picture& cpu, const Picture& gl) {
-    ASSERT_EQ(cpu.width, gl.width);
-    ASSERT_EQ(cpu.height, gl.height);
-    double sum = 0, difference = 0;
-    std::size_t off = 0;
-    for (std::size_t i = 0; i < cpu.pixel.size(); ++i) {
-        const Rgb a = cpu.pixel[i], b = gl.pixel[i];
-        bool is_off = false;
-        for (const auto& [x, y] : {std::pair{a.r, b.r}, std::pair{a.g, b.g}, std::pair{a.b, b.b}}) {
-            ASSERT_TRUE(std::isfinite(x) && std::isfinite(y));
-            sum += std::abs(static_cast<double>(x));
-            difference += std::abs(static_cast<double>(x) - static_cast<double>(y));
-            is_off |= std::abs(x - y) > 0.005f * std::max(x, 1e-3f);
-        }
-        off += is_off ? 1u : 0u;
-    }
-    ASSERT_GT(sum, 0);
-    std::cout << "[ agreement] mean " << difference / sum << ", off " << off << " of "
-              << cpu.pixel.size() << "\n";
-    EXPECT_LT(difference / sum, 1e-3);
-    EXPECT_LE(off, cpu.pixel.size() / 1000);
 }
 
 TEST_F(Gl, DotProductsAndPicturesAgreeWithTheCpuForEveryKindOfRow) {

@@ -55,6 +55,14 @@ formats::SparseRow cosine_row(Vec3 normal, std::uint32_t n, std::uint32_t bands,
     return row;
 }
 
+void scale_row(formats::SparseRow& row, float factor) {
+    for (std::vector<float>* values : {&row.value, &row.average}) {
+        for (float& value : *values) {
+            value *= factor;
+        }
+    }
+}
+
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
     to.insert(to.end(), from.begin(), from.end());
@@ -140,9 +148,25 @@ void add_primitive(formats::Asset& asset, const TestMesh& mesh, const TestPrimit
     primitive.base_color_image = options.image;
     primitive.wrap_u = options.wrap_u;
     primitive.wrap_v = options.wrap_v;
+    primitive.flags = options.is_double_sided ? formats::PrimitiveRecord::kDoubleSided : 0;
+    if (options.eta > 0) {
+        primitive.shading = formats::Shading::translucent;
+        primitive.eta = options.eta;
+        primitive.terms = options.terms;
+        primitive.flags |= options.is_separate ? formats::PrimitiveRecord::kSeparate : 0;
+    }
     for (const Vec3 normal : mesh.normal) {
-        append_row(asset.transport, cosine_row(normal, asset.transport.cubemap_size, options.bands,
-                                               options.details));
+        for (std::uint32_t k = 0; k < primitive.terms; ++k) {
+            const float t = static_cast<float>(k);
+            const Vec3 tilt{std::sin(3 * t), std::sin(5 * t), std::sin(7 * t)};
+            formats::SparseRow row =
+                cosine_row(normalize(normal + 0.5f * tilt), asset.transport.cubemap_size,
+                           options.bands, options.details);
+            if (k > 0) {
+                scale_row(row, options.is_separate && k == 1 ? 0.4f : 0.8f * std::cos(2 * t));
+            }
+            append_row(asset.transport, row);
+        }
     }
 }
 

@@ -32,13 +32,19 @@ struct TestPrimitive {
     std::uint32_t details = 64;  ///< largest wavelet details kept of each row
     std::uint32_t image = formats::kNoImage;
     formats::Wrap wrap_u = formats::Wrap::repeat, wrap_v = formats::Wrap::repeat;
+    float eta = 0;  ///< above 0: translucent, with `terms` rows a vertex; needs three bands
+    std::uint32_t terms = 1;
+    bool is_double_sided = false;
+    bool is_separate = false;  ///< translucent: PrimitiveRecord::kSeparate
 };
 
 /// Empty asset over a cube map of n x n texels.
 formats::Asset make_asset(std::uint32_t n, std::uint32_t code_bits);
 
 /// Adds a primitive whose rows are those of an unoccluded surface, max(0, n.w) / pi; with three
-/// bands, green and blue see a wider and a narrower lobe.
+/// bands, green and blue see a wider and a narrower lobe. Further rows of a translucent vertex are
+/// of the same kind about tilted normals and of either sign, but for the first of single scattering
+/// in rows of its own.
 void add_primitive(formats::Asset& asset, const TestMesh& mesh, const TestPrimitive& options);
 
 /// Adds a primitive without transport details or averages: for tests that bring own irradiance.

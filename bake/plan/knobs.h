@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/opal/result.h"
+
+namespace opaline::bake {
+
+/// Accuracy presets: each names a set of knobs.
+enum class Quality { draft, preview, production, reference };
+
+inline constexpr std::uint32_t kAllCoefficients = 0xffffffffu;
+
+/// What the user asked for. A zero means: as the quality says.
+struct BakeOptions {
+    Quality quality = Quality::preview;
+    std::uint32_t cubemap_size = 0;  ///< N: power of two in [8, 128]
+    std::uint32_t coefficients = 0;  ///< M per row, the six face averages included; >= 7, or
+                                     ///< kAllCoefficients
+    std::uint32_t samples = 0;       ///< at most this many on the surface of each medium
+    double tolerance = -1;           ///< of the hierarchical gather, >= 0; negative: as the quality
+                                     ///< says
+    std::uint32_t depth_samples = 0;  ///< of single scattering, along the inward normal
+    std::uint32_t phase_terms = 0;    ///< K: 1, 4, 9, 16 or 25; 0: as the phase function asks for
+    bool separate_terms = false;      ///< multiple scattering in a row of its own
+    std::vector<std::string>
+        effects;             ///< the only ones to simulate; empty: what the scene calls for
+    std::uint64_t seed = 0;  ///< of everything random
+    unsigned threads = 0;    ///< 0: one per core; never changes the result
+};
+
+/// What is going to be done: every knob has its value.
+struct Knobs {
+    std::uint32_t cubemap_size = 32;
+    std::uint32_t coefficients = 128;
+    std::uint32_t code_bits = 8;    ///< of the stored detail coefficients
+    std::uint32_t samples = 60000;  ///< at most, on the surface of each medium
+    double tolerance = 1e-3;        ///< GatherOptions::tolerance
+    std::uint32_t depth_samples = 6;
+    std::uint32_t phase_terms = 0;  ///< 0: chosen per medium
+    double phase_tolerance = 0.02;  ///< by choose_terms (plan_rules.h)
+    bool single_by_rays = false;    ///< exact rays instead of light maps
+    bool separate_terms = false;
+    std::vector<std::string> effects;
+    std::uint64_t seed = 0;
+
+    /// Cube map that single scattering is gathered on. It is smooth, and each texel costs a render:
+    /// 16 texels err by about .6 % of single scattering, which is a tenth of
+    /// what a bright medium returns.
+    std::uint32_t single_cubemap = 16;
+};
+
+/// Fills in the quality's values; refuses impossible ones (usage error).
+formats::Result<Knobs> resolve_knobs(const BakeOptions& options);
+
+std::string_view quality_name(Quality quality);
+
+}  // namespace opaline::bake

@@ -1,0 +1,280 @@
+#include "bake/plan/plan_rules.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "bake/scattering/dipole.h"
+#include "bake/scattering/fresnel.h"
+#include "bake/scattering/gauss_legendre.h"
+#include "bake/scattering/phase.h"
+#include "bake/scattering/phase_series.h"
+#include "formats/media/mean_cosine.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/openness.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr double kLeastBound = 1.0 / 512;  // translucency.md 9
+
+// Rates of one thread, fitted to the benchmarks: good to a factor of two on another machine.
+// Occlusion rays on a mesh of one triangle, and how that falls as the hierarchy grows a level.
+constexpr double kRaysPerSecond = 36e6;
+constexpr double kSlowdownPerLevel = 0.11;
+// Coefficients that the gather adds up, and how many nodes it takes for a receiver.
+constexpr double kGatherPerSecond = 4e8;
+constexpr double kNodes = 800;
+// Triangles drawn into a light map, and interior points looked up in it.
+constexpr double kDrawnPerSecond = 2e7;
+constexpr double kLookUpsPerSecond = 4e7;
+
+double predict_trace_seconds(double receivers, const PlanInput& input) {
+    // Half of the 2N x 2N x 6 subtexels lie above a receiver's horizon.
+    const double n = input.knobs.cubemap_size;
+    const double level = std::log2(std::max(input.all_triangles, 1.0));
+    return receivers * 12 * n * n * (1 + kSlowdownPerLevel * level) /
+           (kRaysPerSecond * input.threads);
+}
+
+std::uint64_t predict_row_bytes(const Knobs& knobs, std::uint64_t bands) {
+    const std::uint64_t all = formats::cubemap_texels(knobs.cubemap_size);
+    // Of a surface in the open half of all coefficients vanish, below the horizon.
+    const std::uint64_t details = knobs.coefficients == kAllCoefficients
+                                      ? (bands == 1 ? all / 2 : all)
+                                      : std::min<std::uint64_t>(knobs.coefficients, all) - 6;
+    const std::uint64_t index_bytes = all <= 65536 ? 2 : 4;
+    return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
+}
+
+bool is_named(const Knobs& knobs, std::string_view effect) {
+    return std::find(knobs.effects.begin(), knobs.effects.end(), effect) != knobs.effects.end();
+}
+
+bool is_wanted(const Knobs& knobs, std::string_view effect) {
+    return knobs.effects.empty() || is_named(knobs, effect);
+}
+
+std::array<std::array<double, 2>, 3> bands_of(const formats::Medium& medium) {
+    const auto pair = [](float s, float a) {
+        return std::array{static_cast<double>(s), static_cast<double>(a)};
+    };
+    return {pair(medium.sigma_s.r, medium.sigma_a.r), pair(medium.sigma_s.g, medium.sigma_a.g),
+            pair(medium.sigma_s.b, medium.sigma_a.b)};
+}
+
+bool has_medium(const PlanInput& input) {
+    return input.material.medium.has_value();
+}
+
+bool any_material(const PlanInput&) {
+    return true;
+}
+
+// A medium is shaded as a diffuse surface only for comparison: if `direct` is named and nothing
+// else is.
+bool is_comparison(const Knobs& knobs) {
+    return is_named(knobs, "direct") && !is_named(knobs, "multiple") && !is_named(knobs, "single");
+}
+
+PlanEntry decide_direct(const PlanInput& input) {
+    PlanEntry entry;
+    // Under `white` a diffuse surface sends back at most its albedo.
+    const formats::Rgb c = input.material.base_color;
+    entry.bound = static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex);
+    const bool medium = input.material.medium.has_value();
+    if (medium && !is_comparison(input.knobs)) {
+        entry.bound = 0;
+        entry.reason = "light enters the medium instead of being reflected diffusely";
+    } else if (!is_wanted(input.knobs, "direct")) {
+        entry.reason = "left out by --effects";
+    } else if (entry.bound > 0) {
+        entry.on = true;
+        entry.reason = medium ? "the medium is shown as a diffuse surface of the same reflectance"
+                              : "the surface reflects diffusely";
+        entry.predicted_seconds = predict_trace_seconds(input.subject.receivers, input);
+        entry.predicted_bytes =
+            static_cast<std::uint64_t>(input.subject.receivers) * predict_row_bytes(input.knobs, 1);
+    } else {
+        entry.reason = "the base colour is black: nothing is reflected";
+    }
+    return entry;
+}
+
+PlanEntry decide_multiple(const PlanInput& input) {
+    const formats::Medium& medium = *input.material.medium;
+    PlanEntry entry;
+    const double g = formats::mean_cosine(medium.phase);
+    double densest = 0;
+    for (const auto& [sigma_s, sigma_a] : bands_of(medium)) {
+        const double reduced = (1 - g) * sigma_s;
+        // Through a thin body light can come from both sides.
+        entry.bound = std::max(entry.bound,
+                               2 * dipole_total(make_dipole(DipoleKind::classic, reduced, sigma_a,
+                                                            static_cast<double>(medium.eta))));
+        densest = std::max(densest, reduced + sigma_a);
+    }
+    if (!is_wanted(input.knobs, "multiple")) {
+        entry.reason = "left out by --effects";
+        return entry;
+    }
+    if (entry.bound < kLeastBound) {
+        entry.reason = "the medium absorbs nearly all that it scatters";
+        return entry;
+    }
+    entry.on = true;
+    const double samples = std::min(static_cast<double>(input.knobs.samples),
+                                    std::max(2000.0, input.subject.area * densest * densest));
+    entry.reason = "light scatters many times inside; " +
+                   std::to_string(static_cast<std::uint64_t>(samples)) + " surface samples";
+    // One ray a texel, a quarter of what a receiver on the surface traces; then a gather of some
+    // hundreds of nodes for each receiver.
+    const double kept = input.knobs.coefficients == kAllCoefficients
+                            ? static_cast<double>(formats::cubemap_texels(input.knobs.cubemap_size))
+                            : static_cast<double>(input.knobs.coefficients);
+    entry.predicted_seconds =
+        0.25 * predict_trace_seconds(samples, input) +
+        input.subject.receivers * kNodes * kept / (kGatherPerSecond * input.threads);
+    entry.predicted_bytes =
+        static_cast<std::uint64_t>(input.subject.receivers) * predict_row_bytes(input.knobs, 3);
+    return entry;
+}
+
+PlanEntry decide_single(const PlanInput& input) {
+    const formats::Medium& medium = *input.material.medium;
+    const PhaseDensity phase = make_phase_density(medium.phase);
+    PlanEntry entry;
+    const double diagonal =
+        static_cast<double>(glm::length(input.subject.high - input.subject.low));
+    double peak = 0;
+    for (int i = 0; i <= 64; ++i) {
+        peak = std::max(peak, eval_phase(phase, -1 + i / 32.0));
+    }
+    const auto eta = static_cast<double>(medium.eta);
+    for (const auto& [sigma_s, sigma_a] : bands_of(medium)) {
+        const double sigma_t = sigma_s + sigma_a;
+        if (sigma_t > 0) {
+            entry.bound =
+                std::max(entry.bound, sigma_s / sigma_t * -std::expm1(-sigma_t * diagonal) *
+                                          std::min(1.0, 4 * std::numbers::pi * peak / (eta * eta)));
+        }
+    }
+    if (!is_wanted(input.knobs, "single")) {
+        entry.reason = "left out by --effects";
+        return entry;
+    }
+    if (medium.profile == formats::Medium::Profile::normalized &&
+        medium.fidelity == formats::Medium::Fidelity::physical &&
+        !is_named(input.knobs, "single")) {
+        entry.reason = "normalised diffusion has the single scattering in it";
+        return entry;
+    }
+    if (entry.bound < kLeastBound) {
+        entry.reason = "the medium hardly scatters";
+        return entry;
+    }
+    entry.on = true;
+    entry.terms = choose_terms(medium, input.knobs);
+    entry.reason = entry.terms == 1 ? "light scatters once inside, alike in all directions"
+                                    : "light scatters once inside; " + std::to_string(entry.terms) +
+                                          " terms of the phase function";
+    const double n = input.knobs.single_cubemap;
+    const double views = 6 * n * n, nodes = input.subject.receivers * input.knobs.depth_samples;
+    const double level = std::log2(std::max(input.all_triangles, 1.0));
+    entry.predicted_seconds =
+        input.knobs.single_by_rays
+            ? 2 * 4 * views * nodes * (1 + kSlowdownPerLevel * level) /
+                  (kRaysPerSecond * input.threads)
+            : views * (input.all_triangles / kDrawnPerSecond + nodes / kLookUpsPerSecond) /
+                  input.threads;
+    // The first term shares the row of multiple scattering.
+    const bool own = input.knobs.separate_terms || !is_wanted(input.knobs, "multiple");
+    entry.predicted_bytes = static_cast<std::uint64_t>(input.subject.receivers) *
+                            (entry.terms - (own ? 0 : 1)) * predict_row_bytes(input.knobs, 3);
+    return entry;
+}
+
+PlanEntry decide_specular(const PlanInput& input) {
+    const formats::Medium& medium = *input.material.medium;
+    PlanEntry entry;
+    // At grazing angles everything is reflected, where there is a boundary at all.
+    entry.bound = medium.eta == 1 ? 0 : 1;
+    if (is_comparison(input.knobs) || !is_wanted(input.knobs, "specular")) {
+        entry.reason = "left out by --effects";
+    } else if (entry.bound == 0) {
+        entry.reason = "the index of refraction is that of the air: nothing is mirrored";
+    } else {
+        entry.on = true;
+        entry.reason = "the boundary of the medium mirrors its surroundings";
+        // One ray a texel of a small cube map.
+        constexpr double kShare = 0.25 * kOpennessCubemap * kOpennessCubemap;
+        entry.predicted_seconds = kShare / (input.knobs.cubemap_size * input.knobs.cubemap_size) *
+                                  predict_trace_seconds(input.subject.receivers, input);
+        entry.predicted_bytes =
+            static_cast<std::uint64_t>(input.subject.receivers) * sizeof(formats::Openness);
+    }
+    return entry;
+}
+
+constexpr std::array<PlanRule, 4> kRules{{{"direct", any_material, decide_direct},
+                                          {"multiple", has_medium, decide_multiple},
+                                          {"single", has_medium, decide_single},
+                                          {"specular", has_medium, decide_specular}}};
+
+// L1 of a half space under uniform light, integrated over all exit directions:
+// translucency.md 3.6 on a plane, isotropic, where 1/(sigma_t (1 + mu_o'/mu_i')) is what the
+// integral over depth gives.
+double half_space_single(double eta) {
+    const GaussLegendre rule = make_gauss_legendre(32);
+    double sum = 0;
+    for (std::size_t o = 0; o < rule.node.size(); ++o) {
+        for (std::size_t i = 0; i < rule.node.size(); ++i) {
+            const double mu_o = rule.node[o], mu_i = rule.node[i];
+            const auto inside = [eta](double mu) {
+                return std::sqrt(std::max(0.0, 1 - (1 - mu * mu) / (eta * eta)));
+            };
+            const double in_o = inside(mu_o), in_i = inside(mu_i);
+            if (in_o > 0 && in_i > 0) {
+                const double jacobian = mu_i / (eta * eta * in_i);
+                sum += rule.weight[o] * rule.weight[i] * mu_o * fresnel_transmittance(mu_o, eta) *
+                       fresnel_transmittance(mu_i, eta) * jacobian / (1 + in_o / in_i);
+            }
+        }
+    }
+    return sum;  // 2 int (1/(4 pi)) 2 pi int ... dmu_i mu_o dmu_o
+}
+
+}  // namespace
+
+const std::span<const PlanRule> kPlanRules = kRules;
+
+double single_share(const formats::Medium& medium) {
+    const double g = formats::mean_cosine(medium.phase);
+    const auto eta = static_cast<double>(medium.eta);
+    const double once = half_space_single(eta), escape = 1 - fresnel_moments(eta).external;
+    double share = 0;
+    for (const auto& [sigma_s, sigma_a] : bands_of(medium)) {
+        if (sigma_s > 0) {
+            const double single = once * sigma_s / (sigma_s + sigma_a);
+            const double multiple =
+                escape *
+                dipole_total(make_dipole(DipoleKind::better, (1 - g) * sigma_s, sigma_a, eta));
+            share = std::max(share, single / (single + multiple));
+        }
+    }
+    return share;
+}
+
+std::uint32_t choose_terms(const formats::Medium& medium, const Knobs& knobs) {
+    if (knobs.phase_terms != 0) {
+        return knobs.phase_terms;
+    }
+    constexpr unsigned kDegrees = 5;
+    const double share = single_share(medium);
+    return share > 0 ? choose_phase_terms(expand_phase(medium.phase, kDegrees),
+                                          knobs.phase_tolerance / share)
+                     : 1;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,32 @@
+#include "bake/plan/row_layout.h"
+
+#include <numbers>
+
+namespace opaline::bake {
+
+double RowLayout::view_of_multiple() const {
+    // Y_00 where the row is one of several harmonics, 1 where it stands alone.
+    return !separate && single_terms > 1 ? 0.5 * std::numbers::inv_sqrtpi : 1.0;
+}
+
+std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vector<PlanEntry>& plan,
+                                   const Knobs& knobs) {
+    std::vector<RowLayout> layouts(scene.materials.size());
+    for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+        RowLayout& layout = layouts[m];
+        const auto is_on = [&](const char* effect) {
+            const PlanEntry* const entry = find_entry(plan, effect, m);
+            return entry != nullptr && entry->on;
+        };
+        layout.direct = is_on("direct");
+        layout.translucent = scene.materials[m].medium.has_value() && !layout.direct;
+        layout.multiple = is_on("multiple");
+        layout.single_terms = is_on("single") ? find_entry(plan, "single", m)->terms : 0;
+        // Multiple scattering alone in its row is told to be so.
+        layout.separate = layout.translucent && (knobs.separate_terms || layout.single_terms == 0);
+        layout.glossy = layout.translucent && is_on("specular");
+    }
+    return layouts;
+}
+
+}  // namespace opaline::bake

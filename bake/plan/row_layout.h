@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bake/plan/bake_plan.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// What stands in the rows of a material's vertices.
+struct RowLayout {
+    bool translucent = false;        ///< otherwise diffuse: one grey row
+    bool direct = false;             ///< the diffuse row is simulated, otherwise zero
+    bool multiple = false;           ///< multiple scattering is simulated
+    std::uint32_t single_terms = 0;  ///< S, terms of the phase function; 0: no single scattering
+    bool separate = false;           ///< multiple scattering in a row of its own
+    bool glossy = false;             ///< with specular reflection
+    formats::Rgb tint{1, 1, 1};      ///< times the base colour
+
+    /// Rows of a vertex.
+    std::uint32_t terms() const {
+        return separate ? 1 + single_terms : single_terms > 1 ? single_terms : 1;
+    }
+    std::uint32_t bands() const { return translucent ? 3 : 1; }
+    /// Row that the first term of single scattering stands in.
+    std::uint32_t first_single() const { return separate ? 1 : 0; }
+    /// h_0 with which row 0 is seen: multiple scattering is divided by it.
+    double view_of_multiple() const;
+};
+
+/// One layout per material of the scene, from what the plan decided.
+std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vector<PlanEntry>& plan,
+                                   const Knobs& knobs);
+
+}  // namespace opaline::bake

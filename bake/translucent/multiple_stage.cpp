@@ -1,0 +1,53 @@
+#include "bake/translucent/multiple_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/receivers/surface_samples.h"
+
+namespace opaline::bake {
+namespace {
+
+double scene_diagonal(const formats::Scene& scene) {
+    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+    for (const formats::Primitive& p : scene.primitives) {
+        for (const glm::vec3 x : p.position) {
+            low = glm::min(low, glm::dvec3(x));
+            high = glm::max(high, glm::dvec3(x));
+        }
+    }
+    return glm::length(high - low);
+}
+
+}  // namespace
+
+MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
+                               std::uint32_t material, const MultipleOptions& options,
+                               std::span<const std::span<const float>> lights,
+                               const Context& context) {
+    std::vector<std::uint32_t> primitives;
+    double area = 0;
+    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
+        if (scene.primitives[p].material == material) {
+            primitives.push_back(p);
+            area += formats::surface_area(scene.primitives[p]);
+        }
+    }
+    const MediumProfile profile =
+        make_medium_profile(*scene.materials[material].medium, options.seed, context);
+    const std::vector<SurfaceSample> samples = sample_surface(
+        scene, primitives, count_samples(area, profile, options.samples), options.seed);
+    const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
+    MultipleStage stage;
+    stage.exit = profile.exit;
+    stage.profile = make_gather_profile(profile, std::sqrt(per_sample), scene_diagonal(scene));
+    stage.transport = bake_sample_transport(
+        rays, samples, {options.cubemap_size, options.kept, profile.eta}, lights, context);
+    if (!context.cancelled()) {
+        stage.tree = build_cluster_tree(samples, stage.transport, options.cubemap_size,
+                                        2 * options.kept, context);
+    }
+    return stage;
+}
+
+}  // namespace opaline::bake

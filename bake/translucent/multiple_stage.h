@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/multiple/cluster_tree.h"
+#include "bake/multiple/gather_profile.h"
+#include "bake/multiple/sample_transport.h"
+#include "bake/visibility/ray_scene.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// What all receivers of one medium share in multiple scattering.
+struct MultipleStage {
+    double exit = 1;  ///< c_exit (translucency.md 3.1)
+    GatherProfile profile;
+    SampleTransport transport;
+    ClusterTree tree;
+};
+
+struct MultipleOptions {
+    std::uint32_t cubemap_size = 32;
+    std::uint32_t samples = 60000;  ///< at most
+    std::uint32_t kept = 128;       ///< coefficients of each sample; each node keeps twice as many
+    std::uint64_t seed = 0;
+};
+
+/// Samples the surface of the material's medium, traces what enters, and builds the tree.
+/// `lights`: Haar vectors whose products with every sample's transport are kept for the self-check
+/// (SampleTransport::response). Incomplete if the context is cancelled.
+MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
+                               std::uint32_t material, const MultipleOptions& options,
+                               std::span<const std::span<const float>> lights,
+                               const Context& context);
+
+}  // namespace opaline::bake

@@ -1,0 +1,110 @@
+#include "bake/translucent/translucent_rows.h"
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include "bake/base/ordered_parallel.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+
+namespace opaline::bake {
+namespace {
+
+// Adds the Haar transform of a cube map of size m to that of size n >= m: the same function has the
+// same coarse coefficients, n/m times as large, and none finer.
+void add_coarse(std::span<const float> coarse, std::uint32_t m, std::span<float> fine,
+                std::uint32_t n) {
+    const auto scale = static_cast<float>(n) / static_cast<float>(m);
+    for (std::size_t face = 0; face < 6; ++face) {
+        for (std::size_t row = 0; row < m; ++row) {
+            const float* const from = &coarse[(face * m + row) * m];
+            float* const to = &fine[(face * n + row) * n];
+            for (std::size_t column = 0; column < m; ++column) {
+                to[column] += scale * from[column];
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void assemble_rows(const TranslucentRecipe& recipe, const BodyPoint& point,
+                   const SingleBatch* batch, std::size_t place, std::span<float> rows) {
+    const std::uint32_t n = recipe.selector.cubemap_size;
+    const std::size_t size = formats::cubemap_texels(n);
+    std::fill(rows.begin(), rows.end(), 0.0f);
+    if (recipe.multiple != nullptr) {
+        const MultipleStage& stage = *recipe.multiple;
+        std::vector<ClusterWeight> weights;
+        std::vector<float> rgbx(4 * size);
+        collect_weights(stage.tree, stage.profile, point.position, point.normal, recipe.gather,
+                        weights);
+        accumulate(stage.tree, weights, rgbx);
+        const auto scale = static_cast<float>(
+            1 / (std::numbers::pi * stage.exit * recipe.layout.view_of_multiple()));
+        for (std::size_t k = 0; k < size; ++k) {
+            for (std::size_t band = 0; band < 3; ++band) {
+                rows[band * size + k] = scale * rgbx[4 * k + band];
+            }
+        }
+    }
+    if (batch != nullptr) {
+        const std::uint32_t m = recipe.single->directions.cubemap_size;
+        const std::size_t coarse = formats::cubemap_texels(m);
+        std::vector<float> row(batch->row_size);
+        read_single(*batch, place, row);
+        const std::size_t first = std::size_t{3} * recipe.layout.first_single();
+        for (std::size_t plane = 0; plane < row.size() / coarse; ++plane) {
+            const std::span<float> own = std::span(row).subspan(plane * coarse, coarse);
+            formats::haar_forward_cube(own, m);
+            add_coarse(own, m, rows.subspan((first + plane) * size, size), n);
+        }
+    }
+}
+
+formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayScene& rays,
+                                     std::span<const BodyPoint> points, const Context& context,
+                                     EntryCounts& counts) {
+    const std::uint32_t n = recipe.selector.cubemap_size;
+    const std::size_t size = formats::cubemap_texels(n), terms = recipe.layout.terms();
+    const std::size_t step = recipe.single != nullptr ? receivers_per_batch(*recipe.single)
+                                                      : std::max<std::size_t>(1, points.size());
+    formats::SparseRows rows = formats::make_sparse_rows(n, recipe.code_bits);
+    for (std::size_t begin = 0; begin < points.size() && !context.cancelled(); begin += step) {
+        const auto part = points.subspan(begin, std::min(step, points.size() - begin));
+        SingleBatch batch;
+        if (recipe.single != nullptr) {
+            batch = gather_single_batch(*recipe.single, rays, part, context);
+            counts.rays += batch.rows.counts.rays;
+            counts.missing += batch.rows.counts.missing;
+        }
+        for_each_block_in_order(
+            part.size(), 64, context,
+            [&](Range range) {
+                formats::SparseRows block = formats::make_sparse_rows(n, recipe.code_bits);
+                std::vector<float> values(terms * 3 * size);
+                for (std::size_t v = range.begin; v < range.end; ++v) {
+                    assemble_rows(recipe, part[v], recipe.single != nullptr ? &batch : nullptr, v,
+                                  values);
+                    for (std::size_t k = 0; k < terms; ++k) {
+                        formats::append_row(
+                            block,
+                            select_coefficients(
+                                recipe.selector,
+                                std::span<const float>(values).subspan(3 * k * size, 3 * size), 3));
+                    }
+                }
+                return block;
+            },
+            [&](Range range, const formats::SparseRows& block) {
+                formats::append_rows(rows, block);
+                if (context.on_progress) {
+                    context.on_progress({"rows", begin + range.end, points.size()});
+                }
+            });
+    }
+    return rows;
+}
+
+}  // namespace opaline::bake

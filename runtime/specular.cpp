@@ -1,0 +1,72 @@
+#include "runtime/specular.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace opaline::runtime {
+
+using formats::Rgb;
+using formats::Vec3;
+
+std::uint32_t roughness_level(float roughness) {
+    return static_cast<std::uint32_t>(std::lround(roughness * kRoughnessSteps));
+}
+
+std::vector<std::uint32_t> roughness_levels(const formats::AssetView& asset) {
+    std::vector<std::uint32_t> levels;
+    for (const float roughness : asset.roughness) {
+        if (roughness >= 0) levels.push_back(roughness_level(roughness));
+    }
+    std::sort(levels.begin(), levels.end());
+    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+    return levels;
+}
+
+SpecularLobe specular_lobe(const SpecularLight& light, const formats::AssetView& asset,
+                           std::size_t primitive) {
+    SpecularLobe lobe;
+    if (asset.roughness.empty() || !(asset.roughness[primitive] >= 0)) return lobe;
+    const std::uint32_t level = roughness_level(asset.roughness[primitive]);
+    for (const SpecularLight::Map& map : light.maps) {
+        if (map.level == level) lobe.radiance = &map.radiance;
+    }
+    const float roughness = static_cast<float>(level) / kRoughnessSteps;
+    const float alpha = std::max(roughness * roughness, 0.05f);
+    lobe.cosine = (1 - alpha * alpha) / (1 + alpha * alpha);
+    lobe.sine = 2 * alpha / (1 + alpha * alpha);
+    return lobe;
+}
+
+float specular_visibility(Vec3 axis, float open, Vec3 mirrored, const SpecularLobe& lobe) {
+    open = open > 0 ? std::min(open, 1.0f) : 0.0f;
+    const float cosine = std::sqrt(1 - open), sine = std::sqrt(open);
+    const float low = cosine * lobe.cosine - sine * lobe.sine;
+    const float high = cosine * lobe.cosine + sine * lobe.sine;
+    const float at =
+        high > low ? std::clamp((dot(axis, mirrored) - low) / (high - low), 0.0f, 1.0f) : 0.0f;
+    const float fits = std::min(1.0f, (1 - cosine) / (1 - lobe.cosine));
+    const float inside = fits * at * at * (3 - 2 * at);
+    const float squared = open * open, fourth = squared * squared;
+    return 1 - (1 - inside) * (1 - fourth * fourth);
+}
+
+Rgb eval_specular(const SpecularLight& light, const SpecularLobe& lobe, const ViewOfReceiver& view,
+                  float eta, Vec3 axis, float open) {
+    constexpr float kFade = 0.2f;
+    const Vec3 n = view.normal;
+    if (lobe.radiance == nullptr || !(dot(n, n) > 0) || !(view.cosine > -kFade)) return {};
+    const float c = std::clamp(view.cosine, 0.0f, 1.0f);
+    const float fade = 1 + std::min(view.cosine, 0.0f) / kFade;
+    Vec3 mirrored = 2 * c * n - view.to_eye;
+    const float norm = length(mirrored);
+    if (!(norm > 0) || !std::isfinite(norm)) return {};
+    mirrored = (1 / norm) * mirrored;
+    if (view.is_turned) {
+        axis = axis - 2 * dot(axis, n) * n;
+    }
+    const float share = fade * (1 - fresnel_transmittance(c, eta)) *
+                        specular_visibility(axis, open, mirrored, lobe);
+    return share * formats::sample_map(*lobe.radiance, light.rotation.light_from_world(mirrored));
+}
+
+}  // namespace opaline::runtime

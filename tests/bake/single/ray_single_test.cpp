@@ -1,0 +1,221 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "bake/single/ray_single.h"
+#include "tests/bake/single/single_support.h"
+#include "tests/support/reference_table.h"
+
+namespace opaline::bake {
+namespace {
+
+using tests::gather;
+using tests::make_grey_medium;
+using tests::make_translucent_scene;
+using tests::set_up;
+
+constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
+
+// Smooth in s, so that the reference's own quadrature is not what is tested.
+void use_fine_quadrature(SingleMedium& medium, bool jacobian) {
+    medium.rule = make_gauss_rule(300);
+    medium.path.sigma_m = 0;
+    medium.boundary.jacobian = jacobian;
+}
+
+TEST(RaySingle, TessellatedSphereAgreesWithTheAnalyticOneWithin1Percent) {
+    OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "sphere_T1");
+    for (const auto& row : rows) {
+        auto setup = set_up(make_translucent_scene(
+            {tests::make_sphere(6, static_cast<float>(row.number("radius")))},
+            make_grey_medium(static_cast<float>(row.number("sigma_s")),
+                             static_cast<float>(row.number("sigma_a")),
+                             static_cast<float>(row.number("eta")))));
+        use_fine_quadrature(setup.medium, row.input.at("jac") == "exact");
+        double sum = 0;
+        const std::size_t points[] = {0, 5, 11, 100, 1000, 7777};
+        for (const std::size_t p : points) {
+            const auto cone = tests::make_cone(setup.points[p].normal, row.number("cos_light"));
+            sum += gather(setup, cone, p)[0] / 6.0;
+        }
+        EXPECT_NEAR(sum, row.expected, 0.01 * row.expected) << row.name();
+    }
+}
+
+TEST(RaySingle, WideSlabIsAHalfSpace) {
+    OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "ss_plane_T1");
+    for (const auto& row : rows) {
+        // A cube 60 mean free paths wide: its sides are as good as infinitely far.
+        const double sigma_t = row.number("sigma_t"), sigma_s = row.number("sigma_s");
+        auto setup = set_up(make_translucent_scene(
+            {tests::transformed(tests::make_cube(2, false), glm::mat3(1),
+                                static_cast<float>(200 / sigma_t), glm::vec3(0))},
+            make_grey_medium(static_cast<float>(sigma_s), static_cast<float>(sigma_t - sigma_s),
+                             static_cast<float>(row.number("eta")))));
+        use_fine_quadrature(setup.medium, row.input.at("jac") == "exact");
+        std::size_t middle = 0;
+        while (glm::distance(setup.points[middle].position,
+                             glm::vec3(0, static_cast<float>(200 / sigma_t), 0)) > 1e-3f) {
+            ++middle;
+        }
+        const auto cone = tests::make_cone({0, 1, 0}, row.number("cos_i"));
+        // Only rounding: coefficients are floats, and so is the sum.
+        EXPECT_NEAR(gather(setup, cone, middle)[0], row.expected, 3e-5 * row.expected)
+            << row.name();
+    }
+}
+
+TEST(RaySingle, TransportIsTheMeanOverEachTexel) {
+    const auto setup =
+        set_up(make_translucent_scene({tests::make_sphere(5)}, make_grey_medium(0.8f, 0.1f, 1.3f)));
+    const DirectionSet directions = make_direction_set(8);
+    const std::size_t point = 321;
+    const auto transport = gather(setup, directions, point);
+    // The same nodes on the analytic sphere.
+    std::vector<double> expected(384);
+    double largest = 0;
+    const auto nodes = place_path_nodes(setup.medium.rule, setup.medium.path, 2.0);
+    const auto shares = texel_shares(directions);
+    for (std::size_t b = 0; b < shares.size(); ++b) {
+        const DirectionBlock& block = directions.blocks[b];
+        for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
+            const glm::dvec3 w(block.dir_x[lane], block.dir_y[lane], block.dir_z[lane]);
+            const double cos_light = glm::dot(w, glm::dvec3(setup.points[point].normal));
+            for (const PathNode& node : nodes) {
+                const double r = 1 - node.depth, along = r * cos_light;
+                const double chord = std::sqrt(along * along + (1 - r) * (1 + r)) - along;
+                const Entry<double> e = enter(along + chord, Interface<double>{1.3f, true});
+                expected[block.texel[lane]] += shares[b][lane] * kIsotropic * node.weight[0] *
+                                               e.throughput *
+                                               std::exp(-0.9f * chord * e.path_ratio);
+            }
+        }
+    }
+    for (const double value : expected) {
+        largest = std::max(largest, value);
+    }
+    for (std::size_t j = 0; j < 384; ++j) {
+        EXPECT_NEAR(transport[j], expected[j], 0.01 * largest) << j;
+    }
+}
+
+TEST(RaySingle, ScalingBodyAndCoefficientsTogetherChangesNothing) {
+    const DirectionSet directions = make_direction_set(8);
+    const auto body = tests::make_bumpy_body(3);
+    const auto small = set_up(make_translucent_scene({body}, make_grey_medium(8, 1)));
+    const auto large =
+        set_up(make_translucent_scene({tests::transformed(body, glm::mat3(1), 1024, {3, 5, -7})},
+                                      make_grey_medium(8.0f / 1024, 1.0f / 1024)));
+    for (const std::size_t p : {0u, 100u, 500u}) {
+        const auto a = tests::dot_one(gather(small, directions, p), directions);
+        const auto b = tests::dot_one(gather(large, directions, p), directions);
+        EXPECT_NEAR(a.x, b.x, 1e-3 * a.x) << p;  // moved: other roundings at silhouettes
+        EXPECT_GT(a.x, 0.01) << p;
+    }
+}
+
+TEST(RaySingle, OpaqueThingsBlockLightBothOutsideAndInside) {
+    const DirectionSet directions = make_direction_set(8);
+    const auto medium = make_grey_medium(1, 0.1f);
+    auto lid = tests::make_cube(1, true);
+    lid.material = 1;
+    for (glm::vec3& v : lid.position) {
+        v *= 3.0f;  // a closed box around the body
+    }
+    auto core = tests::make_sphere(2, 0.5f);
+    core.material = 1;
+    const auto free = set_up(make_translucent_scene({tests::make_sphere(4)}, medium));
+    const auto boxed = set_up(make_translucent_scene({tests::make_sphere(4), lid}, medium));
+    const auto cored = set_up(make_translucent_scene({tests::make_sphere(4), core}, medium));
+    const auto expected = gather(free, directions, 0);
+    EXPECT_EQ(tests::dot_one(gather(boxed, directions, 0), directions), glm::dvec3(0));
+    const auto with_core = gather(cored, directions, 0);
+    const double total = tests::dot_one(expected, directions).x;
+    const double left = tests::dot_one(with_core, directions).x;
+    EXPECT_LT(left, 0.99 * total);
+    EXPECT_GT(left, 0.3 * total);
+    for (std::size_t j = 0; j < expected.size(); ++j) {
+        EXPECT_LE(with_core[j], expected[j]);
+    }
+}
+
+TEST(RaySingle, AnotherLimbOfTheBodyBlocksLight) {
+    // Two cubes one above the other, of one medium: the lower one gets nothing from straight above.
+    const auto lower = tests::make_cube(2, false);
+    const auto upper = tests::transformed(lower, glm::mat3(1), 3, {0, 6, 0});
+    const auto setup = set_up(make_translucent_scene({lower, upper}, make_grey_medium(1, 0.1f)));
+    std::size_t top = 0;
+    while (glm::distance(setup.points[top].position, glm::vec3(0, 1, 0)) > 1e-3f) {
+        ++top;
+    }
+    EXPECT_EQ(gather(setup, tests::make_cone({0, 1, 0}, 0.99), top)[0], 0);
+    EXPECT_GT(gather(setup, tests::make_cone({0, 1, 0}, 0.1), top)[0], 0);
+}
+
+TEST(RaySingle, AShellOfTheSameMediumInsideIsNotABoundary) {
+    const DirectionSet directions = make_direction_set(8);
+    const auto medium = make_grey_medium(1, 0.1f);
+    const auto outer = tests::make_sphere(4);
+    const auto alone = set_up(make_translucent_scene({outer}, medium));
+    const auto nested = set_up(
+        make_translucent_scene({outer, tests::make_sphere(2, 0.6f, {0.1f, 0.05f, 0})}, medium));
+    for (const std::size_t p : {0u, 17u, 900u}) {
+        const auto a = gather(alone, directions, p), b = gather(nested, directions, p);
+        for (std::size_t j = 0; j < a.size(); ++j) {
+            EXPECT_EQ(a[j], b[j]) << p << ' ' << j;
+        }
+    }
+    const auto path = trace_inward_path(nested.rays, nested.points[0], 100);
+    EXPECT_TRUE(path.nested);
+    EXPECT_NEAR(path.length, 2, 0.01);
+}
+
+TEST(RaySingle, HolesAreCountedAndDark) {
+    auto body = tests::make_cube(2, false);
+    const auto closed = set_up(make_translucent_scene({body}, make_grey_medium(1, 0.1f)));
+    body.index.resize(body.index.size() * 5 / 6);  // the +z side
+    const auto open = set_up(make_translucent_scene({body}, make_grey_medium(1, 0.1f)));
+    EntryCounts counts;
+    const DirectionSet directions = make_direction_set(8);
+    gather(closed, directions, 0, &counts);
+    EXPECT_EQ(counts.missing, 0u);
+    std::size_t opposite = 0;  // amid the -z side, looking through the hole
+    while (glm::distance(open.points[opposite].position, glm::vec3(0, 0, -1)) > 1e-3f) {
+        ++opposite;
+    }
+    const auto transport = gather(open, directions, opposite, &counts);
+    EXPECT_GT(counts.missing, 0u);
+    EXPECT_GT(tests::dot_one(transport, directions).x, 0);
+    const auto path = trace_inward_path(open.rays, open.points[opposite], 5);
+    EXPECT_TRUE(path.open);
+    EXPECT_EQ(path.length, 5);
+    for (const float value : transport) {
+        EXPECT_TRUE(std::isfinite(value) && value >= 0);
+    }
+}
+
+TEST(RaySingle, NormalsThatPointIntoTheBodyGatherNothing) {
+    auto body = tests::make_cube(1, false);
+    for (glm::vec3& normal : body.normal) {
+        normal = -normal;
+    }
+    const auto setup = set_up(make_translucent_scene({body}, make_grey_medium(1, 0.1f)));
+    const DirectionSet directions = make_direction_set(8);
+    EXPECT_EQ(tests::dot_one(gather(setup, directions, 0), directions), glm::dvec3(0));
+}
+
+TEST(RaySingle, InwardPathOfASphereIsItsDiameter) {
+    const auto setup =
+        set_up(make_translucent_scene({tests::make_sphere(5)}, make_grey_medium(1, 0.1f)));
+    for (const BodyPoint& point : setup.points) {
+        const InwardPath path = trace_inward_path(setup.rays, point, 100);
+        EXPECT_FALSE(path.open);
+        EXPECT_FALSE(path.nested);
+        // The facets lie up to h^2/8 = 1.5e-4 inside.
+        ASSERT_NEAR(path.length, 2, 3e-4) << point.position.x << ' ' << point.position.y;
+    }
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,169 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "bake/single/entry.h"
+#include "bake/single/path_quadrature.h"
+#include "tests/support/reference_table.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr const char* kTable = "translucency.csv";
+constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
+
+Interface<double> interface_of(const tests::ReferenceRow& row) {
+    const auto jacobian = row.input.find("jac");
+    return {row.number("eta"), jacobian == row.input.end() || jacobian->second == "exact"};
+}
+
+// T_p of a unit sphere at depth s below the point whose normal makes the given cosine with the
+// light, isotropic, path inside by the chord to the sphere.
+double sphere_entry(const Interface<double>& side, double sigma_t, double radius, double s,
+                    double cos_light) {
+    const double r = radius - s;  // signed distance from the centre along the normal
+    const double along = r * cos_light;
+    const double chord = std::sqrt(along * along + (radius - r) * (radius + r)) - along;
+    const double cosine = (along + chord) / radius;
+    const Entry<double> e = enter(cosine, side);
+    return kIsotropic * e.throughput * std::exp(-sigma_t * chord * e.path_ratio);
+}
+
+template <class Value>
+void expect_rows(const char* check, Value&& value) {
+    OPALINE_REFERENCE_ROWS(rows, kTable, check);
+    for (const auto& row : rows) {
+        EXPECT_NEAR(value(row), row.expected, row.tolerance()) << row.name();
+    }
+}
+
+PathMedium grey(double sigma_s, double sigma_t, double sigma_m) {
+    return {{sigma_s, sigma_s, sigma_s}, {sigma_t, sigma_t, sigma_t}, sigma_m};
+}
+
+TEST(SingleReference, RefractedCosine) {
+    expect_rows("refracted_cos", [](const auto& row) {
+        return enter(row.number("cos_i"), interface_of(row)).refracted_cosine;
+    });
+}
+
+TEST(SingleReference, RefractedPathKeepsItsDepthBelowTheTangentPlane) {
+    expect_rows("refracted_path", [](const auto& row) {
+        return row.number("s_i") * enter(row.number("cos_i"), interface_of(row)).path_ratio;
+    });
+}
+
+TEST(SingleReference, Jacobian) {
+    expect_rows("ss_jacobian", [](const auto& row) {
+        const double eta = row.number("eta"), c = row.number("cos_i");
+        // The ratio of both forms of the throughput.
+        return enter(c, Interface<double>{eta, true}).throughput /
+               enter(c, Interface<double>{eta, false}).throughput;
+    });
+}
+
+TEST(SingleReference, FirstAndLastMidpoint) {
+    const auto nodes = [](const auto& row) {
+        return place_path_nodes(make_midpoint_rule(static_cast<std::uint32_t>(row.number("N"))),
+                                grey(1, 1, row.number("sigma_m")), row.number("d_m"));
+    };
+    expect_rows("ss16_s_first", [&](const auto& row) { return nodes(row).front().depth; });
+    expect_rows("ss16_s_last", [&](const auto& row) { return nodes(row).back().depth; });
+}
+
+// int_0^d sigma_s e^{-2 sigma_t s} ds: a slab seen and lit along its normal, eta = 1.
+double slab(const PathRule& rule, const PathMedium& medium, double length) {
+    double sum = 0;
+    for (const PathNode& node : place_path_nodes(rule, medium, length)) {
+        sum += node.weight[1] * std::exp(-medium.sigma_t[1] * node.depth);
+    }
+    return sum;
+}
+
+TEST(SingleReference, SlabByMidpoints) {
+    expect_rows("ss16_slab", [](const auto& row) {
+        return slab(make_midpoint_rule(static_cast<std::uint32_t>(row.number("N"))),
+                    grey(row.number("sigma_s"), row.number("sigma_t"), row.number("sigma_m")),
+                    row.number("d_m"));
+    });
+}
+
+TEST(SingleReference, SlabByGaussReachesTheTruth) {
+    expect_rows("ss_slab_true", [](const auto& row) {
+        return slab(make_gauss_rule(8),
+                    grey(row.number("sigma_s"), row.number("sigma_t"), row.number("sigma_t")),
+                    row.number("d_m"));
+    });
+}
+
+TEST(SingleReference, HalfSpaceUnderOneDirection) {
+    expect_rows("ss_plane_T1", [](const auto& row) {
+        const double sigma_t = row.number("sigma_t"), c = row.number("cos_i");
+        const Entry<double> e = enter(c, interface_of(row));
+        double sum = 0;
+        // 400 nodes uniform in s over 60 mean free paths: spectral for an exponential.
+        for (const PathNode& node : place_path_nodes(
+                 make_gauss_rule(400), grey(row.number("sigma_s"), sigma_t, 0), 60 / sigma_t)) {
+            sum += node.weight[0] * kIsotropic * e.throughput *
+                   std::exp(-sigma_t * node.depth / c * e.path_ratio);
+        }
+        return sum;
+    });
+}
+
+// Exitance over incident flux of a half space under uniform light: the view path integrated along
+// the refracted direction, 1/(1 + mu_o'/mu_i') per unit albedo, both cosines over the hemisphere.
+TEST(SingleReference, HalfSpaceReflectancePerAlbedo) {
+    const PathRule gauss = make_gauss_rule(200);
+    expect_rows("ss_halfspace_reflectance_per_albedo", [&](const auto& row) {
+        const Interface<double> side = interface_of(row);
+        const Interface<double> plain{side.eta, false};
+        double sum = 0;
+        for (std::size_t i = 0; i < gauss.position.size(); ++i) {
+            const double mu_i = gauss.position[i];
+            const Entry<double> in = enter(mu_i, side);
+            for (std::size_t o = 0; o < gauss.position.size(); ++o) {
+                const double mu_o = gauss.position[o];
+                const Entry<double> out = enter(mu_o, plain);
+                const double a = in.refracted_cosine, b = out.refracted_cosine;
+                sum += gauss.weight[i] * gauss.weight[o] * in.throughput * out.throughput * mu_o *
+                       a / (a + b);
+            }
+        }
+        // 2 pi per hemisphere, twice, by pi incident.
+        return sum * 2 * std::numbers::pi * 2 * std::numbers::pi * kIsotropic / std::numbers::pi;
+    });
+}
+
+TEST(SingleReference, SphereByFineQuadrature) {
+    expect_rows("sphere_T1", [](const auto& row) {
+        const double radius = row.number("radius"), sigma_s = row.number("sigma_s");
+        const double sigma_t = sigma_s + row.number("sigma_a");
+        double sum = 0;
+        for (const PathNode& node :
+             place_path_nodes(make_gauss_rule(1000), grey(sigma_s, sigma_t, 0), 2 * radius)) {
+            sum += node.weight[0] * sphere_entry(interface_of(row), sigma_t, radius, node.depth,
+                                                 row.number("cos_light"));
+        }
+        return sum;
+    });
+}
+
+TEST(SingleReference, SphereByTheSixteenPointsOfThePaper) {
+    expect_rows("sphere_T1_16", [](const auto& row) {
+        const double radius = row.number("radius"), sigma_s = row.number("sigma_s");
+        const double sigma_t = sigma_s + row.number("sigma_a");
+        double sum = 0;
+        for (const PathNode& node :
+             place_path_nodes(make_midpoint_rule(static_cast<std::uint32_t>(row.number("N"))),
+                              grey(sigma_s, sigma_t, row.number("sigma_m")), 2 * radius)) {
+            sum += node.weight[0] * sphere_entry(interface_of(row), sigma_t, radius, node.depth,
+                                                 row.number("cos_light"));
+        }
+        return sum;
+    });
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,142 @@
+#include "runtime/terms.h"
+
+#include <gmock/gmock.h>
+
+#include "runtime/shade.h"
+#include "runtime/view_terms.h"
+#include "tests/runtime/light_test_support.h"
+#include "tests/runtime/row_test_support.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Asset;
+using formats::PrimitiveRecord;
+using formats::Rgb;
+using formats::Vec3;
+
+/// A grey diffuse and a glossy translucent primitive with `terms` rows a vertex, radiance above 0.
+Asset make_asset(std::uint32_t terms, bool is_separate) {
+    Asset asset;
+    asset.transport = tests::random_rows(8, 8, 1, 31);
+    PrimitiveRecord grey;
+    grey.vertex_count = asset.transport.view().rows();
+    PrimitiveRecord record;
+    record.shading = formats::Shading::translucent;
+    record.terms = terms;
+    record.bands = 3;
+    record.eta = 1.4f;
+    record.flags = is_separate ? PrimitiveRecord::kSeparate : 0;
+    record.first_vertex = record.first_row = record.first_band_row = grey.vertex_count;
+    record.first_code = asset.transport.code8.size();
+    for (std::uint32_t k = 0; k < terms; ++k) {
+        formats::append_rows(asset.transport, tests::random_rows(8, 8, 3, 40 + k));
+    }
+    record.vertex_count = (asset.transport.view().rows() - grey.vertex_count) / terms;
+    asset.primitives = {grey, record};
+    asset.roughness = {formats::kNotGlossy, 0.25f};
+    for (std::uint32_t v = 0; v < grey.vertex_count + record.vertex_count; ++v) {
+        const float t = static_cast<float>(v);
+        asset.normal.push_back(
+            normalize(Vec3{std::sin(2 * t), std::cos(3 * t), std::sin(5 * t + 1)}));
+        asset.position.push_back(0.5f * asset.normal.back());
+        asset.base_color.push_back({0.5f, 0.25f, 1});
+        asset.openness.push_back(formats::encode_openness(asset.normal.back(), 0.7f));
+    }
+    return asset;
+}
+
+class Terms : public testing::Test {
+  protected:
+    std::vector<Rgb> shaded(const Asset& asset, std::uint32_t terms, bool fresnel = true) {
+        std::vector<Rgb> out(asset.position.size());
+        shade(asset.view(), light_, out,
+              {.eye = Vec3{0, 2, 5}, .fresnel = fresnel, .terms = terms, .specular = &specular_});
+        return out;
+    }
+    formats::Environment sky_ = tests::lat_long_map(64, 32, tests::smooth_sky);
+    LightVector light_ = project_environment(sky_, 8);
+    std::uint32_t level_ = roughness_level(0.25f);
+    SpecularLight specular_ = prefilter_specular(sky_, {&level_, 1}, {}, 1);
+};
+
+// Before the last factor, where negative sums of random rows are not yet clamped.
+TEST_F(Terms, MultipleAndSingleAddUpToBoth) {
+    for (const std::uint32_t terms : {1u, 2u, 5u, 10u, 17u, 26u}) {
+        const Asset asset = make_asset(terms, true);
+        const auto both = shaded(asset, kMultipleTerm | kSingleTerm, false);
+        const auto multiple = shaded(asset, kMultipleTerm, false);
+        const auto single = shaded(asset, kSingleTerm, false);
+        std::size_t differ = 0;
+        for (std::uint32_t v = asset.primitives[1].first_vertex; v < both.size(); ++v) {
+            const float sum = multiple[v].g + single[v].g;
+            EXPECT_NEAR(both[v].g, sum, 1e-5f * (std::abs(multiple[v].g) + std::abs(single[v].g)));
+            differ += single[v].g != 0 && multiple[v].g != 0 ? 1u : 0u;
+        }
+        EXPECT_EQ(differ > 10, terms > 1) << terms;
+    }
+}
+
+TEST_F(Terms, ComponentsAddUpToTheWholeWhereNoneIsClamped) {
+    const Asset asset = make_asset(5, true);
+    const auto whole = shaded(asset, kAllTerms);
+    std::vector<std::vector<Rgb>> parts;
+    for (const std::uint32_t term : {kMultipleTerm, kSingleTerm, kSpecularTerm, kDiffuseTerm}) {
+        parts.push_back(shaded(asset, term));
+    }
+    const auto multiple = shaded(asset, kMultipleTerm, false);
+    const auto single = shaded(asset, kSingleTerm, false);
+    std::size_t compared = 0;
+    for (std::size_t v = 0; v < whole.size(); ++v) {
+        if (multiple[v].r < 0 || single[v].r < 0) continue;
+        const float sum = parts[0][v].r + parts[1][v].r + parts[2][v].r + parts[3][v].r;
+        EXPECT_NEAR(whole[v].r, sum, 1e-5f * (1 + sum)) << v;
+        compared += sum > 0 ? 1u : 0u;
+        EXPECT_TRUE(v < asset.primitives[1].first_vertex ? parts[0][v] == Rgb{}
+                                                         : parts[3][v] == Rgb{});
+    }
+    EXPECT_GT(compared, 20u);
+}
+
+// The second row of a separate asset is what a merged one has; its harmonics begin anew.
+TEST_F(Terms, SingleScatteringHasTheViewTermsOfItsOwnNumberOfRows) {
+    const Asset asset = make_asset(5, true);
+    const auto single = shaded(asset, kSingleTerm, false);
+    const PrimitiveRecord& p = asset.primitives[1];
+    for (std::uint32_t v = p.first_vertex; v < single.size(); ++v) {
+        std::vector<Rgb> rows(5);
+        dot_rows(asset.transport.view(), p.rows(), light_, (v - p.first_vertex) * 5, rows,
+                 best_dot_path());
+        const ViewOfReceiver view =
+            view_receiver(p, asset.position[v], asset.normal[v], Vec3{0, 2, 5});
+        std::vector<float> h(4);
+        eval_view_terms(refract_to_eye(view.normal, view.to_eye, view.cosine, 1.4f), h);
+        float expected = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            expected += h[k] * rows[k + 1].b;
+        }
+        EXPECT_NEAR(single[v].b, expected, 1e-5f * (1 + std::abs(expected)));
+    }
+}
+
+TEST_F(Terms, MergedRowsAreShownWholeOrNotAtAll) {
+    const Asset merged = make_asset(4, false), apart = make_asset(5, true);
+    for (std::uint32_t terms = 0; terms <= kAllTerms; ++terms) {
+        const bool needs_both = ((terms & kMultipleTerm) != 0) != ((terms & kSingleTerm) != 0);
+        const auto status = check_terms(merged.view(), terms, "a.opal");
+        EXPECT_EQ(status.has_value(), !needs_both) << terms;
+        EXPECT_TRUE(check_terms(apart.view(), terms, "a.opal"));
+        if (!status) {
+            const formats::Diagnostic& main = status.error().diagnostics.front();
+            EXPECT_EQ(main.file, "a.opal");
+            EXPECT_EQ(main.where, "primitive 1");
+            EXPECT_THAT(main.remedy, testing::HasSubstr("--separate-terms"));
+        }
+    }
+    for (const Rgb c : shaded(merged, 0)) {
+        EXPECT_EQ(c, Rgb{});
+    }
+}
+
+}  // namespace
+}  // namespace opaline::runtime
