@@ -269,9 +269,11 @@ bool scatter(const PathSpace& space, Path& path, glm::vec3 at, RandomStream& ran
 }
 
 void reach_sky(const PathSpace& space, Path& path) {
+    const bool is_background = path.state.stage == PathState::Stage::camera;
     if (!path.stack.empty()) {
         path.lost = true;
-    } else if ((term_of(path.state) & space.options.terms) != 0) {
+    } else if (is_background ? space.options.terms == term::kAll
+                             : (term_of(path.state) & space.options.terms) != 0) {
         const float weight =
             path.pdf > 0 ? path.pdf / (path.pdf + pdf_light(space.light, path.direction)) : 1.0f;
         path.radiance += weight * path.beta * eval_light(space.light, path.direction);

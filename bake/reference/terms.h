@@ -8,7 +8,7 @@ namespace opaline::bake {
 /// and the sky. The first two of a body's are what the bake's effects of the same name stand for.
 using Terms = std::uint32_t;
 namespace term {
-inline constexpr Terms kDirect = 1;        ///< one reflection from an opaque surface
+inline constexpr Terms kDiffuse = 1;       ///< one reflection from an opaque surface
 inline constexpr Terms kSingle = 2;        ///< into a body, scattered once, out again
 inline constexpr Terms kMultiple = 4;      ///< into a body, scattered more often or reflected at
                                            ///< its boundary from inside, out again
@@ -72,7 +72,7 @@ constexpr Terms term_of(PathState s) {
         case PathState::Stage::camera:
             return term::kAll;
         case PathState::Stage::diffuse:
-            return term::kDirect;
+            return term::kDiffuse;
         case PathState::Stage::mirrored:
             return term::kSpecular;
         case PathState::Stage::inside:  // the body is open: such light is not counted
