@@ -12,7 +12,9 @@ enum class RandomStage : std::uint32_t {
     held_back_receivers = 1,
     surface_samples = 2,
     bootstrap = 3,
-    half_space_walk = 4
+    half_space_walk = 4,
+    reference_path = 5,
+    reference_receivers = 6
 };
 
 /// Four uniform numbers in [0, 1), a pure function of its arguments: no state, hence the same for

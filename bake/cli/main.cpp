@@ -26,6 +26,7 @@ int run_program(int argc, char** argv) {
     add_verify_command(app, job);
     add_relight_command(app, job);
     add_render_command(app, job);
+    add_reference_command(app, job);
     add_compare_command(app, job);
     add_phase_command(app, job);
     add_example_command(app, job);

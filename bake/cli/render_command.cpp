@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "bake/cli/camera_options.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
@@ -29,8 +30,9 @@ using formats::Status;
 using Clock = std::chrono::steady_clock;
 
 struct Options {
-    std::string path, light, output, size = "960x720", eye, target, terms, backend = "gl";
-    float fov = 32, exposure = 0;
+    std::string path, light, output, terms, backend = "gl";
+    CameraOptions camera;
+    float exposure = 0;
     double rotate_light = 0;
     std::uint32_t frames = 1;
     unsigned threads = 0;
@@ -45,50 +47,6 @@ struct Shown {
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-Status parse_size(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
-    int used = 0;
-    if (std::sscanf(text.c_str(), "%5ux%5u%n", &width, &height, &used) != 2 ||
-        static_cast<std::size_t>(used) != text.size() || width == 0 || height == 0) {
-        return make_error(ErrorKind::usage, "", "--size", "'" + text + "' is not a size",
-                          "give WIDTHxHEIGHT in pixels, such as 960x720");
-    }
-    return formats::ok_status();
-}
-
-Result<runtime::Camera> make_camera(const Options& options, const formats::AssetView& view) {
-    std::uint32_t width = 0, height = 0;
-    if (auto status = parse_size(options.size, width, height); !status) {
-        return status.error();
-    }
-    runtime::Camera camera = runtime::frame_asset(view, options.fov, width, height);
-    if (!options.target.empty()) {
-        const auto target = parse_vec3("--target", options.target);
-        if (!target) {
-            return target.error();
-        }
-        camera.target = *target;
-    }
-    if (!options.eye.empty()) {
-        const auto eye = parse_vec3("--eye", options.eye);
-        if (!eye) {
-            return eye.error();
-        }
-        camera.eye = *eye;
-    }
-    if (formats::length(camera.target - camera.eye) == 0) {
-        return make_error(ErrorKind::usage, "", "--eye", "lies in the target",
-                          "move one of them: the camera has no direction");
-    }
-    if (!options.eye.empty() || !options.target.empty()) {
-        camera.near_plane = runtime::near_plane_for(view, camera.eye);
-    }
-    if (auto status = runtime::check_camera(camera, runtime::SoftwareOptions{}.supersampling);
-        !status) {
-        return status.error();
-    }
-    return camera;
 }
 
 Status write_picture(const std::string& path, const runtime::Picture& picture, float exposure) {
@@ -235,7 +193,7 @@ int run(const Options& options) {
         return report_error(status.error());
     }
     const formats::AssetView& view = asset->loaded.view;
-    const auto camera = make_camera(options, view);
+    const auto camera = make_camera(options.camera, view);
     if (!camera) {
         return report_error(camera.error());
     }
@@ -265,14 +223,7 @@ void add_render_command(CLI::App& app, Job& job) {
                      ".png: tone-mapped (Khronos PBR Neutral), sRGB; .exr: linear radiance")
         ->required()
         ->option_text("OUT.png|.exr");
-    command->add_option("--size", options->size, "of the picture, in pixels")
-        ->option_text("WxH [960x720]");
-    command->add_option("--eye", options->eye, "camera position [m]; default: frames the object")
-        ->option_text("X,Y,Z");
-    command->add_option("--target", options->target, "point looked at [m]; default: the object")
-        ->option_text("X,Y,Z");
-    command->add_option("--fov", options->fov, "vertical angle of view [degrees]")
-        ->option_text("DEG [32]");
+    add_camera_options(*command, options->camera);
     command->add_option("--backend", options->backend, "gl: OpenGL 4.5 through EGL; cpu: software")
         ->check(CLI::IsMember({"gl", "cpu"}))
         ->option_text("gl|cpu [gl]");

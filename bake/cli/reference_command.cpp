@@ -1,0 +1,323 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+
+#include "bake/cli/camera_options.h"
+#include "bake/cli/command.h"
+#include "bake/cli/inputs.h"
+#include "bake/cli/interrupt.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/progress.h"
+#include "bake/reference/reference_image.h"
+#include "bake/reference/reference_receivers.h"
+#include "bake/reference/write_receivers.h"
+#include "formats/image/exr.h"
+#include "formats/opal/atomic_file.h"
+
+namespace opaline::cli {
+namespace {
+
+using formats::ErrorKind;
+using formats::make_error;
+using formats::Status;
+
+struct Options {
+    std::string scene, media, light, output, terms;
+    CameraOptions camera;
+    double metres_per_unit = 1, rotate_light = 0, seconds = 0;
+    std::uint32_t receivers = 0, samples = 0, max_depth = 0;
+    std::uint64_t seed = 0;
+    unsigned threads = 0;
+    ProgressStyle progress = ProgressStyle::automatic;
+};
+
+formats::Result<bake::Terms> parse_reference_terms(const std::string& text) {
+    const std::map<std::string, bake::Terms> names{
+        {"diffuse", bake::term::kDiffuse},
+        {"single", bake::term::kSingle},
+        {"multiple", bake::term::kMultiple},
+        {"specular", bake::term::kSpecular},
+        {"unscattered", bake::term::kUnscattered},
+        {"interreflection", bake::term::kInterreflection}};
+    if (text.empty() || text == "all") {
+        return bake::term::kAll;
+    }
+    bake::Terms terms = 0;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        const std::string name = text.substr(begin, end - begin);
+        const auto known = names.find(name);
+        if (known == names.end()) {
+            return make_error(ErrorKind::usage, "", "--terms", "'" + name + "' is not a term",
+                              "give all, or some of diffuse,single,multiple,specular,unscattered,"
+                              "interreflection");
+        }
+        terms |= known->second;
+        begin = end + 1;
+    }
+    return terms;
+}
+
+// Beside OUT.exr: OUT.var.exr.
+std::string variance_path(const std::string& output) {
+    return std::filesystem::path(output).replace_extension(".var.exr").string();
+}
+
+Status check_outputs(const Options& options) {
+    const bool table = std::filesystem::path(options.output).extension() == ".csv";
+    if (auto status = check_output(options.output, {options.scene, options.media, options.light},
+                                   {".exr", ".csv"});
+        !status) {
+        return status;
+    }
+    if (table != (options.receivers > 0)) {
+        return make_error(ErrorKind::usage, options.output, "",
+                          table ? "a table needs receivers" : "receivers go into a table",
+                          table ? "give --receivers N, or end the name in .exr for a picture"
+                                : "end the name in .csv, or leave out --receivers");
+    }
+    if (table) {
+        return formats::ok_status();
+    }
+    return check_output(variance_path(options.output),
+                        {options.scene, options.media, options.light}, {});
+}
+
+// So that an unwritable folder is found out before the work.
+Status try_to_create(const std::string& path) {
+    const auto file = formats::AtomicFile::create(path);
+    return file ? formats::ok_status() : Status(file.error());
+}
+
+/// The scene's surface as far as a camera is placed by it.
+formats::Asset make_stand_in(const formats::Scene& scene) {
+    formats::Asset asset;
+    for (const formats::Primitive& p : scene.primitives) {
+        formats::PrimitiveRecord record;
+        record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
+        record.vertex_count = static_cast<std::uint32_t>(p.position.size());
+        record.first_index = static_cast<std::uint32_t>(asset.index.size());
+        record.index_count = static_cast<std::uint32_t>(p.index.size());
+        asset.primitives.push_back(record);
+        for (const glm::vec3& v : p.position) {
+            asset.position.push_back({v.x, v.y, v.z});
+        }
+        asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
+    }
+    return asset;
+}
+
+void print_summary(const Options& options, const bake::Estimate& estimate) {
+    double error = 0, sum = 0;
+    for (const bake::Moments& m : estimate.pixel) {
+        const glm::dvec3 variance = m.variance_of_mean();
+        error += variance.x + variance.y + variance.z;
+        sum += glm::dot(m.mean, m.mean);
+    }
+    const double paths =
+        static_cast<double>(estimate.pixel.size()) * static_cast<double>(estimate.samples);
+    fmt::print(stderr,
+               "{}: {} samples for each of {} {}, {}, {:.3g} paths/s; relative standard error "
+               "{:.2g} %\n",
+               options.output, estimate.samples, estimate.pixel.size(),
+               options.receivers > 0 ? "receivers" : "pixels", format_seconds(estimate.seconds),
+               estimate.seconds > 0 ? paths / estimate.seconds : 0.0,
+               sum > 0 ? 100 * std::sqrt(error / sum) : 0.0);
+    constexpr double kNoticed = 1e-4;
+    if (const double lost = static_cast<double>(estimate.lost) / std::max(paths, 1.0);
+        lost > kNoticed) {
+        print_warnings({formats::make_warning(
+            options.scene, "",
+            fmt::format("{:.2g} % of the paths left a body that is not closed, and count as black",
+                        100 * lost),
+            "close the holes of its mesh")});
+    }
+}
+
+Status make_table(const Options& options, const bake::PathSpace& space,
+                  const bake::EstimateOptions& wanted, const bake::Context& context) {
+    std::optional<glm::vec3> eye;
+    if (!options.camera.eye.empty()) {
+        const auto point = parse_vec3("--eye", options.camera.eye);
+        if (!point) {
+            return point.error();
+        }
+        eye = {point->x, point->y, point->z};
+    }
+    const auto receivers =
+        bake::choose_receivers(space.scene, options.receivers, options.seed, eye);
+    const auto estimate = bake::estimate_receivers(space, receivers, wanted, context);
+    if (!estimate) {
+        return estimate.error();
+    }
+    if (auto status = bake::write_receiver_csv(options.output, receivers, *estimate); !status) {
+        return status;
+    }
+    print_summary(options, *estimate);
+    return formats::ok_status();
+}
+
+Status make_picture(const Options& options, const bake::PathSpace& space,
+                    const bake::EstimateOptions& wanted, const bake::Context& context) {
+    const formats::Asset stand_in = make_stand_in(space.scene.surfaces.scene());
+    const auto camera = make_camera(options.camera, stand_in.view());
+    if (!camera) {
+        return camera.error();
+    }
+    const auto image = bake::estimate_image(space, *camera, wanted, context);
+    if (!image) {
+        return image.error();
+    }
+    if (auto status = formats::write_exr(variance_path(options.output), image->variance); !status) {
+        return status;
+    }
+    if (auto status = formats::write_exr(options.output, image->mean); !status) {
+        return status;
+    }
+    print_summary(options, image->estimate);
+    return formats::ok_status();
+}
+
+bake::EstimateOptions estimate_options(const Options& options) {
+    constexpr std::uint32_t kReceiverSamples = 1024, kPixelSamples = 64;
+    bake::EstimateOptions wanted;
+    wanted.seed = options.seed;
+    wanted.seconds = options.seconds;
+    wanted.samples = options.samples > 0     ? options.samples
+                     : options.seconds > 0   ? std::numeric_limits<std::uint32_t>::max() / 2
+                     : options.receivers > 0 ? kReceiverSamples
+                                             : kPixelSamples;
+    return wanted;
+}
+
+int run(const Options& options) {
+    const std::atomic<bool>& interrupted = catch_interrupts();
+    bake::PathOptions paths;
+    if (options.max_depth > 0) {
+        paths.max_depth = options.max_depth;
+    }
+    const auto terms = parse_reference_terms(options.terms);
+    if (!terms) {
+        return report_error(terms.error());
+    }
+    paths.terms = *terms;
+    if (auto status = check_outputs(options); !status) {
+        return report_error(status.error());
+    }
+    const auto imported = open_scene(options.scene, options.metres_per_unit, options.media);
+    if (!imported) {
+        return report_error(imported.error());
+    }
+    const auto light = open_light(options.light, options.rotate_light);
+    if (!light) {
+        return report_error(light.error());
+    }
+    if (auto status = try_to_create(options.output); !status) {
+        return report_error(status.error());
+    }
+    const auto scene = bake::make_reference_scene(imported->scene, options.threads);
+    if (!scene) {
+        return report_error(scene.error());
+    }
+    const runtime::Rotation& r = light->rotation;
+    const bake::LightSampler sampler =
+        bake::make_light_sampler(light->environment, glm::mat3(glm::vec3(r.x.x, r.x.y, r.x.z),
+                                                               glm::vec3(r.y.x, r.y.y, r.y.z),
+                                                               glm::vec3(r.z.x, r.z.y, r.z.z)));
+    bake::Context context;
+    context.threads = options.threads;
+    context.cancel = &interrupted;
+    context.on_progress = make_progress_printer(options.progress);
+    const bake::PathSpace space{*scene, sampler, paths};
+    const Status status = (options.receivers > 0 ? make_table : make_picture)(
+        options, space, estimate_options(options), context);
+    return status ? kExitSuccess : report_error(status.error());
+}
+
+void add_estimate_options(CLI::App& command, Options& options) {
+    command
+        .add_option("--receivers", options.receivers,
+                    "a table instead of a picture: radiance and its standard error at N vertices, "
+                    "seen as `opaline relight` sees them")
+        ->check(CLI::Range(1u, 100000000u))
+        ->option_text("N");
+    command
+        .add_option("--spp", options.samples,
+                    "paths for each pixel or receiver; default 64 for pictures, 1024 for tables, "
+                    "no limit with --seconds")
+        ->check(CLI::Range(1u, 2000000000u))
+        ->option_text("N");
+    command
+        .add_option("--seconds", options.seconds,
+                    "stop after about that time; how many samples fit differs from run to run")
+        ->check(CLI::Range(1e-3, 1e9))
+        ->option_text("S");
+    command
+        .add_option("--max-depth", options.max_depth,
+                    "at most D scattering events along a path, refraction included; default: no "
+                    "limit, Russian roulette ends paths that carry little")
+        ->check(CLI::Range(1u, 1000000000u))
+        ->option_text("D");
+    command
+        .add_option("--terms", options.terms,
+                    "count only some of the light: diffuse, single, multiple and specular as in "
+                    "`opaline relight`, unscattered (straight through a body), interreflection "
+                    "(paths that meet a second surface or body)")
+        ->option_text("all|LIST [all]");
+    command.add_option("--seed", options.seed, "another one gives other noise")
+        ->check(CLI::NonNegativeNumber)
+        ->option_text("S [0]");
+    command
+        .add_option("--threads", options.threads,
+                    "0: one per core; the result is the same for any number")
+        ->check(CLI::Range(0u, 1024u))
+        ->option_text("T [0]");
+}
+
+}  // namespace
+
+void add_reference_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "reference", "Ground truth of a scene by Monte Carlo: a picture, or radiance at vertices");
+    command->add_option("scene", options->scene, "the scene, .gltf or .glb")
+        ->required()
+        ->option_text("SCENE");
+    command->add_option("--light", options->light, light_help())->required()->option_text("ENV");
+    command
+        ->add_option("-o,--output", options->output,
+                     ".exr: linear radiance, and beside it .var.exr, the variance of each pixel's "
+                     "mean; .csv: primitive,vertex,r,g,b,se_r,se_g,se_b")
+        ->required()
+        ->option_text("OUT.exr|.csv");
+    command->add_option("--media", options->media, "what translucent materials are made of")
+        ->option_text("FILE.json");
+    command
+        ->add_option("--metres-per-unit", options->metres_per_unit,
+                     "length of one unit of the scene file")
+        ->option_text("X [1]");
+    add_estimate_options(*command, *options);
+    add_camera_options(*command, options->camera);
+    command
+        ->add_option("--rotate-light", options->rotate_light,
+                     "turn the light about +Y, from +Z toward +X [degrees]")
+        ->check(CLI::Range(-1e6, 1e6))
+        ->option_text("DEG [0]");
+    command
+        ->add_option("--progress", options->progress,
+                     "auto: a bar on a terminal; json: a line of JSON a step on stderr; none")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
+                                                 {"json", ProgressStyle::json},
+                                                 {"none", ProgressStyle::none}}))
+        ->option_text("auto|json|none [auto]");
+    command->footer(
+        "Example:\n  opaline reference scene.glb --light studio --receivers 100 -o truth.csv");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

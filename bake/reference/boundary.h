@@ -1,0 +1,24 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+namespace opaline::bake {
+
+/// What a smooth dielectric boundary does to a ray.
+struct BoundarySplit {
+    float reflectance = 0;     ///< unpolarised Fresnel reflectance in [0, 1]; 1: total reflection
+    glm::vec3 reflected{0};    ///< unit
+    glm::vec3 transmitted{0};  ///< unit; unset under total reflection
+};
+
+/// `direction`: unit, of propagation, toward the boundary. `normal`: unit, against the direction:
+/// dot(direction, normal) < 0. `ratio`: index of refraction beyond over index on this side, > 0.
+BoundarySplit split_at_boundary(glm::vec3 direction, glm::vec3 normal, float ratio);
+
+/// The same for an interpolated normal that may disagree with the triangle: where it sends a ray
+/// to the wrong side of the triangle, the triangle's own normal is used instead. Both normals
+/// point away from the same side; the triangle's is against the direction.
+BoundarySplit split_at_smooth_boundary(glm::vec3 direction, glm::vec3 smooth, glm::vec3 flat,
+                                       float ratio);
+
+}  // namespace opaline::bake

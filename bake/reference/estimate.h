@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/reference/path.h"
+#include "formats/opal/result.h"
+
+namespace opaline::bake {
+
+/// Count, mean and spread of samples, per channel.
+struct Moments {
+    double count = 0;
+    glm::dvec3 mean{0};
+    glm::dvec3 squares{0};  ///< sum of squared deviations from the mean
+
+    void add(glm::dvec3 sample);
+    void merge(const Moments& other);
+    /// Variance of the mean: the square of its standard error. 0 for fewer than two samples.
+    glm::dvec3 variance_of_mean() const;
+};
+
+/// How long an estimate goes on.
+struct EstimateOptions {
+    std::uint32_t samples = 64;  ///< for each pixel or receiver, >= 1
+    double seconds = 0;          ///< 0: no limit; else also stop after the round in which the time
+                                 ///< ran out, when all have the same number of samples
+    std::uint64_t seed = 0;
+};
+
+struct Estimate {
+    std::vector<Moments> pixel;
+    std::uint32_t samples = 0;  ///< taken for each
+    std::uint64_t lost = 0;     ///< paths that got lost (PathSample)
+    double seconds = 0;
+};
+
+/// Estimates `count` pixels. `sample(pixel, random)` must be a pure function; it runs on all
+/// threads. The same bits for any number of threads, except that `seconds` decides how many
+/// samples there are. Errors: interrupted.
+formats::Result<Estimate> estimate_pixels(
+    std::uint32_t count, const EstimateOptions& options, const Context& context,
+    const std::function<PathSample(std::uint32_t pixel, RandomStream& random)>& sample);
+
+}  // namespace opaline::bake

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+
+#include "bake/reference/hit_scene.h"
+#include "bake/reference/phase_sampler.h"
+#include "bake/reference/random_stream.h"
+
+namespace opaline::bake {
+
+/// A homogeneous medium as the walk needs it [1/m].
+struct ReferenceMedium {
+    glm::vec3 sigma_s{0}, sigma_t{0};
+    float eta = 1;  ///< index of refraction relative to the outside of everything
+    PhaseSampler phase;
+};
+
+/// How far a path flew before something happened to it.
+struct Flight {
+    std::optional<SurfaceHit> surface;  ///< a surface ended the flight; else it was scattered
+    float distance = 0;   ///< [m]; infinite: it flies on for ever, neither event happens
+    glm::vec3 weight{1};  ///< of the event over its density, scattering coefficient included
+};
+
+/// Samples the free flight of a path with throughput `beta` (not all 0) through a medium.
+/// One channel, drawn in proportion to beta, decides the distance; the weight divides by the mean
+/// density of all three under the same odds (the balance heuristic), so that the sum of the
+/// throughput's channels never grows, however different the channels are.
+/// `find_surface(t)` returns the first surface nearer than t [m], if any. A medium of another kind
+/// (a density grid by delta tracking) is one more overload of this function.
+template <class FindSurface>
+Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream& random,
+                     FindSurface&& find_surface) {
+    const glm::vec3 odds = beta / (beta.x + beta.y + beta.z);
+    const float u = random.next();
+    const int channel = u < odds.x ? 0 : u < odds.x + odds.y || odds.z <= 0 ? 1 : 2;
+    // Rounding may have chosen a channel without odds: then the last one that has any.
+    const int chosen = odds[channel] > 0 ? channel : odds.y > 0 ? 1 : 0;
+    const float sigma = medium.sigma_t[chosen];
+    const float free =
+        sigma > 0 ? -std::log1p(-random.next()) / sigma : std::numeric_limits<float>::infinity();
+    Flight flight;
+    flight.surface = find_surface(free);
+    flight.distance = flight.surface ? flight.surface->distance : free;
+    if (std::isinf(flight.distance)) {
+        return flight;
+    }
+    const glm::vec3 passing = glm::exp(-medium.sigma_t * flight.distance);
+    if (flight.surface) {
+        flight.weight = passing / glm::dot(odds, passing);
+    } else {
+        flight.weight = medium.sigma_s * passing / glm::dot(odds, medium.sigma_t * passing);
+    }
+    return flight;
+}
+
+}  // namespace opaline::bake

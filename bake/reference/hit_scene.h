@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Where a ray met a triangle. Positions are relative to HitScene::centre.
+struct SurfaceHit {
+    float distance = 0;  ///< [m] along the ray
+    glm::vec3 position{0};
+    glm::vec3 flat{0};    ///< unit normal of the triangle, by its winding: outward
+    glm::vec3 smooth{0};  ///< unit interpolated normal, within the hemisphere of `flat`
+    float error = 0;      ///< bound [m] on how far `position` may lie off the triangle
+    float u = 0, v = 0;   ///< weights of the second and third corner
+    std::uint32_t primitive = 0, triangle = 0;  ///< numbers of formats::Scene
+};
+
+/// Where a ray starts: on a triangle that it cannot meet again, or in free space.
+struct RayOrigin {
+    glm::vec3 position{0};
+    std::uint32_t primitive = formats::kNone, triangle = formats::kNone;
+};
+
+/// All triangles of a scene, for closest hits one ray at a time. Immutable; any thread may trace.
+class HitScene {
+  public:
+    /// `scene` must outlive the result. Errors: resource.
+    static formats::Result<HitScene> build(const formats::Scene& scene, unsigned threads);
+
+    HitScene(HitScene&&) noexcept;
+    HitScene& operator=(HitScene&&) noexcept;
+    ~HitScene();
+
+    /// The first triangle within `reach` [m], front or back. `direction` is unit.
+    std::optional<SurfaceHit> closest_hit(const RayOrigin& origin, glm::vec3 direction,
+                                          float reach) const;
+    /// True if there is any.
+    bool is_blocked(const RayOrigin& origin, glm::vec3 direction) const;
+
+    /// Subtract from world positions before they become ray origins [m].
+    glm::vec3 centre() const { return centre_; }
+    const formats::Scene& scene() const { return *scene_; }
+
+  private:
+    struct Handles;
+    HitScene();
+    std::unique_ptr<Handles> handles_;
+    const formats::Scene* scene_ = nullptr;
+    glm::vec3 centre_{0};
+};
+
+/// Start of a ray that leaves a hit point in `direction`: moved off the triangle to the side that
+/// the direction points to, by the hit's error bound.
+RayOrigin leave_surface(const SurfaceHit& hit, glm::vec3 direction);
+
+/// Base colour: factor, vertex colours and texture (bilinear in linear light).
+glm::vec3 base_color_at(const formats::Scene& scene, const SurfaceHit& hit);
+/// Base colour of a vertex.
+glm::vec3 base_color_at_vertex(const formats::Scene& scene, std::uint32_t primitive,
+                               std::uint32_t vertex);
+
+}  // namespace opaline::bake

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bake/reference/free_flight.h"
+#include "bake/reference/hit_scene.h"
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// A scene as the reference walks it.
+struct ReferenceScene {
+    HitScene surfaces;
+    std::vector<ReferenceMedium> media;    ///< of the materials that have one
+    std::vector<std::uint32_t> medium_of;  ///< by material; formats::kNone: opaque
+    bool has_matched_boundary = false;     ///< some medium has the index of its surroundings
+};
+
+/// `scene` must outlive the result. Errors: resource.
+formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene, unsigned threads);
+
+/// Two indices of refraction between which light neither bends nor is reflected.
+inline bool is_matched(float ratio) {
+    return ratio > 1 - 1e-5f && ratio < 1 + 1e-5f;
+}
+
+/// The bodies that a point lies in, the last one entered on top: there its medium fills the space.
+struct MediumStack {
+    static constexpr std::uint32_t kCapacity = 8;
+    std::uint32_t medium[kCapacity] = {};  ///< indices into ReferenceScene::media
+    std::uint32_t size = 0;
+
+    bool empty() const { return size == 0; }
+    std::uint32_t top() const { return size > 0 ? medium[size - 1] : formats::kNone; }
+    /// Deeper nesting than the capacity is forgotten.
+    void enter(std::uint32_t m);
+    /// Nothing happens where it was not in (an open or flipped body).
+    void leave(std::uint32_t m);
+};
+
+}  // namespace opaline::bake
