@@ -18,6 +18,7 @@
 #include "bake/measure/check_translucent.h"
 #include "bake/plan/plan_rules.h"
 #include "bake/plan/row_layout.h"
+#include "bake/receivers/orient_bodies.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/specular/bake_openness.h"
 #include "bake/translucent/translucent_rows.h"
@@ -212,7 +213,7 @@ formats::Error interrupted() {
 
 }  // namespace
 
-formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOptions& options,
+formats::Result<BakeResult> run_bake(const formats::Scene& given, const BakeOptions& options,
                                      const Context& outer) {
     const Clock::time_point start = Clock::now();
     formats::Result<Knobs> knobs = resolve_knobs(options);
@@ -224,6 +225,11 @@ formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOpti
     BakeResult result;
     result.knobs = *knobs;
     result.threads = context.threads;
+
+    const OrientedBodies bodies =
+        run_stage(result, "bodies", [&](std::uint64_t&) { return orient_bodies(given); });
+    const formats::Scene& scene = bodies.scene ? *bodies.scene : given;
+    result.warnings = describe_faults(given, bodies.surfaces);
 
     result.plan = run_stage(
         result, "plan", [&](std::uint64_t&) { return plan_bake(scene, *knobs, context.threads); });
