@@ -93,7 +93,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
     command
         .add_option("--effects", options.effects,
                     "what to simulate: auto, or a list of effects; this version has: direct, "
-                    "multiple, single")
+                    "multiple, single, specular")
         ->option_text("auto|LIST [auto]");
     command
         .add_option("--seed", options.bake.seed,
