@@ -1,5 +1,6 @@
 #include "bake/reference/path.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -77,20 +78,32 @@ void reach_sky(const PathSpace& space, Path& path) {
 
 // One flight and what ends it. False: the path ends.
 bool advance(const PathSpace& space, Path& path, RandomStream& random) {
-    const auto find = [&](float reach) {
-        return space.scene.surfaces.closest_hit(path.origin, path.direction, reach);
-    };
+    const HitScene& surfaces = space.scene.surfaces;
     std::optional<SurfaceHit> hit;
     if (path.stack.empty()) {
-        hit = find(kForever);
+        hit = surfaces.closest_hit(path.origin, path.direction, kForever);
     } else {
+        // A point of scattering just before a boundary must not be rounded to beyond it.
+        const float margin = surfaces.rounding();
+        bool is_near_surface = false;
+        const auto find = [&](float reach) {
+            const auto found = surfaces.closest_hit(path.origin, path.direction, reach + margin);
+            is_near_surface = found.has_value();
+            return found;
+        };
         const Flight flight =
             sample_flight(space.scene.media[path.stack.top()], path.beta, random, find);
         path.beta *= flight.weight;
         hit = flight.surface;
         if (!hit && !std::isinf(flight.distance)) {
-            return scatter(space, path, path.origin.position + flight.distance * path.direction,
-                           random);
+            const float distance =
+                is_near_surface ? std::max(0.0f, flight.distance - margin) : flight.distance;
+            const glm::vec3 at = path.origin.position + distance * path.direction;
+            if (!surfaces.is_in_bounds(at)) {
+                path.lost = true;
+                return false;
+            }
+            return scatter(space, path, at, random);
         }
     }
     if (!hit) {

@@ -72,10 +72,9 @@ inline std::unique_ptr<ReferenceFixture> make_fixture(Scene input, formats::Envi
 
 /// A slab of a medium between y = -thickness / 2 and thickness / 2, practically without an end.
 inline Scene make_slab(const formats::Medium& medium, float thickness) {
-    constexpr float kHalfWidth = 2000;
     Primitive slab = make_cube(1, false);
     for (glm::vec3& p : slab.position) {
-        p *= glm::vec3(kHalfWidth, 0.5f * thickness, kHalfWidth);
+        p *= glm::vec3(400, 0.5f, 400) * thickness;
     }
     Scene scene = make_scene({slab});
     scene.materials[0].medium = medium;
@@ -94,11 +93,11 @@ inline bake::Moments look_down(const bake::PathSpace& space, float top, float co
             const float c = cosine > 0 ? cosine : std::sqrt(1 - random.next());
             const float s = std::sqrt(1 - c * c);
             const glm::vec3 direction(s * 0.8f, -c, s * 0.6f);
-            const float x = 100 * random.next() + 3, z = 40 * random.next() - 90;
-            return bake::trace_ray(space, {x, top + 1, z}, direction, random);
+            const float x = 20 * random.next() + 3, z = 20 * random.next() - 40;
+            return bake::trace_ray(space, 2 * top * glm::vec3(x, 1, z), direction, random);
         });
     EXPECT_TRUE(estimate);
-    EXPECT_EQ(estimate->lost, 0u);
+    EXPECT_LT(static_cast<double>(estimate->lost), 1e-5 * samples + 0.5);
     bake::Moments all;
     for (const bake::Moments& m : estimate->pixel) {
         all.merge(m);
