@@ -25,7 +25,8 @@ Comparison compare_values(std::span<const formats::Rgb> a, std::span<const forma
 
 /// Compares two images (OpenEXR, Radiance, PNG; PNG in linear light, alpha ignored) of equal size,
 /// or two relight tables (CSV) with the same set of receivers; told apart by content. `a` is the
-/// tested file, `b` the reference.
+/// tested file, `b` the reference; where `b` has standard errors (`opaline reference`), only its
+/// receivers are compared.
 /// Errors: bad_input for unreadable files, NaN or infinite values, and anything not comparable.
 formats::Result<Comparison> compare_files(const std::filesystem::path& a,
                                           const std::filesystem::path& b);

@@ -29,8 +29,9 @@ struct Flight {
 /// One channel, drawn in proportion to beta, decides the distance; the weight divides by the mean
 /// density of all three under the same odds (the balance heuristic), so that the sum of the
 /// throughput's channels never grows, however different the channels are.
-/// `find_surface(t)` returns the first surface nearer than t [m], if any. A medium of another kind
-/// (a density grid by delta tracking) is one more overload of this function.
+/// `find_surface(t)` returns the first surface if it is nearer than t [m]; farther ones count as
+/// none. A medium of another kind (a density grid by delta tracking) is one more overload of this
+/// function.
 template <class FindSurface>
 Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream& random,
                      FindSurface&& find_surface) {
@@ -44,6 +45,9 @@ Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream
         sigma > 0 ? -std::log1p(-random.next()) / sigma : std::numeric_limits<float>::infinity();
     Flight flight;
     flight.surface = find_surface(free);
+    if (flight.surface && flight.surface->distance > free) {
+        flight.surface.reset();
+    }
     flight.distance = flight.surface ? flight.surface->distance : free;
     if (std::isinf(flight.distance)) {
         return flight;

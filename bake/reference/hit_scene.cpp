@@ -16,15 +16,19 @@ using formats::ErrorKind;
 using formats::Primitive;
 using formats::Scene;
 
-glm::vec3 middle_of(const Scene& scene) {
-    glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+struct Box {
+    glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
+};
+
+Box box_of(const Scene& scene) {
+    Box box;
     for (const Primitive& p : scene.primitives) {
         for (const glm::vec3& v : p.position) {
-            low = glm::min(low, v);
-            high = glm::max(high, v);
+            box.low = glm::min(box.low, v);
+            box.high = glm::max(box.high, v);
         }
     }
-    return low.x <= high.x ? 0.5f * low + 0.5f * high : glm::vec3(0);
+    return box.low.x <= box.high.x ? box : Box{glm::vec3(0), glm::vec3(0)};
 }
 
 RTCRay make_ray(const RayOrigin& origin, glm::vec3 direction, float nearest, float reach) {
@@ -70,7 +74,15 @@ HitScene::~HitScene() = default;
 formats::Result<HitScene> HitScene::build(const Scene& scene, unsigned threads) {
     HitScene result;
     result.scene_ = &scene;
-    result.centre_ = middle_of(scene);
+    const Box box = box_of(scene);
+    result.centre_ = 0.5f * box.low + 0.5f * box.high;
+    const glm::vec3 size = box.high - result.centre_;
+    // A product, a sum, and the hit's own distance: a few halves of an ulp.
+    result.rounding_ =
+        4 * std::numeric_limits<float>::epsilon() * std::max({size.x, size.y, size.z});
+    // Rounded outward.
+    result.half_size_ = 1.00001f * glm::max(box.high - result.centre_, result.centre_ - box.low) +
+                        std::numeric_limits<float>::min();
     Handles& h = *result.handles_;
     const auto failed = [&] {
         return formats::make_error(ErrorKind::resource, scene.source, "ray tracer",

@@ -46,13 +46,20 @@ class HitScene {
     /// Subtract from world positions before they become ray origins [m].
     glm::vec3 centre() const { return centre_; }
     const formats::Scene& scene() const { return *scene_; }
+    /// Bound [m] on how far a point computed along a ray may lie from where it should.
+    float rounding() const { return rounding_; }
+    /// False outside of the box around everything: a point there is in no body.
+    bool is_in_bounds(glm::vec3 position) const {
+        return glm::all(glm::lessThanEqual(glm::abs(position), half_size_));
+    }
 
   private:
     struct Handles;
     HitScene();
     std::unique_ptr<Handles> handles_;
     const formats::Scene* scene_ = nullptr;
-    glm::vec3 centre_{0};
+    glm::vec3 centre_{0}, half_size_{0};
+    float rounding_ = 0;
 };
 
 /// Start of a ray that leaves a hit point in `direction`: moved off the triangle to the side that

@@ -15,8 +15,8 @@ namespace opaline::bake {
 
 /// What all receivers of one medium share in multiple scattering.
 struct MultipleStage {
-    double exit = 1;  ///< c_exit (translucency.md 3.1)
-    GatherProfile profile;
+    MediumProfile medium;
+    GatherProfile profile;  ///< of the medium, for these samples
     SampleTransport transport;
     ClusterTree tree;
 };

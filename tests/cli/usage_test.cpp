@@ -9,7 +9,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 const Arguments kCommands = {"bake",   "plan",    "info",  "verify", "relight",
-                             "render", "compare", "phase", "example"};
+                             "render", "compare", "phase", "example", "reference"};
 
 TEST(Usage, HelpListsEveryCommandAndTheExitCodes) {
     const Outcome help = run_opaline({"--help"});

@@ -1,0 +1,191 @@
+#include "bake/reference/events.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace opaline::bake {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kForever = std::numeric_limits<float>::infinity();
+
+bool count_event(const PathSpace& space, Path& path) {
+    return ++path.events <= space.options.max_depth;
+}
+
+// Unit vectors at right angles to n.
+void make_frame(glm::vec3 n, glm::vec3& t, glm::vec3& b) {
+    t = glm::normalize(
+        glm::cross(std::abs(n.x) > 0.7f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0), n));
+    b = glm::cross(n, t);
+}
+
+glm::vec3 direction_about(glm::vec3 axis, float cosine, float u) {
+    glm::vec3 t, b;
+    make_frame(axis, t, b);
+    const float sine = std::sqrt(std::max(0.0f, (1 - cosine) * (1 + cosine)));
+    const float phi = 2 * kPi * u;
+    return glm::normalize(cosine * axis + sine * (std::cos(phi) * t + std::sin(phi) * b));
+}
+
+/// What a straight line to the sky lets through, 0 where anything but a boundary between equal
+/// indices is in its way or where it ends in no wanted term.
+glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction, MediumStack stack,
+                  PathState state) {
+    const ReferenceScene& scene = space.scene;
+    const HitScene& surfaces = scene.surfaces;
+    if (!scene.has_matched_boundary) {
+        return stack.empty() && (term_of(state) & space.options.terms) != 0 &&
+                       !surfaces.is_blocked(from, direction)
+                   ? glm::vec3(1)
+                   : glm::vec3(0);
+    }
+    glm::vec3 passing(1);
+    while (const auto hit = surfaces.closest_hit(from, direction, kForever)) {
+        if (!stack.empty()) {
+            passing *= glm::exp(-scene.media[stack.top()].sigma_t * hit->distance);
+        }
+        const std::uint32_t material = surfaces.scene().primitives[hit->primitive].material;
+        const std::uint32_t medium = scene.medium_of[material];
+        if (medium == formats::kNone) {
+            return glm::vec3(0);
+        }
+        const bool was_out = stack.empty();
+        const std::uint32_t before = stack.top();
+        glm::dot(direction, hit->flat) < 0 ? stack.enter(medium) : stack.leave(medium);
+        if (before != stack.top()) {
+            const float eta = before == formats::kNone ? 1 : scene.media[before].eta;
+            const float next = stack.empty() ? 1 : scene.media[stack.top()].eta;
+            if (!is_matched(next / eta)) {
+                return glm::vec3(0);
+            }
+            state = after_crossing(state, stack.empty());
+            if (was_out) {
+                passing *= base_color_at(surfaces.scene(), *hit);
+            }
+        }
+        from = leave_surface(*hit, direction);
+    }
+    return stack.empty() && (term_of(state) & space.options.terms) != 0 ? passing : glm::vec3(0);
+}
+
+/// Light that arrives straight from the sky at an event, sampled from the light. `density(d)`: of
+/// the event's own sampling over solid angle, which is also its response for unit throughput.
+template <class Density>
+void gather_light(const PathSpace& space, Path& path, const RayOrigin& from, RandomStream& random,
+                  Density&& density) {
+    const glm::vec3 d = sample_light(space.light, random);
+    if (d == glm::vec3(0)) {
+        return;
+    }
+    const float response = density(d);
+    if (!(response > 0)) {
+        return;
+    }
+    const glm::vec3 passing = see_sky(space, from, d, path.stack, path.state);
+    if (passing != glm::vec3(0)) {
+        path.radiance += path.beta * passing * eval_light(space.light, d) *
+                         (response / (pdf_light(space.light, d) + response));
+    }
+}
+
+/// Paths that carry little end early, and the survivors carry more. Paths in a dark room of albedo
+/// 1 end as well, some day.
+bool survives(Path& path, RandomStream& random) {
+    constexpr float kLittle = 0.1f, kPatience = 0.9999f;
+    constexpr std::uint32_t kMany = 200000;
+    const float most = std::max({path.beta.x, path.beta.y, path.beta.z});
+    float chance = std::min(1.0f, most / kLittle);
+    if (path.events > kMany) {
+        chance = std::min(chance, kPatience);
+    }
+    if (chance < 1) {
+        if (!(random.next() < chance)) {
+            return false;
+        }
+        path.beta /= chance;
+    }
+    return true;
+}
+
+}  // namespace
+
+bool reflect_diffusely(const PathSpace& space, Path& path, const RayOrigin& from, glm::vec3 normal,
+                       glm::vec3 flat, glm::vec3 albedo, RandomStream& random) {
+    path.state = after_diffuse(path.state);
+    path.beta *= albedo;
+    if (!count_event(space, path) || path.beta == glm::vec3(0) || !is_wanted(space, path.state)) {
+        return false;
+    }
+    const auto is_above = [&](glm::vec3 d) {
+        return flat == glm::vec3(0) || glm::dot(d, flat) > 0;
+    };
+    gather_light(space, path, from, random,
+                 [&](glm::vec3 d) { return is_above(d) ? glm::dot(d, normal) / kPi : 0.0f; });
+    const float cosine = std::sqrt(1 - random.next());
+    path.direction = direction_about(normal, cosine, random.next());
+    path.origin = from;
+    path.pdf = cosine / kPi;
+    return is_above(path.direction) && survives(path, random);
+}
+
+void pass_boundary(Path& path, const Crossing& crossing) {
+    if (path.stack.empty()) {
+        path.beta *= crossing.color;
+    }
+    path.stack = crossing.beyond;
+    path.state = after_crossing(path.state, path.stack.empty());
+    path.origin = crossing.far;
+}
+
+bool reflect_or_refract(const PathSpace& space, Path& path, const Crossing& crossing,
+                        RandomStream& random) {
+    const float reflectance = crossing.split.reflectance;
+    const bool may_reflect = reflectance > 0 && is_wanted(space, after_reflection(path.state));
+    const bool may_pass =
+        reflectance < 1 && is_wanted(space, after_crossing(path.state, crossing.beyond.empty()));
+    if (!count_event(space, path) || (!may_reflect && !may_pass)) {
+        return false;
+    }
+    path.pdf = 0;
+    bool reflects = may_reflect;
+    if (may_reflect && may_pass) {
+        reflects = random.next() < reflectance;
+    } else {
+        path.beta *= may_reflect ? reflectance : 1 - reflectance;
+    }
+    if (reflects) {
+        path.direction = crossing.split.reflected;
+        path.origin = crossing.near;
+        path.state = after_reflection(path.state);
+    } else {
+        path.direction = crossing.split.transmitted;
+        pass_boundary(path, crossing);
+    }
+    return path.beta != glm::vec3(0) && survives(path, random);
+}
+
+bool scatter(const PathSpace& space, Path& path, glm::vec3 at, RandomStream& random) {
+    const PhaseSampler& phase = space.scene.media[path.stack.top()].phase;
+    path.state = after_scattering(path.state);
+    if (!count_event(space, path) || path.beta == glm::vec3(0) || !is_wanted(space, path.state)) {
+        return false;
+    }
+    path.origin = {at};
+    path.pdf = 0;
+    const glm::vec3 before = path.direction;
+    if (space.scene.has_matched_boundary) {
+        gather_light(space, path, path.origin, random,
+                     [&](glm::vec3 d) { return pdf_phase(phase, glm::dot(before, d)); });
+    }
+    const float cosine = sample_phase_cosine(phase, [&] { return random.next(); });
+    path.direction = direction_about(before, cosine, random.next());
+    if (space.scene.has_matched_boundary) {
+        path.pdf = pdf_phase(phase, cosine);
+    }
+    return survives(path, random);
+}
+
+}  // namespace opaline::bake

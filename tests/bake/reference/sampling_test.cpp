@@ -1,0 +1,165 @@
+#include <gtest/gtest.h>
+
+#include "bake/environment/builtin_environment.h"
+#include "bake/reference/reference_image.h"
+#include "bake/reference/reference_receivers.h"
+#include "tests/bake/reference/reference_support.h"
+
+namespace opaline::tests {
+namespace {
+
+using formats::PhaseFunction;
+
+std::vector<PhaseFunction> some_phase_functions() {
+    std::vector<PhaseFunction> all;
+    all.push_back({});
+    for (const float g : {-0.9f, 5e-5f, 0.3f, 0.95f}) {
+        all.push_back({PhaseFunction::Type::henyey_greenstein, g, 0, {}, {}});
+    }
+    all.push_back({PhaseFunction::Type::rayleigh, 0, 0, {}, {}});
+    for (const float rms : {0.05f, 0.4f, 1.0f}) {
+        all.push_back({PhaseFunction::Type::gaussian, 0, rms, {}, {}});
+    }
+    all.push_back({PhaseFunction::Type::tabulated,
+                   0,
+                   0,
+                   {-1, -0.5f, 0.25f, 0.9f, 1},
+                   {0.0f, 0.1f, 0.02f, 0.3f, 0.0f}});
+    return all;
+}
+
+// The first three moments of the cosine, sampled and integrated.
+TEST(ReferencePhase, CosinesAreDistributedAsTheirDensitySays) {
+    for (const PhaseFunction& function : some_phase_functions()) {
+        const bake::PhaseSampler sampler = bake::make_phase_sampler(function);
+        double expected[3] = {}, total = 0;
+        constexpr int kSteps = 400000;
+        for (int i = 0; i < kSteps; ++i) {
+            // Even in angle: narrow peaks lie at its ends.
+            const double angle = std::numbers::pi * (i + 0.5) / kSteps, c = std::cos(angle);
+            const double p = bake::pdf_phase(sampler, static_cast<float>(c)) * 2 *
+                             std::numbers::pi * std::sin(angle) * std::numbers::pi / kSteps;
+            total += p;
+            expected[0] += p * c, expected[1] += p * c * c, expected[2] += p * c * c * c;
+        }
+        EXPECT_NEAR(total, 1, 2e-4);
+        if (function.type == PhaseFunction::Type::henyey_greenstein) {
+            EXPECT_NEAR(expected[0], function.g, 2e-4) << "g > 0 is forward";
+        }
+        constexpr int kSamples = 200000;
+        double sum[3] = {};
+        for (std::uint32_t i = 0; i < kSamples; ++i) {
+            bake::RandomStream random(7, 0, i);
+            const double c = bake::sample_phase_cosine(sampler, [&] { return random.next(); });
+            sum[0] += c, sum[1] += c * c, sum[2] += c * c * c;
+        }
+        for (const int k : {0, 1, 2}) {
+            EXPECT_NEAR(sum[k] / kSamples, expected[k], 4.0 / std::sqrt(kSamples) * 0.7)
+                << "type " << static_cast<int>(function.type) << " moment " << k + 1;
+        }
+    }
+}
+
+// The mean of 1 / pdf over sampled directions is the solid angle that they cover.
+TEST(ReferenceLight, DensityIntegratesToOneAndItsSamplesGiveTheIrradiance) {
+    for (const char* name : {"white", "studio", "sky:3,35", "sun:30,40"}) {
+        const auto sky = bake::make_environment(name);
+        ASSERT_TRUE(sky);
+        const bake::LightSampler light = bake::make_light_sampler(
+            *sky, glm::mat3(glm::rotate(glm::mat4(1), 0.5f, glm::vec3(0, 1, 0))));
+        // Power over the sphere: sampled from the light, and evenly (the map alone), plus discs.
+        bake::Moments sampled, evenly;
+        double discs = 0;
+        for (const formats::DistantDisc& disc : sky->discs) {
+            discs += disc.radiance.g * formats::disc_solid_angle(disc.angular_radius);
+        }
+        for (std::uint32_t i = 0; i < 100000; ++i) {
+            bake::RandomStream random(1, 0, i);
+            const glm::vec3 d = bake::sample_light(light, random);
+            // Rounding moves a few directions over a disc's edge, where there is neither light nor
+            // density.
+            const double pdf = bake::pdf_light(light, d);
+            sampled.add(pdf > 0 ? glm::dvec3(bake::eval_light(light, d)) / pdf : glm::dvec3(0));
+            const float y = 1 - 2 * random.next(), phi = 6.2831853f * random.next();
+            const float r = std::sqrt(1 - y * y);
+            const formats::Rgb l =
+                formats::sample_map(*sky, {r * std::cos(phi), y, r * std::sin(phi)});
+            evenly.add(4 * std::numbers::pi * glm::dvec3(l.r, l.g, l.b));
+        }
+        EXPECT_NEAR(sampled.mean.y, evenly.mean.y + discs,
+                    4 * std::sqrt(sampled.variance_of_mean().y + evenly.variance_of_mean().y) +
+                        1e-4 * discs + 1e-5)
+            << name;
+        // Importance: far less noise than even sampling has.
+        if (std::string(name) == "studio") {
+            EXPECT_LT(sampled.variance_of_mean().y, 0.1 * evenly.variance_of_mean().y);
+        }
+    }
+}
+
+TEST(ReferenceReceivers, WhiteSurfaceFacingTheSunHasRadianceOne) {
+    const auto sun = bake::make_environment("sun:0,90");
+    ASSERT_TRUE(sun);
+    const auto floor =
+        make_fixture(make_scene({make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4)}), *sun);
+    const auto receivers = bake::choose_receivers(floor->scene, 1000, 0, std::nullopt);
+    ASSERT_EQ(receivers.size(), 25u) << "no more than there are";
+    bake::EstimateOptions options;
+    options.samples = 16;
+    const auto estimate = bake::estimate_receivers(floor->space(), receivers, options, {});
+    ASSERT_TRUE(estimate);
+    for (const bake::Moments& m : estimate->pixel) {
+        EXPECT_NEAR(m.mean.x, 1, 1e-4);
+    }
+}
+
+TEST(ReferenceReceivers, DepthOneIsDirectLightOnly) {
+    const auto corner = make_fixture(make_scene({make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2),
+                                                 make_quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, 2)}),
+                                     make_white_sky());
+    const auto receivers = bake::choose_receivers(corner->scene, 18, 0, std::nullopt);
+    bake::EstimateOptions options;
+    options.samples = 400;
+    bake::PathOptions shallow, direct;
+    shallow.max_depth = 1;
+    direct.terms = bake::term::kDiffuse;
+    const auto a = bake::estimate_receivers(corner->space(shallow), receivers, options, {});
+    const auto b = bake::estimate_receivers(corner->space(direct), receivers, options, {});
+    const auto all = bake::estimate_receivers(corner->space(), receivers, options, {});
+    ASSERT_TRUE(a && b && all);
+    double gained = 0;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        EXPECT_EQ(a->pixel[i].mean, b->pixel[i].mean);
+        gained += all->pixel[i].mean.x - a->pixel[i].mean.x;
+    }
+    EXPECT_GT(gained, 0.1);
+}
+
+TEST(ReferenceImage, VarianceOfThePixelsTellsHowFarTwoSeedsAreApart) {
+    Scene input = make_scene({make_sphere(3)});
+    input.materials[0].medium = make_medium(5, 0.9f, 0, 1.4f);
+    const auto ball = make_fixture(std::move(input), make_half_sky(true));
+    runtime::Camera camera;
+    camera.eye = {0, 1, 4};
+    camera.width = 24;
+    camera.height = 20;
+    bake::EstimateOptions options;
+    options.samples = 128;
+    const auto a = bake::estimate_image(ball->space(), camera, options, {});
+    options.seed = 1;
+    const auto b = bake::estimate_image(ball->space(), camera, options, {});
+    ASSERT_TRUE(a && b);
+    double squares = 0, count = 0;
+    for (std::size_t i = 0; i < a->mean.pixel.size(); ++i) {
+        const double variance = a->variance.pixel[i].r + b->variance.pixel[i].r;
+        if (variance > 0) {
+            squares += std::pow(a->mean.pixel[i].r - b->mean.pixel[i].r, 2) / variance;
+            count += 1;
+        }
+    }
+    ASSERT_GT(count, 100);
+    EXPECT_NEAR(squares / count, 1, 4 * std::sqrt(2 / count));
+}
+
+}  // namespace
+}  // namespace opaline::tests

@@ -1,0 +1,184 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "formats/image/exr.h"
+#include "tests/cli/small_scene.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+struct Row {
+    unsigned primitive = 0, vertex = 0;
+    double value[3] = {}, error[3] = {};
+};
+
+std::vector<Row> read_rows(const std::string& path) {
+    std::istringstream table(read_text(path));
+    std::string line;
+    std::getline(table, line);
+    EXPECT_EQ(line, "primitive,vertex,r,g,b,se_r,se_g,se_b");
+    std::vector<Row> rows;
+    while (std::getline(table, line)) {
+        Row row;
+        EXPECT_EQ(std::sscanf(line.c_str(), "%u,%u,%lf,%lf,%lf,%lf,%lf,%lf", &row.primitive,
+                              &row.vertex, &row.value[0], &row.value[1], &row.value[2],
+                              &row.error[0], &row.error[1], &row.error[2]),
+                  8)
+            << line;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+TEST(Reference, TableAgreesWithTheBakeWhereBothMeanTheSameLight) {
+    SmallScene small;
+    const std::string truth = small.path("truth.csv"), baked = small.path("baked.csv");
+    const Outcome reference =
+        run_opaline({"reference", small.scene(), "--light", "white", "--receivers", "5", "--terms",
+                     "diffuse", "--spp", "20000", "-o", truth});
+    ASSERT_EQ(reference.exit_code, 0) << reference.err;
+    EXPECT_THAT(reference.err, HasSubstr("20000 samples for each of 5 receivers"));
+    ASSERT_EQ(run_opaline({"relight", small.baked(), "--light", "white", "-o", baked}).exit_code,
+              0);
+    const std::vector<Row> rows = read_rows(truth);
+    ASSERT_EQ(rows.size(), 5u);
+    for (const Row& row : rows) {
+        EXPECT_GT(row.value[0], 0.1);
+        EXPECT_LT(row.error[0], 0.01 * row.value[0]);
+    }
+    // Eight rows against five: those of the ground truth count.
+    const Outcome same = run_opaline({"compare", baked, truth, "--max-rel", "0.01"});
+    EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+}
+
+TEST(Reference, SameBytesForAnyNumberOfThreads) {
+    SmallScene small;
+    std::string first;
+    for (const char* threads : {"1", "2", "5"}) {
+        const std::string out = small.path(std::string("t") + threads + ".csv");
+        ASSERT_EQ(run_opaline({"reference", small.scene(), "--light", "studio", "--receivers", "4",
+                               "--spp", "100", "--threads", threads, "-o", out})
+                      .exit_code,
+                  0);
+        if (first.empty()) {
+            first = read_text(out);
+        }
+        EXPECT_EQ(read_text(out), first);
+    }
+    const std::string other = small.path("other.csv");
+    ASSERT_EQ(run_opaline({"reference", small.scene(), "--light", "studio", "--receivers", "4",
+                           "--spp", "100", "--seed", "1", "-o", other})
+                  .exit_code,
+              0);
+    EXPECT_NE(read_text(other), first);
+}
+
+TEST(Reference, PictureComesWithItsVariance) {
+    SmallScene small;
+    const std::string out = small.path("out.exr");
+    const Outcome outcome = run_opaline({"reference", small.scene(), "--light", "studio", "--size",
+                                         "40x30", "--spp", "32", "-o", out});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto mean = formats::read_exr(out),
+               variance = formats::read_exr(small.path("out.var.exr"));
+    ASSERT_TRUE(mean && variance);
+    EXPECT_EQ(mean->width, 40u);
+    EXPECT_EQ(variance->height, 30u);
+    double noise = 0, light = 0;
+    for (std::size_t i = 0; i < mean->pixel.size(); ++i) {
+        noise += variance->pixel[i].g;
+        light += mean->pixel[i].g * mean->pixel[i].g;
+    }
+    EXPECT_GT(noise, 0);
+    EXPECT_LT(noise, 0.1 * light);
+}
+
+TEST(Reference, PictureAgreesWithRender) {
+    SmallScene small;
+    const std::string truth = small.path("truth.exr"), baked = small.path("baked.exr");
+    // The upper square fills the picture: nothing shadows it.
+    for (const auto& [command, file, out] :
+         {std::tuple{"reference", small.scene(), truth}, {"render", small.baked(), baked}}) {
+        Arguments arguments = {command, file,    "--light",  "white",    "--size",
+                               "32x24", "--eye", "0,3,0.01", "--target", "0,0.5,0",
+                               "--fov", "8",     "-o",       out};
+        const Arguments more = std::string(command) == "reference"
+                                   ? Arguments{"--spp", "2000", "--max-depth", "1"}
+                                   : Arguments{"--backend", "cpu"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        ASSERT_EQ(run_opaline(arguments).exit_code, 0);
+    }
+    const Outcome compared = run_opaline({"compare", baked, truth, "--max-rel", "0.01"});
+    EXPECT_EQ(compared.exit_code, 0) << compared.out;
+}
+
+TEST(Reference, StopsInTime) {
+    SmallScene small;
+    const Outcome outcome =
+        run_opaline({"reference", small.scene(), "--light", "white", "--receivers", "3",
+                     "--seconds", "0.2", "-o", small.path("out.csv")});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(read_rows(small.path("out.csv")).size(), 3u);
+}
+
+TEST(Reference, OpenBodiesAreNamedInAWarning) {
+    SmallScene small;
+    const std::string media = small.path("media.json");
+    write_file(
+        media,
+        Json{{"materials",
+              {{"Brick", {{"sigma_s", {1, 1, 1}}, {"sigma_a", {0, 0, 0}}, {"unit", "1/m"}}}}}}
+            .dump());
+    const Outcome outcome =
+        run_opaline({"reference", small.scene(), "--light", "white", "--receivers", "8", "--spp",
+                     "16", "--media", media, "-o", small.path("out.csv")});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("a body that is not closed"));
+}
+
+TEST(Reference, BadArgumentsAreRefusedBeforeAnyWork) {
+    SmallScene small;
+    const std::string scene = small.scene(), csv = small.path("out.csv"),
+                      exr = small.path("out.exr");
+    const auto before = list_folder(small.folder());
+    const std::vector<Arguments> bad = {
+        {scene, "-o", exr},                                            // no light
+        {scene, "--light", "white"},                                   // no output
+        {scene, "--light", "white", "-o", csv},                        // no receivers
+        {scene, "--light", "white", "-o", exr, "--receivers", "5"},    // not a table
+        {scene, "--light", "white", "-o", small.path("out.png")},      // no such format
+        {scene, "--light", "white", "-o", csv, "--receivers", "0"},    //
+        {scene, "--light", "white", "-o", csv, "--receivers", "-3"},   //
+        {scene, "--light", "white", "-o", exr, "--spp", "0"},          //
+        {scene, "--light", "white", "-o", exr, "--seconds", "-1"},     //
+        {scene, "--light", "white", "-o", exr, "--max-depth", "0"},    //
+        {scene, "--light", "white", "-o", exr, "--terms", "glow"},     //
+        {scene, "--light", "white", "-o", exr, "--terms", "single,"},  //
+        {scene, "--light", "white", "-o", exr, "--eye", "1,2"},        //
+        {scene, "--light", "white", "-o", exr, "--size", "0x4"},       //
+        {scene, "--light", "dark", "-o", exr, "--size", "4x4", "--spp", "1", "--seed", "-1"},
+        {scene, "--light", "sun:x", "-o", exr},
+    };
+    for (Arguments arguments : bad) {
+        arguments.insert(arguments.begin(), "reference");
+        const Outcome outcome = run_opaline(arguments);
+        EXPECT_EQ(outcome.exit_code, 2) << ::testing::PrintToString(arguments) << outcome.err;
+        EXPECT_THAT(outcome.err, StartsWith("opaline: error: "));
+        EXPECT_EQ(list_folder(small.folder()), before);
+    }
+    EXPECT_EQ(
+        run_opaline({"reference", small.path("none.glb"), "--light", "white", "-o", exr}).exit_code,
+        3);
+    EXPECT_EQ(
+        run_opaline({"reference", scene, "--light", "white", "-o", small.path("nowhere/out.exr")})
+            .exit_code,
+        4);
+}
+
+}  // namespace
+}  // namespace opaline::tests
