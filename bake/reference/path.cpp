@@ -126,8 +126,12 @@ PathSample finish(const PathSpace& space, Path& path, RandomStream& random) {
 }  // namespace
 
 PathSample trace_ray(const PathSpace& space, glm::vec3 origin, glm::vec3 direction,
-                     RandomStream& random) {
+                     RandomStream& random, const MediumStack& around) {
     Path path;
+    path.stack = around;
+    if (!around.empty()) {
+        path.state.stage = PathState::Stage::inside;
+    }
     path.origin = {origin};
     path.direction = direction;
     return finish(space, path, random);
@@ -151,17 +155,20 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
     }
     Path path;
     path.direction = -receiver.to_eye;
+    path.stack = receiver.around;
     bool walks = false;
     if (opaque) {
         walks = reflect_diffusely(space, path, outside, normal, glm::vec3(0), receiver.base_color,
                                   random);
     } else {
         Crossing crossing;
-        const float ratio = space.scene.media[receiver.medium].eta;
+        crossing.beyond = path.stack;
+        crossing.beyond.enter(receiver.medium);
+        const float ratio =
+            space.scene.media[receiver.medium].eta / index_of(space.scene, path.stack);
         crossing.split = split_at_boundary(path.direction, normal, ratio);
         crossing.near = outside;
         crossing.far = inside;
-        crossing.beyond.enter(receiver.medium);
         crossing.color = receiver.base_color;
         if (is_matched(ratio)) {
             pass_boundary(path, crossing);

@@ -34,6 +34,7 @@ struct ReferenceReceiver {
     glm::vec3 to_eye{0};                      ///< unit
     glm::vec3 base_color{1};
     std::uint32_t medium = formats::kNone;  ///< index into ReferenceScene::media; none: opaque
+    MediumStack around;                     ///< other bodies that it lies in
 };
 
 /// One sample of a path's radiance, and what became of the path.
@@ -42,11 +43,11 @@ struct PathSample {
     bool lost = false;      ///< it flew out of a body that is not closed, or a number overflowed
 };
 
-/// Radiance that comes along a ray against its `direction`, from outside of all bodies. Volumetric
-/// path tracing; the light is also sampled at each event from where a straight line may reach it,
-/// both combined by the balance heuristic.
+/// Radiance that comes along a ray against its `direction`; `around`: the bodies it starts in.
+/// Volumetric path tracing; the light is also sampled at each event from where a straight line may
+/// reach it, both combined by the balance heuristic.
 PathSample trace_ray(const PathSpace& space, glm::vec3 origin, glm::vec3 direction,
-                     RandomStream& random);
+                     RandomStream& random, const MediumStack& around = {});
 
 /// Radiance that leaves a receiver toward its eye, whatever stands between them. Black where the
 /// receiver has no normal or faces away (unless its material is double-sided).

@@ -18,13 +18,14 @@ formats::Result<ReferenceImage> estimate_image(const PathSpace& space,
     const runtime::CameraFrame frame = runtime::camera_frame(camera);
     const glm::vec3 eye =
         glm::vec3(camera.eye.x, camera.eye.y, camera.eye.z) - space.scene.surfaces.centre();
+    const MediumStack around = surrounding_media(space.scene, eye, {0, 1, 0});
     auto estimate = estimate_pixels(
         camera.width * camera.height, options, context,
         [&](std::uint32_t pixel, RandomStream& random) {
             const double x = pixel % camera.width + static_cast<double>(random.next());
             const double y = pixel / camera.width + static_cast<double>(random.next());
             const formats::Vec3 ray = runtime::view_ray(camera, frame, x, y);
-            return trace_ray(space, eye, {ray.x, ray.y, ray.z}, random);
+            return trace_ray(space, eye, {ray.x, ray.y, ray.z}, random, around);
         });
     if (!estimate) {
         return std::move(estimate).error();

@@ -16,7 +16,7 @@ struct ReferenceImage {
     Estimate estimate;
 };
 
-/// What a pinhole camera outside of all bodies sees; the background only if all terms are counted.
+/// What a pinhole camera sees; the background only if all terms are counted.
 /// The near plane is ignored. Precondition: fewer than 2^32 pixels. Errors: interrupted.
 formats::Result<ReferenceImage> estimate_image(const PathSpace& space,
                                                const runtime::Camera& camera,

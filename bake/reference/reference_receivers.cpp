@@ -54,6 +54,9 @@ std::vector<ReferenceReceiver> choose_receivers(const ReferenceScene& scene, std
         receiver.to_eye = eye ? direction_to(position, *eye, receiver.normal) : receiver.normal;
         receiver.base_color = base_color_at_vertex(input, primitive, receiver.vertex);
         receiver.medium = scene.medium_of[p.material];
+        if (receiver.normal != glm::vec3(0)) {
+            receiver.around = surrounding_media(scene, receiver.outside, receiver.normal);
+        }
         receivers.push_back(receiver);
     }
     return receivers;

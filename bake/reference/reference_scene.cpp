@@ -1,5 +1,9 @@
 #include "bake/reference/reference_scene.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace opaline::bake {
@@ -26,6 +30,51 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
         }
     }
     return result;
+}
+
+namespace {
+
+// How much more often each medium's bodies are left than entered along a line.
+std::vector<int> count_leaving(const ReferenceScene& scene, glm::vec3 point, glm::vec3 direction) {
+    std::vector<int> leaving(scene.media.size());
+    RayOrigin from{point};
+    constexpr int kMost = 10000;  // crossings; a line that is held up by rounding ends here
+    for (int i = 0; i < kMost; ++i) {
+        const auto hit =
+            scene.surfaces.closest_hit(from, direction, std::numeric_limits<float>::infinity());
+        if (!hit) {
+            break;
+        }
+        const std::uint32_t material = scene.surfaces.scene().primitives[hit->primitive].material;
+        if (const std::uint32_t medium = scene.medium_of[material]; medium != formats::kNone) {
+            leaving[medium] += glm::dot(direction, hit->flat) > 0 ? 1 : -1;
+        }
+        from = leave_surface(*hit, direction);
+    }
+    return leaving;
+}
+
+}  // namespace
+
+MediumStack surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm::vec3 up) {
+    MediumStack stack;
+    if (scene.media.empty()) {
+        return stack;
+    }
+    const glm::vec3 side = glm::normalize(
+        glm::cross(up, std::abs(up.x) > 0.7f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
+    std::vector<std::vector<int>> votes;
+    for (const float tilt : {0.03f, -1.1f, 0.8f}) {
+        votes.push_back(count_leaving(scene, point, glm::normalize(up + tilt * side)));
+    }
+    for (std::uint32_t m = 0; m < scene.media.size(); ++m) {
+        std::array<int, 3> count{votes[0][m], votes[1][m], votes[2][m]};
+        std::sort(count.begin(), count.end());
+        for (int i = 0; i < count[1]; ++i) {
+            stack.enter(m);
+        }
+    }
+    return stack;
 }
 
 void MediumStack::enter(std::uint32_t m) {

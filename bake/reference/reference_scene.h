@@ -40,4 +40,8 @@ struct MediumStack {
     void leave(std::uint32_t m);
 };
 
+/// The bodies around a point: those that lines from it leave more often than they enter, by a vote
+/// of three directions within 60 degrees of `up` (a body may have holes).
+MediumStack surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm::vec3 up);
+
 }  // namespace opaline::bake

@@ -86,6 +86,30 @@ TEST(ReferenceFurnace, ShellsOfOneMediumInEachOtherAreOneBody) {
     EXPECT_EQ(both.lost, 0u);
 }
 
+TEST(ReferenceFurnace, OpaqueVerticesInsideABodySeeTheSkyThroughItOnly) {
+    // A white plate in a ball: all its light crosses the boundary; none of it is `diffuse`.
+    Scene input =
+        make_scene({make_sphere(3), make_quad({-0.3f, 0, -0.3f}, {0, 0, 0.6f}, {0.6f, 0, 0})});
+    input.materials.push_back({.name = "White"});
+    input.materials[1].double_sided = true;
+    input.materials[0].medium = make_medium(2, 1, 0, 1.4f);
+    input.primitives[1].material = 1;
+    const auto body = make_fixture(std::move(input), make_white_sky());
+    auto chosen = bake::choose_receivers(body->scene, 1000000, 0, kAlongNormals);
+    chosen.erase(chosen.begin(), chosen.end() - 4);
+    bake::PathOptions direct, across;
+    direct.terms = bake::term::kDiffuse;
+    across.terms = bake::term::kInterreflection;
+    bake::EstimateOptions options;
+    options.samples = 200;
+    const auto none = bake::estimate_receivers(body->space(direct), chosen, options, {}).value();
+    const auto all = bake::estimate_receivers(body->space(across), chosen, options, {}).value();
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        EXPECT_EQ(none.pixel[i].mean.x, 0);
+        EXPECT_NEAR(all.pixel[i].mean.x, 1, 1e-3);
+    }
+}
+
 TEST(ReferenceEstimate, SameBitsForAnyNumberOfThreads) {
     Scene input = make_scene({make_sphere(3), make_quad({-3, -1, -3}, {0, 0, 6}, {6, 0, 0}, 4)});
     input.materials.push_back(input.materials[0]);
