@@ -50,6 +50,12 @@ struct Medium {
     } fidelity = Fidelity::physical;
 };
 
+/// Veins through a solid: a colour as a function of the position alone (bake/encode/marble.h).
+struct Marble {
+    float scale = 0.04f;      ///< distance between veins [m], > 0
+    std::vector<Rgb> colors;  ///< from within a vein to halfway between two; 2 or more, in [0, 1]
+};
+
 /// Surface appearance, as the input formats mean it. Colours are linear Rec. 709.
 struct Material {
     std::string name;
@@ -60,6 +66,7 @@ struct Material {
     enum class Wrap { repeat, clamp, mirror } wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool double_sided = false;
     std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque and diffuse
+    std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
 };
 
 /// One glTF primitive of one node instance, in world space and metres. Vertices keep the original
@@ -69,10 +76,10 @@ struct Primitive {
     std::string name;                                 ///< "node 'Vase' > mesh 3 > primitive 0"
     std::uint32_t material = 0;                       ///< index into Scene::materials, always valid
     std::vector<glm::vec3> position;                  ///< [m], finite
-    std::vector<glm::vec3> normal;  ///< unit; one per vertex; {0,0,0} where none can be defined
-    std::vector<glm::vec2>
-        texcoord;            ///< base-colour set, transform applied; empty or one per vertex
-    std::vector<Rgb> color;  ///< COLOR_0, linear; empty or one per vertex
+    std::vector<glm::vec3> normal;    ///< unit; one per vertex; {0,0,0} where none can be defined
+    std::vector<glm::vec2> texcoord;  ///< of the base colour, set 0 without a texture; transform
+                                      ///< applied; empty or one per vertex
+    std::vector<Rgb> color;            ///< COLOR_0, linear; empty or one per vertex
     std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();
                                        ///< counter-clockwise seen from outside
 };

@@ -20,9 +20,13 @@ using formats::make_error;
 
 namespace {
 
-void fill_materials(const formats::MediaFile& media, formats::ImportedScene& imported) {
-    const std::vector<formats::Diagnostic> warnings = formats::apply_media(media, imported.scene);
-    imported.warnings.insert(imported.warnings.end(), warnings.begin(), warnings.end());
+formats::Status fill_materials(const formats::MediaFile& media, formats::ImportedScene& imported) {
+    const auto warnings = formats::apply_media(media, imported.scene);
+    if (!warnings) {
+        return warnings.error();
+    }
+    imported.warnings.insert(imported.warnings.end(), warnings->begin(), warnings->end());
+    return formats::ok_status();
 }
 
 }  // namespace
@@ -56,14 +60,18 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
         if (!own) {
             return own.error();
         }
-        fill_materials(*own, *imported);
+        if (auto status = fill_materials(*own, *imported); !status) {
+            return std::move(status).error();
+        }
     }
     if (!media.empty()) {
         const auto file = formats::read_media(media);
         if (!file) {
             return file.error();
         }
-        fill_materials(*file, *imported);
+        if (auto status = fill_materials(*file, *imported); !status) {
+            return std::move(status).error();
+        }
     }
     print_warnings(imported->warnings);
     return imported;

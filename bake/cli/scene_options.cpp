@@ -65,8 +65,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->option_text("M");
     command
         .add_option("--samples", options.bake.samples,
-                    "at most this many samples on the surface of each medium; default as the "
-                    "quality says")
+                    "samples on the surface of each medium; default: as many as its mean free path "
+                    "asks for, up to a limit that the quality sets")
         ->check(CLI::Range(100u, 10000000u))
         ->option_text("N");
     command
@@ -79,7 +79,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         .add_option("--depth-samples", options.bake.depth_samples,
                     "points along the inward normal at which light is looked for that scatters "
                     "once; default as the quality says")
-        ->check(CLI::Range(1u, 64u))
+        ->check(CLI::Range(1u, 256u))
         ->option_text("D");
     command
         .add_option("--phase-terms", options.bake.phase_terms,
@@ -93,7 +93,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
     command
         .add_option("--effects", options.effects,
                     "what to simulate: auto, or a list of effects; this version has: direct, "
-                    "multiple, single")
+                    "multiple, single, specular")
         ->option_text("auto|LIST [auto]");
     command
         .add_option("--seed", options.bake.seed,

@@ -1,6 +1,9 @@
 #include "bake/encode/pack_asset.h"
 
+#include <optional>
 #include <utility>
+
+#include "bake/encode/marble.h"
 
 namespace opaline::bake {
 namespace {
@@ -22,14 +25,16 @@ Vec3 to_vec3(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
-void append_vertices(Asset& asset, const Primitive& p, Rgb base_color, bool textured) {
+// `mapped`: the primitive shows an image; `textured`: some primitive of the asset does.
+void append_vertices(Asset& asset, const Primitive& p, Rgb base_color,
+                     const std::optional<Marble>& marble, bool mapped, bool textured) {
     for (std::size_t v = 0; v < p.position.size(); ++v) {
         asset.position.push_back(to_vec3(p.position[v]));
         asset.normal.push_back(to_vec3(p.normal[v]));
-        asset.base_color.push_back(p.color.empty() ? base_color : base_color * p.color[v]);
+        const Rgb plain = p.color.empty() ? base_color : base_color * p.color[v];
+        asset.base_color.push_back(marble ? plain * marble_color(*marble, p.position[v]) : plain);
         if (textured) {
-            asset.texcoord.push_back(p.texcoord.empty() ? Float2{}
-                                                        : Float2{p.texcoord[v].x, p.texcoord[v].y});
+            asset.texcoord.push_back(mapped ? Float2{p.texcoord[v].x, p.texcoord[v].y} : Float2{});
         }
     }
 }
@@ -78,7 +83,8 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         codes += std::uint64_t{transport.row_offset[record.first_row + count] -
                                transport.row_offset[record.first_row]} *
                  record.bands;
-        if (material.base_color_image != kNone && !p.texcoord.empty()) {
+        const bool mapped = material.base_color_image != kNone && !p.texcoord.empty();
+        if (mapped) {
             record.base_color_image = material.base_color_image;
             record.wrap_u = to_wrap(material.wrap_u);
             record.wrap_v = to_wrap(material.wrap_v);
@@ -89,7 +95,8 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
             asset.roughness.push_back(layout.glossy ? material.medium->roughness : kNotGlossy);
         }
         asset.primitives.push_back(record);
-        append_vertices(asset, p, material.base_color * layout.tint, textured);
+        append_vertices(asset, p, material.base_color * layout.tint, material.marble, mapped,
+                        textured);
         asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
     }
     for (const Image8& image : scene.images) {

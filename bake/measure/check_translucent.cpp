@@ -61,7 +61,7 @@ void add_multiple(const MultipleStage& stage, const BodyPoint& point, Luminance&
         for (std::size_t band = 0; band < 3; ++band) {
             weight += kLuminance[band] * static_cast<double>(w.weight[band]);
         }
-        weight *= static_cast<double>(stage.tree.area[s]) / (std::numbers::pi * stage.exit);
+        weight *= static_cast<double>(stage.tree.area[s]) / (std::numbers::pi * stage.medium.exit);
         for (std::size_t l = 0; l < lights; ++l) {
             luminance[l] += weight * stage.transport.response[stage.tree.order[s] * lights + l];
         }

@@ -61,6 +61,7 @@ formats::Result<Knobs> resolve_knobs(const BakeOptions& options) {
     knobs.separate_terms = options.separate_terms;
     if (options.samples != 0) {
         knobs.samples = options.samples;
+        knobs.exact_samples = true;
     }
     if (options.tolerance >= 0) {
         knobs.tolerance = options.tolerance;

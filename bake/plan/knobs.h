@@ -20,9 +20,10 @@ struct BakeOptions {
     std::uint32_t cubemap_size = 0;  ///< N: power of two in [8, 128]
     std::uint32_t coefficients = 0;  ///< M per row, the six face averages included; >= 7, or
                                      ///< kAllCoefficients
-    std::uint32_t samples = 0;       ///< at most this many on the surface of each medium
-    double tolerance = -1;           ///< of the hierarchical gather, >= 0; negative: as the quality
-                                     ///< says
+    std::uint32_t samples = 0;  ///< on the surface of each medium; 0: as its mean free path asks
+                                ///< for, at most as many as the quality says
+    double tolerance = -1;      ///< of the hierarchical gather, >= 0; negative: as the quality
+                                ///< says
     std::uint32_t depth_samples = 0;  ///< of single scattering, along the inward normal
     std::uint32_t phase_terms = 0;    ///< K: 1, 4, 9, 16 or 25; 0: as the phase function asks for
     bool separate_terms = false;      ///< multiple scattering in a row of its own
@@ -37,7 +38,8 @@ struct Knobs {
     std::uint32_t cubemap_size = 32;
     std::uint32_t coefficients = 128;
     std::uint32_t code_bits = 8;    ///< of the stored detail coefficients
-    std::uint32_t samples = 60000;  ///< at most, on the surface of each medium
+    std::uint32_t samples = 60000;  ///< on the surface of each medium
+    bool exact_samples = false;     ///< otherwise `samples` is the most there may be
     double tolerance = 1e-3;        ///< GatherOptions::tolerance
     std::uint32_t depth_samples = 6;
     std::uint32_t phase_terms = 0;  ///< 0: chosen per medium

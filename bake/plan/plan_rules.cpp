@@ -124,8 +124,11 @@ PlanEntry decide_multiple(const PlanInput& input) {
         return entry;
     }
     entry.on = true;
-    const double samples = std::min(static_cast<double>(input.knobs.samples),
-                                    std::max(2000.0, input.subject.area * densest * densest));
+    const double most = input.knobs.samples;
+    const double samples =
+        input.knobs.exact_samples
+            ? most
+            : std::min(most, std::max(2000.0, input.subject.area * densest * densest));
     entry.reason = "light scatters many times inside; " +
                    std::to_string(static_cast<std::uint64_t>(samples)) + " surface samples";
     // One ray a texel, a quarter of what a receiver on the surface traces; then a gather of some

@@ -9,7 +9,7 @@
 namespace opaline::bake {
 
 /// Cube map over which openness is measured for specular reflection.
-inline constexpr std::uint32_t kOpennessCubemap = 16;
+inline constexpr std::uint32_t kOpennessCubemap = 8;
 
 /// What the rules ask about one material's surfaces.
 struct PlanSubject {

@@ -1,33 +1,18 @@
 #include "bake/receivers/vertex_receivers.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <unordered_map>
 #include <utility>
+
+#include "bake/receivers/weld.h"
 
 namespace opaline::bake {
 namespace {
 
 using formats::Primitive;
 using formats::Scene;
-
-struct PositionHash {
-    std::size_t operator()(const glm::vec3& p) const {
-        std::uint64_t h = 0x9e3779b97f4a7c15u;
-        for (const float x : {p.x, p.y, p.z}) {
-            h = (h ^ std::bit_cast<std::uint32_t>(x)) * 0xff51afd7ed558ccdu;
-            h ^= h >> 32;
-        }
-        return h;
-    }
-};
-
-// -0 and +0 are one place.
-glm::vec3 weld_key(glm::vec3 p) {
-    return p + 0.0f;
-}
 
 // Unit normals of the triangles at each distinct position, as one array cut by offsets.
 struct Fans {

@@ -28,20 +28,38 @@ RayPacket packet_from(glm::vec3 origin, const DirectionBlock& block) {
     return packet;
 }
 
+// Where light goes less far than coordinates resolve, distances to the boundary are noise. What a
+// half space scatters once depends on its albedo alone, and over so short a way every body is one:
+// so a thinner medium of the same albedo, band by band, is as good.
+formats::Medium thin_to_resolution(formats::Medium medium, double diagonal) {
+    constexpr double kLeastPath = 1e-4;  // of the body's size: offsets of rays are 2e-6 of it
+    const auto thin = [&](float& sigma_s, float& sigma_a) {
+        const double paths = kLeastPath * diagonal * (double{sigma_s} + double{sigma_a});
+        if (paths > 1) {
+            sigma_s = static_cast<float>(double{sigma_s} / paths);
+            sigma_a = static_cast<float>(double{sigma_a} / paths);
+        }
+    };
+    thin(medium.sigma_s.r, medium.sigma_a.r);
+    thin(medium.sigma_s.g, medium.sigma_a.g);
+    thin(medium.sigma_s.b, medium.sigma_a.b);
+    return medium;
+}
+
 }  // namespace
 
 SingleMedium make_single_medium(const formats::Scene& scene, std::uint32_t material,
                                 std::uint32_t depth_samples, PhaseTerms phase) {
     const formats::Medium& medium = *scene.materials[material].medium;
     const bool paper = medium.fidelity == formats::Medium::Fidelity::paper;
+    const double diagonal{body_diagonals(scene)[material]};
     SingleMedium single;
     single.material = material;
-    single.path = make_path_medium(medium);
+    single.path = make_path_medium(thin_to_resolution(medium, diagonal));
     single.rule = paper ? make_midpoint_rule(depth_samples) : make_gauss_rule(depth_samples);
     single.boundary = {medium.eta, !paper};
     single.phase = std::move(phase);
-    single.path_limit =
-        static_cast<float>(path_limit(single.path, double{body_diagonals(scene)[material]}));
+    single.path_limit = static_cast<float>(path_limit(single.path, diagonal));
     return single;
 }
 

@@ -33,16 +33,17 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
             area += formats::surface_area(scene.primitives[p]);
         }
     }
-    const MediumProfile profile =
-        make_medium_profile(*scene.materials[material].medium, options.seed, context);
-    const std::vector<SurfaceSample> samples = sample_surface(
-        scene, primitives, count_samples(area, profile, options.samples), options.seed);
-    const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
     MultipleStage stage;
-    stage.exit = profile.exit;
-    stage.profile = make_gather_profile(profile, std::sqrt(per_sample), scene_diagonal(scene));
+    stage.medium = make_medium_profile(*scene.materials[material].medium, options.seed, context);
+    const std::uint32_t count = options.exact_samples
+                                    ? options.samples
+                                    : count_samples(area, stage.medium, options.samples);
+    const std::vector<SurfaceSample> samples =
+        sample_surface(scene, primitives, count, options.seed);
+    const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
+    stage.profile = make_gather_profile(stage.medium, std::sqrt(per_sample), scene_diagonal(scene));
     stage.transport = bake_sample_transport(
-        rays, samples, {options.cubemap_size, options.kept, profile.eta}, lights, context);
+        rays, samples, {options.cubemap_size, options.kept, stage.medium.eta}, lights, context);
     if (!context.cancelled()) {
         stage.tree = build_cluster_tree(samples, stage.transport, options.cubemap_size,
                                         2 * options.kept, context);

@@ -15,16 +15,17 @@ namespace opaline::bake {
 
 /// What all receivers of one medium share in multiple scattering.
 struct MultipleStage {
-    double exit = 1;  ///< c_exit (translucency.md 3.1)
-    GatherProfile profile;
+    MediumProfile medium;
+    GatherProfile profile;  ///< of the medium, for these samples
     SampleTransport transport;
     ClusterTree tree;
 };
 
 struct MultipleOptions {
     std::uint32_t cubemap_size = 32;
-    std::uint32_t samples = 60000;  ///< at most
-    std::uint32_t kept = 128;       ///< coefficients of each sample; each node keeps twice as many
+    std::uint32_t samples = 60000;  ///< at most, or exactly
+    bool exact_samples = false;
+    std::uint32_t kept = 128;  ///< coefficients of each sample; each node keeps twice as many
     std::uint64_t seed = 0;
 };
 

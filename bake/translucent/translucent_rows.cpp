@@ -42,7 +42,7 @@ void assemble_rows(const TranslucentRecipe& recipe, const BodyPoint& point,
                         weights);
         accumulate(stage.tree, weights, rgbx);
         const auto scale = static_cast<float>(
-            1 / (std::numbers::pi * stage.exit * recipe.layout.view_of_multiple()));
+            1 / (std::numbers::pi * stage.medium.exit * recipe.layout.view_of_multiple()));
         for (std::size_t k = 0; k < size; ++k) {
             for (std::size_t band = 0; band < 3; ++band) {
                 rows[band * size + k] = scale * rgbx[4 * k + band];

@@ -66,10 +66,8 @@ void place_normals(const PrimitiveData& data, const glm::dmat4& world, Primitive
 
 void place_texcoords(const PrimitiveData& data, const Material& material, Primitive& out,
                      Report& report) {
-    if (material.base_color_image == kNone) {
-        return;
-    }
-    if (data.texcoord.empty()) {
+    const bool has_image = material.base_color_image != kNone;
+    if (data.texcoord.empty() && has_image) {
         report.warn(out.name,
                     "its material has a base-colour texture, but TEXCOORD_" +
                         std::to_string(material.base_color_texcoord) +
@@ -88,7 +86,7 @@ void place_texcoords(const PrimitiveData& data, const Material& material, Primit
         }
         out.texcoord[i] = uv;
     }
-    if (bad > 0) {
+    if (bad > 0 && has_image) {
         report.warn(
             out.name,
             std::to_string(bad) + " texture coordinates are not finite and are taken as (0, 0)",
@@ -233,10 +231,9 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
                 continue;
             }
             const Material& material = scene.materials[out.material];
-            const std::uint32_t texcoord_set =
-                material.base_color_image == kNone ? kNone : material.base_color_texcoord;
-            const auto data =
-                read_primitive(document, buffers, source, texcoord_set, out.name, report);
+            // Kept without a texture, too: a media file may bring one.
+            const auto data = read_primitive(document, buffers, source,
+                                             material.base_color_texcoord, out.name, report);
             if (!data) {
                 continue;
             }

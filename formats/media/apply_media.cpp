@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "formats/gltf/report.h"
 #include "formats/gltf/sha256.h"
@@ -30,22 +32,62 @@ void add_to_hash(const std::string& sha256, Scene& scene) {
     scene.sha256 = hash.finish();
 }
 
+/// A texture that some of its triangles cannot show.
+template <class EntryOf>
+std::optional<Error> find_unmapped(const std::string& file, const Scene& scene,
+                                   const EntryOf& entry_of) {
+    for (const Primitive& primitive : scene.primitives) {
+        const MaterialMedium* entry = entry_of(scene.materials[primitive.material]);
+        if (entry && entry->albedo && primitive.texcoord.empty() && !primitive.index.empty()) {
+            const Material& material = scene.materials[primitive.material];
+            return make_error(
+                ErrorKind::bad_input, file,
+                media::place(media::place("materials", entry->name), "albedo_texture"),
+                primitive.name + " of material " + gltf::in_quotes(material.name) +
+                    " has no texture coordinates TEXCOORD_" +
+                    std::to_string(material.base_color_texcoord),
+                "unwrap the mesh before export, or use marble, which needs none");
+        }
+    }
+    return std::nullopt;
+}
+
+void fill(const MaterialMedium& entry, Material& material, std::vector<Image8>& images,
+          std::map<const MaterialMedium*, std::uint32_t>& known) {
+    material.medium = entry.medium;
+    // The medium has its own colour; the factor was for the surface it replaces.
+    material.base_color =
+        entry.base_color.value_or(material.medium ? Rgb{1, 1, 1} : material.base_color);
+    material.marble = entry.marble;
+    if (entry.albedo) {
+        const auto [at, is_new] =
+            known.try_emplace(&entry, static_cast<std::uint32_t>(images.size()));
+        if (is_new) {
+            images.push_back(*entry.albedo);
+        }
+        material.base_color_image = at->second;
+    }
+}
+
 }  // namespace
 
-std::vector<Diagnostic> apply_media(const MediaFile& media, Scene& scene) {
+Result<std::vector<Diagnostic>> apply_media(const MediaFile& media, Scene& scene) {
     std::map<std::string_view, const MaterialMedium*> by_name;
     for (const MaterialMedium& entry : media.materials) {
         by_name.emplace(entry.name, &entry);
     }
-    const auto others = by_name.find("*");
-    for (Material& material : scene.materials) {
+    const auto entry_of = [&](const Material& material) -> const MaterialMedium* {
         auto found = by_name.find(material.name);
-        found = found == by_name.end() ? others : found;
-        if (found != by_name.end()) {
-            material.medium = found->second->medium;
-            // The medium has its own colour; the factor was for the surface it replaces.
-            material.base_color = found->second->base_color.value_or(
-                material.medium ? Rgb{1, 1, 1} : material.base_color);
+        found = found == by_name.end() ? by_name.find("*") : found;
+        return found == by_name.end() ? nullptr : found->second;
+    };
+    if (auto error = find_unmapped(media.file, scene, entry_of)) {
+        return std::move(*error);
+    }
+    std::map<const MaterialMedium*, std::uint32_t> images;  // one for all materials of an entry
+    for (Material& material : scene.materials) {
+        if (const MaterialMedium* entry = entry_of(material)) {
+            fill(*entry, material, scene.images, images);
         }
     }
     std::vector<Diagnostic> warnings;

@@ -1,7 +1,6 @@
 #include "formats/media/fields.h"
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 
 namespace opaline::formats::media {
@@ -48,6 +47,19 @@ std::string range(double least, double greatest) {
     return "from " + plain(least) + " to " + plain(greatest);
 }
 
+bool is_rgb(const Json& value, double least, double greatest) {
+    return value.is_array() && value.size() == 3 &&
+           std::all_of(value.begin(), value.end(),
+                       [&](const Json& band) { return is_within(band, least, greatest); });
+}
+
+Rgb to_rgb(const Json& value, double scale) {
+    const auto band = [&](std::size_t i) {
+        return static_cast<float>(scale * value[i].get<double>());
+    };
+    return {band(0), band(1), band(2)};
+}
+
 }  // namespace
 
 std::string place(const std::string& where, std::string_view key) {
@@ -87,18 +99,33 @@ std::optional<Rgb> rgb(const Fields& fields, const char* key, double least, doub
     if (!value) {
         return std::nullopt;
     }
-    const auto good = [&](const Json& band) { return is_within(band, least, greatest); };
-    if (!value->is_array() || value->size() != 3 ||
-        !std::all_of(value->begin(), value->end(), good)) {
+    if (!is_rgb(*value, least, greatest)) {
         wrong(fields, key, *value,
               "three numbers [red, green, blue], each " + range(least, greatest));
         return std::nullopt;
     }
-    std::array<float, 3> band{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        band[i] = static_cast<float>(scale * (*value)[i].get<double>());
+    return to_rgb(*value, scale);
+}
+
+std::optional<std::vector<Rgb>> rgb_list(const Fields& fields, const char* key, std::size_t fewest,
+                                         std::size_t most, double least, double greatest) {
+    const Json* value = find(fields, key);
+    if (!value) {
+        return std::nullopt;
     }
-    return Rgb{band[0], band[1], band[2]};
+    const auto good = [&](const Json& color) { return is_rgb(color, least, greatest); };
+    if (!value->is_array() || value->size() < fewest || value->size() > most ||
+        !std::all_of(value->begin(), value->end(), good)) {
+        wrong(fields, key, *value,
+              std::to_string(fewest) + " to " + std::to_string(most) +
+                  " colours [red, green, blue], each number " + range(least, greatest));
+        return std::nullopt;
+    }
+    std::vector<Rgb> colors;
+    for (const Json& color : *value) {
+        colors.push_back(to_rgb(color, 1));
+    }
+    return colors;
 }
 
 std::optional<std::string> text(const Fields& fields, const char* key) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/gltf/report.h"
 #include "formats/opal/rgb.h"
@@ -31,6 +32,9 @@ void refuse_unknown_keys(const Fields& fields, std::initializer_list<std::string
 std::optional<double> number(const Fields& fields, const char* key, double least, double greatest);
 std::optional<Rgb> rgb(const Fields& fields, const char* key, double least, double greatest,
                        double scale = 1.0);
+/// From `fewest` to `most` of them.
+std::optional<std::vector<Rgb>> rgb_list(const Fields& fields, const char* key, std::size_t fewest,
+                                         std::size_t most, double least, double greatest);
 std::optional<std::string> text(const Fields& fields, const char* key);
 std::optional<bool> truth(const Fields& fields, const char* key);
 /// The position of a text among `names`.

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "formats/gltf/decode_image8.h"
 #include "formats/media/fields.h"
 #include "formats/media/limits.h"
 #include "formats/media/mean_cosine.h"
 #include "formats/media/presets.h"
+#include "formats/media/read_marble.h"
 #include "formats/media/read_phase.h"
 
 namespace opaline::formats::media {
@@ -28,15 +31,21 @@ bool is_black(Rgb c) {
     return c == Rgb{};
 }
 
-/// Keys of the contract that this version does not honour must not be passed over in silence.
-void refuse_unsupported(const Fields& fields) {
-    for (const char* key : {"albedo_texture", "marble"}) {
-        if (has(fields, key)) {
-            fields.report.error(place(fields.where, key),
-                                "media that vary in space are not supported yet",
-                                "leave it out; base_color and the material's texture are used");
-        }
+/// The image that `albedo_texture` names.
+std::optional<Image8> read_albedo(const Fields& fields, gltf::Resources& resources) {
+    const auto name = text(fields, "albedo_texture");
+    const std::string where = place(fields.where, "albedo_texture");
+    const auto bytes =
+        name ? gltf::read_inside(resources, *name, where, fields.report) : std::nullopt;
+    if (!bytes) {
+        return std::nullopt;
     }
+    gltf::DecodedImage8 decoded = gltf::decode_image8(*bytes);
+    if (!decoded.fault.empty()) {
+        fields.report.error(where, decoded.fault, "save the texture again as 8-bit PNG or JPEG");
+        return std::nullopt;
+    }
+    return std::move(decoded.image);
 }
 
 /// Each key of `others` beside `key` contradicts it.
@@ -132,11 +141,12 @@ MaterialMedium read_material(const std::string& name, const nlohmann::json& entr
     refuse_unknown_keys(fields, {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase",
                                  "eta", "roughness", "base_color", "albedo_texture", "marble",
                                  "profile", "fidelity", "opaque"});
-    refuse_unsupported(fields);
     refuse_beside(fields, "preset", {"sigma_s", "sigma_s_prime", "sigma_a", "unit"},
                   "give the preset or coefficients");
     refuse_beside(fields, "sigma_s", {"sigma_s_prime"}, "give one of them");
     material.base_color = rgb(fields, "base_color", 0, 1);
+    material.albedo = read_albedo(fields, resources);
+    material.marble = read_marble(fields);
     if (truth(fields, "opaque").value_or(false)) {
         refuse_beside(fields, "opaque",
                       {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta",

@@ -43,7 +43,8 @@ formats::Asset pack(const formats::Scene& scene, const std::vector<std::vector<f
     for (const std::vector<float>& row : dense) {
         EXPECT_TRUE(formats::append_row(rows, select_coefficients(selector, row, 1)));
     }
-    return pack_asset(scene, std::move(rows));
+    const std::vector<RowLayout> layouts(scene.materials.size(), {.direct = true});
+    return pack_asset(scene, layouts, std::move(rows), {});
 }
 
 // Keeping more of the N^2 terms brings the picture closer to the one with all of them.

@@ -9,26 +9,10 @@
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/single/ray_single.h"
 #include "formats/opal/spherical_harmonics.h"
+#include "tests/support/media.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::tests {
-
-inline formats::Medium make_grey_medium(float sigma_s, float sigma_a, float eta = 1.3f) {
-    formats::Medium medium;
-    medium.sigma_s = {sigma_s, sigma_s, sigma_s};
-    medium.sigma_a = {sigma_a, sigma_a, sigma_a};
-    medium.eta = eta;
-    return medium;
-}
-
-/// Material 0 is translucent, material 1 opaque: primitives choose by their `material`.
-inline Scene make_translucent_scene(std::vector<Primitive> primitives,
-                                    const formats::Medium& medium) {
-    Scene scene = make_scene(std::move(primitives));
-    scene.materials[0].medium = medium;
-    scene.materials.push_back({.name = "Opaque"});
-    return scene;
-}
 
 /// A scene with everything that gathers need.
 struct SingleSetup {

@@ -220,6 +220,14 @@ TEST(GltfMaterials, MissingTextureCoordinatesAreAWarning) {
     EXPECT_THAT(lines(imported.warnings), HasSubstr("TEXCOORD_0 is missing"));
 }
 
+TEST(GltfMaterials, TextureCoordinatesAreKeptWithoutATexture) {
+    AssetBuilder asset = textured(encode_png(kTwoPixels, 2, 1));
+    asset.json["materials"][0]["pbrMetallicRoughness"].erase("baseColorTexture");
+    const auto imported = must_import(asset);
+    EXPECT_EQ(imported.scene.primitives.at(0).texcoord.size(), 3u);
+    EXPECT_EQ(lines(imported.warnings), "");
+}
+
 TEST(GltfMaterials, VertexColoursOfEveryTypeAreLinear) {
     const auto color_of = [](const auto& values, const char* type, bool normalized) {
         AssetBuilder asset = triangle_asset();

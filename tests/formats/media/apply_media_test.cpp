@@ -12,6 +12,13 @@ using formats::Scene;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
+/// Its warnings; expects success.
+std::vector<formats::Diagnostic> apply(const formats::MediaFile& media, Scene& scene) {
+    const auto warnings = apply_media(media, scene);
+    EXPECT_TRUE(warnings.has_value());
+    return warnings ? *warnings : std::vector<formats::Diagnostic>{};
+}
+
 Scene scene_of(const std::vector<std::string>& names) {
     Scene scene;
     scene.sha256 = std::string(64, 'a');
@@ -30,10 +37,9 @@ formats::MediaFile media_of(const std::string& materials) {
 
 TEST(ApplyMedia, MatchesByNameAndStarTakesTheOthers) {
     Scene scene = scene_of({"Body", "Eye", "Floor", ""});
-    const auto warnings =
-        apply_media(media_of(R"("Body": {"preset": "marble"}, "Floor": {"opaque": true},
+    const auto warnings = apply(media_of(R"("Body": {"preset": "marble"}, "Floor": {"opaque": true},
                     "*": {"preset": "skin1"})"),
-                    scene);
+                                scene);
     EXPECT_TRUE(warnings.empty());
     EXPECT_EQ(scene.materials[0].medium->eta, 1.5f);
     EXPECT_EQ(scene.materials[1].medium->eta, 1.3f);
@@ -45,15 +51,14 @@ TEST(ApplyMedia, WithoutStarTheOthersStayAsTheyAre) {
     Scene scene = scene_of({"Body", "Glass"});
     scene.materials[1].medium = Medium{};
     scene.materials[1].medium->eta = 1.7f;
-    (void)apply_media(media_of(R"("Body": {"preset": "marble"})"), scene);
+    (void)apply(media_of(R"("Body": {"preset": "marble"})"), scene);
     EXPECT_EQ(scene.materials[1].medium->eta, 1.7f);
 }
 
 TEST(ApplyMedia, ReplacesWhatTheSceneSaysAndOpaqueRemovesIt) {
     Scene scene = scene_of({"Body", "Glass"});
     scene.materials[0].medium = scene.materials[1].medium = Medium{};
-    (void)apply_media(media_of(R"("Body": {"preset": "marble"}, "Glass": {"opaque": true})"),
-                      scene);
+    (void)apply(media_of(R"("Body": {"preset": "marble"}, "Glass": {"opaque": true})"), scene);
     EXPECT_EQ(scene.materials[0].medium->eta, 1.5f);
     EXPECT_FALSE(scene.materials[1].medium.has_value());
 }
@@ -63,9 +68,9 @@ TEST(ApplyMedia, BaseColourIsThatOfTheEntryThenWhiteInAMediumThenTheFactor) {
     for (formats::Material& material : scene.materials) {
         material.base_color = {0.1f, 0.2f, 0.3f};
     }
-    (void)apply_media(media_of(R"("A": {"preset": "cream", "base_color": [1, 1, 0]},
+    (void)apply(media_of(R"("A": {"preset": "cream", "base_color": [1, 1, 0]},
                                   "B": {"preset": "cream"}, "C": {"opaque": true})"),
-                      scene);
+                scene);
     EXPECT_EQ(scene.materials[0].base_color, (Rgb{1, 1, 0}));
     EXPECT_EQ(scene.materials[1].base_color, (Rgb{1, 1, 1}));
     EXPECT_EQ(scene.materials[2].base_color, (Rgb{0.1f, 0.2f, 0.3f}));
@@ -74,7 +79,7 @@ TEST(ApplyMedia, BaseColourIsThatOfTheEntryThenWhiteInAMediumThenTheFactor) {
 TEST(ApplyMedia, NameThatNoMaterialHasIsAWarningThatListsTheScenes) {
     Scene scene = scene_of({"Body"});
     const auto warnings =
-        apply_media(media_of(R"("Bodi": {"preset": "marble"}, "*": {"preset": "cream"})"), scene);
+        apply(media_of(R"("Bodi": {"preset": "marble"}, "*": {"preset": "cream"})"), scene);
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(warnings[0].severity, formats::Diagnostic::Severity::warning);
     EXPECT_EQ(warnings[0].where, "materials > Bodi");
@@ -83,7 +88,7 @@ TEST(ApplyMedia, NameThatNoMaterialHasIsAWarningThatListsTheScenes) {
 
 TEST(ApplyMedia, SeveralMaterialsOfOneNameAllGetTheMedium) {
     Scene scene = scene_of({"Body", "Body"});
-    EXPECT_TRUE(apply_media(media_of(R"("Body": {"preset": "cream"})"), scene).empty());
+    EXPECT_TRUE(apply(media_of(R"("Body": {"preset": "cream"})"), scene).empty());
     EXPECT_TRUE(scene.materials[0].medium && scene.materials[1].medium);
 }
 
@@ -92,14 +97,50 @@ TEST(ApplyMedia, FilesJoinTheInputsAndTheHash) {
     const auto cream = media_of(R"("*": {"preset": "cream"})");
     Scene a = scene_of({"Body"}), b = a, c = a;
     const std::string before = a.sha256;
-    (void)apply_media(marble, a);
-    (void)apply_media(cream, b);
-    (void)apply_media(marble, c);
+    (void)apply(marble, a);
+    (void)apply(cream, b);
+    (void)apply(marble, c);
     EXPECT_THAT(a.inputs, ElementsAre("scene.glb", marble.inputs.at(0)));
     EXPECT_EQ(a.sha256.size(), 64u);
     EXPECT_NE(a.sha256, before);
     EXPECT_NE(a.sha256, b.sha256);
     EXPECT_EQ(a.sha256, c.sha256);
+}
+
+TEST(ApplyMedia, AlbedoIsOneImageForAllMaterialsOfItsEntryAndReplacesTheirs) {
+    Scene scene = scene_of({"A", "B", "C"});
+    scene.images.push_back({1, 1, {9, 9, 9, 255}});
+    scene.materials[0].base_color_image = scene.materials[2].base_color_image = 0;
+    formats::MediaFile media = media_of(R"("*": {"preset": "cream"}, "C": {"opaque": true})");
+    for (formats::MaterialMedium& entry : media.materials) {
+        if (entry.name == "*") {
+            entry.albedo = formats::Image8{1, 1, {1, 2, 3, 255}};
+        }
+    }
+    (void)apply(media, scene);
+    ASSERT_EQ(scene.images.size(), 2u);
+    EXPECT_EQ(scene.images[1].rgba[1], 2);
+    EXPECT_EQ(scene.materials[0].base_color_image, 1u);
+    EXPECT_EQ(scene.materials[1].base_color_image, 1u);
+    EXPECT_EQ(scene.materials[2].base_color_image, 0u);
+}
+
+TEST(ApplyMedia, AlbedoOnAPrimitiveWithoutTextureCoordinatesIsAnError) {
+    Scene scene = scene_of({"Body"});
+    scene.primitives.resize(1);
+    scene.primitives[0].name = "node 'Swan'";
+    scene.primitives[0].index = {0, 1, 2};
+    formats::MediaFile media = media_of(R"("Body": {"preset": "cream"})");
+    media.materials.at(0).albedo = formats::Image8{1, 1, {1, 2, 3, 255}};
+    const auto refused = apply_media(media, scene);
+    ASSERT_FALSE(refused.has_value());
+    const formats::Diagnostic& fault = refused.error().diagnostics.at(0);
+    EXPECT_EQ(fault.where, "materials > Body > albedo_texture");
+    EXPECT_THAT(fault.fault, ::testing::AllOf(HasSubstr("node 'Swan'"), HasSubstr("TEXCOORD_0")));
+    EXPECT_FALSE(scene.materials[0].medium.has_value());
+
+    scene.primitives[0].texcoord.resize(3);
+    EXPECT_TRUE(apply_media(media, scene).has_value());
 }
 
 }  // namespace

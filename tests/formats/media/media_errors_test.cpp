@@ -155,10 +155,26 @@ TEST(MediaErrors, WhatIsNotSupportedYetIsNotPassedOver) {
         EXPECT_THAT(refuse_file(std::string(R"({"materials": {}, ")") + key + "\": []}"),
                     AllOf(HasSubstr(key), HasSubstr("not supported yet")));
     }
-    EXPECT_THAT(refuse(kGood + R"(, "albedo_texture": "a.png")"),
-                AllOf(HasSubstr("Wax > albedo_texture"), HasSubstr("not supported yet")));
-    EXPECT_THAT(refuse(kGood + R"(, "marble": {"scale": 1})"),
-                AllOf(HasSubstr("Wax > marble"), HasSubstr("not supported yet")));
+}
+
+TEST(MediaErrors, MarbleNeedsPositiveScaleAndColoursThatReflectNoMoreThanAll) {
+    for (const char* bad :
+         {"1", "{\"scale\": 0}", "{\"scale\": -1}", "{\"scale\": 1e7}", "{\"size\": 1}",
+          "{\"colors\": [[1, 1, 1]]}", "{\"colors\": [[1, 1, 1], [1, 1]]}",
+          "{\"colors\": [[1, 1, 1], [1, 1, 1.5]]}", "{\"colors\": 1}"}) {
+        EXPECT_THAT(refuse(kGood + ", \"marble\": " + bad), HasSubstr("Wax > marble")) << bad;
+    }
+}
+
+TEST(MediaErrors, AlbedoTextureMustBeAnImageInTheSameFolder) {
+    EXPECT_THAT(refuse(kGood + R"(, "albedo_texture": "nowhere.png")"),
+                HasSubstr("Wax > albedo_texture"));
+    EXPECT_THAT(refuse(kGood + R"(, "albedo_texture": "../a.png")"),
+                HasSubstr("Wax > albedo_texture"));
+    // A file that is there, but no image.
+    EXPECT_THAT(refuse(kGood + R"(, "albedo_texture": "media.json")"),
+                AllOf(HasSubstr("Wax > albedo_texture"), HasSubstr("PNG or JPEG")));
+    EXPECT_THAT(refuse(kGood + R"(, "albedo_texture": 3)"), HasSubstr("a text"));
 }
 
 TEST(MediaErrors, EveryFaultIsListedAtOnce) {

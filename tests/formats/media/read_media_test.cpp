@@ -154,5 +154,24 @@ TEST(ReadMedia, TheSameObjectIsReadFromInsideAnotherFile) {
     EXPECT_THAT(faults(bad), ::testing::HasSubstr("extensions > OPALINE_media > materials > Wax"));
 }
 
+TEST(ReadMedia, MarbleHasDefaultsOfVeinedStone) {
+    const auto media = read_text_as_media(wax(R"("preset": "marble", "marble": {})"));
+    ASSERT_TRUE(media.has_value()) << faults(media);
+    ASSERT_TRUE(media->materials.at(0).marble.has_value());
+    const formats::Marble& marble = *media->materials[0].marble;
+    EXPECT_EQ(marble.scale, 0.04f);
+    EXPECT_LT(luminance(marble.colors.front()), luminance(marble.colors.back()));
+    EXPECT_EQ(marble.colors.back(), (Rgb{1, 1, 1}));
+}
+
+TEST(ReadMedia, MarbleTakesScaleAndColoursOfTheFile) {
+    const auto media = read_text_as_media(
+        wax(R"("opaque": true, "marble": {"scale": 2, "colors": [[0, 0.5, 1], [1, 0, 0]]})"));
+    ASSERT_TRUE(media.has_value()) << faults(media);
+    const formats::Marble& marble = media->materials.at(0).marble.value();
+    EXPECT_EQ(marble.scale, 2.0f);
+    EXPECT_EQ(marble.colors, (std::vector<Rgb>{{0, 0.5f, 1}, {1, 0, 0}}));
+}
+
 }  // namespace
 }  // namespace opaline::tests

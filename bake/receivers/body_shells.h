@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// A triangle of a medium's surface.
+struct BodyTriangle {
+    std::array<std::uint32_t, 3> point;    ///< indices into BodyShells::position
+    std::uint32_t primitive, first_index;  ///< where it stands in the scene
+    bool turned = false;                   ///< faces the other way than in the scene
+};
+
+/// Triangles that hang together.
+struct BodyShell {
+    std::uint32_t first = 0, count = 0;  ///< in BodyShells::order
+    glm::dvec3 low{HUGE_VAL}, high{-HUGE_VAL};
+    double volume = 0;  ///< [m^3] enclosed, < 0 if it faces inward; of an open one about its centre
+    double area = 0;    ///< [m^2]
+    bool inside = false;  ///< of another shell
+};
+
+/// The surface of one medium, shell by shell.
+struct BodyShells {
+    std::vector<glm::vec3> position;  ///< [m], each place once
+    std::vector<BodyTriangle> triangle;
+    std::vector<BodyShell> shell;
+    std::vector<std::uint32_t> order;  ///< triangles, shell by shell
+    std::uint64_t open_edges = 0;      ///< at which an odd number of triangles meet
+};
+
+/// Corners in the order that `turned` gives them [m].
+std::array<glm::dvec3, 3> corners(const BodyShells& body, const BodyTriangle& t);
+/// Normal times area [m^2].
+glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t);
+
+/// The shells of a material's surface: vertices in one place are one, triangles that share an edge
+/// with one other hang together, and the smaller part of each shell by area, if any, is turned so
+/// that all of it faces one way. Triangles folded to a line are left out.
+BodyShells make_body_shells(const formats::Scene& scene, std::uint32_t material);
+
+}  // namespace opaline::bake

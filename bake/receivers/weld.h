@@ -1,0 +1,27 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+namespace opaline::bake {
+
+/// Vertices in one place are one point of the surface, however often a file repeats them: the key
+/// of a place, in which -0 and +0 are the same, and its hash.
+inline glm::vec3 weld_key(glm::vec3 position) {
+    return position + 0.0f;
+}
+
+struct PositionHash {
+    std::size_t operator()(const glm::vec3& p) const {
+        std::uint64_t h = 0x9e3779b97f4a7c15u;
+        for (const float x : {p.x, p.y, p.z}) {
+            h = (h ^ std::bit_cast<std::uint32_t>(x)) * 0xff51afd7ed558ccdu;
+            h ^= h >> 32;
+        }
+        return h;
+    }
+};
+
+}  // namespace opaline::bake

@@ -1,0 +1,312 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include "bake/multiple/medium_profile.h"
+#include "bake/plan/plan_rules.h"
+#include "bake/receivers/vertex_receivers.h"
+#include "bake/scattering/fresnel.h"
+#include "bake/visibility/irradiance_transport.h"
+#include "formats/media/presets.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+#include "formats/opal/write_opal.h"
+#include "tests/support/media_bake.h"
+#include "tests/support/temporary_folder.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Medium;
+using formats::Rgb;
+using formats::Shading;
+using tests::all_finite;
+using tests::bake_scene;
+using tests::make_ball_on_floor;
+using tests::make_grey_medium;
+using tests::only;
+using tests::relative_rms;
+using tests::relight_primitive;
+using tests::small_bake;
+
+constexpr const char* kLights[] = {"white", "studio", "sun:40,50", "sun:200,20"};
+
+// A mean free path of a tenth of the ball's radius, red going farther than blue.
+Medium wax() {
+    Medium medium;
+    medium.sigma_s = {8, 10, 14};
+    medium.sigma_a = {0.05f, 0.2f, 0.8f};
+    return medium;
+}
+
+Medium forward(float g) {
+    Medium medium = wax();
+    medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, g, 0, {}, {}};
+    return medium;
+}
+
+std::string file_bytes(const BakeResult& result) {
+    const tests::TemporaryFolder folder;
+    auto file = formats::AtomicFile::create(folder / "a.opal");
+    EXPECT_TRUE(file);
+    EXPECT_TRUE(formats::write_opal(result.asset.view(), std::move(*file)));
+    std::ifstream stream(folder / "a.opal", std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// The effects that the plan has on for the ball.
+std::vector<std::string> effects_of_ball(const BakeResult& result) {
+    std::vector<std::string> on;
+    for (const PlanEntry& entry : result.plan) {
+        if (entry.on && entry.material == 0) {
+            on.push_back(entry.effect);
+        }
+    }
+    return on;
+}
+
+double mean_green(const std::vector<Rgb>& radiance) {
+    double sum = 0;
+    for (const Rgb c : radiance) {
+        sum += static_cast<double>(c.g) / static_cast<double>(radiance.size());
+    }
+    return sum;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(TranslucentPipeline, BytesDoNotDependOnTheNumberOfThreads) {
+    const auto scene = make_ball_on_floor(forward(0.3f));
+    BakeOptions options = small_bake();
+    options.coefficients = 64;
+    options.threads = 1;
+    const std::string one = file_bytes(bake_scene(scene, options));
+    options.threads = 2;
+    EXPECT_EQ(file_bytes(bake_scene(scene, options)), one);
+}
+
+TEST(TranslucentPipeline, EachEffectAloneIsSimulatedAlone) {
+    const auto scene = make_ball_on_floor(wax());
+    runtime::ShadeOptions shown;
+    for (const char* effect : {"multiple", "single", "specular"}) {
+        const BakeResult result = bake_scene(scene, only({effect}));
+        EXPECT_EQ(effects_of_ball(result), Names{effect});
+        const formats::PrimitiveRecord& ball = result.asset.primitives[0];
+        EXPECT_EQ(ball.shading, Shading::translucent) << effect;
+        EXPECT_EQ(ball.bands, 3u) << effect;
+        const bool glossy = effect == std::string("specular");
+        EXPECT_EQ(result.asset.openness.empty(), !glossy) << effect;
+        // Without its light, gloss is black; the floor is left out in all three.
+        EXPECT_EQ(mean_green(relight_primitive(result.asset, "white")) > 0, !glossy) << effect;
+        EXPECT_EQ(mean_green(relight_primitive(result.asset, "white", 1)), 0) << effect;
+    }
+}
+
+TEST(TranslucentPipeline, DirectAloneComparesWithADiffuseSurfaceOfTheSameAlbedo) {
+    Medium medium = wax();
+    const auto scene = tests::make_translucent_scene({tests::make_sphere(3)}, medium);
+    BakeOptions options = only({"direct"});
+    options.cubemap_size = 32;
+    const BakeResult result = bake_scene(scene, options);
+    EXPECT_EQ(effects_of_ball(result), Names{"direct"});
+    EXPECT_EQ(result.asset.primitives[0].shading, Shading::diffuse);
+    EXPECT_TRUE(result.asset.openness.empty());
+    const Rgb albedo = half_space_albedo(medium, 0, {});
+    EXPECT_GT(albedo.r, albedo.g);
+    EXPECT_GT(albedo.g, albedo.b);
+    EXPECT_EQ(result.asset.base_color[0].g, albedo.g);
+    for (const Rgb c : relight_primitive(result.asset, "white")) {
+        ASSERT_NEAR(c.g, albedo.g, 3e-3 * albedo.g);  // quadrature along the horizon
+    }
+}
+
+// Rounding to codes is the only difference: nothing shows of it in sixteen bits.
+TEST(TranslucentPipeline, MultipleAndSingleBakedApartAddUpToBoth) {
+    for (const float g : {0.0f, 0.3f}) {
+        const auto scene = make_ball_on_floor(forward(g));
+        BakeOptions options = small_bake();
+        options.quality = Quality::reference;
+        options.phase_terms = g > 0 ? 4 : 1;
+        const BakeResult merged = bake_scene(scene, options);
+        options.separate_terms = true;
+        const BakeResult separate = bake_scene(scene, options);
+        EXPECT_EQ(merged.asset.primitives[0].terms, options.phase_terms);
+        EXPECT_EQ(separate.asset.primitives[0].terms, options.phase_terms + 1);
+        for (const char* light : kLights) {
+            const auto part = [&](std::uint32_t terms) {
+                runtime::ShadeOptions shown;
+                shown.terms = terms;
+                return relight_primitive(separate.asset, light, 0, shown);
+            };
+            std::vector<Rgb> sum = part(runtime::kMultipleTerm);
+            const std::vector<Rgb> single = part(runtime::kSingleTerm);
+            EXPECT_GT(mean_green(sum), 0) << light;
+            EXPECT_GT(mean_green(single), 0) << light;
+            for (std::size_t v = 0; v < sum.size(); ++v) {
+                sum[v] = sum[v] + single[v];
+            }
+            EXPECT_LT(relative_rms(sum, relight_primitive(merged.asset, light)), 2e-4)
+                << light << ' ' << g;
+        }
+        // And as effects of their own, whatever else is simulated.
+        options.effects = {"multiple"};
+        const BakeResult multiple = bake_scene(scene, options);
+        runtime::ShadeOptions shown;
+        shown.terms = runtime::kMultipleTerm;
+        EXPECT_LT(relative_rms(relight_primitive(multiple.asset, "studio"),
+                               relight_primitive(separate.asset, "studio", 0, shown)),
+                  1e-6);
+    }
+}
+
+TEST(TranslucentPipeline, PhaseFunctionWithAPreferenceTakesWholeDegrees) {
+    const auto knobs_of = [](Quality quality) {
+        BakeOptions options;
+        options.quality = quality;
+        return *resolve_knobs(options);
+    };
+    const Knobs draft = knobs_of(Quality::draft), production = knobs_of(Quality::production);
+    EXPECT_EQ(choose_terms(wax(), production), 1u);
+    for (const float g : {0.25f, -0.25f}) {
+        EXPECT_EQ(choose_terms(forward(g), draft), 4u) << g;
+        EXPECT_GE(choose_terms(forward(g), production), choose_terms(forward(g), draft)) << g;
+    }
+    EXPECT_GE(choose_terms(forward(0.8f), draft), 9u);
+    BakeOptions options = small_bake();
+    options.quality = Quality::draft;
+    const BakeResult result = bake_scene(make_ball_on_floor(forward(0.25f)), options);
+    EXPECT_EQ(result.asset.primitives[0].terms, 4u);
+    EXPECT_EQ(find_entry(result.plan, "single", 0)->terms, 4u);
+    EXPECT_TRUE(all_finite(result.asset));
+}
+
+TEST(TranslucentPipeline, PlanFollowsTheMedium) {
+    const auto on = [](const Medium& medium) {
+        const auto scene = make_ball_on_floor(medium);
+        Names effects;
+        for (const PlanEntry& entry : plan_bake(scene, {}, 1)) {
+            EXPECT_FALSE(entry.reason.empty());
+            if (entry.material == 0 && entry.on) {
+                effects.push_back(entry.effect);
+            }
+        }
+        return effects;
+    };
+    const Names all{"multiple", "single", "specular"};
+    const Medium ketchup = *formats::media_preset("ketchup");
+    const Medium milk = *formats::media_preset("whole-milk");
+    EXPECT_EQ(on(ketchup), all);
+    EXPECT_EQ(on(milk), all);
+    // What scatters little returns mostly what scattered once.
+    EXPECT_GT(single_share(ketchup), 0.5);
+    EXPECT_LT(single_share(*formats::media_preset("spectralon")), 0.2);
+    Medium medium = milk;
+    medium.eta = 1;
+    EXPECT_EQ(on(medium), (Names{"multiple", "single"})) << "nothing is mirrored";
+    medium = milk;
+    medium.profile = Medium::Profile::normalized;
+    EXPECT_EQ(on(medium), (Names{"multiple", "specular"})) << "single scattering is in it";
+    medium = make_grey_medium(0, 100);
+    EXPECT_EQ(on(medium), Names{"specular"}) << "a pure absorber";
+    medium = make_grey_medium(0.1f, 1000);
+    EXPECT_EQ(on(medium), Names{"specular"}) << "nearly one";
+}
+
+TEST(TranslucentPipeline, ScalingSceneAndMediumTogetherChangesNothing) {
+    const auto scene = make_ball_on_floor(forward(0.3f));
+    BakeOptions options = small_bake();
+    options.phase_terms = 4;
+    const BakeResult metres = bake_scene(scene, options);
+    // A power of two is exact in floats; a thousandth rounds.
+    for (const float scale : {1024.0f, 0.001f}) {
+        auto scaled = scene;
+        for (formats::Primitive& p : scaled.primitives) {
+            p = tests::transformed(p, glm::mat3(1), scale, glm::vec3(0));
+        }
+        Medium& medium = *scaled.materials[0].medium;
+        medium.sigma_s = (1 / scale) * medium.sigma_s;
+        medium.sigma_a = (1 / scale) * medium.sigma_a;
+        const BakeResult result = bake_scene(scaled, options);
+        for (const char* light : kLights) {
+            EXPECT_LT(relative_rms(relight_primitive(result.asset, light),
+                                   relight_primitive(metres.asset, light)),
+                      scale > 1 ? 1e-4 : 2e-3)
+                << light << ' ' << scale;
+        }
+    }
+}
+
+// translucency.md 7.16: L_d -> R Ft-weighted E, for any spacing of vertices and samples.
+TEST(TranslucentPipeline, OpticallyThickBodyReflectsTheLightThatEntersWhereItStands) {
+    Medium medium = make_grey_medium(1e5f, 300);
+    auto body = tests::make_sphere(3);
+    body = tests::transformed(body, tests::some_rotation(), 1, glm::vec3(0));
+    auto wall = tests::make_quad({-3, -1.5f, -3}, {0, 0, 6}, {6, 0, 0}, 2);
+    wall.material = 1;
+    const auto scene = tests::make_translucent_scene({body, wall}, medium);
+    BakeOptions options = only({"multiple"});
+    options.cubemap_size = 16;
+    options.samples = 20000;
+    const BakeResult result = bake_scene(scene, options);
+
+    const double eta = 1.3f, exit = 1 - fresnel_moments(eta).external;
+    const MediumProfile profile = make_medium_profile(medium, 0, {});
+    std::vector<float> transmittance;
+    for (int i = 0; i <= 1024; ++i) {
+        transmittance.push_back(static_cast<float>(fresnel_transmittance(i / 1024.0, eta)));
+    }
+    const double factor =
+        fresnel_transmittance(1, eta) * profile.total(0) / (std::numbers::pi * exit);
+    const auto rays = RayScene::build(scene, 2);
+    const DirectionSet directions = make_direction_set(16);
+    const std::vector<Receiver> receivers = make_vertex_receivers(scene);
+    std::vector<float> dense(formats::cubemap_texels(16));
+    for (const char* name : {"white", "studio", "sky:3,35"}) {
+        const runtime::LightVector light = tests::make_light(name, 16);
+        std::vector<Rgb> expected;
+        for (std::size_t v = 0; v < body.position.size(); ++v) {
+            gather_irradiance(*rays, directions, receivers[v], dense, transmittance);
+            formats::haar_forward_cube(std::span<float>(dense), 16);
+            Rgb sum{};
+            for (std::size_t k = 0; k < dense.size(); ++k) {
+                sum = sum + dense[k] * Rgb{light.rgba[4 * k], light.rgba[4 * k + 1],
+                                           light.rgba[4 * k + 2]};
+            }
+            expected.push_back(static_cast<float>(factor) * sum);
+        }
+        EXPECT_LT(relative_rms(relight_primitive(result.asset, name), expected), 0.015) << name;
+    }
+}
+
+TEST(TranslucentPipeline, SelfCheckNamesEffectsAndLights) {
+    const ErrorReport error = bake_scene(make_ball_on_floor(wax()), small_bake()).error;
+    const auto names = [](const std::vector<ErrorReport::Part>& parts) {
+        Names list;
+        for (const ErrorReport::Part& part : parts) {
+            list.push_back(part.name);
+            EXPECT_GT(part.rms_relative, 0) << part.name;
+            EXPECT_LT(part.rms_relative, 0.2) << part.name;
+        }
+        return list;
+    };
+    EXPECT_EQ(names(error.by_effect), (Names{"direct", "multiple+single"}));
+    EXPECT_EQ(names(error.by_light),
+              (Names{"white", "sun:30,60", "sun:150,35", "sun:270,15", "studio", "sky:3,35"}));
+    EXPECT_GT(error.rms_relative, 0);
+}
+
+TEST(TranslucentPipeline, OpenAndInsideOutBodiesAreReported) {
+    auto ball = tests::turned_inside_out(tests::make_sphere(2));
+    ball.index.resize(ball.index.size() - 3);
+    const BakeResult result =
+        bake_scene(tests::make_translucent_scene({ball}, wax()), only({"multiple"}));
+    ASSERT_EQ(result.warnings.size(), 2u);
+    EXPECT_NE(result.warnings[0].fault.find("turned outward"), std::string::npos);
+    EXPECT_NE(result.warnings[1].fault.find("open at 3 edges"), std::string::npos);
+    EXPECT_TRUE(bake_scene(make_ball_on_floor(wax()), only({"multiple"})).warnings.empty());
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,172 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/media_bake.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Primitive;
+using formats::Rgb;
+using tests::all_finite;
+using tests::bake_scene;
+using tests::make_grey_medium;
+using tests::make_translucent_scene;
+using tests::relative_rms;
+using tests::relight_primitive;
+using tests::small_bake;
+using tests::turned_inside_out;
+
+BakeResult bake(std::vector<Primitive> primitives, const BakeOptions& options = small_bake()) {
+    return bake_scene(make_translucent_scene(std::move(primitives), make_grey_medium(10, 0.2f)),
+                      options);
+}
+
+std::vector<Rgb> studio(const BakeResult& result) {
+    return relight_primitive(result.asset, "studio");
+}
+
+// A ball with dents deep enough to shadow each other.
+Primitive dented() {
+    auto ball = tests::make_sphere(3);
+    for (glm::vec3& p : ball.position) {
+        p *= 1 + 0.15f * std::sin(5 * p.x) * std::sin(6 * p.y + 1);
+    }
+    return ball;
+}
+
+TEST(Mesh, BodyInsideOutLooksLikeTheOneThatIsNot) {
+    const BakeResult right = bake({dented()});
+    const BakeResult turned = bake({turned_inside_out(dented())});
+    EXPECT_TRUE(right.warnings.empty());
+    EXPECT_EQ(turned.warnings.size(), 1u);
+    // Another order of corners rounds otherwise.
+    EXPECT_LT(relative_rms(studio(turned), studio(right)), 0.01);
+}
+
+TEST(Mesh, ShellWithinABodyOfTheSameMediumChangesNothing) {
+    const Primitive outer = tests::make_sphere(3);
+    BakeOptions options = small_bake();
+    options.samples = 8000;
+    const BakeResult alone = bake({outer}, options);
+    const BakeResult nested = bake({outer, tests::make_sphere(2, 0.6f, {0.1f, 0, 0})}, options);
+    EXPECT_TRUE(nested.warnings.empty());
+    // The sum over the outer surface has other samples, fewer of them.
+    EXPECT_LT(relative_rms(studio(nested), studio(alone)), 0.01);
+    EXPECT_TRUE(all_finite(nested.asset));
+}
+
+TEST(Mesh, AHoleIsReportedAndDarkensItsSurroundingsOnly) {
+    const BakeResult whole = bake({tests::make_sphere(3)});
+    Primitive open = tests::make_sphere(3);
+    open.index.resize(open.index.size() - 12);  // four of 1280 triangles
+    const BakeResult result = bake({open});
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_NE(result.warnings[0].fault.find("open at"), std::string::npos);
+    EXPECT_TRUE(all_finite(result.asset));
+    EXPECT_LT(relative_rms(studio(result), studio(whole)), 0.05);
+}
+
+TEST(Mesh, VerticesThatStandTwiceLookTheSame) {
+    // Each triangle with vertices of its own, as exporters leave them.
+    const Primitive shared = tests::make_sphere(2);
+    Primitive split = shared;
+    split.position.clear();
+    split.normal.clear();
+    for (std::uint32_t i = 0; i < split.index.size(); ++i) {
+        split.position.push_back(shared.position[shared.index[i]]);
+        split.normal.push_back(shared.normal[shared.index[i]]);
+        split.index[i] = i;
+    }
+    const BakeResult a = bake({shared}), b = bake({split});
+    EXPECT_TRUE(b.warnings.empty()) << "it is closed";
+    const std::vector<Rgb> once = studio(a);
+    std::vector<Rgb> expected;
+    for (const std::uint32_t i : shared.index) {
+        expected.push_back(once[i]);
+    }
+    EXPECT_LT(relative_rms(studio(b), expected), 1e-3);
+}
+
+TEST(Mesh, TrianglesWithoutAreaChangeNothing) {
+    Primitive body = tests::make_sphere(2);
+    const BakeResult clean = bake({body});
+    for (std::uint32_t v = 0; v + 2 < 40; v += 2) {
+        body.index.insert(body.index.end(), {v, v, v + 1, v, v, v});
+    }
+    const BakeResult result = bake({body});
+    EXPECT_TRUE(result.warnings.empty());
+    EXPECT_TRUE(all_finite(result.asset));
+    EXPECT_LT(relative_rms(studio(result), studio(clean)), 2e-3);
+}
+
+TEST(Mesh, VertexWithoutANormalIsDarkAndSpoilsNoOther) {
+    Primitive body = tests::make_sphere(2);
+    const std::vector<Rgb> clean = studio(bake({body}));
+    body.normal[7] = glm::vec3(0);
+    body.position.push_back({0, 0, 5});  // and one that no triangle has
+    body.normal.push_back(glm::vec3(0));
+    const BakeResult result = bake({body});
+    EXPECT_TRUE(all_finite(result.asset));
+    std::vector<Rgb> found = studio(result);
+    EXPECT_EQ(found[7], Rgb{});
+    EXPECT_EQ(found.back(), Rgb{});
+    found[7] = clean[7];
+    found.pop_back();
+    EXPECT_LT(relative_rms(found, clean), 0.01);
+}
+
+TEST(Mesh, CreasesAndCornersAreSmoothInTheirNeighbourhood) {
+    // On an edge of a box the inward normal runs along the other sides' planes.
+    Primitive box = tests::make_cube(8, false);
+    for (std::size_t v = 0; v < box.normal.size(); ++v) {
+        box.normal[v] = glm::normalize(box.position[v] * box.position[v] * box.position[v]);
+    }
+    const BakeResult result = bake({box});
+    EXPECT_TRUE(all_finite(result.asset));
+    const std::vector<Rgb> white = relight_primitive(result.asset, "white");
+    for (std::size_t v = 0; v < white.size(); ++v) {
+        // Corners get more than their share of light, but not another order.
+        EXPECT_GT(white[v].g, 0.1f) << v;
+        EXPECT_LT(white[v].g, 1.2f) << v;
+    }
+    // Copies of one vertex on two or three sides are one.
+    for (std::size_t v = 0; v < white.size(); ++v) {
+        for (std::size_t w = 0; w < v; ++w) {
+            if (box.position[v] == box.position[w]) {
+                EXPECT_NEAR(white[v].g, white[w].g, 0.02f * white[w].g) << v << ' ' << w;
+            }
+        }
+    }
+}
+
+TEST(Mesh, NormalsThatLeaveTheBodyGiveLittleAndNoNoise) {
+    Primitive body = tests::make_sphere(2);
+    for (std::size_t v = 0; v < body.normal.size(); v += 5) {
+        body.normal[v] = -body.normal[v];
+    }
+    const BakeResult result = bake({body});
+    EXPECT_TRUE(all_finite(result.asset));
+    for (const Rgb c : relight_primitive(result.asset, "white")) {
+        EXPECT_GE(c.g, 0);
+        EXPECT_LT(c.g, 1.2f);
+    }
+}
+
+TEST(Mesh, EmptyAndFlatBodiesBakeToNothing) {
+    Primitive flat = tests::make_sphere(1);
+    for (glm::vec3& p : flat.position) {
+        p = glm::vec3(1, 2, 3);
+    }
+    Primitive loose = tests::make_sphere(0);
+    loose.index.clear();
+    const BakeResult result = bake({flat, loose});
+    EXPECT_TRUE(all_finite(result.asset));
+    for (const Rgb c : relight_primitive(result.asset, "white")) {
+        EXPECT_TRUE(std::isfinite(c.g));
+    }
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/bake.h"
+#include "tests/support/media.h"
+
+namespace opaline::tests {
+
+/// Enough for whole bakes of small bodies in a second or so.
+inline bake::BakeOptions small_bake() {
+    bake::BakeOptions options;
+    options.cubemap_size = 8;
+    options.coefficients = bake::kAllCoefficients;
+    options.samples = 3000;
+    options.depth_samples = 4;
+    options.threads = 2;
+    return options;
+}
+
+inline bake::BakeOptions only(std::vector<std::string> effects) {
+    bake::BakeOptions options = small_bake();
+    options.effects = std::move(effects);
+    return options;
+}
+
+/// A ball of the medium, the first primitive, above a white floor.
+inline Scene make_ball_on_floor(const formats::Medium& medium) {
+    Primitive floor = make_quad({-3, -1.02f, -3}, {0, 0, 6}, {6, 0, 0}, 6);
+    floor.material = 1;
+    return make_translucent_scene({make_sphere(2), floor}, medium);
+}
+
+/// Radiance of the vertices of one primitive, each seen along its normal.
+inline std::vector<formats::Rgb> relight_primitive(const formats::Asset& asset, const char* light,
+                                                   std::size_t primitive = 0,
+                                                   const runtime::ShadeOptions& options = {}) {
+    std::vector<formats::Rgb> radiance(asset.position.size());
+    runtime::shade(asset.view(), make_light(light, asset.view().cubemap_size), radiance, options);
+    const formats::PrimitiveRecord& record = asset.primitives[primitive];
+    return {radiance.begin() + record.first_vertex,
+            radiance.begin() + record.first_vertex + record.vertex_count};
+}
+
+/// RMS of the difference over RMS of the reference, all bands.
+inline double relative_rms(const std::vector<formats::Rgb>& a,
+                           const std::vector<formats::Rgb>& reference) {
+    double error = 0, sum = 0;
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+        const formats::Rgb d{a[i].r - reference[i].r, a[i].g - reference[i].g,
+                             a[i].b - reference[i].b};
+        error += double{d.r} * d.r + double{d.g} * d.g + double{d.b} * d.b;
+        const formats::Rgb& r = reference[i];
+        sum += double{r.r} * r.r + double{r.g} * r.g + double{r.b} * r.b;
+    }
+    return sum > 0 ? std::sqrt(error / sum) : std::sqrt(error);
+}
+
+/// Every number that a file holds for its receivers is finite.
+inline bool all_finite(const formats::Asset& asset) {
+    const auto finite = [](float x) { return std::isfinite(x); };
+    const auto& rows = asset.transport;
+    return std::all_of(rows.average_scale.begin(), rows.average_scale.end(), finite) &&
+           std::all_of(rows.detail_scale.begin(), rows.detail_scale.end(), finite) &&
+           std::all_of(asset.base_color.begin(), asset.base_color.end(),
+                       [&](formats::Rgb c) { return finite(c.r) && finite(c.g) && finite(c.b); });
+}
+
+}  // namespace opaline::tests
