@@ -94,6 +94,21 @@ TEST(GatherMultiple, SphereUnderUniformIrradianceHasItsClosedForm) {
     }
 }
 
+TEST(GatherMultiple, SphereUnderUniformLightIsThatOfTheTable) {
+    OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "sphere_Td_dot_one");
+    for (const auto& row : rows) {
+        const double radius = row.number("radius"), eta = row.number("eta");
+        const auto profile =
+            classic_profile(row.number("sigma_s_prime"), row.number("sigma_a"), eta);
+        // <E, 1> over the hemisphere: all that enters of white light.
+        const double entering = kPi * (1 - fresnel_moments(eta).external);
+        const Samples set = make_sphere(radius, 40000, [&](glm::dvec3) { return entering; });
+        const double found =
+            gather(set.tree(), profile, {0, static_cast<float>(radius), 0}, {0, 1, 0}, 1e-4);
+        EXPECT_NEAR(found, row.expected, 2e-3 * row.expected) << row.name();
+    }
+}
+
 TEST(GatherMultiple, SphereUnderDirectionalLightIsThatOfTheTable) {
     OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "sphere_Td");
     for (const auto& row : rows) {
