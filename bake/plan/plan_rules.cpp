@@ -27,8 +27,8 @@ constexpr double kSlowdownPerLevel = 0.11;
 constexpr double kGatherPerSecond = 4e8;
 constexpr double kNodes = 800;
 // Triangles drawn into a light map, and interior points looked up in it.
-constexpr double kDrawnPerSecond = 2e7;
-constexpr double kLookUpsPerSecond = 4e7;
+constexpr double kDrawnPerSecond = 1e7;
+constexpr double kLookUpsPerSecond = 1e7;
 
 double predict_trace_seconds(double receivers, const PlanInput& input) {
     // Half of the 2N x 2N x 6 subtexels lie above a receiver's horizon.
