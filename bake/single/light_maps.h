@@ -30,10 +30,10 @@ std::uint32_t light_view_size(const BodyMesh& mesh);
 /// The loops are transposed: for each direction the medium's boundary is rendered once along it,
 /// and every interior node of every receiver is looked up: it is lit from the front layer above it
 /// if no back layer and no blocker lies between. What cannot be looked up surely is traced, in
-/// packets of sixteen that share the direction, if it matters; of what matters little, a random
-/// part is, so that errors have mean zero.
+/// packets of sixteen that share the direction, if it matters; of what matters little, the likely
+/// answer is taken: on average that is as near as tracing a random part of it.
 ///
-/// Memory: 4 K bytes a receiver and texel (packed_rows_in), 200 bytes a receiver and node, and per
+/// Memory: 4 K bytes a receiver and texel (packed_rows_in), 60 bytes a receiver and node, and per
 /// thread one view and 12 K bytes a receiver. Callers cut `points` accordingly; each call renders
 /// all views anew. `size`: pixels across. Bit-identical for any number of threads, and for any
 /// cut. Cancelled: the rows are incomplete.

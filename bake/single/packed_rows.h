@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -18,10 +19,11 @@ inline std::uint32_t pack_shared_exponent(const std::array<float, 3>& value, boo
     const int bits = has_sign ? 8 : 9;
     const float most = has_sign ? 255.0f : 511.0f;
     const float largest = std::max({std::abs(value[0]), std::abs(value[1]), std::abs(value[2])});
-    int exponent = 0;
-    std::frexp(largest, &exponent);  // largest = f 2^exponent, f in [1/2, 1)
+    // largest = f 2^exponent, f in [1/2, 1); anything small for 0. No call of frexp or ldexp: there
+    // are as many values to pack as there are results.
+    const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(largest) >> 23) - 126;
     const int e = std::clamp(-exponent, 0, kSmallest);
-    const float scale = std::ldexp(1.0f, e + bits);
+    const float scale = std::bit_cast<float>(static_cast<std::uint32_t>(127 + e + bits) << 23);
     std::uint32_t packed = static_cast<std::uint32_t>(e);
     for (std::size_t c = 0; c < 3; ++c) {
         const float magnitude = std::min(most, std::abs(value[c]) * scale + 0.5f);
@@ -48,8 +50,9 @@ inline std::array<float, 3> unpack_shared_exponent(std::uint32_t packed, bool ha
 struct PackedRows {
     std::uint32_t texels = 0;
     std::vector<float> largest_term;    ///< [term]: what a value of 1 stands for, times scale
-    std::vector<float> scale;           ///< [receiver]
-    std::vector<std::uint32_t> packed;  ///< [texel][receiver][term], 4 bytes each
+    std::vector<std::uint32_t> place;   ///< [receiver]: where it stands below, neighbours together
+    std::vector<float> scale;           ///< [place]
+    std::vector<std::uint32_t> packed;  ///< [texel][place][term], 4 bytes each
 };
 
 /// How many receivers of `terms` terms fit into `bytes` of memory; at least 1.
@@ -61,12 +64,12 @@ inline std::size_t packed_rows_in(std::size_t bytes, std::uint32_t texels, std::
 /// Any thread may read.
 inline void read_packed_row(const PackedRows& rows, std::size_t receiver,
                             std::span<float> transport) {
-    const std::size_t terms = rows.largest_term.size();
+    const std::size_t terms = rows.largest_term.size(), place = rows.place[receiver];
     for (std::size_t j = 0; j < rows.texels; ++j) {
-        const std::size_t first = (j * rows.scale.size() + receiver) * terms;
+        const std::size_t first = (j * rows.scale.size() + place) * terms;
         for (std::size_t k = 0; k < terms; ++k) {
             const auto value = unpack_shared_exponent(rows.packed[first + k], k > 0);
-            const float scale = rows.scale[receiver] * rows.largest_term[k];
+            const float scale = rows.scale[place] * rows.largest_term[k];
             for (std::size_t c = 0; c < 3; ++c) {
                 transport[(3 * k + c) * rows.texels + j] = scale * value[c];
             }

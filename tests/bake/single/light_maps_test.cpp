@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bake/single/gather_direction.h"
 #include "bake/single/inner_triangles.h"
 #include "bake/single/texel_directions.h"
 #include "tests/bake/single/single_support.h"
@@ -177,6 +178,50 @@ TEST(LightMaps, RowsDependNeitherOnThreadsNorOnHowPointsAreCut) {
         read_packed_row(one.rows, 100 + p, b);
         EXPECT_EQ(a, b) << p;
     }
+}
+
+// Look-ups by eights leave to the careful one what they cannot tell; the rest is the same.
+TEST(LightColumns, ClearAnswersAgreeWithCarefulOnes) {
+    const auto setup =
+        set_up(make_translucent_scene({tests::make_bumpy_body(4)}, make_grey_medium(8, 0.2f)));
+    const BodyMesh mesh = make_body_mesh(setup.scene, setup.rays, 0, {});
+    const auto body = some_points(setup, 1000);
+    const NodeList list = collect_nodes(setup.rays, setup.medium, mesh.centre, body, {});
+    const GatherJob job =
+        make_gather_job(setup.rays, mesh, light_view_size(mesh), setup.medium, list);
+    const glm::vec3 w = glm::normalize(glm::vec3(0.3f, -0.5f, 0.7f));
+    LightView view;
+    render_light_view(mesh, make_light_frame(w, mesh.radius, job.size, {0.3f, 0.6f}), job.size,
+                      view);
+    ColumnAnswers answers;
+    answers.resize(list.node.size());
+    look_up_columns(view, list.points, 0, list.node.size(), job.column, answers);
+    std::size_t unclear = 0, lit = 0, differ = 0;
+    for (std::size_t i = 0; i < list.node.size(); ++i) {
+        if (answers.state[i] == ColumnAnswers::unclear) {
+            ++unclear;
+            continue;
+        }
+        const glm::vec3 p = project(view.frame, list.node[i].position - mesh.centre);
+        const LightAnswer careful = look_up(mesh, view, p, job.column.tolerance, 0.0f);
+        const bool is_lit = answers.state[i] == ColumnAnswers::lit;
+        float expected = 0;
+        if (careful.lit) {
+            const glm::vec2 slope = view.frame.pixels_per_metre * view.slope[careful.triangle];
+            const auto entry =
+                enter(1 / std::sqrt(1 + glm::dot(slope, slope)), setup.medium.boundary);
+            expected = list.node[i].weight[0] * entry.throughput *
+                       std::exp(-8.2f * careful.distance * entry.path_ratio);
+        }
+        lit += is_lit ? 1 : 0;
+        // Beside an edge the other triangle may answer, of another slope.
+        const float scale = 0.01f * job.column.throughput * list.points.weight[0][i] /
+                            std::max(list.points.importance[i], 1e-6f);
+        differ += std::abs(answers.light[0][i] - expected) > scale ? 1 : 0;
+    }
+    EXPECT_LT(unclear, list.node.size() / 5);
+    EXPECT_GT(lit, list.node.size() / 5);
+    EXPECT_LT(differ, list.node.size() / 50);
 }
 
 TEST(TexelDirections, ThoseOfTexelsAreAsGoodAsFourInEachForSmoothLights) {

@@ -1,0 +1,234 @@
+#include "bake/single/gather_direction.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "formats/opal/spherical_harmonics.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::uint32_t kLanes = RayPacket::kSize;
+
+// Where light enters on its way to a node.
+struct Arrival {
+    float distance, cosine;
+    Entry<float> entry;
+    glm::vec3 normal;
+};
+
+Arrival arrival_of(const GatherJob& job, const LightView& view, std::uint32_t triangle,
+                   float distance) {
+    const LightFrame& frame = view.frame;
+    const glm::vec2 slope = frame.pixels_per_metre * view.slope[triangle];
+    const float cosine = 1.0f / std::sqrt(1.0f + glm::dot(slope, slope));
+    return {distance, cosine, enter(cosine, job.medium.boundary),
+            cosine * (frame.w - slope.x * frame.u - slope.y * frame.v)};
+}
+
+// Adds light that arrives to the terms of a receiver.
+void add(const GatherJob& job, glm::vec3 w, const Arrival& arrival,
+         const std::array<float, 3>& light, float* value) {
+    if (job.terms == 1) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            value[c] += job.isotropic * light[c];
+        }
+        return;
+    }
+    std::array<float, formats::kMaxHarmonics> g;
+    eval_phase_terms(job.medium.phase, job.medium.boundary.eta, w, arrival.normal, arrival.entry,
+                     arrival.cosine, std::span<float>(g).first(job.terms));
+    for (std::size_t k = 0; k < job.terms; ++k) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            value[3 * k + c] += g[k] * light[c];
+        }
+    }
+}
+
+// What of the light gets to a node, times a factor.
+std::array<float, 3> attenuate(const GatherJob& job, const InteriorNode& node,
+                               const Arrival& arrival, float factor) {
+    const float length = arrival.distance * arrival.entry.path_ratio;
+    std::array<float, 3> light;
+    for (std::size_t c = 0; c < 3; ++c) {
+        light[c] = factor * arrival.entry.throughput * node.weight[c] *
+                   exp_of_negative(-job.column.sigma_t[c] * length);
+    }
+    return light;
+}
+
+// Evenly distributed in [0, 1), a function of the node and the direction alone.
+float number_of(const InteriorNode& node, glm::vec3 w) {
+    std::uint64_t hash = 0x9e3779b97f4a7c15u;
+    for (const float x : {node.position.x, node.position.y, node.position.z, w.x, w.y, w.z}) {
+        hash = (hash ^ std::bit_cast<std::uint32_t>(x)) * 0xbf58476d1ce4e5b9u;
+        hash ^= hash >> 29;
+    }
+    return static_cast<float>(hash >> 40) * 0x1p-24f;
+}
+
+// How likely an unsure look-up is traced: surely where it matters. Of those that may be dark or lit
+// a random part is, so that errors have mean zero: of the nodes in a thin sheet all may be. Where
+// only the distance is unsure, and little, the likely answer is as near as that on average.
+float trace_probability(const GatherJob& job, const InteriorNode& node, const LightAnswer& answer,
+                        float path_ratio, float scale) {
+    constexpr float kSlack = 4.0f;  // what planes disagree by is not all that may be wrong
+    float error = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float sigma = job.column.sigma_t[c] * path_ratio;
+        const float change = std::min(1.0f, kSlack * sigma * answer.uncertainty);
+        error = std::max(error, change * node.weight[c] * exp_of_negative(-sigma * answer.nearest));
+    }
+    constexpr float kMatters = 0.1f;  // of all light that the receiver can have
+    constexpr float kLeast = 0.05f;   // bounds how much brighter a surprise can be than the truth
+    const float part = job.column.throughput * error / (kMatters * scale);
+    if (answer.uncertainty < std::numeric_limits<float>::infinity()) {
+        return part < 1.0f ? 0.0f : 1.0f;
+    }
+    return std::clamp(part, kLeast, 1.0f);
+}
+
+void trace_open(const GatherJob& job, const GatherDirection& direction, GatherWorkspace& work) {
+    for (std::size_t begin = 0; begin < work.open.size(); begin += kLanes) {
+        const std::size_t count = std::min<std::size_t>(kLanes, work.open.size() - begin);
+        RayPacket packet{};
+        packet.dir_x.fill(direction.w.x);
+        packet.dir_y.fill(direction.w.y);
+        packet.dir_z.fill(direction.w.z);
+        packet.mask.fill(0xffffffffu);
+        LaneMask lanes{};
+        std::array<std::int32_t, kLanes> shells{};
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            const InteriorNode& node = *work.open[begin + lane].node;
+            const glm::vec3 origin = node.position - job.rays.centre();
+            packet.org_x[lane] = origin.x;
+            packet.org_y[lane] = origin.y;
+            packet.org_z[lane] = origin.z;
+            shells[lane] = node.shells;
+            lanes[lane] = -1;
+        }
+        const PacketEntries entries =
+            find_entries(job.rays, job.medium.material, lanes, packet, shells, work.counts);
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            if (entries.lit[lane] == 0) {
+                continue;
+            }
+            const GatherWorkspace::Open& open = work.open[begin + lane];
+            const Arrival arrival{
+                entries.distance[lane],
+                entries.cosine[lane],
+                enter(entries.cosine[lane], job.medium.boundary),
+                {entries.normal_x[lane], entries.normal_y[lane], entries.normal_z[lane]}};
+            add(job, direction.w, arrival, attenuate(job, *open.node, arrival, open.factor),
+                &work.value[3 * job.terms * std::size_t{open.receiver}]);
+        }
+    }
+}
+
+// Looks a node up at a silhouette, a crease or between thin layers.
+void gather_unclear(const GatherJob& job, const GatherDirection& direction, std::uint32_t receiver,
+                    const InteriorNode& node, float margin, GatherWorkspace& work) {
+    const glm::vec3 p = project(work.view.frame, node.position - job.mesh.centre);
+    const LightAnswer answer = look_up(job.mesh, work.view, p, job.column.tolerance, margin);
+    Arrival arrival{};
+    if (answer.triangle != formats::kNone) {
+        arrival = arrival_of(job, work.view, answer.triangle, answer.distance);
+    }
+    float factor = direction.share;
+    if (!answer.sure) {
+        ++work.unsure;
+        const float probability = trace_probability(job, node, answer, arrival.entry.path_ratio,
+                                                    job.list.scale[receiver]);
+        if (number_of(node, direction.w) < probability) {
+            // The likely answer plus what the rays find more than it: right on average.
+            work.open.push_back({&node, receiver, direction.share / probability});
+            factor -= direction.share / probability;
+        }
+    }
+    if (answer.lit && factor != 0) {
+        add(job, direction.w, arrival, attenuate(job, node, arrival, factor),
+            &work.value[3 * job.terms * std::size_t{receiver}]);
+    }
+}
+
+void gather_block(const GatherJob& job, const GatherDirection& direction,
+                  const NodeList::Block& block, GatherWorkspace& work) {
+    const NodeList& list = job.list;
+    const std::uint32_t begin = list.first[block.receiver];
+    const std::uint32_t end = list.first[block.receiver + block.receivers];
+    const ColumnAnswers& answers = work.answers;
+    look_up_columns(work.view, list.points, begin, end - begin, job.column, work.answers);
+    work.look_ups += end - begin;
+    for (std::uint32_t r = block.receiver; r < block.receiver + block.receivers; ++r) {
+        float* value = &work.value[3 * job.terms * std::size_t{r}];
+        std::array<float, 3> sum{};
+        for (std::uint32_t i = list.first[r]; i < list.first[r + 1]; ++i) {
+            const std::uint32_t k = i - begin;
+            const std::int32_t state = answers.state[k];
+            if (state == ColumnAnswers::unclear) {
+                gather_unclear(job, direction, r, list.node[i], 0.0f, work);
+            } else if (job.terms > 1 && state == ColumnAnswers::lit) {
+                std::array<float, 3> light;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    light[c] = direction.share * answers.light[c][k];
+                }
+                add(job, direction.w,
+                    arrival_of(job, work.view, answers.triangle[k], answers.distance[k]), light,
+                    value);
+            }
+            for (std::size_t c = 0; c < 3; ++c) {
+                sum[c] += answers.light[c][k];
+            }
+        }
+        if (job.terms == 1) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                value[c] += job.isotropic * direction.share * sum[c];
+            }
+        }
+    }
+}
+
+}  // namespace
+
+GatherJob make_gather_job(const RayScene& rays, const BodyMesh& mesh, std::uint32_t size,
+                          const SingleMedium& medium, const NodeList& list) {
+    GatherJob job{rays, mesh, size, medium, list, medium.phase.count(), 0, {}};
+    job.isotropic = largest_phase_terms(medium.phase)[0];
+    ColumnMedium& column = job.column;
+    std::copy(medium.path.sigma_t.begin(), medium.path.sigma_t.end(), column.sigma_t.begin());
+    constexpr float kOpticalTolerance = 0.02f;
+    column.tolerance = kOpticalTolerance /
+                       std::max({column.sigma_t[0], column.sigma_t[1], column.sigma_t[2], 1e-30f});
+    column.throughput = list.throughput;
+    column.boundary = medium.boundary;
+    return job;
+}
+
+void gather_direction(const GatherJob& job, const GatherDirection& direction, glm::vec2 jitter,
+                      GatherWorkspace& work) {
+    const NodeList& list = job.list;
+    work.open.clear();
+    render_light_view(job.mesh, make_light_frame(direction.w, job.mesh.radius, job.size, jitter),
+                      job.size, work.view);
+    work.answers.resize(list.largest_block);
+    for (const NodeList::Block& block : list.blocks) {
+        gather_block(job, direction, block, work);
+    }
+    constexpr float kNear = 2.0f;  // [pixels]
+    const float margin = kNear / work.view.frame.pixels_per_metre;
+    for (const NodeList::Hard& hard : list.hard) {
+        if (hard.crease) {
+            gather_unclear(job, direction, hard.receiver, hard.node, margin, work);
+            ++work.look_ups;
+        } else {
+            work.open.push_back({&hard.node, hard.receiver, direction.share});
+        }
+    }
+    trace_open(job, direction, work);
+}
+
+}  // namespace opaline::bake
