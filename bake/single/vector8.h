@@ -3,6 +3,9 @@
 #include <cstdint>
 #include <cstring>
 
+// Passing such vectors between functions depends on the instruction set; all that do are inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace opaline::bake {
 
 /// Compiles a function twice, for AVX2 and for any machine, and lets the loader choose. Both give
