@@ -1,45 +1,40 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <exception>
-#include <new>
-#include <numbers>
-#include <string>
-#include <utility>
+#include <memory>
 
-#include "formats/opal/cubemap.h"
-#include "formats/opal/read_opal.h"
-#include "runtime/integrate_discs.h"
-#include "runtime/integrate_map.h"
-#include "runtime/light_vector.h"
-#include "runtime/opaline.h"
-#include "runtime/parallel.h"
+#include "runtime/api_support.h"
 #include "runtime/shade.h"
-#include "runtime/specular.h"
 #include "runtime/terms.h"
 
 namespace formats = opaline::formats;
 namespace runtime = opaline::runtime;
 
-struct opaline_asset {
-    formats::LoadedAsset loaded;
-};
-
-struct opaline_light {
-    std::uint32_t n = 0;
-    unsigned threads = 1;
-    runtime::Rotation rotation;
-    formats::Environment environment;
-    std::vector<double> map_integral;  // kept, so that a sun does not cost a map
-    runtime::LightVector vector;
-    std::vector<std::uint32_t> roughness;  // levels that its asset uses
-    runtime::SpecularLight specular;
-};
-
 namespace {
 
 // Fixed size: reporting that memory ran out must not need memory.
 thread_local char last_error[512] = "";
+
+std::uint32_t terms_of(std::uint32_t flags) {
+    const auto keep = [flags](std::uint32_t without, std::uint32_t term) {
+        return (flags & without) == 0 ? term : 0;
+    };
+    return keep(OPALINE_SHADE_WITHOUT_MULTIPLE, runtime::kMultipleTerm) |
+           keep(OPALINE_SHADE_WITHOUT_SINGLE, runtime::kSingleTerm) |
+           keep(OPALINE_SHADE_WITHOUT_SPECULAR, runtime::kSpecularTerm) |
+           keep(OPALINE_SHADE_WITHOUT_DIFFUSE, runtime::kDiffuseTerm);
+}
+
+// Without allocating: shading is called per frame.
+bool is_prefiltered_for(const opaline_light& light, const formats::AssetView& asset) {
+    return std::ranges::all_of(asset.roughness, [&](float roughness) {
+        return roughness < 0 ||
+               std::ranges::binary_search(light.roughness, runtime::roughness_level(roughness));
+    });
+}
+
+}  // namespace
+
+namespace opaline::runtime::api {
 
 opaline_status fail(opaline_status status, const char* text) {
     std::snprintf(last_error, sizeof last_error, "%s", text);
@@ -62,98 +57,9 @@ opaline_status fail(const formats::Error& error) {
     }
 }
 
-// Nothing is thrown across the boundary. All work is done on copies that `work` moves into place at
-// its end, so a failure leaves things as they were.
-template <class Work>
-opaline_status guarded(const Work& work) noexcept {
-    try {
-        return work();
-    } catch (const std::exception&) {  // bad_alloc or length_error: nothing else is thrown here
-        return fail(OPALINE_OUT_OF_MEMORY, "not enough memory");
-    }
-}
+}  // namespace opaline::runtime::api
 
-opaline_status null_argument() {
-    return fail(OPALINE_INVALID_ARGUMENT, "an argument is NULL");
-}
-
-bool is_radiance(const float* values, std::size_t count) {
-    return std::all_of(values, values + count,
-                       [](float x) { return x >= 0.0f && std::isfinite(x); });
-}
-
-// What a light holds once its map or its rotation has changed.
-void project_map(opaline_light& light) {
-    light.map_integral.assign(std::size_t{3} * formats::cubemap_texels(light.n), 0.0);
-    runtime::integrate_map(light.environment, light.n, light.rotation, light.threads,
-                           light.map_integral);
-}
-
-// What it holds once its map or suns have changed: turning it does not change these maps.
-void prefilter(opaline_light& light) {
-    light.specular = runtime::prefilter_specular(light.environment, light.roughness, light.rotation,
-                                                 light.threads);
-}
-
-// A black one that keeps everything else.
-opaline_light without_environment(const opaline_light& light) {
-    opaline_light black;
-    black.n = light.n;
-    black.threads = light.threads;
-    black.rotation = light.rotation;
-    black.roughness = light.roughness;
-    return black;
-}
-
-void project(opaline_light& light) {
-    std::vector<double> integral = light.map_integral;
-    runtime::integrate_discs(light.environment.discs, light.n, light.rotation, integral);
-    light.vector = runtime::make_light_vector(integral, light.n);
-}
-
-opaline_status set_map(opaline_light* light, const float* rgb, formats::Environment::Layout layout,
-                       std::uint32_t width, std::uint32_t height) {
-    return guarded([&] {
-        const std::size_t pixels = std::size_t{width} * height;
-        if (!is_radiance(rgb, 3 * pixels)) {
-            return fail(OPALINE_INVALID_ARGUMENT, "radiance must be finite and not negative");
-        }
-        opaline_light changed = without_environment(*light);
-        changed.environment.discs = light->environment.discs;
-        changed.environment.layout = layout;
-        changed.environment.width = width;
-        changed.environment.height = height;
-        changed.environment.pixel.reserve(pixels);
-        for (std::size_t i = 0; i < pixels; ++i) {
-            changed.environment.pixel.push_back({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
-        }
-        project_map(changed);
-        project(changed);
-        prefilter(changed);
-        *light = std::move(changed);
-        return OPALINE_OK;
-    });
-}
-
-std::uint32_t terms_of(std::uint32_t flags) {
-    const auto keep = [flags](std::uint32_t without, std::uint32_t term) {
-        return (flags & without) == 0 ? term : 0;
-    };
-    return keep(OPALINE_SHADE_WITHOUT_MULTIPLE, runtime::kMultipleTerm) |
-           keep(OPALINE_SHADE_WITHOUT_SINGLE, runtime::kSingleTerm) |
-           keep(OPALINE_SHADE_WITHOUT_SPECULAR, runtime::kSpecularTerm) |
-           keep(OPALINE_SHADE_WITHOUT_DIFFUSE, runtime::kDiffuseTerm);
-}
-
-// Without allocating: shading is called per frame.
-bool is_prefiltered_for(const opaline_light& light, const formats::AssetView& asset) {
-    return std::ranges::all_of(asset.roughness, [&](float roughness) {
-        return roughness < 0 ||
-               std::ranges::binary_search(light.roughness, runtime::roughness_level(roughness));
-    });
-}
-
-}  // namespace
+using namespace opaline::runtime::api;
 
 extern "C" {
 
@@ -256,128 +162,6 @@ opaline_status opaline_asset_primitive_shading(const opaline_asset* asset, uint3
     *shading = {sizeof(opaline_primitive_shading), static_cast<std::uint32_t>(p.shading), p.terms,
                 p.eta};
     return OPALINE_OK;
-}
-
-opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** out) {
-    if (asset == nullptr || out == nullptr) {
-        return null_argument();
-    }
-    return guarded([&] {
-        auto light = std::make_unique<opaline_light>();
-        light->n = asset->loaded.view.cubemap_size;
-        light->roughness = runtime::roughness_levels(asset->loaded.view);
-        project_map(*light);
-        project(*light);
-        prefilter(*light);
-        *out = light.release();
-        return OPALINE_OK;
-    });
-}
-
-void opaline_light_release(opaline_light* light) {
-    delete light;
-}
-
-opaline_status opaline_light_set_threads(opaline_light* light, uint32_t threads) {
-    if (light == nullptr) {
-        return null_argument();
-    }
-    if (threads > runtime::kMaxThreads) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there may be 256 threads at most");
-    }
-    light->threads = threads;
-    return OPALINE_OK;
-}
-
-opaline_status opaline_light_set_rotation(opaline_light* light, const float world_from_light[9]) {
-    if (light == nullptr || world_from_light == nullptr) {
-        return null_argument();
-    }
-    const float* m = world_from_light;
-    const runtime::Rotation rotation{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
-    if (!runtime::is_rotation(rotation, 1e-3f)) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the matrix is not a rotation: its columns must be orthonormal to 1e-3, its "
-                    "determinant +1");
-    }
-    return guarded([&] {
-        opaline_light changed = *light;
-        changed.rotation = changed.specular.rotation = rotation;
-        project_map(changed);
-        project(changed);
-        *light = std::move(changed);
-        return OPALINE_OK;
-    });
-}
-
-opaline_status opaline_light_set_cubemap(opaline_light* light, const float* rgb, uint32_t size) {
-    if (light == nullptr || rgb == nullptr) {
-        return null_argument();
-    }
-    if (size < 1 || size > 8192) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the cube map's size must be 1 ... 8192");
-    }
-    return set_map(light, rgb, formats::Environment::Layout::cube, size,
-                   size * formats::kCubeFaces);
-}
-
-opaline_status opaline_light_set_lat_long(opaline_light* light, const float* rgb, uint32_t width,
-                                          uint32_t height) {
-    if (light == nullptr || rgb == nullptr) {
-        return null_argument();
-    }
-    if (width < 1 || width > 32768 || height < 1 || height > 32768) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the map's width and height must be 1 ... 32768");
-    }
-    return set_map(light, rgb, formats::Environment::Layout::lat_long, width, height);
-}
-
-opaline_status opaline_light_add_sun(opaline_light* light, const float direction[3],
-                                     float angular_radius, const float radiance[3]) {
-    if (light == nullptr || direction == nullptr || radiance == nullptr) {
-        return null_argument();
-    }
-    // In double precision, where no length of three floats overflows or vanishes.
-    const double norm =
-        std::hypot(static_cast<double>(direction[0]), static_cast<double>(direction[1]),
-                   static_cast<double>(direction[2]));
-    if (!(norm > 0) || !std::isfinite(norm)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the sun's direction must be finite and not zero");
-    }
-    // Below 1e-6 rad the squared radius would leave the range in which its solid angle is exact.
-    if (!(angular_radius >= 1e-6f && angular_radius < 0.5f * std::numbers::pi_v<float>)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the sun's radius must be in 1e-6 ... pi/2 radians");
-    }
-    if (!is_radiance(radiance, 3)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "radiance must be finite and not negative");
-    }
-    return guarded([&] {
-        opaline_light changed = *light;
-        const auto along = [&](int i) {
-            return static_cast<float>(static_cast<double>(direction[i]) / norm);
-        };
-        changed.environment.discs.push_back({{along(0), along(1), along(2)},
-                                             angular_radius,
-                                             {radiance[0], radiance[1], radiance[2]}});
-        project(changed);
-        prefilter(changed);
-        *light = std::move(changed);
-        return OPALINE_OK;
-    });
-}
-
-opaline_status opaline_light_clear(opaline_light* light) {
-    if (light == nullptr) {
-        return null_argument();
-    }
-    return guarded([&] {
-        opaline_light changed = without_environment(*light);
-        project_map(changed);
-        project(changed);
-        prefilter(changed);
-        *light = std::move(changed);
-        return OPALINE_OK;
-    });
 }
 
 opaline_status opaline_shade(const opaline_asset* asset, const opaline_light* light, uint32_t flags,

@@ -8,18 +8,6 @@
 #include "formats/opal/haar.h"
 
 namespace opaline::bake {
-namespace {
-
-double dot(std::span<const float> a, std::span<const float> b) {
-    double sum = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) {
-        sum += static_cast<double>(a[k]) * static_cast<double>(b[k]);
-    }
-    return sum;
-}
-
-}  // namespace
-
 EffectCheck check_direct(const RayScene& rays, std::span<const Receiver> receivers,
                          const formats::AssetView& asset, std::span<const std::uint32_t> drawn,
                          std::span<const TestLight> lights, const Context& context) {
@@ -46,8 +34,8 @@ EffectCheck check_direct(const RayScene& rays, std::span<const Receiver> receive
             found.rays = gather_irradiance(rays, fine, receivers[v], dense);
             formats::haar_forward_cube(std::span<float>(dense), fine.cubemap_size);
             for (const TestLight& light : lights) {
-                const double reference = dot(dense, light.fine) * std::numbers::inv_pi;
-                found.pairs.push_back({dot(stored, light.coarse) - reference, reference});
+                const double reference = relit(dense, light.fine) * std::numbers::inv_pi;
+                found.pairs.push_back({relit(stored, light.coarse) - reference, reference});
             }
             return found;
         },

@@ -14,14 +14,6 @@ namespace {
 
 constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};
 
-double dot(std::span<const float> a, std::span<const float> b) {
-    double sum = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) {
-        sum += static_cast<double>(a[k]) * static_cast<double>(b[k]);
-    }
-    return sum;
-}
-
 // Luminance under each light, seen along the normal: sum over terms of h_k <T_k, L>.
 using Luminance = std::vector<double>;
 
@@ -44,7 +36,7 @@ Luminance relight_stored(const formats::AssetView& asset, const formats::Primiti
                                 band, stored);
             for (std::size_t l = 0; l < lights.size(); ++l) {
                 luminance[l] +=
-                    static_cast<double>(h[k]) * kLuminance[band] * dot(stored, lights[l].coarse);
+                    static_cast<double>(h[k]) * kLuminance[band] * relit(stored, lights[l].coarse);
             }
         }
     }
@@ -87,7 +79,7 @@ std::uint64_t add_single(const SingleReference& reference, const RayScene& rays,
         formats::haar_forward_cube(own, n);
         const double weight = static_cast<double>(h[plane / 3]) * kLuminance[plane % 3];
         for (std::size_t l = 0; l < lights.size(); ++l) {
-            luminance[l] += weight * dot(own, lights[l].coarse);
+            luminance[l] += weight * relit(own, lights[l].coarse);
         }
     }
     return counts.rays;

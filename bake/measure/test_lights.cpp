@@ -42,6 +42,14 @@ std::vector<float> coarsen(const std::vector<float>& fine, std::uint32_t n) {
 
 }  // namespace
 
+double relit(std::span<const float> row, std::span<const float> light) {
+    double sum = 0;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+        sum += static_cast<double>(row[k]) * static_cast<double>(light[k]);
+    }
+    return sum;
+}
+
 formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_size,
                                                          unsigned threads) {
     std::vector<TestLight> lights;

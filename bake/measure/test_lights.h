@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct TestLight {
     std::vector<float> coarse;  ///< 6 n n, n the asset's cube map size
     std::vector<float> fine;    ///< 6 (2n)(2n), of the reference
 };
+
+/// <row, light>, summed in double precision; both of one length and basis.
+double relit(std::span<const float> row, std::span<const float> light);
 
 /// The published set: white, the sun at three angles, studio, sky.
 formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_size,

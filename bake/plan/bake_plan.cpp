@@ -12,9 +12,7 @@ std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const Knobs& knobs
     std::vector<PlanSubject> subjects(scene.materials.size());
     for (const formats::Primitive& primitive : scene.primitives) {
         PlanSubject& subject = subjects[primitive.material];
-        const auto own = static_cast<double>(primitive.index.size() / 3);
-        triangles += own;
-        subject.triangles += own;
+        triangles += static_cast<double>(primitive.index.size() / 3);
         subject.receivers += static_cast<double>(primitive.position.size());
         if (primitive.color.empty()) {
             subject.brightest_vertex = 1.0f;

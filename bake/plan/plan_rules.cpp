@@ -7,7 +7,7 @@
 
 #include "bake/scattering/dipole.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/scattering/gauss_legendre.h"
+#include "bake/scattering/half_space_single.h"
 #include "bake/scattering/phase.h"
 #include "bake/scattering/phase_series.h"
 #include "formats/media/mean_cosine.h"
@@ -224,29 +224,6 @@ constexpr std::array<PlanRule, 4> kRules{{{"direct", any_material, decide_direct
                                           {"multiple", has_medium, decide_multiple},
                                           {"single", has_medium, decide_single},
                                           {"specular", has_medium, decide_specular}}};
-
-// L1 of a half space under uniform light, integrated over all exit directions:
-// translucency.md 3.6 on a plane, isotropic, where 1/(sigma_t (1 + mu_o'/mu_i')) is what the
-// integral over depth gives.
-double half_space_single(double eta) {
-    const GaussLegendre rule = make_gauss_legendre(32);
-    double sum = 0;
-    for (std::size_t o = 0; o < rule.node.size(); ++o) {
-        for (std::size_t i = 0; i < rule.node.size(); ++i) {
-            const double mu_o = rule.node[o], mu_i = rule.node[i];
-            const auto inside = [eta](double mu) {
-                return std::sqrt(std::max(0.0, 1 - (1 - mu * mu) / (eta * eta)));
-            };
-            const double in_o = inside(mu_o), in_i = inside(mu_i);
-            if (in_o > 0 && in_i > 0) {
-                const double jacobian = mu_i / (eta * eta * in_i);
-                sum += rule.weight[o] * rule.weight[i] * mu_o * fresnel_transmittance(mu_o, eta) *
-                       fresnel_transmittance(mu_i, eta) * jacobian / (1 + in_o / in_i);
-            }
-        }
-    }
-    return sum;  // 2 int (1/(4 pi)) 2 pi int ... dmu_i mu_o dmu_o
-}
 
 }  // namespace
 

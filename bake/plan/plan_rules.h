@@ -13,7 +13,7 @@ inline constexpr std::uint32_t kOpennessCubemap = 8;
 
 /// What the rules ask about one material's surfaces.
 struct PlanSubject {
-    double receivers = 0, triangles = 0;
+    double receivers = 0;
     double area = 0;                     ///< [m^2], of a medium's boundary
     glm::vec3 low{1e30f}, high{-1e30f};  ///< [m], of a medium
     float brightest_vertex = 0;          ///< largest component of its vertex colours
@@ -38,8 +38,8 @@ struct PlanRule {
 /// All rules, in the order in which plans list effects.
 extern const std::span<const PlanRule> kPlanRules;
 
-/// What a half space returns of uniform light after one scattering, per incident flux and albedo,
-/// and the share that this is of all it returns: the largest over the bands.
+/// The share of single scattering in what a half space returns of uniform light: the largest over
+/// the bands. In [0, 1].
 double single_share(const formats::Medium& medium);
 
 /// The smallest K whose error, times the share of single scattering, is at most

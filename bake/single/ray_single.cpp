@@ -12,22 +12,6 @@ namespace {
 
 constexpr std::uint32_t kLanes = RayPacket::kSize;
 
-RayPacket packet_from(glm::vec3 origin, const DirectionBlock& block) {
-    RayPacket packet;
-    packet.org_x.fill(origin.x);
-    packet.org_y.fill(origin.y);
-    packet.org_z.fill(origin.z);
-    packet.dir_x = block.dir_x;
-    packet.dir_y = block.dir_y;
-    packet.dir_z = block.dir_z;
-    packet.tnear.fill(0.0f);
-    packet.time.fill(0.0f);
-    packet.mask.fill(0xffffffffu);
-    packet.id.fill(0);
-    packet.flags.fill(0);
-    return packet;
-}
-
 // Where light goes less far than coordinates resolve, distances to the boundary are noise. What a
 // half space scatters once depends on its albedo alone, and over so short a way every body is one:
 // so a thinner medium of the same albedo, band by band, is as good.
@@ -122,11 +106,14 @@ EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
     for (const InteriorNode& node : nodes) {
         std::array<std::int32_t, kLanes> shells;
         shells.fill(node.shells);
+        RayPacket packet = rays_from(node.position - rays.centre());
         for (std::size_t b = 0; b < directions.blocks.size(); ++b) {
             const DirectionBlock& block = directions.blocks[b];
+            packet.dir_x = block.dir_x;
+            packet.dir_y = block.dir_y;
+            packet.dir_z = block.dir_z;
             const PacketEntries entries =
-                find_entries(rays, medium.material, all,
-                             packet_from(node.position - rays.centre(), block), shells, counts);
+                find_entries(rays, medium.material, all, packet, shells, counts);
             for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
                 if (entries.lit[lane] == 0) {
                     continue;

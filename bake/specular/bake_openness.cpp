@@ -9,19 +9,6 @@ namespace {
 
 constexpr std::uint32_t kLanes = RayPacket::kSize;
 
-RayPacket packet_from(glm::vec3 origin) {
-    RayPacket packet;
-    packet.org_x.fill(origin.x);
-    packet.org_y.fill(origin.y);
-    packet.org_z.fill(origin.z);
-    packet.tnear.fill(0.0f);
-    packet.time.fill(0.0f);
-    packet.mask.fill(0xffffffffu);
-    packet.id.fill(0);
-    packet.flags.fill(0);
-    return packet;
-}
-
 }  // namespace
 
 OpenHemisphere gather_openness(const RayScene& rays, const DirectionSet& directions,
@@ -31,7 +18,7 @@ OpenHemisphere gather_openness(const RayScene& rays, const DirectionSet& directi
     if (n == glm::vec3(0)) {
         return seen;
     }
-    RayPacket packet = packet_from(receiver.origin - rays.centre());
+    RayPacket packet = rays_from(receiver.origin - rays.centre());
     double open = 0, all = 0;
     glm::dvec3 axis(0);
     for (const DirectionBlock& block : directions.blocks) {

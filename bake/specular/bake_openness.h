@@ -25,8 +25,8 @@ OpenHemisphere gather_openness(const RayScene& rays, const DirectionSet& directi
                                const Receiver& receiver);
 
 /// Openness of each receiver, in order; fewer if the context is cancelled. A sparse direction set
-/// of 16 texels is enough: four bytes and a cone hold no more. The same for any number of
-/// threads. Adds to `traced`.
+/// of 8 texels, 192 rays a hemisphere, is enough for four bytes and a cone. The same for any number
+/// of threads. Adds to `traced`.
 std::vector<formats::Openness> bake_openness(const RayScene& rays, const DirectionSet& directions,
                                              std::span<const Receiver> receivers,
                                              const Context& context, std::uint64_t& traced);

@@ -46,11 +46,10 @@ SingleStage prepare_single(const formats::Scene& scene, const RayScene& rays,
     return stage;
 }
 
-std::size_t receivers_per_batch(const SingleStage& stage) {
-    constexpr std::size_t kBytes = std::size_t{2} << 30;
+std::size_t receivers_per_batch(const SingleStage& stage, std::size_t bytes) {
     return stage.by_rays
-               ? std::max<std::size_t>(1, kBytes / (sizeof(float) * row_size_of(stage)))
-               : packed_rows_in(kBytes, formats::cubemap_texels(stage.directions.cubemap_size),
+               ? std::max<std::size_t>(1, bytes / (sizeof(float) * row_size_of(stage)))
+               : packed_rows_in(bytes, formats::cubemap_texels(stage.directions.cubemap_size),
                                 stage.medium.phase.count());
 }
 

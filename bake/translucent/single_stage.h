@@ -39,8 +39,8 @@ struct SingleBatch {
     std::size_t row_size = 0;  ///< 3 K 6 n n
 };
 
-/// Receivers that fit into one batch's memory, about 2 GiB.
-std::size_t receivers_per_batch(const SingleStage& stage);
+/// Receivers whose rows fit into `bytes`; at least 1.
+std::size_t receivers_per_batch(const SingleStage& stage, std::size_t bytes);
 SingleBatch gather_single_batch(const SingleStage& stage, const RayScene& rays,
                                 std::span<const BodyPoint> points, const Context& context);
 /// The row of one receiver: terms, in each red, green, blue, in each the texels. `row`:

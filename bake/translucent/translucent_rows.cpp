@@ -68,8 +68,9 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
                                      EntryCounts& counts) {
     const std::uint32_t n = recipe.selector.cubemap_size;
     const std::size_t size = formats::cubemap_texels(n), terms = recipe.layout.terms();
-    const std::size_t step = recipe.single != nullptr ? receivers_per_batch(*recipe.single)
-                                                      : std::max<std::size_t>(1, points.size());
+    const std::size_t step = recipe.single != nullptr
+                                 ? receivers_per_batch(*recipe.single, recipe.batch_bytes)
+                                 : std::max<std::size_t>(1, points.size());
     formats::SparseRows rows = formats::make_sparse_rows(n, recipe.code_bits);
     for (std::size_t begin = 0; begin < points.size() && !context.cancelled(); begin += step) {
         const auto part = points.subspan(begin, std::min(step, points.size() - begin));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -21,6 +22,7 @@ struct TranslucentRecipe {
     GatherOptions gather;
     Selector selector;
     std::uint32_t code_bits = 8;
+    std::size_t batch_bytes = std::size_t{2} << 30;  ///< memory for single scattering at a time
 };
 
 /// Values of one receiver's rows before selection: term by term, band by band, Haar coefficients,

@@ -43,16 +43,7 @@ std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& direct
     if (receiver.normal == glm::vec3(0)) {
         return 0;
     }
-    const glm::vec3 origin = receiver.origin - rays.centre();
-    RayPacket packet;
-    packet.org_x.fill(origin.x);
-    packet.org_y.fill(origin.y);
-    packet.org_z.fill(origin.z);
-    packet.tnear.fill(0.0f);
-    packet.time.fill(0.0f);
-    packet.mask.fill(0xffffffffu);
-    packet.id.fill(0);
-    packet.flags.fill(0);
+    RayPacket packet = rays_from(receiver.origin - rays.centre());
     std::uint64_t traced = 0;
     for (const DirectionBlock& block : directions.blocks) {
         // The whole block is below the horizon if its axis is by more than its radius:

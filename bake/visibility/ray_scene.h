@@ -24,6 +24,16 @@ struct alignas(64) RayPacket {
     LaneBits mask, id, flags;
 };
 
+/// Rays from one point, relative to RayScene::centre; directions and tfar are still to be given.
+inline RayPacket rays_from(glm::vec3 origin) {
+    RayPacket packet{};
+    packet.org_x.fill(origin.x);
+    packet.org_y.fill(origin.y);
+    packet.org_z.fill(origin.z);
+    packet.mask.fill(0xffffffffu);
+    return packet;
+}
+
 /// Which lanes of a packet to trace: -1 yes, 0 no.
 using LaneMask = std::array<std::int32_t, RayPacket::kSize>;
 

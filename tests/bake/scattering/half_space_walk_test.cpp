@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bake/scattering/fresnel.h"
+#include "bake/scattering/half_space_single.h"
 #include "tests/support/reference_table.h"
 
 namespace opaline::bake {
@@ -30,6 +31,8 @@ TEST(HalfSpaceWalk, SingleScatteringPerAlbedoIsThatOfTheTable) {
         if (row.input.at("jac") != "exact") continue;
         const auto r = walk_half_space(1e-2, 0, row.number("eta"), 200000, 3, {});
         EXPECT_NEAR(r.single / 1e-2, row.expected, 0.005) << row.name();
+        // 32 nodes across the square root at the critical angle.
+        EXPECT_NEAR(half_space_single(row.number("eta")), row.expected, 1e-4) << row.name();
     }
 }
 

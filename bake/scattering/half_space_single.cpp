@@ -1,0 +1,33 @@
+#include "bake/scattering/half_space_single.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/scattering/fresnel.h"
+#include "bake/scattering/gauss_legendre.h"
+
+namespace opaline::bake {
+
+double half_space_single(double eta) {
+    // On a plane the integral over depth is 1 / (sigma_t (1 + mu_o' / mu_i')); the factors of the
+    // isotropic phase function, of both azimuths and of the incident flux cancel to one.
+    const GaussLegendre rule = make_gauss_legendre(32);
+    double sum = 0;
+    for (std::size_t o = 0; o < rule.node.size(); ++o) {
+        for (std::size_t i = 0; i < rule.node.size(); ++i) {
+            const double mu_o = rule.node[o], mu_i = rule.node[i];
+            const auto inside = [eta](double mu) {
+                return std::sqrt(std::max(0.0, 1 - (1 - mu * mu) / (eta * eta)));
+            };
+            const double in_o = inside(mu_o), in_i = inside(mu_i);
+            if (in_o > 0 && in_i > 0) {
+                const double jacobian = mu_i / (eta * eta * in_i);
+                sum += rule.weight[o] * rule.weight[i] * mu_o * fresnel_transmittance(mu_o, eta) *
+                       fresnel_transmittance(mu_i, eta) * jacobian / (1 + in_o / in_i);
+            }
+        }
+    }
+    return sum;
+}
+
+}  // namespace opaline::bake
