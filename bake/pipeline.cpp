@@ -93,10 +93,11 @@ void prepare_media(const formats::Scene& scene, const RayScene& rays,
         if (layout.multiple) {
             stages.multiple = run_stage(result, "samples" + of, [&](std::uint64_t& traced) {
                 const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
-                MultipleStage stage = prepare_multiple(
-                    scene, rays, m,
-                    {knobs.cubemap_size, knobs.samples, knobs.exact_samples, kept, knobs.seed},
-                    vectors, context);
+                MultipleStage stage =
+                    prepare_multiple(scene, rays, m,
+                                     {knobs.cubemap_size, knobs.samples, knobs.exact_samples, kept,
+                                      knobs.seed, !knobs.exact_rays},
+                                     vectors, context);
                 traced = stage.transport.rays;
                 return stage;
             });
@@ -105,7 +106,7 @@ void prepare_media(const formats::Scene& scene, const RayScene& rays,
             stages.single = run_stage(result, "light maps" + of, [&](std::uint64_t&) {
                 return prepare_single(scene, rays, m,
                                       {knobs.single_cubemap, knobs.depth_samples,
-                                       layout.single_terms, knobs.single_by_rays},
+                                       layout.single_terms, knobs.exact_rays},
                                       context);
             });
         }

@@ -1,10 +1,9 @@
 #include "bake/encode/select_coefficients.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
+#include "bake/base/largest.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 
@@ -31,10 +30,8 @@ formats::SparseRow select_coefficients(const Selector& selector,
                                        std::span<const float> coefficients, std::uint32_t bands) {
     constexpr std::array<float, 3> kLuminance{0.2126f, 0.7152f, 0.0722f};
     const std::size_t size = selector.weight.size();
-    using Scored = std::pair<float, std::uint32_t>;
-    std::vector<Scored> scored;
-    scored.reserve(size);
-    for (std::uint32_t k = 0; k < size; ++k) {
+    std::vector<float> score(size);
+    for (std::size_t k = 0; k < size; ++k) {
         float squares = 0;
         for (std::uint32_t band = 0; band < bands; ++band) {
             const float value =
@@ -42,26 +39,11 @@ formats::SparseRow select_coefficients(const Selector& selector,
             squares += value * value;
         }
         // The square of the score: same order, no square root.
-        const float score = selector.weight[k] * selector.weight[k] * squares;
-        if (score > 0) {
-            scored.emplace_back(score, k);
-        }
-    }
-    const std::size_t details = selector.kept > kCubeFaces ? selector.kept - kCubeFaces : 0;
-    if (scored.size() > details) {
-        const auto better = [](const Scored& a, const Scored& b) {
-            return a.first != b.first ? a.first > b.first : a.second < b.second;
-        };
-        std::nth_element(scored.begin(), scored.begin() + static_cast<std::ptrdiff_t>(details),
-                         scored.end(), better);
-        scored.resize(details);
+        score[k] = selector.weight[k] * selector.weight[k] * squares;
     }
     formats::SparseRow row;
     row.bands = bands;
-    for (const Scored& s : scored) {
-        row.index.push_back(s.second);
-    }
-    std::sort(row.index.begin(), row.index.end());
+    row.index = find_largest(score, selector.kept > kCubeFaces ? selector.kept - kCubeFaces : 0);
     const std::uint32_t face_size = selector.cubemap_size * selector.cubemap_size;
     for (std::uint32_t band = 0; band < bands; ++band) {
         for (const std::uint32_t k : row.index) {

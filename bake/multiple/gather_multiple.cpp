@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace opaline::bake {
 namespace {
+
+using Float4 = float __attribute__((vector_size(16)));
 
 // Keeps the mean defined where all samples around face another way.
 constexpr float kLeastFacing = 1e-3f;
@@ -126,16 +129,20 @@ void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
                 std::span<float> rgbx) {
     std::fill(rgbx.begin(), rgbx.end(), 0.0f);
     const std::size_t nodes = tree.nodes.size();
+    float* const sums = rgbx.data();
     for (const ClusterWeight& w : weights) {
         const SparseVectors& vectors = w.id < nodes ? tree.sums : tree.samples;
         const std::size_t v = w.id < nodes ? w.id : w.id - nodes;
-        const float r = w.weight[0], g = w.weight[1], b = w.weight[2];
-        for (std::uint64_t i = vectors.offset[v]; i < vectors.offset[v + 1]; ++i) {
-            float* const sum = &rgbx[std::size_t{4} * vectors.index[i]];
-            const float value = vectors.value[i];
-            sum[0] += r * value;
-            sum[1] += g * value;
-            sum[2] += b * value;
+        const Float4 weight{w.weight[0], w.weight[1], w.weight[2], 0.0f};
+        const std::uint64_t first = vectors.offset[v], last = vectors.offset[v + 1];
+        const std::uint32_t* const index = &vectors.index[first];
+        const float* const value = &vectors.value[first];
+        for (std::size_t i = 0; i < last - first; ++i) {
+            float* const place = sums + std::size_t{4} * index[i];
+            Float4 sum;
+            std::memcpy(&sum, place, sizeof sum);
+            sum += weight * value[i];
+            std::memcpy(place, &sum, sizeof sum);
         }
     }
 }

@@ -1,10 +1,14 @@
 #include "bake/multiple/sample_transport.h"
 
+#include <algorithm>
 #include <array>
+#include <numbers>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/receivers/kd_order.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/visibility/irradiance_transport.h"
+#include "bake/visibility/shared_irradiance.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 
@@ -24,6 +28,54 @@ std::vector<float> tabulate_transmittance(double eta) {
     return table;
 }
 
+float mean_over_sphere(std::span<const float> radiance, std::span<const double> solid_angle) {
+    double sum = 0;
+    for (std::size_t first = 0; first < radiance.size(); first += solid_angle.size()) {
+        for (std::size_t j = 0; j < solid_angle.size(); ++j) {
+            sum += static_cast<double>(radiance[first + j]) * solid_angle[j];
+        }
+    }
+    return static_cast<float>(sum / (4 * std::numbers::pi));
+}
+
+// Lights side by side, padded to whole registers, so that they are summed at once.
+struct LightTable {
+    static constexpr std::size_t kWide = 8;
+    std::size_t lights = 0, entries = 0;
+    std::vector<double> value;  // [group of kWide][entry][kWide]
+};
+
+LightTable interleave(std::span<const std::span<const float>> lights) {
+    LightTable table{lights.size(), lights.empty() ? 0 : lights.front().size(), {}};
+    const std::size_t groups = (lights.size() + LightTable::kWide - 1) / LightTable::kWide;
+    table.value.resize(groups * table.entries * LightTable::kWide);
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+        const std::size_t first = l / LightTable::kWide * table.entries;
+        for (std::size_t k = 0; k < table.entries; ++k) {
+            table.value[(first + k) * LightTable::kWide + l % LightTable::kWide] =
+                static_cast<double>(lights[l][k]);
+        }
+    }
+    return table;
+}
+
+void append_responses(const LightTable& table, std::span<const float> row,
+                      std::vector<double>& response) {
+    for (std::size_t first = 0; first < table.lights; first += LightTable::kWide) {
+        std::array<double, LightTable::kWide> sum{};
+        const double* light = &table.value[first * table.entries];
+        for (std::size_t k = 0; k < row.size(); ++k, light += LightTable::kWide) {
+            const auto value = static_cast<double>(row[k]);
+            for (std::size_t l = 0; l < LightTable::kWide; ++l) {
+                sum[l] += value * light[l];
+            }
+        }
+        const std::size_t count = std::min(LightTable::kWide, table.lights - first);
+        response.insert(response.end(), sum.begin(),
+                        sum.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+}
+
 }  // namespace
 
 SampleTransport bake_sample_transport(const RayScene& rays, std::span<const SurfaceSample> samples,
@@ -31,34 +83,37 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
                                       std::span<const std::span<const float>> lights,
                                       const Context& context) {
     const std::uint32_t n = options.cubemap_size;
-    const std::array<DirectionSet, 4> directions{
-        make_sparse_direction_set(n, 0), make_sparse_direction_set(n, 1),
-        make_sparse_direction_set(n, 2), make_sparse_direction_set(n, 3)};
+    const SharedDirections directions = make_shared_directions(n);
     const std::vector<float> transmittance = tabulate_transmittance(options.eta);
     const std::vector<double> solid_angle = formats::texel_solid_angles(n);
+    const LightTable table = interleave(lights);
+    const std::size_t texels = formats::cubemap_texels(n);
+    const std::size_t together = options.share_rays ? kSamplesPerGroup : 1;
     SampleTransport result;
     for_each_block_in_order(
-        samples.size(), 64, context,
+        samples.size(), 4 * kSamplesPerGroup, context,
         [&](Range range) {
             SampleTransport part;
-            std::vector<float> dense(formats::cubemap_texels(n));
-            for (std::size_t s = range.begin; s < range.end; ++s) {
-                part.rays += gather_irradiance(rays, directions[s % 4], samples[s].receiver, dense,
-                                               transmittance);
-                double mean = 0;
-                for (std::size_t j = 0; j < dense.size(); ++j) {
-                    mean += static_cast<double>(dense[j]) * solid_angle[j % solid_angle.size()];
+            std::vector<Receiver> group;
+            std::vector<float> dense;
+            for (std::size_t s = range.begin; s < range.end; s += group.size()) {
+                group.clear();
+                while (group.size() < together && s + group.size() < range.end) {
+                    group.push_back(samples[s + group.size()].receiver);
                 }
-                part.mean.push_back(static_cast<float>(mean / (4 * 3.14159265358979323846)));
-                formats::haar_forward_cube(std::span<float>(dense), n);
-                for (const std::span<const float> light : lights) {
-                    double sum = 0;
-                    for (std::size_t k = 0; k < dense.size(); ++k) {
-                        sum += static_cast<double>(dense[k]) * static_cast<double>(light[k]);
-                    }
-                    part.response.push_back(sum);
+                dense.resize(group.size() * texels);
+                part.rays +=
+                    options.share_rays
+                        ? gather_irradiance_together(rays, directions, group, dense, transmittance)
+                        : gather_irradiance(rays, directions.sets[s % 4], group.front(), dense,
+                                            transmittance);
+                for (std::size_t i = 0; i < group.size(); ++i) {
+                    const std::span<float> own = std::span(dense).subspan(i * texels, texels);
+                    part.mean.push_back(mean_over_sphere(own, solid_angle));
+                    formats::haar_forward_cube(own, n);
+                    append_responses(table, own, part.response);
+                    append_truncated(part.rows, own, options.kept);
                 }
-                append_truncated(part.rows, dense, options.kept);
             }
             return part;
         },

@@ -24,6 +24,7 @@ struct SampleOptions {
     std::uint32_t cubemap_size = 32;
     std::uint32_t kept = 128;  ///< entries per vector
     double eta = 1;
+    bool share_rays = true;  ///< between the samples of a group (kd_order.h)
 };
 
 /// `lights`: Haar vectors to note the response to, 6 n n values each. Stops early, with fewer

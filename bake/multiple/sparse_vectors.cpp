@@ -1,42 +1,50 @@
 #include "bake/multiple/sparse_vectors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
+#include <limits>
+#include <numeric>
+
+#include "bake/base/largest.h"
 
 namespace opaline::bake {
 
-void append_truncated(SparseVectors& vectors, std::span<const float> dense, std::size_t kept) {
-    const std::size_t face = dense.size() / 6;
-    std::vector<std::pair<float, std::uint32_t>> scored;
-    std::vector<std::uint32_t> chosen;
-    double squares = 0;
-    for (std::uint32_t k = 0; k < dense.size(); ++k) {
-        squares += static_cast<double>(dense[k]) * static_cast<double>(dense[k]);
-        if (k % face == 0) {
-            chosen.push_back(k);
-        } else if (dense[k] != 0) {
-            scored.emplace_back(std::abs(dense[k]), k);
+namespace {
+
+// In eight partial sums, which do not wait for each other.
+double sum_of_squares(std::span<const float> values) {
+    std::array<double, 8> sum{};
+    std::size_t k = 0;
+    for (; k + sum.size() <= values.size(); k += sum.size()) {
+        for (std::size_t l = 0; l < sum.size(); ++l) {
+            const auto value = static_cast<double>(values[k + l]);
+            sum[l] += value * value;
         }
     }
-    const std::size_t details = kept > 6 ? kept - 6 : 0;
-    if (scored.size() > details) {
-        std::nth_element(scored.begin(), scored.begin() + static_cast<std::ptrdiff_t>(details),
-                         scored.end(), [](const auto& a, const auto& b) {
-                             return a.first != b.first ? a.first > b.first : a.second < b.second;
-                         });
-        scored.resize(details);
+    for (; k < values.size(); ++k) {
+        sum[0] += static_cast<double>(values[k]) * static_cast<double>(values[k]);
     }
-    for (const auto& [magnitude, k] : scored) {
-        chosen.push_back(k);
+    return std::accumulate(sum.begin(), sum.end(), 0.0);
+}
+
+}  // namespace
+
+void append_truncated(SparseVectors& vectors, std::span<const float> dense, std::size_t kept) {
+    const std::size_t face = dense.size() / 6;
+    std::vector<float> score(dense.size());
+    for (std::size_t k = 0; k < dense.size(); ++k) {
+        score[k] = std::abs(dense[k]);
     }
-    std::sort(chosen.begin(), chosen.end());
-    for (const std::uint32_t k : chosen) {
+    for (std::size_t k = 0; k < dense.size(); k += face) {
+        score[k] = std::numeric_limits<float>::max();
+    }
+    for (const std::uint32_t k : find_largest(score, std::max<std::size_t>(kept, 6))) {
         vectors.index.push_back(k);
         vectors.value.push_back(dense[k]);
     }
     vectors.offset.push_back(vectors.index.size());
-    vectors.norm.push_back(static_cast<float>(std::sqrt(squares)));
+    vectors.norm.push_back(static_cast<float>(std::sqrt(sum_of_squares(dense))));
 }
 
 void append_vectors(SparseVectors& vectors, const SparseVectors& tail) {

@@ -42,7 +42,7 @@ Knobs preset(Quality quality) {
             knobs.depth_samples = 16;
             knobs.phase_tolerance = 1e-3;
             knobs.single_cubemap = 64;
-            knobs.single_by_rays = true;
+            knobs.exact_rays = true;
             return knobs;
     }
 }

@@ -44,7 +44,7 @@ struct Knobs {
     std::uint32_t depth_samples = 6;
     std::uint32_t phase_terms = 0;  ///< 0: chosen per medium
     double phase_tolerance = 0.02;  ///< by choose_terms (plan_rules.h)
-    bool single_by_rays = false;    ///< exact rays instead of light maps
+    bool exact_rays = false;        ///< no light maps, no rays shared between samples
     bool separate_terms = false;
     std::vector<std::string> effects;
     std::uint64_t seed = 0;

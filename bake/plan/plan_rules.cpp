@@ -186,7 +186,7 @@ PlanEntry decide_single(const PlanInput& input) {
     const double views = 6 * n * n, nodes = input.subject.receivers * input.knobs.depth_samples;
     const double level = std::log2(std::max(input.all_triangles, 1.0));
     entry.predicted_seconds =
-        input.knobs.single_by_rays
+        input.knobs.exact_rays
             ? 2 * 4 * views * nodes * (1 + kSlowdownPerLevel * level) /
                   (kRaysPerSecond * input.threads)
             : views * (input.all_triangles / kDrawnPerSecond + nodes / kLookUpsPerSecond) /

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <unordered_map>
+#include <numeric>
 
+#include "bake/base/ordered_parallel.h"
 #include "bake/receivers/point_grid.h"
 
 namespace opaline::bake {
@@ -30,23 +31,33 @@ std::uint32_t find_nearest(const std::vector<SurfacePoint>& points,
 
 // The cell of every point of `dense`: a place in `points`.
 std::vector<std::uint32_t> assign(const std::vector<SurfacePoint>& points,
-                                  const std::vector<SurfacePoint>& dense, double spacing) {
+                                  const std::vector<SurfacePoint>& dense, double spacing,
+                                  const Context& context) {
     // Of a maximal set no place on the surface is farther than about one spacing.
     const PointGrid grid(points, static_cast<float>(1.2 * spacing));
     std::vector<std::uint32_t> all(points.size());
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        all[i] = i;
-    }
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> around;
-    std::vector<std::uint32_t> cell(dense.size());
-    for (std::size_t k = 0; k < dense.size(); ++k) {
-        const auto [entry, is_new] = around.try_emplace(grid.cell_of(dense[k].position));
-        if (is_new) {
-            grid.for_each_around(dense[k].position,
-                                 [&](std::uint32_t j) { entry->second.push_back(j); });
-        }
-        cell[k] = find_nearest(points, entry->second.empty() ? all : entry->second, dense[k]);
-    }
+    std::iota(all.begin(), all.end(), 0u);
+    std::vector<std::uint32_t> cell;
+    cell.reserve(dense.size());
+    for_each_block_in_order(
+        dense.size(), 4096, context,
+        [&](Range range) {
+            std::vector<std::uint32_t> found, around;
+            std::uint64_t at = 0;  // the cell that `around` is of
+            for (std::size_t k = range.begin; k < range.end; ++k) {
+                const std::uint64_t here = grid.cell_of(dense[k].position);
+                if (k == range.begin || here != at) {
+                    grid.collect_around(here, around);
+                    at = here;
+                }
+                found.push_back(find_nearest(points, around.empty() ? all : around, dense[k]));
+            }
+            return found;
+        },
+        [&](Range, const std::vector<std::uint32_t>& found) {
+            cell.insert(cell.end(), found.begin(), found.end());
+        });
+    cell.resize(dense.size());  // in case of cancellation
     return cell;
 }
 
@@ -71,11 +82,11 @@ SurfacePoint move_within_triangle(const formats::Scene& scene, const SurfacePoin
 
 std::vector<float> centre_in_cells(const formats::Scene& scene, const AreaTable& table,
                                    double spacing, std::uint64_t seed,
-                                   std::vector<SurfacePoint>& points) {
+                                   std::vector<SurfacePoint>& points, const Context& context) {
     constexpr std::size_t kPerCell = 16;
     const std::vector<SurfacePoint> dense =
         scatter_points(scene, table, kPerCell * points.size(), true, seed);
-    const std::vector<std::uint32_t> cell = assign(points, dense, spacing);
+    const std::vector<std::uint32_t> cell = assign(points, dense, spacing, context);
     std::vector<glm::dvec3> centre(points.size(), glm::dvec3(0));
     std::vector<std::uint32_t> count(points.size(), 0);
     for (std::size_t k = 0; k < dense.size(); ++k) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bake/base/context.h"
 #include "bake/receivers/surface_points.h"
 
 namespace opaline::bake {
@@ -14,6 +15,6 @@ namespace opaline::bake {
 /// [m^2] per point; they add up to the table's.
 std::vector<float> centre_in_cells(const formats::Scene& scene, const AreaTable& table,
                                    double spacing, std::uint64_t seed,
-                                   std::vector<SurfacePoint>& points);
+                                   std::vector<SurfacePoint>& points, const Context& context);
 
 }  // namespace opaline::bake

@@ -14,6 +14,12 @@ namespace {
 using formats::Primitive;
 using formats::Scene;
 
+// Of a sphere volume / area^1.5 is .094, of a sheet about nothing.
+bool has_volume(const BodyShell& shell) {
+    constexpr double kLeastVolume = 1e-3;
+    return std::abs(shell.volume) > kLeastVolume * std::pow(shell.area, 1.5);
+}
+
 // Whether the shell encloses the point: its solid angle, seen from there, is the whole sphere.
 bool encloses(const BodyShells& body, const BodyShell& shell, glm::dvec3 point) {
     double angle = 0;
@@ -28,13 +34,17 @@ bool encloses(const BodyShells& body, const BodyShell& shell, glm::dvec3 point) 
     return std::abs(angle) > 2 * std::numbers::pi;
 }
 
-// Which shells lie in `outer`. Bounds the work that a hostile mesh can ask for: when it is used up,
-// being in the bounding box counts.
+// Which shells lie in `outer`, of those to which it matters: one that faces outward by itself stays
+// as it is in an outer one that does so, too. Bounds the work that a hostile mesh can ask for: when
+// it is used up, being in the bounding box counts.
 std::vector<std::uint32_t> shells_within(const BodyShells& body, const BodyShell& outer,
                                          std::uint64_t& work_left) {
     std::vector<std::uint32_t> within;
     for (std::uint32_t s = 0; s < body.shell.size(); ++s) {
         const BodyShell& inner = body.shell[s];
+        if (outer.volume > 0 && (inner.volume > 0 || !has_volume(inner))) {
+            continue;
+        }
         if (&inner == &outer || !glm::all(glm::greaterThanEqual(inner.low, outer.low)) ||
             !glm::all(glm::lessThanEqual(inner.high, outer.high))) {
             continue;
@@ -60,8 +70,6 @@ void turn(BodyShells& body, const BodyShell& shell) {
 
 // Outermost shells must enclose a positive volume; those within turn with them.
 void turn_shells_outward(BodyShells& body) {
-    // Of a sphere volume / area^1.5 is .094, of a sheet about nothing.
-    constexpr double kLeastVolume = 1e-3;
     std::uint64_t work_left = 100'000'000;  // a second or two
     std::vector<std::uint32_t> by_size(body.shell.size());
     for (std::uint32_t s = 0; s < by_size.size(); ++s) {
@@ -72,8 +80,7 @@ void turn_shells_outward(BodyShells& body) {
     });
     for (const std::uint32_t s : by_size) {
         const BodyShell& shell = body.shell[s];
-        const double least = kLeastVolume * std::pow(shell.area, 1.5);
-        if (shell.inside || !(std::abs(shell.volume) > least)) {
+        if (shell.inside || !has_volume(shell)) {
             continue;
         }
         // Most bodies are one shell, or shells beside each other that face outward.

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
 
 #include "bake/receivers/centre_in_cells.h"
-#include "bake/receivers/point_grid.h"
+#include "bake/receivers/eliminate_crowded.h"
+#include "bake/receivers/kd_order.h"
 #include "bake/receivers/surface_points.h"
 #include "bake/receivers/vertex_receivers.h"
 
@@ -14,52 +14,6 @@ namespace {
 
 using formats::Primitive;
 using formats::Scene;
-
-// Removes the most crowded point until `count` are left [Yuksel2015, section 3].
-std::vector<std::uint32_t> eliminate(const std::vector<SurfacePoint>& points, std::size_t count,
-                                     double area) {
-    const double r_max = std::sqrt(area / (2.0 * std::sqrt(3.0) * static_cast<double>(count)));
-    const float radius = static_cast<float>(2.0 * r_max);
-    const PointGrid grid(points, radius);
-    const auto crowding = [radius](float distance) {
-        const float x = 1.0f - distance / radius, x2 = x * x, x4 = x2 * x2;
-        return static_cast<double>(x4 * x4);
-    };
-    std::vector<double> weight(points.size(), 0.0);
-    std::vector<bool> alive(points.size(), true);
-    using Entry = std::pair<double, std::uint32_t>;
-    std::priority_queue<Entry> heap;
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        grid.for_each_near(i, radius, [&](std::uint32_t, float d) { weight[i] += crowding(d); });
-        heap.emplace(weight[i], i);
-    }
-    for (std::size_t left = points.size(); left > count;) {
-        const auto [crowd, i] = heap.top();
-        heap.pop();
-        if (!alive[i]) {
-            continue;
-        }
-        // Weights only fall: an outdated entry is pushed back with its present weight.
-        if (crowd != weight[i]) {
-            heap.emplace(weight[i], i);
-            continue;
-        }
-        alive[i] = false;
-        --left;
-        grid.for_each_near(i, radius, [&](std::uint32_t j, float d) {
-            if (alive[j]) {
-                weight[j] = std::max(0.0, weight[j] - crowding(d));
-            }
-        });
-    }
-    std::vector<std::uint32_t> kept;
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        if (alive[i]) {
-            kept.push_back(i);
-        }
-    }
-    return kept;
-}
 
 // Where the smooth surface suggested by the vertex normals lies above the facet: the point, moved
 // out of each vertex's tangent plane, averaged [Hanika2021].
@@ -100,7 +54,8 @@ SurfaceSample finish(const Scene& scene, const SurfacePoint& c, float area) {
 
 std::vector<SurfaceSample> sample_surface(const Scene& scene,
                                           const std::vector<std::uint32_t>& primitives,
-                                          std::uint32_t count, std::uint64_t seed) {
+                                          std::uint32_t count, std::uint64_t seed,
+                                          const Context& context) {
     const AreaTable table = make_area_table(scene, primitives);
     if (count == 0 || !(table.total() > 0)) {
         return {};
@@ -109,17 +64,18 @@ std::vector<SurfaceSample> sample_surface(const Scene& scene,
     const std::vector<SurfacePoint> candidates =
         scatter_points(scene, table, std::size_t{count} * per_sample, false, seed);
     std::vector<SurfacePoint> points;
-    for (const std::uint32_t i : eliminate(candidates, count, table.total())) {
+    for (const std::uint32_t i : eliminate_crowded(candidates, count, table.total(), context)) {
         points.push_back(candidates[i]);
     }
     const std::vector<float> area =
-        centre_in_cells(scene, table, std::sqrt(table.total() / count), seed, points);
+        centre_in_cells(scene, table, std::sqrt(table.total() / count), seed, points, context);
     std::vector<SurfaceSample> samples;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (area[i] > 0) {
             samples.push_back(finish(scene, points[i], area[i]));
         }
     }
+    sort_into_groups(samples);
     return samples;
 }
 

@@ -39,14 +39,15 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
                                     ? options.samples
                                     : count_samples(area, stage.medium, options.samples);
     const std::vector<SurfaceSample> samples =
-        sample_surface(scene, primitives, count, options.seed);
+        sample_surface(scene, primitives, count, options.seed, context);
     const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
     stage.profile = make_gather_profile(stage.medium, std::sqrt(per_sample), scene_diagonal(scene));
     stage.transport = bake_sample_transport(
-        rays, samples, {options.cubemap_size, options.kept, stage.medium.eta}, lights, context);
+        rays, samples, {options.cubemap_size, options.kept, stage.medium.eta, options.share_rays},
+        lights, context);
     if (!context.cancelled()) {
         stage.tree = build_cluster_tree(samples, stage.transport, options.cubemap_size,
-                                        2 * options.kept, context);
+                                        options.kept, context);
     }
     return stage;
 }

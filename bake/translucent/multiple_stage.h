@@ -25,8 +25,9 @@ struct MultipleOptions {
     std::uint32_t cubemap_size = 32;
     std::uint32_t samples = 60000;  ///< at most, or exactly
     bool exact_samples = false;
-    std::uint32_t kept = 128;  ///< coefficients of each sample; each node keeps twice as many
+    std::uint32_t kept = 128;  ///< coefficients of each sample
     std::uint64_t seed = 0;
+    bool share_rays = true;  ///< between neighbouring samples
 };
 
 /// Samples the surface of the material's medium, traces what enters, and builds the tree.

@@ -22,7 +22,7 @@ double area_of(const formats::Primitive& p) {
 
 TEST(SurfaceSamples, AreasAddUpToTheSurface) {
     const auto scene = tests::make_scene({tests::make_sphere(3), tests::make_cube(2, false)});
-    const auto samples = sample_surface(scene, {0, 1}, 1000, 5);
+    const auto samples = sample_surface(scene, {0, 1}, 1000, 5, {});
     ASSERT_EQ(samples.size(), 1000u);
     double sum = 0;
     std::size_t on_sphere = 0;
@@ -40,7 +40,7 @@ TEST(SurfaceSamples, AreasAddUpToTheSurface) {
 // sqrt(2 A / (sqrt(3) N)); independent points come arbitrarily close.
 TEST(SurfaceSamples, SamplesKeepTheirDistance) {
     const auto scene = tests::make_scene({tests::make_sphere(4)});
-    const auto samples = sample_surface(scene, {0}, 800, 1);
+    const auto samples = sample_surface(scene, {0}, 800, 1, {});
     const double packed = std::sqrt(2 * area_of(scene.primitives[0]) / (std::sqrt(3.0) * 800));
     double closest = 10;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -58,7 +58,7 @@ TEST(SurfaceSamples, MeansOverTheSurfaceAreMet) {
     const auto scene = tests::make_scene({tests::make_sphere(5)});
     glm::dvec3 mean(0);
     double square = 0;
-    const auto samples = sample_surface(scene, {0}, 800, 2);
+    const auto samples = sample_surface(scene, {0}, 800, 2, {});
     for (const SurfaceSample& s : samples) {
         const double share = s.area / area_of(scene.primitives[0]);
         mean += share * glm::dvec3(s.position);
@@ -74,7 +74,7 @@ TEST(SurfaceSamples, BothSidesOfAThinSheetAreCoveredEqually) {
                            tests::make_quad({0, -1e-4f, 0}, {1, 0, 0}, {0, 0, 1}, 4)});
     std::size_t up = 0;
     double area_up = 0;
-    for (const SurfaceSample& s : sample_surface(scene, {0, 1}, 600, 3)) {
+    for (const SurfaceSample& s : sample_surface(scene, {0, 1}, 600, 3, {})) {
         up += s.geometric_normal.y > 0 ? 1 : 0;
         area_up += s.geometric_normal.y > 0 ? s.area : 0;
     }
@@ -86,7 +86,7 @@ TEST(SurfaceSamples, BothSidesOfAThinSheetAreCoveredEqually) {
 // bell stands. Samples of equal weight at the same places scatter by 5 %.
 TEST(SurfaceSamples, SumsOfABellAsWideAsTheSpacingAreEven) {
     const auto scene = tests::make_scene({tests::make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 8)});
-    const auto samples = sample_surface(scene, {0}, 2500, 1);
+    const auto samples = sample_surface(scene, {0}, 2500, 1, {});
     const double z = 1.2 / 50;
     double sum = 0, squares = 0;
     constexpr int kPlaces = 20;
@@ -108,8 +108,9 @@ TEST(SurfaceSamples, SumsOfABellAsWideAsTheSpacingAreEven) {
 
 TEST(SurfaceSamples, DependOnTheSeedAlone) {
     const auto scene = tests::make_scene({tests::make_sphere(2)});
-    const auto a = sample_surface(scene, {0}, 100, 1), b = sample_surface(scene, {0}, 100, 1);
-    const auto c = sample_surface(scene, {0}, 100, 2);
+    const auto a = sample_surface(scene, {0}, 100, 1, {}),
+               b = sample_surface(scene, {0}, 100, 1, {});
+    const auto c = sample_surface(scene, {0}, 100, 2, {});
     for (std::size_t i = 0; i < a.size(); ++i) {
         EXPECT_EQ(a[i].position, b[i].position);
     }
@@ -119,8 +120,8 @@ TEST(SurfaceSamples, DependOnTheSeedAlone) {
 TEST(SurfaceSamples, SurfacesWithoutAreaHaveNone) {
     auto scene = tests::make_scene({tests::make_sphere(0)});
     scene.primitives[0].position.assign(scene.primitives[0].position.size(), {1, 2, 3});
-    EXPECT_TRUE(sample_surface(scene, {0}, 100, 1).empty());
-    EXPECT_TRUE(sample_surface(scene, {}, 100, 1).empty());
+    EXPECT_TRUE(sample_surface(scene, {0}, 100, 1, {}).empty());
+    EXPECT_TRUE(sample_surface(scene, {}, 100, 1, {}).empty());
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ TEST(SelfIntersection, SamplesOfACoarseSmoothSphereSeeTheTerminatorOfTheSphere) 
         return sum / std::numbers::pi;
     };
     double lifted = 0, on_facet = 0;
-    const auto samples = sample_surface(scene, {0}, 200, 1);
+    const auto samples = sample_surface(scene, {0}, 200, 1, {});
     for (const SurfaceSample& sample : samples) {
         lifted += irradiance(sample.receiver) / 200;
         on_facet +=
