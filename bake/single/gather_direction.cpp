@@ -83,8 +83,8 @@ float trace_probability(const GatherJob& job, const InteriorNode& node, const Li
         const float change = std::min(1.0f, kSlack * sigma * answer.uncertainty);
         error = std::max(error, change * node.weight[c] * exp_of_negative(-sigma * answer.nearest));
     }
-    constexpr float kMatters = 0.1f;  // of all light that the receiver can have
-    constexpr float kLeast = 0.05f;   // bounds how much brighter a surprise can be than the truth
+    constexpr float kMatters = 0.07f;  // of all light that the receiver can have
+    constexpr float kLeast = 0.05f;    // bounds how much brighter a surprise can be than the truth
     const float part = job.column.throughput * error / (kMatters * scale);
     if (answer.uncertainty < std::numeric_limits<float>::infinity()) {
         return part < 1.0f ? 0.0f : 1.0f;

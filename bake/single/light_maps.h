@@ -23,7 +23,7 @@ struct SingleRows {
 std::uint32_t light_view_size(const BodyMesh& mesh);
 
 /// T_k of all `points`, which must be of the medium's material; the result of gather_single for
-/// the same directions but for errors of the maps: .3 to .6 % of a relit value (RMS) on closed
+/// the same directions but for errors of the maps: .2 to 1 % of a relit value (RMS) on closed
 /// bodies and thin sheets; on a scan with holes and overlaps .6 to 1.1 %, median .2 %, half of it
 /// from the one receiver in a hundred that is beside its faults and too bright.
 ///
