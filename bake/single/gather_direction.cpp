@@ -83,8 +83,8 @@ float trace_probability(const GatherJob& job, const InteriorNode& node, const Li
         const float change = std::min(1.0f, kSlack * sigma * answer.uncertainty);
         error = std::max(error, change * node.weight[c] * exp_of_negative(-sigma * answer.nearest));
     }
-    constexpr float kMatters = 0.1f;  // of all light that the receiver can have
-    constexpr float kLeast = 0.05f;   // bounds how much brighter a surprise can be than the truth
+    constexpr float kMatters = 0.07f;  // of all light that the receiver can have
+    constexpr float kLeast = 0.05f;    // bounds how much brighter a surprise can be than the truth
     const float part = job.column.throughput * error / (kMatters * scale);
     if (answer.uncertainty < std::numeric_limits<float>::infinity()) {
         return part < 1.0f ? 0.0f : 1.0f;
@@ -170,7 +170,10 @@ void gather_block(const GatherJob& job, const GatherDirection& direction,
             const std::uint32_t k = i - begin;
             const std::int32_t state = answers.state[k];
             if (state == ColumnAnswers::unclear) {
-                gather_unclear(job, direction, r, list.node[i], 0.0f, work);
+                // What it will need is far in memory: on its way while the block goes on.
+                __builtin_prefetch(&list.node[i]);
+                __builtin_prefetch(&job.mesh.triangle[answers.triangle[k]]);
+                work.unclear.push_back({i, r, answers.triangle[k]});
             } else if (job.terms > 1 && state == ColumnAnswers::lit) {
                 std::array<float, 3> light;
                 for (std::size_t c = 0; c < 3; ++c) {
@@ -190,6 +193,16 @@ void gather_block(const GatherJob& job, const GatherDirection& direction,
             }
         }
     }
+    for (const GatherWorkspace::Unclear& unclear : work.unclear) {
+        const glm::uvec3& t = job.mesh.triangle[unclear.triangle];
+        for (glm::length_t corner = 0; corner < 3; ++corner) {
+            __builtin_prefetch(&work.view.projected[t[corner]]);
+        }
+    }
+    for (const GatherWorkspace::Unclear& unclear : work.unclear) {
+        gather_unclear(job, direction, unclear.receiver, list.node[unclear.node], 0.0f, work);
+    }
+    work.unclear.clear();
 }
 
 }  // namespace

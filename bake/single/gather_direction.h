@@ -42,6 +42,10 @@ struct GatherWorkspace {
         float factor;
     };
     std::vector<Open> open;  ///< what rays must find out
+    struct Unclear {
+        std::uint32_t node, receiver, triangle;  ///< the one seen nearest to it
+    };
+    std::vector<Unclear> unclear;  ///< of a block
     EntryCounts counts;
     std::uint64_t look_ups = 0, unsure = 0;
 };

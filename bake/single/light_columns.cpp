@@ -10,8 +10,8 @@ namespace opaline::bake {
 struct ColumnJob {
     LightFrame frame;
     float last;  // pixel
-    std::int32_t stride;
-    float tolerance, bend, faint, least_sigma_t;
+    std::int32_t size;
+    float bend, faint, least_sigma_t;
     std::int32_t count;
     const float *x, *y, *z, *importance;
     const float *front_z, *obstacle_z;
@@ -25,26 +25,36 @@ struct ColumnJob {
 
 namespace {
 
-// How far the layer is from the plane of its nearest pixel at the three others.
-OPALINE_INLINE Float8 bend8(Float8 z0, Float8 z1, Float8 z2, Float8 z3, Float8 step_x,
-                            Float8 step_y) {
-    const Float8 d1 = z0 + step_x - z1, d2 = z0 + step_y - z2, d3 = z0 + step_x + step_y - z3;
-    const Float8 a1 = greater8(d1, -d1), a2 = greater8(d2, -d2), a3 = greater8(d3, -d3);
-    return a1 + a2 + a3;
+// How far a layer bends away from the plane of its nearest pixel.
+struct Bend {
+    Float8 most;  // the sum over the three other pixels: bounds what it may be in between
+    Float8 here;  // what it is likely to be in the column, downward
+};
+// `x`, `y`: of the column from the nearest pixel, toward the others, in [0, 1/2]; `slope`: that
+// way.
+OPALINE_INLINE Bend bend8(Float8 z0, Float8 z1, Float8 z2, Float8 z3, Float8 slope_x,
+                          Float8 slope_y, Float8 x, Float8 y) {
+    const Float8 d1 = z0 + slope_x - z1, d2 = z0 + slope_y - z2, d3 = z0 + slope_x + slope_y - z3;
+    const Float8 most = greater8(d1, -d1) + greater8(d2, -d2) + greater8(d3, -d3);
+    // Bilinear interpolation cuts a crease's corner, the plane overshoots it. With the crease
+    // anywhere between two pixels alike, the mean is x times the former from the latter.
+    const Float8 here =
+        x * (x * (1.0f - y)) * d1 + y * (y * (1.0f - x)) * d2 + greater8(x, y) * (x * y) * d3;
+    return {most, here};
 }
 
 // enter of each; cosines are positive.
 OPALINE_INLINE void enter8(Float8 cosine, const Interface<float>& side, Float8& throughput,
                            Float8& path_ratio) {
-    const float eta = side.eta;
+    const float eta = side.eta, inverse = 1.0f / eta;
     const Float8 one = all8(1.0f);
     const Float8 inside = cosine * cosine + (eta - 1.0f) * (eta + 1.0f);
     const Int8 enters = inside > 1e-12f;
     const Float8 positive = enters ? inside : one;
-    const Float8 refracted = lesser8(positive * inverse_root8(positive) / eta, one);
+    const Float8 refracted = lesser8(positive * inverse_root8(positive) * inverse, one);
     const Float8 s = cosine + eta * refracted, p = eta * cosine + refracted;
     const Float8 ss = s * s, pp = p * p;
-    const Float8 factor = side.jacobian ? cosine / eta : eta * refracted;
+    const Float8 factor = side.jacobian ? cosine * inverse : eta * refracted;
     throughput = enters ? 2.0f * cosine * factor * ((ss + pp) / (ss * pp)) : Float8{};
     path_ratio = enters ? cosine / refracted : one;
 }
@@ -57,7 +67,9 @@ OPALINE_VECTOR_CLONES
 void attenuate(std::int32_t count, float sigma_t, const float* weight, const float* distance,
                const float* path_ratio, const float* throughput, float* light);
 
-void find_columns(const ColumnJob& job) {
+void find_columns(const ColumnJob& given) {
+    const ColumnJob job = given;  // stores through other pointers cannot change it
+    constexpr auto kColumns = static_cast<std::int32_t>(kStrip);
     const float scale = job.frame.pixels_per_metre;
     const glm::vec3 &u = job.frame.u, &v = job.frame.v, &w = job.frame.w;
     const float ux = scale * u.x, uy = scale * u.y, uz = scale * u.z;
@@ -68,7 +80,7 @@ void find_columns(const ColumnJob& job) {
     const Int8 dark = Int8{} + static_cast<std::int32_t>(ColumnAnswers::dark);
     const Int8 lit = Int8{} + static_cast<std::int32_t>(ColumnAnswers::lit);
     const Int8 unclear = Int8{} + static_cast<std::int32_t>(ColumnAnswers::unclear);
-    const std::int32_t stride = job.stride;
+    const std::int32_t size = job.size;
     const float* const slopes = &job.slope->x;
     for (std::int32_t k = 0; k < job.count; k += static_cast<std::int32_t>(kVector)) {
         const Float8 px = load8(job.x + k), py = load8(job.y + k), pz = load8(job.z + k);
@@ -81,9 +93,10 @@ void find_columns(const ColumnJob& job) {
         const Float8 dx = x - __builtin_convertvector(i, Float8);
         const Float8 dy = y - __builtin_convertvector(j, Float8);
         const Int8 before_x = dx < 0.0f, before_y = dy < 0.0f;  // -1 or 0
-        const Int8 at = j * stride + i;
-        const Int8 aside = at + (before_x * 2 + 1), above = at + (before_y * 2 + 1) * stride;
-        const Int8 across = above + (before_x * 2 + 1);
+        const Int8 beside = i + (before_x * 2 + 1), up = (before_y * 2 + 1) * kColumns;
+        const Int8 at = (i & -kColumns) * size + (i & (kColumns - 1)) + j * kColumns;
+        const Int8 aside = (beside & -kColumns) * size + (beside & (kColumns - 1)) + j * kColumns;
+        const Int8 above = at + up, across = aside + up;
         const Float8 b0 = gather8(job.obstacle_z, at), b1 = gather8(job.obstacle_z, aside);
         const Float8 b2 = gather8(job.obstacle_z, above), b3 = gather8(job.obstacle_z, across);
         const Float8 low = lesser8(lesser8(b0, b1), lesser8(b2, b3));
@@ -113,24 +126,23 @@ void find_columns(const ColumnJob& job) {
         const Float8 sx = scale * slope_x, sy = scale * slope_y;
         Float8 throughput, path_ratio;
         enter8(inverse_root8(1.0f + (sx * sx + sy * sy)), job.boundary, throughput, path_ratio);
-        // Nothing at a pixel makes differences infinite or NaN, which no comparison below accepts.
+        // Nothing at a pixel makes bends infinite or NaN, which no comparison below accepts.
+        const Float8 x_off = before_x ? -dx : dx, y_off = before_y ? -dy : dy;
+        const Bend under = bend8(b0, b1, b2, b3, before_x ? -under_x : under_x,
+                                 before_y ? -under_y : under_y, x_off, y_off);
         const Float8 floor = b0 + (dx * under_x + dy * under_y) - height;
-        const Float8 bend =
-            bend8(b0, b1, b2, b3, before_x ? -under_x : under_x, before_y ? -under_y : under_y);
-        const Int8 flat = bend <= job.tolerance;
-        const Float8 way = z0 + (dx * slope_x + dy * slope_y) - height;
-        const Float8 step =
-            bend8(z0, z1, z2, z3, before_x ? -slope_x : slope_x, before_y ? -slope_y : slope_y);
+        const Bend over = bend8(z0, z1, z2, z3, before_x ? -slope_x : slope_x,
+                                before_y ? -slope_y : slope_y, x_off, y_off);
         // How bright the point can be, of the brightest that its receiver can be.
         const Float8 least = greater8(lesser8(lesser8(z0, z1), lesser8(z2, z3)) - height, zero);
         const Float8 bright =
             load8(job.importance + k) * exp_of_negative8(-job.least_sigma_t * (least * path_ratio));
-        const Int8 faint = bright <= job.faint;
+        const Int8 faint = bright <= job.faint, plane = bright * over.most <= job.bend;
+        const Float8 way = z0 + (dx * slope_x + dy * slope_y) - height - (plane ? over.here : zero);
         const Int8 blocked =
-            below | (flat & (floor > job.tolerance)) | (faint & ((b0 > height) | ~(way > 0.0f)));
-        const Int8 open = (high < height - spread) | (flat & (floor < -job.tolerance)) | faint;
-        const Int8 plane = (bright * step <= job.bend) | faint;
-        const Int8 is_lit = open & plane & (way > 0.0f);
+            below | (floor > under.most) | (faint & ((b0 > height) | ~(way > 0.0f)));
+        const Int8 open = (high < height - spread) | (floor < -under.most) | faint;
+        const Int8 is_lit = open & (plane | faint) & (way > 0.0f);
         store8(blocked ? dark : (is_lit ? lit : unclear), job.state + k);
         store8(id, job.triangle + k);
         store8(is_lit & ~blocked ? way : zero, job.distance + k);
@@ -177,10 +189,9 @@ void look_up_columns(const LightView& view, const ColumnPoints& points, std::siz
     ColumnJob job{};
     job.frame = view.frame;
     job.last = static_cast<float>(view.size) - 2.0f;
-    job.stride = static_cast<std::int32_t>(view.stride);
-    job.tolerance = medium.tolerance;
+    job.size = static_cast<std::int32_t>(view.size);
     // Both of all light that a receiver can have.
-    constexpr float kFaint = 0.005f, kBend = 0.005f;
+    constexpr float kFaint = 0.02f, kBend = 0.01f;
     job.faint = kFaint;
     job.bend = kBend / std::max(*largest, 1e-30f);
     job.least_sigma_t = *least;

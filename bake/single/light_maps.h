@@ -23,15 +23,15 @@ struct SingleRows {
 std::uint32_t light_view_size(const BodyMesh& mesh);
 
 /// T_k of all `points`, which must be of the medium's material; the result of gather_single for
-/// the same directions but for errors of the maps: below .4 % of a relit value (RMS) on closed
-/// bodies and thin sheets; on a scan with holes and overlaps 1 to 2 % (4 % under one lobe, from a
-/// few receivers beside its faults), median .1 %.
+/// the same directions but for errors of the maps: .2 to 1 % of a relit value (RMS) on closed
+/// bodies and thin sheets; on a scan with holes and overlaps .6 to 1.1 %, median .2 %, half of it
+/// from the one receiver in a hundred that is beside its faults and too bright.
 ///
 /// The loops are transposed: for each direction the medium's boundary is rendered once along it,
 /// and every interior node of every receiver is looked up: it is lit from the front layer above it
 /// if no back layer and no blocker lies between. What cannot be looked up surely is traced, in
-/// packets of sixteen that share the direction, if it matters; of what matters little, the likely
-/// answer is taken: on average that is as near as tracing a random part of it.
+/// packets of sixteen that share the direction, if it matters; of what matters little, a random
+/// part is, or the nearest pixel decides.
 ///
 /// Memory: 4 K bytes a receiver and texel (packed_rows_in), 60 bytes a receiver and node, and per
 /// thread one view and 12 K bytes a receiver. Callers cut `points` accordingly; each call renders

@@ -7,7 +7,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kRun = kVector;  // pixels that are drawn at once, aligned
+static_assert(kStrip == kVector);
 constexpr Float8 kLanes{0, 1, 2, 3, 4, 5, 6, 7};
 
 // Pixels whose centres lie in (low, high], clipped to the map: of two triangles that share an edge
@@ -34,23 +34,21 @@ OPALINE_INLINE Planes planes_of(float abx, float aby, float abz, float acx, floa
 
 // Draws the triangle where it is on top. `from`: of its first corner, of the pixel (0, 0).
 OPALINE_INLINE void draw(const Planes& planes, const glm::vec3& corner, Span rows, Span columns,
-                         std::uint32_t id, std::size_t stride, float* layer_z,
+                         std::uint32_t id, std::size_t size, float* layer_z,
                          std::uint32_t* layer_id) {
-    const std::uint32_t begin = columns.begin & ~(kRun - 1);
-    for (std::uint32_t j = rows.begin; j < rows.end; ++j) {
-        const float y = (static_cast<float>(j) + 0.5f) - corner.y;
-        const float second = y * planes.second_y, third = y * planes.third_y;
-        const float height = y * planes.slope_y + corner.z;
-        for (std::uint32_t i = begin; i < columns.end; i += kRun) {
-            float* z = layer_z + j * stride + i;
-            std::uint32_t* triangle = layer_id + j * stride + i;
-            const float x0 = static_cast<float>(i) + 0.5f - corner.x;
-            const Float8 x = kLanes + x0;
-            const Float8 tb = x * planes.second_x + second, tc = x * planes.third_x + third;
-            const Float8 here = x * planes.slope_x + height, before = load8(z);
+    for (std::uint32_t i = columns.begin & ~(kStrip - 1); i < columns.end; i += kStrip) {
+        const Float8 x = kLanes + (static_cast<float>(i) + 0.5f - corner.x);
+        const Float8 second = x * planes.second_x, third = x * planes.third_x;
+        const Float8 height = x * planes.slope_x + corner.z;
+        float* z = layer_z + i * size + kStrip * rows.begin;
+        std::uint32_t* triangle = layer_id + i * size + kStrip * rows.begin;
+        for (std::uint32_t j = rows.begin; j < rows.end; ++j, z += kStrip, triangle += kStrip) {
+            const float y = static_cast<float>(j) + 0.5f - corner.y;
+            const Float8 tb = second + y * planes.second_y, tc = third + y * planes.third_y;
+            const Float8 here = height + y * planes.slope_y, before = load8(z);
+            const Int8 on_top = (tb >= 0.0f) & (tc >= 0.0f) & (tb + tc <= 1.0f) & (here > before);
             Int8 ids;
             __builtin_memcpy(&ids, triangle, sizeof ids);
-            const Int8 on_top = (tb >= 0.0f) & (tc >= 0.0f) & (tb + tc <= 1.0f) & (here > before);
             store8(on_top ? here : before, z);
             store8(on_top ? Int8{} + static_cast<std::int32_t>(id) : ids, triangle);
         }
@@ -61,8 +59,7 @@ struct Target {
     const glm::vec3* projected;
     const glm::uvec3* triangle;
     std::uint32_t body_triangles, triangles;
-    float size;
-    std::size_t stride;
+    std::uint32_t size;
     float* front_z;
     std::uint32_t* front_id;
     float* obstacle_z;
@@ -92,6 +89,7 @@ void project_vertices(const LightFrame& frame, const glm::vec3* position, std::s
 
 void draw_triangles(const Target& target) {
     const Target t = target;
+    const float size = static_cast<float>(t.size);
     constexpr float kEdgeOn = 1e-12f;  // [pixel^2] no pixel's centre is inside
     for (std::uint32_t id = 0; id < t.triangles; ++id) {
         const glm::uvec3& index = t.triangle[id];
@@ -104,15 +102,15 @@ void draw_triangles(const Target& target) {
             continue;
         }
         const Span rows =
-            pixel_span(lesser(lesser(a.y, b.y), c.y), greater(greater(a.y, b.y), c.y), t.size);
+            pixel_span(lesser(lesser(a.y, b.y), c.y), greater(greater(a.y, b.y), c.y), size);
         const Span columns =
-            pixel_span(lesser(lesser(a.x, b.x), c.x), greater(greater(a.x, b.x), c.x), t.size);
+            pixel_span(lesser(lesser(a.x, b.x), c.x), greater(greater(a.x, b.x), c.x), size);
         if (rows.begin >= rows.end || columns.begin >= columns.end) {
             continue;
         }
         const Planes planes = planes_of(abx, aby, abz, acx, acy, acz, area);
         const bool front = area > 0 && id < t.body_triangles;
-        draw(planes, a, rows, columns, id, t.stride, front ? t.front_z : t.obstacle_z,
+        draw(planes, a, rows, columns, id, t.size, front ? t.front_z : t.obstacle_z,
              front ? t.front_id : t.obstacle_id);
         t.slope[id].x = planes.slope_x;
         t.slope[id].y = planes.slope_y;
@@ -122,20 +120,19 @@ void draw_triangles(const Target& target) {
 void render_light_view(const BodyMesh& mesh, const LightFrame& frame, std::uint32_t size,
                        LightView& view) {
     view.size = size;
-    view.stride = (size + kRun - 1) / kRun * kRun;
     view.frame = frame;
     view.projected.resize(mesh.position.size());
     project_vertices(frame, mesh.position.data(), mesh.position.size(), view.projected.data());
     view.slope.resize(mesh.triangle.size());
-    const std::size_t pixels = std::size_t{view.stride} * size;
+    const std::size_t pixels = pixel_index(size, size + kStrip - 1, 0);
     for (LightLayer* layer : {&view.front, &view.obstacle}) {
         layer->z.assign(pixels, -std::numeric_limits<float>::infinity());
         layer->triangle.resize(pixels);  // read only where something was drawn
     }
     draw_triangles({view.projected.data(), mesh.triangle.data(), mesh.body_triangles,
-                    static_cast<std::uint32_t>(mesh.triangle.size()), static_cast<float>(size),
-                    view.stride, view.front.z.data(), view.front.triangle.data(),
-                    view.obstacle.z.data(), view.obstacle.triangle.data(), view.slope.data()});
+                    static_cast<std::uint32_t>(mesh.triangle.size()), size, view.front.z.data(),
+                    view.front.triangle.data(), view.obstacle.z.data(),
+                    view.obstacle.triangle.data(), view.slope.data()});
 }
 
 }  // namespace opaline::bake

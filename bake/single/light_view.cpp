@@ -16,8 +16,8 @@ struct Crossing {
     float z = 0;
 };
 
-Crossing cross_triangle(const BodyMesh& mesh, const LightView& view, std::uint32_t id,
-                        glm::vec3 p) {
+inline Crossing cross_triangle(const BodyMesh& mesh, const LightView& view, std::uint32_t id,
+                               glm::vec3 p) {
     const glm::uvec3 t = mesh.triangle[id];
     const glm::vec3 a = view.projected[t.x];
     const glm::vec3 ab = view.projected[t.y] - a, ac = view.projected[t.z] - a, from = p - a;
@@ -38,9 +38,9 @@ Corner nearest_pixels(const LightView& view, glm::vec3 p) {
     const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
     const std::size_t di = x - static_cast<float>(i) > 0.5f ? 1 : 0;
     const std::size_t dj = y - static_cast<float>(j) > 0.5f ? 1 : 0;
-    const std::size_t stride = view.stride;
-    return {(j + dj) * stride + i + di, (j + dj) * stride + i + 1 - di,
-            (j + 1 - dj) * stride + i + di, (j + 1 - dj) * stride + i + 1 - di};
+    const std::uint32_t size = view.size;
+    return {pixel_index(size, i + di, j + dj), pixel_index(size, i + 1 - di, j + dj),
+            pixel_index(size, i + di, j + 1 - dj), pixel_index(size, i + 1 - di, j + 1 - dj)};
 }
 
 // Whether an obstacle passes above the point.

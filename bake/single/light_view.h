@@ -22,7 +22,7 @@ LightFrame make_light_frame(glm::vec3 toward_light, float radius, std::uint32_t 
 
 glm::vec3 project(const LightFrame& frame, glm::vec3 position);
 
-/// What is on top of each pixel, seen from the light, row by row, `LightView::stride` apart.
+/// What is on top of each pixel, seen from the light, where pixel_index says.
 struct LightLayer {
     std::vector<float> z;                 ///< [m] at the pixel's centre; -infinity: nothing
     std::vector<std::uint32_t> triangle;  ///< index into BodyMesh::triangle, where there is one
@@ -30,13 +30,20 @@ struct LightLayer {
 
 /// Views of a body along one direction.
 struct LightView {
-    std::uint32_t size = 0, stride = 0;  ///< [pixels]
+    std::uint32_t size = 0;  ///< [pixels]
     LightFrame frame;
     std::vector<glm::vec3> projected;  ///< vertices
     std::vector<glm::vec2> slope;      ///< of triangles in some pixel: dz/dx, dz/dy [m/pixel]
     LightLayer front;                  ///< of the body, facing the light: light enters
     LightLayer obstacle;  ///< of the body, facing away, where it would leave; and everything else
 };
+
+/// Strips of eight columns lie one after the other, so that what is near in a view is in few pages.
+constexpr std::uint32_t kStrip = 8;
+
+inline std::size_t pixel_index(std::uint32_t size, std::size_t column, std::size_t row) {
+    return (column / kStrip * size + row) * kStrip + column % kStrip;
+}
 
 /// Renders both layers; pixel (i, j) is sampled in (i + 1/2, j + 1/2). Reuses `view`'s memory,
 /// which must have seen no larger mesh.
