@@ -4,7 +4,6 @@
 #include <benchmark/benchmark.h>
 
 #include <chrono>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -12,7 +11,7 @@
 #include "bake/single/light_maps.h"
 #include "bake/single/ray_single.h"
 #include "bake/single/texel_directions.h"
-#include "tests/support/scenes.h"
+#include "tests/bench/dented_ball.h"
 
 namespace opaline::bake {
 namespace {
@@ -21,23 +20,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// A ball of 80 000 triangles with dents, its mean free path a fiftieth of its diameter.
-formats::Scene dented_ball() {
-    auto ball = tests::make_sphere(6);
-    for (std::size_t v = 0; v < ball.position.size(); ++v) {
-        const glm::vec3 n = ball.normal[v];
-        ball.position[v] +=
-            0.08f * std::sin(13 * n.x) * std::sin(11 * n.y) * std::sin(12 * n.z) * n;
-    }
-    auto scene = tests::make_scene({ball});
-    formats::Medium medium;
-    medium.sigma_s = {22, 24, 20};
-    medium.sigma_a = {3, 1, 5};
-    medium.eta = 1.3f;
-    scene.materials[0].medium = medium;
-    return scene;
 }
 
 // Every n-th block of a set, each of its directions a texel of its own.
@@ -56,7 +38,7 @@ DirectionSet thinned(const DirectionSet& all, std::size_t blocks) {
 }
 
 void maps_against_rays(benchmark::State& state) {
-    const formats::Scene scene = dented_ball();
+    const formats::Scene scene = tests::make_dented_ball();
     const RayScene rays = std::move(RayScene::build(scene, 0)).value();
     const auto points = make_body_points(scene, make_vertex_receivers(scene));
     const SingleMedium medium = make_single_medium(scene, 0, 8);
