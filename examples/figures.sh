@@ -162,6 +162,17 @@ done
 convert depth16.png depth128.png -compose difference -composite -evaluate multiply 16 difference.png
 panel figure7 3x1 depth16 "16 samples, 4 x" depth128 "128 samples, 4 x" difference "difference, 16 x of that"
 
+# Its other half: along the normal, which is the same from everywhere and can be baked, against along
+# the refracted ray of sight, as `opaline reference` traces it. From radiance, not tone-mapped.
+small=(--light studio --size 300x300 --fov 22 --terms single)
+bake statue depth "${draft[@]}" --effects single --separate-terms
+picture_exr() { convert "$1.exr" -evaluate multiply 4 -depth 8 "$1.png"; }
+"$opaline" render depth.opal "${small[@]}" -o normal.exr
+"$opaline" reference statue.gltf --media depth.json "${small[@]}" --spp 2048 -o sight.exr 2>/dev/null
+picture_exr normal
+picture_exr sight
+panel figure7-path 2x1 normal "along the normal (baked), 4 x" sight "along the line of sight (traced), 4 x"
+
 # Figure 8 and the showpiece: marble with veins, jade and wax.
 for name in marble jade wax; do
     cp "$root/examples/media/$name.json" .

@@ -61,11 +61,12 @@ std::array<float, 3> attenuate(const GatherJob& job, const InteriorNode& node,
     return light;
 }
 
-// Evenly distributed in [0, 1), a function of the node and the direction alone.
+// Evenly distributed in [0, 1), a function of the node and the direction alone. Exponents are left
+// out: it does not change if the scene is scaled by a power of two.
 float number_of(const InteriorNode& node, glm::vec3 w) {
     std::uint64_t hash = 0x9e3779b97f4a7c15u;
     for (const float x : {node.position.x, node.position.y, node.position.z, w.x, w.y, w.z}) {
-        hash = (hash ^ std::bit_cast<std::uint32_t>(x)) * 0xbf58476d1ce4e5b9u;
+        hash = (hash ^ (std::bit_cast<std::uint32_t>(x) & 0x807fffffu)) * 0xbf58476d1ce4e5b9u;
         hash ^= hash >> 29;
     }
     return static_cast<float>(hash >> 40) * 0x1p-24f;
