@@ -13,23 +13,40 @@ namespace opaline::bake {
 /// Fewer where fewer are positive. Finite values only. Linear time: a histogram over the leading
 /// bits of the scores leaves few to be ordered.
 inline std::vector<std::uint32_t> find_largest(std::span<const float> score, std::size_t count) {
-    // Positive floats order as their bits do: exponent and the first three bits of the mantissa.
-    constexpr std::uint32_t kShift = 20;
-    const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
-    std::array<std::uint32_t, std::size_t{1} << (31 - kShift)> histogram{};
-    for (const float value : score) {
-        histogram[value > 0 ? bits(value) >> kShift : 0] += value > 0 ? 1 : 0;
+    // Positive floats order as their bits do: exponent and the first two bits of the mantissa.
+    constexpr std::uint32_t kShift = 21;
+    constexpr std::size_t kBuckets = std::size_t{1} << (31 - kShift);
+    const auto bucket_of = [](float value) {
+        return value > 0 ? std::bit_cast<std::uint32_t>(value) >> kShift : 0u;
+    };
+    // Neighbours often fall into one bucket: with a histogram each they need not wait.
+    std::array<std::array<std::uint32_t, kBuckets>, 4> histogram{};
+    std::size_t k = 0;
+    for (; k + 4 <= score.size(); k += 4) {
+        ++histogram[0][bucket_of(score[k])];
+        ++histogram[1][bucket_of(score[k + 1])];
+        ++histogram[2][bucket_of(score[k + 2])];
+        ++histogram[3][bucket_of(score[k + 3])];
+    }
+    for (; k < score.size(); ++k) {
+        ++histogram[0][bucket_of(score[k])];
     }
     std::size_t above = 0;  // entries in higher buckets than `last`
-    std::size_t last = histogram.size() - 1;
-    while (last > 0 && above + histogram[last] <= count) {
-        above += histogram[last--];
+    std::size_t last = kBuckets - 1;
+    for (; last > 0; --last) {
+        const std::size_t here = std::size_t{histogram[0][last]} + histogram[1][last] +
+                                 histogram[2][last] + histogram[3][last];
+        if (above + here > count) {
+            break;
+        }
+        above += here;
     }
     std::vector<std::uint32_t> chosen, candidates;
-    chosen.reserve(count);
-    for (std::uint32_t k = 0; k < score.size(); ++k) {
-        if (score[k] > 0 && bits(score[k]) >> kShift >= last) {
-            (bits(score[k]) >> kShift > last ? chosen : candidates).push_back(k);
+    chosen.reserve(std::min(count, score.size()));
+    const float least = std::bit_cast<float>(static_cast<std::uint32_t>(last << kShift));
+    for (std::uint32_t i = 0; i < score.size(); ++i) {
+        if (score[i] >= least && score[i] > 0) {
+            (bucket_of(score[i]) > last ? chosen : candidates).push_back(i);
         }
     }
     const std::size_t rest = std::min(count - above, candidates.size());
