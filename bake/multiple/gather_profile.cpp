@@ -1,6 +1,9 @@
 #include "bake/multiple/gather_profile.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace opaline::bake {
 namespace {
@@ -10,7 +13,28 @@ namespace {
 constexpr double kWidthPerSpacing = 1.2;
 // Within this radius lie about twenty samples: enough to average, few enough to stay local.
 constexpr double kNearSpacings = 2.5;
-constexpr double kStepsPerOctave = 64;
+
+// Steps of the table: 64 of each octave, evenly spaced in it, which are the leading bits of a
+// float.
+constexpr std::uint32_t kFractionBits = 23 - 6;
+constexpr auto kOne = std::bit_cast<std::uint32_t>(1.0f);
+
+struct Place {
+    std::uint32_t step;
+    float fraction;  // of the way to the next step
+};
+
+// `x` >= 1.
+Place place_of(float x) {
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(x) - kOne;
+    const std::uint32_t fraction = bits & ((1u << kFractionBits) - 1);
+    return {bits >> kFractionBits,
+            static_cast<float>(fraction) / static_cast<float>(1u << kFractionBits)};
+}
+
+float start_of(std::uint32_t step) {
+    return std::bit_cast<float>(kOne + (step << kFractionBits));
+}
 
 }  // namespace
 
@@ -33,13 +57,13 @@ GatherProfile make_gather_profile(const MediumProfile& medium, double spacing,
         }
     }
     const double z = std::max(medium.smallest, wanted);
-    profile.steps_per_octave = kStepsPerOctave;
-    profile.inverse_z_squared = 1 / (z * z);
-    const double octaves =
-        std::log2(1 + largest_distance * largest_distance * profile.inverse_z_squared);
-    const auto entries = static_cast<std::size_t>(std::ceil(octaves * kStepsPerOctave)) + 2;
-    for (std::size_t i = 0; i < entries; ++i) {
-        const double r2 = z * z * (std::exp2(static_cast<double>(i) / kStepsPerOctave) - 1);
+    profile.inverse_z_squared = static_cast<float>(1 / (z * z));
+    constexpr float kMost = 1e30f;  // where nothing arrives, whatever the scale
+    const auto farthest = static_cast<float>(largest_distance * largest_distance);
+    const std::uint32_t entries =
+        place_of(std::min(kMost, 1 + farthest * profile.inverse_z_squared)).step + 2;
+    for (std::uint32_t i = 0; i < entries; ++i) {
+        const double r2 = z * z * (static_cast<double>(start_of(i)) - 1);
         std::array<float, 3> value{};
         for (std::size_t b = 0; b < 3; ++b) {
             value[b] = static_cast<float>(medium.eval(b, std::sqrt(r2 + b_squared[b])));
@@ -50,16 +74,14 @@ GatherProfile make_gather_profile(const MediumProfile& medium, double spacing,
 }
 
 std::array<float, 3> eval_far(const GatherProfile& profile, float r2) {
-    const double at = std::log2(1 + static_cast<double>(r2) * profile.inverse_z_squared) *
-                      profile.steps_per_octave;
-    if (!(at < static_cast<double>(profile.table.size()) - 1)) {
+    const auto [step, f] = place_of(1 + r2 * profile.inverse_z_squared);
+    if (step + 1 >= profile.table.size()) {
         return {};
     }
-    const auto i = static_cast<std::size_t>(at);
-    const auto f = static_cast<float>(at - static_cast<double>(i));
     std::array<float, 3> value{};
     for (std::size_t b = 0; b < 3; ++b) {
-        value[b] = profile.table[i][b] + f * (profile.table[i + 1][b] - profile.table[i][b]);
+        value[b] =
+            profile.table[step][b] + f * (profile.table[step + 1][b] - profile.table[step][b]);
     }
     return value;
 }

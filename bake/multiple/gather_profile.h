@@ -18,11 +18,11 @@ namespace opaline::bake {
 /// sum (b = 0) and an opaque surface (T_d = R E), and nothing is asked of the surface's shape.
 /// Instead of translucency.md 3.7, whose disc must be flat.
 struct GatherProfile {
-    std::vector<std::array<float, 3>> table;  ///< R_far over log2(1 + r^2 / z^2), evenly spaced
-    double steps_per_octave = 1, inverse_z_squared = 1;
-    std::array<double, 3> total{};     ///< R per band
-    std::array<float, 3> near_mass{};  ///< R - R_>(b) per band
-    float near_radius = 0;             ///< [m] within which E is averaged; 0: no near part
+    std::vector<std::array<float, 3>> table;  ///< R_far at steps of 1 + r^2 / z^2, 64 an octave
+    float inverse_z_squared = 1;              ///< [1/m^2]
+    std::array<double, 3> total{};            ///< R per band
+    std::array<float, 3> near_mass{};         ///< R - R_>(b) per band
+    float near_radius = 0;                    ///< [m] within which E is averaged; 0: no near part
 };
 
 /// `spacing` [m] between samples, `largest_distance` [m]: the table's reach.

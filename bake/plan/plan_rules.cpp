@@ -210,8 +210,10 @@ PlanEntry decide_specular(const PlanInput& input) {
     } else {
         entry.on = true;
         entry.reason = "the boundary of the medium mirrors its surroundings";
-        // One ray a texel of a small cube map.
-        constexpr double kShare = 0.25 * kOpennessCubemap * kOpennessCubemap;
+        // One ray a texel of a small cube map, in packets so wide that they share little of their
+        // way.
+        constexpr double kWidePackets = 6;
+        constexpr double kShare = kWidePackets * 0.25 * kOpennessCubemap * kOpennessCubemap;
         entry.predicted_seconds = kShare / (input.knobs.cubemap_size * input.knobs.cubemap_size) *
                                   predict_trace_seconds(input.subject.receivers, input);
         entry.predicted_bytes =
