@@ -56,14 +56,15 @@ GatherProfile make_gather_profile(const MediumProfile& medium, double spacing,
             profile.near_radius = static_cast<float>(kNearSpacings * spacing);
         }
     }
-    const double z = std::max(medium.smallest, wanted);
-    profile.inverse_z_squared = static_cast<float>(1 / (z * z));
+    constexpr double kLeast = 1e-37;  // [m^2] its inverse is a float, whatever the scale
+    const double z_squared = std::max(kLeast, std::pow(std::max(medium.smallest, wanted), 2));
+    profile.inverse_z_squared = static_cast<float>(1 / z_squared);
     constexpr float kMost = 1e30f;  // where nothing arrives, whatever the scale
     const auto farthest = static_cast<float>(largest_distance * largest_distance);
     const std::uint32_t entries =
         place_of(std::min(kMost, 1 + farthest * profile.inverse_z_squared)).step + 2;
     for (std::uint32_t i = 0; i < entries; ++i) {
-        const double r2 = z * z * (static_cast<double>(start_of(i)) - 1);
+        const double r2 = z_squared * (static_cast<double>(start_of(i)) - 1);
         std::array<float, 3> value{};
         for (std::size_t b = 0; b < 3; ++b) {
             value[b] = static_cast<float>(medium.eval(b, std::sqrt(r2 + b_squared[b])));
