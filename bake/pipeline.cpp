@@ -240,17 +240,13 @@ formats::Error interrupted() {
 
 }  // namespace
 
-formats::Result<BakeResult> run_bake(const formats::Scene& given, const BakeOptions& options,
+formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& knobs,
                                      const Context& outer) {
     const Clock::time_point start = Clock::now();
-    formats::Result<Knobs> knobs = resolve_knobs(options);
-    if (!knobs) {
-        return std::move(knobs).error();
-    }
     Context context = outer;
     context.threads = thread_count(outer);
     BakeResult result;
-    result.knobs = *knobs;
+    result.knobs = knobs;
     result.threads = context.threads;
 
     const OrientedBodies bodies =
@@ -259,17 +255,17 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const BakeOpti
     result.warnings = describe_faults(given, bodies.surfaces);
 
     result.plan = run_stage(
-        result, "plan", [&](std::uint64_t&) { return plan_bake(scene, *knobs, context.threads); });
+        result, "plan", [&](std::uint64_t&) { return plan_bake(scene, knobs, context.threads); });
     formats::Result<RayScene> rays = run_stage(result, "hierarchy", [&](std::uint64_t&) {
         return RayScene::build(scene, context.threads);
     });
     if (!rays) {
         return std::move(rays).error();
     }
-    std::vector<RowLayout> layouts = layout_rows(scene, result.plan, *knobs);
+    std::vector<RowLayout> layouts = layout_rows(scene, result.plan, knobs);
     for (std::size_t m = 0; m < layouts.size(); ++m) {
         if (layouts[m].direct && scene.materials[m].medium) {
-            layouts[m].tint = half_space_albedo(*scene.materials[m].medium, knobs->seed, context);
+            layouts[m].tint = half_space_albedo(*scene.materials[m].medium, knobs.seed, context);
         }
     }
     std::vector<BodyPoint> points;
@@ -281,24 +277,24 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const BakeOpti
     });
     formats::Result<std::vector<TestLight>> lights = run_stage(
         result, "test lights",
-        [&](std::uint64_t&) { return make_test_lights(knobs->cubemap_size, context.threads); });
+        [&](std::uint64_t&) { return make_test_lights(knobs.cubemap_size, context.threads); });
     if (!lights) {
         return std::move(lights).error();
     }
     MediaStages media;
-    prepare_media(scene, *rays, layouts, *knobs, *lights, context, result, media);
+    prepare_media(scene, *rays, layouts, knobs, *lights, context, result, media);
     if (context.cancelled()) {
         return interrupted();
     }
     formats::Result<formats::SparseRows> rows =
-        bake_rows(scene, *rays, receivers, points, layouts, media, *knobs, context, result);
+        bake_rows(scene, *rays, receivers, points, layouts, media, knobs, context, result);
     if (context.cancelled()) {
         return interrupted();
     }
     if (!rows) {
         return std::move(rows).error();
     }
-    warn_of_thin_parts(scene, *rays, points, media, knobs->seed, result.warnings);
+    warn_of_thin_parts(scene, *rays, points, media, knobs.seed, result.warnings);
     std::vector<formats::Openness> openness =
         bake_all_openness(scene, *rays, layouts, context, result);
     if (context.cancelled()) {
@@ -306,14 +302,14 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const BakeOpti
     }
     result.asset = pack_asset(scene, layouts, std::move(*rows), std::move(openness));
     result.error = run_stage(result, "self-check", [&](std::uint64_t& traced) {
-        return check_rows(scene, *rays, receivers, points, media, *knobs, *lights,
+        return check_rows(scene, *rays, receivers, points, media, knobs, *lights,
                           result.asset.view(), context, traced);
     });
     if (context.cancelled()) {
         return interrupted();
     }
-    result.asset.provenance = make_provenance(scene, options.quality, *knobs, result.plan,
-                                              result.error, RayScene::description());
+    result.asset.provenance =
+        make_provenance(scene, knobs, result.plan, result.error, RayScene::description());
     result.seconds_total = seconds_since(start);
     return result;
 }

@@ -31,9 +31,9 @@ struct BakeResult {
     double seconds_total = 0;
 };
 
-/// The whole bake: the stages in order, nothing else. Errors: usage (impossible options), resource,
-/// interrupted (the context was cancelled).
-formats::Result<BakeResult> run_bake(const formats::Scene& scene, const BakeOptions& options,
+/// The whole bake: the stages in order, nothing else. `knobs`: as resolve_knobs makes them.
+/// Errors: resource, interrupted (the context was cancelled).
+formats::Result<BakeResult> run_bake(const formats::Scene& scene, const Knobs& knobs,
                                      const Context& context);
 
 }  // namespace opaline::bake

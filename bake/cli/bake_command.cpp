@@ -94,7 +94,7 @@ int run(const Options& options) {
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
     context.on_progress = make_progress_printer(options.progress);
-    auto result = bake::run_bake(imported->scene, wanted, context);
+    auto result = bake::run_bake(imported->scene, *knobs, context);
     if (!result) {
         return report_error(result.error());
     }

@@ -36,7 +36,7 @@ Json error_json(const ErrorReport& error) {
     return json;
 }
 
-std::string make_provenance(const formats::Scene& scene, Quality quality, const Knobs& knobs,
+std::string make_provenance(const formats::Scene& scene, const Knobs& knobs,
                             const std::vector<PlanEntry>& plan, const ErrorReport& error,
                             std::string_view ray_tracer) {
     Json root;
@@ -48,7 +48,7 @@ std::string make_provenance(const formats::Scene& scene, Quality quality, const 
             {{"name", p.name}, {"material", scene.materials[p.material].name}});
     }
     root["seed"] = knobs.seed;
-    root["quality"] = quality_name(quality);
+    root["quality"] = quality_name(knobs.quality);
     root["knobs"] = knobs_json(knobs);
     root["plan"] = Json::array();
     for (const PlanEntry& entry : plan) {

@@ -17,7 +17,7 @@ nlohmann::ordered_json error_json(const ErrorReport& error);
 
 /// The PROV section: how the file came about, as JSON. Nothing that differs between two runs of the
 /// same bake: no seconds, dates, paths or thread counts.
-std::string make_provenance(const formats::Scene& scene, Quality quality, const Knobs& knobs,
+std::string make_provenance(const formats::Scene& scene, const Knobs& knobs,
                             const std::vector<PlanEntry>& plan, const ErrorReport& error,
                             std::string_view ray_tracer);
 

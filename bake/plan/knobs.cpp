@@ -13,6 +13,7 @@ using formats::make_error;
 
 Knobs preset(Quality quality) {
     Knobs knobs;
+    knobs.quality = quality;
     switch (quality) {
         case Quality::draft:
             knobs.cubemap_size = 16;

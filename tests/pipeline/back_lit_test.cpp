@@ -31,7 +31,7 @@ BackLit measure_back_lit(tests::Primitive body, const formats::Medium& medium) {
     options.cubemap_size = 16;
     options.samples = 8000;
     options.depth_samples = 8;
-    const auto baked = run_bake(scene, options, {});
+    const auto baked = run_bake(scene, *resolve_knobs(options), {});
     EXPECT_TRUE(baked);
     const formats::AssetView asset = baked->asset.view();
     BackLit result;

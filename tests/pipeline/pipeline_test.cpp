@@ -112,7 +112,8 @@ TEST(Pipeline, CancellingEndsInAnInterruptedErrorAndNoResult) {
     const std::atomic<bool> cancel = true;
     Context context;
     context.cancel = &cancel;
-    const auto result = run_bake(tests::make_dented_ball(), small_options(), context);
+    const auto result =
+        run_bake(tests::make_dented_ball(), *resolve_knobs(small_options()), context);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().kind, formats::ErrorKind::interrupted);
 }
@@ -126,7 +127,7 @@ TEST(Pipeline, ProgressEndsAtTheNumberOfReceivers) {
         last = progress.done;
         total = progress.total;
     };
-    ASSERT_TRUE(run_bake(scene, small_options(), context));
+    ASSERT_TRUE(run_bake(scene, *resolve_knobs(small_options()), context));
     EXPECT_EQ(last, total);
     EXPECT_EQ(total, scene.primitives[0].position.size() + scene.primitives[1].position.size());
 }

@@ -15,7 +15,7 @@ namespace opaline::tests {
 inline bake::BakeResult bake_scene(const formats::Scene& scene, const bake::BakeOptions& options) {
     bake::Context context;
     context.threads = options.threads;
-    auto result = bake::run_bake(scene, options, context);
+    auto result = bake::run_bake(scene, *bake::resolve_knobs(options), context);
     EXPECT_TRUE(result);
     return std::move(result).value();
 }
