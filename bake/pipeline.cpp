@@ -76,13 +76,8 @@ struct MediumStages {
 using MediaStages = std::map<std::uint32_t, MediumStages>;  // by material
 
 void prepare_media(const formats::Scene& scene, const RayScene& rays,
-                   std::span<const RowLayout> layouts, const Knobs& knobs,
-                   std::span<const TestLight> lights, const Context& context, BakeResult& result,
-                   MediaStages& media) {
-    std::vector<std::span<const float>> vectors;
-    for (const TestLight& light : lights) {
-        vectors.push_back(light.coarse);
-    }
+                   std::span<const RowLayout> layouts, const Knobs& knobs, const Context& context,
+                   BakeResult& result, MediaStages& media) {
     for (std::uint32_t m = 0; m < layouts.size(); ++m) {
         const RowLayout& layout = layouts[m];
         if (!layout.translucent) {
@@ -97,7 +92,7 @@ void prepare_media(const formats::Scene& scene, const RayScene& rays,
                     prepare_multiple(scene, rays, m,
                                      {knobs.cubemap_size, knobs.samples, knobs.exact_samples, kept,
                                       knobs.seed, !knobs.exact_rays},
-                                     vectors, context);
+                                     context);
                 traced = stage.transport.rays;
                 return stage;
             });
@@ -200,7 +195,7 @@ ErrorReport check_rows(const formats::Scene& scene, const RayScene& rays,
             continue;  // black: nothing to be wrong
         }
         checks.push_back(check_translucent(stages.recipe, scene, rays, m, knobs.depth_samples,
-                                           points, asset, drawn, lights, context));
+                                           points, asset, drawn, lights, knobs.seed, context));
     }
     std::vector<std::string> names;
     for (const TestLight& light : lights) {
@@ -282,7 +277,7 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& k
         return std::move(lights).error();
     }
     MediaStages media;
-    prepare_media(scene, *rays, layouts, knobs, *lights, context, result, media);
+    prepare_media(scene, *rays, layouts, knobs, context, result, media);
     if (context.cancelled()) {
         return interrupted();
     }

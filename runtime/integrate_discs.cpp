@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/opal/cubemap.h"
+#include "runtime/nearest_texels.h"
 
 namespace opaline::runtime {
 namespace {
@@ -26,7 +27,7 @@ Frame frame_around(Vec3 axis) {
 
 // Sunflower: equal steps in height, the golden angle in azimuth.
 void cover_small_disc(Vec3 axis, double radius, std::uint32_t n, std::span<double> cover) {
-    constexpr std::uint32_t kPoints = 4096;
+    constexpr std::uint32_t kPoints = 1024;
     const double golden_angle = pi * (3.0 - std::sqrt(5.0));
     const Frame frame = frame_around(axis);
     const double half = std::sin(0.5 * radius);
@@ -38,7 +39,9 @@ void cover_small_disc(Vec3 axis, double radius, std::uint32_t n, std::span<doubl
         const Vec3 d = static_cast<float>(sine * std::cos(phi)) * frame.across +
                        static_cast<float>(sine * std::sin(phi)) * frame.along +
                        static_cast<float>(1.0 - 2.0 * s * s) * frame.axis;
-        cover[formats::texel_index(n, d)] += 1.0;
+        for (const TexelShare& part : nearest_texels(n, d)) {
+            cover[part.texel] += part.share;
+        }
     }
 }
 

@@ -14,7 +14,8 @@ enum class RandomStage : std::uint32_t {
     bootstrap = 3,
     half_space_walk = 4,
     reference_path = 5,
-    reference_receivers = 6
+    reference_receivers = 6,
+    check_points = 7
 };
 
 /// Four uniform numbers in [0, 1), a pure function of its arguments: no state, hence the same for

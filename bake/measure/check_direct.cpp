@@ -1,19 +1,22 @@
 #include "bake/measure/check_direct.h"
 
-#include <algorithm>
 #include <numbers>
+#include <vector>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/measure/true_irradiance.h"
 #include "bake/visibility/irradiance_transport.h"
-#include "formats/opal/haar.h"
 
 namespace opaline::bake {
+
 EffectCheck check_direct(const RayScene& rays, std::span<const Receiver> receivers,
                          const formats::AssetView& asset, std::span<const std::uint32_t> drawn,
                          std::span<const TestLight> lights, const Context& context) {
+    constexpr std::uint32_t kRaysPerSun = 16;
     EffectCheck check{
-        "direct", "dense, unquantised transport at twice the cube map resolution", {}, 0};
-    const DirectionSet fine = make_direction_set(2 * asset.cubemap_size);
+        "direct", "rays to the suns, and to all else four a texel of 6 x 64 x 64", {}, 0};
+    const DirectionSet directions = make_direction_set(kTruthCubemap);
+    const SunRays suns = make_sun_rays(lights, kRaysPerSun);
     struct Found {
         std::vector<CheckedPair> pairs;
         std::uint64_t rays = 0;
@@ -27,15 +30,22 @@ EffectCheck check_direct(const RayScene& rays, std::span<const Receiver> receive
             if (primitive.shading != formats::Shading::diffuse) {
                 return found;
             }
-            const std::size_t size = lights.front().coarse.size();
-            std::vector<float> stored(size), dense(4 * size);
+            std::vector<float> stored(lights.front().coarse.size());
             formats::decode_row(asset.transport, primitive.rows(), v - primitive.first_vertex, 0,
                                 stored);
-            found.rays = gather_irradiance(rays, fine, receivers[v], dense);
-            formats::haar_forward_cube(std::span<float>(dense), fine.cubemap_size);
-            for (const TestLight& light : lights) {
-                const double reference = relit(dense, light.fine) * std::numbers::inv_pi;
-                found.pairs.push_back({relit(stored, light.coarse) - reference, reference});
+            std::vector<double> irradiance(lights.size());
+            if (receivers[v].normal != glm::vec3(0)) {
+                std::vector<float> dense(lights.front().smooth.size());
+                found.rays = gather_irradiance(rays, directions, receivers[v], dense);
+                found.rays += add_sun_irradiance(rays, suns, receivers[v], 1, irradiance);
+                for (std::size_t l = 0; l < lights.size(); ++l) {
+                    irradiance[l] += relit(dense, lights[l].smooth);
+                }
+            }
+            for (std::size_t l = 0; l < lights.size(); ++l) {
+                const double reference = irradiance[l] * std::numbers::inv_pi;
+                const double error = relit(stored, lights[l].coarse) - reference;
+                found.pairs.push_back({{error, error}, reference});
             }
             return found;
         },

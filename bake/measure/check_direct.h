@@ -13,7 +13,7 @@
 namespace opaline::bake {
 
 /// Checks the diffuse ones among the receivers `drawn` (indices over the whole asset, ascending)
-/// against dense, unquantised transport at twice the cube map resolution.
+/// against rays to the suns and dense quadrature of everything else.
 EffectCheck check_direct(const RayScene& rays, std::span<const Receiver> receivers,
                          const formats::AssetView& asset, std::span<const std::uint32_t> drawn,
                          std::span<const TestLight> lights, const Context& context);

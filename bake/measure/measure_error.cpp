@@ -14,10 +14,11 @@ constexpr std::size_t kLeastChecked = 16, kMostChecked = 256, kReceiversPerCheck
 double relative_rms(std::span<const CheckedPair> pairs) {
     double error = 0, reference = 0;
     for (const CheckedPair& p : pairs) {
-        error += p.error * p.error;
+        error += p.error[0] * p.error[1];
         reference += p.reference * p.reference;
     }
-    return reference > 0 ? std::sqrt(error / reference) : 0.0;
+    // The noise of the estimates can outweigh an error that is nearly zero.
+    return reference > 0 ? std::sqrt(std::max(0.0, error / reference)) : 0.0;
 }
 
 // Percentile bootstrap: resampling whole receivers, since one receiver's lights are not
@@ -101,7 +102,7 @@ ErrorReport summarise_checks(std::span<const EffectCheck> checks,
     std::vector<double> magnitude;
     for (const CheckedPair& p : pairs) {
         squares += p.reference * p.reference;
-        magnitude.push_back(std::abs(p.error));
+        magnitude.push_back(0.5 * std::abs(p.error[0] + p.error[1]));
     }
     std::sort(magnitude.begin(), magnitude.end());
     const double rms = std::sqrt(squares / static_cast<double>(pairs.size()));

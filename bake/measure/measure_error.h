@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -24,9 +25,12 @@ struct ErrorReport {
     std::vector<Part> by_light;   ///< pairs of one test light, over all effects
 };
 
-/// One receiver under one light: luminance.
+/// One receiver under one light: luminance. Two errors, against two independent estimates of the
+/// truth: the mean of their products is that of the squared error, free of the estimates' noise.
+/// Both are the same where the truth is known exactly.
 struct CheckedPair {
-    double error = 0, reference = 0;
+    std::array<double, 2> error{};
+    double reference = 0;
 };
 
 /// What one effect's check found: the pairs of each receiver stand together, one per light.

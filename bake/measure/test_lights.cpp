@@ -1,11 +1,13 @@
 #include "bake/measure/test_lights.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
 #include "bake/environment/builtin_environment.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/rgb.h"
+#include "runtime/integrate_map.h"
 #include "runtime/light_vector.h"
 #include "runtime/reduce_map.h"
 
@@ -24,20 +26,28 @@ std::vector<float> luminances(const runtime::LightVector& light) {
     return values;
 }
 
-// The same light on n x n texels from its 2n x 2n coefficients: a coarse texel's integral is the
-// sum of four, which is twice the low-pass of one Haar level, so the coarse coefficients are twice
-// the top-left quarter.
-std::vector<float> coarsen(const std::vector<float>& fine, std::uint32_t n) {
-    std::vector<float> coarse;
-    coarse.reserve(fine.size() / 4);
-    for (std::size_t face = 0; face < formats::kCubeFaces; ++face) {
-        for (std::size_t row = 0; row < n; ++row) {
-            for (std::size_t column = 0; column < n; ++column) {
-                coarse.push_back(2.0f * fine[(face * 2 * n + row) * 2 * n + column]);
-            }
-        }
+std::vector<float> integrate_smooth(const formats::Environment& environment, unsigned threads) {
+    const std::size_t texels = formats::cubemap_texels(kTruthCubemap);
+    std::vector<double> integral(3 * texels);
+    runtime::integrate_map(environment, kTruthCubemap, {}, threads, integral);
+    std::vector<float> smooth(texels);
+    for (std::size_t j = 0; j < texels; ++j) {
+        smooth[j] = formats::luminance({static_cast<float>(integral[3 * j]),
+                                        static_cast<float>(integral[3 * j + 1]),
+                                        static_cast<float>(integral[3 * j + 2])});
     }
-    return coarse;
+    return smooth;
+}
+
+std::vector<TestDisc> exact_discs(const formats::Environment& environment) {
+    std::vector<TestDisc> discs;
+    for (const formats::DistantDisc& d : environment.discs) {
+        discs.push_back({{d.direction.x, d.direction.y, d.direction.z},
+                         d.angular_radius,
+                         static_cast<double>(formats::luminance(d.radiance)) *
+                             formats::disc_solid_angle(d.angular_radius)});
+    }
+    return discs;
 }
 
 }  // namespace
@@ -59,16 +69,16 @@ formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_s
             return std::move(environment).error();
         }
         // Two to three pixels a texel are plenty for these smooth maps, and quick to project.
-        const std::uint32_t fine_size = 2 * cubemap_size;
+        const std::uint32_t finest = std::max(cubemap_size, kTruthCubemap);
         if (!environment->pixel.empty()) {
             std::vector<formats::DistantDisc> discs = std::move(environment->discs);
-            environment =
-                runtime::reduce_lat_long(*environment, 8 * fine_size, 4 * fine_size, threads);
+            environment = runtime::reduce_lat_long(*environment, 8 * finest, 4 * finest, threads);
             environment->discs = std::move(discs);
         }
-        std::vector<float> fine =
-            luminances(runtime::project_environment(*environment, fine_size, {}, threads));
-        lights.push_back({name, coarsen(fine, cubemap_size), std::move(fine)});
+        lights.push_back(
+            {name,
+             luminances(runtime::project_environment(*environment, cubemap_size, {}, threads)),
+             exact_discs(*environment), integrate_smooth(*environment, threads)});
     }
     return lights;
 }

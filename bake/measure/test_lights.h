@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,11 +10,22 @@
 
 namespace opaline::bake {
 
-/// A light in the bases that an error is measured in: luminance per Haar coefficient, pairing A.
+/// Cube map on which the smooth part of the test lights is what it is, whatever the knobs.
+inline constexpr std::uint32_t kTruthCubemap = 64;
+
+/// A sun of a test light, as exact as it is.
+struct TestDisc {
+    glm::vec3 direction{0, 1, 0};  ///< unit, toward its centre
+    float angular_radius = 0;      ///< [rad]
+    double flux = 0;               ///< luminance times solid angle
+};
+
+/// A published light, in luminance: as the runtime would project it for the asset, and as it is.
 struct TestLight {
     std::string name;           ///< as for `--light`
-    std::vector<float> coarse;  ///< 6 n n, n the asset's cube map size
-    std::vector<float> fine;    ///< 6 (2n)(2n), of the reference
+    std::vector<float> coarse;  ///< Haar, pairing A, discs included; 6 n n, n the asset's
+    std::vector<TestDisc> discs;
+    std::vector<float> smooth;  ///< everything else: integrals over the texels of kTruthCubemap
 };
 
 /// <row, light>, summed in double precision; both of one length and basis.

@@ -1,7 +1,6 @@
 #include "bake/multiple/sample_transport.h"
 
 #include <algorithm>
-#include <array>
 #include <numbers>
 
 #include "bake/base/ordered_parallel.h"
@@ -38,55 +37,14 @@ float mean_over_sphere(std::span<const float> radiance, std::span<const double> 
     return static_cast<float>(sum / (4 * std::numbers::pi));
 }
 
-// Lights side by side, padded to whole registers, so that they are summed at once.
-struct LightTable {
-    static constexpr std::size_t kWide = 8;
-    std::size_t lights = 0, entries = 0;
-    std::vector<double> value;  // [group of kWide][entry][kWide]
-};
-
-LightTable interleave(std::span<const std::span<const float>> lights) {
-    LightTable table{lights.size(), lights.empty() ? 0 : lights.front().size(), {}};
-    const std::size_t groups = (lights.size() + LightTable::kWide - 1) / LightTable::kWide;
-    table.value.resize(groups * table.entries * LightTable::kWide);
-    for (std::size_t l = 0; l < lights.size(); ++l) {
-        const std::size_t first = l / LightTable::kWide * table.entries;
-        for (std::size_t k = 0; k < table.entries; ++k) {
-            table.value[(first + k) * LightTable::kWide + l % LightTable::kWide] =
-                static_cast<double>(lights[l][k]);
-        }
-    }
-    return table;
-}
-
-void append_responses(const LightTable& table, std::span<const float> row,
-                      std::vector<double>& response) {
-    for (std::size_t first = 0; first < table.lights; first += LightTable::kWide) {
-        std::array<double, LightTable::kWide> sum{};
-        const double* light = &table.value[first * table.entries];
-        for (std::size_t k = 0; k < row.size(); ++k, light += LightTable::kWide) {
-            const auto value = static_cast<double>(row[k]);
-            for (std::size_t l = 0; l < LightTable::kWide; ++l) {
-                sum[l] += value * light[l];
-            }
-        }
-        const std::size_t count = std::min(LightTable::kWide, table.lights - first);
-        response.insert(response.end(), sum.begin(),
-                        sum.begin() + static_cast<std::ptrdiff_t>(count));
-    }
-}
-
 }  // namespace
 
 SampleTransport bake_sample_transport(const RayScene& rays, std::span<const SurfaceSample> samples,
-                                      const SampleOptions& options,
-                                      std::span<const std::span<const float>> lights,
-                                      const Context& context) {
+                                      const SampleOptions& options, const Context& context) {
     const std::uint32_t n = options.cubemap_size;
     const SharedDirections directions = make_shared_directions(n);
     const std::vector<float> transmittance = tabulate_transmittance(options.eta);
     const std::vector<double> solid_angle = formats::texel_solid_angles(n);
-    const LightTable table = interleave(lights);
     const std::size_t texels = formats::cubemap_texels(n);
     const std::size_t together = options.share_rays ? kSamplesPerGroup : 1;
     SampleTransport result;
@@ -111,7 +69,6 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
                     const std::span<float> own = std::span(dense).subspan(i * texels, texels);
                     part.mean.push_back(mean_over_sphere(own, solid_angle));
                     formats::haar_forward_cube(own, n);
-                    append_responses(table, own, part.response);
                     append_truncated(part.rows, own, options.kept);
                 }
             }
@@ -120,8 +77,6 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
         [&](Range range, const SampleTransport& part) {
             append_vectors(result.rows, part.rows);
             result.mean.insert(result.mean.end(), part.mean.begin(), part.mean.end());
-            result.response.insert(result.response.end(), part.response.begin(),
-                                   part.response.end());
             result.rays += part.rays;
             if (context.on_progress) {
                 context.on_progress({"samples", range.end, samples.size()});

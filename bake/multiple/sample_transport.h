@@ -14,9 +14,8 @@ namespace opaline::bake {
 /// What enters a medium through its surface samples, E(x, w) = Ft(eta, n.w) V(x, w) max(0, n.w)
 /// (translucency.md 3.5): colour-free.
 struct SampleTransport {
-    SparseVectors rows;            ///< Haar vectors of E, truncated
-    std::vector<float> mean;       ///< mean of E over the sphere, before truncation
-    std::vector<double> response;  ///< per sample and light: <E, L>, before truncation
+    SparseVectors rows;       ///< Haar vectors of E, truncated
+    std::vector<float> mean;  ///< mean of E over the sphere, before truncation
     std::uint64_t rays = 0;
 };
 
@@ -27,11 +26,9 @@ struct SampleOptions {
     bool share_rays = true;  ///< between the samples of a group (kd_order.h)
 };
 
-/// `lights`: Haar vectors to note the response to, 6 n n values each. Stops early, with fewer
+/// Stops early, with fewer
 /// samples, if the context is cancelled.
 SampleTransport bake_sample_transport(const RayScene& rays, std::span<const SurfaceSample> samples,
-                                      const SampleOptions& options,
-                                      std::span<const std::span<const float>> lights,
-                                      const Context& context);
+                                      const SampleOptions& options, const Context& context);
 
 }  // namespace opaline::bake

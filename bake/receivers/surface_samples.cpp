@@ -27,7 +27,9 @@ glm::vec3 lift_to_smooth_surface(const Primitive& p, const SurfacePoint& c) {
     return lift;
 }
 
-SurfaceSample finish(const Scene& scene, const SurfacePoint& c, float area) {
+}  // namespace
+
+SurfaceSample make_surface_sample(const Scene& scene, const SurfacePoint& c, float area) {
     const Primitive& p = scene.primitives[c.primitive];
     SurfaceSample sample;
     sample.position = c.position;
@@ -50,8 +52,6 @@ SurfaceSample finish(const Scene& scene, const SurfacePoint& c, float area) {
     return sample;
 }
 
-}  // namespace
-
 std::vector<SurfaceSample> sample_surface(const Scene& scene,
                                           const std::vector<std::uint32_t>& primitives,
                                           std::uint32_t count, std::uint64_t seed,
@@ -72,7 +72,7 @@ std::vector<SurfaceSample> sample_surface(const Scene& scene,
     std::vector<SurfaceSample> samples;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (area[i] > 0) {
-            samples.push_back(finish(scene, points[i], area[i]));
+            samples.push_back(make_surface_sample(scene, points[i], area[i]));
         }
     }
     sort_into_groups(samples);

@@ -5,9 +5,17 @@
 
 #include "bake/base/context.h"
 #include "bake/receivers/receiver.h"
+#include "bake/receivers/surface_points.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// A sample at a point, with the normal that its vertices interpolate.
+///
+/// Its rays start above the facet, at the point that the smooth surface through the vertex normals
+/// would have there [Hanika2021, shadow terminator], never below it. `area` [m^2].
+SurfaceSample make_surface_sample(const formats::Scene& scene, const SurfacePoint& point,
+                                  float area);
 
 /// About `count` points, spread evenly over the triangles of the scene's primitives listed in
 /// `primitives`, each with the area of the surface nearest to it; the areas add up to the surface.
@@ -17,9 +25,6 @@ namespace opaline::bake {
 /// (centre_in_cells.h). Points with opposed normals do not repel each other, so both sides of a
 /// thin sheet are covered. Counter-based random numbers, fixed order: the result depends on the
 /// scene and the seed alone.
-///
-/// Rays of a sample start above the facet, at the point that the smooth surface through the vertex
-/// normals would have there [Hanika2021, shadow terminator], never below it.
 /// Neighbours follow each other, in groups (kd_order.h).
 /// Returns fewer points only where the surface has no area.
 std::vector<SurfaceSample> sample_surface(const formats::Scene& scene,

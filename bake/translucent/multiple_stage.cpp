@@ -23,7 +23,6 @@ double scene_diagonal(const formats::Scene& scene) {
 
 MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
                                std::uint32_t material, const MultipleOptions& options,
-                               std::span<const std::span<const float>> lights,
                                const Context& context) {
     std::vector<std::uint32_t> primitives;
     double area = 0;
@@ -44,7 +43,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     stage.profile = make_gather_profile(stage.medium, std::sqrt(per_sample), scene_diagonal(scene));
     stage.transport = bake_sample_transport(
         rays, samples, {options.cubemap_size, options.kept, stage.medium.eta, options.share_rays},
-        lights, context);
+        context);
     if (!context.cancelled()) {
         stage.tree = build_cluster_tree(samples, stage.transport, options.cubemap_size,
                                         options.kept, context);

@@ -31,11 +31,9 @@ struct MultipleOptions {
 };
 
 /// Samples the surface of the material's medium, traces what enters, and builds the tree.
-/// `lights`: Haar vectors whose products with every sample's transport are kept for the self-check
-/// (SampleTransport::response). Incomplete if the context is cancelled.
+/// Incomplete if the context is cancelled.
 MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
                                std::uint32_t material, const MultipleOptions& options,
-                               std::span<const std::span<const float>> lights,
                                const Context& context);
 
 }  // namespace opaline::bake

@@ -6,28 +6,23 @@
 #include <numbers>
 #include <utility>
 
+#include "bake/base/frame.h"
+
 namespace opaline::bake {
 namespace {
-
-// Two unit vectors that make an orthonormal frame with n [Duff2017].
-std::pair<glm::vec3, glm::vec3> tangents(glm::vec3 n) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-    return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
-}
 
 // Sixteen cosine-weighted directions around the normal, on a golden-angle spiral.
 RayPacket probe_packet(const Receiver& receiver, glm::vec3 centre) {
     RayPacket packet{};
     const glm::vec3 origin = receiver.origin - centre;
-    const auto [u, v] = tangents(receiver.normal);
+    const Frame frame = make_frame(receiver.normal);
     for (std::uint32_t i = 0; i < RayPacket::kSize; ++i) {
         const float r2 = (static_cast<float>(i) + 0.5f) / static_cast<float>(RayPacket::kSize);
         const float phi =
             2.0f * std::numbers::pi_v<float> * (static_cast<float>(i) / std::numbers::phi_v<float>);
         const float r = std::sqrt(r2);
         const glm::vec3 d =
-            r * std::cos(phi) * u + r * std::sin(phi) * v + std::sqrt(1.0f - r2) * receiver.normal;
+            frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0f - r2)});
         packet.org_x[i] = origin.x, packet.org_y[i] = origin.y, packet.org_z[i] = origin.z;
         packet.dir_x[i] = d.x, packet.dir_y[i] = d.y, packet.dir_z[i] = d.z;
     }

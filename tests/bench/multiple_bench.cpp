@@ -36,7 +36,7 @@ struct Body {
 
     SampleTransport trace(std::size_t count, bool share_rays) const {
         return bake_sample_transport(rays, std::span(samples).first(count),
-                                     {kCubemap, kKept, 1.3, share_rays}, {}, context);
+                                     {kCubemap, kKept, 1.3, share_rays}, context);
     }
 };
 
