@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "bake/measure/check_direct.h"
 #include "bake/measure/check_translucent.h"
 #include "bake/measure/thin_parts.h"
+#include "bake/pilot/pilot.h"
 #include "bake/plan/plan_rules.h"
 #include "bake/plan/row_layout.h"
 #include "bake/receivers/orient_bodies.h"
@@ -66,52 +66,99 @@ void leave_out_skipped(const formats::Scene& scene, std::span<const RowLayout> l
     }
 }
 
-// The stages that the receivers of one medium share, and the recipe that uses them.
-struct MediumStages {
-    std::optional<MultipleStage> multiple;
-    std::optional<SingleStage> single;
-    TranslucentRecipe recipe;
-};
-
-using MediaStages = std::map<std::uint32_t, MediumStages>;  // by material
-
-void prepare_media(const formats::Scene& scene, const RayScene& rays,
-                   std::span<const RowLayout> layouts, const Knobs& knobs, const Context& context,
-                   BakeResult& result, MediaStages& media) {
+// What enters each medium; none of the other knobs matters to it.
+MediaStages prepare_media(const formats::Scene& scene, const RayScene& rays,
+                          std::span<const RowLayout> layouts, const Knobs& knobs,
+                          const Context& context, BakeResult& result) {
+    MediaStages media;
     for (std::uint32_t m = 0; m < layouts.size(); ++m) {
-        const RowLayout& layout = layouts[m];
-        if (!layout.translucent) {
+        if (!layouts[m].translucent) {
             continue;
         }
         MediumStages& stages = media[m];
-        const std::string of = " of material '" + scene.materials[m].name + "'";
-        if (layout.multiple) {
-            stages.multiple = run_stage(result, "samples" + of, [&](std::uint64_t& traced) {
+        stages.recipe.layout = layouts[m];
+        if (layouts[m].multiple) {
+            const std::string name = "samples of material '" + scene.materials[m].name + "'";
+            stages.multiple = run_stage(result, name, [&](std::uint64_t& traced) {
                 const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
                 MultipleStage stage =
                     prepare_multiple(scene, rays, m,
-                                     {knobs.cubemap_size, knobs.samples, knobs.exact_samples, kept,
-                                      knobs.seed, !knobs.exact_rays},
+                                     {knobs.cubemap_size, knobs.samples, knobs.exact_samples,
+                                      knobs.samples_per_path, kept, knobs.seed, !knobs.exact_rays},
                                      context);
                 traced = stage.transport.rays;
                 return stage;
             });
+            stages.recipe.multiple = &*stages.multiple;
         }
-        if (layout.single_terms > 0) {
-            stages.single = run_stage(result, "light maps" + of, [&](std::uint64_t&) {
-                return prepare_single(scene, rays, m,
-                                      {knobs.single_cubemap, knobs.depth_samples,
-                                       layout.single_terms, knobs.exact_rays},
-                                      context);
+    }
+    return media;
+}
+
+// What is left to prepare once every knob has its value.
+void finish_media(const formats::Scene& scene, const RayScene& rays, const Knobs& knobs,
+                  const Context& context, BakeResult& result, MediaStages& media) {
+    for (auto& [m, stages] : media) {
+        TranslucentRecipe& recipe = stages.recipe;
+        if (recipe.layout.single_terms > 0) {
+            const std::string name = "light maps of material '" + scene.materials[m].name + "'";
+            const std::uint32_t material = m, terms = recipe.layout.single_terms;
+            stages.single = run_stage(result, name, [&](std::uint64_t&) {
+                return prepare_single(
+                    scene, rays, material,
+                    {knobs.single_cubemap, knobs.depth_samples, terms, knobs.exact_rays}, context);
+            });
+            recipe.single = &*stages.single;
+        }
+        recipe.gather = {knobs.tolerance};
+        recipe.selector = make_selector(knobs.cubemap_size, knobs.coefficients);
+        recipe.code_bits = knobs.code_bits;
+    }
+}
+
+// Changes the knobs that the user did not fix into the cheapest that meet the target, as far as the
+// pilot can tell, and prepares the media with them.
+MediaStages choose_knobs(const PilotScene& pilot, std::vector<TestLight>& lights,
+                         const Context& context, BakeResult& result) {
+    Knobs& knobs = result.knobs;
+    result.accuracy = AccuracyReport{knobs.error_target, 0, 0, false, {}};
+    const std::vector<PilotReceiver> receivers =
+        run_stage(result, "pilot truth",
+                  [&](std::uint64_t&) { return find_pilot_truth(pilot, knobs, lights, context); });
+    while (!context.cancelled()) {
+        project_test_lights(lights, knobs.cubemap_size);
+        PilotChoice choice;
+        choice.knobs = knobs;
+        // Samples of media are not worth taking where the opaque receivers need more texels.
+        const double floor = run_stage(result, "pilot", [&](std::uint64_t&) {
+            return find_direct_floor(pilot, receivers, knobs, lights, context);
+        });
+        MediaStages media;
+        bool has_samples = false;
+        if (floor <= knobs.error_target || !refine_knobs(choice, false)) {
+            media = prepare_media(pilot.scene, pilot.rays, pilot.layouts, knobs, context, result);
+            for (const auto& [m, stages] : media) {
+                has_samples = has_samples || stages.multiple.has_value();
+            }
+            choice = run_stage(result, "pilot", [&](std::uint64_t&) {
+                return choose_row_knobs(pilot, receivers, knobs, media, lights, context);
             });
         }
-        stages.recipe = {layout,
-                         stages.multiple ? &*stages.multiple : nullptr,
-                         stages.single ? &*stages.single : nullptr,
-                         {knobs.tolerance},
-                         make_selector(knobs.cubemap_size, knobs.coefficients),
-                         knobs.code_bits};
+        for (const PilotTrial& trial : choice.trials) {
+            result.accuracy->trials.push_back({knobs.cubemap_size, knobs.samples_per_path, trial});
+        }
+        const std::optional<Knobs> finer =
+            choice.met ? std::nullopt : refine_knobs(choice, has_samples);
+        if (!finer) {
+            knobs = choice.knobs;
+            result.accuracy->predicted = choice.error;
+            result.accuracy->highest = choice.highest;
+            result.accuracy->met = choice.met;
+            return media;
+        }
+        knobs = *finer;
     }
+    return {};
 }
 
 // The rows of all primitives, in their order; one stage of the report for each primitive.
@@ -229,19 +276,42 @@ void warn_of_thin_parts(const formats::Scene& scene, const RayScene& rays,
     }
 }
 
+// Says where a target error was not reached.
+void warn_of_missed_target(const BakeResult& result, std::vector<formats::Diagnostic>& warnings) {
+    const AccuracyReport& accuracy = *result.accuracy;
+    const auto percent = [](double error) {
+        const std::string text = std::to_string(1e-3 * std::round(1e5 * error));
+        return text.substr(0, text.find('.') + 3) + " %";
+    };
+    if (!accuracy.met) {
+        warnings.push_back(formats::make_warning(
+            "", "--error",
+            percent(accuracy.target) + " is out of reach: the finest knobs tried leave " +
+                percent(accuracy.highest) + ", and were taken",
+            "ask for more, or give the scene more vertices where shadows end"));
+    } else if (result.error.rms_relative > accuracy.target) {
+        warnings.push_back(
+            formats::make_warning("", "--error",
+                                  "the self-check measured " + percent(result.error.rms_relative) +
+                                      ", more than the " + percent(accuracy.target) + " asked for",
+                                  "ask for a little less"));
+    }
+}
+
 formats::Error interrupted() {
     return make_error(ErrorKind::interrupted, "", "", "interrupted", "nothing was written");
 }
 
 }  // namespace
 
-formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& knobs,
+formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& wanted,
                                      const Context& outer) {
     const Clock::time_point start = Clock::now();
     Context context = outer;
     context.threads = thread_count(outer);
     BakeResult result;
-    result.knobs = knobs;
+    result.knobs = wanted;
+    Knobs& knobs = result.knobs;
     result.threads = context.threads;
 
     const OrientedBodies bodies =
@@ -276,8 +346,14 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& k
     if (!lights) {
         return std::move(lights).error();
     }
-    MediaStages media;
-    prepare_media(scene, *rays, layouts, knobs, context, result, media);
+    MediaStages media =
+        knobs.error_target > 0
+            ? choose_knobs({scene, *rays, receivers, points, layouts}, *lights, context, result)
+            : prepare_media(scene, *rays, layouts, knobs, context, result);
+    finish_media(scene, *rays, knobs, context, result, media);
+    if (knobs.error_target > 0) {
+        result.plan = plan_bake(scene, knobs, context.threads);  // of the knobs that were chosen
+    }
     if (context.cancelled()) {
         return interrupted();
     }
@@ -302,6 +378,9 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& k
     });
     if (context.cancelled()) {
         return interrupted();
+    }
+    if (result.accuracy) {
+        warn_of_missed_target(result, result.warnings);
     }
     result.asset.provenance =
         make_provenance(scene, knobs, result.plan, result.error, RayScene::description());

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bake/base/context.h"
 #include "bake/measure/measure_error.h"
+#include "bake/pilot/pilot.h"
 #include "bake/plan/bake_plan.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/result.h"
@@ -20,6 +22,20 @@ struct StageReport {
     std::uint64_t peak_rss_bytes = 0;  ///< of the process so far
 };
 
+/// What the pilot of a target error found out.
+struct AccuracyReport {
+    double target = 0;     ///< relative RMS asked for
+    double predicted = 0;  ///< expected of the chosen knobs, before the bake
+    double highest = 0;    ///< upper end of its 95 % interval
+    bool met = false;
+    struct Trial {
+        std::uint32_t cubemap_size;
+        double samples_per_path;
+        PilotTrial trial;
+    };
+    std::vector<Trial> trials;
+};
+
 struct BakeResult {
     formats::Asset asset;
     Knobs knobs;
@@ -27,6 +43,7 @@ struct BakeResult {
     std::vector<PlanEntry> plan;
     std::vector<StageReport> stages;
     ErrorReport error;
+    std::optional<AccuracyReport> accuracy;  ///< where an error was asked for
     std::vector<formats::Diagnostic> warnings;
     double seconds_total = 0;
 };

@@ -15,7 +15,8 @@ enum class RandomStage : std::uint32_t {
     half_space_walk = 4,
     reference_path = 5,
     reference_receivers = 6,
-    check_points = 7
+    check_points = 7,
+    pilot_receivers = 8
 };
 
 /// Four uniform numbers in [0, 1), a pure function of its arguments: no state, hence the same for

@@ -33,6 +33,10 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
                options.output, result.asset.position.size(), format_seconds(result.seconds_total),
                format_bytes(static_cast<double>(bytes)), 100 * result.error.rms_relative,
                100 * result.error.ci95[0], 100 * result.error.ci95[1]);
+    if (result.accuracy) {
+        fmt::print(stderr, "; asked for {:g} %, expected {:.2f} %", 100 * result.accuracy->target,
+                   100 * result.accuracy->predicted);
+    }
     fmt::print(stderr, "{}\n",
                warnings == 0   ? ""
                : warnings == 1 ? "; 1 warning"
@@ -125,6 +129,13 @@ void add_bake_command(CLI::App& app, Job& job) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("bake", "Bake a scene into an .opal file");
     add_scene_options(*command, options->scene);
+    command
+        ->add_option("--error", options->scene.bake.error,
+                     "relative RMS error that the file may have: a pilot measures what each knob "
+                     "costs and picks the cheapest; those given stay")
+        ->check(CLI::Range(1e-4, 0.99))
+        ->excludes("--quality")
+        ->option_text("E");
     command->add_option("-o,--output", options->output, "the .opal file to write")->required();
     command->add_option("--report", options->report, "write a JSON report: plan, stages, error");
     command->add_option("--depfile", options->depfile,

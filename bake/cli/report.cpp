@@ -31,6 +31,23 @@ Json plan_array(const std::vector<bake::PlanEntry>& plan) {
     return array;
 }
 
+Json accuracy_json(const bake::AccuracyReport& accuracy) {
+    Json trials = Json::array();
+    for (const auto& [cubemap_size, samples_per_path, trial] : accuracy.trials) {
+        trials.push_back(
+            {{"cubemap", cubemap_size},
+             {"samples_per_path", samples_per_path},
+             {"knob", trial.knob},
+             {"value", trial.value == bake::kAllCoefficients ? Json("all") : Json(trial.value)},
+             {"error", trial.error}});
+    }
+    return {{"error_requested", accuracy.target},
+            {"error_predicted", accuracy.predicted},
+            {"error_predicted_highest", accuracy.highest},
+            {"met", accuracy.met},
+            {"trials", std::move(trials)}};
+}
+
 }  // namespace
 
 std::string make_report(const formats::Scene& scene, const bake::BakeResult& result,
@@ -51,6 +68,9 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     }
     report["seconds_total"] = result.seconds_total;
     report["error"] = bake::error_json(result.error);
+    if (result.accuracy) {
+        report["accuracy"] = accuracy_json(*result.accuracy);
+    }
     report["output"] = {
         {"bytes", bytes},
         {"receivers", result.asset.position.size()},

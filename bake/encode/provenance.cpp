@@ -12,8 +12,10 @@ Json knobs_json(const Knobs& knobs) {
              knobs.coefficients == kAllCoefficients ? Json("all") : Json(knobs.coefficients)},
             {"code_bits", knobs.code_bits},
             {"samples", knobs.samples},
+            {"samples_per_path", knobs.samples_per_path},
             {"epsilon", knobs.tolerance},
             {"depth_samples", knobs.depth_samples},
+            {"single_cubemap", knobs.single_cubemap},
             {"phase_terms", knobs.phase_terms == 0 ? Json("auto") : Json(knobs.phase_terms)},
             {"separate_terms", knobs.separate_terms}};
 }

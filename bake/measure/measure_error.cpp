@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "bake/base/rng.h"
-
 namespace opaline::bake {
 namespace {
 
 constexpr std::size_t kLeastChecked = 16, kMostChecked = 256, kReceiversPerCheck = 40;
+
+}  // namespace
 
 double relative_rms(std::span<const CheckedPair> pairs) {
     double error = 0, reference = 0;
@@ -23,8 +23,8 @@ double relative_rms(std::span<const CheckedPair> pairs) {
 
 // Percentile bootstrap: resampling whole receivers, since one receiver's lights are not
 // independent.
-void bootstrap(std::span<const CheckedPair> pairs, std::size_t lights, std::uint64_t seed,
-               double (&interval)[2]) {
+ErrorBounds bound_error(std::span<const CheckedPair> pairs, std::size_t lights,
+                        std::uint64_t seed) {
     constexpr std::uint32_t kResamples = 1000;
     const std::size_t receivers = pairs.size() / lights;
     std::vector<double> estimate(kResamples);
@@ -41,25 +41,34 @@ void bootstrap(std::span<const CheckedPair> pairs, std::size_t lights, std::uint
         estimate[r] = relative_rms(resample);
     }
     std::sort(estimate.begin(), estimate.end());
-    interval[0] = estimate[static_cast<std::size_t>(0.025 * kResamples)];
-    interval[1] = estimate[static_cast<std::size_t>(0.975 * kResamples)];
+    return {relative_rms(pairs), estimate[static_cast<std::size_t>(0.025 * kResamples)],
+            estimate[static_cast<std::size_t>(0.975 * kResamples)]};
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> draw_receivers(std::size_t count, std::uint64_t seed) {
-    const std::size_t wanted =
-        std::min(count, std::clamp(count / kReceiversPerCheck, kLeastChecked, kMostChecked));
+std::vector<std::uint32_t> draw_evenly(std::size_t count, std::size_t wanted, RandomStage stage,
+                                       std::uint64_t seed) {
+    wanted = std::min(count, wanted);
     std::vector<std::uint32_t> drawn;
-    // One from each of `wanted` equal runs: spread over all primitives, never twice the same.
     for (std::size_t i = 0; i < wanted; ++i) {
         const std::size_t begin = count * i / wanted, end = count * (i + 1) / wanted;
-        const double u =
-            static_cast<double>(random_uniform(seed, RandomStage::held_back_receivers, i)[0]);
+        const auto u = static_cast<double>(random_uniform(seed, stage, i)[0]);
         drawn.push_back(static_cast<std::uint32_t>(
             begin + static_cast<std::size_t>(u * static_cast<double>(end - begin))));
     }
     return drawn;
+}
+
+std::vector<std::uint32_t> draw_receivers(std::size_t count, std::uint64_t seed) {
+    return draw_evenly(count, std::clamp(count / kReceiversPerCheck, kLeastChecked, kMostChecked),
+                       RandomStage::held_back_receivers, seed);
+}
+
+void append_pairs(const Luminance& found, const TwoEstimates& truth,
+                  std::vector<CheckedPair>& pairs) {
+    for (std::size_t l = 0; l < found.size(); ++l) {
+        pairs.push_back({{found[l] - truth.first[l], found[l] - truth.second[l]},
+                         0.5 * (truth.first[l] + truth.second[l])});
+    }
 }
 
 ErrorReport summarise_checks(std::span<const EffectCheck> checks,
@@ -96,8 +105,10 @@ ErrorReport summarise_checks(std::span<const EffectCheck> checks,
         report.reference += (l == 0 ? "; luminance under " : ", ") + lights[l];
     }
     report.receivers_checked = static_cast<std::uint32_t>(pairs.size() / lights.size());
-    report.rms_relative = relative_rms(pairs);
-    bootstrap(pairs, lights.size(), seed, report.ci95);
+    const ErrorBounds bounds = bound_error(pairs, lights.size(), seed);
+    report.rms_relative = bounds.rms;
+    report.ci95[0] = bounds.lowest;
+    report.ci95[1] = bounds.highest;
     double squares = 0;
     std::vector<double> magnitude;
     for (const CheckedPair& p : pairs) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "bake/base/rng.h"
+
 namespace opaline::bake {
 
 /// Numerical error of the finished rows against the same model evaluated by brute force, over
@@ -25,6 +27,14 @@ struct ErrorReport {
     std::vector<Part> by_light;   ///< pairs of one test light, over all effects
 };
 
+/// Luminance under each test light.
+using Luminance = std::vector<double>;
+
+/// Two independent unbiased estimates of the truth about one receiver.
+struct TwoEstimates {
+    Luminance first, second;
+};
+
 /// One receiver under one light: luminance. Two errors, against two independent estimates of the
 /// truth: the mean of their products is that of the squared error, free of the estimates' noise.
 /// Both are the same where the truth is known exactly.
@@ -33,12 +43,31 @@ struct CheckedPair {
     double reference = 0;
 };
 
+/// One pair for each light.
+void append_pairs(const Luminance& found, const TwoEstimates& truth,
+                  std::vector<CheckedPair>& pairs);
+
 /// What one effect's check found: the pairs of each receiver stand together, one per light.
 struct EffectCheck {
     std::string effect, reference;
     std::vector<CheckedPair> pairs;
     std::uint64_t rays = 0;
 };
+
+/// sqrt(mean of products of errors / mean square of the reference); 0 without a reference.
+double relative_rms(std::span<const CheckedPair> pairs);
+
+/// That, and the ends of its 95 % interval: bootstrap over receivers, the pairs of each standing
+/// together, `lights` >= 1 of them.
+struct ErrorBounds {
+    double rms = 0, lowest = 0, highest = 0;
+};
+ErrorBounds bound_error(std::span<const CheckedPair> pairs, std::size_t lights, std::uint64_t seed);
+
+/// `wanted` of `count` indices, ascending, one from each of as many equal runs: spread over all
+/// primitives, never twice the same. Drawn by (seed, stage).
+std::vector<std::uint32_t> draw_evenly(std::size_t count, std::size_t wanted, RandomStage stage,
+                                       std::uint64_t seed);
 
 /// Receivers to check out of `count`, ascending: about one in forty, 16 to 256, drawn by
 /// (seed, draw) so that the check costs at most a tenth of the bake.

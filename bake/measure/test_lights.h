@@ -35,4 +35,7 @@ double relit(std::span<const float> row, std::span<const float> light);
 formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_size,
                                                          unsigned threads);
 
+/// Gives them the cube map of another size.
+void project_test_lights(std::span<TestLight> lights, std::uint32_t cubemap_size);
+
 }  // namespace opaline::bake

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "bake/measure/measure_error.h"
 #include "bake/measure/true_irradiance.h"
 #include "bake/multiple/gather_profile.h"
 #include "bake/receivers/surface_points.h"
@@ -30,15 +31,6 @@ struct SurfaceIntegral {
 /// `profile`: of the scene's medium `material`.
 SurfaceIntegral make_surface_integral(const formats::Scene& scene, std::uint32_t material,
                                       const MediumProfile& profile);
-
-/// Luminance under each test light.
-using Luminance = std::vector<double>;
-
-/// Two independent unbiased estimates of one thing: the mean of the product of their errors is the
-/// square of what they are compared with, whatever their own noise.
-struct TwoEstimates {
-    Luminance first, second;
-};
 
 /// Luminance that leaves the surface at `position` [m] by multiple scattering,
 ///     1 / (pi c_exit) int R_d(|x - y|) E(y) dA,    translucency.md 3.3 and 3.5,

@@ -55,11 +55,27 @@ std::string_view quality_name(Quality quality) {
     return names[static_cast<std::size_t>(quality)];
 }
 
+std::uint32_t expected_coefficients(double target) {
+    return static_cast<std::uint32_t>(std::clamp(4 / target, 64.0, 1024.0));
+}
+
 formats::Result<Knobs> resolve_knobs(const BakeOptions& options) {
     Knobs knobs = preset(options.quality);
     knobs.effects = options.effects;
     knobs.seed = options.seed;
     knobs.separate_terms = options.separate_terms;
+    if (options.error != 0) {
+        if (!(options.error >= 1e-4 && options.error < 1)) {
+            return make_error(ErrorKind::usage, "", "--error", "the error must be in [0.0001, 1)",
+                              "give a relative RMS, such as 0.02 for 2 %");
+        }
+        knobs.error_target = options.error;
+        knobs.cubemap_size = 16;
+        knobs.coefficients = expected_coefficients(options.error);
+        knobs.phase_tolerance = 0.5 * options.error;
+        knobs.fixed = {options.cubemap_size != 0, options.coefficients != 0, options.tolerance >= 0,
+                       options.depth_samples != 0};
+    }
     if (options.samples != 0) {
         knobs.samples = options.samples;
         knobs.exact_samples = true;

@@ -17,6 +17,8 @@ inline constexpr std::uint32_t kAllCoefficients = 0xffffffffu;
 /// What the user asked for. A zero means: as the quality says.
 struct BakeOptions {
     Quality quality = Quality::preview;
+    double error = 0;  ///< relative RMS that the finished file may err by, in [1e-4, 1): picks the
+                       ///< knobs that are not given. 0: as the quality says
     std::uint32_t cubemap_size = 0;  ///< N: power of two in [8, 128]
     std::uint32_t coefficients = 0;  ///< M per row, the six face averages included; >= 7, or
                                      ///< kAllCoefficients
@@ -54,7 +56,17 @@ struct Knobs {
     /// 16 texels err by about .6 % of single scattering, which is a tenth of
     /// what a bright medium returns.
     std::uint32_t single_cubemap = 16;
+
+    double samples_per_path = 1;  ///< surface samples per square of the depth of a medium's source
+    double error_target = 0;      ///< 0: none; otherwise the pilot changes what is not fixed
+    struct Fixed {
+        bool cubemap = false, coefficients = false, tolerance = false, depth_samples = false;
+    } fixed;  ///< given by the user
 };
+
+/// About as many as a file needs to err by `target` under the test lights: what a pilot starts
+/// from.
+std::uint32_t expected_coefficients(double target);
 
 /// Fills in the quality's values; refuses impossible ones (usage error).
 formats::Result<Knobs> resolve_knobs(const BakeOptions& options);

@@ -34,9 +34,10 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     }
     MultipleStage stage;
     stage.medium = make_medium_profile(*scene.materials[material].medium, options.seed, context);
-    const std::uint32_t count = options.exact_samples
-                                    ? options.samples
-                                    : count_samples(area, stage.medium, options.samples);
+    const std::uint32_t count =
+        options.exact_samples
+            ? options.samples
+            : count_samples(area, stage.medium, options.samples_per_path, options.samples);
     const std::vector<SurfaceSample> samples =
         sample_surface(scene, primitives, count, options.seed, context);
     const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));

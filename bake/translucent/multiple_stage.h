@@ -25,7 +25,8 @@ struct MultipleOptions {
     std::uint32_t cubemap_size = 32;
     std::uint32_t samples = 60000;  ///< at most, or exactly
     bool exact_samples = false;
-    std::uint32_t kept = 128;  ///< coefficients of each sample
+    double samples_per_path = 1;  ///< count_samples
+    std::uint32_t kept = 128;     ///< coefficients of each sample
     std::uint64_t seed = 0;
     bool share_rays = true;  ///< between neighbouring samples
 };

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/measure/measure_error.h"
+#include "bake/measure/test_lights.h"
+#include "bake/plan/row_layout.h"
+#include "formats/opal/sparse_rows.h"
+
+namespace opaline::bake {
+
+/// h_k of each of a translucent receiver's rows, seen along its normal.
+std::vector<float> view_of_rows(const RowLayout& layout, glm::vec3 normal);
+
+/// sum over a receiver's rows of h_k <T_k, L>, as the runtime would say. `range`: of its primitive;
+/// `first_row`: the receiver's, counted from the start of the range; one row for each h.
+Luminance relight_rows(const formats::SparseRowsView& rows, const formats::RowRange& range,
+                       std::uint32_t first_row, std::span<const float> h,
+                       std::span<const TestLight> lights);
+
+}  // namespace opaline::bake

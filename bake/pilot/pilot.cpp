@@ -1,0 +1,213 @@
+#include "bake/pilot/pilot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bake/pilot/pilot_rows.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::uint32_t kLargestCubemap = 128;
+// Parts of the target's square that the tolerance and the single scattering's samples may take;
+// what is left is for coefficients, which cost most bytes.
+constexpr double kShareOfTolerance = 0.1, kShareOfSingle = 0.1;
+
+constexpr std::array<double, 5> kTolerances{1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
+constexpr double kFinestTolerance = 3e-5;
+struct SingleLevel {
+    std::uint32_t depth_samples, cubemap;
+};
+constexpr std::array<SingleLevel, 3> kSingleLevels{{{4, 8}, {6, 16}, {10, 16}}};
+constexpr std::array<std::uint32_t, 12> kCoefficients{32,  48,  64,  96,  128,  192,
+                                                      256, 384, 512, 768, 1024, 2048};
+
+double square_error(std::span<const CheckedPair> pairs) {
+    const double rms = relative_rms(pairs);
+    return rms * rms;
+}
+
+// Pairs of the lights without suns alone.
+std::vector<CheckedPair> without_suns(std::span<const CheckedPair> pairs,
+                                      std::span<const TestLight> lights) {
+    std::vector<CheckedPair> smooth;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (lights[i % lights.size()].discs.empty()) {
+            smooth.push_back(pairs[i]);
+        }
+    }
+    return smooth;
+}
+
+// All that trying a knob takes.
+struct Trials {
+    const PilotScene& pilot;
+    std::span<const PilotReceiver> receivers;
+    const MediaStages& media;
+    std::span<const TestLight> lights;
+    const Context& context;
+    double target;
+    PilotChoice choice;
+    PilotSingles single;
+
+    std::vector<std::vector<CheckedPair>> measure(const RowSetting& setting,
+                                                  std::span<const Encoding> encodings) const {
+        return measure_rows(pilot, receivers, media, single, setting, choice.knobs.cubemap_size,
+                            encodings, lights, context);
+    }
+    // With all coefficients.
+    std::vector<CheckedPair> measure(const RowSetting& setting) const {
+        const std::array<Encoding, 1> all{{{kAllCoefficients, 16}}};
+        return measure(setting, all).front();
+    }
+    void note(const char* knob, double value, double square) {
+        choice.trials.push_back({knob, value, std::sqrt(square)});
+    }
+
+    bool has_multiple() const {
+        return std::any_of(media.begin(), media.end(),
+                           [](const auto& m) { return m.second.multiple.has_value(); });
+    }
+
+    void choose_tolerance(RowSetting& setting, double floor) {
+        for (const double tolerance : kTolerances) {
+            RowSetting coarse = setting;
+            coarse.tolerance = tolerance;
+            const double square = square_error(measure(coarse));
+            note("epsilon", tolerance, square);
+            if (square <= floor + kShareOfTolerance * target * target) {
+                setting.tolerance = tolerance;
+                return;
+            }
+        }
+    }
+
+    void choose_single(RowSetting& setting, double floor) {
+        PilotSingles finest = std::move(single);
+        for (const SingleLevel& level : kSingleLevels) {
+            if (level.depth_samples >= setting.depth_samples) {
+                break;
+            }
+            const RowSetting coarse{setting.tolerance, level.depth_samples, level.cubemap};
+            single = gather_pilot_single(pilot, receivers, coarse, context);
+            const double square = square_error(measure(coarse));
+            note("depth_samples", level.depth_samples, square);
+            if (square <= floor + kShareOfSingle * target * target) {
+                setting = coarse;
+                return;
+            }
+        }
+        single = std::move(finest);
+    }
+
+    void choose_encoding(const RowSetting& setting, bool fixed) {
+        const Knobs& knobs = choice.knobs;
+        std::vector<Encoding> encodings;
+        for (const std::uint32_t bits : {8u, 16u}) {
+            for (const std::uint32_t m : kCoefficients) {
+                if (!fixed && m < 6 * knobs.cubemap_size * knobs.cubemap_size) {
+                    encodings.push_back({m, bits});
+                }
+            }
+            encodings.push_back({fixed ? knobs.coefficients : kAllCoefficients, bits});
+        }
+        const auto pairs = measure(setting, encodings);
+        if (context.cancelled()) {
+            return;
+        }
+        for (std::size_t e = 0; e < encodings.size(); ++e) {
+            const ErrorBounds bounds = bound_error(pairs[e], lights.size(), knobs.seed);
+            if (encodings[e].code_bits == 8) {
+                note("coefficients", encodings[e].coefficients, bounds.rms * bounds.rms);
+            }
+            if (e == 0 || bounds.highest < choice.highest || bounds.highest <= target) {
+                choice.knobs.coefficients = encodings[e].coefficients;
+                choice.knobs.code_bits = encodings[e].code_bits;
+                choice.error = bounds.rms;
+                choice.highest = bounds.highest;
+                choice.met = bounds.highest <= target;
+            }
+            if (choice.met) {
+                return;
+            }
+        }
+    }
+};
+
+}  // namespace
+
+double find_direct_floor(const PilotScene& pilot, std::span<const PilotReceiver> receivers,
+                         const Knobs& knobs, std::span<const TestLight> lights,
+                         const Context& context) {
+    std::vector<PilotReceiver> opaque;
+    double reference = 0;
+    for (const PilotReceiver& r : receivers) {
+        if (!pilot.layouts[r.material].translucent) {
+            opaque.push_back(r);
+        }
+        for (std::size_t l = 0; l < lights.size(); ++l) {
+            reference += r.truth.first[l] * r.truth.second[l];
+        }
+    }
+    const std::array<Encoding, 1> all{{{kAllCoefficients, 16}}};
+    const auto pairs =
+        measure_rows(pilot, opaque, {}, {}, {}, knobs.cubemap_size, all, lights, context);
+    double square = 0;
+    for (const CheckedPair& p : pairs.front()) {
+        square += p.error[0] * p.error[1];
+    }
+    return reference > 0 ? std::sqrt(std::max(0.0, square / reference)) : 0.0;
+}
+
+PilotChoice choose_row_knobs(const PilotScene& pilot, std::span<const PilotReceiver> receivers,
+                             const Knobs& knobs, const MediaStages& media,
+                             std::span<const TestLight> lights, const Context& context) {
+    Trials trials{pilot, receivers, media, lights, context, knobs.error_target, {}, {}};
+    trials.choice.knobs = knobs;
+    RowSetting setting{
+        knobs.fixed.tolerance ? knobs.tolerance : kFinestTolerance,
+        knobs.fixed.depth_samples ? knobs.depth_samples : kSingleLevels.back().depth_samples,
+        std::min(kSingleLevels.back().cubemap, knobs.cubemap_size)};
+    trials.single = gather_pilot_single(pilot, receivers, setting, context);
+    const std::vector<CheckedPair> finest = trials.measure(setting);
+    const double floor = square_error(finest);
+    trials.choice.smooth_error = relative_rms(without_suns(finest, lights));
+    if (trials.has_multiple() && !knobs.fixed.tolerance) {
+        trials.choose_tolerance(setting, floor);
+    }
+    if (!trials.single.empty() && !knobs.fixed.depth_samples) {
+        trials.choose_single(setting, floor + kShareOfTolerance * trials.target * trials.target);
+    }
+    trials.choice.knobs.tolerance = setting.tolerance;
+    trials.choice.knobs.depth_samples = setting.depth_samples;
+    trials.choice.knobs.single_cubemap = setting.single_cubemap;
+    trials.choose_encoding(setting, knobs.fixed.coefficients);
+    return std::move(trials.choice);
+}
+
+std::optional<Knobs> refine_knobs(const PilotChoice& choice, bool has_samples) {
+    constexpr double kMostPerPath = 64;
+    constexpr std::uint32_t kMostSamples = 1000000;
+    Knobs knobs = choice.knobs;
+    if (!knobs.fixed.coefficients) {
+        knobs.coefficients = expected_coefficients(knobs.error_target);
+    }
+    const bool finer_samples = has_samples && !knobs.exact_samples &&
+                               knobs.samples_per_path < kMostPerPath &&
+                               knobs.samples < kMostSamples;
+    const bool finer_cubemap = !knobs.fixed.cubemap && knobs.cubemap_size < kLargestCubemap;
+    const bool is_smooth = choice.smooth_error > 0.5 * knobs.error_target;
+    if (finer_samples && (is_smooth || !finer_cubemap)) {
+        knobs.samples_per_path *= 4;
+        knobs.samples = std::min(4 * knobs.samples, kMostSamples);
+        return knobs;
+    }
+    if (finer_cubemap) {
+        knobs.cubemap_size *= 2;
+        return knobs;
+    }
+    return std::nullopt;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/measure/measure_error.h"
+#include "bake/measure/test_lights.h"
+#include "bake/plan/knobs.h"
+#include "bake/plan/row_layout.h"
+#include "bake/receivers/receiver.h"
+#include "bake/translucent/media_stages.h"
+#include "bake/visibility/ray_scene.h"
+
+namespace opaline::bake {
+
+/// What the pilot looks at. All but `layouts`, which go by material, are of all vertices.
+struct PilotScene {
+    const formats::Scene& scene;
+    const RayScene& rays;
+    std::span<const Receiver> receivers;
+    std::span<const BodyPoint> points;
+    std::span<const RowLayout> layouts;
+};
+
+/// A receiver and what it truly sends out under each test light, whatever the knobs.
+struct PilotReceiver {
+    std::uint32_t vertex = 0, material = 0;
+    TwoEstimates truth;
+};
+
+/// Some of the receivers, 64 to 192, drawn apart from those of the self-check. Receivers that nothing
+/// is simulated for are left out. `lights`: of any cube map size. Fewer if cancelled.
+std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs& knobs,
+                                            std::span<const TestLight> lights,
+                                            const Context& context);
+
+/// One value of one knob that was tried, the others at their finest or as already chosen.
+struct PilotTrial {
+    std::string knob;  ///< as in knobs_json
+    double value = 0;  ///< kAllCoefficients stands for all
+    double error = 0;  ///< relative RMS
+};
+
+/// What a pilot makes of a cube map and, in media, of the surface samples there are.
+struct PilotChoice {
+    Knobs knobs;              ///< the cheapest that meet the target, or the finest
+    double error = 0;         ///< expected, relative RMS
+    double highest = 0;       ///< upper end of its 95 % interval
+    bool met = false;         ///< `highest` is not above knobs.error_target
+    double smooth_error = 0;  ///< of lights without suns, with the finest knobs: more texels hardly
+                              ///< lower it, more samples do
+    std::vector<PilotTrial> trials;
+};
+
+/// Tries, at the cube map size and with the media's samples as they are, the other knobs that the
+/// user did not fix: tolerance, depth samples, coefficients, code bits. Measures the error of each
+/// value, and takes the coarsest that leave it under the target. `lights`: of knobs.cubemap_size.
+/// Precondition: knobs.error_target > 0.
+PilotChoice choose_row_knobs(const PilotScene& pilot, std::span<const PilotReceiver> receivers,
+                             const Knobs& knobs, const MediaStages& media,
+                             std::span<const TestLight> lights, const Context& context);
+
+/// What the opaque receivers err by with all coefficients, as a share of what all receivers send
+/// out (relative RMS): only a finer cube map lowers it.
+double find_direct_floor(const PilotScene& pilot, std::span<const PilotReceiver> receivers,
+                         const Knobs& knobs, std::span<const TestLight> lights,
+                         const Context& context);
+
+/// What to try next where a choice did not meet the target: more surface samples or a finer cube
+/// map, whichever the error comes from. Nothing: the user fixed them, or they are at their limit.
+std::optional<Knobs> refine_knobs(const PilotChoice& choice, bool has_samples);
+
+}  // namespace opaline::bake

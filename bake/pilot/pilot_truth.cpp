@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/base/rng.h"
+#include "bake/measure/truth.h"
+#include "bake/pilot/pilot.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::size_t kLeastReceivers = 64, kMostReceivers = 192, kVerticesPerReceiver = 40;
+constexpr std::uint32_t kDepthSamples = 16;  // of the truth about single scattering
+
+bool is_simulated(const RowLayout& layout) {
+    return layout.translucent ? layout.multiple || layout.single_terms > 0 : layout.direct;
+}
+
+}  // namespace
+
+std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs& knobs,
+                                            std::span<const TestLight> lights,
+                                            const Context& context) {
+    std::vector<PilotReceiver> receivers;
+    const std::size_t wanted = std::clamp(pilot.points.size() / kVerticesPerReceiver,
+                                          kLeastReceivers, kMostReceivers);
+    for (const std::uint32_t v :
+         draw_evenly(pilot.points.size(), wanted, RandomStage::pilot_receivers, knobs.seed)) {
+        if (is_simulated(pilot.layouts[pilot.points[v].material])) {
+            receivers.push_back({v, pilot.points[v].material, {}});
+        }
+    }
+    std::optional<DirectTruth> direct;
+    std::map<std::uint32_t, TranslucentTruth> translucent;
+    for (const PilotReceiver& r : receivers) {
+        const RowLayout& layout = pilot.layouts[r.material];
+        if (!layout.translucent) {
+            direct = direct ? std::move(direct) : make_direct_truth(lights);
+        } else if (!translucent.contains(r.material)) {
+            std::optional<MediumProfile> profile;
+            if (layout.multiple) {
+                profile = make_medium_profile(*pilot.scene.materials[r.material].medium, knobs.seed,
+                                              context);
+            }
+            translucent.emplace(
+                r.material,
+                make_translucent_truth(pilot.scene, r.material, profile ? &*profile : nullptr,
+                                       layout.single_terms > 0 ? kDepthSamples : 0, lights));
+        }
+    }
+    std::size_t done = 0;
+    for_each_block_in_order(
+        receivers.size(), 1, context,
+        [&](Range range) {
+            const PilotReceiver& r = receivers[range.begin];
+            std::uint64_t traced = 0;
+            const auto body = translucent.find(r.material);
+            return body == translucent.end()
+                       ? eval_truth(*direct, pilot.rays, pilot.receivers[r.vertex], lights, traced)
+                       : eval_truth(body->second, pilot.scene, pilot.rays, pilot.points[r.vertex],
+                                    knobs.seed, r.vertex, traced);
+        },
+        [&](Range range, TwoEstimates&& truth) {
+            receivers[range.begin].truth = std::move(truth);
+            done = range.end;
+        });
+    receivers.resize(done);
+    return receivers;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "bake/translucent/translucent_rows.h"
+
+namespace opaline::bake {
+
+/// The stages that the receivers of one medium share, and the recipe that uses them. The recipe
+/// points into its owner: not to be copied.
+struct MediumStages {
+    std::optional<MultipleStage> multiple;
+    std::optional<SingleStage> single;
+    TranslucentRecipe recipe;
+};
+
+/// By material.
+using MediaStages = std::map<std::uint32_t, MediumStages>;
+
+}  // namespace opaline::bake
