@@ -152,7 +152,7 @@ MediaStages choose_knobs(const PilotScene& pilot, std::vector<TestLight>& lights
         if (!finer) {
             knobs = choice.knobs;
             result.accuracy->predicted = choice.error;
-            result.accuracy->highest = choice.highest;
+            result.accuracy->likely = choice.likely;
             result.accuracy->met = choice.met;
             return media;
         }
@@ -287,7 +287,7 @@ void warn_of_missed_target(const BakeResult& result, std::vector<formats::Diagno
         warnings.push_back(formats::make_warning(
             "", "--error",
             percent(accuracy.target) + " is out of reach: the finest knobs tried leave " +
-                percent(accuracy.highest) + ", and were taken",
+                percent(accuracy.likely) + ", and were taken",
             "ask for more, or give the scene more vertices where shadows end"));
     } else if (result.error.rms_relative > accuracy.target) {
         warnings.push_back(

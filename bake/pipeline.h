@@ -26,7 +26,7 @@ struct StageReport {
 struct AccuracyReport {
     double target = 0;     ///< relative RMS asked for
     double predicted = 0;  ///< expected of the chosen knobs, before the bake
-    double highest = 0;    ///< upper end of its 95 % interval
+    double likely = 0;     ///< one standard error of the pilot more
     bool met = false;
     struct Trial {
         std::uint32_t cubemap_size;

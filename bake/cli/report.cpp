@@ -43,7 +43,7 @@ Json accuracy_json(const bake::AccuracyReport& accuracy) {
     }
     return {{"error_requested", accuracy.target},
             {"error_predicted", accuracy.predicted},
-            {"error_predicted_highest", accuracy.highest},
+            {"error_likely", accuracy.likely},
             {"met", accuracy.met},
             {"trials", std::move(trials)}};
 }

@@ -11,8 +11,8 @@
 
 namespace opaline::bake {
 
-/// Checks, among the receivers `drawn`, those of the recipe's material. Multiple scattering against
-/// a Monte Carlo estimate of the surface integral, with points and rays of its own, single
+/// Checks, among 256 of the receivers `drawn`, those of the recipe's material. Multiple scattering
+/// against a Monte Carlo estimate of the surface integral, with points and rays of its own, single
 /// scattering against rays to twice the depth samples; both under the lights as they are. Where
 /// both stand in one row they are checked together, and the effect is named "multiple+single".
 /// Seen along the normal. `points`: of all receivers.

@@ -7,7 +7,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::size_t kLeastChecked = 16, kMostChecked = 256, kReceiversPerCheck = 40;
+constexpr std::size_t kLeastChecked = 16, kMostChecked = 1024, kReceiversPerCheck = 40;
 
 }  // namespace
 

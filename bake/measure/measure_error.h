@@ -69,7 +69,7 @@ ErrorBounds bound_error(std::span<const CheckedPair> pairs, std::size_t lights, 
 std::vector<std::uint32_t> draw_evenly(std::size_t count, std::size_t wanted, RandomStage stage,
                                        std::uint64_t seed);
 
-/// Receivers to check out of `count`, ascending: about one in forty, 16 to 256, drawn by
+/// Receivers to check out of `count`, ascending: about one in forty, 16 to 1024, drawn by
 /// (seed, draw) so that the check costs at most a tenth of the bake.
 std::vector<std::uint32_t> draw_receivers(std::size_t count, std::uint64_t seed);
 

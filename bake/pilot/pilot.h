@@ -32,8 +32,9 @@ struct PilotReceiver {
     TwoEstimates truth;
 };
 
-/// Some of the receivers, 64 to 192, drawn apart from those of the self-check. Receivers that nothing
-/// is simulated for are left out. `lights`: of any cube map size. Fewer if cancelled.
+/// Some of the receivers, 64 to 1024 (in media 192), drawn apart from those of the self-check.
+/// Receivers that nothing is simulated for are left out. `lights`: of any cube map size. Fewer if
+/// cancelled.
 std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs& knobs,
                                             std::span<const TestLight> lights,
                                             const Context& context);
@@ -49,7 +50,7 @@ struct PilotTrial {
 struct PilotChoice {
     Knobs knobs;              ///< the cheapest that meet the target, or the finest
     double error = 0;         ///< expected, relative RMS
-    double highest = 0;       ///< upper end of its 95 % interval
+    double likely = 0;        ///< upper end of its 95 % interval
     bool met = false;         ///< `highest` is not above knobs.error_target
     double smooth_error = 0;  ///< of lights without suns, with the finest knobs: more texels hardly
                               ///< lower it, more samples do

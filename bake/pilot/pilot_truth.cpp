@@ -10,11 +10,29 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::size_t kLeastReceivers = 64, kMostReceivers = 192, kVerticesPerReceiver = 40;
+// Opaque receivers are cheap to know, and shadows' edges make few of them say little.
+constexpr std::size_t kLeastReceivers = 64, kMostReceivers = 1024, kVerticesPerReceiver = 40;
+constexpr std::size_t kMostTranslucent = 192;
 constexpr std::uint32_t kDepthSamples = 16;  // of the truth about single scattering
 
 bool is_simulated(const RowLayout& layout) {
     return layout.translucent ? layout.multiple || layout.single_terms > 0 : layout.direct;
+}
+
+// Leaves about kMostTranslucent of a medium's receivers, evenly spread; of the opaque ones as many
+// in proportion as without, so that the error of all is that of the scene.
+void thin_out(const PilotScene& pilot, std::vector<PilotReceiver>& receivers) {
+    const auto translucent = static_cast<std::size_t>(
+        std::count_if(receivers.begin(), receivers.end(),
+                      [&](const auto& r) { return pilot.layouts[r.material].translucent; }));
+    const std::size_t step = (translucent + kMostTranslucent - 1) / kMostTranslucent;
+    if (step > 1) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < receivers.size(); i += step) {
+            receivers[kept++] = std::move(receivers[i]);
+        }
+        receivers.resize(kept);
+    }
 }
 
 }  // namespace
@@ -23,14 +41,15 @@ std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs
                                             std::span<const TestLight> lights,
                                             const Context& context) {
     std::vector<PilotReceiver> receivers;
-    const std::size_t wanted = std::clamp(pilot.points.size() / kVerticesPerReceiver,
-                                          kLeastReceivers, kMostReceivers);
+    const std::size_t wanted =
+        std::clamp(pilot.points.size() / kVerticesPerReceiver, kLeastReceivers, kMostReceivers);
     for (const std::uint32_t v :
          draw_evenly(pilot.points.size(), wanted, RandomStage::pilot_receivers, knobs.seed)) {
         if (is_simulated(pilot.layouts[pilot.points[v].material])) {
             receivers.push_back({v, pilot.points[v].material, {}});
         }
     }
+    thin_out(pilot, receivers);
     std::optional<DirectTruth> direct;
     std::map<std::uint32_t, TranslucentTruth> translucent;
     for (const PilotReceiver& r : receivers) {
