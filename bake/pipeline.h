@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/measure/check_model.h"
 #include "bake/measure/measure_error.h"
 #include "bake/plan/bake_plan.h"
 #include "formats/opal/asset.h"
@@ -27,6 +29,7 @@ struct BakeResult {
     std::vector<PlanEntry> plan;
     std::vector<StageReport> stages;
     ErrorReport error;
+    std::optional<ModelErrorReport> model_error;  ///< where Knobs::check_model asks for it
     std::vector<formats::Diagnostic> warnings;
     double seconds_total = 0;
 };

@@ -33,6 +33,11 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
                options.output, result.asset.position.size(), format_seconds(result.seconds_total),
                format_bytes(static_cast<double>(bytes)), 100 * result.error.rms_relative,
                100 * result.error.ci95[0], 100 * result.error.ci95[1]);
+    if (const auto& model = result.model_error) {
+        fmt::print(stderr, "; model error {:.1f} % (95 %: {:.1f} to {:.1f}), mean {:+.1f} %",
+                   100 * model->rms_relative, 100 * model->ci95[0], 100 * model->ci95[1],
+                   100 * model->bias);
+    }
     fmt::print(stderr, "{}\n",
                warnings == 0   ? ""
                : warnings == 1 ? "; 1 warning"
@@ -125,6 +130,9 @@ void add_bake_command(CLI::App& app, Job& job) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("bake", "Bake a scene into an .opal file");
     add_scene_options(*command, options->scene);
+    command->add_flag("--check-model", options->scene.bake.check_model,
+                      "also measure how far the physical model is from a Monte Carlo reference "
+                      "(seconds to a minute); the report gets `model_error`");
     command->add_option("-o,--output", options->output, "the .opal file to write")->required();
     command->add_option("--report", options->report, "write a JSON report: plan, stages, error");
     command->add_option("--depfile", options->depfile,

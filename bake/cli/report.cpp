@@ -51,6 +51,10 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     }
     report["seconds_total"] = result.seconds_total;
     report["error"] = bake::error_json(result.error);
+    if (result.model_error) {
+        report["model_error"] = bake::model_error_json(*result.model_error);
+        report["model_error"]["seconds"] = result.model_error->seconds;
+    }
     report["output"] = {
         {"bytes", bytes},
         {"receivers", result.asset.position.size()},

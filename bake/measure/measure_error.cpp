@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bake/base/rng.h"
+#include "bake/measure/bootstrap.h"
 
 namespace opaline::bake {
 namespace {
@@ -20,28 +21,20 @@ double relative_rms(std::span<const CheckedPair> pairs) {
     return reference > 0 ? std::sqrt(error / reference) : 0.0;
 }
 
-// Percentile bootstrap: resampling whole receivers, since one receiver's lights are not
-// independent.
+// Whole receivers are drawn, since one receiver's lights are not independent.
 void bootstrap(std::span<const CheckedPair> pairs, std::size_t lights, std::uint64_t seed,
                double (&interval)[2]) {
-    constexpr std::uint32_t kResamples = 1000;
-    const std::size_t receivers = pairs.size() / lights;
-    std::vector<double> estimate(kResamples);
     std::vector<CheckedPair> resample;
-    for (std::uint32_t r = 0; r < kResamples; ++r) {
-        resample.clear();
-        for (std::size_t i = 0; i < receivers; ++i) {
-            const double u =
-                static_cast<double>(random_uniform(seed, RandomStage::bootstrap, i, r)[0]);
-            const auto chosen = static_cast<std::size_t>(u * static_cast<double>(receivers));
-            const auto own = pairs.subspan(chosen * lights, lights);
-            resample.insert(resample.end(), own.begin(), own.end());
-        }
-        estimate[r] = relative_rms(resample);
-    }
-    std::sort(estimate.begin(), estimate.end());
-    interval[0] = estimate[static_cast<std::size_t>(0.025 * kResamples)];
-    interval[1] = estimate[static_cast<std::size_t>(0.975 * kResamples)];
+    const auto ends = bootstrap_interval(
+        pairs.size() / lights, seed, [&](std::span<const std::size_t> receivers) {
+            resample.clear();
+            for (const std::size_t r : receivers) {
+                const auto own = pairs.subspan(r * lights, lights);
+                resample.insert(resample.end(), own.begin(), own.end());
+            }
+            return relative_rms(resample);
+        });
+    std::copy(ends.begin(), ends.end(), interval);
 }
 
 }  // namespace

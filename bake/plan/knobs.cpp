@@ -58,6 +58,7 @@ std::string_view quality_name(Quality quality) {
 formats::Result<Knobs> resolve_knobs(const BakeOptions& options) {
     Knobs knobs = preset(options.quality);
     knobs.effects = options.effects;
+    knobs.check_model = options.check_model;
     knobs.seed = options.seed;
     knobs.separate_terms = options.separate_terms;
     if (options.samples != 0) {
