@@ -236,7 +236,7 @@ TEST(ReferenceSlab, TransmitsByBeersLawAtAnyDepth) {
 TEST(ReferenceSlab, ReflectsAsGiovanellisHalfSpaceOfIndexOneAndAHalf) {
     const auto slab =
         make_fixture(make_slab(make_medium(1, 0.9f, 0, 1.5f), 60), make_half_sky(true));
-    const bake::Moments m = look_down(slab->space(), 30, 1, 160000);
+    const bake::Moments m = look_down(slab->space(), 30, 1, 320000);
     EXPECT_NEAR(m.mean.x, 0.2600, 3 * std::hypot(standard_error(m), 5e-5));
     EXPECT_LT(standard_error(m), 0.001);
 }
