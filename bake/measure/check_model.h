@@ -50,8 +50,8 @@ struct ModelCheckOptions {
 /// Compares `asset`, baked from `scene`, with path tracing of the same light: what diffusion and
 /// straight paths make of it. Light of other terms (interreflection, light that crosses a body
 /// unscattered) is not compared but weighed: `missing`. The receivers' own mirror reflection counts
-/// on neither side. Left out are receivers that lie inside a body, and those in whose own body
-/// another surface lies close behind them.
+/// on neither side. Left out are receivers that lie inside a body or on a sharp edge of theirs, and
+/// those in whose own body another surface lies close behind them.
 ///
 /// No straight line connects the inside of a refracting body with the sky, and a path hits the
 /// sun's disc by luck alone: where there are such bodies suns are left out, of the sky too.

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "tests/support/media_bake.h"
+#include "tests/support/sheets.h"
 
 namespace opaline::bake {
 namespace {
@@ -20,38 +21,12 @@ BakeOptions fine_bake() {
     return options;
 }
 
-// A sheet of 2 x 2 m with more vertices on its faces than around its rim.
-std::vector<tests::Primitive> make_sheet(float thickness) {
-    const glm::vec3 up(0, thickness, 0), x(2, 0, 0), z(0, 0, 2), low(-1, -0.5f * thickness, -1);
-    return {tests::make_quad(low + up, z, x, 8), tests::make_quad(low, x, z, 8),
-            tests::make_quad(low, up, x),        tests::make_quad(low + z, x, up),
-            tests::make_quad(low, z, up),        tests::make_quad(low + x, up, z)};
-}
-
-// What is left are the texels of the cube map, which the file's own check finds as well.
-TEST(ModelError, OfAConvexOpaqueBodyIsItsNumericalError) {
-    const tests::Scene scene = tests::make_scene({tests::make_sphere(3)});
-    const BakeResult baked = tests::bake_scene(scene, fine_bake());
-    const ModelErrorReport report = check(scene, baked);
-    EXPECT_TRUE(report.left_out.empty());
-    EXPECT_EQ(report.receivers_checked, 48u);
-    ASSERT_EQ(report.by_light.size(), 6u) << "nothing refracts: every test light";
-    for (std::size_t l = 0; l < 6; ++l) {
-        const ModelErrorReport::Part& model = report.by_light[l];
-        const ErrorReport::Part& numerical = baked.error.by_light[l];
-        EXPECT_EQ(model.name, numerical.name);
-        EXPECT_LT(model.rms_relative, 1.5 * numerical.rms_relative + 0.5 * model.noise)
-            << model.name;
-        EXPECT_EQ(model.missing, 0) << "nothing to be reflected from";
-    }
-}
-
 // (d + noise)^2 is d^2 + variance in the mean. Here d is 0 (convex and opaque again; white light
 // has no texels) and one round of samples is all noise: were it not subtracted, the error would be
 // the noise.
 TEST(ModelError, UnderWhiteIsZeroWithinItsIntervalHoweverMuchNoiseThereIs) {
     const tests::Scene scene = tests::make_scene({tests::make_sphere(3)});
-    const BakeResult baked = tests::bake_scene(scene, tests::small_bake());
+    const BakeResult baked = tests::bake_scene(scene, fine_bake());
     ModelCheckOptions quick;
     quick.max_events = 1;
     constexpr int kSeeds = 4;
@@ -66,7 +41,7 @@ TEST(ModelError, UnderWhiteIsZeroWithinItsIntervalHoweverMuchNoiseThereIs) {
     }
     // 48 receivers: the sum of squares is off by sqrt(2 / 48) of the variance, either way.
     EXPECT_LT(share_of_noise, 0.5);
-    EXPECT_LT(std::abs(bias), 0.01);
+    EXPECT_LT(std::abs(bias), 0.0125) << "4 standard errors of 192 means";
 }
 
 TEST(ModelError, WeighsInterreflectionButDoesNotCountIt) {
@@ -77,17 +52,21 @@ TEST(ModelError, WeighsInterreflectionButDoesNotCountIt) {
     const ModelErrorReport report = check(scene, tests::bake_scene(scene, fine_bake()));
     EXPECT_GT(report.missing, 0.1);
     EXPECT_LT(report.by_light[0].rms_relative, 0.01);
+    const tests::Scene convex = tests::make_scene({tests::make_sphere(2)});
+    EXPECT_EQ(check(convex, tests::bake_scene(convex, tests::small_bake())).missing, 0)
+        << "nothing to be reflected from";
 }
 
 // One mean free path thick, lit from both sides: the dipole gives it the light of a half space.
 TEST(ModelError, OfAThinSheetIsThatItIsTooBright) {
     const tests::Scene scene =
-        tests::make_translucent_scene(make_sheet(0.1f), tests::make_grey_medium(9.9f, 0.1f));
+        tests::make_translucent_scene(tests::make_sheet(0.1f), tests::make_grey_medium(9.9f, 0.1f));
     BakeOptions options = tests::small_bake();
     options.cubemap_size = 16;
     const ModelErrorReport report = check(scene, tests::bake_scene(scene, options));
     EXPECT_GT(report.ci95[0], 0.1);
     EXPECT_GT(report.bias, 0.1);
+    EXPECT_GT(report.receivers_checked, 15u) << "without the edges";
     EXPECT_GT(report.missing, 0.1) << "what crosses it unscattered";
     EXPECT_EQ(report.left_out,
               (std::vector<std::string>{"sun:30,60", "sun:150,35", "sun:270,15", "sky:3,35"}));
