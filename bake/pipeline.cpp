@@ -382,8 +382,19 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     if (result.accuracy) {
         warn_of_missed_target(result, result.warnings);
     }
-    result.asset.provenance =
-        make_provenance(scene, knobs, result.plan, result.error, RayScene::description());
+    if (knobs.check_model) {
+        ModelCheckOptions options;
+        options.seed = knobs.seed;
+        auto checked = run_stage(result, "model check", [&](std::uint64_t&) {
+            return check_model(scene, result.asset.view(), options, context);
+        });
+        if (!checked) {
+            return std::move(checked).error();
+        }
+        result.model_error = std::move(*checked);
+    }
+    result.asset.provenance = make_provenance(scene, knobs, result.plan, result.error,
+                                              result.model_error, RayScene::description());
     result.seconds_total = seconds_since(start);
     return result;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/measure/check_model.h"
 #include "bake/measure/measure_error.h"
 #include "bake/pilot/pilot.h"
 #include "bake/plan/bake_plan.h"
@@ -43,7 +44,8 @@ struct BakeResult {
     std::vector<PlanEntry> plan;
     std::vector<StageReport> stages;
     ErrorReport error;
-    std::optional<AccuracyReport> accuracy;  ///< where an error was asked for
+    std::optional<AccuracyReport> accuracy;       ///< where an error was asked for
+    std::optional<ModelErrorReport> model_error;  ///< where Knobs::check_model asks for it
     std::vector<formats::Diagnostic> warnings;
     double seconds_total = 0;
 };

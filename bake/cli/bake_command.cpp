@@ -37,6 +37,11 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
         fmt::print(stderr, "; asked for {:g} %, expected {:.2f} %", 100 * result.accuracy->target,
                    100 * result.accuracy->predicted);
     }
+    if (const auto& model = result.model_error) {
+        fmt::print(stderr, "; model error {:.1f} % (95 %: {:.1f} to {:.1f}), mean {:+.1f} %",
+                   100 * model->rms_relative, 100 * model->ci95[0], 100 * model->ci95[1],
+                   100 * model->bias);
+    }
     fmt::print(stderr, "{}\n",
                warnings == 0   ? ""
                : warnings == 1 ? "; 1 warning"
@@ -136,6 +141,9 @@ void add_bake_command(CLI::App& app, Job& job) {
         ->check(CLI::Range(1e-4, 0.99))
         ->excludes("--quality")
         ->option_text("E");
+    command->add_flag("--check-model", options->scene.bake.check_model,
+                      "also measure how far the physical model is from a Monte Carlo reference "
+                      "(seconds to a minute); the report gets `model_error`");
     command->add_option("-o,--output", options->output, "the .opal file to write")->required();
     command->add_option("--report", options->report, "write a JSON report: plan, stages, error");
     command->add_option("--depfile", options->depfile,

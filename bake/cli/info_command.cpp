@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -93,6 +94,15 @@ void print_provenance(const Json& provenance) {
         fmt::print("measured error {:.2f} % RMS at {} receivers\n",
                    100 * provenance["error"]["rms_relative"].get<double>(),
                    text_of(provenance["error"], "receivers_checked"));
+    }
+    if (provenance.contains("model_error") && provenance["model_error"].is_object()) {
+        const Json& model = provenance["model_error"];
+        const auto percent = [&](const char* key) {
+            return model.contains(key) && model[key].is_number() ? 100 * model[key].get<double>()
+                                                                 : std::nan("");
+        };
+        fmt::print("model error   {:.1f} % RMS, {:+.1f} % in the mean, at {} receivers\n",
+                   percent("rms_relative"), percent("bias"), text_of(model, "receivers_checked"));
     }
     if (provenance.contains("plan") && provenance["plan"].is_array()) {
         fmt::print("plan\n");

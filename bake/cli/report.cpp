@@ -71,6 +71,10 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     if (result.accuracy) {
         report["accuracy"] = accuracy_json(*result.accuracy);
     }
+    if (result.model_error) {
+        report["model_error"] = bake::model_error_json(*result.model_error);
+        report["model_error"]["seconds"] = result.model_error->seconds;
+    }
     report["output"] = {
         {"bytes", bytes},
         {"receivers", result.asset.position.size()},

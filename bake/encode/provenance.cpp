@@ -38,8 +38,29 @@ Json error_json(const ErrorReport& error) {
     return json;
 }
 
+Json model_error_json(const ModelErrorReport& error) {
+    Json json = {{"rms_relative", error.rms_relative},
+                 {"ci95", {error.ci95[0], error.ci95[1]}},
+                 {"bias", error.bias},
+                 {"missing", error.missing},
+                 {"receivers_checked", error.receivers_checked},
+                 {"samples", error.samples},
+                 {"reference", error.reference},
+                 {"by_light", Json::object()},
+                 {"left_out", error.left_out}};
+    for (const ModelErrorReport::Part& light : error.by_light) {
+        json["by_light"][light.name] = {{"rms_relative", light.rms_relative},
+                                        {"bias", light.bias},
+                                        {"missing", light.missing},
+                                        {"noise", light.noise},
+                                        {"samples", light.samples}};
+    }
+    return json;
+}
+
 std::string make_provenance(const formats::Scene& scene, const Knobs& knobs,
                             const std::vector<PlanEntry>& plan, const ErrorReport& error,
+                            const std::optional<ModelErrorReport>& model_error,
                             std::string_view ray_tracer) {
     Json root;
     root["generator"] = std::string("Opaline ") + OPALINE_VERSION;
@@ -61,6 +82,9 @@ std::string make_provenance(const formats::Scene& scene, const Knobs& knobs,
                                 {"bound", entry.bound}});
     }
     root["error"] = error_json(error);
+    if (model_error) {
+        root["model_error"] = model_error_json(*model_error);
+    }
     // Names come from the user's file: bytes that are not UTF-8 must not stop the bake.
     return root.dump(2, ' ', false, Json::error_handler_t::replace);
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "bake/measure/bootstrap.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -21,28 +23,27 @@ double relative_rms(std::span<const CheckedPair> pairs) {
     return reference > 0 ? std::sqrt(std::max(0.0, error / reference)) : 0.0;
 }
 
-// Percentile bootstrap: resampling whole receivers, since one receiver's lights are not
-// independent.
+// Whole receivers are drawn, since one receiver's lights are not independent.
 ErrorBounds bound_error(std::span<const CheckedPair> pairs, std::size_t lights,
                         std::uint64_t seed) {
-    constexpr std::uint32_t kResamples = 1000;
-    const std::size_t receivers = pairs.size() / lights;
-    std::vector<double> estimate(kResamples);
-    std::vector<CheckedPair> resample;
-    for (std::uint32_t r = 0; r < kResamples; ++r) {
-        resample.clear();
-        for (std::size_t i = 0; i < receivers; ++i) {
-            const double u =
-                static_cast<double>(random_uniform(seed, RandomStage::bootstrap, i, r)[0]);
-            const auto chosen = static_cast<std::size_t>(u * static_cast<double>(receivers));
-            const auto own = pairs.subspan(chosen * lights, lights);
-            resample.insert(resample.end(), own.begin(), own.end());
-        }
-        estimate[r] = relative_rms(resample);
+    struct Sums {
+        double error = 0, reference = 0;
+    };
+    std::vector<Sums> of_receiver(pairs.size() / lights);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        of_receiver[i / lights].error += pairs[i].error[0] * pairs[i].error[1];
+        of_receiver[i / lights].reference += pairs[i].reference * pairs[i].reference;
     }
-    std::sort(estimate.begin(), estimate.end());
-    return {relative_rms(pairs), estimate[static_cast<std::size_t>(0.025 * kResamples)],
-            estimate[static_cast<std::size_t>(0.975 * kResamples)]};
+    const auto ends =
+        bootstrap_interval(of_receiver.size(), seed, [&](std::span<const std::size_t> receivers) {
+            Sums all;
+            for (const std::size_t r : receivers) {
+                all.error += of_receiver[r].error;
+                all.reference += of_receiver[r].reference;
+            }
+            return all.reference > 0 ? std::sqrt(std::max(0.0, all.error / all.reference)) : 0.0;
+        });
+    return {relative_rms(pairs), ends[0], ends[1]};
 }
 
 std::vector<std::uint32_t> draw_evenly(std::size_t count, std::size_t wanted, RandomStage stage,

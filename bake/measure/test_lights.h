@@ -28,6 +28,9 @@ struct TestLight {
     std::vector<float> smooth;  ///< everything else: integrals over the texels of kTruthCubemap
 };
 
+/// Names of the published set, as for `--light`.
+std::span<const char* const> published_lights();
+
 /// <row, light>, summed in double precision; both of one length and basis.
 double relit(std::span<const float> row, std::span<const float> light);
 

@@ -44,7 +44,7 @@ formats::Result<Estimate> estimate_pixels(
     const std::uint32_t pieces = std::clamp(256 / std::max(count, 1u), 1u, 64u);
     struct Piece {
         Moments moments;
-        std::uint64_t lost = 0;
+        std::uint64_t lost = 0, events = 0;
     };
     Estimate estimate;
     estimate.pixel.resize(count);
@@ -63,10 +63,11 @@ formats::Result<Estimate> estimate_pixels(
                     Piece piece;
                     const std::uint32_t end = std::min(round, (part + 1) * kPerPiece);
                     for (std::uint32_t s = part * kPerPiece; s < end; ++s) {
-                        RandomStream random(options.seed, pixel, first + s);
+                        RandomStream random(options.seed, pixel, options.first + first + s);
                         const PathSample one = sample(pixel, random);
                         piece.moments.add(glm::dvec3(one.radiance));
                         piece.lost += one.lost ? 1 : 0;
+                        piece.events += one.events;
                     }
                     block.push_back(piece);
                 }
@@ -76,6 +77,7 @@ formats::Result<Estimate> estimate_pixels(
                 for (std::size_t i = 0; i < block.size(); ++i) {
                     estimate.pixel[(range.begin + i) / parts].merge(block[i].moments);
                     estimate.lost += block[i].lost;
+                    estimate.events += block[i].events;
                 }
                 if (context.on_progress) {
                     context.on_progress(

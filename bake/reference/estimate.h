@@ -26,6 +26,8 @@ struct Moments {
 /// How long an estimate goes on.
 struct EstimateOptions {
     std::uint32_t samples = 64;  ///< for each pixel or receiver, >= 1
+    std::uint32_t first = 0;     ///< number of the first one: an estimate over samples 0 to 99 is
+                                 ///< that over 0 to 49 merged with that over 50 to 99
     double seconds = 0;          ///< 0: no limit; else also stop after the round in which the time
                                  ///< ran out, when all have the same number of samples
     std::uint64_t seed = 0;
@@ -35,6 +37,7 @@ struct Estimate {
     std::vector<Moments> pixel;
     std::uint32_t samples = 0;  ///< taken for each
     std::uint64_t lost = 0;     ///< paths that got lost (PathSample)
+    std::uint64_t events = 0;   ///< of all paths
     double seconds = 0;
 };
 

@@ -41,8 +41,9 @@ Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream
     // Rounding may have chosen a channel without odds: then the last one that has any.
     const int chosen = odds[channel] > 0 ? channel : odds.y > 0 ? 1 : 0;
     const float sigma = medium.sigma_t[chosen];
+    // 1 - u is exact: u has 24 bits.
     const float free =
-        sigma > 0 ? -std::log1p(-random.next()) / sigma : std::numeric_limits<float>::infinity();
+        sigma > 0 ? -std::log(1 - random.next()) / sigma : std::numeric_limits<float>::infinity();
     Flight flight;
     flight.surface = find_surface(free);
     if (flight.surface && flight.surface->distance > free) {
@@ -52,7 +53,9 @@ Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream
     if (std::isinf(flight.distance)) {
         return flight;
     }
-    const glm::vec3 passing = glm::exp(-medium.sigma_t * flight.distance);
+    // Relative to the chosen channel, whose density neither underflows nor is exceeded by much.
+    const glm::vec3 excess = (medium.sigma_t - sigma) * flight.distance;
+    const glm::vec3 passing = excess == glm::vec3(0) ? glm::vec3(1) : glm::exp(-excess);
     if (flight.surface) {
         flight.weight = passing / glm::dot(odds, passing);
     } else {

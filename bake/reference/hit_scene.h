@@ -66,7 +66,7 @@ class HitScene {
 /// the direction points to, by the hit's error bound.
 RayOrigin leave_surface(const SurfaceHit& hit, glm::vec3 direction);
 
-/// Base colour: factor, vertex colours and texture (bilinear in linear light).
+/// Base colour: factor, vertex colours, veins and texture (bilinear in linear light).
 glm::vec3 base_color_at(const formats::Scene& scene, const SurfaceHit& hit);
 /// Base colour of a vertex.
 glm::vec3 base_color_at_vertex(const formats::Scene& scene, std::uint32_t primitive,

@@ -31,7 +31,9 @@ bool meet_boundary(const PathSpace& space, Path& path, const SurfaceHit& hit, st
         path.origin = crossing.far;
         return true;
     }
-    crossing.color = base_color_at(scene.surfaces.scene(), hit);
+    if (path.stack.empty()) {
+        crossing.color = base_color_at(scene.surfaces.scene(), hit);
+    }
     const float ratio = index_of(scene, crossing.beyond) / index_of(scene, path.stack);
     if (is_matched(ratio)) {
         pass_boundary(path, crossing);
@@ -118,9 +120,9 @@ PathSample finish(const PathSpace& space, Path& path, RandomStream& random) {
     }
     const float sum = path.radiance.x + path.radiance.y + path.radiance.z;
     if (!std::isfinite(sum)) {
-        return {glm::vec3(0), true};
+        return {glm::vec3(0), true, path.events};
     }
-    return {path.radiance, path.lost};
+    return {path.radiance, path.lost, path.events};
 }
 
 }  // namespace
@@ -170,14 +172,17 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
         crossing.near = outside;
         crossing.far = inside;
         crossing.color = receiver.base_color;
-        if (is_matched(ratio)) {
+        const bool matched = is_matched(ratio);
+        if (matched || !space.options.own_mirror) {
+            path.beta *= matched ? 1 : 1 - crossing.split.reflectance;
+            path.events += matched ? 0 : 1;
             pass_boundary(path, crossing);
             walks = path.beta != glm::vec3(0) && is_wanted(space, path.state);
         } else {
             walks = reflect_or_refract(space, path, crossing, random);
         }
     }
-    return walks ? finish(space, path, random) : PathSample{path.radiance, false};
+    return walks ? finish(space, path, random) : PathSample{path.radiance, false, path.events};
 }
 
 }  // namespace opaline::bake

@@ -16,6 +16,8 @@ struct PathOptions {
     /// Most scattering events along a path: on surfaces (refraction and mirror reflection count)
     /// or in media. Crossings between equal indices do not count.
     std::uint32_t max_depth = 0xffffffffu;
+    /// false: a receiver's own mirror reflection is left out, whatever is seen in it.
+    bool own_mirror = true;
 };
 
 /// What a path walks through. All outlive the walk.
@@ -39,8 +41,9 @@ struct ReferenceReceiver {
 
 /// One sample of a path's radiance, and what became of the path.
 struct PathSample {
-    glm::vec3 radiance{0};  ///< [W m^-2 sr^-1], unbiased
-    bool lost = false;      ///< it flew out of a body that is not closed, or a number overflowed
+    glm::vec3 radiance{0};     ///< [W m^-2 sr^-1], unbiased
+    bool lost = false;         ///< it flew out of a body that is not closed, or a number overflowed
+    std::uint32_t events = 0;  ///< scatterings and surfaces on its way: a measure of the work
 };
 
 /// Radiance that comes along a ray against its `direction`; `around`: the bodies it starts in.

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 
+#include "bake/encode/marble.h"
 #include "bake/reference/hit_scene.h"
 #include "formats/image/srgb.h"
 
@@ -82,6 +83,13 @@ glm::vec3 base_color(const formats::Scene& scene, std::uint32_t primitive,
         if (image.width > 0 && image.height > 0) {
             color *= sample_texture(image, uv, material);
         }
+    }
+    if (material.marble) {
+        glm::vec3 position(0);
+        for (std::size_t k = 0; k < 3; ++k) {
+            position += weight[k] * p.position[corner[k]];
+        }
+        color *= to_vec(marble_color(*material.marble, position));
     }
     return color;
 }

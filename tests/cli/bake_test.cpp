@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -58,6 +59,37 @@ TEST(Bake, ReportHasTheKeysOfTheContract) {
     EXPECT_EQ(output.at("terms"), 1);
     EXPECT_EQ(output.at("coefficients_per_term"), 64);
     EXPECT_TRUE(report.at("warnings").is_array());
+}
+
+TEST(Bake, CheckModelComparesWithTheReferenceAndTellsReportFileAndUser) {
+    SmallScene small;
+    const std::string out = small.path("a.opal"), report = small.path("r.json");
+    const Arguments plain = {"bake",     small.scene(), "-o",        out,
+                             "--report", report,        "--quality", "draft"};
+    Arguments checked = plain;
+    checked.push_back("--check-model");
+    ASSERT_EQ(run_opaline(plain).exit_code, 0);
+    EXPECT_FALSE(Json::parse(read_text(report)).contains("model_error"));
+    const Outcome bake = run_opaline(checked);
+    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+    EXPECT_THAT(bake.err, HasSubstr("; model error "));
+    Json error = Json::parse(read_text(report)).at("model_error");
+    EXPECT_GE(error.at("rms_relative").get<double>(), error.at("ci95").at(0).get<double>());
+    EXPECT_LE(error.at("rms_relative").get<double>(), error.at("ci95").at(1).get<double>());
+    EXPECT_LT(std::abs(error.at("bias").get<double>()), 1);
+    EXPECT_GE(error.at("missing").get<double>(), 0);
+    EXPECT_GT(error.at("receivers_checked"), 0);
+    EXPECT_GT(error.at("samples"), 0);
+    EXPECT_GT(error.at("seconds").get<double>(), 0);
+    EXPECT_FALSE(error.at("reference").get<std::string>().empty());
+    EXPECT_TRUE(error.at("left_out").empty()) << "nothing refracts";
+    for (const char* light : {"white", "sun:30,60", "studio", "sky:3,35"}) {
+        EXPECT_GE(error.at("by_light").at(light).at("rms_relative").get<double>(), 0) << light;
+    }
+    EXPECT_THAT(run_opaline({"info", out}).out, HasSubstr("model error"));
+    error.erase("seconds");
+    const Json info = Json::parse(run_opaline({"info", out, "--json"}).out);
+    EXPECT_EQ(info.at("provenance").at("model_error"), error);
 }
 
 TEST(Bake, AnyNumberOfThreadsWritesTheSameBytes) {

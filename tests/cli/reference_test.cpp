@@ -5,6 +5,7 @@
 
 #include "formats/image/exr.h"
 #include "tests/cli/small_scene.h"
+#include "tests/support/scenes.h"
 
 namespace opaline::tests {
 namespace {
@@ -96,6 +97,93 @@ TEST(Reference, PictureComesWithItsVariance) {
     }
     EXPECT_GT(noise, 0);
     EXPECT_LT(noise, 0.1 * light);
+}
+
+/// A slab 400 m wide, two mean free paths thick along z, and what it is made of: isotropic index,
+/// g = .75, albedo .9. Under white light its radiance along the normal is the sum of total
+/// reflectance and transmittance, .09739 + .66096 [vandeHulst1980].
+constexpr double kSlabRadiance = 0.75835;
+
+Arguments slab_arguments(SmallScene& folder) {
+    const Primitive cube = make_cube(9, false);
+    AssetBuilder asset;
+    std::vector<float> position, normal;
+    for (std::size_t v = 0; v < cube.position.size(); ++v) {
+        const glm::vec3 p = cube.position[v] * glm::vec3(200, 200, 0.5f);
+        position.insert(position.end(), {p.x, p.y, p.z});
+        normal.insert(normal.end(), {cube.normal[v].x, cube.normal[v].y, cube.normal[v].z});
+    }
+    asset.json["materials"] = {{{"name", "Slab"}}};
+    const std::size_t p = asset.add(position, "VEC3"), n = asset.add(normal, "VEC3");
+    const std::size_t i = asset.add(cube.index, "SCALAR");
+    asset.add_node(
+        asset.add_mesh({{"POSITION", p}, {"NORMAL", n}}, {{"indices", i}, {"material", 0}}));
+    write_file(folder.path("slab.glb"), asset.glb());
+    const Json slab = {{"sigma_s", {1.8, 1.8, 1.8}},
+                       {"sigma_a", {0.2, 0.2, 0.2}},
+                       {"unit", "1/m"},
+                       {"phase", {{"type", "hg"}, {"g", 0.75}}},
+                       {"eta", 1.0}};
+    write_file(folder.path("slab.json"), Json{{"materials", {{"Slab", slab}}}}.dump());
+    return {"reference", folder.path("slab.glb"), "--media", folder.path("slab.json"), "--light",
+            "white"};
+}
+
+/// Mean of z^2, z = (value - truth) / its own standard error, and the mean value.
+struct Agreement {
+    double squares = 0, mean = 0, variance = 0;
+    int count = 0;
+
+    void add(double value, double standard_error) {
+        const double z = (value - kSlabRadiance) / standard_error;
+        squares += z * z;
+        mean += value;
+        variance += standard_error * standard_error;
+        ++count;
+    }
+    void expect() const {
+        EXPECT_NEAR(squares / count, 1, 4 * std::sqrt(2.0 / count));
+        EXPECT_NEAR(mean / count, kSlabRadiance, 3 * std::sqrt(variance) / count);
+        EXPECT_LT(std::sqrt(variance) / count, 0.003);
+    }
+};
+
+TEST(Reference, StandardErrorsOfTheTableAreHowFarItIsFromAPublishedSlab) {
+    SmallScene folder;
+    Arguments arguments = slab_arguments(folder);
+    arguments.insert(arguments.end(),
+                     {"--receivers", "600", "--spp", "400", "-o", folder.path("slab.csv")});
+    const Outcome outcome = run_opaline(arguments);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    Agreement slab;
+    for (const Row& row : read_rows(folder.path("slab.csv"))) {
+        // The two large faces, ten by ten vertices each, without their edges.
+        const unsigned i = row.vertex % 10, j = row.vertex / 10 % 10;
+        if (row.vertex >= 400 && i % 9 != 0 && j % 9 != 0) {
+            slab.add(row.value[0], row.error[0]);
+        }
+    }
+    EXPECT_EQ(slab.count, 128);
+    slab.expect();
+}
+
+TEST(Reference, VarianceOfThePictureIsHowFarItIsFromAPublishedSlab) {
+    SmallScene folder;
+    Arguments arguments = slab_arguments(folder);
+    arguments.insert(arguments.end(),
+                     {"--eye", "7,31,50", "--target", "7,31,0", "--fov", "1", "--size", "24x24",
+                      "--spp", "256", "-o", folder.path("slab.exr")});
+    const Outcome outcome = run_opaline(arguments);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto mean = formats::read_exr(folder.path("slab.exr")),
+               variance = formats::read_exr(folder.path("slab.var.exr"));
+    ASSERT_TRUE(mean && variance);
+    Agreement slab;
+    for (std::size_t i = 0; i < mean->pixel.size(); ++i) {
+        slab.add(mean->pixel[i].g, std::sqrt(variance->pixel[i].g));
+    }
+    EXPECT_EQ(slab.count, 24 * 24);
+    slab.expect();
 }
 
 TEST(Reference, PictureAgreesWithRender) {

@@ -59,12 +59,12 @@ TEST(ReferenceFurnace, WhiteSurfacesThatFaceEachOtherVanish) {
                                                  make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2})}),
                                      make_white_sky());
     bake::Moments all;
-    for (const bake::Moments& m : estimate(*plates, 8, 40000).pixel) {
+    for (const bake::Moments& m : estimate(*plates, 8, 320000).pixel) {
         EXPECT_NEAR(m.mean.x, 1, 4 * standard_error(m));
         all.merge(m);
     }
-    EXPECT_NEAR(all.mean.x, 1, std::max(1e-3, 4 * standard_error(all)));
-    EXPECT_LT(standard_error(all), 1e-3);
+    EXPECT_NEAR(all.mean.x, 1, 1e-3);
+    EXPECT_LT(standard_error(all), 2.6e-4);
 }
 
 TEST(ReferenceFurnace, ShellsOfOneMediumInEachOtherAreOneBody) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "bake/reference/estimate.h"
 #include "bake/reference/path.h"
@@ -81,14 +82,14 @@ inline Scene make_slab(const formats::Medium& medium, float thickness) {
     return scene;
 }
 
-/// Radiance that leaves a slab upward: toward a direction of cosine `cosine` to the normal, or
-/// where that is 0 averaged over directions with the cosine as weight. Not near the slab's middle,
-/// where its triangles meet.
-inline bake::Moments look_down(const bake::PathSpace& space, float top, float cosine,
-                               std::uint32_t samples) {
+/// Radiance that leaves a slab upward, in 16 independent parts: toward a direction of cosine
+/// `cosine` to the normal, or where that is 0 averaged over directions with the cosine as weight.
+/// Not near the slab's middle, where its triangles meet.
+inline std::vector<bake::Moments> look_down_in_parts(const bake::PathSpace& space, float top,
+                                                     float cosine, std::uint32_t samples) {
     bake::EstimateOptions options;
     options.samples = samples / 16;
-    const auto estimate =
+    auto estimate =
         bake::estimate_pixels(16, options, {}, [&](std::uint32_t, bake::RandomStream& random) {
             const float c = cosine > 0 ? cosine : std::sqrt(1 - random.next());
             const float s = std::sqrt(1 - c * c);
@@ -98,8 +99,12 @@ inline bake::Moments look_down(const bake::PathSpace& space, float top, float co
         });
     EXPECT_TRUE(estimate);
     EXPECT_LT(static_cast<double>(estimate->lost), 1e-5 * samples + 0.5);
+    return std::move(estimate->pixel);
+}
+inline bake::Moments look_down(const bake::PathSpace& space, float top, float cosine,
+                               std::uint32_t samples) {
     bake::Moments all;
-    for (const bake::Moments& m : estimate->pixel) {
+    for (const bake::Moments& m : look_down_in_parts(space, top, cosine, samples)) {
         all.merge(m);
     }
     return all;

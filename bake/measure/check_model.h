@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/reference/terms.h"
+#include "formats/opal/asset.h"
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// How far a finished file is from the Monte Carlo reference (reference/): luminance along the
+/// normals of held-back receivers, under the published test lights. Relative to the RMS of the
+/// truth (design 7). What the reference's own noise adds is subtracted.
+struct ModelErrorReport {
+    double rms_relative = 0;
+    double ci95[2] = {0, 0};  ///< of rms_relative: bootstrap over receivers, 2.5 and 97.5 percent
+    double bias = 0;          ///< mean difference over mean truth; > 0: the file is too bright
+    double missing =
+        0;  ///< mean over the lights: share of all light that the file does not simulate
+    std::uint32_t receivers_checked = 0;
+    std::uint64_t samples = 0;  ///< paths traced, over all lights and receivers
+    double seconds = 0;
+    std::string reference;  ///< what it was measured against, in words
+    struct Part {
+        std::string name;
+        double rms_relative = 0, bias = 0, missing = 0;
+        double noise = 0;           ///< RMS standard error of the truth, relative to its RMS
+        std::uint32_t samples = 0;  ///< paths for each receiver
+    };
+    std::vector<Part> by_light;
+    std::vector<std::string> left_out;  ///< test lights under which the reference does not converge
+};
+
+/// How long the check goes on. It counts events, not seconds: the result is the same on every
+/// machine.
+struct ModelCheckOptions {
+    std::uint32_t receivers = 48;  ///< to check; fewer if the scene has fewer
+    std::uint64_t seed = 0;
+    /// What the file's effects stand for, and is compared with.
+    Terms simulated = term::kDiffuse | term::kSingle | term::kMultiple;
+    double noise = 0.01;                  ///< relative to the RMS of the truth: enough for any file
+    double noise_share = 0.25;            ///< relative to the difference: enough for this file
+    std::uint64_t max_events = 10000000;  ///< most scatterings and surfaces met, for each light
+};
+
+/// Compares `asset`, baked from `scene`, with path tracing of the same light: what diffusion and
+/// straight paths make of it. Light of other terms (interreflection, light that crosses a body
+/// unscattered) is not compared but weighed: `missing`. The receivers' own mirror reflection counts
+/// on neither side. Left out are receivers that lie inside a body or on a sharp edge of theirs, and
+/// those in whose own body another surface lies close behind them.
+///
+/// No straight line connects the inside of a refracting body with the sky, and a path hits the
+/// sun's disc by luck alone: where there are such bodies suns are left out, of the sky too.
+/// The bits are the same for any number of threads. Errors: resource, interrupted.
+formats::Result<ModelErrorReport> check_model(const formats::Scene& scene,
+                                              const formats::AssetView& asset,
+                                              const ModelCheckOptions& options,
+                                              const Context& context);
+
+}  // namespace opaline::bake

@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "tests/support/media_bake.h"
+#include "tests/support/sheets.h"
+
+namespace opaline::bake {
+namespace {
+
+ModelErrorReport check(const tests::Scene& scene, const BakeResult& baked,
+                       const ModelCheckOptions& wanted = {}) {
+    auto report = check_model(scene, baked.asset.view(), wanted, {});
+    EXPECT_TRUE(report);
+    return std::move(report).value();
+}
+
+BakeOptions fine_bake() {
+    BakeOptions options = tests::small_bake();
+    options.cubemap_size = 32;
+    return options;
+}
+
+// (d + noise)^2 is d^2 + variance in the mean. Here d is 0 (convex and opaque again; white light
+// has no texels) and one round of samples is all noise: were it not subtracted, the error would be
+// the noise.
+TEST(ModelError, UnderWhiteIsZeroWithinItsIntervalHoweverMuchNoiseThereIs) {
+    const tests::Scene scene = tests::make_scene({tests::make_sphere(3)});
+    const BakeResult baked = tests::bake_scene(scene, fine_bake());
+    ModelCheckOptions quick;
+    quick.max_events = 1;
+    constexpr int kSeeds = 4;
+    double share_of_noise = 0, bias = 0;
+    for (quick.seed = 0; quick.seed < kSeeds; ++quick.seed) {
+        const ModelErrorReport report = check(scene, baked, quick);
+        const ModelErrorReport::Part& white = report.by_light[0];
+        EXPECT_GT(white.noise, 0.03);
+        EXPECT_EQ(white.samples, 64u);
+        share_of_noise += white.rms_relative / white.noise / kSeeds;
+        bias += white.bias / kSeeds;
+    }
+    // 48 receivers: the sum of squares is off by sqrt(2 / 48) of the variance, either way.
+    EXPECT_LT(share_of_noise, 0.5);
+    EXPECT_LT(std::abs(bias), 0.0125) << "4 standard errors of 192 means";
+}
+
+TEST(ModelError, WeighsInterreflectionButDoesNotCountIt) {
+    // A corner of two white quads: each sees the other under half of its sky.
+    const tests::Scene scene =
+        tests::make_scene({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 9),
+                           tests::make_quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, 9)});
+    const ModelErrorReport report = check(scene, tests::bake_scene(scene, fine_bake()));
+    EXPECT_GT(report.missing, 0.1);
+    EXPECT_LT(report.by_light[0].rms_relative, 0.01);
+    const tests::Scene convex = tests::make_scene({tests::make_sphere(2)});
+    EXPECT_EQ(check(convex, tests::bake_scene(convex, tests::small_bake())).missing, 0)
+        << "nothing to be reflected from";
+}
+
+// One mean free path thick, lit from both sides: the dipole gives it the light of a half space.
+TEST(ModelError, OfAThinSheetIsThatItIsTooBright) {
+    const tests::Scene scene =
+        tests::make_translucent_scene(tests::make_sheet(0.1f), tests::make_grey_medium(9.9f, 0.1f));
+    BakeOptions options = tests::small_bake();
+    options.cubemap_size = 16;
+    const ModelErrorReport report = check(scene, tests::bake_scene(scene, options));
+    EXPECT_GT(report.ci95[0], 0.1);
+    EXPECT_GT(report.bias, 0.1);
+    EXPECT_GT(report.receivers_checked, 15u) << "without the edges";
+    EXPECT_GT(report.missing, 0.1) << "what crosses it unscattered";
+    EXPECT_EQ(report.left_out,
+              (std::vector<std::string>{"sun:30,60", "sun:150,35", "sun:270,15", "sky:3,35"}));
+    ASSERT_EQ(report.by_light.size(), 3u);
+    EXPECT_EQ(report.by_light[2].name, "sky:3,35 without its sun");
+    std::printf("sheet: %.3f [%.3f, %.3f], mean %+.3f, missing %.3f\n", report.rms_relative,
+                report.ci95[0], report.ci95[1], report.bias, report.missing);
+}
+
+TEST(ModelError, SunsAreConnectedToThroughMatchedBoundaries) {
+    ModelCheckOptions wanted;
+    wanted.max_events = 100000;
+    const tests::Scene scene =
+        tests::make_translucent_scene({tests::make_sphere(2)}, tests::make_grey_medium(50, 5, 1));
+    const ModelErrorReport report =
+        check(scene, tests::bake_scene(scene, tests::small_bake()), wanted);
+    EXPECT_EQ(report.by_light.size(), 6u);
+    EXPECT_TRUE(report.left_out.empty());
+    for (const ModelErrorReport::Part& light : report.by_light) {
+        EXPECT_LT(light.noise, 0.1) << light.name;
+        EXPECT_LT(light.rms_relative, 0.2) << light.name << ": a thick body";
+    }
+}
+
+TEST(ModelError, HasTheSameBitsForAnyNumberOfThreads) {
+    const tests::Scene scene = tests::make_ball_on_floor(tests::make_grey_medium(40, 2));
+    const BakeResult baked = tests::bake_scene(scene, tests::small_bake());
+    ModelCheckOptions wanted;
+    wanted.max_events = 300000;
+    Context one, three;
+    one.threads = 1, three.threads = 3;
+    const auto a = check_model(scene, baked.asset.view(), wanted, one).value();
+    const auto b = check_model(scene, baked.asset.view(), wanted, three).value();
+    EXPECT_EQ(a.rms_relative, b.rms_relative);
+    EXPECT_EQ(a.ci95[0], b.ci95[0]);
+    EXPECT_EQ(a.ci95[1], b.ci95[1]);
+    EXPECT_EQ(a.bias, b.bias);
+    EXPECT_EQ(a.missing, b.missing);
+    EXPECT_EQ(a.samples, b.samples);
+}
+
+TEST(ModelError, IsMeasuredOnRequestAndKeptInTheFileWithoutItsSeconds) {
+    BakeOptions options = tests::small_bake();
+    const tests::Scene scene = tests::make_scene({tests::make_sphere(1)});
+    EXPECT_FALSE(tests::bake_scene(scene, options).model_error);
+    options.check_model = true;
+    const BakeResult baked = tests::bake_scene(scene, options);
+    ASSERT_TRUE(baked.model_error);
+    EXPECT_GT(baked.model_error->seconds, 0);
+    EXPECT_NE(baked.asset.provenance.find("\"model_error\""), std::string::npos);
+    EXPECT_EQ(baked.asset.provenance.find("\"seconds\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace opaline::bake
