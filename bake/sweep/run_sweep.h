@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/sweep/run_point.h"
+
+namespace opaline::bake {
+
+struct SweepOptions {
+    BakeOptions bake;           ///< effects, seed and threads; each point sets the knobs itself
+    double seconds = 300;       ///< the sweep starts no point that is predicted to end later
+    double most_bytes = 4e9;    ///< nor one whose file is predicted to be larger
+    std::size_t probes = 2000;  ///< receivers to compare at, at most
+    std::string light = "sky:3,35";  ///< of the pictures
+};
+
+/// A point that was not baked.
+struct SkippedPoint {
+    SweepPoint point;
+    double predicted_seconds = 0, predicted_bytes = 0;
+    std::string reason;
+};
+
+/// What the model itself gets wrong, against `opaline reference`.
+struct ModelError {
+    double rms_relative = 0;
+    double ci95[2] = {0, 0};
+    std::uint32_t receivers_checked = 0;
+    std::string reference;  ///< what it was measured against, in words
+};
+
+struct SweepResult {
+    std::string source, sha256;  ///< of the scene; source without its folder
+    std::uint64_t receivers = 0, triangles = 0;
+    unsigned threads = 1;  ///< as used
+    std::uint64_t seed = 0;
+    double mean_cosine = 0;  ///< of the first medium's phase function
+    SweepSubject subject;
+    std::vector<PlanEntry> plan;      ///< of the base, `preview`
+    std::vector<PointRecord> points;  ///< in the order in which they were baked
+    std::size_t truth = 0;            ///< index of the point that the others are compared with
+    std::vector<SkippedPoint> skipped;
+    std::vector<std::string> lights;
+    std::string picture_light;
+    std::optional<ModelError> model_error;  ///< of the base, where it was measured
+    double seconds = 0;                     ///< of the whole sweep
+};
+
+/// What is about to be baked, of how many points at most.
+struct SweepStep {
+    std::size_t done = 0, total = 0;
+    const std::string& label;
+};
+
+/// Bakes the ladders of a scene: `draft` and `preview` first, then the most accurate setting that
+/// half of the time allows, the truth, then the other presets, then what is left, the cheapest
+/// first. Predictions are plan_bake's, scaled by how long the points so far took. A point that runs
+/// out of memory is skipped. Errors: as run_bake; usage, for a light that is none.
+formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepOptions& options,
+                                       const Context& context,
+                                       const std::function<void(const SweepStep&)>& on_step);
+
+}  // namespace opaline::bake
