@@ -50,12 +50,13 @@ std::string coefficients_text(const Knobs& knobs) {
 
 // The list under construction: a setting that is there already gets another rung.
 struct Points {
-    std::vector<SweepPoint> list;
+    const SweepSubject& subject;
+    std::vector<SweepPoint> list{};
 
     void add(std::string label, Ladder ladder, double value, const Knobs& wanted) {
         const Knobs knobs = settle(wanted);
         const auto same = std::find_if(list.begin(), list.end(), [&](const SweepPoint& p) {
-            return same_knobs(p.knobs, knobs);
+            return same_bake(p.knobs, knobs, subject);
         });
         if (same == list.end()) {
             list.push_back({std::move(label), {{ladder, value}}, knobs});
@@ -194,67 +195,81 @@ SweepSubject sweep_subject(const std::vector<PlanEntry>& plan, const formats::Sc
     return subject;
 }
 
-bool same_knobs(const Knobs& a, const Knobs& b) {
-    return a.cubemap_size == b.cubemap_size && a.coefficients == b.coefficients &&
-           a.code_bits == b.code_bits && a.samples == b.samples &&
-           a.exact_samples == b.exact_samples && a.tolerance == b.tolerance &&
-           a.depth_samples == b.depth_samples && a.phase_terms == b.phase_terms &&
-           a.phase_tolerance == b.phase_tolerance && a.exact_rays == b.exact_rays &&
-           a.separate_terms == b.separate_terms && a.single_cubemap == b.single_cubemap &&
-           a.effects == b.effects && a.seed == b.seed;
+bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject) {
+    const bool same_rows = a.cubemap_size == b.cubemap_size && a.coefficients == b.coefficients &&
+                           a.code_bits == b.code_bits && a.separate_terms == b.separate_terms &&
+                           a.effects == b.effects && a.seed == b.seed;
+    const bool same_multiple =
+        a.samples == b.samples && a.exact_samples == b.exact_samples && a.tolerance == b.tolerance;
+    const bool same_single = a.depth_samples == b.depth_samples && a.phase_terms == b.phase_terms &&
+                             a.phase_tolerance == b.phase_tolerance &&
+                             a.single_cubemap == b.single_cubemap;
+    const bool media = subject.multiple || subject.single;
+    return same_rows && (!subject.multiple || same_multiple) && (!subject.single || same_single) &&
+           (!media || a.exact_rays == b.exact_rays);
 }
 
-std::vector<SweepPoint> make_ladders(const SweepSubject& subject, const BakeOptions& options) {
-    Points points;
+std::vector<SweepPoint> make_ladders(const SweepSubject& subject, const BakeOptions& options,
+                                     Quality base) {
+    Points points{subject};
     for (std::size_t q = 0; q < kQualities.size(); ++q) {
         points.add(std::string(quality_name(kQualities[q])), Ladder::preset, static_cast<double>(q),
                    preset_knobs(kQualities[q], options));
     }
-    const Knobs base = preset_knobs(Quality::preview, options);
-    add_transport_ladders(points, base);
+    const Knobs knobs = preset_knobs(base, options);
+    if (subject.multiple || subject.single) {
+        add_diagonal(points, knobs);
+    }
+    add_transport_ladders(points, knobs);
     if (subject.multiple) {
-        add_multiple_ladders(points, base);
+        add_multiple_ladders(points, knobs);
     }
     if (subject.single) {
-        add_single_ladders(points, base, subject.anisotropic);
+        add_single_ladders(points, knobs, subject.anisotropic);
     }
-    add_grid(points, base);
-    if (subject.multiple || subject.single) {
-        add_diagonal(points, base);
-    }
+    add_grid(points, knobs);
     return std::move(points.list);
 }
 
 std::vector<SweepPoint> make_truths(const SweepSubject& subject, const BakeOptions& options) {
-    Points points;
+    Points points{subject};
     const Knobs reference = preset_knobs(Quality::reference, options);
-    Knobs finest = reference;
-    finest.cubemap_size = 128;
-    finest.exact_rays = false;
-    finest.tolerance = 1e-6;
-    finest.depth_samples = 32;
+    Knobs knobs = reference;
     if (!subject.multiple && !subject.single) {
-        points.add("truth", Ladder::resolution, 128, finest);
+        knobs.cubemap_size = 128;
+        points.add("N = 128, all coefficients, 16 bits", Ladder::resolution, 128, knobs);
     }
     points.add("reference", Ladder::preset, 3, reference);
-    // The same without the rays that only media are traced with.
-    Knobs mapped = reference;
-    mapped.exact_rays = false;
-    points.add("truth", Ladder::resolution, 64, mapped);
-    Knobs leaner = mapped;
-    leaner.tolerance = 1e-4;
-    leaner.samples = 150000;
-    leaner.single_cubemap = 32;
-    leaner.coefficients = 4096;
-    points.add("truth", Ladder::grid, 64, leaner);
-    leaner.coefficients = 1024;
-    points.add("truth", Ladder::grid, 64, leaner);
-    leaner.cubemap_size = 32;
-    leaner.coefficients = kAllCoefficients;
-    points.add("truth", Ladder::resolution, 32, leaner);
-    points.add("production", Ladder::preset, 2, preset_knobs(Quality::production, options));
-    points.add("preview", Ladder::preset, 1, preset_knobs(Quality::preview, options));
-    points.add("draft", Ladder::preset, 0, preset_knobs(Quality::draft, options));
+    // Then what costs most for the least: rays, coefficients, samples and at last resolution.
+    const auto add = [&] {
+        points.list.push_back({"N = " + std::to_string(knobs.cubemap_size) +
+                                   ", M = " + coefficients_text(settle(knobs)) + ", 16 bits, fine",
+                               {},
+                               settle(knobs)});
+    };
+    knobs = reference;
+    knobs.exact_rays = false;
+    knobs.tolerance = 1e-4;
+    knobs.single_cubemap = 32;
+    if (subject.multiple || subject.single) {
+        add();
+    }
+    knobs.samples = 150000;
+    knobs.coefficients = 1024;
+    add();
+    knobs.cubemap_size = 32;
+    knobs.coefficients = kAllCoefficients;
+    add();
+    knobs.samples = 60000;
+    knobs.tolerance = 3e-4;
+    knobs.depth_samples = 10;
+    knobs.single_cubemap = 16;
+    knobs.coefficients = 1024;
+    add();
+    knobs.samples = 20000;
+    knobs.cubemap_size = 16;
+    knobs.coefficients = kAllCoefficients;
+    add();
     return std::move(points.list);
 }
 

@@ -37,8 +37,8 @@ struct Rung {
     double value = 0;
 };
 
-/// One setting to bake with. No two points of a list have the same knobs: what stands on several
-/// ladders has several rungs.
+/// One setting to bake with. No two points of a list make the same bake: what stands on several
+/// ladders has several rungs; the truth may stand on none.
 struct SweepPoint {
     std::string label;  ///< "preview", "M = 256": as its first rung says
     std::vector<Rung> rungs;
@@ -52,12 +52,14 @@ struct SweepSubject {
 };
 SweepSubject sweep_subject(const std::vector<PlanEntry>& plan, const formats::Scene& scene);
 
-/// True if they make the same file of every scene.
-bool same_knobs(const Knobs& a, const Knobs& b);
+/// True if they make the same transport of a scene: knobs of effects that it does not call for do
+/// not count.
+bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject);
 
-/// Presets, one-at-a-time ladders around `preview`, and joint ladders, without the knobs of effects
-/// that the scene does not call for. `effects` and `seed` of `options` go into every point.
-std::vector<SweepPoint> make_ladders(const SweepSubject& subject, const BakeOptions& options);
+/// Presets, one-at-a-time ladders around the preset `base`, and joint ladders, without the knobs of
+/// effects that the scene does not call for. `effects` and `seed` of `options` go into every point.
+std::vector<SweepPoint> make_ladders(const SweepSubject& subject, const BakeOptions& options,
+                                     Quality base);
 
 /// Candidates for what the others are measured against, the finest first.
 std::vector<SweepPoint> make_truths(const SweepSubject& subject, const BakeOptions& options);

@@ -38,11 +38,6 @@ Prediction predict(const formats::Scene& scene, const Knobs& knobs, unsigned thr
     return sum;
 }
 
-bool is_preset(const SweepPoint& point) {
-    return std::any_of(point.rungs.begin(), point.rungs.end(),
-                       [](const Rung& r) { return r.ladder == Ladder::preset; });
-}
-
 std::string amount(double value, const char* unit) {
     char text[48];
     std::snprintf(text, sizeof text, value < 10 ? "%.1f %s" : "%.0f %s", value, unit);
@@ -59,7 +54,8 @@ struct Sweep {
     SweepResult result{};
     SweepView view{};
     std::map<std::uint32_t, ProbeLights> lights{};  // by cube map size
-    std::size_t total = 0;
+    std::size_t total = 1;
+    bool has_truth = false;
     double measured = 0, predicted = 0;  // of the points so far
 
     double left() const { return options.seconds - seconds_since(start); }
@@ -72,9 +68,12 @@ struct Sweep {
             return "the file would be " + amount(cost.bytes * 1e-9, "GB");
         }
         const double seconds = cost.seconds * scale();
+        if (seconds_left <= 0) {
+            return "no time was left for its " + amount(seconds, "s");
+        }
         if (seconds > seconds_left) {
-            return "would take about " + amount(seconds, "s") + " of " +
-                   amount(std::max(0.0, seconds_left), "s") + " left";
+            return "would take about " + amount(seconds, "s") + " of " + amount(seconds_left, "s") +
+                   " left";
         }
         return {};
     }
@@ -135,16 +134,47 @@ std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
     return std::nullopt;
 }
 
-// A point of the ladders keeps its label and rungs; any other comes in front.
-std::size_t insert_truth(std::vector<SweepPoint>& points, const SweepPoint& truth) {
-    const auto same = std::find_if(points.begin(), points.end(), [&](const SweepPoint& p) {
-        return same_knobs(p.knobs, truth.knobs);
-    });
-    if (same != points.end()) {
-        return static_cast<std::size_t>(same - points.begin());
+// The cheapest points teach the most per second, but joint ladders can wait.
+int urgency(const SweepPoint& point) {
+    const auto stands_on = [&](Ladder ladder) {
+        return std::any_of(point.rungs.begin(), point.rungs.end(),
+                           [&](const Rung& r) { return r.ladder == ladder; });
+    };
+    return stands_on(Ladder::preset) ? 0 : point.rungs.front().ladder == Ladder::grid ? 2 : 1;
+}
+
+// Bakes the finest setting that can be afforded. A point of the ladders keeps its label and rungs,
+// and leaves them.
+formats::Status bake_truth(Sweep& sweep, std::vector<SweepPoint>& points) {
+    const auto truth = choose_truth(sweep);
+    if (!truth) {
+        return formats::ok_status();
     }
-    points.insert(points.begin(), truth);
-    return 0;
+    const auto same = std::find_if(points.begin(), points.end(), [&](const SweepPoint& p) {
+        return same_bake(p.knobs, truth->knobs, sweep.result.subject);
+    });
+    const SweepPoint point = same == points.end() ? *truth : *same;
+    if (same == points.end()) {
+        ++sweep.total;
+    } else {
+        points.erase(same);
+    }
+    const std::size_t before = sweep.result.points.size();
+    auto status = sweep.visit(point, sweep.left());
+    if (status && sweep.result.points.size() > before) {
+        sweep.result.truth = before;
+        sweep.has_truth = true;
+    }
+    return status;
+}
+
+// Where nothing better could be afforded: the point that found the least wrong with itself.
+std::size_t most_accurate(const std::vector<PointRecord>& points) {
+    const auto least = std::min_element(
+        points.begin(), points.end(), [](const PointRecord& a, const PointRecord& b) {
+            return a.self_check.rms_relative < b.self_check.rms_relative;
+        });
+    return static_cast<std::size_t>(least - points.begin());
 }
 
 std::string medium_effect(const SweepSubject& subject) {
@@ -204,36 +234,42 @@ formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepO
     sweep.view.picture_light = std::move(picture_light->environment);
 
     BakeOptions base = options.bake;
+    base.quality = Quality::draft;
+    const auto draft = resolve_knobs(base);
     base.quality = Quality::preview;
-    const auto base_knobs = resolve_knobs(base);
-    if (!base_knobs) {
-        return base_knobs.error();
+    const auto preview = resolve_knobs(base);
+    if (!draft || !preview) {
+        return (draft ? preview : draft).error();
     }
-    result.plan = plan_bake(scene, *base_knobs, context.threads);
+    result.plan = plan_bake(scene, *preview, context.threads);
     result.subject = sweep_subject(result.plan, scene);
-    std::vector<SweepPoint> points = make_ladders(result.subject, options.bake);
-    sweep.total = points.size();
-
-    // Two quick ones show how fast this machine is.
-    for (const std::size_t quick : {0u, 1u}) {
-        if (auto status = sweep.visit(points[quick], sweep.left()); !status) {
-            return std::move(status).error();
-        }
+    // A quick one shows how fast this machine is.
+    const SweepPoint first{
+        std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
+    if (auto status = sweep.visit(first, sweep.left()); !status) {
+        return std::move(status).error();
     }
-    points.erase(points.begin(), points.begin() + 2);
-    if (const auto truth = choose_truth(sweep)) {
-        const std::size_t index = insert_truth(points, *truth);
-        sweep.total = sweep.result.points.size() + sweep.result.skipped.size() + points.size();
-        const std::size_t before = result.points.size();
-        if (auto status = sweep.visit(points[index], sweep.left()); !status) {
-            return std::move(status).error();
-        }
-        points.erase(points.begin() + static_cast<std::ptrdiff_t>(index));
-        result.truth = result.points.size() > before ? before : 0;
+    if (result.points.empty()) {
+        return formats::make_error(formats::ErrorKind::usage, "", "--seconds",
+                                   "not even a draft fits: it " + result.skipped.front().reason,
+                                   "give more seconds, or a smaller scene");
+    }
+    constexpr double kShare = 1.0 / 20;
+    if (predict(scene, *preview, context.threads).seconds * sweep.scale() >
+        kShare * options.seconds) {
+        result.base = Quality::draft;
+        result.plan = plan_bake(scene, *draft, context.threads);
+    }
+    std::vector<SweepPoint> points = make_ladders(result.subject, options.bake, result.base);
+    result.points.front().point = points.front();  // with the rungs of a base, if it is one
+    points.erase(points.begin());
+    sweep.total = 1 + points.size();
+    if (auto status = bake_truth(sweep, points); !status) {
+        return std::move(status).error();
     }
     std::stable_sort(points.begin(), points.end(), [&](const SweepPoint& a, const SweepPoint& b) {
-        if (is_preset(a) != is_preset(b)) {
-            return is_preset(a);
+        if (urgency(a) != urgency(b)) {
+            return urgency(a) < urgency(b);
         }
         return predict(scene, a.knobs, context.threads).seconds <
                predict(scene, b.knobs, context.threads).seconds;
@@ -243,10 +279,8 @@ formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepO
             return std::move(status).error();
         }
     }
-    if (result.points.empty()) {
-        return formats::make_error(formats::ErrorKind::usage, "", "--seconds",
-                                   "not even a draft fits into the time",
-                                   "give more seconds, or a smaller scene");
+    if (!sweep.has_truth) {
+        result.truth = most_accurate(result.points);
     }
     result.lights = sweep.lights.begin()->second.names;
     compare_all(result, scene, sweep.view.probes);

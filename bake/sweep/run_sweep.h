@@ -39,7 +39,8 @@ struct SweepResult {
     std::uint64_t seed = 0;
     double mean_cosine = 0;  ///< of the first medium's phase function
     SweepSubject subject;
-    std::vector<PlanEntry> plan;      ///< of the base, `preview`
+    Quality base = Quality::preview;  ///< what the ladders change one knob of
+    std::vector<PlanEntry> plan;      ///< of the base
     std::vector<PointRecord> points;  ///< in the order in which they were baked
     std::size_t truth = 0;            ///< index of the point that the others are compared with
     std::vector<SkippedPoint> skipped;
@@ -55,10 +56,12 @@ struct SweepStep {
     const std::string& label;
 };
 
-/// Bakes the ladders of a scene: `draft` and `preview` first, then the most accurate setting that
-/// half of the time allows, the truth, then the other presets, then what is left, the cheapest
-/// first. Predictions are plan_bake's, scaled by how long the points so far took. A point that runs
-/// out of memory is skipped. Errors: as run_bake; usage, for a light that is none.
+/// Bakes the ladders of a scene: `draft` first, then the most accurate setting that half of the
+/// time allows, the truth, then the other presets, one-at-a-time and diagonal ladders, and grids,
+/// the cheap ones of each first. The ladders stand around `preview`, or `draft` where a twentieth
+/// of the time is less than `preview` takes. Predictions are plan_bake's, scaled by how long the
+/// points so far took. A point that runs out of memory is skipped. Errors: as run_bake; usage, for
+/// a light that is none or too little time.
 formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepOptions& options,
                                        const Context& context,
                                        const std::function<void(const SweepStep&)>& on_step);

@@ -200,6 +200,7 @@ Json make_sweep_json(const SweepResult& result, const SweepAnalysis& analysis) {
     json["lights"] = result.lights;
     json["picture_light"] = result.picture_light;
     json["groups"] = stage_group_names();
+    json["base"] = quality_name(result.base);
     json["plan"] = plan_json(result.plan);
     if (analysis.answer) {
         json["answer"] = {{"error", analysis.answer->error},

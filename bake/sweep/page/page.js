@@ -28,8 +28,8 @@ function bytes(value) {
   const [unit, size] = units.find(([, s]) => value >= s) || ['bytes', 1];
   return significant(value / size, 3) + '\u00a0' + unit;
 }
-function times(value) {
-  return value < 1.005 ? 'on the front' : significant(value, 3) + '\u00a0\u00d7';
+function times(value, onFront) {
+  return onFront ? 'on the front' : significant(value, 3) + '\u00a0\u00d7';
 }
 
 // ---- elements
@@ -319,7 +319,7 @@ function presetTable() {
     p === truth ? 'truth' : interval(p.error),
     ...perEffect.map(e => e in p.error.by_effect ? percent(p.error.by_effect[e]) : ''),
     interval(p.self_check),
-    times(p.times_front_time), times(p.times_front_bytes)] })));
+    times(p.times_front_time, p.on_front_time), times(p.times_front_bytes, p.on_front_bytes)] })));
 }
 
 function allTable() {
@@ -327,7 +327,8 @@ function allTable() {
   table('all', ['setting', 'seconds', 'bytes', 'error', 'self-check', 'time \u00f7 front', 'bytes \u00f7 front', 'knobs'],
   rows.map(p => ({ preset: isPreset(p), cells: [
     p.label, seconds(p.seconds), bytes(p.bytes), p === truth ? 'truth' : percent(p.error.rms_relative),
-    percent(p.self_check.rms_relative), times(p.times_front_time), times(p.times_front_bytes), knobLines(p).join('; ')] })));
+    percent(p.self_check.rms_relative), times(p.times_front_time, p.on_front_time),
+    times(p.times_front_bytes, p.on_front_bytes), knobLines(p).join('; ')] })));
   if (data.skipped.length > 0) {
     const box = document.getElementById('skipped');
     box.append(element('h3', 'Left out'), element('ul', null, ...data.skipped.map(s =>
@@ -357,7 +358,7 @@ function showPair(box, key, title, words) {
   const grid = element('div', null,
     ...both.map((p, i) => figure(shown.pictures[i], `picture: ${p.label}`,
       `${p.label}: ${percent(p.error.rms_relative)}, ${seconds(p.seconds)}, ${bytes(p.bytes)}`)),
-    ...both.map((p, i) => figure(shown.differences[i], `difference: ${p.label}`, `${p.label} minus ${truth.label}`)));
+    ...both.map((p, i) => figure(shown.differences[i], `difference: ${p.label}`, `${p.label} minus the truth`)));
   grid.className = 'pair';
   const bar = element('span');
   bar.className = 'scale';
@@ -388,6 +389,7 @@ frontChart('front-bytes', 'bytes', 'size of the file', bytes, 'on_front_bytes');
 groupsChart();
 data.slopes.forEach(slope => slopeChart(document.getElementById('slopes'), slope));
 document.getElementById('convergence').hidden = data.slopes.length === 0;
+fill('base', data.base);
 picturesSection();
 lightsChart();
 allTable();
