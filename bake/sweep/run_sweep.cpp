@@ -72,8 +72,8 @@ struct Sweep {
             return "no time was left for its " + amount(seconds, "s");
         }
         if (seconds > seconds_left) {
-            return "would take about " + amount(seconds, "s") + " of " + amount(seconds_left, "s") +
-                   " left";
+            return "would take about " + amount(seconds, "s") + ", more than the " +
+                   amount(seconds_left, "s") + " left for it";
         }
         return {};
     }
@@ -275,7 +275,9 @@ formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepO
                predict(scene, b.knobs, context.threads).seconds;
     });
     for (const SweepPoint& point : points) {
-        if (auto status = sweep.visit(point, sweep.left()); !status) {
+        // One preset must not take the time of all ladders.
+        const double share = urgency(point) == 0 ? 0.5 : 1.0;
+        if (auto status = sweep.visit(point, share * sweep.left()); !status) {
             return std::move(status).error();
         }
     }

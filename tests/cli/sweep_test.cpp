@@ -70,6 +70,30 @@ TEST(Sweep, WhatCannotBeWrittenIsFoundOutBeforeTheWork) {
     EXPECT_FALSE(std::filesystem::exists(small.path("new")));
 }
 
+// Debian's chromium, or another of its family. It is no package of .ci/packages.txt: large, and for
+// this alone.
+std::string find_browser() {
+    const Outcome found = run_any({"sh", "-c",
+                                   "command -v chromium || command -v chromium-browser || "
+                                   "command -v google-chrome"});
+    return found.out.substr(0, found.out.find('\n'));
+}
+
+TEST(Sweep, PageOpensInABrowserWithoutAComplaint) {
+    const std::string browser = find_browser();
+    if (browser.empty()) {
+        GTEST_SKIP() << "no browser (install chromium)";
+    }
+    const TemporaryFolder folder;
+    write_file(folder / "sheet.glb", wavy_sheet(30).glb());
+    const Outcome sweep = run_opaline(
+        {"sweep", folder / "sheet.glb", "-o", folder / "s", "--seconds", "3", "--threads", "2"});
+    ASSERT_EQ(sweep.exit_code, 0) << sweep.err;
+    const Outcome page = run_any({"bash", OPALINE_SOURCE_DIR "/tests/cli/report_page.sh",
+                                  folder / "s/report.html", browser, folder.path().string()});
+    EXPECT_EQ(page.exit_code, 0) << page.out << page.err;
+}
+
 TEST(Sweep, InterruptedSweepLeavesNothing) {
     const TemporaryFolder folder;
     write_file(folder / "sheet.glb", wavy_sheet(100).glb());
