@@ -40,10 +40,11 @@ std::vector<Member> members_of(const SweepResult& result, Ladder ladder) {
 }
 
 // Next to the finest, a rung shares most of its error and looks better than it is.
-bool is_near(double value, double finest, bool semi_log) {
-    constexpr double kNear = 2.01;
-    return !semi_log && value > 0 && finest > 0 &&
-           std::max(value, finest) <= kNear * std::min(value, finest);
+// Of the coefficients of a surface half vanish: "all" is fewer than it says.
+bool is_near(Ladder ladder, double value, double finest) {
+    const double near = ladder == Ladder::coefficients ? 4.01 : 2.01;
+    return ladder != Ladder::phase_terms && value > 0 && finest > 0 &&
+           std::max(value, finest) <= near * std::min(value, finest);
 }
 
 std::optional<LadderFit> fit_ladder(const SweepResult& result, Ladder ladder) {
@@ -59,7 +60,7 @@ std::optional<LadderFit> fit_ladder(const SweepResult& result, Ladder ladder) {
         const Convergence rung{members[i].value, relative_difference(members[i].record->luminance,
                                                                      finest.record->luminance)};
         fit.rungs.push_back(rung);
-        if (!is_near(rung.value, finest.value, theory->semi_log)) {
+        if (!is_near(ladder, rung.value, finest.value)) {
             fitted.push_back(rung);
         }
     }

@@ -1,6 +1,7 @@
 #include "bake/sweep/run_point.h"
 
 #include <malloc.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <fstream>
@@ -28,6 +29,16 @@ bool starts_with(const std::string& text, std::string_view start) {
 void forget_peak_memory() {
     ::malloc_trim(0);
     std::ofstream("/proc/self/clear_refs") << "5";
+}
+
+// Of the whole process so far.
+double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 formats::Result<runtime::Picture> draw(const formats::AssetView& asset, const SweepView& view,
@@ -83,14 +94,17 @@ formats::Result<PointRecord> run_point(const formats::Scene& scene, const SweepP
                                        const SweepView& view, const ProbeLights& lights,
                                        const Context& context) {
     forget_peak_memory();
+    const double cpu_before = cpu_seconds();
     auto bake = run_bake(scene, point.knobs, context);
     if (!bake) {
         return std::move(bake).error();
     }
+    const double cpu_after = cpu_seconds();
     const formats::AssetView asset = bake->asset.view();
     PointRecord record;
     record.point = point;
     record.seconds = bake->seconds_total;
+    record.cpu_seconds = cpu_after - cpu_before;
     record.groups = group_stages(*bake);
     record.stages = bake->stages;
     record.bytes = formats::opal_size(asset);

@@ -26,7 +26,8 @@ StageGroups group_stages(const BakeResult& bake);
 /// What came of one point.
 struct PointRecord {
     SweepPoint point;
-    double seconds = 0;  ///< of the whole bake, its self-check included
+    double seconds = 0;      ///< of the whole bake, its self-check included
+    double cpu_seconds = 0;  ///< of all threads together; other programs do not count
     StageGroups groups;
     std::vector<StageReport> stages;
     std::uint64_t bytes = 0;        ///< of the file

@@ -73,6 +73,7 @@ Cells cells_of(const SweepResult& result, const SweepAnalysis& analysis, std::si
                 {"truth", i == result.truth ? "1" : "0"}};
     add_knobs(cells, record.point.knobs);
     cells.emplace_back("seconds", number_cell(record.seconds));
+    cells.emplace_back("cpu_seconds", number_cell(record.cpu_seconds));
     for (std::size_t g = 0; g < record.groups.size(); ++g) {
         cells.emplace_back("seconds " + std::string(stage_group_names()[g]),
                            number_cell(record.groups[g]));
@@ -107,6 +108,7 @@ Json point_json(const SweepResult& result, const SweepAnalysis& analysis, std::s
     }
     json["knobs"] = sweep_knobs_json(record.point.knobs);
     json["seconds"] = record.seconds;
+    json["cpu_seconds"] = record.cpu_seconds;
     json["seconds_by_group"] = record.groups;
     json["stages"] = Json::array();
     for (const StageReport& stage : record.stages) {

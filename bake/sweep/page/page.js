@@ -300,8 +300,8 @@ function introduce() {
     `(${knobLines(truth).join('; ')}; ${seconds(truth.seconds)}, ${bytes(truth.bytes)}; by its own check it errs by ` +
     `${interval(truth.self_check)}). Intervals are 95\u00a0% bootstrap intervals over receivers. The interval that ` +
     `a bake states of itself meets the one measured here for ${data.self_checks.agreeing} of ${data.self_checks.of} ` +
-    'bakes. Seconds are wall time of whole bakes with their self-checks, once each; on a busy machine they differ ' +
-    'from run to run. All of this is numerical error: the same physical model with coarser numbers.');
+    'bakes. Seconds are wall time of whole bakes with their self-checks, once each; CPU is that of all threads. ' +
+    'Where CPU is far below the seconds times the threads, something else kept the machine busy. All of this is numerical error: the same physical model with coarser numbers.');
   if (data.model_error) {
     document.getElementById('model').hidden = false;
     fill('model-text', `Against ${data.model_error.reference}, at ${data.model_error.receivers_checked} receivers: ` +
@@ -324,9 +324,9 @@ function presetTable() {
 
 function allTable() {
   const rows = [...points].sort((a, b) => a.seconds - b.seconds);
-  table('all', ['setting', 'seconds', 'bytes', 'error', 'self-check', 'time \u00f7 front', 'bytes \u00f7 front', 'knobs'],
+  table('all', ['setting', 'seconds', 'CPU', 'bytes', 'error', 'self-check', 'time \u00f7 front', 'bytes \u00f7 front', 'knobs'],
   rows.map(p => ({ preset: isPreset(p), cells: [
-    p.label, seconds(p.seconds), bytes(p.bytes), p === truth ? 'truth' : percent(p.error.rms_relative),
+    p.label, seconds(p.seconds), seconds(p.cpu_seconds), bytes(p.bytes), p === truth ? 'truth' : percent(p.error.rms_relative),
     percent(p.self_check.rms_relative), times(p.times_front_time, p.on_front_time),
     times(p.times_front_bytes, p.on_front_bytes), knobLines(p).join('; ')] })));
   if (data.skipped.length > 0) {
