@@ -111,8 +111,10 @@ formats::Result<std::string> make_report_page(const SweepResult& result,
     // Data last: nothing that it holds is taken for a mark.
     std::string page(kPageTemplate);
     replace_mark(page, "/*STYLE*/", kPageStyle);
-    replace_mark(page, "/*CHART*/", kChartLibrary);
-    replace_mark(page, "/*SCRIPT*/", kPageScript);
+    replace_mark(page, "/*LIBRARY*/", kChartLibrary);
+    replace_mark(page, "/*POINTS*/", kPointsScript);
+    replace_mark(page, "/*CHARTS*/", kChartsScript);
+    replace_mark(page, "/*PAGE*/", kPageScript);
     replace_mark(page, "/*PICTURES*/", json_for_html(pictures));
     replace_mark(page, "/*DATA*/", json_for_html(json));
     return page;
