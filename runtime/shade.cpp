@@ -123,4 +123,16 @@ void shade(const formats::AssetView& asset, const LightVector& light, std::span<
                });
 }
 
+std::vector<Rgb> shade_for_picture(const formats::AssetView& asset, const LightVector& light,
+                                   formats::Vec3 eye, std::uint32_t terms, unsigned threads) {
+    ShadeOptions options;
+    options.threads = threads;
+    options.base_color = options.fresnel = false;
+    options.eye = eye;
+    options.terms = terms;
+    std::vector<Rgb> out(asset.receivers());
+    shade(asset, light, out, options);
+    return out;
+}
+
 }  // namespace opaline::runtime

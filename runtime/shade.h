@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "formats/opal/asset.h"
 #include "formats/opal/rgb.h"
@@ -43,5 +44,11 @@ void shade(const formats::AssetView& asset, const LightVector& light, std::span<
 /// `options.threads` does not matter.
 void shade_range(const formats::AssetView& asset, const LightVector& light, std::uint32_t first,
                  std::span<formats::Rgb> out, const ShadeOptions& options = {});
+
+/// What render_software takes: every vertex without base colour, its sign and its factor Ft left to
+/// the renderer, seen from `eye`. Preconditions: as `shade`.
+std::vector<formats::Rgb> shade_for_picture(const formats::AssetView& asset,
+                                            const LightVector& light, formats::Vec3 eye,
+                                            std::uint32_t terms, unsigned threads);
 
 }  // namespace opaline::runtime

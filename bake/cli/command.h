@@ -18,6 +18,7 @@ void add_render_command(CLI::App& app, Job& job);
 void add_reference_command(CLI::App& app, Job& job);
 void add_compare_command(CLI::App& app, Job& job);
 void add_phase_command(CLI::App& app, Job& job);
+void add_sweep_command(CLI::App& app, Job& job);
 void add_example_command(CLI::App& app, Job& job);
 
 /// Exit codes (design 3).

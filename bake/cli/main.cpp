@@ -29,6 +29,7 @@ int run_program(int argc, char** argv) {
     add_reference_command(app, job);
     add_compare_command(app, job);
     add_phase_command(app, job);
+    add_sweep_command(app, job);
     add_example_command(app, job);
     app.footer(
         "Exit codes: 0 success; 1 the job ran and the answer is no; 2 bad usage; 3 bad input "

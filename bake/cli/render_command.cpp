@@ -111,14 +111,10 @@ void print_stat(const Options& options, const char* name, double seconds) {
 
 int render_on_cpu(const Options& options, const formats::AssetView& view, const OpenedLight& light,
                   const runtime::LightVector& vector, const runtime::Camera& camera, Shown shown) {
-    std::vector<formats::Rgb> irradiance(view.receivers());
-    runtime::ShadeOptions shading;
-    shading.threads = options.threads;
-    shading.base_color = shading.fresnel = false;
-    shading.eye = camera.eye;
-    shading.terms = shown.terms;
+    formats::Vec3 shaded_for = camera.eye;
     auto start = Clock::now();
-    runtime::shade(view, vector, irradiance, shading);
+    std::vector<formats::Rgb> irradiance =
+        runtime::shade_for_picture(view, vector, shaded_for, shown.terms, options.threads);
     print_stat(options, "dot products", seconds_since(start));
     runtime::SoftwareOptions software;
     software.threads = options.threads;
@@ -136,9 +132,10 @@ int render_on_cpu(const Options& options, const formats::AssetView& view, const 
         return primitive.shading == formats::Shading::translucent;
     });
     return render_frames(options, camera, [&](const runtime::Camera& at) {
-        if (depends_on_eye && shading.eye != at.eye) {
-            shading.eye = at.eye;
-            runtime::shade(view, vector, irradiance, shading);
+        if (depends_on_eye && shaded_for != at.eye) {
+            shaded_for = at.eye;
+            irradiance =
+                runtime::shade_for_picture(view, vector, shaded_for, shown.terms, options.threads);
         }
         return runtime::render_software(view, irradiance, light.environment, light.rotation, at,
                                         software);

@@ -36,7 +36,7 @@ std::string quality_help() {
 
 }  // namespace
 
-void add_scene_options(CLI::App& command, SceneOptions& options) {
+void add_subject_options(CLI::App& command, SceneOptions& options) {
     command.add_option("scene", options.scene, "the scene, .gltf or .glb")
         ->required()
         ->option_text("SCENE");
@@ -45,6 +45,29 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
             "--media", options.media,
             "what translucent materials are made of; formats/media/README.md lists the keys")
         ->option_text("FILE.json");
+    command
+        .add_option("--effects", options.effects,
+                    "what to simulate: auto, or a list of effects; this version has: direct, "
+                    "multiple, single, specular")
+        ->option_text("auto|LIST [auto]");
+    command
+        .add_option("--seed", options.bake.seed,
+                    "of everything random: which receivers the error is measured at")
+        ->check(CLI::NonNegativeNumber)
+        ->option_text("S [0]");
+    command
+        .add_option("--threads", options.bake.threads,
+                    "0: one per core; the result is the same for any number")
+        ->check(CLI::Range(0u, 1024u))
+        ->option_text("T [0]");
+    command
+        .add_option("--metres-per-unit", options.metres_per_unit,
+                    "length of one unit of the scene file")
+        ->option_text("X [1]");
+}
+
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+    add_subject_options(command, options);
     command.add_option("--quality", options.bake.quality, quality_help())
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, Quality>{{"draft", Quality::draft},
@@ -90,25 +113,6 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
     command.add_flag("--separate-terms", options.bake.separate_terms,
                      "keep multiple scattering apart from single, so that `render --terms` can "
                      "show each");
-    command
-        .add_option("--effects", options.effects,
-                    "what to simulate: auto, or a list of effects; this version has: direct, "
-                    "multiple, single, specular")
-        ->option_text("auto|LIST [auto]");
-    command
-        .add_option("--seed", options.bake.seed,
-                    "of everything random: which receivers the error is measured at")
-        ->check(CLI::NonNegativeNumber)
-        ->option_text("S [0]");
-    command
-        .add_option("--threads", options.bake.threads,
-                    "0: one per core; the result is the same for any number")
-        ->check(CLI::Range(0u, 1024u))
-        ->option_text("T [0]");
-    command
-        .add_option("--metres-per-unit", options.metres_per_unit,
-                    "length of one unit of the scene file")
-        ->option_text("X [1]");
 }
 
 formats::Result<std::vector<std::string>> parse_effects(const SceneOptions& options) {

@@ -8,7 +8,7 @@
 
 namespace opaline::cli {
 
-/// What `bake` and `plan` have in common.
+/// What `bake`, `plan` and `sweep` have in common.
 struct SceneOptions {
     std::string scene, media;
     double metres_per_unit = 1.0;
@@ -16,6 +16,10 @@ struct SceneOptions {
     bake::BakeOptions bake;
 };
 
+/// The scene, its media, and what does not decide about accuracy: effects, seed, threads, unit.
+void add_subject_options(CLI::App& command, SceneOptions& options);
+
+/// The same and every knob.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
 /// The effects to simulate, empty for `auto`. Errors: usage, for those that are unknown or that

@@ -72,6 +72,9 @@ std::string make_provenance(const formats::Scene& scene, const Knobs& knobs,
     }
     root["seed"] = knobs.seed;
     root["quality"] = quality_name(knobs.quality);
+    if (knobs.error_target > 0) {
+        root["error_requested"] = knobs.error_target;
+    }
     root["knobs"] = knobs_json(knobs);
     root["plan"] = Json::array();
     for (const PlanEntry& entry : plan) {

@@ -61,10 +61,10 @@ Result<Image8> read_png(const std::filesystem::path& path) {
     return decode_png(file->bytes(), path.string());
 }
 
-Status write_png(const std::filesystem::path& path, const Image8& image) {
+Result<std::string> encode_png(const Image8& image, const std::string& name) {
     const std::size_t pixels = std::size_t{image.width} * image.height;
     if (pixels == 0 || image.rgba.size() != pixels * 4 || pixels > kMaxImagePixels) {
-        return make_error(ErrorKind::usage, path.string(), "",
+        return make_error(ErrorKind::usage, name, "",
                           "an image of " + std::to_string(image.width) + " x " +
                               std::to_string(image.height) + " pixels cannot be written",
                           "use a size from 1 x 1 to 16384 x 8192");
@@ -88,11 +88,17 @@ Status write_png(const std::filesystem::path& path, const Image8& image) {
     png_alloc_size_t size = bytes.size();
     const std::uint8_t* const source = is_opaque ? rgb.data() : image.rgba.data();
     if (png_image_write_to_memory(&png.control, bytes.data(), &size, 0, source, 0, nullptr) == 0) {
-        return make_error(ErrorKind::resource, path.string(), "",
+        return make_error(ErrorKind::resource, name, "",
                           std::string("cannot be encoded: libpng says: ") + png.control.message);
     }
     bytes.resize(size);
-    return write_file_atomically(path, bytes);
+    return bytes;
+}
+
+Status write_png(const std::filesystem::path& path, const Image8& image) {
+    const Result<std::string> bytes = encode_png(image, path.string());
+    if (!bytes) return bytes.error();
+    return write_file_atomically(path, *bytes);
 }
 
 }  // namespace opaline::formats

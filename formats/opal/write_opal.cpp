@@ -139,10 +139,11 @@ Stored store_specular(const AssetView& asset) {
     return stored;
 }
 
-Status write_padded(AtomicFile& file, std::uint64_t& position, std::uint64_t target) {
+template <class Write>
+Status write_padded(Write& write, std::uint64_t& position, std::uint64_t target) {
     while (position < target) {
         const std::size_t step = std::min<std::uint64_t>(target - position, sizeof kZeros);
-        if (Status status = file.write(std::span(kZeros, step)); !status) {
+        if (Status status = write(std::span(kZeros, step)); !status) {
             return status;
         }
         position += step;
@@ -150,9 +151,9 @@ Status write_padded(AtomicFile& file, std::uint64_t& position, std::uint64_t tar
     return ok_status();
 }
 
-}  // namespace
-
-Status write_opal(const AssetView& asset, AtomicFile file) {
+// Hands the file to `write`, a Status(std::span<const std::byte>), from beginning to end.
+template <class Write>
+Status write_parts(const AssetView& asset, Write write) {
     const BasisHead basis{1, asset.cubemap_size, static_cast<std::uint32_t>(asset.pairing), 0};
     const PrimitivesHead primitives{static_cast<std::uint32_t>(asset.primitives.size()),
                                     sizeof(PrimitiveRecord), 0};
@@ -204,25 +205,42 @@ Status write_opal(const AssetView& asset, AtomicFile file) {
     header.section_count = static_cast<std::uint32_t>(table.size());
     header.table_checksum = checksum(std::as_bytes(std::span(table)));
 
-    if (Status status = file.write(bytes_of(header)); !status) {
+    if (Status status = write(bytes_of(header)); !status) {
         return status;
     }
-    if (Status status = file.write(std::as_bytes(std::span(table))); !status) {
+    if (Status status = write(std::as_bytes(std::span(table))); !status) {
         return status;
     }
     std::uint64_t position = sizeof header + table.size() * sizeof(SectionEntry);
     for (const Stored& section : sections) {
-        if (Status status = write_padded(file, position, section.entry.offset); !status) {
+        if (Status status = write_padded(write, position, section.entry.offset); !status) {
             return status;
         }
         for (const auto part : section.parts) {
-            if (Status status = file.write(part); !status) {
+            if (Status status = write(part); !status) {
                 return status;
             }
             position += part.size();
         }
     }
-    return file.commit();
+    return ok_status();
+}
+
+}  // namespace
+
+Status write_opal(const AssetView& asset, AtomicFile file) {
+    const Status status =
+        write_parts(asset, [&](std::span<const std::byte> bytes) { return file.write(bytes); });
+    return status ? file.commit() : status;
+}
+
+std::uint64_t opal_size(const AssetView& asset) {
+    std::uint64_t size = 0;
+    const Status counted = write_parts(asset, [&](std::span<const std::byte> bytes) {
+        size += bytes.size();
+        return ok_status();
+    });
+    return counted ? size : 0;
 }
 
 }  // namespace opaline::formats

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "formats/opal/asset.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/result.h"
@@ -8,5 +10,8 @@ namespace opaline::formats {
 
 /// Writes a whole asset and commits the file. The bytes depend on the asset alone.
 Status write_opal(const AssetView& asset, AtomicFile file);
+
+/// Size [bytes] of the file that write_opal makes.
+std::uint64_t opal_size(const AssetView& asset);
 
 }  // namespace opaline::formats

@@ -92,6 +92,25 @@ TEST(Bake, CheckModelComparesWithTheReferenceAndTellsReportFileAndUser) {
     EXPECT_EQ(info.at("provenance").at("model_error"), error);
 }
 
+TEST(Bake, TargetErrorIsReportedWithWhatThePilotTried) {
+    SmallScene small;
+    const std::string out = small.path("a.opal"), report = small.path("a.json");
+    const Outcome bake =
+        run_opaline({"bake", small.scene(), "-o", out, "--report", report, "--error", "0.2"});
+    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+    EXPECT_THAT(bake.err, HasSubstr("asked for 20 %, expected "));
+    const Json json = Json::parse(read_text(report));
+    const Json& accuracy = json.at("accuracy");
+    EXPECT_EQ(accuracy.at("error_requested"), 0.2);
+    EXPECT_TRUE(accuracy.at("met").get<bool>());
+    EXPECT_LE(accuracy.at("error_predicted").get<double>(), 0.2);
+    ASSERT_FALSE(accuracy.at("trials").empty());
+    EXPECT_EQ(accuracy.at("trials").at(0).at("knob"), "coefficients");
+    EXPECT_LE(json.at("error").at("rms_relative").get<double>(), 0.2);
+    const Json info = Json::parse(run_opaline({"info", out, "--json"}).out);
+    EXPECT_EQ(info.at("provenance").at("error_requested"), 0.2);
+}
+
 TEST(Bake, AnyNumberOfThreadsWritesTheSameBytes) {
     const TemporaryFolder folder;
     write_file(folder / "sheet.glb", wavy_sheet(24).glb());

@@ -44,6 +44,10 @@ TEST(Usage, BadCommandLinesExitWithTwoAndSayWhereHelpIs) {
         {"bake", scene},  // no output
         {"bake", scene, "-o", out, "--unknown"},
         {"bake", scene, "-o", out, "--quality", "best"},
+        {"bake", scene, "-o", out, "--error", "0"},
+        {"bake", scene, "-o", out, "--error", "1"},
+        {"bake", scene, "-o", out, "--error", "nan"},
+        {"bake", scene, "-o", out, "--error", "0.02", "--quality", "draft"},
         {"bake", scene, "-o", out, "--cubemap", "33"},
         {"bake", scene, "-o", out, "--cubemap", "-8"},
         {"bake", scene, "-o", out, "--coefficients", "3"},

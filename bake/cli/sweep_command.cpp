@@ -1,0 +1,165 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "bake/cli/command.h"
+#include "bake/cli/inputs.h"
+#include "bake/cli/interrupt.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/progress.h"
+#include "bake/cli/scene_options.h"
+#include "bake/sweep/report_page.h"
+#include "bake/sweep/tables.h"
+#include "formats/opal/atomic_file.h"
+
+namespace opaline::cli {
+namespace {
+
+using formats::AtomicFile;
+using formats::ErrorKind;
+using formats::make_error;
+using formats::Status;
+
+struct Options {
+    SceneOptions scene;
+    std::string folder, light = "sky:3,35";
+    double seconds = 300;
+    ProgressStyle progress = ProgressStyle::automatic;
+};
+
+// The folder of the results. One that was made here and is still empty goes again.
+class OutputFolder {
+  public:
+    explicit OutputFolder(std::filesystem::path path) : path_(std::move(path)) {}
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+    ~OutputFolder() {
+        std::error_code ignored;
+        if (created_) {
+            std::filesystem::remove(path_, ignored);  // fails unless it is empty
+        }
+    }
+
+    Status create() {
+        std::error_code error;
+        if (std::filesystem::exists(path_, error) && !std::filesystem::is_directory(path_, error)) {
+            return make_error(ErrorKind::usage, path_.string(), "", "is a file, not a folder",
+                              "choose another output");
+        }
+        created_ = std::filesystem::create_directories(path_, error);
+        if (error) {
+            return make_error(ErrorKind::resource, path_.string(), "",
+                              "cannot be made: " + error.message(), "choose another output");
+        }
+        return formats::ok_status();
+    }
+
+  private:
+    std::filesystem::path path_;
+    bool created_ = false;
+};
+
+int run(const Options& options) {
+    const std::atomic<bool>& interrupted = catch_interrupts();
+    auto effects = parse_effects(options.scene);
+    if (!effects) {
+        return report_error(effects.error());
+    }
+    const auto imported =
+        open_scene(options.scene.scene, options.scene.metres_per_unit, options.scene.media);
+    if (!imported) {
+        return report_error(imported.error());
+    }
+    OutputFolder folder(options.folder);
+    if (auto status = folder.create(); !status) {
+        return report_error(status.error());
+    }
+    // Before the work, so that an unwritable folder is found out at once.
+    std::vector<AtomicFile> files;
+    for (const char* name : {"sweep.csv", "sweep.json", "report.html"}) {
+        auto file = AtomicFile::create(std::filesystem::path(options.folder) / name);
+        if (!file) {
+            return report_error(file.error());
+        }
+        files.push_back(std::move(*file));
+    }
+    bake::SweepOptions wanted;
+    wanted.bake = options.scene.bake;
+    wanted.bake.effects = std::move(*effects);
+    wanted.seconds = options.seconds;
+    wanted.light = options.light;
+    bake::Context context;
+    context.threads = options.scene.bake.threads;
+    context.cancel = &interrupted;
+    const auto show = make_progress_printer(options.progress);
+    const auto result =
+        bake::run_sweep(imported->scene, wanted, context, [&](const bake::SweepStep& step) {
+            if (show) {
+                show({"sweep", step.done, step.total});
+            }
+        });
+    if (!result) {
+        return report_error(result.error());
+    }
+    const bake::SweepAnalysis analysis = bake::analyse_sweep(*result);
+    const auto json = bake::make_sweep_json(*result, analysis);
+    const auto page = bake::make_report_page(*result, analysis, json);
+    if (!page) {
+        return report_error(page.error());
+    }
+    const std::string texts[] = {
+        bake::make_sweep_csv(*result, analysis),
+        json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n", *page};
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        Status status = files[i].write(texts[i]);
+        if (!status || !(status = files[i].commit())) {
+            return report_error(status.error());
+        }
+    }
+    fmt::print(stderr, "{}: {} bakes in {}{}; open {}\n", options.folder, result->points.size(),
+               format_seconds(result->seconds),
+               result->skipped.empty()
+                   ? ""
+                   : fmt::format(", {} left out (see the page)", result->skipped.size()),
+               (std::filesystem::path(options.folder) / "report.html").string());
+    return kExitSuccess;
+}
+
+}  // namespace
+
+void add_sweep_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "sweep", "Bake a scene in many ways, and show what accuracy costs in time and bytes");
+    add_subject_options(*command, options->scene);
+    command
+        ->add_option("-o,--output", options->folder,
+                     "the folder for sweep.csv, sweep.json and report.html; made if missing")
+        ->required()
+        ->option_text("DIR");
+    command
+        ->add_option("--seconds", options->seconds,
+                     "time for all bakes together; those that do not fit are left out and named")
+        ->check(CLI::Range(1.0, 1e6))
+        ->option_text("S [300]");
+    command->add_option("--light", options->light, "of the page's pictures: " + light_help())
+        ->option_text("ENV [sky:3,35]");
+    command
+        ->add_option("--progress", options->progress,
+                     "auto: a bar on a terminal; json: a line of JSON a bake on stderr; none")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
+                                                 {"json", ProgressStyle::json},
+                                                 {"none", ProgressStyle::none}}))
+        ->option_text("auto|json|none [auto]");
+    command->footer("Example:\n  opaline sweep scene.glb -o sweep");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bake/measure/measure_error.h"
+#include "formats/opal/asset.h"
+#include "formats/opal/result.h"
+#include "runtime/light_vector.h"
+
+namespace opaline::bake {
+
+/// The test lights in one resolution, grey: luminance in all three bands.
+struct ProbeLights {
+    std::vector<std::string> names;
+    std::vector<runtime::LightVector> vectors;
+};
+/// The published ones (measure/test_lights.h) for a cube map of n x n texels.
+formats::Result<ProbeLights> make_probe_lights(std::uint32_t n, unsigned threads);
+
+/// Receivers that all points of a sweep are compared at: all, or `most` spread over the file, one
+/// in each of as many equal runs and at irregular places in them. Ascending.
+std::vector<std::uint32_t> choose_probes(std::size_t receivers, std::size_t most);
+
+/// Relit luminance at the probes: value[probe * lights + light]. Without base colour, and of media
+/// along the normal without the Fresnel factor, as a bake's self-check has it.
+std::vector<double> relight_probes(const formats::AssetView& asset,
+                                   std::span<const std::uint32_t> probes,
+                                   const ProbeLights& lights);
+
+/// How far `luminance` is from `truth`, both from relight_probes of the same scene: as a whole, for
+/// opaque receivers ("direct") and for those of media (`medium_effect`), and by light.
+/// `of_medium`: for each probe.
+ErrorReport compare_probes(std::span<const double> luminance, std::span<const double> truth,
+                           const std::vector<bool>& of_medium, std::span<const std::string> lights,
+                           const std::string& medium_effect);
+
+/// RMS of the difference over RMS of the truth; 0 where the truth is black.
+double relative_difference(std::span<const double> luminance, std::span<const double> truth);
+
+}  // namespace opaline::bake

@@ -1,0 +1,292 @@
+#include "bake/sweep/run_sweep.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/environment/builtin_environment.h"
+#include "formats/media/mean_cosine.h"
+
+namespace opaline::bake {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct Prediction {
+    double seconds = 0, bytes = 0;
+};
+
+Prediction predict(const formats::Scene& scene, const Knobs& knobs, unsigned threads) {
+    Prediction sum;
+    for (const PlanEntry& entry : plan_bake(scene, knobs, threads)) {
+        if (entry.on) {
+            sum.seconds += entry.predicted_seconds;
+            sum.bytes += static_cast<double>(entry.predicted_bytes);
+        }
+    }
+    return sum;
+}
+
+std::string amount(double value, const char* unit) {
+    char text[48];
+    std::snprintf(text, sizeof text, value < 10 ? "%.1f %s" : "%.0f %s", value, unit);
+    return text;
+}
+
+// The state of a sweep in progress.
+struct Sweep {
+    const formats::Scene& scene;
+    const SweepOptions& options;
+    const Context& context;
+    const std::function<void(const SweepStep&)>& on_step;
+    Clock::time_point start = Clock::now();
+    SweepResult result{};
+    SweepView view{};
+    std::map<std::uint32_t, ProbeLights> lights{};  // by cube map size
+    std::size_t total = 1;
+    bool has_truth = false;
+    double measured = 0, predicted = 0;  // of the points so far
+
+    double left() const { return options.seconds - seconds_since(start); }
+    // Predictions are good to a factor of two; one machine is wrong by the same factor each time.
+    double scale() const { return predicted > 0 ? measured / predicted : 2.0; }
+
+    // Why a point is not worth starting; empty: it is.
+    std::string objection(const Prediction& cost, double seconds_left) const {
+        if (cost.bytes > options.most_bytes) {
+            return "the file would be " + amount(cost.bytes * 1e-9, "GB");
+        }
+        const double seconds = cost.seconds * scale();
+        if (seconds_left <= 0) {
+            return "no time was left for its " + amount(seconds, "s");
+        }
+        if (seconds > seconds_left) {
+            return "would take about " + amount(seconds, "s") + ", more than the " +
+                   amount(seconds_left, "s") + " left for it";
+        }
+        return {};
+    }
+
+    formats::Result<const ProbeLights*> lights_of(std::uint32_t n) {
+        auto known = lights.find(n);
+        if (known == lights.end()) {
+            auto made = make_probe_lights(n, context.threads);
+            if (!made) {
+                return std::move(made).error();
+            }
+            known = lights.emplace(n, std::move(*made)).first;
+        }
+        return &known->second;
+    }
+
+    void skip(const SweepPoint& point, const Prediction& cost, std::string reason) {
+        result.skipped.push_back({point, cost.seconds * scale(), cost.bytes, std::move(reason)});
+    }
+
+    // Bakes a point, or notes why not.
+    formats::Status visit(const SweepPoint& point, double seconds_left) {
+        const Prediction cost = predict(scene, point.knobs, context.threads);
+        if (std::string reason = objection(cost, seconds_left); !reason.empty()) {
+            skip(point, cost, std::move(reason));
+            return formats::ok_status();
+        }
+        if (on_step) {
+            on_step({result.points.size() + result.skipped.size(), total, point.label});
+        }
+        const auto probe_lights = lights_of(point.knobs.cubemap_size);
+        if (!probe_lights) {
+            return probe_lights.error();
+        }
+        try {
+            auto record = run_point(scene, point, view, **probe_lights, context);
+            if (!record) {
+                return std::move(record).error();
+            }
+            measured += record->seconds;
+            predicted += cost.seconds;
+            result.points.push_back(std::move(*record));
+        } catch (const std::bad_alloc&) {
+            skip(point, cost, "there is not enough memory");
+        }
+        return formats::ok_status();
+    }
+};
+
+// The finest candidate that half of the time that is left allows.
+std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
+    for (const SweepPoint& candidate : make_truths(sweep.result.subject, sweep.options.bake)) {
+        const Prediction cost = predict(sweep.scene, candidate.knobs, sweep.context.threads);
+        if (sweep.objection(cost, 0.5 * sweep.left()).empty()) {
+            return candidate;
+        }
+    }
+    return std::nullopt;
+}
+
+// The cheapest points teach the most per second, but joint ladders can wait.
+int urgency(const SweepPoint& point) {
+    const auto stands_on = [&](Ladder ladder) {
+        return std::any_of(point.rungs.begin(), point.rungs.end(),
+                           [&](const Rung& r) { return r.ladder == ladder; });
+    };
+    return stands_on(Ladder::preset) ? 0 : point.rungs.front().ladder == Ladder::grid ? 2 : 1;
+}
+
+// Bakes the finest setting that can be afforded. A point of the ladders keeps its label and rungs,
+// and leaves them.
+formats::Status bake_truth(Sweep& sweep, std::vector<SweepPoint>& points) {
+    const auto truth = choose_truth(sweep);
+    if (!truth) {
+        return formats::ok_status();
+    }
+    const auto same = std::find_if(points.begin(), points.end(), [&](const SweepPoint& p) {
+        return same_bake(p.knobs, truth->knobs, sweep.result.subject);
+    });
+    const SweepPoint point = same == points.end() ? *truth : *same;
+    if (same == points.end()) {
+        ++sweep.total;
+    } else {
+        points.erase(same);
+    }
+    const std::size_t before = sweep.result.points.size();
+    auto status = sweep.visit(point, sweep.left());
+    if (status && sweep.result.points.size() > before) {
+        sweep.result.truth = before;
+        sweep.has_truth = true;
+    }
+    return status;
+}
+
+// Where nothing better could be afforded: the point that found the least wrong with itself.
+std::size_t most_accurate(const std::vector<PointRecord>& points) {
+    const auto least = std::min_element(
+        points.begin(), points.end(), [](const PointRecord& a, const PointRecord& b) {
+            return a.against_finest.rms_relative < b.against_finest.rms_relative;
+        });
+    return static_cast<std::size_t>(least - points.begin());
+}
+
+std::string medium_effect(const SweepSubject& subject) {
+    return subject.multiple && subject.single ? "multiple+single"
+           : subject.multiple                 ? "multiple"
+                                              : "single";
+}
+
+void compare_all(SweepResult& result, const formats::Scene& scene,
+                 std::span<const std::uint32_t> probes) {
+    std::vector<bool> is_medium;
+    for (const formats::Primitive& p : scene.primitives) {
+        is_medium.insert(is_medium.end(), p.position.size(),
+                         scene.materials[p.material].medium.has_value());
+    }
+    std::vector<bool> of_medium;
+    for (const std::uint32_t probe : probes) {
+        of_medium.push_back(is_medium[probe]);
+    }
+    const PointRecord& finest = result.points[result.truth];
+    for (PointRecord& record : result.points) {
+        record.against_finest = compare_probes(record.luminance, finest.luminance, of_medium,
+                                               result.lights, medium_effect(result.subject));
+    }
+}
+
+}  // namespace
+
+formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepOptions& options,
+                                       const Context& outer,
+                                       const std::function<void(const SweepStep&)>& on_step) {
+    Context context = outer;
+    context.threads = thread_count(outer);
+    context.on_progress = {};  // steps are the progress
+    auto picture_light = open_environment(options.light);
+    if (!picture_light) {
+        return std::move(picture_light).error();
+    }
+    Sweep sweep{.scene = scene, .options = options, .context = context, .on_step = on_step};
+    SweepResult& result = sweep.result;
+    result.source = std::filesystem::path(scene.source).filename().string();
+    result.sha256 = scene.sha256;
+    result.threads = context.threads;
+    result.seed = options.bake.seed;
+    result.picture_light = options.light;
+    for (const formats::Primitive& p : scene.primitives) {
+        result.receivers += p.position.size();
+        result.triangles += p.index.size() / 3;
+        const auto& medium = scene.materials[p.material].medium;
+        if (medium && result.mean_cosine == 0) {
+            result.mean_cosine = formats::mean_cosine(medium->phase);
+        }
+    }
+    sweep.view.probes = choose_probes(result.receivers, options.probes);
+    sweep.view.picture_light = std::move(picture_light->environment);
+
+    BakeOptions base = options.bake;
+    base.quality = Quality::draft;
+    const auto draft = resolve_knobs(base);
+    base.quality = Quality::preview;
+    const auto preview = resolve_knobs(base);
+    if (!draft || !preview) {
+        return (draft ? preview : draft).error();
+    }
+    result.plan = plan_bake(scene, *preview, context.threads);
+    result.subject = sweep_subject(result.plan, scene);
+    // A quick one shows how fast this machine is.
+    SweepPoint first{std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
+    first.knobs.check_model = true;
+    if (auto status = sweep.visit(first, sweep.left()); !status) {
+        return std::move(status).error();
+    }
+    if (result.points.empty()) {
+        return formats::make_error(formats::ErrorKind::usage, "", "--seconds",
+                                   "not even a draft fits: it " + result.skipped.front().reason,
+                                   "give more seconds, or a smaller scene");
+    }
+    constexpr double kShare = 1.0 / 20;
+    if (predict(scene, *preview, context.threads).seconds * sweep.scale() >
+        kShare * options.seconds) {
+        result.base = Quality::draft;
+        result.plan = plan_bake(scene, *draft, context.threads);
+    }
+    std::vector<SweepPoint> points = make_ladders(result.subject, options.bake, result.base);
+    result.model_error = result.points.front().model_error;
+    result.points.front().point = points.front();  // with the rungs of a base, if it is one
+    points.erase(points.begin());
+    sweep.total = 1 + points.size();
+    if (auto status = bake_truth(sweep, points); !status) {
+        return std::move(status).error();
+    }
+    std::stable_sort(points.begin(), points.end(), [&](const SweepPoint& a, const SweepPoint& b) {
+        if (urgency(a) != urgency(b)) {
+            return urgency(a) < urgency(b);
+        }
+        return predict(scene, a.knobs, context.threads).seconds <
+               predict(scene, b.knobs, context.threads).seconds;
+    });
+    for (const SweepPoint& point : points) {
+        // One preset must not take the time of all ladders.
+        const double share = urgency(point) == 0 ? 0.5 : 1.0;
+        if (auto status = sweep.visit(point, share * sweep.left()); !status) {
+            return std::move(status).error();
+        }
+    }
+    if (!sweep.has_truth) {
+        result.truth = most_accurate(result.points);
+    }
+    result.lights = sweep.lights.begin()->second.names;
+    compare_all(result, scene, sweep.view.probes);
+    result.seconds = seconds_since(sweep.start);
+    return std::move(sweep.result);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,133 @@
+#include "bake/measure/truth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "bake/receivers/vertex_receivers.h"
+#include "bake/scattering/fresnel.h"
+#include "formats/opal/cubemap.h"
+#include "tests/bake/single/single_support.h"
+
+namespace opaline::bake {
+namespace {
+
+std::vector<TestLight> published_lights() {
+    auto lights = make_test_lights(16, 2);
+    EXPECT_TRUE(lights);
+    return std::move(lights).value();
+}
+
+std::size_t place_of(std::span<const TestLight> lights, std::string_view name) {
+    std::size_t l = 0;
+    while (lights[l].name != name) {
+        ++l;
+    }
+    return l;
+}
+
+double mean(const TwoEstimates& estimates, std::size_t light) {
+    return 0.5 * (estimates.first[light] + estimates.second[light]);
+}
+
+TEST(DirectTruth, OpenFloorReflectsTheCosineOfEachSunAndAllOfTheSky) {
+    const auto scene = tests::make_scene({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2)});
+    const auto rays = RayScene::build(scene, 1);
+    const std::vector<Receiver> receivers = make_vertex_receivers(scene);
+    const std::vector<TestLight> lights = published_lights();
+    std::uint64_t traced = 0;
+    const TwoEstimates truth =
+        eval_truth(make_direct_truth(lights), *rays, receivers[4], lights, traced);
+    const auto sine = [](double degrees) { return std::sin(degrees * std::numbers::pi / 180); };
+    EXPECT_NEAR(mean(truth, place_of(lights, "white")), 1, 1e-4);
+    EXPECT_NEAR(mean(truth, place_of(lights, "sun:30,60")), sine(60), 2e-4);
+    EXPECT_NEAR(mean(truth, place_of(lights, "sun:150,35")), sine(35), 2e-4);
+    EXPECT_NEAR(mean(truth, place_of(lights, "sun:270,15")), sine(15), 2e-4);
+    EXPECT_GT(traced, 0u);
+}
+
+TEST(TestLights, CoarserCubeMapsHoldTheSameFlux) {
+    std::vector<TestLight> lights = published_lights();
+    for (const std::uint32_t n : {8u, 64u, 128u}) {
+        const std::vector<TestLight> before = lights;
+        project_test_lights(lights, n);
+        for (std::size_t l = 0; l < lights.size(); ++l) {
+            // The average of a face times n, times n: the integral over it.
+            const auto flux = [](const TestLight& light) {
+                const auto size = static_cast<std::uint32_t>(light.coarse.size() / 6);
+                double sum = 0;
+                for (std::size_t face = 0; face < 6; ++face) {
+                    sum += double{light.coarse[face * size]} * std::sqrt(size);
+                }
+                return sum;
+            };
+            EXPECT_NEAR(flux(lights[l]) / flux(before[l]), 1, 1e-5) << lights[l].name << " " << n;
+        }
+    }
+}
+
+// Two hundred mean free paths wide, and the point lies where its large triangles meet.
+TEST(SurfaceIntegral, MiddleOfALargeSquareReturnsTheProfilesTotal) {
+    const auto setup = tests::set_up(
+        tests::make_translucent_scene({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2)},
+                                      tests::make_grey_medium(100, 0.5f)));
+    const std::vector<TestLight> lights = published_lights();
+    const MediumProfile profile = make_medium_profile(*setup.scene.materials[0].medium, 0, {});
+    const TranslucentTruth truth = make_translucent_truth(setup.scene, 0, &profile, 0, lights);
+    const std::size_t white = place_of(lights, "white"), sun = place_of(lights, "sun:30,60");
+    std::uint64_t traced = 0;
+    const TwoEstimates found =
+        eval_truth(truth, setup.scene, setup.rays, setup.points[4], 0, 0, traced);
+    const double total = profile.total(1);
+    EXPECT_NEAR(mean(found, white) / total, 1, 4e-3);
+    const double cosine = std::sin(std::numbers::pi / 3);
+    const double entering = fresnel_transmittance(cosine, 1.3) / profile.exit;
+    EXPECT_NEAR(mean(found, sun) / (total * cosine * entering), 1, 2e-3);
+    EXPECT_NE(found.first[white], found.second[white]);
+}
+
+TEST(SingleQuadrature, AgreesWithTransportOfAFineCubeMap) {
+    const auto setup = tests::set_up(
+        tests::make_translucent_scene({tests::make_sphere(3)}, tests::make_grey_medium(2, 0.2f)));
+    const std::vector<TestLight> lights = published_lights();
+    const TranslucentTruth truth = make_translucent_truth(setup.scene, 0, nullptr, 16, lights);
+    const DirectionSet directions = make_direction_set(32);
+    const SingleMedium medium = make_single_medium(setup.scene, 0, 16);
+    const std::vector<double> solid_angle = formats::texel_solid_angles(32);
+    std::vector<float> row(3 * formats::cubemap_texels(32));
+    std::uint64_t traced = 0;
+    for (const std::size_t v : {0u, 40u, 100u}) {
+        gather_single(setup.rays, directions, texel_shares(directions), medium, setup.points[v],
+                      row);
+        double expected = 0;
+        for (std::size_t j = 0; j < row.size() / 3; ++j) {
+            expected += double{row[row.size() / 3 + j]} * solid_angle[j % solid_angle.size()];
+        }
+        const TwoEstimates found =
+            eval_truth(truth, setup.scene, setup.rays, setup.points[v], 0, 0, traced);
+        EXPECT_NEAR(mean(found, place_of(lights, "white")) / expected, 1, 5e-3) << v;
+    }
+}
+
+TEST(ErrorBounds, NoiseOfTheTruthIsNoError) {
+    // Found values are right; two estimates of the truth err by 10 %, each by itself.
+    std::vector<CheckedPair> pairs;
+    for (int i = 0; i < 4000; ++i) {
+        const auto u = random_uniform(1, RandomStage::check_points, static_cast<std::uint64_t>(i));
+        pairs.push_back({{0.35 * (double{u[0]} - 0.5), 0.35 * (double{u[1]} - 0.5)}, 1.0});
+    }
+    EXPECT_LT(relative_rms(pairs), 0.02);
+    for (CheckedPair& pair : pairs) {
+        pair.error[0] += 0.05;
+        pair.error[1] += 0.05;
+    }
+    const ErrorBounds bounds = bound_error(pairs, 4, 0);
+    EXPECT_NEAR(bounds.rms, 0.05, 0.005);
+    EXPECT_LT(bounds.lowest, 0.05);
+    EXPECT_GT(bounds.highest, 0.05);
+    EXPECT_LT(bounds.highest - bounds.lowest, 0.02);
+}
+
+}  // namespace
+}  // namespace opaline::bake

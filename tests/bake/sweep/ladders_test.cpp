@@ -1,0 +1,144 @@
+#include "bake/sweep/ladders.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr SweepSubject kOpaque{.direct = true};
+constexpr SweepSubject kMarble{.direct = true, .multiple = true, .single = true};
+constexpr SweepSubject kFog{.multiple = true, .single = true, .anisotropic = true};
+
+std::set<Ladder> ladders_in(const std::vector<SweepPoint>& points) {
+    std::set<Ladder> ladders;
+    for (const SweepPoint& p : points) {
+        for (const Rung& r : p.rungs) {
+            ladders.insert(r.ladder);
+        }
+    }
+    return ladders;
+}
+
+TEST(Ladders, NoTwoPointsMakeTheSameBake) {
+    for (const SweepSubject& subject : {kOpaque, kMarble, kFog}) {
+        const auto points = make_ladders(subject, {}, Quality::preview);
+        std::set<std::string> labels;
+        for (std::size_t a = 0; a < points.size(); ++a) {
+            EXPECT_TRUE(labels.insert(points[a].label).second) << points[a].label;
+            for (std::size_t b = 0; b < a; ++b) {
+                EXPECT_FALSE(same_bake(points[a].knobs, points[b].knobs, subject))
+                    << points[a].label << " and " << points[b].label;
+            }
+        }
+    }
+}
+
+TEST(Ladders, KnobsOfEffectsThatAreOffAreLeftOut) {
+    const auto opaque = ladders_in(make_ladders(kOpaque, {}, Quality::preview));
+    for (const Ladder l : {Ladder::samples, Ladder::tolerance, Ladder::depth_samples,
+                           Ladder::phase_terms, Ladder::single_cubemap, Ladder::exact_rays}) {
+        EXPECT_FALSE(opaque.contains(l)) << ladder_name(l);
+    }
+    const auto marble = ladders_in(make_ladders(kMarble, {}, Quality::preview));
+    EXPECT_TRUE(marble.contains(Ladder::samples));
+    EXPECT_TRUE(marble.contains(Ladder::depth_samples));
+    EXPECT_FALSE(marble.contains(Ladder::phase_terms));
+    EXPECT_TRUE(ladders_in(make_ladders(kFog, {}, Quality::preview)).contains(Ladder::phase_terms));
+}
+
+// How many of the knobs that ladders climb differ.
+int count_changes(const Knobs& a, const Knobs& b) {
+    return (a.cubemap_size != b.cubemap_size) + (a.coefficients != b.coefficients) +
+           (a.code_bits != b.code_bits) + (a.samples != b.samples) + (a.tolerance != b.tolerance) +
+           (a.depth_samples != b.depth_samples) + (a.phase_terms != b.phase_terms) +
+           (a.exact_rays != b.exact_rays);
+}
+
+TEST(Ladders, OneAtATimeChangesOneKnobOfThePreview) {
+    const Knobs base = *resolve_knobs({});
+    int found = 0;
+    for (const SweepPoint& p : make_ladders(kFog, {}, Quality::preview)) {
+        for (const Rung& r : p.rungs) {
+            if (r.ladder == Ladder::cubemap ||
+                (r.ladder >= Ladder::coefficients && r.ladder <= Ladder::exact_rays)) {
+                EXPECT_LE(count_changes(p.knobs, base), 1) << p.label;
+                ++found;
+            }
+        }
+    }
+    EXPECT_GT(found, 30);
+}
+
+TEST(Ladders, AllFourPresetsComeFirstAsBakesKnowThem) {
+    BakeOptions options;
+    options.seed = 7;
+    options.effects = {"direct"};
+    const auto points = make_ladders(kMarble, options, Quality::draft);
+    for (const Quality q :
+         {Quality::draft, Quality::preview, Quality::production, Quality::reference}) {
+        const SweepPoint& p = points[static_cast<std::size_t>(q)];
+        BakeOptions own = options;
+        own.quality = q;
+        EXPECT_EQ(p.label, quality_name(q));
+        EXPECT_TRUE(same_bake(p.knobs, *resolve_knobs(own), kFog));
+        EXPECT_EQ(p.knobs.seed, 7u);
+    }
+}
+
+TEST(Ladders, EveryPointIsPossible) {
+    for (const SweepSubject& subject : {kOpaque, kFog}) {
+        auto points = make_ladders(subject, {}, Quality::preview);
+        for (const SweepPoint& truth : make_truths(subject, {})) {
+            points.push_back(truth);
+        }
+        for (const SweepPoint& p : points) {
+            EXPECT_TRUE(formats::is_valid_cubemap_size(p.knobs.cubemap_size)) << p.label;
+            EXPECT_LE(p.knobs.single_cubemap, p.knobs.cubemap_size) << p.label;
+            EXPECT_TRUE(p.knobs.coefficients == kAllCoefficients ||
+                        p.knobs.coefficients < formats::cubemap_texels(p.knobs.cubemap_size))
+                << p.label;
+            EXPECT_GE(p.knobs.coefficients, 7u) << p.label;
+            EXPECT_TRUE(p.knobs.code_bits == 8 || p.knobs.code_bits == 16) << p.label;
+            EXPECT_GE(p.knobs.depth_samples, 1u) << p.label;
+            EXPECT_GE(p.knobs.samples, 100u) << p.label;
+        }
+    }
+}
+
+TEST(Ladders, TruthsGetCheaperOneByOne) {
+    const auto work = [](const Knobs& k) {
+        return static_cast<double>(k.cubemap_size) * k.cubemap_size * (k.exact_rays ? 100.0 : 1.0) *
+               k.samples *
+               std::sqrt(static_cast<double>(
+                   std::min<std::size_t>(k.coefficients, formats::cubemap_texels(k.cubemap_size))));
+    };
+    for (const SweepSubject& subject : {kOpaque, kFog}) {
+        const auto truths = make_truths(subject, {});
+        for (std::size_t i = 1; i < truths.size(); ++i) {
+            EXPECT_LT(work(truths[i].knobs), work(truths[i - 1].knobs)) << truths[i].label;
+            EXPECT_EQ(truths[i].knobs.code_bits, 16u);
+        }
+    }
+}
+
+TEST(Ladders, KnobsOfMediaDoNotTellOpaqueBakesApart) {
+    const Knobs a = *resolve_knobs({});
+    Knobs b = a;
+    b.samples = 1000;
+    b.depth_samples = 1;
+    b.exact_rays = true;
+    EXPECT_TRUE(same_bake(a, b, kOpaque));
+    EXPECT_FALSE(same_bake(a, b, kMarble));
+    b = a;
+    b.coefficients = 7;
+    EXPECT_FALSE(same_bake(a, b, kOpaque));
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,94 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "formats/opal/write_opal.h"
+#include "tests/support/media_bake.h"
+
+namespace opaline::bake {
+namespace {
+
+// Soft light inside, and no shadow's edge on it.
+formats::Scene soft_ball() {
+    return tests::make_translucent_scene({tests::make_sphere(3)},
+                                         tests::make_grey_medium(4, 0.02f));
+}
+
+BakeOptions asking_for(double error) {
+    BakeOptions options;
+    options.error = error;
+    options.threads = 2;
+    return options;
+}
+
+TEST(TargetError, MeasuredErrorIsWhatWasAskedForAndLessCostsMore) {
+    const auto scene = soft_ball();
+    std::uint64_t bytes = 0;
+    for (const double error : {0.1, 0.03}) {
+        const BakeResult result = tests::bake_scene(scene, asking_for(error));
+        ASSERT_TRUE(result.accuracy);
+        EXPECT_TRUE(result.accuracy->met) << error;
+        EXPECT_LE(result.accuracy->predicted, error);
+        EXPECT_LE(result.error.rms_relative, error);
+        // What was not needed was not bought.
+        EXPECT_GT(result.error.rms_relative, 0.2 * error);
+        const std::uint64_t size = formats::opal_size(result.asset.view());
+        EXPECT_GT(size, bytes) << error;
+        bytes = size;
+    }
+}
+
+TEST(TargetError, GivenKnobsStay) {
+    BakeOptions options = asking_for(0.1);
+    options.cubemap_size = 8;
+    options.coefficients = 40;
+    options.tolerance = 2e-3;
+    options.depth_samples = 5;
+    const BakeResult result = tests::bake_scene(soft_ball(), options);
+    EXPECT_EQ(result.knobs.cubemap_size, 8u);
+    EXPECT_EQ(result.knobs.coefficients, 40u);
+    EXPECT_EQ(result.knobs.tolerance, 2e-3);
+    EXPECT_EQ(result.knobs.depth_samples, 5u);
+}
+
+TEST(TargetError, OpaqueSurfacesTakeTheCoarsestCubeMapThatIsGoodEnough) {
+    const auto ball = tests::make_scene({tests::make_sphere(3)});
+    const BakeResult result = tests::bake_scene(ball, asking_for(0.05));
+    EXPECT_TRUE(result.accuracy->met);
+    EXPECT_LE(result.knobs.cubemap_size, 32u);
+    EXPECT_LE(result.error.rms_relative, 0.05);
+}
+
+TEST(TargetError, OutOfReachIsSaidAndTheFinestTaken) {
+    BakeOptions options = asking_for(1e-3);
+    options.cubemap_size = 8;
+    const BakeResult result = tests::bake_scene(tests::make_dented_ball(), options);
+    EXPECT_FALSE(result.accuracy->met);
+    EXPECT_EQ(result.knobs.cubemap_size, 8u);
+    ASSERT_FALSE(result.warnings.empty());
+    EXPECT_THAT(result.warnings.back().fault, ::testing::HasSubstr("out of reach"));
+}
+
+TEST(TargetError, BytesDoNotDependOnTheNumberOfThreads) {
+    BakeOptions one = asking_for(0.1), five = one;
+    one.threads = 1;
+    five.threads = 5;
+    const auto a = tests::bake_scene(soft_ball(), one), b = tests::bake_scene(soft_ball(), five);
+    EXPECT_EQ(a.asset.transport.code8, b.asset.transport.code8);
+    EXPECT_EQ(a.asset.transport.row_offset, b.asset.transport.row_offset);
+    EXPECT_EQ(a.asset.provenance, b.asset.provenance);
+}
+
+TEST(SelfCheck, IntervalMeetsThatOfOtherReceivers) {
+    auto scene = soft_ball();
+    BakeOptions options = tests::small_bake();
+    options.coefficients = 64;
+    const BakeResult one = tests::bake_scene(scene, options);
+    options.seed = 7;
+    const BakeResult other = tests::bake_scene(scene, options);
+    EXPECT_LT(one.error.ci95[0], other.error.ci95[1]);
+    EXPECT_LT(other.error.ci95[0], one.error.ci95[1]);
+    EXPECT_GT(one.error.rms_relative, 0.01);
+}
+
+}  // namespace
+}  // namespace opaline::bake
