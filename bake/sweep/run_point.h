@@ -30,10 +30,11 @@ struct PointRecord {
     double cpu_seconds = 0;  ///< of all threads together; other programs do not count
     StageGroups groups;
     std::vector<StageReport> stages;
-    std::uint64_t bytes = 0;        ///< of the file
-    std::uint64_t peak_bytes = 0;   ///< largest resident memory during the bake
-    ErrorReport self_check;         ///< the bake's own
-    ErrorReport error;              ///< against the sweep's truth; of the truth: self_check
+    std::uint64_t bytes = 0;       ///< of the file
+    std::uint64_t peak_bytes = 0;  ///< largest resident memory during the bake
+    ErrorReport self_check;        ///< the bake's own
+    ErrorReport error;      ///< difference, plus the truth's own error; of the truth: self_check
+    double difference = 0;  ///< from the sweep's truth: relative RMS
     std::vector<double> luminance;  ///< relight_probes
     runtime::Picture picture;       ///< empty where none was wanted
 };

@@ -196,10 +196,14 @@ void compare_all(SweepResult& result, const formats::Scene& scene,
     }
     const PointRecord& truth = result.points[result.truth];
     for (PointRecord& record : result.points) {
-        record.error = &record == &truth
-                           ? truth.self_check
-                           : compare_probes(record.luminance, truth.luminance, of_medium,
-                                            result.lights, medium_effect(result.subject));
+        if (&record == &truth) {
+            record.error = truth.self_check;
+            continue;
+        }
+        record.error = compare_probes(record.luminance, truth.luminance, of_medium, result.lights,
+                                      medium_effect(result.subject));
+        record.difference = record.error.rms_relative;
+        add_error_of_truth(record.error, truth.self_check);
     }
 }
 

@@ -83,6 +83,7 @@ Cells cells_of(const SweepResult& result, const SweepAnalysis& analysis, std::si
     cells.emplace_back("error", number_cell(record.error.rms_relative));
     cells.emplace_back("error_ci95_low", number_cell(record.error.ci95[0]));
     cells.emplace_back("error_ci95_high", number_cell(record.error.ci95[1]));
+    cells.emplace_back("difference_from_truth", number_cell(record.difference));
     cells.emplace_back("self_check", number_cell(record.self_check.rms_relative));
     cells.emplace_back("self_check_ci95_low", number_cell(record.self_check.ci95[0]));
     cells.emplace_back("self_check_ci95_high", number_cell(record.self_check.ci95[1]));
@@ -118,6 +119,7 @@ Json point_json(const SweepResult& result, const SweepAnalysis& analysis, std::s
     json["bytes"] = record.bytes;
     json["peak_rss_bytes"] = record.peak_bytes;
     json["error"] = error_json(record.error);
+    json["difference_from_truth"] = record.difference;
     json["self_check"] = error_json(record.self_check);
     const Standing& standing = analysis.standing[i];
     json["on_front_time"] = standing.on_front_time;
