@@ -71,7 +71,7 @@ std::string make_provenance(const formats::Scene& scene, const Knobs& knobs,
             {{"name", p.name}, {"material", scene.materials[p.material].name}});
     }
     root["seed"] = knobs.seed;
-    root["quality"] = quality_name(knobs.quality);
+    root["quality"] = knobs.error_target > 0 ? "as --error asked" : quality_name(knobs.quality);
     if (knobs.error_target > 0) {
         root["error_requested"] = knobs.error_target;
     }

@@ -74,6 +74,25 @@ ErrorReport compare_probes(std::span<const double> luminance, std::span<const do
     return summarise_checks(checks, lights, 0);
 }
 
+void add_error_of_truth(ErrorReport& error, const ErrorReport& truth) {
+    const auto add = [](double& value, double more) { value = std::hypot(value, more); };
+    const auto add_parts = [&](std::vector<ErrorReport::Part>& parts,
+                               const std::vector<ErrorReport::Part>& more) {
+        for (ErrorReport::Part& part : parts) {
+            for (const ErrorReport::Part& own : more) {
+                if (own.name == part.name) {
+                    add(part.rms_relative, own.rms_relative);
+                }
+            }
+        }
+    };
+    add(error.rms_relative, truth.rms_relative);
+    add(error.ci95[0], truth.rms_relative);
+    add(error.ci95[1], truth.rms_relative);
+    add_parts(error.by_effect, truth.by_effect);
+    add_parts(error.by_light, truth.by_light);
+}
+
 double relative_difference(std::span<const double> luminance, std::span<const double> truth) {
     double error = 0, square = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) {

@@ -38,6 +38,10 @@ ErrorReport compare_probes(std::span<const double> luminance, std::span<const do
                            const std::vector<bool>& of_medium, std::span<const std::string> lights,
                            const std::string& medium_effect);
 
+/// Adds to an error against a truth that truth's own error, as errors of different origins add: in
+/// squares; also to the ends of the interval, to each effect and to each light that both know.
+void add_error_of_truth(ErrorReport& error, const ErrorReport& truth);
+
 /// RMS of the difference over RMS of the truth; 0 where the truth is black.
 double relative_difference(std::span<const double> luminance, std::span<const double> truth);
 

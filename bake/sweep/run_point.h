@@ -35,7 +35,8 @@ struct PointRecord {
     std::uint64_t peak_bytes = 0;                 ///< largest resident memory during the bake
     ErrorReport error;                            ///< as the bake measured it
     std::optional<ModelErrorReport> model_error;  ///< where the knobs ask for it
-    ErrorReport against_finest;     ///< against the finest bake of the sweep, at all probes
+    ErrorReport against_finest;     ///< from the finest bake, at all probes, and that one's own
+                                    ///< error added in squares
     std::vector<double> luminance;  ///< relight_probes
     runtime::Picture picture;       ///< empty where none was wanted
 };

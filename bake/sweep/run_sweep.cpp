@@ -198,6 +198,7 @@ void compare_all(SweepResult& result, const formats::Scene& scene,
     for (PointRecord& record : result.points) {
         record.against_finest = compare_probes(record.luminance, finest.luminance, of_medium,
                                                result.lights, medium_effect(result.subject));
+        add_error_of_truth(record.against_finest, finest.error);
     }
 }
 

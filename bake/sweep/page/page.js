@@ -18,7 +18,7 @@ function introduce() {
     `against ${points[0].error.reference.split(';')[0].replace(/^[^:]*: /, '')}. Intervals are 95\u00a0% bootstrap intervals over receivers. ` +
     `Besides, up to 2000 receivers were compared with the finest bake that the time allowed: \u201c${truth.label}\u201d ` +
     `(${knobLines(truth).join('; ')}; ${seconds(truth.seconds)}, ${bytes(truth.bytes)}; it errs by ` +
-    `${interval(truth.error)}). The two intervals meet for ${data.agreement.agreeing} of ${data.agreement.of} ` +
+    `${interval(truth.error)}, which is added in squares). The two intervals meet for ${data.agreement.agreeing} of ${data.agreement.of} ` +
     'bakes. Seconds are wall time of whole bakes with their self-checks, once each; CPU is that of all threads. ' +
     'Where CPU is far below the seconds times the threads, something else kept the machine busy. All of this is numerical error: the same physical model with coarser numbers.');
   if (data.model_error) {
@@ -101,7 +101,21 @@ function picturesSection() {
     `${significant(b.seconds / a.seconds, 2)} times as long as \u201c${a.label}\u201d.`);
 }
 
+// Wall time tells nothing where other programs took the cores: CPU over wall differs from bake to bake.
+function warnIfBusy() {
+  const share = points.map(p => p.cpu_seconds / p.seconds);
+  const most = Math.max(...share);
+  const disturbed = points.filter((p, i) => p.seconds > 1 && share[i] < 0.7 * most).length;
+  if (disturbed > 0.1 * points.length) {
+    const box = document.getElementById('busy');
+    box.hidden = false;
+    box.textContent = `Something else kept the machine busy during ${disturbed} of ${points.length} bakes: compare ` +
+      'seconds with care, look at CPU seconds in the last table, or sweep again on a quiet machine.';
+  }
+}
+
 introduce();
+warnIfBusy();
 presetTable();
 frontChart('front-time', 'seconds', 'seconds to bake [s]', v => significant(v, 2), 'on_front_time');
 frontChart('front-bytes', 'bytes', 'size of the file', bytes, 'on_front_bytes');

@@ -82,5 +82,20 @@ TEST(Probes, ErrorIsRelativeToTheTruth) {
     EXPECT_EQ(bake::relative_difference(std::vector<double>{1}, std::vector<double>{0}), 0);
 }
 
+// 3 and 4 make 5; what the truth does not know of itself stays as it is.
+TEST(Probes, TheTruthsOwnErrorIsAddedInSquares) {
+    bake::ErrorReport error, truth;
+    error.rms_relative = error.ci95[0] = error.ci95[1] = 0.03;
+    error.by_light = {{"white", 0.03}, {"studio", 0.03}};
+    truth.rms_relative = 0.04;
+    truth.by_light = {{"white", 0.04}};
+    bake::add_error_of_truth(error, truth);
+    EXPECT_NEAR(error.rms_relative, 0.05, 1e-15);
+    EXPECT_NEAR(error.ci95[0], 0.05, 1e-15);
+    EXPECT_NEAR(error.ci95[1], 0.05, 1e-15);
+    EXPECT_NEAR(error.by_light[0].rms_relative, 0.05, 1e-15);
+    EXPECT_NEAR(error.by_light[1].rms_relative, 0.03, 1e-15);
+}
+
 }  // namespace
 }  // namespace opaline::tests
