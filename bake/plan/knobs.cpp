@@ -19,20 +19,19 @@ Knobs preset(Quality quality) {
             knobs.cubemap_size = 16;
             knobs.coefficients = 64;
             knobs.samples = 20000;
-            knobs.tolerance = 3e-3;
+            knobs.tolerance = 1e-2;
             knobs.depth_samples = 4;
             knobs.phase_tolerance = 0.05;
+            knobs.single_cubemap = 8;
             return knobs;
         case Quality::preview:
             return knobs;
         case Quality::production:
-            knobs.cubemap_size = 64;
-            knobs.coefficients = 256;
+            // Twice the cube map would cost four times the rays; what errs is truncation.
+            knobs.coefficients = 512;
             knobs.samples = 150000;
-            knobs.tolerance = 3e-4;
-            knobs.depth_samples = 8;
+            knobs.samples_per_path = 4;
             knobs.phase_tolerance = 0.01;
-            knobs.single_cubemap = 32;
             return knobs;
         default:
             knobs.cubemap_size = 64;
