@@ -66,10 +66,21 @@ void leave_out_skipped(const formats::Scene& scene, std::span<const RowLayout> l
     }
 }
 
+MediaProfiles make_profiles(const formats::Scene& scene, std::span<const RowLayout> layouts,
+                            std::uint64_t seed, const Context& context) {
+    MediaProfiles profiles;
+    for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+        if (layouts[m].translucent && layouts[m].multiple) {
+            profiles.emplace(m, make_medium_profile(*scene.materials[m].medium, seed, context));
+        }
+    }
+    return profiles;
+}
+
 // What enters each medium; none of the other knobs matters to it.
 MediaStages prepare_media(const formats::Scene& scene, const RayScene& rays,
-                          std::span<const RowLayout> layouts, const Knobs& knobs,
-                          const Context& context, BakeResult& result) {
+                          std::span<const RowLayout> layouts, const MediaProfiles& profiles,
+                          const Knobs& knobs, const Context& context, BakeResult& result) {
     MediaStages media;
     for (std::uint32_t m = 0; m < layouts.size(); ++m) {
         if (!layouts[m].translucent) {
@@ -82,7 +93,7 @@ MediaStages prepare_media(const formats::Scene& scene, const RayScene& rays,
             stages.multiple = run_stage(result, name, [&](std::uint64_t& traced) {
                 const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
                 MultipleStage stage =
-                    prepare_multiple(scene, rays, m,
+                    prepare_multiple(scene, rays, m, profiles.at(m),
                                      {knobs.cubemap_size, knobs.samples, knobs.exact_samples,
                                       knobs.samples_per_path, kept, knobs.seed, !knobs.exact_rays},
                                      context);
@@ -136,7 +147,8 @@ MediaStages choose_knobs(const PilotScene& pilot, std::vector<TestLight>& lights
         MediaStages media;
         bool has_samples = false;
         if (floor <= knobs.error_target || !refine_knobs(choice, false)) {
-            media = prepare_media(pilot.scene, pilot.rays, pilot.layouts, knobs, context, result);
+            media = prepare_media(pilot.scene, pilot.rays, pilot.layouts, pilot.profiles, knobs,
+                                  context, result);
             for (const auto& [m, stages] : media) {
                 has_samples = has_samples || stages.multiple.has_value();
             }
@@ -346,10 +358,14 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     if (!lights) {
         return std::move(lights).error();
     }
+    const MediaProfiles profiles = run_stage(result, "profiles", [&](std::uint64_t&) {
+        return make_profiles(scene, layouts, knobs.seed, context);
+    });
     MediaStages media =
         knobs.error_target > 0
-            ? choose_knobs({scene, *rays, receivers, points, layouts}, *lights, context, result)
-            : prepare_media(scene, *rays, layouts, knobs, context, result);
+            ? choose_knobs({scene, *rays, receivers, points, layouts, profiles}, *lights, context,
+                           result)
+            : prepare_media(scene, *rays, layouts, profiles, knobs, context, result);
     finish_media(scene, *rays, knobs, context, result, media);
     if (knobs.error_target > 0) {
         result.plan = plan_bake(scene, knobs, context.threads);  // of the knobs that were chosen

@@ -45,12 +45,11 @@ TranslucentTruth make_translucent_truth(const formats::Scene& scene, std::uint32
 TwoEstimates eval_truth(const TranslucentTruth& truth, const formats::Scene& scene,
                         const RayScene& rays, const BodyPoint& point, std::uint64_t seed,
                         std::uint32_t receiver, std::uint64_t& traced) {
-    constexpr std::uint32_t kPoints = 1024;  // of the surface, for each estimate
     const std::size_t lights = truth.smooth.lights;
     TwoEstimates estimates{Luminance(lights), Luminance(lights)};
     if (truth.multiple) {
         estimates = integrate_multiple(*truth.multiple, scene, rays, truth.suns, truth.smooth,
-                                       point.position, kPoints, seed, receiver, traced);
+                                       point.position, truth.points, seed, receiver, traced);
     }
     if (truth.single && point.normal != glm::vec3(0)) {
         const Luminance once = integrate_single(*truth.single, rays, point, traced);

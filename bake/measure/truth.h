@@ -28,6 +28,7 @@ struct TranslucentTruth {
     std::optional<SingleQuadrature> single;
     SunRays suns;  ///< of the surface integral
     SmoothLights smooth;
+    std::uint32_t points = 1024;  ///< of the surface, for each of the two estimates
 };
 /// `multiple`: the medium's profile, null where light that scatters many times is left out.
 /// `depth_samples` of single scattering; 0: left out.

@@ -17,13 +17,14 @@
 
 namespace opaline::bake {
 
-/// What the pilot looks at. All but `layouts`, which go by material, are of all vertices.
+/// What the pilot looks at: all vertices, and what goes by material.
 struct PilotScene {
     const formats::Scene& scene;
     const RayScene& rays;
     std::span<const Receiver> receivers;
     std::span<const BodyPoint> points;
     std::span<const RowLayout> layouts;
+    const MediaProfiles& profiles;
 };
 
 /// A receiver and what it truly sends out under each test light, whatever the knobs.

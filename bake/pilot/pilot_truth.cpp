@@ -13,7 +13,14 @@ namespace {
 // Opaque receivers are cheap to know, and shadows' edges make few of them say little.
 constexpr std::size_t kLeastReceivers = 64, kMostReceivers = 1024, kVerticesPerReceiver = 40;
 constexpr std::size_t kMostTranslucent = 192;
-constexpr std::uint32_t kDepthSamples = 16;  // of the truth about single scattering
+
+// The truth need be no finer than what is asked for.
+std::uint32_t surface_points(double target) {
+    return target >= 0.03 ? 256 : target >= 0.015 ? 512 : 1024;
+}
+std::uint32_t depth_samples(double target) {
+    return target >= 0.03 ? 8 : 16;
+}
 
 bool is_simulated(const RowLayout& layout) {
     return layout.translucent ? layout.multiple || layout.single_terms > 0 : layout.direct;
@@ -57,15 +64,13 @@ std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs
         if (!layout.translucent) {
             direct = direct ? std::move(direct) : make_direct_truth(lights);
         } else if (!translucent.contains(r.material)) {
-            std::optional<MediumProfile> profile;
-            if (layout.multiple) {
-                profile = make_medium_profile(*pilot.scene.materials[r.material].medium, knobs.seed,
-                                              context);
-            }
-            translucent.emplace(
-                r.material,
-                make_translucent_truth(pilot.scene, r.material, profile ? &*profile : nullptr,
-                                       layout.single_terms > 0 ? kDepthSamples : 0, lights));
+            const auto profile = pilot.profiles.find(r.material);
+            TranslucentTruth truth = make_translucent_truth(
+                pilot.scene, r.material,
+                profile != pilot.profiles.end() ? &profile->second : nullptr,
+                layout.single_terms > 0 ? depth_samples(knobs.error_target) : 0, lights);
+            truth.points = surface_points(knobs.error_target);
+            translucent.emplace(r.material, std::move(truth));
         }
     }
     std::size_t done = 0;

@@ -128,7 +128,8 @@ PlanEntry decide_multiple(const PlanInput& input) {
     const double samples =
         input.knobs.exact_samples
             ? most
-            : std::min(most, std::max(2000.0, input.subject.area * densest * densest));
+            : std::min(most, std::max(2000.0, input.knobs.samples_per_path * input.subject.area *
+                                                  densest * densest));
     entry.reason = "light scatters many times inside; " +
                    std::to_string(static_cast<std::uint64_t>(samples)) + " surface samples";
     // One ray a texel, a quarter of what a receiver on the surface traces; then a gather of some

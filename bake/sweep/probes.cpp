@@ -87,7 +87,6 @@ void add_error_of_truth(ErrorReport& error, const ErrorReport& truth) {
         }
     };
     add(error.rms_relative, truth.rms_relative);
-    add(error.ci95[0], truth.rms_relative);
     add(error.ci95[1], truth.rms_relative);
     add_parts(error.by_effect, truth.by_effect);
     add_parts(error.by_light, truth.by_light);

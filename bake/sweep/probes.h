@@ -39,7 +39,8 @@ ErrorReport compare_probes(std::span<const double> luminance, std::span<const do
                            const std::string& medium_effect);
 
 /// Adds to an error against a truth that truth's own error, as errors of different origins add: in
-/// squares; also to the ends of the interval, to each effect and to each light that both know.
+/// squares; also to the upper end of the interval, to each effect and to each light that both know.
+/// The lower end stays: errors of one origin do not add.
 void add_error_of_truth(ErrorReport& error, const ErrorReport& truth);
 
 /// RMS of the difference over RMS of the truth; 0 where the truth is black.

@@ -16,6 +16,9 @@ struct MediumStages {
     TranslucentRecipe recipe;
 };
 
+/// Profiles of the media whose multiple scattering is simulated, by material.
+using MediaProfiles = std::map<std::uint32_t, MediumProfile>;
+
 /// By material.
 using MediaStages = std::map<std::uint32_t, MediumStages>;
 

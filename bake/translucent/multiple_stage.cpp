@@ -22,8 +22,8 @@ double scene_diagonal(const formats::Scene& scene) {
 }  // namespace
 
 MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
-                               std::uint32_t material, const MultipleOptions& options,
-                               const Context& context) {
+                               std::uint32_t material, const MediumProfile& medium,
+                               const MultipleOptions& options, const Context& context) {
     std::vector<std::uint32_t> primitives;
     double area = 0;
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
@@ -33,7 +33,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
         }
     }
     MultipleStage stage;
-    stage.medium = make_medium_profile(*scene.materials[material].medium, options.seed, context);
+    stage.medium = medium;
     const std::uint32_t count =
         options.exact_samples
             ? options.samples

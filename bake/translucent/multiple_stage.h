@@ -31,10 +31,11 @@ struct MultipleOptions {
     bool share_rays = true;  ///< between neighbouring samples
 };
 
-/// Samples the surface of the material's medium, traces what enters, and builds the tree.
+/// Samples the surface of the material's medium, whose profile is `medium`, traces what enters, and
+/// builds the tree.
 /// Incomplete if the context is cancelled.
 MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
-                               std::uint32_t material, const MultipleOptions& options,
-                               const Context& context);
+                               std::uint32_t material, const MediumProfile& medium,
+                               const MultipleOptions& options, const Context& context);
 
 }  // namespace opaline::bake
