@@ -23,7 +23,7 @@ function logTick(format) {
     const digit = Number(value.toExponential().split('e')[0]);
     const { min, max } = this.chart.scales[this.axis === 'x' ? 'x' : 'y'];
     const span = max / min;
-    const shown = span > 2000 ? [1] : span > 6 ? [1, 2, 5] : [1, 1.5, 2, 3, 4, 5, 6, 8];
+    const shown = span > 200 ? [1] : span > 6 ? [1, 2, 5] : [1, 1.5, 2, 3, 4, 5, 6, 8];
     return shown.some(s => Math.abs(s - digit) < 1e-6) ? format(value) : '';
   };
 }
@@ -169,7 +169,7 @@ function slopeChart(box, slope) {
   const note = element('p', text);
   note.className = 'note';
   box.append(element('div', null, element('h3', name), plot, note));
-  const plain = v => v >= 1e4 ? significant(v / 1000, 2) + 'k' : significant(v, 2);
+  const plain = v => v >= 1e4 ? significant(v / 1000, 2) + 'k' : v < 1e-3 ? v.toExponential(0) : significant(v, 2);
   const x = slope.semi_log
     ? { type: 'linear', min: low - 0.3, max: high + 0.3, ticks: { stepSize: 1 }, title: { display: true, text: slope.knob } }
     : logAxis('x', slope.knob, plain, values);
