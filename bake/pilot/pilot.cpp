@@ -89,7 +89,9 @@ struct Trials {
             if (level.depth_samples >= setting.depth_samples) {
                 break;
             }
-            const RowSetting coarse{setting.tolerance, level.depth_samples, level.cubemap};
+            // Never finer than the asset's own cube map.
+            const RowSetting coarse{setting.tolerance, level.depth_samples,
+                                    std::min(level.cubemap, choice.knobs.cubemap_size)};
             single = gather_pilot_single(pilot, receivers, coarse, context);
             const double square = square_error(measure(coarse));
             note("depth_samples", level.depth_samples, square);

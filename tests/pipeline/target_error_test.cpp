@@ -50,6 +50,21 @@ TEST(TargetError, GivenKnobsStay) {
     EXPECT_EQ(result.knobs.depth_samples, 5u);
 }
 
+TEST(TargetError, SingleScatteringIsNeverGatheredOnMoreTexelsThanTheFileHas) {
+    BakeOptions options = asking_for(1e-3);  // out of reach: every level of samples is tried
+    options.cubemap_size = 8;
+    options.effects = {"single"};
+    const auto dense =
+        tests::make_translucent_scene({tests::make_sphere(3)}, tests::make_grey_medium(40, 1));
+    const BakeResult result = tests::bake_scene(dense, options);
+    EXPECT_LE(result.knobs.single_cubemap, 8u);
+    std::uint32_t levels = 0;
+    for (const auto& [cubemap_size, samples_per_path, trial] : result.accuracy->trials) {
+        levels += trial.knob == "depth_samples" ? 1 : 0;
+    }
+    EXPECT_GT(levels, 1u) << "the finer levels were not reached";
+}
+
 TEST(TargetError, OpaqueSurfacesTakeTheCoarsestCubeMapThatIsGoodEnough) {
     const auto ball = tests::make_scene({tests::make_sphere(3)});
     const BakeResult result = tests::bake_scene(ball, asking_for(0.05));
