@@ -1,9 +1,6 @@
 #include "bake/pipeline.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -16,11 +13,12 @@
 #include "bake/measure/check_direct.h"
 #include "bake/measure/check_translucent.h"
 #include "bake/measure/thin_parts.h"
-#include "bake/pilot/pilot.h"
 #include "bake/plan/plan_rules.h"
 #include "bake/plan/row_layout.h"
+#include "bake/prepare_media.h"
 #include "bake/receivers/orient_bodies.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/run_stage.h"
 #include "bake/specular/bake_openness.h"
 #include "bake/translucent/translucent_rows.h"
 #include "bake/visibility/hidden_receivers.h"
@@ -31,27 +29,6 @@ namespace {
 
 using formats::ErrorKind;
 using formats::make_error;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::uint64_t peak_rss_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-}
-
-// Times one stage and notes it in the report when it ends.
-template <class Stage>
-auto run_stage(BakeResult& result, std::string name, Stage&& stage) {
-    const Clock::time_point start = Clock::now();
-    std::uint64_t rays = 0;
-    auto value = stage(rays);
-    result.stages.push_back({std::move(name), seconds_since(start), rays, peak_rss_bytes()});
-    return value;
-}
 
 // Receivers whose material has no diffuse row gather nothing.
 void leave_out_skipped(const formats::Scene& scene, std::span<const RowLayout> layouts,
@@ -64,113 +41,6 @@ void leave_out_skipped(const formats::Scene& scene, std::span<const RowLayout> l
             }
         }
     }
-}
-
-MediaProfiles make_profiles(const formats::Scene& scene, std::span<const RowLayout> layouts,
-                            std::uint64_t seed, const Context& context) {
-    MediaProfiles profiles;
-    for (std::uint32_t m = 0; m < layouts.size(); ++m) {
-        if (layouts[m].translucent && layouts[m].multiple) {
-            profiles.emplace(m, make_medium_profile(*scene.materials[m].medium, seed, context));
-        }
-    }
-    return profiles;
-}
-
-// What enters each medium; none of the other knobs matters to it.
-MediaStages prepare_media(const formats::Scene& scene, const RayScene& rays,
-                          std::span<const RowLayout> layouts, const MediaProfiles& profiles,
-                          const Knobs& knobs, const Context& context, BakeResult& result) {
-    MediaStages media;
-    for (std::uint32_t m = 0; m < layouts.size(); ++m) {
-        if (!layouts[m].translucent) {
-            continue;
-        }
-        MediumStages& stages = media[m];
-        stages.recipe.layout = layouts[m];
-        if (layouts[m].multiple) {
-            const std::string name = "samples of material '" + scene.materials[m].name + "'";
-            stages.multiple = run_stage(result, name, [&](std::uint64_t& traced) {
-                const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
-                MultipleStage stage =
-                    prepare_multiple(scene, rays, m, profiles.at(m),
-                                     {knobs.cubemap_size, knobs.samples, knobs.exact_samples,
-                                      knobs.samples_per_path, kept, knobs.seed, !knobs.exact_rays},
-                                     context);
-                traced = stage.transport.rays;
-                return stage;
-            });
-            stages.recipe.multiple = &*stages.multiple;
-        }
-    }
-    return media;
-}
-
-// What is left to prepare once every knob has its value.
-void finish_media(const formats::Scene& scene, const RayScene& rays, const Knobs& knobs,
-                  const Context& context, BakeResult& result, MediaStages& media) {
-    for (auto& [m, stages] : media) {
-        TranslucentRecipe& recipe = stages.recipe;
-        if (recipe.layout.single_terms > 0) {
-            const std::string name = "light maps of material '" + scene.materials[m].name + "'";
-            const std::uint32_t material = m, terms = recipe.layout.single_terms;
-            stages.single = run_stage(result, name, [&](std::uint64_t&) {
-                return prepare_single(
-                    scene, rays, material,
-                    {knobs.single_cubemap, knobs.depth_samples, terms, knobs.exact_rays}, context);
-            });
-            recipe.single = &*stages.single;
-        }
-        recipe.gather = {knobs.tolerance};
-        recipe.selector = make_selector(knobs.cubemap_size, knobs.coefficients);
-        recipe.code_bits = knobs.code_bits;
-    }
-}
-
-// Changes the knobs that the user did not fix into the cheapest that meet the target, as far as the
-// pilot can tell, and prepares the media with them.
-MediaStages choose_knobs(const PilotScene& pilot, std::vector<TestLight>& lights,
-                         const Context& context, BakeResult& result) {
-    Knobs& knobs = result.knobs;
-    result.accuracy = AccuracyReport{knobs.error_target, 0, 0, false, {}};
-    const std::vector<PilotReceiver> receivers =
-        run_stage(result, "pilot truth",
-                  [&](std::uint64_t&) { return find_pilot_truth(pilot, knobs, lights, context); });
-    while (!context.cancelled()) {
-        project_test_lights(lights, knobs.cubemap_size);
-        PilotChoice choice;
-        choice.knobs = knobs;
-        // Samples of media are not worth taking where the opaque receivers need more texels.
-        const double floor = run_stage(result, "pilot", [&](std::uint64_t&) {
-            return find_direct_floor(pilot, receivers, knobs, lights, context);
-        });
-        MediaStages media;
-        bool has_samples = false;
-        if (floor <= knobs.error_target || !refine_knobs(choice, false)) {
-            media = prepare_media(pilot.scene, pilot.rays, pilot.layouts, pilot.profiles, knobs,
-                                  context, result);
-            for (const auto& [m, stages] : media) {
-                has_samples = has_samples || stages.multiple.has_value();
-            }
-            choice = run_stage(result, "pilot", [&](std::uint64_t&) {
-                return choose_row_knobs(pilot, receivers, knobs, media, lights, context);
-            });
-        }
-        for (const PilotTrial& trial : choice.trials) {
-            result.accuracy->trials.push_back({knobs.cubemap_size, knobs.samples_per_path, trial});
-        }
-        const std::optional<Knobs> finer =
-            choice.met ? std::nullopt : refine_knobs(choice, has_samples);
-        if (!finer) {
-            knobs = choice.knobs;
-            result.accuracy->predicted = choice.error;
-            result.accuracy->likely = choice.likely;
-            result.accuracy->met = choice.met;
-            return media;
-        }
-        knobs = *finer;
-    }
-    return {};
 }
 
 // The rows of all primitives, in their order; one stage of the report for each primitive.
@@ -288,28 +158,6 @@ void warn_of_thin_parts(const formats::Scene& scene, const RayScene& rays,
     }
 }
 
-// Says where a target error was not reached.
-void warn_of_missed_target(const BakeResult& result, std::vector<formats::Diagnostic>& warnings) {
-    const AccuracyReport& accuracy = *result.accuracy;
-    const auto percent = [](double error) {
-        const std::string text = std::to_string(1e-3 * std::round(1e5 * error));
-        return text.substr(0, text.find('.') + 3) + " %";
-    };
-    if (!accuracy.met) {
-        warnings.push_back(formats::make_warning(
-            "", "--error",
-            percent(accuracy.target) + " is out of reach: the finest knobs tried leave " +
-                percent(accuracy.likely) + ", and were taken",
-            "ask for more, or give the scene more vertices where shadows end"));
-    } else if (result.error.rms_relative > accuracy.target) {
-        warnings.push_back(
-            formats::make_warning("", "--error",
-                                  "the self-check measured " + percent(result.error.rms_relative) +
-                                      ", more than the " + percent(accuracy.target) + " asked for",
-                                  "ask for a little less"));
-    }
-}
-
 formats::Error interrupted() {
     return make_error(ErrorKind::interrupted, "", "", "interrupted", "nothing was written");
 }
@@ -361,12 +209,10 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     const MediaProfiles profiles = run_stage(result, "profiles", [&](std::uint64_t&) {
         return make_profiles(scene, layouts, knobs.seed, context);
     });
-    MediaStages media =
-        knobs.error_target > 0
-            ? choose_knobs({scene, *rays, receivers, points, layouts, profiles}, *lights, context,
-                           result)
-            : prepare_media(scene, *rays, layouts, profiles, knobs, context, result);
-    finish_media(scene, *rays, knobs, context, result, media);
+    const PilotScene pilot{scene, *rays, receivers, points, layouts, profiles};
+    MediaStages media = knobs.error_target > 0 ? choose_knobs(pilot, *lights, context, result)
+                                               : prepare_media(pilot, knobs, context, result);
+    finish_media(pilot, knobs, context, result, media);
     if (knobs.error_target > 0) {
         result.plan = plan_bake(scene, knobs, context.threads);  // of the knobs that were chosen
     }

@@ -39,6 +39,7 @@ Json accuracy_json(const bake::AccuracyReport& accuracy) {
              {"samples_per_path", samples_per_path},
              {"knob", trial.knob},
              {"value", trial.value == bake::kAllCoefficients ? Json("all") : Json(trial.value)},
+             {"code_bits", trial.code_bits},
              {"error", trial.error}});
     }
     return {{"error_requested", accuracy.target},

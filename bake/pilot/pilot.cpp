@@ -62,7 +62,7 @@ struct Trials {
         return measure(setting, all).front();
     }
     void note(const char* knob, double value, double square) {
-        choice.trials.push_back({knob, value, std::sqrt(square)});
+        choice.trials.push_back({knob, value, std::sqrt(square), 16});
     }
 
     bool has_multiple() const {
@@ -115,8 +115,9 @@ struct Trials {
             encodings.push_back({fixed ? knobs.coefficients : kAllCoefficients, bits});
         }
         // By the bytes they take, about: an index of two and one or two for each of three bands.
-        const auto bytes = [](const Encoding& e) {
-            return static_cast<double>(e.coefficients) * (e.code_bits == 8 ? 5 : 8);
+        const std::uint32_t texels = 6 * knobs.cubemap_size * knobs.cubemap_size;
+        const auto bytes = [texels](const Encoding& e) {
+            return std::min(e.coefficients, texels) * (e.code_bits == 8 ? 5 : 8);
         };
         std::stable_sort(encodings.begin(), encodings.end(),
                          [&](const Encoding& a, const Encoding& b) { return bytes(a) < bytes(b); });
@@ -126,9 +127,8 @@ struct Trials {
         }
         for (std::size_t e = 0; e < encodings.size(); ++e) {
             const ErrorBounds bounds = bound_error(pairs[e], lights.size(), knobs.seed);
-            if (encodings[e].code_bits == 8) {
-                note("coefficients", encodings[e].coefficients, bounds.rms * bounds.rms);
-            }
+            choice.trials.push_back({"coefficients", static_cast<double>(encodings[e].coefficients),
+                                     bounds.rms, encodings[e].code_bits});
             // One standard error above what is expected: a quarter of a 95 % interval's width.
             const double likely = bounds.rms + 0.25 * (bounds.highest - bounds.lowest);
             if (e == 0 || likely < choice.likely || likely <= target) {

@@ -45,6 +45,7 @@ struct PilotTrial {
     std::string knob;  ///< as in knobs_json
     double value = 0;  ///< kAllCoefficients stands for all
     double error = 0;  ///< relative RMS
+    std::uint32_t code_bits = 16;
 };
 
 /// What a pilot makes of a cube map and, in media, of the surface samples there are.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "bake/base/frame.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -15,16 +17,12 @@ bool count_event(const PathSpace& space, Path& path) {
     return ++path.events <= space.options.max_depth;
 }
 
-// A direction of cosine `cosine` to the unit vector n, turned about it by 2 pi u. Frame:
-// [Duff2017].
+// A direction of cosine `cosine` to the unit vector n, turned about it by 2 pi u.
 glm::vec3 direction_about(glm::vec3 n, float cosine, float u) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-    const glm::vec3 t(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    const glm::vec3 s(b, sign + n.y * n.y * a, -n.y);
     const float sine = std::sqrt(std::max(0.0f, (1 - cosine) * (1 + cosine)));
     const float phi = 2 * kPi * u;
-    const glm::vec3 d = cosine * n + sine * (std::cos(phi) * t + std::sin(phi) * s);
+    const glm::vec3 d =
+        make_frame(n).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
     // Unit up to rounding, which a long walk must not pile up: one step of Newton's.
     return (1.5f - 0.5f * glm::dot(d, d)) * d;
 }
