@@ -31,8 +31,9 @@ using formats::ErrorKind;
 using formats::make_error;
 
 // Receivers whose material has no diffuse row gather nothing.
-void leave_out_skipped(const formats::Scene& scene, std::span<const RowLayout> layouts,
-                       std::vector<Receiver>& receivers) {
+std::vector<Receiver> leave_out_skipped(const formats::Scene& scene,
+                                        std::span<const RowLayout> layouts,
+                                        std::vector<Receiver> receivers) {
     std::size_t v = 0;
     for (const formats::Primitive& p : scene.primitives) {
         for (std::size_t i = 0; i < p.position.size(); ++i, ++v) {
@@ -41,6 +42,7 @@ void leave_out_skipped(const formats::Scene& scene, std::span<const RowLayout> l
             }
         }
     }
+    return receivers;
 }
 
 // The rows of all primitives, in their order; one stage of the report for each primitive.
@@ -86,6 +88,7 @@ formats::Result<formats::SparseRows> bake_rows(const formats::Scene& scene, cons
 
 // Of all vertices; empty where nothing is glossy.
 std::vector<formats::Openness> bake_all_openness(const formats::Scene& scene, const RayScene& rays,
+                                                 std::span<const Receiver> receivers,
                                                  std::span<const RowLayout> layouts,
                                                  const Context& context, BakeResult& result) {
     std::vector<formats::Openness> openness;
@@ -94,9 +97,6 @@ std::vector<formats::Openness> bake_all_openness(const formats::Scene& scene, co
     }
     return run_stage(result, "openness", [&](std::uint64_t& traced) {
         const DirectionSet directions = make_sparse_direction_set(kOpennessCubemap, 0);
-        const std::vector<Receiver> all =
-            take_over_hidden(rays, scene, make_vertex_receivers(scene));
-        const std::span<const Receiver> receivers = all;
         std::size_t first = 0;
         for (const formats::Primitive& primitive : scene.primitives) {
             const std::size_t count = primitive.position.size();
@@ -194,12 +194,12 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
         }
     }
     std::vector<BodyPoint> points;
-    const std::vector<Receiver> receivers = run_stage(result, "receivers", [&](std::uint64_t&) {
+    const std::vector<Receiver> vertices = run_stage(result, "receivers", [&](std::uint64_t&) {
         std::vector<Receiver> all = make_vertex_receivers(scene);
         points = make_body_points(scene, all);
-        leave_out_skipped(scene, layouts, all);
-        return take_over_hidden(*rays, scene, std::move(all));
+        return take_over_hidden(*rays, scene, std::move(all), context);
     });
+    const std::vector<Receiver> receivers = leave_out_skipped(scene, layouts, vertices);
     formats::Result<std::vector<TestLight>> lights = run_stage(
         result, "test lights",
         [&](std::uint64_t&) { return make_test_lights(knobs.cubemap_size, context.threads); });
@@ -229,7 +229,7 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     }
     warn_of_thin_parts(scene, *rays, points, media, knobs.seed, result.warnings);
     std::vector<formats::Openness> openness =
-        bake_all_openness(scene, *rays, layouts, context, result);
+        bake_all_openness(scene, *rays, vertices, layouts, context, result);
     if (context.cancelled()) {
         return interrupted();
     }

@@ -126,6 +126,8 @@ TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const formats::
         return estimates;
     }
     PieceTable table;
+    table.pieces.reserve(integral.triangles.size());
+    table.cumulative.reserve(integral.triangles.size());
     Splitter splitter(integral, position, table);
     for (std::uint32_t t = 0; t < integral.triangles.size(); ++t) {
         splitter.add(t);

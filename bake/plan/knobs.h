@@ -39,7 +39,7 @@ struct BakeOptions {
 /// What is going to be done: every knob has its value.
 struct Knobs {
     Quality quality = Quality::preview;  ///< the preset that the others started from
-    std::uint32_t cubemap_size = 32;
+    std::uint32_t cubemap_size = 16;
     std::uint32_t coefficients = 128;
     std::uint32_t code_bits = 8;    ///< of the stored detail coefficients
     std::uint32_t samples = 60000;  ///< on the surface of each medium

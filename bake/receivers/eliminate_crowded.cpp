@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -73,6 +73,36 @@ Neighbours find_neighbours(const std::vector<SurfacePoint>& points, float radius
     return all;
 }
 
+// Takes away the most crowded until `count` are left; those that are crowded alike to a few per
+// cent in any order: a heap would say which of them is first, and cost more than all the rest.
+std::vector<std::uint32_t> thin_out(const Neighbours& neighbours, std::vector<double> weight,
+                                    std::size_t count) {
+    std::vector<std::uint32_t> left(weight.size());
+    std::iota(left.begin(), left.end(), 0u);
+    std::vector<bool> alive(weight.size(), true);
+    constexpr double kStep = 0.98, kAlone = 1e-6;
+    double limit = weight.empty() ? 0 : *std::max_element(weight.begin(), weight.end());
+    std::size_t surplus = left.size() - std::min(count, left.size());
+    while (surplus > 0) {
+        limit = limit > kAlone ? kStep * limit : -1;
+        for (const std::uint32_t i : left) {
+            if (surplus == 0) {
+                break;
+            }
+            if (weight[i] <= limit) {
+                continue;
+            }
+            alive[i] = false;
+            --surplus;
+            for (const Neighbour& n : neighbours.of(i)) {
+                weight[n.point] -= static_cast<double>(n.crowding);
+            }
+        }
+        std::erase_if(left, [&](std::uint32_t i) { return !alive[i]; });
+    }
+    return left;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> eliminate_crowded(const std::vector<SurfacePoint>& points,
@@ -81,42 +111,12 @@ std::vector<std::uint32_t> eliminate_crowded(const std::vector<SurfacePoint>& po
     const double r_max = std::sqrt(area / (2.0 * std::sqrt(3.0) * static_cast<double>(count)));
     const Neighbours neighbours = find_neighbours(points, static_cast<float>(2.0 * r_max), context);
     std::vector<double> weight(points.size(), 0.0);
-    std::vector<bool> alive(points.size(), true);
-    using Entry = std::pair<double, std::uint32_t>;
-    std::vector<Entry> entries;
     for (std::uint32_t i = 0; i < points.size(); ++i) {
         for (const Neighbour& n : neighbours.of(i)) {
             weight[i] += static_cast<double>(n.crowding);
         }
-        entries.emplace_back(weight[i], i);
     }
-    std::priority_queue<Entry> heap({}, std::move(entries));
-    for (std::size_t left = points.size(); left > count;) {
-        const auto [crowd, i] = heap.top();
-        heap.pop();
-        if (!alive[i]) {
-            continue;
-        }
-        // Weights only fall: an outdated entry is pushed back with its present weight.
-        if (crowd != weight[i]) {
-            heap.emplace(weight[i], i);
-            continue;
-        }
-        alive[i] = false;
-        --left;
-        for (const Neighbour& n : neighbours.of(i)) {
-            if (alive[n.point]) {
-                weight[n.point] = std::max(0.0, weight[n.point] - static_cast<double>(n.crowding));
-            }
-        }
-    }
-    std::vector<std::uint32_t> kept;
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        if (alive[i]) {
-            kept.push_back(i);
-        }
-    }
-    return kept;
+    return thin_out(neighbours, std::move(weight), count);
 }
 
 }  // namespace opaline::bake

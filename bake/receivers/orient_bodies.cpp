@@ -1,6 +1,7 @@
 #include "bake/receivers/orient_bodies.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -20,11 +21,22 @@ bool has_volume(const BodyShell& shell) {
     return std::abs(shell.volume) > kLeastVolume * std::pow(shell.area, 1.5);
 }
 
-// Whether the shell encloses the point: its solid angle, seen from there, is the whole sphere.
-bool encloses(const BodyShells& body, const BodyShell& shell, glm::dvec3 point) {
-    double angle = 0;
+using Corners = std::array<glm::dvec3, 3>;
+
+// The triangles of a shell side by side: each is asked for many times.
+std::vector<Corners> corners_of(const BodyShells& body, const BodyShell& shell) {
+    std::vector<Corners> triangles;
+    triangles.reserve(shell.count);
     for (std::uint32_t i = shell.first; i < shell.first + shell.count; ++i) {
-        const auto corner = corners(body, body.triangle[body.order[i]]);
+        triangles.push_back(corners(body, body.triangle[body.order[i]]));
+    }
+    return triangles;
+}
+
+// Whether a shell encloses the point: its solid angle, seen from there, is the whole sphere.
+bool encloses(const std::vector<Corners>& shell, glm::dvec3 point) {
+    double angle = 0;
+    for (const Corners& corner : shell) {
         const glm::dvec3 a = corner[0] - point, b = corner[1] - point, c = corner[2] - point;
         const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
         angle += 2 * std::atan2(glm::dot(a, glm::cross(b, c)), la * lb * lc + glm::dot(a, b) * lc +
@@ -40,6 +52,7 @@ bool encloses(const BodyShells& body, const BodyShell& shell, glm::dvec3 point) 
 std::vector<std::uint32_t> shells_within(const BodyShells& body, const BodyShell& outer,
                                          std::uint64_t& work_left) {
     std::vector<std::uint32_t> within;
+    std::vector<Corners> triangles;
     for (std::uint32_t s = 0; s < body.shell.size(); ++s) {
         const BodyShell& inner = body.shell[s];
         if (outer.volume > 0 && (inner.volume > 0 || !has_volume(inner))) {
@@ -51,7 +64,10 @@ std::vector<std::uint32_t> shells_within(const BodyShells& body, const BodyShell
         }
         if (work_left >= outer.count) {
             work_left -= outer.count;
-            if (!encloses(body, outer,
+            if (triangles.empty()) {
+                triangles = corners_of(body, outer);
+            }
+            if (!encloses(triangles,
                           body.position[body.triangle[body.order[inner.first]].point[0]])) {
                 continue;
             }

@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "bake/receivers/spatial_order.h"
 #include "bake/single/inner_triangles.h"
-#include "bake/single/spatial_order.h"
 
 namespace opaline::bake {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/receivers/spatial_order.h"
 #include "bake/single/gather_direction.h"
-#include "bake/single/spatial_order.h"
 
 namespace opaline::bake {
 namespace {
@@ -94,7 +94,7 @@ SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::u
     }
     const std::vector<float> inverse_scale = invert(list.scale);
     const std::vector<float> inverse_term = invert(result.rows.largest_term);
-    result.rows.packed.resize(texels.size() * points.size() * terms);
+    result.rows.packed.resize(texels.size());
     const GatherJob job = make_gather_job(rays, mesh, size, medium, list);
     tbb::enumerable_thread_specific<GatherWorkspace> workspaces;
     tbb::task_arena arena(static_cast<int>(thread_count(context)));
@@ -107,8 +107,9 @@ SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::u
         for (std::size_t i = 0; i < texels[j].size(); ++i) {
             gather_direction(job, texels[j][i], jitter_of(j * texels[j].size() + i), work);
         }
-        pack_texel(work.value, inverse_scale, inverse_term,
-                   &result.rows.packed[j * points.size() * terms]);
+        // By the thread that fills it: making room for all at once takes one thread seconds.
+        result.rows.packed[j].resize(points.size() * terms);
+        pack_texel(work.value, inverse_scale, inverse_term, result.rows.packed[j].data());
     };
     arena.execute([&] { tbb::parallel_for(std::size_t{0}, texels.size(), gather_texel); });
     for (const GatherWorkspace& work : workspaces) {

@@ -49,10 +49,10 @@ inline std::array<float, 3> unpack_shared_exponent(std::uint32_t packed, bool ha
 /// term is never negative and packed without a sign.
 struct PackedRows {
     std::uint32_t texels = 0;
-    std::vector<float> largest_term;    ///< [term]: what a value of 1 stands for, times scale
-    std::vector<std::uint32_t> place;   ///< [receiver]: where it stands below, neighbours together
-    std::vector<float> scale;           ///< [place]
-    std::vector<std::uint32_t> packed;  ///< [texel][place][term], 4 bytes each
+    std::vector<float> largest_term;   ///< [term]: what a value of 1 stands for, times scale
+    std::vector<std::uint32_t> place;  ///< [receiver]: where it stands below, neighbours together
+    std::vector<float> scale;          ///< [place]
+    std::vector<std::vector<std::uint32_t>> packed;  ///< [texel][place][term], 4 bytes each
 };
 
 /// How many receivers of `terms` terms fit into `bytes` of memory; at least 1.
@@ -66,9 +66,9 @@ inline void read_packed_row(const PackedRows& rows, std::size_t receiver,
                             std::span<float> transport) {
     const std::size_t terms = rows.largest_term.size(), place = rows.place[receiver];
     for (std::size_t j = 0; j < rows.texels; ++j) {
-        const std::size_t first = (j * rows.scale.size() + place) * terms;
+        const std::uint32_t* const packed = &rows.packed[j][place * terms];
         for (std::size_t k = 0; k < terms; ++k) {
-            const auto value = unpack_shared_exponent(rows.packed[first + k], k > 0);
+            const auto value = unpack_shared_exponent(packed[k], k > 0);
             const float scale = rows.scale[place] * rows.largest_term[k];
             for (std::size_t c = 0; c < 3; ++c) {
                 transport[(3 * k + c) * rows.texels + j] = scale * value[c];

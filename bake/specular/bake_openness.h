@@ -21,12 +21,13 @@ struct OpenHemisphere {
     float fraction = 0;
     std::uint64_t rays = 0;  ///< traced
 };
-OpenHemisphere gather_openness(const RayScene& rays, const DirectionSet& directions,
-                               const Receiver& receiver);
+/// Of up to sixteen receivers, fast where they are neighbours; `seen`: one of each.
+void gather_openness(const RayScene& rays, const DirectionSet& directions,
+                     std::span<const Receiver> receivers, std::span<OpenHemisphere> seen);
 
-/// Openness of each receiver, in order; fewer if the context is cancelled. A sparse direction set
-/// of 8 texels, 192 rays a hemisphere, is enough for four bytes and a cone. The same for any number
-/// of threads. Adds to `traced`.
+/// Openness of each receiver, in order; not of all if the context is cancelled. A sparse direction
+/// set of 8 texels, 192 rays a hemisphere, is enough for four bytes and a cone. The same for any
+/// number of threads. Adds to `traced`.
 std::vector<formats::Openness> bake_openness(const RayScene& rays, const DirectionSet& directions,
                                              std::span<const Receiver> receivers,
                                              const Context& context, std::uint64_t& traced);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bake/base/frame.h"
+#include "bake/base/ordered_parallel.h"
 
 namespace opaline::bake {
 namespace {
@@ -73,11 +74,21 @@ std::vector<std::uint32_t> nearest_visible(const formats::Scene& scene,
 }  // namespace
 
 std::vector<Receiver> take_over_hidden(const RayScene& rays, const formats::Scene& scene,
-                                       std::vector<Receiver> receivers) {
-    std::vector<bool> hidden(receivers.size());
-    for (std::size_t i = 0; i < receivers.size(); ++i) {
-        hidden[i] = is_hidden(rays, receivers[i]);
-    }
+                                       std::vector<Receiver> receivers, const Context& context) {
+    std::vector<bool> hidden;
+    for_each_block_in_order(
+        receivers.size(), 1024, context,
+        [&](Range range) {
+            std::vector<bool> block;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                block.push_back(is_hidden(rays, receivers[i]));
+            }
+            return block;
+        },
+        [&](Range, const std::vector<bool>& block) {
+            hidden.insert(hidden.end(), block.begin(), block.end());
+        });
+    hidden.resize(receivers.size());  // cancelled: there may be fewer
     const std::vector<std::uint32_t> nearest = nearest_visible(scene, receivers, hidden);
     std::vector<Receiver> result = receivers;
     for (std::size_t i = 0; i < receivers.size(); ++i) {

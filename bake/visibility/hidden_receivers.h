@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "bake/base/context.h"
 #include "bake/receivers/receiver.h"
 #include "bake/visibility/ray_scene.h"
 #include "formats/scene.h"
@@ -17,6 +18,6 @@ namespace opaline::bake {
 /// single-sided triangle first. Neighbours are joined by an edge within the same primitive.
 /// `receivers`: one per vertex of the scene, in order.
 std::vector<Receiver> take_over_hidden(const RayScene& rays, const formats::Scene& scene,
-                                       std::vector<Receiver> receivers);
+                                       std::vector<Receiver> receivers, const Context& context);
 
 }  // namespace opaline::bake

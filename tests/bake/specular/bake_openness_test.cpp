@@ -15,7 +15,9 @@ namespace {
 OpenHemisphere gather(const formats::Scene& scene, const Receiver& receiver, std::uint32_t n = 32) {
     const auto rays = RayScene::build(scene, 1);
     EXPECT_TRUE(rays);
-    return gather_openness(*rays, make_sparse_direction_set(n, 0), receiver);
+    OpenHemisphere seen;
+    gather_openness(*rays, make_sparse_direction_set(n, 0), {&receiver, 1}, {&seen, 1});
+    return seen;
 }
 
 float degrees_between(glm::vec3 a, glm::vec3 b) {
@@ -85,7 +87,8 @@ TEST(BakeOpenness, RecordsHoldTheGatheredValuesForAnyNumberOfThreads) {
     EXPECT_EQ(traced, traced_by_three);
     std::size_t shadowed = 0;
     for (std::size_t i = 0; i < one.size(); ++i) {
-        const OpenHemisphere seen = gather_openness(*rays, directions, receivers[i]);
+        OpenHemisphere seen;
+        gather_openness(*rays, directions, {&receivers[i], 1}, {&seen, 1});
         EXPECT_NEAR(formats::open_fraction(one[i]), seen.fraction, 1.01 / 255);
         const formats::Vec3 axis = formats::open_axis(one[i]);
         EXPECT_LT(degrees_between({axis.x, axis.y, axis.z}, seen.axis), 1.0f);

@@ -66,7 +66,7 @@ TEST(SweepCsv, HasOneRowAPointAndAsManyCellsAsColumns) {
     }
     ASSERT_EQ(rows.size(), 4u);
     EXPECT_THAT(rows[0], HasSubstr("label,ladders,truth,cubemap,coefficients"));
-    EXPECT_THAT(rows[2], ::testing::StartsWith("\"N = 8, M = 1\",grid,0,32,128,8,"));
+    EXPECT_THAT(rows[2], ::testing::StartsWith("\"N = 8, M = 1\",grid,0,16,128,8,"));
     // Quoted: the label's comma, and that of "error sun:30,60" in the head.
     const auto columns = static_cast<std::size_t>(std::count(rows[0].begin(), rows[0].end(), ','));
     EXPECT_EQ(std::count(rows[1].begin(), rows[1].end(), ','), columns - 1);

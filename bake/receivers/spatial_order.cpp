@@ -1,4 +1,4 @@
-#include "bake/single/spatial_order.h"
+#include "bake/receivers/spatial_order.h"
 
 #include <algorithm>
 #include <limits>
