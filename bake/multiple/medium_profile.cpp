@@ -106,11 +106,11 @@ formats::Rgb half_space_albedo(const Medium& medium, std::uint64_t seed, const C
 
 std::uint32_t count_samples(double area, const MediumProfile& profile, double per_path,
                             std::uint32_t most) {
-    constexpr double kLeast = 2000;
+    const double least = 2000 * per_path;  // enough for the shape of a body that light crosses
     const double z = profile.smallest;
     const double wanted = z > 0 ? std::ceil(per_path * area / (z * z)) : 0.0;
     return static_cast<std::uint32_t>(
-        std::clamp(wanted, std::min(kLeast, static_cast<double>(most)), static_cast<double>(most)));
+        std::clamp(wanted, std::min(least, static_cast<double>(most)), static_cast<double>(most)));
 }
 
 }  // namespace opaline::bake

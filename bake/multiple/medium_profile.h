@@ -36,8 +36,8 @@ formats::Rgb half_space_albedo(const formats::Medium& medium, std::uint64_t seed
                                const Context& context);
 
 /// How many samples the surface of a medium needs: `per_path` per square of the depth of its
-/// source; with one their sum has nearly converged (translucency.md 3.7). At least 2000, at most
-/// `most`. `area` [m^2].
+/// source; with one their sum has nearly converged (translucency.md 3.7). At least 2000 times that,
+/// at most `most`. `area` [m^2].
 std::uint32_t count_samples(double area, const MediumProfile& profile, double per_path,
                             std::uint32_t most);
 
