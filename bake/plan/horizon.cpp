@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 namespace opaline::bake {
 namespace {
@@ -47,6 +49,49 @@ Node enclose(const std::vector<Triangle>& triangles, std::uint32_t first, std::u
     return node;
 }
 
+struct Box {
+    glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
+
+    void add(glm::vec3 x) {
+        low = glm::min(low, x);
+        high = glm::max(high, x);
+    }
+    glm::length_t widest() const {
+        const glm::vec3 size = high - low;
+        return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    }
+};
+
+glm::vec3 unit_normal(const Triangle& t) {
+    return glm::vec3(glm::normalize(area_vector(t)));
+}
+
+// How many of the triangles go into the first child; moves them there. Those that face other ways
+// are parted first, so that slabs get thin: no node holds both sides of an edge. Then by place.
+std::uint32_t part(std::span<Triangle> triangles) {
+    constexpr float kAlike = 0.5f;
+    const auto middle_of = [](const Triangle& t) { return t[0] + t[1] + t[2]; };
+    Box normals, places;
+    for (const Triangle& t : triangles) {
+        normals.add(unit_normal(t));
+        places.add(middle_of(t));
+    }
+    const glm::length_t facing = normals.widest(), axis = places.widest();
+    if (normals.high[facing] - normals.low[facing] > kAlike) {
+        const float between = 0.5f * (normals.low[facing] + normals.high[facing]);
+        const auto second =
+            std::partition(triangles.begin(), triangles.end(),
+                           [&](const Triangle& t) { return unit_normal(t)[facing] < between; });
+        return static_cast<std::uint32_t>(second - triangles.begin());
+    }
+    const auto half = static_cast<std::ptrdiff_t>(triangles.size() / 2);
+    std::nth_element(triangles.begin(), triangles.begin() + half, triangles.end(),
+                     [&](const Triangle& a, const Triangle& b) {
+                         return middle_of(a)[axis] < middle_of(b)[axis];
+                     });
+    return static_cast<std::uint32_t>(half);
+}
+
 void build(HorizonTree& tree, std::uint32_t first, std::uint32_t count) {
     constexpr std::uint32_t kLeaf = 4;
     const auto self = static_cast<std::uint32_t>(tree.node.size());
@@ -54,32 +99,20 @@ void build(HorizonTree& tree, std::uint32_t first, std::uint32_t count) {
     if (count <= kLeaf) {
         return;
     }
-    const auto middle_of = [](const Triangle& t) { return t[0] + t[1] + t[2]; };
-    glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
-    for (std::uint32_t i = first; i < first + count; ++i) {
-        low = glm::min(low, middle_of(tree.triangle[i]));
-        high = glm::max(high, middle_of(tree.triangle[i]));
-    }
-    const glm::vec3 size = high - low;
-    const glm::length_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const auto begin = tree.triangle.begin() + first;
-    std::nth_element(begin, begin + count / 2, begin + count,
-                     [&](const Triangle& a, const Triangle& b) {
-                         return middle_of(a)[axis] < middle_of(b)[axis];
-                     });
-    build(tree, first, count / 2);
+    const std::uint32_t left = part(std::span(tree.triangle).subspan(first, count));
+    build(tree, first, left);
     tree.node[self].right = static_cast<std::uint32_t>(tree.node.size());
-    build(tree, first + count / 2, count - count / 2);
+    build(tree, first + left, count - left);
 }
 
-// Whether all of the node lies lower than `sine` over the horizon of the point.
-bool is_lower(const Node& node, glm::dvec3 point, glm::dvec3 normal, double sine) {
+// Whether all of the node lies lower over the horizon of the point than what was found.
+bool is_lower(const Node& node, glm::dvec3 point, glm::dvec3 normal, const HorizonSearch& found) {
     const glm::dvec3 to_centre = node.centre - point;
     const double along = glm::dot(normal, node.axis);
     const double across = std::sqrt(std::max(0.0, 1 - along * along));
     const double above = std::max(along * node.low, along * node.high) + across * node.radius;
     const double height = glm::dot(normal, to_centre) + std::min(above, node.radius);
-    return height <= sine * std::max(0.0, glm::length(to_centre) - node.radius);
+    return height <= std::max(found.flat, found.sine * (glm::length(to_centre) - node.radius));
 }
 
 double distance_to_segment(glm::dvec3 a, glm::dvec3 b) {
@@ -101,14 +134,14 @@ double distance_to_triangle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
         {distance_to_segment(a, b), distance_to_segment(b, c), distance_to_segment(c, a)});
 }
 
-double sine_of(const Triangle& triangle, glm::vec3 point, glm::dvec3 normal) {
+double sine_of(const Triangle& triangle, glm::vec3 point, glm::dvec3 normal, double flat) {
     std::array<glm::dvec3, 3> to;
     for (std::size_t k = 0; k < 3; ++k) {
         to[k] = glm::dvec3(triangle[k]) - glm::dvec3(point);
     }
     const double height =
         std::max({glm::dot(normal, to[0]), glm::dot(normal, to[1]), glm::dot(normal, to[2])});
-    if (!(height > 0)) {
+    if (!(height > flat)) {
         return 0;
     }
     for (std::size_t k = 0; k < 3; ++k) {
@@ -139,19 +172,30 @@ HorizonTree make_horizon_tree(std::vector<Triangle> triangles) {
     return tree;
 }
 
+double farthest_along(const HorizonTree& tree, glm::dvec3 direction) {
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const Triangle& t : tree.triangle) {
+        for (const glm::vec3 x : t) {
+            farthest = std::max(farthest, glm::dot(direction, glm::dvec3(x)));
+        }
+    }
+    return farthest;
+}
+
 void look_over_horizon(const HorizonTree& tree, glm::vec3 point, glm::dvec3 normal,
                        HorizonSearch& search) {
     if (tree.node.empty()) {
         return;
     }
-    std::array<std::uint32_t, 64> open;  // the tree halves: no deeper than 32
+    // Facing parts at most twice along each axis, then the tree halves: no deeper than 6 + 32.
+    std::array<std::uint32_t, 64> open;
     std::size_t count = 0;
     open[count++] = 0;
     while (count > 0 && !search.is_over()) {
         const std::uint32_t at = open[--count];
         const Node& node = tree.node[at];
         --search.nodes_left;
-        if (is_lower(node, glm::dvec3(point), normal, search.sine)) {
+        if (is_lower(node, glm::dvec3(point), normal, search)) {
             continue;
         }
         if (node.right != 0) {
@@ -160,7 +204,8 @@ void look_over_horizon(const HorizonTree& tree, glm::vec3 point, glm::dvec3 norm
             continue;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            search.sine = std::max(search.sine, sine_of(tree.triangle[i], point, normal));
+            search.sine =
+                std::max(search.sine, sine_of(tree.triangle[i], point, normal, search.flat));
         }
     }
 }

@@ -26,11 +26,15 @@ struct HorizonTree {
 /// Triangles without area are left out: no ray can hit them.
 HorizonTree make_horizon_tree(std::vector<HorizonTree::Triangle> triangles);
 
+/// Coordinate along `direction` of the point of all triangles that is farthest that way [m].
+double farthest_along(const HorizonTree& tree, glm::dvec3 direction);
+
 /// How a search for the highest triangle above many horizons stands.
 struct HorizonSearch {
     /// Bound on the sine of the elevation above a horizon of any point of any triangle, over all
     /// that was looked at so far. Of what lies lower than at first nothing is said.
     double sine = 0;
+    double flat = 0;              ///< heights over a plane that count as none [m]
     double stop_above = 1;        ///< with a higher one the search is over
     std::int64_t nodes_left = 1;  ///< work that may still be spent
     bool is_over() const { return sine > stop_above || nodes_left <= 0; }

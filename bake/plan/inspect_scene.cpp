@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "bake/plan/color_contrast.h"
@@ -19,19 +20,26 @@ using Triangles = std::vector<HorizonTree::Triangle>;
 // Nodes of the trees that may be looked at, for the whole scene: some tenths of a second.
 constexpr std::int64_t kMostNodes = 40'000'000;
 
-HorizonSearch start_search(std::int64_t nodes_left) {
-    return {kLeastElevation, kMostElevation, nodes_left};
+// The trees' searches, and what they share: how much work is left, and which heights are less than
+// the coordinates are exact.
+struct Searches {
+    double flat = 0;
+    std::int64_t nodes_left = kMostNodes;
+
+    HorizonSearch start() const { return {kLeastElevation, flat, kMostElevation, nodes_left}; }
+};
+
+// Whether the shell folds toward its inside, as most do that are not convex. What faces inward is
+// seen from its other side.
+bool folds_inward(const BodyShell& shell) {
+    return (shell.volume < 0 ? shell.ridge : shell.valley) > kMostElevation;
 }
 
 // Whether each point of the shell has all its others below its tangent plane. That is the plane
 // across the sum of its triangles' area vectors: of a convex body, each of their planes has all of
 // it on one side, and so has any plane between them.
-bool is_convex(const BodyShells& body, const BodyShell& shell, std::int64_t& nodes_left) {
-    // What faces inward is convex seen from its other side.
+bool is_convex(const BodyShells& body, const BodyShell& shell, Searches& searches) {
     const double outward = shell.volume < 0 ? -1 : 1;
-    if ((outward > 0 ? shell.valley : shell.ridge) > kMostElevation) {
-        return false;  // and most shells that are not end here
-    }
     Triangles triangles;
     std::vector<std::pair<std::uint32_t, glm::dvec3>> normal;  // by point
     for (std::uint32_t i = shell.first; i < shell.first + shell.count; ++i) {
@@ -45,7 +53,7 @@ bool is_convex(const BodyShells& body, const BodyShell& shell, std::int64_t& nod
     std::stable_sort(normal.begin(), normal.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     const HorizonTree tree = make_horizon_tree(std::move(triangles));
-    HorizonSearch search = start_search(nodes_left);
+    HorizonSearch search = searches.start();
     for (std::size_t i = 0, end = 0; i < normal.size() && !search.is_over(); i = end) {
         glm::dvec3 sum(0);
         for (; end < normal.size() && normal[end].first == normal[i].first; ++end) {
@@ -56,18 +64,8 @@ bool is_convex(const BodyShells& body, const BodyShell& shell, std::int64_t& nod
             look_over_horizon(tree, body.position[normal[i].first], sum / length, search);
         }
     }
-    nodes_left = search.nodes_left;
+    searches.nodes_left = search.nodes_left;
     return !search.is_over();
-}
-
-void inspect_parts(const Scene& scene, std::uint32_t material, std::int64_t& nodes_left,
-                   MaterialFacts& facts) {
-    const BodyShells body = make_body_shells(scene, material);
-    facts.open_edges = body.open_edges;
-    facts.parts = static_cast<std::uint32_t>(body.shell.size());
-    for (const BodyShell& shell : body.shell) {
-        facts.convex_parts += is_convex(body, shell, nodes_left) ? 1 : 0;
-    }
 }
 
 // Size, colours and how far shading normals lean from their facets.
@@ -105,21 +103,67 @@ HorizonTree make_tree(const Scene& scene) {
 }
 
 double find_elevation(const Scene& scene, const HorizonTree& tree, std::uint32_t material,
-                      std::int64_t& nodes_left) {
-    HorizonSearch search = start_search(nodes_left);
+                      Searches& searches) {
+    HorizonSearch search = searches.start();
+    // Neighbours on a flat face have one normal. That nothing lies beyond their plane is found out
+    // once for all of them; the work counts as of nodes.
+    glm::vec3 last(0);
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    double farthest = kUnknown;
     for (const Primitive& p : scene.primitives) {
         for (std::size_t v = 0; p.material == material && v < p.position.size(); ++v) {
-            if (p.normal[v] != glm::vec3(0)) {
-                look_over_horizon(tree, p.position[v], glm::dvec3(p.normal[v]), search);
+            const glm::dvec3 normal = p.normal[v];
+            const bool is_same = p.normal[v] == std::exchange(last, p.normal[v]);
+            if (!is_same) {
+                farthest = kUnknown;
+            } else if (farthest == kUnknown && !search.is_over()) {
+                farthest = farthest_along(tree, normal);
+                search.nodes_left -= static_cast<std::int64_t>(tree.triangle.size() / 4);
             }
-            if (search.is_over()) {
-                nodes_left = search.nodes_left;
-                return 1;
+            const bool is_flat =
+                farthest - glm::dot(normal, glm::dvec3(p.position[v])) <= search.flat;
+            if (last != glm::vec3(0) && !is_flat) {
+                look_over_horizon(tree, p.position[v], normal, search);
             }
         }
     }
-    nodes_left = search.nodes_left;
-    return search.sine;
+    searches.nodes_left = search.nodes_left;
+    return search.is_over() ? 1 : search.sine;
+}
+
+void inspect_colors(const Scene& scene, std::uint32_t material, MaterialFacts& facts) {
+    const ColorRange color = find_color_range(scene, material);
+    facts.brightest_vertex = color.brightest_vertex;
+    facts.color_contrast = color.contrast;
+    if (const auto& medium = scene.materials[material].medium) {
+        const auto same = [](formats::Rgb c) { return c.r == c.g && c.g == c.b; };
+        facts.is_grey = same(medium->sigma_s) && same(medium->sigma_a);
+        facts.mirrors = medium->eta != 1;
+    }
+}
+
+// Parts, which of them are convex, and what their receivers see of the scene. `tree` of the whole
+// scene is made when it is first needed.
+void inspect_shape(const Scene& scene, std::uint32_t material, SceneFacts& facts, HorizonTree& tree,
+                   Searches& searches) {
+    MaterialFacts& own = facts.material[material];
+    const BodyShells body = make_body_shells(scene, material);
+    own.open_edges = body.open_edges;
+    own.parts = static_cast<std::uint32_t>(body.shell.size());
+    const bool may_be_open = std::none_of(body.shell.begin(), body.shell.end(), folds_inward);
+    if (may_be_open) {  // in a part that is not convex, some receiver sees another place
+        if (tree.node.empty()) {
+            tree = make_tree(scene);
+        }
+        own.horizon.elevation = find_elevation(scene, tree, material, searches);
+    }
+    if (body.shell.size() == 1 && own.horizon.elevation <= kMostElevation) {
+        own.convex_parts = 1;  // all of it lies below every one of its vertices' planes
+        return;
+    }
+    for (const BodyShell& shell : body.shell) {
+        own.convex_parts += !folds_inward(shell) && is_convex(body, shell, searches) ? 1 : 0;
+    }
 }
 
 }  // namespace
@@ -136,31 +180,24 @@ SceneFacts inspect_scene(const Scene& scene) {
     for (const Primitive& primitive : scene.primitives) {
         inspect_primitive(primitive, facts.material[primitive.material]);
     }
-    std::int64_t nodes_left = kMostNodes;
-    HorizonTree tree;
+    glm::vec3 largest(0);
     for (std::uint32_t m = 0; m < facts.material.size(); ++m) {
         MaterialFacts& own = facts.material[m];
-        if (own.receivers == 0) {
-            continue;
+        if (own.receivers > 0) {
+            inspect_colors(scene, m, own);
+            own.mean_edge /= std::max(1.0, 3 * own.triangles);
+            facts.triangles += own.triangles;
+            facts.receivers += own.receivers;
+            largest = glm::max(largest, glm::max(glm::abs(own.low), glm::abs(own.high)));
         }
-        facts.triangles += own.triangles;
-        facts.receivers += own.receivers;
-        own.mean_edge /= std::max(1.0, 3 * own.triangles);
-        const ColorRange color = find_color_range(scene, m);
-        own.brightest_vertex = color.brightest_vertex;
-        own.color_contrast = color.contrast;
-        if (const auto& medium = scene.materials[m].medium) {
-            const auto same = [](formats::Rgb c) { return c.r == c.g && c.g == c.b; };
-            own.is_grey = same(medium->sigma_s) && same(medium->sigma_a);
-            own.mirrors = medium->eta != 1;
-        }
-        inspect_parts(scene, m, nodes_left, own);
-        // In a part that is not convex, some receiver sees another place.
-        if (own.convex_parts == own.parts) {
-            if (tree.node.empty()) {
-                tree = make_tree(scene);
-            }
-            own.horizon.elevation = find_elevation(scene, tree, m, nodes_left);
+    }
+    constexpr float kRoundings = 4 * 0x1p-23f;
+    Searches searches{
+        static_cast<double>(kRoundings * std::max({largest.x, largest.y, largest.z}))};
+    HorizonTree tree;
+    for (std::uint32_t m = 0; m < facts.material.size(); ++m) {
+        if (facts.material[m].receivers > 0) {
+            inspect_shape(scene, m, facts, tree, searches);
         }
     }
     return facts;

@@ -28,6 +28,11 @@ struct Neighbour {
 BodyShells collect_triangles(const Scene& scene, std::uint32_t material) {
     BodyShells body;
     std::unordered_map<glm::vec3, std::uint32_t, PositionHash> places;
+    std::size_t vertices = 0;
+    for (const Primitive& primitive : scene.primitives) {
+        vertices += primitive.material == material ? primitive.position.size() : 0;
+    }
+    places.reserve(vertices);
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
         const Primitive& primitive = scene.primitives[p];
         if (primitive.material != material) {

@@ -40,12 +40,14 @@ OpenHemisphere gather_openness(const RayScene& rays, const DirectionSet& directi
         packet.dir_y = block.dir_y;
         packet.dir_z = block.dir_z;
         packet.tfar.fill(std::numeric_limits<float>::infinity());
-        rays.occluded(lanes, packet);
+        if (!rays.is_empty()) {
+            rays.occluded(lanes, packet);
+        }
         for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
             if (lanes[lane] == 0) {
                 continue;
             }
-            ++seen.rays;
+            seen.rays += rays.is_empty() ? 0 : 1;
             const double weight = static_cast<double>(cosine[lane]);
             all += weight;
             if (packet.tfar[lane] > 0.0f) {

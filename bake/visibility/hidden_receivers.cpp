@@ -74,6 +74,9 @@ std::vector<std::uint32_t> nearest_visible(const formats::Scene& scene,
 
 std::vector<Receiver> take_over_hidden(const RayScene& rays, const formats::Scene& scene,
                                        std::vector<Receiver> receivers) {
+    if (rays.is_empty()) {
+        return receivers;
+    }
     std::vector<bool> hidden(receivers.size());
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         hidden[i] = is_hidden(rays, receivers[i]);

@@ -197,7 +197,7 @@ TEST(InspectScene, ElevationBoundsEveryPointOfEveryTriangle) {
     }
     const HorizonTree tree = make_horizon_tree(triangles);
     for (std::size_t v = 0; v < p.position.size(); v += 17) {
-        HorizonSearch search{0, 1, 1'000'000};
+        HorizonSearch search{0, 0, 1, 1'000'000};
         look_over_horizon(tree, p.position[v], glm::dvec3(p.normal[v]), search);
         ASSERT_FALSE(search.nodes_left <= 0);
         double highest = 0;
