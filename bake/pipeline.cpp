@@ -13,6 +13,7 @@
 #include "bake/measure/check_direct.h"
 #include "bake/measure/check_translucent.h"
 #include "bake/measure/thin_parts.h"
+#include "bake/plan/inspect_scene.h"
 #include "bake/plan/plan_rules.h"
 #include "bake/plan/row_layout.h"
 #include "bake/prepare_media.h"
@@ -46,36 +47,34 @@ std::vector<Receiver> leave_out_skipped(const formats::Scene& scene,
 }
 
 // The rows of all primitives, in their order; one stage of the report for each primitive.
-formats::Result<formats::SparseRows> bake_rows(const formats::Scene& scene, const RayScene& rays,
-                                               std::span<const Receiver> receivers,
-                                               std::span<const BodyPoint> points,
-                                               std::span<const RowLayout> layouts,
-                                               const MediaStages& media, const Knobs& knobs,
-                                               const Context& context, BakeResult& result) {
+formats::Result<formats::SparseRows> bake_rows(const PilotScene& all, const MediaStages& media,
+                                               const Knobs& knobs, const Context& context,
+                                               BakeResult& result) {
     const DirectionSet directions = make_direction_set(knobs.cubemap_size);
     const Selector selector = make_selector(knobs.cubemap_size, knobs.coefficients);
     formats::SparseRows rows = formats::make_sparse_rows(knobs.cubemap_size, knobs.code_bits);
     std::size_t first = 0;
-    for (const formats::Primitive& primitive : scene.primitives) {
+    for (const formats::Primitive& primitive : all.scene.primitives) {
         const std::size_t count = primitive.position.size();
         const auto medium = media.find(primitive.material);
         const formats::SparseRows part =
             run_stage(result, "rows of '" + primitive.name + "'", [&](std::uint64_t& traced) {
                 if (medium == media.end()) {
-                    return bake_direct(rays, directions, selector, knobs.code_bits,
-                                       receivers.subspan(first, count), {first, receivers.size()},
-                                       context, traced);
+                    return bake_direct(all.rays_of(primitive.material), directions, selector,
+                                       knobs.code_bits, all.receivers.subspan(first, count),
+                                       {first, all.receivers.size()}, context, traced);
                 }
                 EntryCounts counts;
-                formats::SparseRows baked = bake_translucent(
-                    medium->second.recipe, rays, points.subspan(first, count), context, counts);
+                formats::SparseRows baked =
+                    bake_translucent(medium->second.recipe, all.rays,
+                                     all.points.subspan(first, count), context, counts);
                 traced = counts.rays;
                 return baked;
             });
         if (context.cancelled()) {
             break;
         }
-        const std::size_t terms = layouts[primitive.material].terms();
+        const std::size_t terms = all.layouts[primitive.material].terms();
         if (part.row_offset.size() != terms * count + 1 || !formats::append_rows(rows, part)) {
             return make_error(ErrorKind::resource, "", "transport",
                               "more than 2^32 coefficients do not fit into one file",
@@ -87,22 +86,22 @@ formats::Result<formats::SparseRows> bake_rows(const formats::Scene& scene, cons
 }
 
 // Of all vertices; empty where nothing is glossy.
-std::vector<formats::Openness> bake_all_openness(const formats::Scene& scene, const RayScene& rays,
-                                                 std::span<const Receiver> receivers,
-                                                 std::span<const RowLayout> layouts,
-                                                 const Context& context, BakeResult& result) {
+std::vector<formats::Openness> bake_all_openness(const PilotScene& all, const Context& context,
+                                                 BakeResult& result) {
     std::vector<formats::Openness> openness;
-    if (std::none_of(layouts.begin(), layouts.end(), [](const RowLayout& l) { return l.glossy; })) {
+    if (std::none_of(all.layouts.begin(), all.layouts.end(),
+                     [](const RowLayout& l) { return l.glossy; })) {
         return openness;
     }
     return run_stage(result, "openness", [&](std::uint64_t& traced) {
         const DirectionSet directions = make_sparse_direction_set(kOpennessCubemap, 0);
+        const std::span<const Receiver> receivers = all.vertices;
         std::size_t first = 0;
-        for (const formats::Primitive& primitive : scene.primitives) {
+        for (const formats::Primitive& primitive : all.scene.primitives) {
             const std::size_t count = primitive.position.size();
-            if (layouts[primitive.material].glossy) {
-                const auto part = bake_openness(rays, directions, receivers.subspan(first, count),
-                                                context, traced);
+            if (all.layouts[primitive.material].glossy) {
+                const auto part = bake_openness(all.rays_of(primitive.material), directions,
+                                                receivers.subspan(first, count), context, traced);
                 openness.insert(openness.end(), part.begin(), part.end());
             }
             first += count;
@@ -158,6 +157,13 @@ void warn_of_thin_parts(const formats::Scene& scene, const RayScene& rays,
     }
 }
 
+// Rays cross media, or find out what stands before the light of what is simulated.
+bool needs_hierarchy(std::span<const RowLayout> layouts) {
+    return std::any_of(layouts.begin(), layouts.end(), [](const RowLayout& l) {
+        return l.multiple || l.single_terms > 0 || (l.occluded && (l.direct || l.glossy));
+    });
+}
+
 formats::Error interrupted() {
     return make_error(ErrorKind::interrupted, "", "", "interrupted", "nothing was written");
 }
@@ -179,15 +185,27 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     const formats::Scene& scene = bodies.scene ? *bodies.scene : given;
     result.warnings = describe_faults(given, bodies.surfaces);
 
-    result.plan = run_stage(
-        result, "plan", [&](std::uint64_t&) { return plan_bake(scene, knobs, context.threads); });
-    formats::Result<RayScene> rays = run_stage(result, "hierarchy", [&](std::uint64_t&) {
-        return RayScene::build(scene, context.threads);
+    SceneFacts facts;
+    result.plan = run_stage(result, "plan", [&](std::uint64_t&) {
+        facts = inspect_scene(scene);
+        return plan_bake(scene, facts, knobs, context.threads);
     });
-    if (!rays) {
-        return std::move(rays).error();
-    }
     std::vector<RowLayout> layouts = layout_rows(scene, result.plan, knobs);
+    formats::Result<RayScene> sky = RayScene::build({}, context.threads);
+    if (!sky) {
+        return std::move(sky).error();
+    }
+    std::optional<RayScene> hierarchy;
+    if (needs_hierarchy(layouts)) {
+        formats::Result<RayScene> built = run_stage(result, "hierarchy", [&](std::uint64_t&) {
+            return RayScene::build(scene, context.threads);
+        });
+        if (!built) {
+            return std::move(built).error();
+        }
+        hierarchy = std::move(*built);
+    }
+    const RayScene& rays = hierarchy ? *hierarchy : *sky;
     for (std::size_t m = 0; m < layouts.size(); ++m) {
         if (layouts[m].direct && scene.materials[m].medium) {
             layouts[m].tint = half_space_albedo(*scene.materials[m].medium, knobs.seed, context);
@@ -197,7 +215,7 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     const std::vector<Receiver> vertices = run_stage(result, "receivers", [&](std::uint64_t&) {
         std::vector<Receiver> all = make_vertex_receivers(scene);
         points = make_body_points(scene, all);
-        return take_over_hidden(*rays, scene, std::move(all), context);
+        return take_over_hidden(rays, scene, std::move(all), context);
     });
     const std::vector<Receiver> receivers = leave_out_skipped(scene, layouts, vertices);
     formats::Result<std::vector<TestLight>> lights = run_stage(
@@ -209,33 +227,32 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     const MediaProfiles profiles = run_stage(result, "profiles", [&](std::uint64_t&) {
         return make_profiles(scene, layouts, knobs.seed, context);
     });
-    const PilotScene pilot{scene, *rays, receivers, points, layouts, profiles};
+    const PilotScene pilot{scene, rays, *sky, receivers, vertices, points, layouts, profiles};
     MediaStages media = knobs.error_target > 0 ? choose_knobs(pilot, *lights, context, result)
                                                : prepare_media(pilot, knobs, context, result);
     finish_media(pilot, knobs, context, result, media);
     if (knobs.error_target > 0) {
-        result.plan = plan_bake(scene, knobs, context.threads);  // of the knobs that were chosen
+        result.plan =
+            plan_bake(scene, facts, knobs, context.threads);  // of the knobs that were chosen
     }
     if (context.cancelled()) {
         return interrupted();
     }
-    formats::Result<formats::SparseRows> rows =
-        bake_rows(scene, *rays, receivers, points, layouts, media, knobs, context, result);
+    formats::Result<formats::SparseRows> rows = bake_rows(pilot, media, knobs, context, result);
     if (context.cancelled()) {
         return interrupted();
     }
     if (!rows) {
         return std::move(rows).error();
     }
-    warn_of_thin_parts(scene, *rays, points, media, knobs.seed, result.warnings);
-    std::vector<formats::Openness> openness =
-        bake_all_openness(scene, *rays, vertices, layouts, context, result);
+    warn_of_thin_parts(scene, rays, points, media, knobs.seed, result.warnings);
+    std::vector<formats::Openness> openness = bake_all_openness(pilot, context, result);
     if (context.cancelled()) {
         return interrupted();
     }
     result.asset = pack_asset(scene, layouts, std::move(*rows), std::move(openness));
     result.error = run_stage(result, "self-check", [&](std::uint64_t& traced) {
-        return check_rows(scene, *rays, receivers, points, media, knobs, *lights,
+        return check_rows(scene, rays, receivers, points, media, knobs, *lights,
                           result.asset.view(), context, traced);
     });
     if (context.cancelled()) {

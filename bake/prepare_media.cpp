@@ -36,7 +36,7 @@ MediaStages prepare_media(const PilotScene& pilot, const Knobs& knobs, const Con
             stages.multiple = run_stage(result, name, [&](std::uint64_t& traced) {
                 const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
                 MultipleStage stage =
-                    prepare_multiple(scene, pilot.rays, m, pilot.profiles.at(m),
+                    prepare_multiple(scene, pilot.rays_of(m), m, pilot.profiles.at(m),
                                      {knobs.cubemap_size, knobs.samples, knobs.exact_samples,
                                       knobs.samples_per_path, kept, knobs.seed, !knobs.exact_rays},
                                      context);

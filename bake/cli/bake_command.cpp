@@ -70,13 +70,11 @@ formats::Status write_output(std::optional<formats::AtomicFile>& file, std::stri
 
 int run(const Options& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
-    auto effects = parse_effects(options.scene);
-    if (!effects) {
-        return report_error(effects.error());
+    const auto wanted = parse_effects(options.scene);
+    if (!wanted) {
+        return report_error(wanted.error());
     }
-    bake::BakeOptions wanted = options.scene.bake;
-    wanted.effects = std::move(*effects);
-    const auto knobs = bake::resolve_knobs(wanted);
+    const auto knobs = bake::resolve_knobs(*wanted);
     if (!knobs) {
         return report_error(knobs.error());
     }

@@ -8,6 +8,7 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
+#include "bake/plan/inspect_scene.h"
 
 namespace opaline::cli {
 namespace {
@@ -18,13 +19,11 @@ struct Options {
 };
 
 int run(const Options& options) {
-    auto effects = parse_effects(options.scene);
-    if (!effects) {
-        return report_error(effects.error());
+    const auto wanted = parse_effects(options.scene);
+    if (!wanted) {
+        return report_error(wanted.error());
     }
-    bake::BakeOptions wanted = options.scene.bake;
-    wanted.effects = std::move(*effects);
-    const auto knobs = bake::resolve_knobs(wanted);
+    const auto knobs = bake::resolve_knobs(*wanted);
     if (!knobs) {
         return report_error(knobs.error());
     }
@@ -35,7 +34,8 @@ int run(const Options& options) {
     }
     bake::Context context;
     context.threads = options.scene.bake.threads;
-    const auto plan = bake::plan_bake(imported->scene, *knobs, bake::thread_count(context));
+    const auto plan = bake::plan_bake(imported->scene, bake::inspect_scene(imported->scene), *knobs,
+                                      bake::thread_count(context));
     fmt::print("{}", options.json ? make_plan_json(plan) : make_plan_table(plan));
     return kExitSuccess;
 }

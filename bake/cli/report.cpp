@@ -23,6 +23,7 @@ Json plan_array(const std::vector<bake::PlanEntry>& plan) {
         array.push_back({{"effect", entry.effect},
                          {"subject", entry.subject},
                          {"decision", entry.on ? "on" : "off"},
+                         {"forced", entry.forced},
                          {"reason", entry.reason},
                          {"bound", entry.bound},
                          {"predicted_seconds", entry.predicted_seconds},
@@ -93,21 +94,23 @@ std::string make_plan_json(const std::vector<bake::PlanEntry>& plan) {
 }
 
 std::string make_plan_table(const std::vector<bake::PlanEntry>& plan) {
-    std::size_t widest = 7;
+    std::size_t widest = 7, widest_effect = 6;
     double seconds = 0, bytes = 0;
     for (const bake::PlanEntry& entry : plan) {
         widest = std::max(widest, entry.subject.size());
+        widest_effect = std::max(widest_effect, entry.effect.size());
         seconds += entry.predicted_seconds;
         bytes += static_cast<double>(entry.predicted_bytes);
     }
     std::string table =
-        fmt::format("{:<8} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", "effect", "subject", widest,
-                    "decision", "bound", "time", "size", "reason");
+        fmt::format("{:<{}} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", "effect", widest_effect,
+                    "subject", widest, "decision", "bound", "time", "size", "reason");
     for (const bake::PlanEntry& entry : plan) {
-        table += fmt::format(
-            "{:<8} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.effect, entry.subject, widest,
-            entry.on ? "on" : "off", entry.bound, format_seconds(entry.predicted_seconds),
-            format_bytes(static_cast<double>(entry.predicted_bytes)), entry.reason);
+        table +=
+            fmt::format("{:<{}} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.effect,
+                        widest_effect, entry.subject, widest, entry.on ? "on" : "off", entry.bound,
+                        format_seconds(entry.predicted_seconds),
+                        format_bytes(static_cast<double>(entry.predicted_bytes)), entry.reason);
     }
     return table + fmt::format("predicted: {}, {}\n", format_seconds(seconds), format_bytes(bytes));
 }

@@ -46,10 +46,12 @@ void add_subject_options(CLI::App& command, SceneOptions& options) {
             "what translucent materials are made of; formats/media/README.md lists the keys")
         ->option_text("FILE.json");
     command
-        .add_option("--effects", options.effects,
-                    "what to simulate: auto, or a list of effects; this version has: direct, "
-                    "multiple, single, specular")
-        ->option_text("auto|LIST [auto]");
+        .add_option(
+            "--effects", options.effects,
+            "what to simulate: auto, what the scene calls for; all, everything that concerns "
+            "it, however little it adds, and without shortcuts; or a list of effects, of "
+            "which this version has: direct, multiple, single, specular")
+        ->option_text("auto|all|LIST [auto]");
     command
         .add_option("--seed", options.bake.seed,
                     "of everything random: which receivers the error is measured at")
@@ -115,18 +117,22 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
                      "show each");
 }
 
-formats::Result<std::vector<std::string>> parse_effects(const SceneOptions& options) {
+formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
     constexpr std::array<std::string_view, 11> kKnown{
         "direct",    "multiple",      "single",          "interreflection", "emitters", "specular",
         "filtering", "volume-single", "volume-multiple", "cloud",           "radiosity"};
     constexpr std::array<std::string_view, 4> kHere{"direct", "multiple", "single", "specular"};
-    std::vector<std::string> effects;
+    bake::BakeOptions wanted = options.bake;
     if (options.effects == "auto") {
-        return effects;
+        return wanted;
+    }
+    if (options.effects == "all") {
+        wanted.simulate_all = true;
+        return wanted;
     }
     const auto refuse = [](std::string fault) {
         return formats::make_error(formats::ErrorKind::usage, "", "--effects", std::move(fault),
-                                   "give auto, or some of direct,multiple,single,specular");
+                                   "give auto, all, or some of direct,multiple,single,specular");
     };
     std::stringstream list(options.effects);
     for (std::string name; std::getline(list, name, ',');) {
@@ -137,12 +143,12 @@ formats::Result<std::vector<std::string>> parse_effects(const SceneOptions& opti
             return refuse(is_among(kKnown) ? "this version does not simulate '" + name + "'"
                                            : "there is no effect named '" + name + "'");
         }
-        effects.push_back(name);
+        wanted.effects.push_back(name);
     }
-    if (effects.empty()) {
+    if (wanted.effects.empty()) {
         return refuse("the list is empty");
     }
-    return effects;
+    return wanted;
 }
 
 }  // namespace opaline::cli

@@ -22,8 +22,9 @@ void add_subject_options(CLI::App& command, SceneOptions& options);
 /// The same and every knob.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
-/// The effects to simulate, empty for `auto`. Errors: usage, for those that are unknown or that
-/// this version does not simulate.
-formats::Result<std::vector<std::string>> parse_effects(const SceneOptions& options);
+/// The options of the bake with the effects to simulate: none named for `auto`, nor for `all`,
+/// which forces every one. Errors: usage, for those that are unknown or that this version does not
+/// simulate.
+formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options);
 
 }  // namespace opaline::cli

@@ -67,9 +67,9 @@ class OutputFolder {
 
 int run(const Options& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
-    auto effects = parse_effects(options.scene);
-    if (!effects) {
-        return report_error(effects.error());
+    const auto options_of_bake = parse_effects(options.scene);
+    if (!options_of_bake) {
+        return report_error(options_of_bake.error());
     }
     const auto imported =
         open_scene(options.scene.scene, options.scene.metres_per_unit, options.scene.media);
@@ -90,8 +90,7 @@ int run(const Options& options) {
         files.push_back(std::move(*file));
     }
     bake::SweepOptions wanted;
-    wanted.bake = options.scene.bake;
-    wanted.bake.effects = std::move(*effects);
+    wanted.bake = *options_of_bake;
     wanted.seconds = options.seconds;
     wanted.light = options.light;
     bake::Context context;

@@ -21,6 +21,9 @@ glm::vec3 direction_of(const RayPacket& packet, std::uint32_t lane) {
 
 // Traces the lanes above the horizon; afterwards only those that see the sky are set.
 std::uint64_t keep_unoccluded(const RayScene& rays, RayPacket& packet, LaneMask& lanes) {
+    if (rays.is_empty()) {
+        return 0;
+    }
     packet.tfar.fill(std::numeric_limits<float>::infinity());
     std::uint64_t traced = 0;
     for (const std::int32_t lane : lanes) {

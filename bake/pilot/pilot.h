@@ -20,11 +20,17 @@ namespace opaline::bake {
 /// What the pilot looks at: all vertices, and what goes by material.
 struct PilotScene {
     const formats::Scene& scene;
-    const RayScene& rays;
-    std::span<const Receiver> receivers;
+    const RayScene& rays;  ///< what surrounds all receivers
+    const RayScene& sky;   ///< without a triangle: what surrounds those that nothing occludes
+    std::span<const Receiver> receivers;  ///< without a normal where no diffuse row is simulated
+    std::span<const Receiver> vertices;
     std::span<const BodyPoint> points;
     std::span<const RowLayout> layouts;
     const MediaProfiles& profiles;
+
+    const RayScene& rays_of(std::uint32_t material) const {
+        return layouts[material].occluded ? rays : sky;
+    }
 };
 
 /// A receiver and what it truly sends out under each test light, whatever the knobs.

@@ -20,9 +20,10 @@ struct DenseRows {
 };
 
 DenseRows gather_direct_row(const PilotScene& pilot, const DirectionSet& directions,
-                            std::uint32_t vertex) {
+                            const PilotReceiver& receiver) {
     DenseRows dense{std::vector<float>(directions.inverse_solid_angle.size()), {1.0f}, 1};
-    gather_irradiance(pilot.rays, directions, pilot.receivers[vertex], dense.values);
+    gather_irradiance(pilot.rays_of(receiver.material), directions,
+                      pilot.receivers[receiver.vertex], dense.values);
     for (float& value : dense.values) {
         value *= std::numbers::inv_pi_v<float>;
     }
@@ -86,7 +87,7 @@ std::vector<std::vector<CheckedPair>> measure_rows(
         const PilotReceiver& r = receivers[i];
         const auto medium = media.find(r.material);
         if (medium == media.end()) {
-            return gather_direct_row(pilot, directions, r.vertex);
+            return gather_direct_row(pilot, directions, r);
         }
         TranslucentRecipe recipe = medium->second.recipe;
         recipe.gather.tolerance = setting.tolerance;

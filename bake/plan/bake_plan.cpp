@@ -6,38 +6,22 @@
 
 namespace opaline::bake {
 
-std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const Knobs& knobs,
-                                 unsigned threads) {
-    double triangles = 0;
-    std::vector<PlanSubject> subjects(scene.materials.size());
-    for (const formats::Primitive& primitive : scene.primitives) {
-        PlanSubject& subject = subjects[primitive.material];
-        triangles += static_cast<double>(primitive.index.size() / 3);
-        subject.receivers += static_cast<double>(primitive.position.size());
-        if (primitive.color.empty()) {
-            subject.brightest_vertex = 1.0f;
-        }
-        for (const formats::Rgb c : primitive.color) {
-            subject.brightest_vertex = std::max({subject.brightest_vertex, c.r, c.g, c.b});
-        }
-        if (scene.materials[primitive.material].medium) {
-            subject.area += formats::surface_area(primitive);
-            for (const glm::vec3 x : primitive.position) {
-                subject.low = glm::min(subject.low, x);
-                subject.high = glm::max(subject.high, x);
-            }
-        }
-    }
+std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const SceneFacts& facts,
+                                 const Knobs& knobs, unsigned threads) {
     std::vector<PlanEntry> plan;
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
-        if (subjects[m].receivers == 0) {
+        if (facts.material[m].receivers == 0) {
             continue;
         }
-        const PlanInput input{scene.materials[m], subjects[m], triangles, knobs, threads};
+        const PlanInput input{scene.materials[m], facts.material[m], facts.triangles, knobs,
+                              threads};
         for (const auto& rule : kPlanRules) {
             if (rule.applies(input)) {
                 PlanEntry entry = rule.decide(input);
                 entry.effect = rule.effect;
+                if (entry.forced) {
+                    entry.reason += "; forced: by its bound it would be left out";
+                }
                 entry.subject = "material '" + input.material.name + "'";
                 entry.material = m;
                 plan.push_back(std::move(entry));

@@ -63,6 +63,7 @@ std::uint32_t expected_coefficients(double target) {
 formats::Result<Knobs> resolve_knobs(const BakeOptions& options) {
     Knobs knobs = preset(options.quality);
     knobs.effects = options.effects;
+    knobs.simulate_all = options.simulate_all;
     knobs.check_model = options.check_model;
     knobs.seed = options.seed;
     knobs.separate_terms = options.separate_terms;

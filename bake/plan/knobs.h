@@ -30,10 +30,12 @@ struct BakeOptions {
     std::uint32_t phase_terms = 0;    ///< K: 1, 4, 9, 16 or 25; 0: as the phase function asks for
     bool separate_terms = false;      ///< multiple scattering in a row of its own
     std::vector<std::string>
-        effects;               ///< the only ones to simulate; empty: what the scene calls for
-    bool check_model = false;  ///< also measure the model's error against Monte Carlo
-    std::uint64_t seed = 0;    ///< of everything random
-    unsigned threads = 0;      ///< 0: one per core; never changes the result
+        effects;                ///< the only ones to simulate; empty: what the scene calls for
+    bool simulate_all = false;  ///< every effect that concerns a material, however little it
+                                ///< contributes, and no shortcut
+    bool check_model = false;   ///< also measure the model's error against Monte Carlo
+    std::uint64_t seed = 0;     ///< of everything random
+    unsigned threads = 0;       ///< 0: one per core; never changes the result
 };
 
 /// What is going to be done: every knob has its value.
@@ -51,6 +53,7 @@ struct Knobs {
     bool exact_rays = false;        ///< no light maps, no rays shared between samples
     bool separate_terms = false;
     std::vector<std::string> effects;
+    bool simulate_all = false;
     bool check_model = false;
     std::uint64_t seed = 0;
 

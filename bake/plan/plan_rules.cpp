@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/plan/rules_visibility.h"
 #include "bake/scattering/dipole.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/half_space_single.h"
@@ -16,8 +17,6 @@
 
 namespace opaline::bake {
 namespace {
-
-constexpr double kLeastBound = 1.0 / 512;  // translucency.md 9
 
 // Rates of one thread, fitted to the benchmarks: good to a factor of two on another machine.
 // Occlusion rays on a mesh of one triangle, and how that falls as the hierarchy grows a level.
@@ -89,10 +88,12 @@ PlanEntry decide_direct(const PlanInput& input) {
         entry.reason = "light enters the medium instead of being reflected diffusely";
     } else if (!is_wanted(input.knobs, "direct")) {
         entry.reason = "left out by --effects";
-    } else if (entry.bound > 0) {
+    } else if (entry.bound > 0 || input.knobs.simulate_all) {
         entry.on = true;
-        entry.reason = medium ? "the medium is shown as a diffuse surface of the same reflectance"
-                              : "the surface reflects diffusely";
+        entry.forced = !(entry.bound > 0);
+        entry.reason = entry.forced ? "the base colour is black: nothing is reflected"
+                       : medium ? "the medium is shown as a diffuse surface of the same reflectance"
+                                : "the surface reflects diffusely";
         entry.predicted_seconds = predict_trace_seconds(input.subject.receivers, input);
         entry.predicted_bytes =
             static_cast<std::uint64_t>(input.subject.receivers) * predict_row_bytes(input.knobs, 1);
@@ -119,11 +120,11 @@ PlanEntry decide_multiple(const PlanInput& input) {
         entry.reason = "left out by --effects";
         return entry;
     }
-    if (entry.bound < kLeastBound) {
+    entry.on = is_worth(entry.bound, input, entry.forced);
+    if (!entry.on) {
         entry.reason = "the medium absorbs nearly all that it scatters";
         return entry;
     }
-    entry.on = true;
     const double most = input.knobs.samples;
     const double samples =
         input.knobs.exact_samples
@@ -174,11 +175,11 @@ PlanEntry decide_single(const PlanInput& input) {
         entry.reason = "normalised diffusion has the single scattering in it";
         return entry;
     }
-    if (entry.bound < kLeastBound) {
+    entry.on = is_worth(entry.bound, input, entry.forced);
+    if (!entry.on) {
         entry.reason = "the medium hardly scatters";
         return entry;
     }
-    entry.on = true;
     entry.terms = choose_terms(medium, input.knobs);
     entry.reason = entry.terms == 1 ? "light scatters once inside, alike in all directions"
                                     : "light scatters once inside; " + std::to_string(entry.terms) +
@@ -206,10 +207,9 @@ PlanEntry decide_specular(const PlanInput& input) {
     entry.bound = medium.eta == 1 ? 0 : 1;
     if (is_comparison(input.knobs) || !is_wanted(input.knobs, "specular")) {
         entry.reason = "left out by --effects";
-    } else if (entry.bound == 0) {
+    } else if (!(entry.on = is_worth(entry.bound, input, entry.forced))) {
         entry.reason = "the index of refraction is that of the air: nothing is mirrored";
     } else {
-        entry.on = true;
         entry.reason = "the boundary of the medium mirrors its surroundings";
         // One ray a texel of a small cube map, in packets so wide that they share little of their
         // way.
@@ -223,7 +223,8 @@ PlanEntry decide_specular(const PlanInput& input) {
     return entry;
 }
 
-constexpr std::array<PlanRule, 4> kRules{{{"direct", any_material, decide_direct},
+constexpr std::array<PlanRule, 5> kRules{{{"direct", any_material, decide_direct},
+                                          {"direct.visibility", any_material, decide_visibility},
                                           {"multiple", has_medium, decide_multiple},
                                           {"single", has_medium, decide_single},
                                           {"specular", has_medium, decide_specular}}};
@@ -231,6 +232,12 @@ constexpr std::array<PlanRule, 4> kRules{{{"direct", any_material, decide_direct
 }  // namespace
 
 const std::span<const PlanRule> kPlanRules = kRules;
+
+bool is_worth(double bound, const PlanInput& input, bool& forced) {
+    const bool worth = bound >= kLeastBound;
+    forced = input.knobs.simulate_all && !worth;
+    return worth || forced;
+}
 
 double single_share(const formats::Medium& medium) {
     const double g = formats::mean_cosine(medium.phase);

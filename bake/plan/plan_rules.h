@@ -1,27 +1,22 @@
 #pragma once
 
-#include <glm/glm.hpp>
 #include <span>
 #include <string_view>
 
 #include "bake/plan/bake_plan.h"
+#include "bake/plan/scene_facts.h"
 
 namespace opaline::bake {
+
+/// Effects that contribute less radiance under `white` are not simulated (translucency.md 9).
+inline constexpr double kLeastBound = 1.0 / 512;
 
 /// Cube map over which openness is measured for specular reflection.
 inline constexpr std::uint32_t kOpennessCubemap = 8;
 
-/// What the rules ask about one material's surfaces.
-struct PlanSubject {
-    double receivers = 0;
-    double area = 0;                     ///< [m^2], of a medium's boundary
-    glm::vec3 low{1e30f}, high{-1e30f};  ///< [m], of a medium
-    float brightest_vertex = 0;          ///< largest component of its vertex colours
-};
-
 struct PlanInput {
     const formats::Material& material;
-    const PlanSubject& subject;
+    const MaterialFacts& subject;
     double all_triangles;  ///< of the scene
     const Knobs& knobs;
     unsigned threads;
@@ -34,6 +29,10 @@ struct PlanRule {
     bool (*applies)(const PlanInput& input);
     PlanEntry (*decide)(const PlanInput& input);
 };
+
+/// Whether an effect of this bound is worth simulating. `forced`: it is not, but
+/// Knobs::simulate_all wants it.
+bool is_worth(double bound, const PlanInput& input, bool& forced);
 
 /// All rules, in the order in which plans list effects.
 extern const std::span<const PlanRule> kPlanRules;

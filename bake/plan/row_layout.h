@@ -11,6 +11,7 @@ namespace opaline::bake {
 /// What stands in the rows of a material's vertices.
 struct RowLayout {
     bool translucent = false;        ///< otherwise diffuse: one grey row
+    bool occluded = false;           ///< rays find out what stands before the light
     bool direct = false;             ///< the diffuse row is simulated, otherwise zero
     bool multiple = false;           ///< multiple scattering is simulated
     std::uint32_t single_terms = 0;  ///< S, terms of the phase function; 0: no single scattering

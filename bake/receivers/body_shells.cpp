@@ -28,6 +28,11 @@ struct Neighbour {
 BodyShells collect_triangles(const Scene& scene, std::uint32_t material) {
     BodyShells body;
     std::unordered_map<glm::vec3, std::uint32_t, PositionHash> places;
+    std::size_t vertices = 0;
+    for (const Primitive& primitive : scene.primitives) {
+        vertices += primitive.material == material ? primitive.position.size() : 0;
+    }
+    places.reserve(vertices);
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
         const Primitive& primitive = scene.primitives[p];
         if (primitive.material != material) {
@@ -83,6 +88,41 @@ std::vector<std::vector<Neighbour>> find_neighbours(BodyShells& body) {
     return neighbours;
 }
 
+// Sine of the angle by which `other` rises above the plane of `t`, with which it shares an edge;
+// negative if it falls, of size 1 beyond a right angle.
+double fold_sine(const BodyShells& body, const BodyTriangle& t, const BodyTriangle& other) {
+    const std::array<glm::dvec3, 3> corner = corners(body, t);
+    const std::array<std::uint32_t, 3>& p = t.point;
+    const std::array<std::uint32_t, 3> point =
+        t.turned ? std::array{p[0], p[2], p[1]} : std::array{p[0], p[1], p[2]};
+    const auto is_corner = [](const BodyTriangle& of, std::uint32_t at) {
+        return std::find(of.point.begin(), of.point.end(), at) != of.point.end();
+    };
+    const auto apex = std::find_if(other.point.begin(), other.point.end(),
+                                   [&](std::uint32_t at) { return !is_corner(t, at); });
+    const double area = 2 * glm::length(area_vector(body, t));
+    if (apex == other.point.end() || !(area > 0)) {
+        return 0;
+    }
+    const glm::dvec3 normal = 2.0 / area * area_vector(body, t);
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (is_corner(other, point[k]) && is_corner(other, point[(k + 1) % 3])) {
+            const glm::dvec3 edge = glm::normalize(corner[(k + 1) % 3] - corner[k]);
+            const glm::dvec3 rise = glm::dvec3(body.position[*apex]) - corner[k];
+            const double out = glm::dot(glm::cross(edge, normal), rise);
+            const double up = glm::dot(normal, rise);
+            // What lies lower than the coordinates are exact is flat.
+            constexpr double kRoundings = 4 * 0x1p-23;
+            const glm::dvec3 size = glm::abs(corner[k]);
+            if (std::abs(up) <= kRoundings * std::max({size.x, size.y, size.z})) {
+                return 0;
+            }
+            return out > 0 ? up / std::hypot(up, out) : std::copysign(1.0, up);
+        }
+    }
+    return 0;
+}
+
 // Cuts the body into shells and makes each face one way, that of its larger part.
 void cut_into_shells(BodyShells& body) {
     const auto neighbours = find_neighbours(body);
@@ -121,6 +161,11 @@ void cut_into_shells(BodyShells& body) {
         for (std::uint32_t i = shell.first; i < shell.first + shell.count; ++i) {
             const BodyTriangle& t = body.triangle[body.order[i]];
             shell.volume += glm::dot(corners(body, t)[0] - centre, area_vector(body, t)) / 3;
+            for (const Neighbour& n : neighbours[body.order[i]]) {
+                const double fold = fold_sine(body, t, body.triangle[n.triangle]);
+                shell.valley = std::max(shell.valley, fold);
+                shell.ridge = std::max(shell.ridge, -fold);
+            }
         }
         body.shell.push_back(shell);
     }

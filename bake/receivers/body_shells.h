@@ -10,7 +10,7 @@
 
 namespace opaline::bake {
 
-/// A triangle of a medium's surface.
+/// A triangle of a material's surface.
 struct BodyTriangle {
     std::array<std::uint32_t, 3> point;    ///< indices into BodyShells::position
     std::uint32_t primitive, first_index;  ///< where it stands in the scene
@@ -23,10 +23,14 @@ struct BodyShell {
     glm::dvec3 low{HUGE_VAL}, high{-HUGE_VAL};
     double volume = 0;  ///< [m^3] enclosed, < 0 if it faces inward; of an open one about its centre
     double area = 0;    ///< [m^2]
+    /// Sine of the sharpest edge at which two neighbours fold toward the side that they face, and
+    /// away from it; 1 beyond a right angle. In a closed convex shell that faces outward `valley`
+    /// is 0, but for the rounding of its coordinates, which is left out.
+    double valley = 0, ridge = 0;
     bool inside = false;  ///< of another shell
 };
 
-/// The surface of one medium, shell by shell.
+/// The surface of one material, shell by shell.
 struct BodyShells {
     std::vector<glm::vec3> position;  ///< [m], each place once
     std::vector<BodyTriangle> triangle;

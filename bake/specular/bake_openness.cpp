@@ -54,13 +54,15 @@ void gather_openness(const RayScene& rays, const DirectionSet& directions,
             packet.dir_y.fill(w.y);
             packet.dir_z.fill(w.z);
             packet.tfar.fill(std::numeric_limits<float>::infinity());
-            rays.occluded(lanes, packet);
+            if (!rays.is_empty()) {
+                rays.occluded(lanes, packet);
+            }
             // The cell's centre rather than its ray, which may lie off it.
             const glm::dvec3 centre = glm::normalize(glm::dvec3(moment));
             for (std::size_t i = 0; i < receivers.size(); ++i) {
                 const double weight = lanes[i] != 0 ? static_cast<double>(cosine[i]) : 0.0;
                 const double open = packet.tfar[i] > 0.0f ? weight : 0.0;
-                seen[i].rays += static_cast<std::uint64_t>(-lanes[i]);
+                seen[i].rays += rays.is_empty() ? 0 : static_cast<std::uint64_t>(-lanes[i]);
                 sums[i].all += weight;
                 sums[i].open += open;
                 sums[i].axis += open * centre;

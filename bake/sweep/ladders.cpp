@@ -20,6 +20,7 @@ Knobs preset_knobs(Quality quality, const BakeOptions& options) {
     BakeOptions wanted;
     wanted.quality = quality;
     wanted.effects = options.effects;
+    wanted.simulate_all = options.simulate_all;
     wanted.seed = options.seed;
     return *resolve_knobs(wanted);  // a preset alone is always possible
 }
@@ -198,7 +199,8 @@ SweepSubject sweep_subject(const std::vector<PlanEntry>& plan, const formats::Sc
 bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject) {
     const bool same_rows = a.cubemap_size == b.cubemap_size && a.coefficients == b.coefficients &&
                            a.code_bits == b.code_bits && a.separate_terms == b.separate_terms &&
-                           a.effects == b.effects && a.seed == b.seed;
+                           a.effects == b.effects && a.simulate_all == b.simulate_all &&
+                           a.seed == b.seed;
     const bool same_multiple =
         a.samples == b.samples && a.exact_samples == b.exact_samples && a.tolerance == b.tolerance;
     const bool same_single = a.depth_samples == b.depth_samples && a.phase_terms == b.phase_terms &&

@@ -32,7 +32,7 @@ struct MultipleOptions {
 };
 
 /// Samples the surface of the material's medium, whose profile is `medium`, traces what enters, and
-/// builds the tree.
+/// builds the tree. `rays`: what may stand before the samples; none is traced if it is empty.
 /// Incomplete if the context is cancelled.
 MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
                                std::uint32_t material, const MediumProfile& medium,

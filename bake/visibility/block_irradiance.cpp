@@ -38,6 +38,10 @@ void weight_by_boundary(const DirectionBlock& block, glm::vec3 normal,
 std::uint64_t trace_block(const RayScene& rays, const DirectionBlock& block, glm::vec3 normal,
                           std::span<const float> transmittance, RayPacket& packet,
                           std::span<float> transport) {
+    if (rays.is_empty()) {
+        fill_block(block, normal, transmittance, transport);
+        return 0;
+    }
     RayPacket::Lane cosine;
     LaneMask lanes;
     if (!integrate_cosine(block, normal, cosine, lanes)) {

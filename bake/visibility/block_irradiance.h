@@ -19,7 +19,7 @@ bool is_below(const DirectionBlock& block, glm::vec3 normal);
 
 /// Traces a block from `packet`'s origins and adds the cosine integrals of what is lit to the
 /// texels of `transport`, each times the boundary's transmittance (gather_irradiance). Returns the
-/// number of rays.
+/// number of rays: none where there is nothing to hit.
 std::uint64_t trace_block(const RayScene& rays, const DirectionBlock& block, glm::vec3 normal,
                           std::span<const float> transmittance, RayPacket& packet,
                           std::span<float> transport);

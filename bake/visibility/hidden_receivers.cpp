@@ -75,6 +75,9 @@ std::vector<std::uint32_t> nearest_visible(const formats::Scene& scene,
 
 std::vector<Receiver> take_over_hidden(const RayScene& rays, const formats::Scene& scene,
                                        std::vector<Receiver> receivers, const Context& context) {
+    if (rays.is_empty()) {
+        return receivers;
+    }
     std::vector<bool> hidden;
     for_each_block_in_order(
         receivers.size(), 1024, context,

@@ -51,7 +51,8 @@ struct PacketHits {
 /// precision beyond what its own numbers lost.
 class RayScene {
   public:
-    /// Builds the hierarchy with `threads` threads (0: all). Errors: resource.
+    /// Builds the hierarchy (of a scene without triangles too: the open sky) with `threads` threads
+    /// (0: all). Errors: resource.
     static formats::Result<RayScene> build(const formats::Scene& scene, unsigned threads);
 
     RayScene(RayScene&&) noexcept;
@@ -74,6 +75,9 @@ class RayScene {
     glm::vec3 centre() const { return centre_; }
 
     std::uint64_t triangles() const { return triangles_; }
+
+    /// Nothing can be hit: those who gather light need not trace at all.
+    bool is_empty() const { return triangles_ == 0; }
 
     /// Bound [m] on the error of a hit's position.
     float error_bound() const { return error_bound_; }

@@ -140,8 +140,11 @@ std::uint64_t gather_irradiance_together(const RayScene& rays, const SharedDirec
     std::fill(transport.begin(), transport.end(), 0.0f);
     const std::size_t size = receivers.empty() ? 0 : transport.size() / receivers.size();
     Group group{rays, directions, receivers};
-    std::vector<Seen> seen = group.probe_all();
-    group.probe_borders(seen);
+    std::vector<Seen> seen(directions.beside.size(), Seen::open);
+    if (!rays.is_empty()) {
+        seen = group.probe_all();
+        group.probe_borders(seen);
+    }
     std::uint64_t traced = 0;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         const std::span<float> own = transport.subspan(i * size, size);

@@ -48,7 +48,7 @@ DotBatch make_batch(const formats::AssetView& asset, std::uint32_t number, std::
     batch.detail_scale = batch.average_scale;
     batch.average_code = bind_elements(band_row * 6, row_count * bands * 6, 2, alignment);
     batch.irradiance = bind_elements(batch.first_vertex, vertices, kIrradianceBytes, alignment);
-    if (primitive.shading == formats::Shading::translucent) {
+    if (needs_view(primitive)) {
         batch.product = bind_elements(row, row_count, kIrradianceBytes, alignment);
         batch.point = bind_elements(std::uint64_t{3} * batch.first_vertex,
                                     std::uint64_t{3} * vertices, sizeof(float), alignment);
@@ -64,6 +64,10 @@ bool fits(const DotBatch& batch, const DotLimits& limits) {
 }
 
 }  // namespace
+
+bool needs_view(const PrimitiveRecord& primitive) {
+    return primitive.shading == formats::Shading::translucent && primitive.terms > 1;
+}
 
 formats::Result<std::vector<DotBatch>> plan_dot_batches(const formats::AssetView& asset,
                                                         const DotLimits& limits) {

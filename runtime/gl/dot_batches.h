@@ -23,9 +23,13 @@ struct DotBatch {
     std::uint32_t first_detail = 0;  ///< row_offset of the first row
     std::uint32_t primitive = 0;
     BoundRange row_offset, index, code, average_scale, detail_scale, average_code, irradiance;
-    BoundRange product;  ///< translucent: <T_k, L> of every row
-    BoundRange point;    ///< translucent: positions and normals, counted in floats
+    BoundRange product;  ///< where needs_view: <T_k, L> of every row
+    BoundRange point;    ///< where needs_view: positions and normals, counted in floats
 };
+
+/// Whether a primitive's vertices have several rows, to be added up toward an eye. A single one is
+/// what they show from everywhere.
+bool needs_view(const formats::PrimitiveRecord& primitive);
 
 struct DotLimits {
     std::size_t max_block_bytes = 0;  ///< of one bound range

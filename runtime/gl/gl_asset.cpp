@@ -121,8 +121,10 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& l
     gl.has_translucent = std::ranges::any_of(gl.primitives, [](const auto& primitive) {
         return primitive.shading == formats::Shading::translucent;
     });
-    if (gl.has_translucent) {
+    if (std::ranges::any_of(gl.primitives, needs_view)) {
         gl.product = make_zero_buffer(rows.rows() * kIrradianceBytes, gl.resident);
+    }
+    if (gl.has_translucent) {
         gl.normal = make_buffer_of(asset.normal, gl.resident);
     }
     if (!roughness_levels(asset).empty()) {

@@ -25,7 +25,8 @@ struct GlAsset {
     bool has_translucent = false;
     std::vector<float> roughness;  ///< of each primitive; empty: none is glossy
     GlBuffer openness;             ///< where one is: formats::Openness of each vertex
-    GlBuffer product, normal;      ///< where has_translucent: <T_k, L> of every row; normals
+    GlBuffer normal;               ///< where has_translucent
+    GlBuffer product;              ///< where a primitive needs_view: <T_k, L> of every row
     GlBuffer srgb_table;           ///< linear value of each 8-bit code, 256 floats
     GlVertexArray vertex_array;
     std::vector<GlTexture> images;  ///< 8-bit codes, undecoded

@@ -19,22 +19,37 @@ enum Uniform : GLint {
     kCodeOrigin,
     kScaleOrigin,
     kAverageOrigin,
-    kResultOrigin,
-    kKeepsSign
+    kResultOrigin
 };
 
 constexpr std::uint32_t kGroupSize = 64;  ///< threads: two warps, one wave
 
+// What a batch's program has to do.
+struct DotKind {
+    std::uint32_t bands = 1;
+    bool is_translucent = false;
+
+    std::size_t number() const {  // in DotPrograms
+        return (bands == 3 ? 2u : 0u) + (is_translucent ? 1u : 0u);
+    }
+};
+
+DotKind dot_kind(const GlAsset& asset, const DotBatch& batch) {
+    return {batch.bands,
+            asset.primitives[batch.primitive].shading == formats::Shading::translucent};
+}
+
 formats::Result<GlProgram> make_dot_program(const GlAsset& asset, std::uint32_t lanes,
-                                            std::uint32_t bands) {
+                                            DotKind kind) {
     const auto define = [](const char* name, std::uint32_t value) {
         return std::string("#define ") + name + " " + std::to_string(value) + "\n";
     };
     const StageSource stage{GL_COMPUTE_SHADER, dot_comp_text};
     return make_program("dot products",
                         define("LANES", lanes) + define("ROWS", rows_per_group(lanes)) +
-                            define("BANDS", bands) + define("CODE_BITS", asset.code_bits) +
-                            define("INDEX_BYTES", asset.index_bytes),
+                            define("BANDS", kind.bands) + define("CODE_BITS", asset.code_bits) +
+                            define("INDEX_BYTES", asset.index_bytes) +
+                            (kind.is_translucent ? "#define KEEPS_SIGN\n" : ""),
                         {&stage, 1});
 }
 
@@ -64,12 +79,12 @@ formats::Result<DotPrograms> make_dot_programs(const GlAsset& asset, std::uint32
     DotPrograms programs;
     programs.lanes_per_row = lanes_per_row;
     programs.rows_per_group = rows_per_group(lanes_per_row);
-    for (const std::uint32_t bands : {1u, 3u}) {
-        const auto has_bands = [bands](const DotBatch& batch) { return batch.bands == bands; };
-        if (std::none_of(asset.batches.begin(), asset.batches.end(), has_bands)) continue;
-        auto program = make_dot_program(asset, lanes_per_row, bands);
+    for (const DotBatch& batch : asset.batches) {
+        const DotKind kind = dot_kind(asset, batch);
+        if (programs.program[kind.number()].name() != 0) continue;
+        auto program = make_dot_program(asset, lanes_per_row, kind);
         if (!program) return program.error();
-        (bands == 1 ? programs.grey : programs.rgb) = std::move(program).value();
+        programs.program[kind.number()] = std::move(program).value();
     }
     return programs;
 }
@@ -78,16 +93,12 @@ formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
                               const GlBuffer& light) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, light.name());
     for (const DotBatch& batch : asset.batches) {
-        const GLuint program = (batch.bands == 1 ? programs.grey : programs.rgb).name();
-        glUseProgram(program);
-        // Diffuse: a result for each vertex. Translucent: for each row, to be added up toward an
-        // eye.
-        const bool is_translucent =
-            asset.primitives[batch.primitive].shading == formats::Shading::translucent;
-        const std::uint32_t results =
-            is_translucent ? batch.vertices * batch.terms : batch.vertices;
-        const BoundRange& result = is_translucent ? batch.product : batch.irradiance;
-        const std::array<std::pair<Uniform, std::uint32_t>, 10> uniforms{
+        glUseProgram(programs.program[dot_kind(asset, batch).number()].name());
+        // A result for each row: that of a vertex, or one of those to be added up toward an eye.
+        const bool is_added = needs_view(asset.primitives[batch.primitive]);
+        const std::uint32_t results = batch.vertices * batch.terms;
+        const BoundRange& result = is_added ? batch.product : batch.irradiance;
+        const std::array<std::pair<Uniform, std::uint32_t>, 9> uniforms{
             {{kResults, results},
              {kFaceTexels, asset.cubemap_size * asset.cubemap_size},
              {kFirstDetail, batch.first_detail},
@@ -96,8 +107,7 @@ formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
              {kCodeOrigin, batch.code.origin},
              {kScaleOrigin, batch.average_scale.origin},
              {kAverageOrigin, batch.average_code.origin},
-             {kResultOrigin, result.origin},
-             {kKeepsSign, is_translucent ? 1u : 0u}}};
+             {kResultOrigin, result.origin}}};
         for (const auto& [location, value] : uniforms) {
             glUniform1ui(location, value);
         }
@@ -107,7 +117,7 @@ formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
         bind_storage(3, asset.average_scale, batch.average_scale);
         bind_storage(4, asset.detail_scale, batch.detail_scale);
         bind_storage(5, asset.average_code, batch.average_code);
-        bind_storage(7, is_translucent ? asset.product : asset.irradiance, result);
+        bind_storage(7, is_added ? asset.product : asset.irradiance, result);
         glDispatchCompute(1, (results + programs.rows_per_group - 1) / programs.rows_per_group, 1);
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |

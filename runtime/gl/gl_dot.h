@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "formats/opal/result.h"
@@ -10,7 +11,8 @@ namespace opaline::runtime {
 
 /// The compute shader that evaluates <T_k, L>, specialised for one asset's code and index widths.
 struct DotPrograms {
-    GlProgram grey, rgb;  ///< for rows of one and of three bands; made where needed
+    /// For opaque and translucent rows of one band, then of three; made where needed.
+    std::array<GlProgram, 4> program;
     std::uint32_t lanes_per_row = 1;
     std::uint32_t rows_per_group = 1;
 };
@@ -23,8 +25,8 @@ DotLimits query_dot_limits(std::size_t max_block_bytes, std::uint32_t lanes_per_
 
 formats::Result<DotPrograms> make_dot_programs(const GlAsset& asset, std::uint32_t lanes_per_row);
 
-/// Fills asset.irradiance, or asset.product for translucent primitives, from `light`, a buffer of
-/// 6 n n vec4.
+/// Fills asset.irradiance, or asset.product for primitives that need a view, from `light`, a buffer
+/// of 6 n n vec4.
 formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
                               const GlBuffer& light);
 

@@ -30,6 +30,16 @@ SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
             !asset.roughness.empty() && asset.roughness[primitive] >= 0};
 }
 
+// Whether the wanted components include those of its single row; several rows are added up as
+// wanted already.
+bool is_shown(const formats::PrimitiveRecord& primitive, std::uint32_t terms) {
+    const std::uint32_t held = primitive.shading != formats::Shading::translucent ? kDiffuseTerm
+                               : needs_view(primitive)                            ? 0
+                               : primitive.is_separate()                          ? kMultipleTerm
+                                                         : kMultipleTerm | kSingleTerm;
+    return (terms & held) == held;
+}
+
 void set_vec3(GLuint program, GLint location, Vec3 v) {
     glProgramUniform3f(program, location, v.x, v.y, v.z);
 }
@@ -126,9 +136,8 @@ void draw_surfaces(const DrawScene& scene, const DrawPrograms& programs, const C
         if (kind.is_translucent) {
             glUniform1f(9, primitive.eta);
             glUniform1ui(10, primitive.flags & formats::PrimitiveRecord::kDoubleSided);
-        } else {
-            glUniform1f(11, (scene.terms & kDiffuseTerm) != 0 ? 1.0f : 0.0f);
         }
+        glUniform1f(11, is_shown(primitive, scene.terms) ? 1.0f : 0.0f);
         if (kind.is_glossy) set_gloss(scene, program, p);
         // In pieces that a signed count holds; each a whole number of triangles.
         constexpr std::uint32_t kPiece = 3u << 28;

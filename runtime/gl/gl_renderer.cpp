@@ -39,7 +39,7 @@ struct Resources {
     GlEnvironment environment;
     GlSpecular specular;
     DotPrograms dot_programs;
-    ViewProgram view_program;
+    ViewPrograms view_programs;
     DrawPrograms draw_programs;
 };
 
@@ -105,8 +105,8 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
 
     auto dot_programs = make_dot_programs(*gl_asset, lanes);
     if (!dot_programs) return dot_programs.error();
-    auto view_program = make_view_program(*gl_asset);
-    if (!view_program) return view_program.error();
+    auto view_programs = make_view_programs(*gl_asset);
+    if (!view_programs) return view_programs.error();
     auto draw_programs = make_draw_programs(*gl_asset);
     if (!draw_programs) return draw_programs.error();
     state->stats.gpu_bytes = gl_asset->resident + gl_environment->resident + gl_specular->resident;
@@ -115,7 +115,7 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     state->stats.device = state->context.description();
     state->resources.emplace(Resources{std::move(*gl_asset), std::move(*gl_environment),
                                        std::move(*gl_specular), std::move(*dot_programs),
-                                       std::move(*view_program), std::move(*draw_programs)});
+                                       std::move(*view_programs), std::move(*draw_programs)});
     return GlRenderer(std::move(state));
 }
 
@@ -162,7 +162,7 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
 
     auto picture = make_picture(camera.width, camera.height);
     if (!picture) return picture;
-    if (auto status = dispatch_views(resources.asset, resources.view_program, camera.eye,
+    if (auto status = dispatch_views(resources.asset, resources.view_programs, camera.eye,
                                      static_cast<float>(view_unit(camera)), options.terms);
         !status) {
         return status.error();

@@ -71,8 +71,8 @@ class GlRenderer {
     /// resource.
     formats::Result<Picture> render(const Camera& camera, const GlRenderOptions& options = {});
 
-    /// Reads back <T_0, L> of every vertex, as the last set_light left it; of translucent vertices
-    /// sum_k h_k(w_o') <T_k, L> toward the eye of the last render (0 before it).
+    /// Reads back <T_0, L> of every vertex, as the last set_light left it; of vertices with several
+    /// rows sum_k h_k(w_o') <T_k, L> toward the eye of the last render (0 before it).
     formats::Result<std::vector<formats::Rgb>> read_irradiance();
 
     const GlStats& stats() const;

@@ -1,62 +1,84 @@
 #include "runtime/gl/gl_view.h"
 
+#include <algorithm>
+#include <string>
+#include <utility>
+
 #include "runtime/terms.h"
 #include "shader_text.h"
 
 namespace opaline::runtime {
 namespace {
 
-// Locations of view.comp.glsl.
+// Locations of view.comp.glsl; those from kEye on exist where there are several harmonics.
 enum Uniform : GLint {
+    kVertices,
+    kProductOrigin,
+    kIrradianceOrigin,
+    kShows,
     kEye,
     kUnit,
     kEta,
     kIsDoubleSided,
-    kTerms,
-    kVertices,
-    kProductOrigin,
-    kPointOrigin,
-    kIrradianceOrigin,
-    kIsSeparate,
-    kShows
+    kPointOrigin
 };
 
 constexpr std::uint32_t kGroupSize = 64;  ///< local_size_x of the shader
 
-}  // namespace
-
-formats::Result<ViewProgram> make_view_program(const GlAsset& asset) {
-    ViewProgram program;
-    if (!asset.has_translucent) return program;
-    const StageSource stage{GL_COMPUTE_SHADER, view_comp_text};
-    auto sum = make_program("view terms", "", {&stage, 1});
-    if (!sum) return sum.error();
-    program.sum = std::move(sum).value();
-    return program;
+std::uint32_t harmonics(const ViewPrograms::Sum& sum) {
+    return sum.terms - (sum.is_separate ? 1 : 0);
 }
 
-formats::Status dispatch_views(const GlAsset& asset, const ViewProgram& program, formats::Vec3 eye,
-                               float unit, std::uint32_t terms) {
-    if (!asset.has_translucent) return formats::ok_status();
-    glUseProgram(program.sum.name());
-    glUniform3f(kEye, eye.x, eye.y, eye.z);
-    glUniform1f(kUnit, unit);
-    glUniform2ui(kShows, terms & kMultipleTerm, terms & kSingleTerm);
+const ViewPrograms::Sum* find_sum(const ViewPrograms& programs,
+                                  const formats::PrimitiveRecord& primitive) {
+    const auto sum = std::ranges::find_if(programs.sums, [&](const ViewPrograms::Sum& s) {
+        return s.terms == primitive.terms && s.is_separate == primitive.is_separate();
+    });
+    return sum == programs.sums.end() ? nullptr : &*sum;
+}
+
+}  // namespace
+
+formats::Result<ViewPrograms> make_view_programs(const GlAsset& asset) {
+    ViewPrograms programs;
+    const StageSource stage{GL_COMPUTE_SHADER, view_comp_text};
+    for (const formats::PrimitiveRecord& primitive : asset.primitives) {
+        if (!needs_view(primitive) || find_sum(programs, primitive) != nullptr) continue;
+        ViewPrograms::Sum sum{primitive.terms, primitive.is_separate(), {}};
+        auto program = make_program("view terms",
+                                    "#define HARMONICS " + std::to_string(harmonics(sum)) + "\n" +
+                                        (sum.is_separate ? "#define SEPARATE\n" : ""),
+                                    {&stage, 1});
+        if (!program) return program.error();
+        sum.program = std::move(program).value();
+        programs.sums.push_back(std::move(sum));
+    }
+    return programs;
+}
+
+formats::Status dispatch_views(const GlAsset& asset, const ViewPrograms& programs,
+                               formats::Vec3 eye, float unit, std::uint32_t terms) {
+    if (programs.sums.empty()) return formats::ok_status();
     for (const DotBatch& batch : asset.batches) {
         const formats::PrimitiveRecord& primitive = asset.primitives[batch.primitive];
-        if (primitive.shading != formats::Shading::translucent) continue;
-        glUniform1f(kEta, primitive.eta);
-        glUniform1ui(kIsDoubleSided, primitive.flags & formats::PrimitiveRecord::kDoubleSided);
-        glUniform1ui(kIsSeparate, primitive.is_separate() ? 1u : 0u);
-        glUniform1ui(kTerms, batch.terms);
+        if (!needs_view(primitive)) continue;
+        const ViewPrograms::Sum& sum = *find_sum(programs, primitive);
+        glUseProgram(sum.program.name());
         glUniform1ui(kVertices, batch.vertices);
         glUniform1ui(kProductOrigin, batch.product.origin);
-        glUniform1ui(kPointOrigin, batch.point.origin);
         glUniform1ui(kIrradianceOrigin, batch.irradiance.origin);
+        glUniform2ui(kShows, terms & kMultipleTerm, terms & kSingleTerm);
         bind_storage(0, asset.product, batch.product);
-        bind_storage(1, asset.position, batch.point);
-        bind_storage(2, asset.normal, batch.point);
         bind_storage(3, asset.irradiance, batch.irradiance);
+        if (harmonics(sum) > 1) {
+            glUniform3f(kEye, eye.x, eye.y, eye.z);
+            glUniform1f(kUnit, unit);
+            glUniform1f(kEta, primitive.eta);
+            glUniform1ui(kIsDoubleSided, primitive.flags & formats::PrimitiveRecord::kDoubleSided);
+            glUniform1ui(kPointOrigin, batch.point.origin);
+            bind_storage(1, asset.position, batch.point);
+            bind_storage(2, asset.normal, batch.point);
+        }
         glDispatchCompute((batch.vertices + kGroupSize - 1) / kGroupSize, 1, 1);
     }
     glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "formats/opal/result.h"
 #include "formats/opal/vec3.h"
@@ -9,17 +10,22 @@
 
 namespace opaline::runtime {
 
-/// The compute shader that adds up the terms of translucent vertices, made only for an asset that
-/// has such.
-struct ViewProgram {
-    GlProgram sum;
+/// The compute shader that adds up the terms of translucent vertices, specialised for each number
+/// of them that the asset has; none where no vertex has several.
+struct ViewPrograms {
+    struct Sum {
+        std::uint32_t terms = 0;
+        bool is_separate = false;
+        GlProgram program;
+    };
+    std::vector<Sum> sums;
 };
-formats::Result<ViewProgram> make_view_program(const GlAsset& asset);
+formats::Result<ViewPrograms> make_view_programs(const GlAsset& asset);
 
-/// Fills the translucent vertices' part of asset.irradiance from asset.product: what they show
-/// `eye` of the components `terms` (terms.h) without their Fresnel factor. `unit` is about 1 / the
-/// distances in the scene. Errors: resource.
-formats::Status dispatch_views(const GlAsset& asset, const ViewProgram& program, formats::Vec3 eye,
-                               float unit, std::uint32_t terms);
+/// Fills the part of asset.irradiance of primitives that need a view from asset.product: what they
+/// show `eye` of the components `terms` (terms.h) without their Fresnel factor. `unit` is about 1 /
+/// the distances in the scene. Errors: resource.
+formats::Status dispatch_views(const GlAsset& asset, const ViewPrograms& programs,
+                               formats::Vec3 eye, float unit, std::uint32_t terms);
 
 }  // namespace opaline::runtime

@@ -30,12 +30,16 @@ TEST(Bake, ReportHasTheKeysOfTheContract) {
     EXPECT_EQ(report.at("knobs").at("coefficients"), 64);
     ASSERT_FALSE(report.at("plan").empty());
     for (const Json& entry : report.at("plan")) {
-        EXPECT_EQ(entry.at("effect"), "direct");
         EXPECT_FALSE(entry.at("subject").get<std::string>().empty());
-        EXPECT_EQ(entry.at("decision"), "on");
         EXPECT_FALSE(entry.at("reason").get<std::string>().empty());
+        EXPECT_EQ(entry.at("forced"), false);
         EXPECT_GT(entry.at("bound").get<double>(), 0);
-        EXPECT_GT(entry.at("predicted_seconds").get<double>(), 0);
+        if (entry.at("effect") == "direct") {
+            EXPECT_EQ(entry.at("decision"), "on");
+            EXPECT_GT(entry.at("predicted_seconds").get<double>(), 0);
+        } else {
+            EXPECT_EQ(entry.at("effect"), "direct.visibility");
+        }
     }
     ASSERT_FALSE(report.at("stages").empty());
     double seconds = 0;
@@ -224,6 +228,24 @@ TEST(Plan, NamesEffectSubjectAndReasonAsTableAndAsJson) {
             EXPECT_TRUE(entry.contains(key)) << key;
         }
     }
+}
+
+// The upper square has nothing above it, so that its visibility is left out unless forced.
+TEST(Plan, EffectsAllTurnsOnWhatTheSceneDoesNotCallForAndSaysSo) {
+    SmallScene small;
+    const auto forced = [&](const char* effects, const char* decision) {
+        const Outcome json = run_opaline({"plan", small.scene(), "--json", "--effects", effects});
+        EXPECT_EQ(json.exit_code, 0) << json.err;
+        int count = 0, decided = 0;
+        for (const Json& entry : Json::parse(json.out).at("plan")) {
+            count += entry.at("forced") == true ? 1 : 0;
+            decided += entry.at("decision") == decision ? 1 : 0;
+        }
+        EXPECT_GT(decided, 0) << effects;
+        return count;
+    };
+    EXPECT_EQ(forced("auto", "off"), 0);
+    EXPECT_EQ(forced("all", "on"), 1);
 }
 
 TEST(Example, EveryListedSceneBakes) {

@@ -1,5 +1,6 @@
 // <T_k, L> for the rows of one batch: LANES invocations share a row.
-// Specialised by LANES, ROWS (rows of a workgroup), BANDS, CODE_BITS, INDEX_BYTES.
+// Specialised by LANES, ROWS (rows of a workgroup), BANDS, CODE_BITS, INDEX_BYTES, and KEEPS_SIGN:
+// several terms make a radiance, one may be negative.
 layout(local_size_x = LANES, local_size_y = ROWS) in;
 
 layout(std430, binding = 0) readonly buffer RowOffsets { uint row_offset[]; };
@@ -21,7 +22,6 @@ layout(location = 5) uniform uint code_origin;
 layout(location = 6) uniform uint scale_origin;
 layout(location = 7) uniform uint average_origin;
 layout(location = 8) uniform uint result_origin;
-layout(location = 9) uniform uint keeps_sign;  // several terms make a radiance, one may be negative
 
 int signed_half(uint word, uint element) {
     return bitfieldExtract(int(word), int((element & 1u) * 16u), 16);
@@ -87,15 +87,20 @@ vec3 lane_sum(uint row, uint lane) {
 #endif
 }
 
+#ifdef KEEPS_SIGN
+void store(uint row, vec3 sum) {
+    result[result_origin + row] = vec4(sum, 0.0);
+}
+#else
 // Truncation rings below zero; radiance does not. NaN fails the comparison and becomes 0.
 float tame(float value) {
     return value > 0.0 ? min(value, 3.4e38) : 0.0;
 }
 
 void store(uint row, vec3 sum) {
-    vec3 tamed = vec3(tame(sum.r), tame(sum.g), tame(sum.b));
-    result[result_origin + row] = vec4(keeps_sign != 0u ? sum : tamed, 0.0);
+    result[result_origin + row] = vec4(tame(sum.r), tame(sum.g), tame(sum.b), 0.0);
 }
+#endif
 
 #if LANES == 1
 void main() {

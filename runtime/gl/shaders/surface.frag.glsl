@@ -3,14 +3,15 @@
 // cube_map.glsl comes before this).
 layout(location = 0) in vec3 v_irradiance;
 layout(location = 1) in vec3 v_base_color;
-layout(location = 2) in vec2 v_texcoord;
 layout(location = 0) out vec4 color;
+layout(location = 11) uniform float shown;  // 1, or 0: left out
 
 float tame(float value) {
     return value > 0.0 ? min(value, 1e35) : 0.0;
 }
 
 #ifdef TEXTURED
+layout(location = 2) in vec2 v_texcoord;
 // Codes and a table instead of an sRGB format: hardware may filter before or after decoding and at
 // its own precision; the CPU decodes exactly and filters afterwards.
 layout(binding = 0) uniform usampler2D image;
@@ -72,8 +73,6 @@ float transmittance(float c) {
     float s = c + behind, p = eta * eta * c + behind;
     return min(2.0 * c * behind * (1.0 / (s * s) + eta * eta / (p * p)), 1.0);
 }
-#else
-layout(location = 11) uniform float shown;  // 1, or 0: left out
 #endif
 
 #ifdef GLOSSY
@@ -119,7 +118,7 @@ vec3 tame(vec3 v) {
 }
 
 void main() {
-    vec3 radiance = v_irradiance * v_base_color;
+    vec3 radiance = shown * v_irradiance * v_base_color;
 #ifdef TEXTURED
     radiance *= sample_image(v_texcoord);
 #endif
@@ -132,8 +131,6 @@ void main() {
         c = -c;
     }
     radiance *= transmittance(c);
-#else
-    radiance *= shown;
 #endif
 #ifdef GLOSSY
     radiance = tame(radiance) + specular(n, w, c, is_turned);

@@ -3,7 +3,10 @@
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 irradiance;
 layout(location = 2) in vec3 base_color;
+#ifdef TEXTURED
 layout(location = 3) in vec2 texcoord;
+layout(location = 2) out vec2 v_texcoord;
+#endif
 #ifdef TRANSLUCENT
 layout(location = 4) in vec3 normal;
 layout(location = 3) out vec3 v_normal;
@@ -33,7 +36,6 @@ layout(location = 6) uniform vec4 tile;       // scale xy, offset zw: the tile o
 
 layout(location = 0) out vec3 v_irradiance;
 layout(location = 1) out vec3 v_base_color;
-layout(location = 2) out vec2 v_texcoord;
 
 void main() {
     vec3 p = (position - eye) * unit;
@@ -42,7 +44,9 @@ void main() {
                        near_plane, w);
     v_irradiance = irradiance;
     v_base_color = base_color;
+#ifdef TEXTURED
     v_texcoord = texcoord;
+#endif
 #ifdef TRANSLUCENT
     v_normal = normal;
     v_to_eye = -p;

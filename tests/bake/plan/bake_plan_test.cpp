@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bake/plan/inspect_scene.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {
@@ -46,19 +47,52 @@ TEST(BakePlan, BlackSurfacesAreNotSimulated) {
     auto scene = tests::make_scene({tests::make_sphere(1), tests::make_sphere(1)});
     scene.materials.push_back({.name = "Black", .base_color = {0, 0, 0}});
     scene.primitives[1].material = 1;
-    const auto plan = plan_bake(scene, {}, 1);
-    ASSERT_EQ(plan.size(), 2u);
-    EXPECT_TRUE(plan[0].on);
-    EXPECT_GT(plan[0].predicted_seconds, 0);
-    EXPECT_FALSE(plan[1].on);
-    EXPECT_EQ(plan[1].bound, 0);
-    EXPECT_EQ(plan[1].predicted_bytes, 0u);
+    const auto plan = plan_bake(scene, inspect_scene(scene), {}, 1);
+    const PlanEntry* const grey = find_entry(plan, "direct", 0);
+    const PlanEntry* const black = find_entry(plan, "direct", 1);
+    ASSERT_TRUE(grey != nullptr && black != nullptr);
+    EXPECT_TRUE(grey->on);
+    EXPECT_GT(grey->predicted_seconds, 0);
+    EXPECT_FALSE(black->on);
+    EXPECT_EQ(black->bound, 0);
+    EXPECT_EQ(black->predicted_bytes, 0u);
+    EXPECT_FALSE(find_entry(plan, "direct.visibility", 1)->on) << "nobody would see it";
 }
 
 TEST(BakePlan, UnusedMaterialsAreNotMentioned) {
     auto scene = tests::make_scene({tests::make_sphere(1)});
     scene.materials.push_back({.name = "Unused"});
-    EXPECT_EQ(plan_bake(scene, {}, 1).size(), 1u);
+    for (const PlanEntry& entry : plan_bake(scene, inspect_scene(scene), {}, 1)) {
+        EXPECT_EQ(entry.material, 0u);
+    }
+}
+
+TEST(BakePlan, EverythingForcedLeavesNothingOutForItsBound) {
+    auto scene = tests::make_scene({tests::make_sphere(3), tests::make_sphere(1)});
+    scene.materials.push_back({.name = "Ink"});
+    formats::Medium& ink = scene.materials[1].medium.emplace();
+    ink.sigma_s = {1e-3f, 1e-3f, 1e-3f};
+    ink.sigma_a = {1e3f, 1e3f, 1e3f};
+    ink.eta = 1;
+    scene.primitives[1].material = 1;
+    BakeOptions options;
+    options.simulate_all = true;
+    const SceneFacts facts = inspect_scene(scene);
+    for (const auto& [effect, material] :
+         {std::pair("multiple", 1u), {"single", 1u}, {"specular", 1u}}) {
+        const auto chosen = plan_bake(scene, facts, {}, 1);
+        const auto all = plan_bake(scene, facts, *resolve_knobs(options), 1);
+        const PlanEntry* const off = find_entry(chosen, effect, material);
+        const PlanEntry* const on = find_entry(all, effect, material);
+        EXPECT_FALSE(off->on || off->forced) << effect;
+        EXPECT_TRUE(on->on && on->forced) << effect;
+        EXPECT_EQ(on->bound, off->bound) << effect;
+        EXPECT_NE(on->reason.find("forced"), std::string::npos) << on->reason;
+    }
+    // What is worth it anyway is not called forced.
+    const auto all = plan_bake(scene, facts, *resolve_knobs(options), 1);
+    EXPECT_TRUE(find_entry(all, "direct", 0)->on);
+    EXPECT_FALSE(find_entry(all, "direct", 0)->forced);
 }
 
 }  // namespace

@@ -1,0 +1,254 @@
+#include "bake/plan/inspect_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bake/plan/horizon.h"
+#include "tests/support/scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Primitive;
+using tests::make_cube;
+using tests::make_quad;
+using tests::make_scene;
+using tests::make_sphere;
+using tests::some_rotation;
+using tests::transformed;
+
+MaterialFacts inspect(std::vector<Primitive> primitives) {
+    return inspect_scene(make_scene(std::move(primitives))).material[0];
+}
+
+bool is_convex(const Primitive& p) {
+    const MaterialFacts facts = inspect({p});
+    EXPECT_EQ(facts.parts, 1u);
+    return facts.convex_parts == 1;
+}
+
+// The definition: over all pairs of points, the largest sine at which one stands above the plane
+// through the other across the mean normal of its triangles.
+double highest_of_all_pairs(const Primitive& p) {
+    std::map<std::array<float, 3>, glm::dvec3> normal;
+    const auto key = [](glm::vec3 x) { return std::array{x.x, x.y, x.z}; };
+    for (std::size_t i = 0; i < p.index.size(); i += 3) {
+        const glm::dvec3 a = p.position[p.index[i]], b = p.position[p.index[i + 1]],
+                         c = p.position[p.index[i + 2]];
+        for (std::size_t k = 0; k < 3; ++k) {
+            normal[key(p.position[p.index[i + k]])] += glm::cross(b - a, c - a);
+        }
+    }
+    double highest = 0;
+    for (const auto& [at, n] : normal) {
+        for (const auto& [other, unused] : normal) {
+            const glm::dvec3 to(glm::dvec3(other[0], other[1], other[2]) -
+                                glm::dvec3(at[0], at[1], at[2]));
+            if (at != other) {
+                highest = std::max(highest, glm::dot(glm::normalize(n), to) / glm::length(to));
+            }
+        }
+    }
+    return highest;
+}
+
+// Points moved out along their direction from the centre: stays a star seen from there.
+Primitive star(double amplitude, int levels = 3) {
+    Primitive p = make_sphere(levels);
+    for (glm::vec3& x : p.position) {
+        x *= 1 + amplitude * std::sin(5 * x.x) * std::sin(4 * x.y + 1) * std::cos(6 * x.z);
+    }
+    return p;
+}
+
+// A sheet rolled up: every fold bends the same way, but the inner turn looks at the outer.
+Primitive roll(double turns) {
+    const int steps = static_cast<int>(32 * turns);
+    Primitive p;
+    p.name = "roll";
+    for (int i = 0; i <= steps; ++i) {
+        const double phi = 2 * std::numbers::pi * i / 32;
+        const double r = 1 + 0.1 * phi;
+        for (const float y : {0.0f, 1.0f}) {
+            p.position.push_back({r * std::cos(phi), y, r * std::sin(phi)});
+            p.normal.push_back({std::cos(phi), 0, std::sin(phi)});
+        }
+    }
+    for (std::uint32_t v = 0; v + 3 < p.position.size(); v += 2) {
+        p.index.insert(p.index.end(), {v, v + 1, v + 3, v, v + 3, v + 2});
+    }
+    return p;
+}
+
+TEST(InspectScene, ACubeIsMeasured) {
+    const MaterialFacts facts = inspect({make_cube(1, false)});
+    EXPECT_EQ(facts.triangles, 12);
+    EXPECT_EQ(facts.receivers, 24);
+    EXPECT_NEAR(facts.area, 24, 1e-12);
+    EXPECT_NEAR(facts.mean_edge, (4 + 2 * std::sqrt(2.0)) / 3, 1e-12);
+    EXPECT_EQ(facts.low, glm::vec3(-1));
+    EXPECT_EQ(facts.high, glm::vec3(1));
+    EXPECT_TRUE(facts.is_closed());
+    EXPECT_EQ(facts.parts, 1u);
+    EXPECT_EQ(facts.convex_parts, 1u);
+    EXPECT_FALSE(inspect({make_quad({}, {1, 0, 0}, {0, 0, -1})}).is_closed());
+}
+
+TEST(InspectScene, PartsAreCountedAndJudgedOneByOne) {
+    const MaterialFacts facts = inspect({make_sphere(2, 1), make_sphere(1, 1, {5, 0, 0}),
+                                         transformed(star(0.3), glm::mat3(1), 1, {0, 0, 5})});
+    EXPECT_EQ(facts.parts, 3u);
+    EXPECT_EQ(facts.convex_parts, 2u);
+}
+
+TEST(InspectScene, ConvexityAgreesWithAllPairsOfPoints) {
+    int convex = 0, other = 0;
+    for (int i = 0; i < 24; ++i) {
+        // From a ball whose surface never bends inward to one with dents.
+        const Primitive p = transformed(star(0.004 * i), some_rotation(), 3, {1, 2, 3});
+        const double highest = highest_of_all_pairs(p);
+        const bool judged = is_convex(p);
+        if (highest > kMostElevation) {
+            EXPECT_FALSE(judged) << i << ": " << highest;
+        } else if (highest == 0) {
+            EXPECT_TRUE(judged) << i;
+        }
+        ++(judged ? convex : other);
+    }
+    EXPECT_GT(convex, 2);
+    EXPECT_GT(other, 2);
+}
+
+TEST(InspectScene, AStarThatNearlyIsABallIsNotConvex) {
+    EXPECT_TRUE(is_convex(star(0, 4)));
+    EXPECT_FALSE(is_convex(star(0.06, 4)));
+}
+
+TEST(InspectScene, ARollBendsOneWayEverywhereAndStillIsNotConvex) {
+    EXPECT_TRUE(is_convex(roll(0.25)));
+    EXPECT_FALSE(is_convex(roll(2)));
+}
+
+TEST(InspectScene, FlatFacesWithRoundedCoordinatesAreConvex) {
+    // Turned and moved, no four points of a side are in a plane any more.
+    const Primitive p = transformed(make_cube(40, false), some_rotation(), 0.37f, {3, -2, 5});
+    EXPECT_TRUE(is_convex(p));
+    EXPECT_TRUE(inspect_scene(make_scene({p})).is_open());
+}
+
+TEST(InspectScene, ABodyTurnedInsideOutIsAsConvex) {
+    EXPECT_TRUE(is_convex(make_cube(3, true)));
+}
+
+// Shallow everywhere, but wide: each edge folds by little, all of them by much.
+TEST(InspectScene, AShallowBowlIsNotConvex) {
+    Primitive p = make_sphere(5);
+    for (glm::vec3& x : p.position) {
+        x.y *= 0.2f + 0.8f * std::min(1.0f, 1.2f * (x.x * x.x + x.z * x.z));
+    }
+    EXPECT_FALSE(is_convex(p));
+}
+
+TEST(InspectScene, NothingStandsAboveTheHorizonsOfAConvexBodyAlone) {
+    const auto is_open = [](std::vector<Primitive> primitives) {
+        return inspect_scene(make_scene(std::move(primitives))).is_open();
+    };
+    EXPECT_TRUE(is_open({make_sphere(3)}));
+    EXPECT_TRUE(is_open({make_cube(4, false)}));
+    EXPECT_TRUE(is_open({transformed(make_sphere(3), some_rotation(), 1e-4f, {1, 0, 2})}));
+    // Tiles of one floor.
+    EXPECT_TRUE(is_open(
+        {make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), make_quad({1, 0, 0}, {0, 0, 1}, {1, 0, 0})}));
+    EXPECT_FALSE(is_open({make_cube(4, true)})) << "a room";
+    EXPECT_FALSE(is_open({make_sphere(3), make_sphere(3, 1, {5, 0, 0})})) << "two balls";
+    EXPECT_FALSE(is_open({make_sphere(3), make_sphere(3, 1.0001f)})) << "a ball within another";
+    EXPECT_FALSE(is_open({make_sphere(3), make_quad({-5, -1, -5}, {0, 0, 10}, {10, 0, 0})}))
+        << "a ball on a floor";
+}
+
+TEST(InspectScene, ARoofOverAPointCountsHoweverLowItsCornersStand) {
+    Primitive roof = make_quad({-100, 0.01f, -100}, {200, 0, 0}, {0, 0, 200});
+    const MaterialFacts facts =
+        inspect({make_quad({0, 0, 0}, {0, 0, 0.001f}, {0.001f, 0, 0}), roof});
+    EXPECT_EQ(facts.horizon.elevation, 1);
+}
+
+TEST(InspectScene, NormalsThatLeanMoreThanTheirFacetsSeeTheBodyItself) {
+    const auto leaning = [](double angle) {
+        Primitive p = make_cube(2, false);
+        for (glm::vec3& n : p.normal) {
+            n = glm::mat3(glm::rotate(glm::mat4(1), static_cast<float>(angle), {0.6f, 0, 0.8f})) *
+                n;
+        }
+        return inspect({p}).horizon.elevation;
+    };
+    EXPECT_NEAR(leaning(0.02), 0.02, 0.02);
+    EXPECT_GE(leaning(0.02), 0.019);
+    EXPECT_EQ(leaning(0.1), 1);
+}
+
+TEST(InspectScene, ElevationBoundsEveryPointOfEveryTriangle) {
+    const Primitive p = transformed(star(0.03), some_rotation(), 1, {});
+    std::vector<HorizonTree::Triangle> triangles;
+    for (std::size_t i = 0; i < p.index.size(); i += 3) {
+        triangles.push_back(
+            {p.position[p.index[i]], p.position[p.index[i + 1]], p.position[p.index[i + 2]]});
+    }
+    const HorizonTree tree = make_horizon_tree(triangles);
+    for (std::size_t v = 0; v < p.position.size(); v += 17) {
+        HorizonSearch search{0, 0, 1, 1'000'000};
+        look_over_horizon(tree, p.position[v], glm::dvec3(p.normal[v]), search);
+        ASSERT_FALSE(search.nodes_left <= 0);
+        double highest = 0;
+        for (const auto& [a, b, c] : triangles) {
+            for (int i = 0; i <= 6; ++i) {
+                for (int j = 0; i + j <= 6; ++j) {
+                    const glm::dvec3 to = (i / 6.0) * glm::dvec3(a) + (j / 6.0) * glm::dvec3(b) +
+                                          ((6 - i - j) / 6.0) * glm::dvec3(c) -
+                                          glm::dvec3(p.position[v]);
+                    const double length = glm::length(to);
+                    if (length > 1e-6) {
+                        highest = std::max(highest, glm::dot(glm::dvec3(p.normal[v]), to) / length);
+                    }
+                }
+            }
+        }
+        EXPECT_GE(search.sine, highest - 1e-9) << v;
+        EXPECT_LE(search.sine, 3 * highest + 1e-9) << v;
+    }
+}
+
+TEST(InspectScene, ConstantColoursAreToldFromOthers) {
+    auto scene = make_scene({make_cube(1, false)});
+    EXPECT_EQ(inspect_scene(scene).material[0].color_contrast, 0);
+    EXPECT_EQ(inspect_scene(scene).material[0].brightest_vertex, 1);
+    scene.primitives[0].color.assign(24, {0.5f, 0.25f, 0.125f});
+    EXPECT_EQ(inspect_scene(scene).material[0].color_contrast, 0);
+    EXPECT_EQ(inspect_scene(scene).material[0].brightest_vertex, 0.5f);
+    scene.primitives[0].color[3].g = 0.75f;
+    EXPECT_EQ(inspect_scene(scene).material[0].color_contrast, 0.5f);
+
+    scene.primitives[0].color.clear();
+    scene.images.push_back({2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});
+    scene.materials[0].base_color_image = 0;
+    EXPECT_EQ(inspect_scene(scene).material[0].color_contrast, 0) << "alpha is no colour";
+    scene.images[0].rgba[5] = 0;
+    EXPECT_EQ(inspect_scene(scene).material[0].color_contrast, 1);
+}
+
+TEST(InspectScene, MediaAreGreyOnlyIfAllThreeBandsAreExactlyAlike) {
+    auto scene = make_scene({make_sphere(1)});
+    formats::Medium& medium = scene.materials[0].medium.emplace();
+    medium.sigma_s = {5, 5, 5};
+    medium.sigma_a = {1, 1, 1};
+    EXPECT_TRUE(inspect_scene(scene).material[0].is_grey);
+    EXPECT_TRUE(inspect_scene(scene).material[0].mirrors);
+    medium.sigma_a.b = std::nextafter(1.0f, 2.0f);
+    medium.eta = 1;
+    EXPECT_FALSE(inspect_scene(scene).material[0].is_grey);
+    EXPECT_FALSE(inspect_scene(scene).material[0].mirrors);
+}
+
+}  // namespace
+}  // namespace opaline::bake
