@@ -224,7 +224,7 @@ PlanEntry decide_specular(const PlanInput& input) {
 }
 
 constexpr std::array<PlanRule, 5> kRules{{{"direct", any_material, decide_direct},
-                                          {"direct.visibility", any_material, decide_visibility},
+                                          {"visibility", any_material, decide_visibility},
                                           {"multiple", has_medium, decide_multiple},
                                           {"single", has_medium, decide_single},
                                           {"specular", has_medium, decide_specular}}};

@@ -19,7 +19,7 @@ std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vecto
             return entry != nullptr && entry->on;
         };
         layout.direct = is_on("direct");
-        layout.occluded = is_on("direct.visibility");
+        layout.occluded = is_on("visibility");
         layout.translucent = scene.materials[m].medium.has_value() && !layout.direct;
         layout.multiple = is_on("multiple");
         layout.single_terms = is_on("single") ? find_entry(plan, "single", m)->terms : 0;
