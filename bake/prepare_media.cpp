@@ -32,6 +32,13 @@ MediaStages prepare_media(const PilotScene& pilot, const Knobs& knobs, const Con
         MediumStages& stages = media[m];
         stages.recipe.layout = layouts[m];
         if (layouts[m].multiple) {
+            stages.recipe.profile = &pilot.profiles.at(m);
+        }
+        if (layouts[m].local) {
+            stages.local = make_local_stage(*scene.materials[m].medium, stages.recipe.profile,
+                                            layouts[m].single_terms > 0, knobs.cubemap_size);
+            stages.recipe.local = &*stages.local;
+        } else if (layouts[m].multiple) {
             const std::string name = "samples of material '" + scene.materials[m].name + "'";
             stages.multiple = run_stage(result, name, [&](std::uint64_t& traced) {
                 const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
@@ -53,7 +60,7 @@ void finish_media(const PilotScene& pilot, const Knobs& knobs, const Context& co
                   BakeResult& result, MediaStages& media) {
     for (auto& [m, stages] : media) {
         TranslucentRecipe& recipe = stages.recipe;
-        if (recipe.layout.single_terms > 0) {
+        if (recipe.layout.single_terms > 0 && !recipe.layout.local) {
             const std::string name =
                 "light maps of material '" + pilot.scene.materials[m].name + "'";
             const std::uint32_t material = m, terms = recipe.layout.single_terms;

@@ -15,18 +15,18 @@ EffectCheck check_translucent(const TranslucentRecipe& recipe, const formats::Sc
                               std::span<const TestLight> lights, std::uint64_t seed,
                               const Context& context) {
     EffectCheck check;
-    if (recipe.multiple != nullptr) {
+    if (recipe.profile != nullptr) {
         check.effect = "multiple";
         check.reference = "the surface integral by Monte Carlo";
     }
-    if (recipe.single != nullptr) {
+    const bool once = recipe.layout.single_terms > 0;
+    if (once) {
         check.effect += check.effect.empty() ? "single" : "+single";
         check.reference +=
             std::string(check.reference.empty() ? "" : ", and ") + "rays to twice as many depths";
     }
-    const TranslucentTruth truth = make_translucent_truth(
-        scene, material, recipe.multiple != nullptr ? &recipe.multiple->medium : nullptr,
-        recipe.single != nullptr ? 2 * depth_samples : 0, lights);
+    const TranslucentTruth truth = make_translucent_truth(scene, material, recipe.profile,
+                                                          once ? 2 * depth_samples : 0, lights);
     // Enough to tell a tenth; each costs as much as the rows of some dozens.
     constexpr std::size_t kMostChecked = 256;
     const std::size_t step = (drawn.size() + kMostChecked - 1) / kMostChecked;

@@ -54,7 +54,7 @@ PilotSingles gather_pilot_single(const PilotScene& pilot, std::span<const PilotR
     std::map<std::uint32_t, std::vector<BodyPoint>> points;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         const std::uint32_t m = receivers[i].material;
-        if (pilot.layouts[m].single_terms > 0) {
+        if (pilot.layouts[m].single_terms > 0 && !pilot.layouts[m].local) {
             PilotSingle& single = singles[m];
             single.place.resize(receivers.size());
             single.place[i] = points[m].size();
@@ -98,8 +98,9 @@ std::vector<std::vector<CheckedPair>> measure_rows(
         const BodyPoint& point = pilot.points[r.vertex];
         DenseRows dense{{}, view_of_rows(recipe.layout, point.normal), 3};
         dense.values.resize(dense.h.size() * 3 * formats::cubemap_texels(cubemap_size));
-        assemble_rows(recipe, point, once ? &single->second.batch : nullptr,
-                      once ? single->second.place[i] : 0, dense.values);
+        assemble_rows(recipe, pilot.rays, pilot.vertices[r.vertex], point,
+                      once ? &single->second.batch : nullptr, once ? single->second.place[i] : 0,
+                      dense.values);
         return dense;
     };
     using Pairs = std::vector<std::vector<CheckedPair>>;

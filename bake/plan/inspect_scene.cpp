@@ -84,6 +84,7 @@ void inspect_primitive(const Primitive& primitive, MaterialFacts& facts) {
         const glm::dvec3 n = glm::cross(b - a, c - a);
         const double length = glm::length(n);
         facts.area += 0.5 * length;
+        facts.volume += glm::dot(a, glm::cross(b, c)) / 6;
         for (std::size_t k = 0; k < 3 && length > 0; ++k) {
             const double cosine = glm::dot(n, glm::dvec3(primitive.normal[v[k]])) / length;
             facts.horizon.behind_facets = std::max(facts.horizon.behind_facets, 0.5 * (1 - cosine));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/plan/rule_spread.h"
 #include "bake/plan/rules_visibility.h"
 #include "bake/scattering/dipole.h"
 #include "bake/scattering/fresnel.h"
@@ -223,9 +224,10 @@ PlanEntry decide_specular(const PlanInput& input) {
     return entry;
 }
 
-constexpr std::array<PlanRule, 5> kRules{{{"direct", any_material, decide_direct},
-                                          {"visibility", any_material, decide_visibility},
+constexpr std::array<PlanRule, 6> kRules{{{"direct", any_material, decide_direct},
+                                          {"light.visibility", any_material, decide_visibility},
                                           {"multiple", has_medium, decide_multiple},
+                                          {"multiple.spread", has_medium, decide_spread},
                                           {"single", has_medium, decide_single},
                                           {"specular", has_medium, decide_specular}}};
 
@@ -234,7 +236,11 @@ constexpr std::array<PlanRule, 5> kRules{{{"direct", any_material, decide_direct
 const std::span<const PlanRule> kPlanRules = kRules;
 
 bool is_worth(double bound, const PlanInput& input, bool& forced) {
-    const bool worth = bound >= kLeastBound;
+    // Four of a material's rows may be left out: together they take a quarter of the error at most.
+    constexpr double kShareOfError = 1.0 / 16;
+    const double error = input.knobs.error_target;
+    const bool worth =
+        bound >= (error > 0 ? std::min(kLeastBound, kShareOfError * error) : kLeastBound);
     forced = input.knobs.simulate_all && !worth;
     return worth || forced;
 }

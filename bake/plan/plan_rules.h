@@ -30,8 +30,8 @@ struct PlanRule {
     PlanEntry (*decide)(const PlanInput& input);
 };
 
-/// Whether an effect of this bound is worth simulating. `forced`: it is not, but
-/// Knobs::simulate_all wants it.
+/// Whether an effect of this bound is worth simulating: at least kLeastBound, or a sixteenth of
+/// Knobs::error_target where that is less. `forced`: it is not, but Knobs::simulate_all wants it.
 bool is_worth(double bound, const PlanInput& input, bool& forced);
 
 /// All rules, in the order in which plans list effects.

@@ -19,12 +19,14 @@ std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vecto
             return entry != nullptr && entry->on;
         };
         layout.direct = is_on("direct");
-        layout.occluded = is_on("visibility");
+        layout.occluded = is_on("light.visibility");
         layout.translucent = scene.materials[m].medium.has_value() && !layout.direct;
         layout.multiple = is_on("multiple");
         layout.single_terms = is_on("single") ? find_entry(plan, "single", m)->terms : 0;
         // Multiple scattering alone in its row is told to be so.
         layout.separate = layout.translucent && (knobs.separate_terms || layout.single_terms == 0);
+        layout.local = layout.translucent && (layout.multiple || layout.single_terms > 0) &&
+                       !is_on("multiple.spread");
         layout.glossy = layout.translucent && is_on("specular");
     }
     return layouts;

@@ -15,6 +15,7 @@ struct RowLayout {
     bool direct = false;             ///< the diffuse row is simulated, otherwise zero
     bool multiple = false;           ///< multiple scattering is simulated
     std::uint32_t single_terms = 0;  ///< S, terms of the phase function; 0: no single scattering
+    bool local = false;              ///< light leaves the medium where it entered
     bool separate = false;           ///< multiple scattering in a row of its own
     bool glossy = false;             ///< with specular reflection
     formats::Rgb tint{1, 1, 1};      ///< times the base colour

@@ -21,6 +21,7 @@ struct Horizon {
 struct MaterialFacts {
     double triangles = 0, receivers = 0;
     double area = 0;                     ///< [m^2]
+    double volume = 0;                   ///< [m^3], of what is closed; otherwise meaningless
     double mean_edge = 0;                ///< [m]
     glm::vec3 low{1e30f}, high{-1e30f};  ///< bounds [m]
 

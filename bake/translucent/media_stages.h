@@ -13,6 +13,7 @@ namespace opaline::bake {
 struct MediumStages {
     std::optional<MultipleStage> multiple;
     std::optional<SingleStage> single;
+    std::optional<LocalStage> local;  ///< instead of the others
     TranslucentRecipe recipe;
 };
 

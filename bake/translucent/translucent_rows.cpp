@@ -29,10 +29,18 @@ void add_coarse(std::span<const float> coarse, std::uint32_t m, std::span<float>
 
 }  // namespace
 
-void assemble_rows(const TranslucentRecipe& recipe, const BodyPoint& point,
-                   const SingleBatch* batch, std::size_t place, std::span<float> rows) {
+std::uint64_t assemble_rows(const TranslucentRecipe& recipe, const RayScene& rays,
+                            const Receiver& receiver, const BodyPoint& point,
+                            const SingleBatch* batch, std::size_t place, std::span<float> rows) {
     const std::uint32_t n = recipe.selector.cubemap_size;
     const std::size_t size = formats::cubemap_texels(n);
+    if (recipe.local != nullptr) {
+        const std::uint64_t traced = gather_local(rays, *recipe.local, receiver, rows);
+        for (std::size_t band = 0; band < 3; ++band) {
+            formats::haar_forward_cube(rows.subspan(band * size, size), n);
+        }
+        return traced;
+    }
     std::fill(rows.begin(), rows.end(), 0.0f);
     if (recipe.multiple != nullptr) {
         const MultipleStage& stage = *recipe.multiple;
@@ -61,9 +69,11 @@ void assemble_rows(const TranslucentRecipe& recipe, const BodyPoint& point,
             add_coarse(own, m, rows.subspan((first + plane) * size, size), n);
         }
     }
+    return 0;
 }
 
 formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayScene& rays,
+                                     std::span<const Receiver> receivers,
                                      std::span<const BodyPoint> points, const Context& context,
                                      EntryCounts& counts) {
     const std::uint32_t n = recipe.selector.cubemap_size;
@@ -71,6 +81,10 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
     const std::size_t step = recipe.single != nullptr
                                  ? receivers_per_batch(*recipe.single, recipe.batch_bytes)
                                  : std::max<std::size_t>(1, points.size());
+    struct Block {
+        formats::SparseRows rows;
+        std::uint64_t rays = 0;
+    };
     formats::SparseRows rows = formats::make_sparse_rows(n, recipe.code_bits);
     for (std::size_t begin = 0; begin < points.size() && !context.cancelled(); begin += step) {
         const auto part = points.subspan(begin, std::min(step, points.size() - begin));
@@ -83,14 +97,15 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
         for_each_block_in_order(
             part.size(), 64, context,
             [&](Range range) {
-                formats::SparseRows block = formats::make_sparse_rows(n, recipe.code_bits);
+                Block block{formats::make_sparse_rows(n, recipe.code_bits), 0};
                 std::vector<float> values(terms * 3 * size);
                 for (std::size_t v = range.begin; v < range.end; ++v) {
-                    assemble_rows(recipe, part[v], recipe.single != nullptr ? &batch : nullptr, v,
-                                  values);
+                    block.rays +=
+                        assemble_rows(recipe, rays, receivers[begin + v], part[v],
+                                      recipe.single != nullptr ? &batch : nullptr, v, values);
                     for (std::size_t k = 0; k < terms; ++k) {
                         formats::append_row(
-                            block,
+                            block.rows,
                             select_coefficients(
                                 recipe.selector,
                                 std::span<const float>(values).subspan(3 * k * size, 3 * size), 3));
@@ -98,8 +113,9 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
                 }
                 return block;
             },
-            [&](Range range, const formats::SparseRows& block) {
-                formats::append_rows(rows, block);
+            [&](Range range, const Block& block) {
+                formats::append_rows(rows, block.rows);
+                counts.rays += block.rays;
                 if (context.on_progress) {
                     context.on_progress({"rows", begin + range.end, points.size()});
                 }

@@ -38,7 +38,7 @@ TEST(Bake, ReportHasTheKeysOfTheContract) {
             EXPECT_EQ(entry.at("decision"), "on");
             EXPECT_GT(entry.at("predicted_seconds").get<double>(), 0);
         } else {
-            EXPECT_EQ(entry.at("effect"), "visibility");
+            EXPECT_EQ(entry.at("effect"), "light.visibility");
         }
     }
     ASSERT_FALSE(report.at("stages").empty());

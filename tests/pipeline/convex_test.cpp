@@ -40,7 +40,7 @@ double largest_difference(const formats::Asset& a, const formats::Asset& b, cons
 }
 
 const PlanEntry& visibility_of(const BakeResult& result) {
-    return *find_entry(result.plan, "visibility", 0);
+    return *find_entry(result.plan, "light.visibility", 0);
 }
 
 // Codes of 8 bits and sums in another order.
@@ -140,8 +140,8 @@ TEST(ConvexBodies, EachMaterialIsAskedByItself) {
     scene.materials.push_back({.name = "Ball"});
     scene.primitives[1].material = scene.primitives[2].material = 1;
     const BakeResult result = bake(scene, false);
-    EXPECT_FALSE(find_entry(result.plan, "visibility", 0)->on);
-    EXPECT_TRUE(find_entry(result.plan, "visibility", 1)->on);
+    EXPECT_FALSE(find_entry(result.plan, "light.visibility", 0)->on);
+    EXPECT_TRUE(find_entry(result.plan, "light.visibility", 1)->on);
     EXPECT_TRUE(has_stage(result, "rows of 'quad'"));
     EXPECT_EQ(rays_of(result, "rows of 'quad'"), 0u);
     EXPECT_GT(rays_of(result, "rows of 'sphere'"), 1000u);

@@ -56,7 +56,7 @@ TEST(BakePlan, BlackSurfacesAreNotSimulated) {
     EXPECT_FALSE(black->on);
     EXPECT_EQ(black->bound, 0);
     EXPECT_EQ(black->predicted_bytes, 0u);
-    EXPECT_FALSE(find_entry(plan, "visibility", 1)->on) << "nobody would see it";
+    EXPECT_FALSE(find_entry(plan, "light.visibility", 1)->on) << "nobody would see it";
 }
 
 TEST(BakePlan, UnusedMaterialsAreNotMentioned) {

@@ -21,7 +21,8 @@ formats::SparseRows bake_single_alone(const tests::SingleSetup& setup, const Sin
     recipe.code_bits = 16;
     recipe.batch_bytes = batch_bytes;
     EntryCounts counts;
-    return bake_translucent(recipe, setup.rays, setup.points, {}, counts);
+    const std::vector<Receiver> receivers(setup.points.size());
+    return bake_translucent(recipe, setup.rays, receivers, setup.points, {}, counts);
 }
 
 // <T, 1> of the first band of each receiver: coefficient sums need the light's transform, the face

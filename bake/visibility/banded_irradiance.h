@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/receivers/receiver.h"
+#include "bake/visibility/direction_set.h"
+#include "bake/visibility/ray_scene.h"
+
+namespace opaline::bake {
+
+/// gather_irradiance with a factor for each of three bands, traced once: `transport` holds
+/// V max(0, n.w) f_b(n.w) band by band, 3 * 6 n n values, `factor[b]` tabulates f_b at evenly
+/// spaced cosines from 0 to 1, at least two of them. Returns the number of rays.
+std::uint64_t gather_banded_irradiance(const RayScene& rays, const DirectionSet& directions,
+                                       const Receiver& receiver,
+                                       const std::array<std::vector<float>, 3>& factor,
+                                       std::span<float> transport);
+
+}  // namespace opaline::bake
