@@ -30,6 +30,31 @@ namespace {
 using formats::ErrorKind;
 using formats::make_error;
 
+// Media that are shown as diffuse surfaces, for comparison.
+bool is_opaque_medium(const formats::Scene& scene, std::span<const RowLayout> layouts,
+                      std::size_t m) {
+    return layouts[m].direct && scene.materials[m].medium.has_value();
+}
+
+bool has_opaque_media(const formats::Scene& scene, std::span<const RowLayout> layouts) {
+    for (std::size_t m = 0; m < layouts.size(); ++m) {
+        if (is_opaque_medium(scene, layouts, m)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::vector<RowLayout> tint_media(const formats::Scene& scene, std::uint64_t seed,
+                                  const Context& context, std::vector<RowLayout> layouts) {
+    for (std::size_t m = 0; m < layouts.size(); ++m) {
+        if (is_opaque_medium(scene, layouts, m)) {
+            layouts[m].tint = half_space_albedo(*scene.materials[m].medium, seed, context);
+        }
+    }
+    return layouts;
+}
+
 // Receivers whose material has no diffuse row gather nothing.
 void leave_out_skipped(const formats::Scene& scene, std::span<const RowLayout> layouts,
                        std::vector<Receiver>& receivers) {
@@ -179,8 +204,8 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     const formats::Scene& scene = bodies.scene ? *bodies.scene : given;
     result.warnings = describe_faults(given, bodies.surfaces);
 
-    result.plan = run_stage(
-        result, "plan", [&](std::uint64_t&) { return plan_bake(scene, knobs, context.threads); });
+    result.plan =
+        run_stage(result, "plan", [&](std::uint64_t&) { return plan_bake(scene, knobs); });
     formats::Result<RayScene> rays = run_stage(result, "hierarchy", [&](std::uint64_t&) {
         return RayScene::build(scene, context.threads);
     });
@@ -188,10 +213,10 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
         return std::move(rays).error();
     }
     std::vector<RowLayout> layouts = layout_rows(scene, result.plan, knobs);
-    for (std::size_t m = 0; m < layouts.size(); ++m) {
-        if (layouts[m].direct && scene.materials[m].medium) {
-            layouts[m].tint = half_space_albedo(*scene.materials[m].medium, knobs.seed, context);
-        }
+    if (has_opaque_media(scene, layouts)) {
+        layouts = run_stage(result, "albedos of media", [&](std::uint64_t&) {
+            return tint_media(scene, knobs.seed, context, std::move(layouts));
+        });
     }
     std::vector<BodyPoint> points;
     const std::vector<Receiver> receivers = run_stage(result, "receivers", [&](std::uint64_t&) {
@@ -214,7 +239,7 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
                                                : prepare_media(pilot, knobs, context, result);
     finish_media(pilot, knobs, context, result, media);
     if (knobs.error_target > 0) {
-        result.plan = plan_bake(scene, knobs, context.threads);  // of the knobs that were chosen
+        result.plan = plan_bake(scene, knobs);  // of the knobs that were chosen
     }
     if (context.cancelled()) {
         return interrupted();

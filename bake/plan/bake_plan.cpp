@@ -6,13 +6,10 @@
 
 namespace opaline::bake {
 
-std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const Knobs& knobs,
-                                 unsigned threads) {
-    double triangles = 0;
+std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const Knobs& knobs) {
     std::vector<PlanSubject> subjects(scene.materials.size());
     for (const formats::Primitive& primitive : scene.primitives) {
         PlanSubject& subject = subjects[primitive.material];
-        triangles += static_cast<double>(primitive.index.size() / 3);
         subject.receivers += static_cast<double>(primitive.position.size());
         if (primitive.color.empty()) {
             subject.brightest_vertex = 1.0f;
@@ -33,7 +30,7 @@ std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const Knobs& knobs
         if (subjects[m].receivers == 0) {
             continue;
         }
-        const PlanInput input{scene.materials[m], subjects[m], triangles, knobs, threads};
+        const PlanInput input{scene.materials[m], subjects[m], knobs};
         for (const auto& rule : kPlanRules) {
             if (rule.applies(input)) {
                 PlanEntry entry = rule.decide(input);

@@ -22,9 +22,7 @@ struct PlanSubject {
 struct PlanInput {
     const formats::Material& material;
     const PlanSubject& subject;
-    double all_triangles;  ///< of the scene
     const Knobs& knobs;
-    unsigned threads;
 };
 
 /// One row of the planner: which materials an effect concerns, and whether it is worth simulating.

@@ -186,7 +186,7 @@ TEST(TranslucentPipeline, PlanFollowsTheMedium) {
     const auto on = [](const Medium& medium) {
         const auto scene = make_ball_on_floor(medium);
         Names effects;
-        for (const PlanEntry& entry : plan_bake(scene, {}, 1)) {
+        for (const PlanEntry& entry : plan_bake(scene, {})) {
             EXPECT_FALSE(entry.reason.empty());
             if (entry.material == 0 && entry.on) {
                 effects.push_back(entry.effect);
