@@ -31,6 +31,31 @@ namespace {
 using formats::ErrorKind;
 using formats::make_error;
 
+// Media that are shown as diffuse surfaces, for comparison.
+bool is_opaque_medium(const formats::Scene& scene, std::span<const RowLayout> layouts,
+                      std::size_t m) {
+    return layouts[m].direct && scene.materials[m].medium.has_value();
+}
+
+bool has_opaque_media(const formats::Scene& scene, std::span<const RowLayout> layouts) {
+    for (std::size_t m = 0; m < layouts.size(); ++m) {
+        if (is_opaque_medium(scene, layouts, m)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::vector<RowLayout> tint_media(const formats::Scene& scene, std::uint64_t seed,
+                                  const Context& context, std::vector<RowLayout> layouts) {
+    for (std::size_t m = 0; m < layouts.size(); ++m) {
+        if (is_opaque_medium(scene, layouts, m)) {
+            layouts[m].tint = half_space_albedo(*scene.materials[m].medium, seed, context);
+        }
+    }
+    return layouts;
+}
+
 // Receivers whose material has no diffuse row gather nothing.
 std::vector<Receiver> leave_out_skipped(const formats::Scene& scene,
                                         std::span<const RowLayout> layouts,
@@ -158,13 +183,6 @@ void warn_of_thin_parts(const formats::Scene& scene, const RayScene& rays,
     }
 }
 
-// Rays cross media, or find out what stands before the light of what is simulated.
-bool needs_hierarchy(std::span<const RowLayout> layouts) {
-    return std::any_of(layouts.begin(), layouts.end(), [](const RowLayout& l) {
-        return l.multiple || l.single_terms > 0 || (l.occluded && (l.direct || l.glossy));
-    });
-}
-
 formats::Error interrupted() {
     return make_error(ErrorKind::interrupted, "", "", "interrupted", "nothing was written");
 }
@@ -189,7 +207,7 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     SceneFacts facts;
     result.plan = run_stage(result, "plan", [&](std::uint64_t&) {
         facts = inspect_scene(scene);
-        return plan_bake(scene, facts, knobs, context.threads);
+        return plan_bake(scene, facts, knobs);
     });
     std::vector<RowLayout> layouts = layout_rows(scene, result.plan, knobs);
     formats::Result<RayScene> sky = RayScene::build({}, context.threads);
@@ -207,10 +225,10 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
         hierarchy = std::move(*built);
     }
     const RayScene& rays = hierarchy ? *hierarchy : *sky;
-    for (std::size_t m = 0; m < layouts.size(); ++m) {
-        if (layouts[m].direct && scene.materials[m].medium) {
-            layouts[m].tint = half_space_albedo(*scene.materials[m].medium, knobs.seed, context);
-        }
+    if (has_opaque_media(scene, layouts)) {
+        layouts = run_stage(result, "albedos of media", [&](std::uint64_t&) {
+            return tint_media(scene, knobs.seed, context, std::move(layouts));
+        });
     }
     std::vector<BodyPoint> points;
     const std::vector<Receiver> vertices = run_stage(result, "receivers", [&](std::uint64_t&) {
@@ -233,8 +251,7 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
                                                : prepare_media(pilot, knobs, context, result);
     finish_media(pilot, knobs, context, result, media);
     if (knobs.error_target > 0) {
-        result.plan =
-            plan_bake(scene, facts, knobs, context.threads);  // of the knobs that were chosen
+        result.plan = plan_bake(scene, facts, knobs);  // of the knobs that were chosen
     }
     if (context.cancelled()) {
         return interrupted();

@@ -10,11 +10,13 @@
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
+#include "bake/cli/machine_rates.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/progress.h"
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/pipeline.h"
+#include "bake/plan/inspect_scene.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/write_opal.h"
 
@@ -68,6 +70,17 @@ formats::Status write_output(std::optional<formats::AtomicFile>& file, std::stri
     return status ? file->commit() : status;
 }
 
+// What the stages were expected to take, before a pilot changed any knob; and the plan's entries,
+// of the knobs that were used.
+Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
+                   const MachineRates& machine, bake::BakeResult& result) {
+    const bake::SceneFacts facts = bake::inspect_scene(scene);
+    std::vector<bake::PlanEntry> first = bake::plan_bake(scene, facts, wanted);
+    bake::predict_costs(scene, facts, result.knobs, machine.rates, result.threads, result.plan);
+    return {bake::predict_costs(scene, facts, wanted, machine.rates, result.threads, first),
+            machine.note};
+}
+
 int run(const Options& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const auto wanted = parse_effects(options.scene);
@@ -97,6 +110,7 @@ int run(const Options& options) {
             return report_error(output->error());
         }
     }
+    const MachineRates machine = find_machine_rates();
     bake::Context context;
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
@@ -115,7 +129,8 @@ int run(const Options& options) {
     std::vector<formats::Diagnostic> warnings = imported->warnings;
     warnings.insert(warnings.end(), result->warnings.begin(), result->warnings.end());
     print_warnings(result->warnings);
-    const std::string report = make_report(imported->scene, *result, warnings, bytes);
+    const Expectation expected = expect(imported->scene, *knobs, machine, *result);
+    const std::string report = make_report(imported->scene, *result, expected, warnings, bytes);
     const std::string rule = make_depfile(options.output, imported->scene.inputs);
     for (const auto& [output, text] : {std::pair{&*report_file, &report}, {&*depfile, &rule}}) {
         if (auto status = write_output(*output, *text); !status) {

@@ -5,6 +5,7 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
+#include "bake/cli/machine_rates.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
@@ -34,9 +35,13 @@ int run(const Options& options) {
     }
     bake::Context context;
     context.threads = options.scene.bake.threads;
-    const auto plan = bake::plan_bake(imported->scene, bake::inspect_scene(imported->scene), *knobs,
-                                      bake::thread_count(context));
-    fmt::print("{}", options.json ? make_plan_json(plan) : make_plan_table(plan));
+    const unsigned threads = bake::thread_count(context);
+    const bake::SceneFacts facts = bake::inspect_scene(imported->scene);
+    auto plan = bake::plan_bake(imported->scene, facts, *knobs);
+    const bake::CostPrediction cost = bake::predict_costs(
+        imported->scene, facts, *knobs, find_machine_rates().rates, threads, plan);
+    fmt::print("{}",
+               options.json ? make_plan_json(plan, cost) : make_plan_table(plan, cost, threads));
     return kExitSuccess;
 }
 

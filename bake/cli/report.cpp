@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "bake/cli/messages.h"
@@ -32,6 +33,18 @@ Json plan_array(const std::vector<bake::PlanEntry>& plan) {
     return array;
 }
 
+// Of the first of that name that is left. A pilot's further rounds are not predicted: 0.
+double take_predicted(std::vector<bake::StageCost>& costs, const std::string& name) {
+    const auto found = std::find_if(costs.begin(), costs.end(),
+                                    [&](const bake::StageCost& cost) { return cost.name == name; });
+    if (found == costs.end()) {
+        return 0;
+    }
+    const double seconds = found->seconds;
+    costs.erase(found);
+    return seconds;
+}
+
 Json accuracy_json(const bake::AccuracyReport& accuracy) {
     Json trials = Json::array();
     for (const auto& [cubemap_size, samples_per_path, trial] : accuracy.trials) {
@@ -53,6 +66,7 @@ Json accuracy_json(const bake::AccuracyReport& accuracy) {
 }  // namespace
 
 std::string make_report(const formats::Scene& scene, const bake::BakeResult& result,
+                        const Expectation& expected,
                         const std::vector<formats::Diagnostic>& warnings, std::uint64_t bytes) {
     Json report;
     report["version"] = OPALINE_VERSION;
@@ -62,13 +76,17 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     report["knobs"] = bake::knobs_json(result.knobs);
     report["plan"] = plan_array(result.plan);
     report["stages"] = Json::array();
+    std::vector<bake::StageCost> costs = expected.cost.stages;
     for (const bake::StageReport& stage : result.stages) {
         report["stages"].push_back({{"name", stage.name},
                                     {"seconds", stage.seconds},
+                                    {"predicted_seconds", take_predicted(costs, stage.name)},
                                     {"rays", stage.rays},
                                     {"peak_rss_bytes", stage.peak_rss_bytes}});
     }
     report["seconds_total"] = result.seconds_total;
+    report["predicted_seconds_total"] = expected.cost.seconds;
+    report["calibration"] = expected.rates_note;
     report["error"] = bake::error_json(result.error);
     if (result.accuracy) {
         report["accuracy"] = accuracy_json(*result.accuracy);
@@ -89,30 +107,47 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     return dump(report);
 }
 
-std::string make_plan_json(const std::vector<bake::PlanEntry>& plan) {
-    return dump(Json{{"plan", plan_array(plan)}});
+std::string make_plan_json(const std::vector<bake::PlanEntry>& plan,
+                           const bake::CostPrediction& cost) {
+    Json stages = Json::array();
+    for (const bake::StageCost& stage : cost.stages) {
+        stages.push_back({{"name", stage.name}, {"predicted_seconds", stage.seconds}});
+    }
+    return dump(Json{{"plan", plan_array(plan)},
+                     {"stages", std::move(stages)},
+                     {"predicted_seconds_total", cost.seconds},
+                     {"predicted_seconds_shared", cost.shared_seconds},
+                     {"predicted_bytes_total", cost.bytes},
+                     {"predicted_bytes_shared", cost.shared_bytes},
+                     {"receivers", cost.receivers}});
 }
 
-std::string make_plan_table(const std::vector<bake::PlanEntry>& plan) {
-    std::size_t widest = 7, widest_effect = 6;
-    double seconds = 0, bytes = 0;
+std::string make_plan_table(const std::vector<bake::PlanEntry>& plan,
+                            const bake::CostPrediction& cost, unsigned threads) {
+    const std::string everything = "whole scene", rest = "the rest";
+    std::size_t widest = everything.size(), widest_effect = rest.size();
     for (const bake::PlanEntry& entry : plan) {
         widest = std::max(widest, entry.subject.size());
         widest_effect = std::max(widest_effect, entry.effect.size());
-        seconds += entry.predicted_seconds;
-        bytes += static_cast<double>(entry.predicted_bytes);
     }
     std::string table =
         fmt::format("{:<{}} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", "effect", widest_effect,
                     "subject", widest, "decision", "bound", "time", "size", "reason");
+    const auto bytes = [](std::uint64_t count) { return format_bytes(static_cast<double>(count)); };
     for (const bake::PlanEntry& entry : plan) {
-        table +=
-            fmt::format("{:<{}} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.effect,
-                        widest_effect, entry.subject, widest, entry.on ? "on" : "off", entry.bound,
-                        format_seconds(entry.predicted_seconds),
-                        format_bytes(static_cast<double>(entry.predicted_bytes)), entry.reason);
+        table += fmt::format("{:<{}} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.effect,
+                             widest_effect, entry.subject, widest, entry.on ? "on" : "off",
+                             entry.bound, format_seconds(entry.predicted_seconds),
+                             bytes(entry.predicted_bytes), entry.reason);
     }
-    return table + fmt::format("predicted: {}, {}\n", format_seconds(seconds), format_bytes(bytes));
+    table += fmt::format("{:<{}} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", rest, widest_effect,
+                         everything, widest, "always", "", format_seconds(cost.shared_seconds),
+                         bytes(cost.shared_bytes),
+                         "ray hierarchy, receivers, test lights, self-check; mesh and images");
+    return table + fmt::format("predicted: {} on {}, {}, {} receivers\n",
+                               format_seconds(cost.seconds),
+                               threads == 1 ? "1 thread" : fmt::format("{} threads", threads),
+                               bytes(cost.bytes), cost.receivers);
 }
 
 std::string make_depfile(const std::filesystem::path& output,

@@ -5,16 +5,27 @@
 #include <vector>
 
 #include "bake/pipeline.h"
+#include "bake/plan/cost_model.h"
 
 namespace opaline::cli {
 
+/// What was expected of a bake, and how the machine's speed was known.
+struct Expectation {
+    bake::CostPrediction cost;
+    std::string rates_note;
+};
+
 /// The `--report` JSON (design 3, contract). `bytes`: size of the written file.
 std::string make_report(const formats::Scene& scene, const bake::BakeResult& result,
+                        const Expectation& expected,
                         const std::vector<formats::Diagnostic>& warnings, std::uint64_t bytes);
 
-/// The plan as JSON: {"plan": [...]}, and as a table for people.
-std::string make_plan_json(const std::vector<bake::PlanEntry>& plan);
-std::string make_plan_table(const std::vector<bake::PlanEntry>& plan);
+/// The plan as JSON: {"plan": [...], "stages": [...], ...}, and as a table for people, who read on
+/// how many `threads` it is for.
+std::string make_plan_json(const std::vector<bake::PlanEntry>& plan,
+                           const bake::CostPrediction& cost);
+std::string make_plan_table(const std::vector<bake::PlanEntry>& plan,
+                            const bake::CostPrediction& cost, unsigned threads);
 
 /// One rule in make format: `output: inputs`.
 std::string make_depfile(const std::filesystem::path& output,

@@ -11,6 +11,7 @@
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
+#include "bake/cli/machine_rates.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/progress.h"
 #include "bake/cli/scene_options.h"
@@ -93,6 +94,7 @@ int run(const Options& options) {
     wanted.bake = *options_of_bake;
     wanted.seconds = options.seconds;
     wanted.light = options.light;
+    wanted.rates = find_machine_rates().rates;
     bake::Context context;
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;

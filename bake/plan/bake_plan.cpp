@@ -7,14 +7,13 @@
 namespace opaline::bake {
 
 std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const SceneFacts& facts,
-                                 const Knobs& knobs, unsigned threads) {
+                                 const Knobs& knobs) {
     std::vector<PlanEntry> plan;
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         if (facts.material[m].receivers == 0) {
             continue;
         }
-        const PlanInput input{scene.materials[m], facts.material[m], facts.triangles, knobs,
-                              threads};
+        const PlanInput input{scene.materials[m], facts.material[m], knobs};
         for (const auto& rule : kPlanRules) {
             if (rule.applies(input)) {
                 PlanEntry entry = rule.decide(input);

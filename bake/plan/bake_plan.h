@@ -17,17 +17,17 @@ struct PlanEntry {
     std::string subject;         ///< "material 'Floor'"
     std::uint32_t material = 0;  ///< index into Scene::materials
     bool on = false;
-    bool forced = false;      ///< on although the rule would leave it out: Knobs::simulate_all
-    std::string reason;       ///< the rule in words
-    double bound = 0;         ///< largest radiance it can contribute under `white`
-    std::uint32_t terms = 0;  ///< `single`: terms of the phase function
-    double predicted_seconds = 0;
-    std::uint64_t predicted_bytes = 0;
+    bool forced = false;           ///< on although the rule would leave it out: Knobs::simulate_all
+    std::string reason;            ///< the rule in words
+    double bound = 0;              ///< largest radiance it can contribute under `white`
+    std::uint32_t terms = 0;       ///< `single`: terms of the phase function
+    double predicted_seconds = 0;  ///< filled in by predict_costs (cost_model.h)
+    std::uint64_t predicted_bytes = 0;  ///< the same; of the rows in the file
 };
 
 /// Decides what to simulate, from the scene alone: traces nothing. `facts`: inspect_scene's.
 std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const SceneFacts& facts,
-                                 const Knobs& knobs, unsigned threads);
+                                 const Knobs& knobs);
 
 /// The entry of an effect for a material; null: there is none.
 const PlanEntry* find_entry(const std::vector<PlanEntry>& plan, std::string_view effect,

@@ -7,46 +7,16 @@
 
 #include "bake/plan/rule_spread.h"
 #include "bake/plan/rules_visibility.h"
+#include "bake/plan/stage_costs.h"
 #include "bake/scattering/dipole.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/half_space_single.h"
 #include "bake/scattering/phase.h"
 #include "bake/scattering/phase_series.h"
 #include "formats/media/mean_cosine.h"
-#include "formats/opal/cubemap.h"
-#include "formats/opal/openness.h"
 
 namespace opaline::bake {
 namespace {
-
-// Rates of one thread, fitted to the benchmarks: good to a factor of two on another machine.
-// Occlusion rays on a mesh of one triangle, and how that falls as the hierarchy grows a level.
-constexpr double kRaysPerSecond = 36e6;
-constexpr double kSlowdownPerLevel = 0.11;
-// Coefficients that the gather adds up, and how many nodes it takes for a receiver.
-constexpr double kGatherPerSecond = 4e8;
-constexpr double kNodes = 800;
-// Triangles drawn into a light map, and interior points looked up in it.
-constexpr double kDrawnPerSecond = 1e7;
-constexpr double kLookUpsPerSecond = 1e7;
-
-double predict_trace_seconds(double receivers, const PlanInput& input) {
-    // Half of the 2N x 2N x 6 subtexels lie above a receiver's horizon.
-    const double n = input.knobs.cubemap_size;
-    const double level = std::log2(std::max(input.all_triangles, 1.0));
-    return receivers * 12 * n * n * (1 + kSlowdownPerLevel * level) /
-           (kRaysPerSecond * input.threads);
-}
-
-std::uint64_t predict_row_bytes(const Knobs& knobs, std::uint64_t bands) {
-    const std::uint64_t all = formats::cubemap_texels(knobs.cubemap_size);
-    // Of a surface in the open half of all coefficients vanish, below the horizon.
-    const std::uint64_t details = knobs.coefficients == kAllCoefficients
-                                      ? (bands == 1 ? all / 2 : all)
-                                      : std::min<std::uint64_t>(knobs.coefficients, all) - 6;
-    const std::uint64_t index_bytes = all <= 65536 ? 2 : 4;
-    return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
-}
 
 bool is_named(const Knobs& knobs, std::string_view effect) {
     return std::find(knobs.effects.begin(), knobs.effects.end(), effect) != knobs.effects.end();
@@ -95,9 +65,6 @@ PlanEntry decide_direct(const PlanInput& input) {
         entry.reason = entry.forced ? "the base colour is black: nothing is reflected"
                        : medium ? "the medium is shown as a diffuse surface of the same reflectance"
                                 : "the surface reflects diffusely";
-        entry.predicted_seconds = predict_trace_seconds(input.subject.receivers, input);
-        entry.predicted_bytes =
-            static_cast<std::uint64_t>(input.subject.receivers) * predict_row_bytes(input.knobs, 1);
     } else {
         entry.reason = "the base colour is black: nothing is reflected";
     }
@@ -126,24 +93,9 @@ PlanEntry decide_multiple(const PlanInput& input) {
         entry.reason = "the medium absorbs nearly all that it scatters";
         return entry;
     }
-    const double most = input.knobs.samples;
-    const double samples =
-        input.knobs.exact_samples
-            ? most
-            : std::min(most, std::max(2000.0, input.knobs.samples_per_path * input.subject.area *
-                                                  densest * densest));
+    const double samples = expected_samples(medium, input.subject.area, input.knobs);
     entry.reason = "light scatters many times inside; " +
                    std::to_string(static_cast<std::uint64_t>(samples)) + " surface samples";
-    // One ray a texel, a quarter of what a receiver on the surface traces; then a gather of some
-    // hundreds of nodes for each receiver.
-    const double kept = input.knobs.coefficients == kAllCoefficients
-                            ? static_cast<double>(formats::cubemap_texels(input.knobs.cubemap_size))
-                            : static_cast<double>(input.knobs.coefficients);
-    entry.predicted_seconds =
-        0.25 * predict_trace_seconds(samples, input) +
-        input.subject.receivers * kNodes * kept / (kGatherPerSecond * input.threads);
-    entry.predicted_bytes =
-        static_cast<std::uint64_t>(input.subject.receivers) * predict_row_bytes(input.knobs, 3);
     return entry;
 }
 
@@ -185,19 +137,6 @@ PlanEntry decide_single(const PlanInput& input) {
     entry.reason = entry.terms == 1 ? "light scatters once inside, alike in all directions"
                                     : "light scatters once inside; " + std::to_string(entry.terms) +
                                           " terms of the phase function";
-    const double n = input.knobs.single_cubemap;
-    const double views = 6 * n * n, nodes = input.subject.receivers * input.knobs.depth_samples;
-    const double level = std::log2(std::max(input.all_triangles, 1.0));
-    entry.predicted_seconds =
-        input.knobs.exact_rays
-            ? 2 * 4 * views * nodes * (1 + kSlowdownPerLevel * level) /
-                  (kRaysPerSecond * input.threads)
-            : views * (input.all_triangles / kDrawnPerSecond + nodes / kLookUpsPerSecond) /
-                  input.threads;
-    // The first term shares the row of multiple scattering.
-    const bool own = input.knobs.separate_terms || !is_wanted(input.knobs, "multiple");
-    entry.predicted_bytes = static_cast<std::uint64_t>(input.subject.receivers) *
-                            (entry.terms - (own ? 0 : 1)) * predict_row_bytes(input.knobs, 3);
     return entry;
 }
 
@@ -212,14 +151,6 @@ PlanEntry decide_specular(const PlanInput& input) {
         entry.reason = "the index of refraction is that of the air: nothing is mirrored";
     } else {
         entry.reason = "the boundary of the medium mirrors its surroundings";
-        // One ray a texel of a small cube map, in packets so wide that they share little of their
-        // way.
-        constexpr double kWidePackets = 6;
-        constexpr double kShare = kWidePackets * 0.25 * kOpennessCubemap * kOpennessCubemap;
-        entry.predicted_seconds = kShare / (input.knobs.cubemap_size * input.knobs.cubemap_size) *
-                                  predict_trace_seconds(input.subject.receivers, input);
-        entry.predicted_bytes =
-            static_cast<std::uint64_t>(input.subject.receivers) * sizeof(formats::Openness);
     }
     return entry;
 }

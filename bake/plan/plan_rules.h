@@ -17,9 +17,7 @@ inline constexpr std::uint32_t kOpennessCubemap = 8;
 struct PlanInput {
     const formats::Material& material;
     const MaterialFacts& subject;
-    double all_triangles;  ///< of the scene
     const Knobs& knobs;
-    unsigned threads;
 };
 
 /// One row of the planner: which materials an effect concerns, and whether it is worth simulating.

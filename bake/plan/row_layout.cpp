@@ -1,5 +1,6 @@
 #include "bake/plan/row_layout.h"
 
+#include <algorithm>
 #include <numbers>
 
 namespace opaline::bake {
@@ -30,6 +31,12 @@ std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vecto
         layout.glossy = layout.translucent && is_on("specular");
     }
     return layouts;
+}
+
+bool needs_hierarchy(std::span<const RowLayout> layouts) {
+    return std::any_of(layouts.begin(), layouts.end(), [](const RowLayout& l) {
+        return l.multiple || l.single_terms > 0 || (l.occluded && (l.direct || l.glossy));
+    });
 }
 
 }  // namespace opaline::bake

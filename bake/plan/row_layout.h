@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bake/plan/bake_plan.h"
@@ -34,5 +35,9 @@ struct RowLayout {
 /// One layout per material of the scene, from what the plan decided.
 std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vector<PlanEntry>& plan,
                                    const Knobs& knobs);
+
+/// Whether rays are traced: they cross media, or find out what stands before the light of what is
+/// simulated.
+bool needs_hierarchy(std::span<const RowLayout> layouts);
 
 }  // namespace opaline::bake

@@ -12,6 +12,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/environment/builtin_environment.h"
+#include "bake/plan/cost_model.h"
 #include "bake/plan/inspect_scene.h"
 #include "formats/media/mean_cosine.h"
 
@@ -29,15 +30,10 @@ struct Prediction {
 };
 
 Prediction predict(const formats::Scene& scene, const SceneFacts& facts, const Knobs& knobs,
-                   unsigned threads) {
-    Prediction sum;
-    for (const PlanEntry& entry : plan_bake(scene, facts, knobs, threads)) {
-        if (entry.on) {
-            sum.seconds += entry.predicted_seconds;
-            sum.bytes += static_cast<double>(entry.predicted_bytes);
-        }
-    }
-    return sum;
+                   const Rates& rates, unsigned threads) {
+    std::vector<PlanEntry> plan = plan_bake(scene, facts, knobs);
+    const CostPrediction cost = predict_costs(scene, facts, knobs, rates, threads, plan);
+    return {cost.seconds, static_cast<double>(cost.bytes)};
 }
 
 std::string amount(double value, const char* unit) {
@@ -99,7 +95,7 @@ struct Sweep {
 
     // Bakes a point, or notes why not.
     formats::Status visit(const SweepPoint& point, double seconds_left) {
-        const Prediction cost = predict(scene, facts, point.knobs, context.threads);
+        const Prediction cost = predict(scene, facts, point.knobs, options.rates, context.threads);
         if (std::string reason = objection(cost, seconds_left); !reason.empty()) {
             skip(point, cost, std::move(reason));
             return formats::ok_status();
@@ -129,8 +125,8 @@ struct Sweep {
 // The finest candidate that half of the time that is left allows.
 std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
     for (const SweepPoint& candidate : make_truths(sweep.result.subject, sweep.options.bake)) {
-        const Prediction cost =
-            predict(sweep.scene, sweep.facts, candidate.knobs, sweep.context.threads);
+        const Prediction cost = predict(sweep.scene, sweep.facts, candidate.knobs,
+                                        sweep.options.rates, sweep.context.threads);
         if (sweep.objection(cost, 0.5 * sweep.left()).empty()) {
             return candidate;
         }
@@ -246,7 +242,7 @@ formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepO
     if (!draft || !preview) {
         return (draft ? preview : draft).error();
     }
-    result.plan = plan_bake(scene, facts, *preview, context.threads);
+    result.plan = plan_bake(scene, facts, *preview);
     result.subject = sweep_subject(result.plan, scene);
     // A quick one shows how fast this machine is.
     SweepPoint first{std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
@@ -260,10 +256,10 @@ formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepO
                                    "give more seconds, or a smaller scene");
     }
     constexpr double kShare = 1.0 / 20;
-    if (predict(scene, facts, *preview, context.threads).seconds * sweep.scale() >
+    if (predict(scene, facts, *preview, options.rates, context.threads).seconds * sweep.scale() >
         kShare * options.seconds) {
         result.base = Quality::draft;
-        result.plan = plan_bake(scene, facts, *draft, context.threads);
+        result.plan = plan_bake(scene, facts, *draft);
     }
     std::vector<SweepPoint> points = make_ladders(result.subject, options.bake, result.base);
     result.model_error = result.points.front().model_error;
@@ -277,8 +273,8 @@ formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepO
         if (urgency(a) != urgency(b)) {
             return urgency(a) < urgency(b);
         }
-        return predict(scene, facts, a.knobs, context.threads).seconds <
-               predict(scene, facts, b.knobs, context.threads).seconds;
+        return predict(scene, facts, a.knobs, options.rates, context.threads).seconds <
+               predict(scene, facts, b.knobs, options.rates, context.threads).seconds;
     });
     for (const SweepPoint& point : points) {
         // One preset must not take the time of all ladders.

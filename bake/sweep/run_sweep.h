@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/plan/rates.h"
 #include "bake/sweep/run_point.h"
 
 namespace opaline::bake {
@@ -14,6 +15,7 @@ struct SweepOptions {
     double seconds = 300;       ///< the sweep starts no point that is predicted to end later
     double most_bytes = 4e9;    ///< nor one whose file is predicted to be larger
     std::size_t probes = 2000;  ///< receivers to compare at, at most
+    Rates rates;                ///< of this machine
     std::string light = "sky:3,35";  ///< of the pictures
 };
 
@@ -51,7 +53,7 @@ struct SweepStep {
 /// Bakes the ladders of a scene: `draft` first, then the most accurate setting that half of the
 /// time allows, the truth, then the other presets, one-at-a-time and diagonal ladders, and grids,
 /// the cheap ones of each first. The ladders stand around `preview`, or `draft` where a twentieth
-/// of the time is less than `preview` takes. Predictions are plan_bake's, scaled by how long the
+/// of the time is less than `preview` takes. Predictions are predict_costs', scaled by how long the
 /// points so far took. A point that runs out of memory is skipped. Errors: as run_bake; usage, for
 /// a light that is none or too little time.
 formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepOptions& options,

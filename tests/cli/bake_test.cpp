@@ -46,6 +46,7 @@ TEST(Bake, ReportHasTheKeysOfTheContract) {
     for (const Json& stage : report.at("stages")) {
         EXPECT_FALSE(stage.at("name").get<std::string>().empty());
         EXPECT_GE(stage.at("rays").get<double>(), 0);
+        EXPECT_GE(stage.at("predicted_seconds").get<double>(), 0);
         EXPECT_GT(stage.at("peak_rss_bytes").get<double>(), 1e6);
         seconds += stage.at("seconds").get<double>();
     }

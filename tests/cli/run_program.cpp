@@ -42,7 +42,9 @@ Outcome run_any(const Arguments& command, const std::function<void(int)>& when_s
 }
 
 Outcome run_opaline(Arguments arguments, const std::function<void(int)>& when_started) {
-    arguments.insert(arguments.begin(), OPALINE_PROGRAM);
+    // Rates of this machine are measured once for all tests, and not put into the user's cache.
+    arguments.insert(arguments.begin(),
+                     {"env", std::string("XDG_CACHE_HOME=") + OPALINE_TEST_CACHE, OPALINE_PROGRAM});
     return run_any(arguments, when_started);
 }
 

@@ -19,7 +19,7 @@ using Arguments = std::vector<std::string>;
 /// is kept in files, so that it never waits for a reader.
 Outcome run_any(const Arguments& command, const std::function<void(int)>& when_started = {});
 
-/// Runs `opaline` with these arguments.
+/// Runs `opaline` with these arguments, and a cache of its own.
 Outcome run_opaline(Arguments arguments, const std::function<void(int)>& when_started = {});
 
 /// Names of everything in a folder, sorted.

@@ -187,7 +187,7 @@ TEST(TranslucentPipeline, PhaseFunctionWithAPreferenceTakesWholeDegrees) {
 TEST(TranslucentPipeline, PlanFollowsTheMedium) {
     const auto on = [](const Medium& medium) {
         const auto scene = make_ball_on_floor(medium);
-        const auto plan = plan_bake(scene, inspect_scene(scene), {}, 1);
+        const auto plan = plan_bake(scene, inspect_scene(scene), {});
         for (const PlanEntry& entry : plan) {
             EXPECT_FALSE(entry.reason.empty());
         }

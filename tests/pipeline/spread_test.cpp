@@ -56,7 +56,7 @@ TEST(Spread, OfADenseSmoothBodyIsLeftOutAndSamplesFindTheSame) {
 
 TEST(Spread, IsSimulatedAsSoonAsItCouldShow) {
     const auto plan_of = [](const formats::Scene& scene) {
-        return *find_entry(plan_bake(scene, inspect_scene(scene), {}, 1), "multiple.spread", 0);
+        return *find_entry(plan_bake(scene, inspect_scene(scene), {}), "multiple.spread", 0);
     };
     const auto ball = [](unsigned level, const formats::Medium& medium) {
         return tests::make_translucent_scene({tests::make_sphere(level)}, medium);
@@ -76,9 +76,9 @@ TEST(Spread, LeftOutCountsTowardTheErrorAskedFor) {
     const auto scene = tests::make_translucent_scene({tests::make_sphere(5)}, clay(5e-5f));
     const SceneFacts facts = inspect_scene(scene);
     Knobs knobs;
-    EXPECT_FALSE(find_entry(plan_bake(scene, facts, knobs, 1), "multiple.spread", 0)->on);
+    EXPECT_FALSE(find_entry(plan_bake(scene, facts, knobs), "multiple.spread", 0)->on);
     knobs.error_target = 0.01;
-    EXPECT_TRUE(find_entry(plan_bake(scene, facts, knobs, 1), "multiple.spread", 0)->on);
+    EXPECT_TRUE(find_entry(plan_bake(scene, facts, knobs), "multiple.spread", 0)->on);
 }
 
 }  // namespace

@@ -1,0 +1,333 @@
+#include "bake/plan/cost_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/plan/row_layout.h"
+#include "bake/plan/stage_costs.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/openness.h"
+
+namespace opaline::bake {
+namespace {
+
+// Mesh and images, which are compressed to about a half.
+double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
+    constexpr double kCompressed = 0.5;
+    const double vertex = scene.images.empty() ? 36 : 44;
+    double bytes = facts.receivers * vertex + facts.triangles * 12;
+    for (const formats::Image8& image : scene.images) {
+        bytes += static_cast<double>(image.rgba.size()) * 3 / 4;
+    }
+    return kCompressed * bytes;
+}
+
+std::uint64_t row_bytes(const Knobs& knobs, std::uint64_t bands) {
+    const std::uint64_t all = formats::cubemap_texels(knobs.cubemap_size);
+    // Of a surface in the open half of all coefficients vanish, below the horizon.
+    const std::uint64_t details = knobs.coefficients == kAllCoefficients
+                                      ? (bands == 1 ? all / 2 : all)
+                                      : std::min<std::uint64_t>(knobs.coefficients, all) - 6;
+    const std::uint64_t index_bytes = all <= 65536 ? 2 : 4;
+    return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
+}
+
+// Adds stages up, and what each effect has in them.
+class Bill {
+  public:
+    Bill(const Rates& rates, unsigned threads, std::vector<PlanEntry>& plan)
+        : crowding_(threads > 1 ? rates.crowding : 1), threads_(threads), plan_(plan) {
+        for (PlanEntry& entry : plan) {
+            entry.predicted_seconds = 0;
+            entry.predicted_bytes = 0;
+        }
+    }
+
+    void open(std::string name) { cost.stages.push_back({std::move(name), 0}); }
+    /// Into the stage that was opened last; for an effect on a material, or for none.
+    void add(const Work& work, std::string_view effect = {}, std::uint32_t material = 0) {
+        const double seconds = work.alone + work.shared * crowding_ / threads_;
+        cost.stages.back().seconds += seconds;
+        cost.seconds += seconds;
+        if (PlanEntry* const entry = find(effect, material)) {
+            entry->predicted_seconds += seconds;
+        } else {
+            cost.shared_seconds += seconds;
+        }
+    }
+    void add_bytes(double bytes, std::string_view effect = {}, std::uint32_t material = 0) {
+        const auto whole = static_cast<std::uint64_t>(bytes);
+        cost.bytes += whole;
+        if (PlanEntry* const entry = find(effect, material)) {
+            entry->predicted_bytes += whole;
+        } else {
+            cost.shared_bytes += whole;
+        }
+    }
+
+    CostPrediction cost;
+
+  private:
+    PlanEntry* find(std::string_view effect, std::uint32_t material) {
+        for (PlanEntry& entry : plan_) {
+            if (entry.on && entry.effect == effect && entry.material == material) {
+                return &entry;
+            }
+        }
+        return nullptr;
+    }
+
+    double crowding_;
+    double threads_;
+    std::vector<PlanEntry>& plan_;
+};
+
+/// One prediction.
+struct Prediction {
+    const formats::Scene& scene;
+    const Knobs& knobs;
+    const Rates& rates;
+    const SceneFacts& facts;
+    std::vector<RowLayout> layouts;
+    CostInput input;
+    Bill bill;
+
+    const formats::Medium& medium(std::uint32_t m) const { return *scene.materials[m].medium; }
+
+    static Work traced(const RowLayout& layout, const Work& work) {
+        return layout.occluded ? work : without_rays(work);
+    }
+
+    void prepare() {
+        double body_triangles = 0;
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            body_triangles += scene.materials[m].medium ? facts.material[m].triangles : 0;
+        }
+        bill.open("bodies");
+        bill.add({body_triangles * rates.orient_triangle, 0});
+        bill.open("plan");
+        bill.add({facts.triangles * rates.plan_triangle, 0});
+        if (needs_hierarchy(layouts)) {
+            bill.open("hierarchy");
+            bill.add({0, facts.triangles * rates.build_triangle.at(facts.triangles)});
+        }
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            if (layouts[m].direct && scene.materials[m].medium) {
+                open_once("albedos of media");
+                bill.add(albedo_work(input, medium(m)), "direct", m);
+            }
+        }
+        bill.open("receivers");
+        bill.add({facts.receivers * rates.place_receiver.at(facts.triangles), 0});
+        bill.open("test lights");
+        bill.add({0, rates.test_lights});
+        bill.open("profiles");
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            if (layouts[m].translucent && layouts[m].multiple) {
+                bill.add(profile_work(input, medium(m)), "multiple", m);
+            }
+        }
+    }
+
+    void open_once(const char* name) {
+        if (bill.cost.stages.back().name != name) {
+            bill.open(name);
+        }
+    }
+
+    void take_samples() {
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            if (layouts[m].translucent && layouts[m].multiple && !layouts[m].local) {
+                bill.open("samples of material '" + scene.materials[m].name + "'");
+                const Work work = samples_work(input, medium(m), facts.material[m]);
+                bill.add(traced(layouts[m], work), "multiple", m);
+            }
+        }
+    }
+
+    void make_light_maps() {
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            if (layouts[m].translucent && layouts[m].single_terms > 0 && !layouts[m].local) {
+                bill.open("light maps of material '" + scene.materials[m].name + "'");
+                bill.add(light_maps_work(input, facts.material[m]), "single", m);
+            }
+        }
+    }
+
+    void make_rows() {
+        for (const formats::Primitive& p : scene.primitives) {
+            const RowLayout& layout = layouts[p.material];
+            const MaterialFacts& own = facts.material[p.material];
+            const auto receivers = static_cast<double>(p.position.size());
+            bill.open("rows of '" + p.name + "'");
+            if (!layout.translucent) {
+                if (layout.direct) {
+                    bill.add(traced(layout, direct_rows_work(input, receivers)), "direct",
+                             p.material);
+                }
+                bill.add(encode_work(input, 1, 1, receivers), "direct", p.material);
+                bill.add_bytes(receivers * static_cast<double>(row_bytes(knobs, 1)), "direct",
+                               p.material);
+                continue;
+            }
+            if (layout.local) {
+                bill.add(traced(layout, direct_rows_work(input, receivers)),
+                         layout.multiple ? "multiple" : "single", p.material);
+            }
+            if (layout.multiple && !layout.local) {
+                bill.add(multiple_rows_work(input, medium(p.material), own, receivers), "multiple",
+                         p.material);
+            }
+            if (layout.single_terms > 0 && !layout.local) {
+                bill.add(single_rows_work(input, own, layout.single_terms, receivers), "single",
+                         p.material);
+            }
+            // The first row is that of multiple scattering, where there is any.
+            const std::uint32_t first = layout.multiple ? 1 : 0;
+            const std::uint32_t others = layout.terms() - first;
+            const auto bytes = receivers * static_cast<double>(row_bytes(knobs, 3));
+            bill.add(encode_work(input, first, 3, receivers), "multiple", p.material);
+            bill.add_bytes(first * bytes, "multiple", p.material);
+            bill.add(encode_work(input, others, 3, receivers), "single", p.material);
+            bill.add_bytes(others * bytes, "single", p.material);
+        }
+    }
+
+    void make_openness() {
+        double glossy = 0;
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            glossy += layouts[m].glossy ? facts.material[m].receivers : 0;
+        }
+        if (!is_any_glossy()) {
+            return;
+        }
+        const Work all = openness_work(input, glossy);
+        bill.open("openness");
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            if (layouts[m].glossy) {
+                const double share = glossy > 0 ? facts.material[m].receivers / glossy : 0;
+                bill.add(traced(layouts[m], {share * all.alone, share * all.shared}), "specular",
+                         m);
+                bill.add_bytes(facts.material[m].receivers * sizeof(formats::Openness), "specular",
+                               m);
+            }
+        }
+    }
+
+    // As check_rows does it.
+    void check() {
+        constexpr double kMostChecked = 256;
+        bill.open("self-check");
+        const double drawn =
+            std::min(facts.receivers, std::clamp(facts.receivers / 40, 16.0, 1024.0));
+        find_truth(drawn, drawn / std::ceil(drawn / kMostChecked),
+                   {1024, 2.0 * knobs.depth_samples});
+    }
+
+    // As choose_knobs does it, if the first choice is met.
+    void find_pilot_truth() {
+        constexpr double kMostTranslucent = 192;
+        bill.open("pilot truth");
+        const double drawn = pilot_receivers();
+        const double target = knobs.error_target;
+        find_truth(drawn, std::min(drawn, kMostTranslucent),
+                   {target >= 0.03    ? 256.0
+                    : target >= 0.015 ? 512.0
+                                      : 1024.0,
+                    target >= 0.03 ? 8.0 : 16.0});
+    }
+    // What opaque receivers err by with all coefficients.
+    void measure_floor() {
+        bill.open("pilot");
+        bill.add(direct_rows_work(input, opaque_share() * pilot_receivers()));
+    }
+    // Rows of all its receivers, once for each of some values of the knobs, and once for all
+    // encodings; single scattering by rays.
+    void try_knobs() {
+        constexpr double kRounds = 4, kMostTranslucent = 192, kDepthSamples = 10;
+        constexpr std::uint32_t kEncodings = 26;
+        bill.open("pilot");
+        const double opaque = pilot_receivers(), translucent = std::min(opaque, kMostTranslucent);
+        bill.add(direct_rows_work(input, kRounds * opaque_share() * opaque));
+        bill.add(encode_work(input, kEncodings, 1, opaque_share() * opaque));
+        Knobs by_rays = knobs;
+        by_rays.exact_rays = true;
+        by_rays.depth_samples = kDepthSamples;
+        const CostInput traced{rates, by_rays, facts.triangles, facts.receivers};
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            const double own = translucent * facts.material[m].receivers / facts.receivers;
+            if (!layouts[m].translucent) {
+                continue;
+            }
+            if (layouts[m].multiple) {
+                bill.add(multiple_rows_work(input, medium(m), facts.material[m], kRounds * own));
+            }
+            if (layouts[m].single_terms > 0) {
+                bill.add(single_rows_work(traced, facts.material[m], layouts[m].single_terms, own));
+            }
+            bill.add(encode_work(input, kEncodings * layouts[m].terms(), 3, own));
+        }
+    }
+    double opaque_share() const {
+        double direct = 0;
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            direct += layouts[m].direct ? facts.material[m].receivers : 0;
+        }
+        return direct / facts.receivers;
+    }
+    double pilot_receivers() const {
+        return std::min(facts.receivers, std::clamp(facts.receivers / 40, 64.0, 1024.0));
+    }
+
+    // Of `opaque` receivers out of all materials', and of media as if `translucent` were.
+    void find_truth(double opaque, double translucent, const TruthEffort& effort) {
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            const double share =
+                facts.receivers > 0 ? facts.material[m].receivers / facts.receivers : 0;
+            if (layouts[m].direct) {
+                bill.add(direct_check_work(input, share * opaque));
+            } else if (layouts[m].translucent) {
+                bill.add(medium_check_work(input, facts.material[m], layouts[m],
+                                           share * translucent, effort));
+            }
+        }
+    }
+
+    bool is_any_glossy() const {
+        return std::any_of(layouts.begin(), layouts.end(),
+                           [](const RowLayout& l) { return l.glossy; });
+    }
+};
+
+}  // namespace
+
+CostPrediction predict_costs(const formats::Scene& scene, const SceneFacts& facts,
+                             const Knobs& knobs, const Rates& rates, unsigned threads,
+                             std::vector<PlanEntry>& plan) {
+    Prediction prediction{scene,
+                          knobs,
+                          rates,
+                          facts,
+                          layout_rows(scene, plan, knobs),
+                          {rates, knobs, facts.triangles, facts.receivers},
+                          Bill(rates, threads, plan)};
+    prediction.prepare();
+    if (knobs.error_target > 0) {
+        prediction.find_pilot_truth();
+        prediction.measure_floor();
+        prediction.take_samples();
+        prediction.try_knobs();
+    } else {
+        prediction.take_samples();
+    }
+    prediction.make_light_maps();
+    prediction.make_rows();
+    prediction.make_openness();
+    prediction.check();
+    prediction.bill.add_bytes(mesh_bytes(scene, facts));
+    CostPrediction& cost = prediction.bill.cost;
+    cost.receivers = static_cast<std::uint64_t>(facts.receivers);
+    return cost;
+}
+
+}  // namespace opaline::bake

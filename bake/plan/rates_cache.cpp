@@ -1,0 +1,99 @@
+#include "bake/plan/rates_cache.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <thread>
+
+#include "formats/opal/atomic_file.h"
+
+namespace opaline::bake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The processor's name; the same empty name on every machine that does not tell.
+std::string processor_name() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        const std::size_t colon = line.find(": ");
+        if (line.rfind("model name", 0) == 0 && colon != std::string::npos) {
+            return line.substr(colon + 2);
+        }
+    }
+    return {};
+}
+
+Json key_json(const MachineKey& machine) {
+    return {{"processor", machine.processor},
+            {"threads", machine.threads},
+            {"version", machine.version}};
+}
+
+std::string dump(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::filesystem::path absolute_folder(const char* variable) {
+    const char* const value = std::getenv(variable);
+    const std::filesystem::path path = value != nullptr ? value : "";
+    return path.is_absolute() ? path : std::filesystem::path();
+}
+
+}  // namespace
+
+MachineKey this_machine() {
+    return {processor_name(), std::max(1u, std::thread::hardware_concurrency()), OPALINE_VERSION};
+}
+
+std::filesystem::path rates_path() {
+    std::filesystem::path folder = absolute_folder("XDG_CACHE_HOME");
+    if (folder.empty()) {
+        folder = absolute_folder("HOME");
+        folder = folder.empty() ? folder : folder / ".cache";
+    }
+    return folder.empty() ? folder : folder / "opaline" / "calibration.json";
+}
+
+std::optional<Rates> read_rates(const std::filesystem::path& path, const MachineKey& machine) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) {
+        return std::nullopt;
+    }
+    std::ifstream file(path, std::ios::binary);
+    const Json root = Json::parse(file, nullptr, false);
+    // Compared as written: names that are not UTF-8 are changed by writing.
+    if (!root.is_object() || !root.contains("machine") || !root.contains("rates") ||
+        dump(root["machine"]) != dump(key_json(machine))) {
+        return std::nullopt;
+    }
+    Rates rates;
+    bool is_sound = root["rates"].is_object();
+    visit_rates(rates, [&](const char* name, double& rate) {
+        const auto found = is_sound ? root["rates"].find(name) : root.end();
+        if (!is_sound || found == root["rates"].end() || !found->is_number()) {
+            is_sound = false;
+            return;
+        }
+        rate = found->get<double>();
+        is_sound = std::isfinite(rate) && rate >= 0;
+    });
+    return is_sound ? std::optional(rates) : std::nullopt;
+}
+
+formats::Status write_rates(const std::filesystem::path& path, const MachineKey& machine,
+                            const Rates& rates) {
+    Json root;
+    root["machine"] = key_json(machine);
+    visit_rates(rates, [&](const char* name, double rate) { root["rates"][name] = rate; });
+    std::error_code error;
+    std::filesystem::create_directories(path.parent_path(), error);
+    if (error) {
+        return formats::make_error(formats::ErrorKind::resource, path.parent_path().string(), "",
+                                   "cannot be made: " + error.message());
+    }
+    return formats::write_file_atomically(path, dump(root) + "\n");
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <time.h>
+
+namespace opaline::bake {
+
+/// CPU time of the calling thread: what others do on the machine counts little.
+class Stopwatch {
+  public:
+    Stopwatch() : start_(now()) {}
+    void restart() { start_ = now(); }
+    /// Since the start [s]. At least a nanosecond: what is measured takes time.
+    double seconds() const {
+        const double passed = now() - start_;
+        return passed > 1e-9 ? passed : 1e-9;
+    }
+
+  private:
+    static double now() {
+        timespec t{};
+        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+    }
+    double start_;
+};
+
+}  // namespace opaline::bake

@@ -1,0 +1,174 @@
+#include "bake/plan/cost_model.h"
+#include "bake/plan/inspect_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numeric>
+
+#include "bake/plan/stage_costs.h"
+#include "tests/support/media.h"
+#include "tests/support/rates.h"
+#include "tests/support/scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+formats::Medium forward_medium() {
+    formats::Medium medium = tests::make_grey_medium(40, 1);
+    medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
+    medium.phase.g = 0.6f;
+    return medium;
+}
+
+// A ball of a medium over an opaque floor.
+formats::Scene ball_on_floor(int levels = 2, std::uint32_t cells = 8) {
+    formats::Primitive floor = tests::make_quad({-3, -1.02f, -3}, {0, 0, 6}, {6, 0, 0}, cells);
+    floor.material = 1;
+    return tests::make_translucent_scene({tests::make_sphere(levels), floor}, forward_medium());
+}
+
+struct Predicted {
+    std::vector<PlanEntry> plan;
+    CostPrediction cost;
+};
+
+Predicted predict(const formats::Scene& scene, const Knobs& knobs = {}, unsigned threads = 2,
+                  const Rates& rates = tests::make_rates()) {
+    Predicted predicted;
+    const SceneFacts facts = inspect_scene(scene);
+    predicted.plan = plan_bake(scene, facts, knobs);
+    predicted.cost = predict_costs(scene, facts, knobs, rates, threads, predicted.plan);
+    return predicted;
+}
+
+TEST(CostModel, TotalIsTheSumOfStagesAndOfEffectsAndTheRest) {
+    for (const double error : {0.0, 0.02}) {
+        Knobs knobs;
+        knobs.error_target = error;
+        const Predicted p = predict(ball_on_floor(), knobs);
+        double stages = 0, entries = p.cost.shared_seconds;
+        std::uint64_t bytes = p.cost.shared_bytes;
+        for (const StageCost& stage : p.cost.stages) {
+            stages += stage.seconds;
+        }
+        for (const PlanEntry& entry : p.plan) {
+            entries += entry.predicted_seconds;
+            bytes += entry.predicted_bytes;
+            // What parts of effects cost is the effects' own.
+            const bool is_part = entry.effect.find('.') != std::string::npos;
+            EXPECT_EQ(entry.on && !is_part, entry.predicted_seconds > 0)
+                << entry.effect << entry.subject;
+        }
+        EXPECT_GT(p.cost.shared_seconds, 0);
+        EXPECT_NEAR(stages, p.cost.seconds, 1e-9 * p.cost.seconds);
+        EXPECT_NEAR(entries, p.cost.seconds, 1e-9 * p.cost.seconds);
+        EXPECT_EQ(bytes, p.cost.bytes);
+    }
+}
+
+TEST(CostModel, PredictingTwiceIsPredictingOnce) {
+    const formats::Scene scene = ball_on_floor();
+    Predicted p = predict(scene);
+    const double first = p.plan[0].predicted_seconds;
+    predict_costs(scene, inspect_scene(scene), {}, tests::make_rates(), 2, p.plan);
+    EXPECT_EQ(p.plan[0].predicted_seconds, first);
+}
+
+TEST(CostModel, EffectsThatAreOffCostNothingAndLeaveNoStage) {
+    formats::Scene scene = ball_on_floor();
+    Knobs knobs;
+    knobs.effects = {"direct"};
+    scene.materials[0].medium.reset();
+    const Predicted p = predict(scene, knobs);
+    for (const StageCost& stage : p.cost.stages) {
+        for (const char* medium : {"samples", "light maps", "openness"}) {
+            EXPECT_EQ(stage.name.find(medium), std::string::npos) << stage.name;
+        }
+        EXPECT_EQ(stage.name == "bodies" || stage.name == "profiles", stage.seconds == 0)
+            << stage.name;
+    }
+}
+
+// Each larger job: no stage of it may be predicted to take less time, and all of them more.
+void expect_dearer(const Predicted& small, const Predicted& large, const char* what) {
+    ASSERT_EQ(small.cost.stages.size(), large.cost.stages.size()) << what;
+    for (std::size_t i = 0; i < small.cost.stages.size(); ++i) {
+        EXPECT_LE(small.cost.stages[i].seconds, large.cost.stages[i].seconds)
+            << what << ": " << small.cost.stages[i].name;
+    }
+    EXPECT_LT(small.cost.seconds, large.cost.seconds) << what;
+}
+
+TEST(CostModel, MoreReceiversAndTrianglesAreNeverCheaper) {
+    expect_dearer(predict(ball_on_floor(2)), predict(ball_on_floor(3)), "finer ball");
+    expect_dearer(predict(ball_on_floor(3)), predict(ball_on_floor(4)), "finest ball");
+    expect_dearer(predict(ball_on_floor(2, 4)), predict(ball_on_floor(2, 64)), "finer floor");
+}
+
+TEST(CostModel, FinerKnobsAreNeverCheaper) {
+    const formats::Scene scene = ball_on_floor(3);
+    const auto with = [&](const std::function<void(Knobs&)>& change) {
+        Knobs knobs;
+        change(knobs);
+        return predict(scene, knobs);
+    };
+    const Predicted base = predict(scene);
+    expect_dearer(base, with([](Knobs& k) { k.cubemap_size = 64; }), "texels");
+    expect_dearer(base, with([](Knobs& k) { k.coefficients = 512; }), "coefficients");
+    expect_dearer(base, with([](Knobs& k) { k.single_cubemap = 32; }), "texels of light maps");
+    expect_dearer(base, with([](Knobs& k) { k.depth_samples = 12; }), "depth samples");
+    expect_dearer(base, with([](Knobs& k) { k.tolerance = 1e-4; }), "tolerance");
+    expect_dearer(with([](Knobs& k) { k.phase_terms = 4; }),
+                  with([](Knobs& k) { k.phase_terms = 16; }), "terms");
+    const auto sampled = [&](std::uint32_t samples) {
+        return with([samples](Knobs& k) {
+            k.samples = samples;
+            k.exact_samples = true;
+        });
+    };
+    expect_dearer(sampled(20000), sampled(80000), "samples");
+}
+
+TEST(CostModel, ThreadsShareAllButWhatOneMustDo) {
+    const double one = predict(ball_on_floor(), {}, 1).cost.seconds;
+    const double two = predict(ball_on_floor(), {}, 2).cost.seconds;
+    const double many = predict(ball_on_floor(), {}, 1000).cost.seconds;
+    EXPECT_LT(two, one);
+    EXPECT_GT(two, one / 2);
+    EXPECT_LT(many, two);
+    EXPECT_GT(many, 0);
+}
+
+TEST(CostModel, SlowerMachineTakesLongerForEverything) {
+    Rates slow = tests::make_rates();
+    visit_rates(slow, [](const char*, double& rate) { rate *= 2; });
+    slow.crowding = tests::make_rates().crowding;
+    const Predicted fast = predict(ball_on_floor()), late = predict(ball_on_floor(), {}, 2, slow);
+    for (std::size_t i = 0; i < fast.cost.stages.size(); ++i) {
+        EXPECT_NEAR(late.cost.stages[i].seconds, 2 * fast.cost.stages[i].seconds,
+                    1e-9 * late.cost.seconds);
+    }
+}
+
+TEST(CostModel, EmptySceneCostsNoMoreThanTheTestLights) {
+    formats::Scene scene = tests::make_scene({});
+    const Predicted p = predict(scene, {}, 1);
+    EXPECT_EQ(p.cost.receivers, 0u);
+    EXPECT_EQ(p.cost.seconds, tests::make_rates().test_lights);
+    EXPECT_EQ(p.cost.bytes, 0u);
+}
+
+TEST(CostBySize, GrowsWithTheDepthOfTheHierarchyAndNeverFalls) {
+    const CostBySize cost{3, 5};
+    EXPECT_DOUBLE_EQ(cost.at(CostBySize::kFew), 3);
+    EXPECT_DOUBLE_EQ(cost.at(CostBySize::kMany), 5);
+    EXPECT_DOUBLE_EQ(cost.at(std::sqrt(CostBySize::kFew * CostBySize::kMany)), 4);
+    EXPECT_GT(cost.at(1), 0);
+    EXPECT_GT(cost.at(0), 0);
+    // A measurement that says otherwise is noise.
+    EXPECT_DOUBLE_EQ((CostBySize{3, 2}).at(1e6), 3);
+}
+
+}  // namespace
+}  // namespace opaline::bake

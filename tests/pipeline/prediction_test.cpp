@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include "bake/plan/cost_model.h"
+#include "bake/plan/inspect_scene.h"
+#include "tests/support/media_bake.h"
+#include "tests/support/rates.h"
+
+namespace opaline::tests {
+namespace {
+
+// The stages that a bake reports are those that were predicted, in the same order.
+void expect_stages_as_predicted(const Scene& scene, const bake::BakeOptions& options) {
+    const bake::BakeResult result = bake_scene(scene, options);
+    const bake::Knobs knobs = *bake::resolve_knobs(options);
+    const bake::SceneFacts facts = bake::inspect_scene(scene);
+    auto plan = bake::plan_bake(scene, facts, knobs);
+    const bake::CostPrediction cost =
+        bake::predict_costs(scene, facts, knobs, make_rates(), result.threads, plan);
+    std::vector<std::string> predicted, reported;
+    for (const bake::StageCost& stage : cost.stages) {
+        predicted.push_back(stage.name);
+    }
+    for (const bake::StageReport& stage : result.stages) {
+        reported.push_back(stage.name);
+    }
+    EXPECT_EQ(predicted, reported);
+    EXPECT_EQ(cost.receivers, result.asset.position.size());
+}
+
+formats::Medium forward_medium() {
+    formats::Medium medium = make_grey_medium(10, 1);
+    medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
+    medium.phase.g = 0.5f;
+    return medium;
+}
+
+TEST(Prediction, OpaqueSceneHasTheStagesThatWerePredicted) {
+    expect_stages_as_predicted(make_dented_ball(), small_bake());
+}
+
+TEST(Prediction, ConvexBodyAloneHasTheStagesThatWerePredicted) {
+    expect_stages_as_predicted(make_scene({make_sphere(4)}), small_bake());
+}
+
+TEST(Prediction, DenseBodyHasTheStagesThatWerePredicted) {
+    expect_stages_as_predicted(
+        make_translucent_scene({make_sphere(5)}, make_grey_medium(2e4f, 4e3f)), small_bake());
+}
+
+TEST(Prediction, MediumOnAFloorHasTheStagesThatWerePredicted) {
+    expect_stages_as_predicted(make_ball_on_floor(make_grey_medium(10, 1)), small_bake());
+}
+
+TEST(Prediction, ForwardScatteringMediumHasTheStagesThatWerePredicted) {
+    bake::BakeOptions options = small_bake();
+    options.phase_terms = 4;
+    expect_stages_as_predicted(make_ball_on_floor(forward_medium()), options);
+}
+
+TEST(Prediction, LeftOutEffectsLeaveTheirStagesOut) {
+    const Scene scene = make_ball_on_floor(make_grey_medium(10, 1, 1.0f));
+    for (const char* effect : {"multiple", "single", "direct"}) {
+        SCOPED_TRACE(effect);
+        expect_stages_as_predicted(scene, only({effect}));
+    }
+}
+
+TEST(Prediction, PilotHasTheStagesOfItsFirstRound) {
+    bake::BakeOptions options = small_bake();
+    options.error = 0.5;  // the first choice will do
+    expect_stages_as_predicted(make_ball_on_floor(make_grey_medium(10, 1)), options);
+}
+
+TEST(Prediction, BytesAreThoseOfTheRowsInTheFile) {
+    bake::BakeOptions options = small_bake();
+    options.coefficients = 64;
+    const Scene scene = make_ball_on_floor(make_grey_medium(10, 1));
+    const bake::Knobs knobs = *bake::resolve_knobs(options);
+    const bake::SceneFacts facts = bake::inspect_scene(scene);
+    auto plan = bake::plan_bake(scene, facts, knobs);
+    bake::predict_costs(scene, facts, knobs, make_rates(), 1, plan);
+    double predicted = 0;
+    for (const bake::PlanEntry& entry : plan) {
+        predicted += static_cast<double>(entry.predicted_bytes);
+    }
+    const formats::SparseRows& rows = bake_scene(scene, options).asset.transport;
+    const std::size_t bytes =
+        4 * rows.row_offset.size() + 4 * (rows.average_scale.size() + rows.detail_scale.size()) +
+        2 * rows.average_code.size() + 2 * rows.index16.size() + rows.code8.size();
+    EXPECT_NEAR(predicted, static_cast<double>(bytes), 0.05 * static_cast<double>(bytes));
+}
+
+}  // namespace
+}  // namespace opaline::tests
