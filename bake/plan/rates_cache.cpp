@@ -57,6 +57,10 @@ std::filesystem::path rates_path() {
 }
 
 std::optional<Rates> read_rates(const std::filesystem::path& path, const MachineKey& machine) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) {
+        return std::nullopt;
+    }
     std::ifstream file(path, std::ios::binary);
     const Json root = Json::parse(file, nullptr, false);
     // Compared as written: names that are not UTF-8 are changed by writing.

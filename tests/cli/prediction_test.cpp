@@ -83,7 +83,7 @@ TEST(Prediction, PlanTellsStagesAndTotalInJsonAndAtTheFootOfItsTable) {
         run_with_cache(small.path("cache"), {"plan", small.scene(), "--threads", "1"});
     EXPECT_THAT(table.out, HasSubstr("\nthe rest "));
     EXPECT_THAT(table.out,
-                ::testing::ContainsRegex("\npredicted: .* s on 1 thread, .*, 8 receiver"));
+                ::testing::ContainsRegex("\npredicted: .* on 1 thread, .*, 8 receivers"));
 }
 
 TEST(Prediction, ReportSetsPredictedBesideMeasuredStageByStage) {
