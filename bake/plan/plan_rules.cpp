@@ -137,6 +137,9 @@ PlanEntry decide_single(const PlanInput& input) {
     entry.reason = entry.terms == 1 ? "light scatters once inside, alike in all directions"
                                     : "light scatters once inside; " + std::to_string(entry.terms) +
                                           " terms of the phase function";
+    if (const std::uint32_t needed = needed_terms(medium, input.knobs); needed > entry.terms) {
+        entry.reason += ", as asked for; it needs " + std::to_string(needed);
+    }
     return entry;
 }
 
@@ -193,15 +196,16 @@ double single_share(const formats::Medium& medium) {
     return share;
 }
 
-std::uint32_t choose_terms(const formats::Medium& medium, const Knobs& knobs) {
-    if (knobs.phase_terms != 0) {
-        return knobs.phase_terms;
-    }
+std::uint32_t needed_terms(const formats::Medium& medium, const Knobs& knobs) {
     constexpr unsigned kDegrees = 5;
     const double share = single_share(medium);
     return share > 0 ? choose_phase_terms(expand_phase(medium.phase, kDegrees),
                                           knobs.phase_tolerance / share)
                      : 1;
+}
+
+std::uint32_t choose_terms(const formats::Medium& medium, const Knobs& knobs) {
+    return knobs.phase_terms != 0 ? knobs.phase_terms : needed_terms(medium, knobs);
 }
 
 }  // namespace opaline::bake

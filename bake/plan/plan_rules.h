@@ -40,7 +40,10 @@ extern const std::span<const PlanRule> kPlanRules;
 double single_share(const formats::Medium& medium);
 
 /// The smallest K whose error, times the share of single scattering, is at most
-/// `knobs.phase_tolerance` (translucency.md 9), unless the user gave one.
+/// `knobs.phase_tolerance` (translucency.md 9).
+std::uint32_t needed_terms(const formats::Medium& medium, const Knobs& knobs);
+
+/// The same, unless the user gave one.
 std::uint32_t choose_terms(const formats::Medium& medium, const Knobs& knobs);
 
 }  // namespace opaline::bake

@@ -26,7 +26,7 @@ TEST(Bake, ReportHasTheKeysOfTheContract) {
     EXPECT_EQ(report.at("scene").at("sha256").get<std::string>().size(), 64u);
     EXPECT_EQ(report.at("seed"), 7);
     EXPECT_EQ(report.at("threads"), 2);
-    EXPECT_EQ(report.at("knobs").at("cubemap"), 16);
+    EXPECT_EQ(report.at("knobs").at("cubemap"), 8);
     EXPECT_EQ(report.at("knobs").at("coefficients"), 64);
     ASSERT_FALSE(report.at("plan").empty());
     for (const Json& entry : report.at("plan")) {
@@ -231,14 +231,18 @@ TEST(Plan, NamesEffectSubjectAndReasonAsTableAndAsJson) {
     }
 }
 
-// The upper square has nothing above it, so that its visibility is left out unless forced.
+// Ink sends back nothing that scattered, unless that is forced.
 TEST(Plan, EffectsAllTurnsOnWhatTheSceneDoesNotCallForAndSaysSo) {
     SmallScene small;
+    std::ofstream(small.path("ink.json")) << R"({"materials": {"*": {"sigma_s": [1e-3, 1e-3, 1e-3],
+        "sigma_a": [1e3, 1e3, 1e3], "unit": "1/m", "eta": 1.3}}})";
     const auto forced = [&](const char* effects, const char* decision) {
-        const Outcome json = run_opaline({"plan", small.scene(), "--json", "--effects", effects});
+        const Outcome json = run_opaline({"plan", small.scene(), "--media", small.path("ink.json"),
+                                          "--json", "--effects", effects});
         EXPECT_EQ(json.exit_code, 0) << json.err;
         int count = 0, decided = 0;
-        for (const Json& entry : Json::parse(json.out).at("plan")) {
+        const Json plan = Json::parse(json.out);
+        for (const Json& entry : plan.at("plan")) {
             count += entry.at("forced") == true ? 1 : 0;
             decided += entry.at("decision") == decision ? 1 : 0;
         }
@@ -246,7 +250,22 @@ TEST(Plan, EffectsAllTurnsOnWhatTheSceneDoesNotCallForAndSaysSo) {
         return count;
     };
     EXPECT_EQ(forced("auto", "off"), 0);
-    EXPECT_EQ(forced("all", "on"), 1);
+    EXPECT_EQ(forced("all", "on"), 2) << "multiple and single";
+}
+
+TEST(Bake, FewerPhaseTermsThanTheErrorNeedsAreWarnedOf) {
+    SmallScene small;
+    std::ofstream(small.path("fog.json")) << R"({"materials": {"*": {"sigma_s": [9, 9, 9],
+        "sigma_a": [9, 9, 9], "unit": "1/m", "eta": 1, "phase": {"type": "hg", "g": 0.7}}}})";
+    const auto bake = [&](const char* terms) {
+        return run_opaline({"bake", small.scene(), "--media", small.path("fog.json"), "-o",
+                            small.path("a.opal"), "--quality", "draft", "--effects", "single",
+                            "--phase-terms", terms});
+    };
+    const Outcome few = bake("1"), enough = bake("25");
+    EXPECT_EQ(few.exit_code, 0) << few.err;
+    EXPECT_THAT(few.err, HasSubstr("1 terms of the phase function were asked for"));
+    EXPECT_THAT(enough.err, ::testing::Not(HasSubstr("were asked for")));
 }
 
 TEST(Example, EveryListedSceneBakes) {
