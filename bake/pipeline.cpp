@@ -145,7 +145,7 @@ ErrorReport check_rows(const formats::Scene& scene, const RayScene& rays,
     const std::vector<std::uint32_t> drawn = draw_receivers(receivers.size(), knobs.seed);
     std::vector<EffectCheck> checks{check_direct(rays, receivers, asset, drawn, lights, context)};
     for (const auto& [m, stages] : media) {
-        if (!stages.multiple && !stages.single) {
+        if (!stages.multiple && !stages.single && !stages.local) {
             continue;  // black: nothing to be wrong
         }
         checks.push_back(check_translucent(stages.recipe, scene, rays, m, knobs.depth_samples,

@@ -110,7 +110,9 @@ int run(const Options& options) {
             return report_error(output->error());
         }
     }
-    const MachineRates machine = find_machine_rates();
+    // Predictions stand in the report alone: without one this machine need not be measured.
+    const std::optional<MachineRates> machine =
+        *report_file ? std::optional(find_machine_rates()) : std::nullopt;
     bake::Context context;
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
@@ -129,9 +131,12 @@ int run(const Options& options) {
     std::vector<formats::Diagnostic> warnings = imported->warnings;
     warnings.insert(warnings.end(), result->warnings.begin(), result->warnings.end());
     print_warnings(result->warnings);
-    const Expectation expected = expect(imported->scene, *knobs, machine, *result);
-    const std::string report = make_report(imported->scene, *result, expected, warnings, bytes);
-    const std::string rule = make_depfile(options.output, imported->scene.inputs);
+    std::string report;
+    if (machine) {
+        const Expectation expected = expect(imported->scene, *knobs, *machine, *result);
+        report = make_report(imported->scene, *result, expected, warnings, bytes);
+    }
+    std::string rule = make_depfile(options.output, imported->scene.inputs);
     for (const auto& [output, text] : {std::pair{&*report_file, &report}, {&*depfile, &rule}}) {
         if (auto status = write_output(*output, *text); !status) {
             return report_error(status.error());

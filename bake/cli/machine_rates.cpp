@@ -13,7 +13,7 @@ MachineRates find_machine_rates() {
     if (const auto known = bake::read_rates(path, machine)) {
         return {*known, "read from " + path.string()};
     }
-    fmt::print(stderr, "opaline: measuring this machine once, takes about 3 s\n");
+    fmt::print(stderr, "opaline: measuring this machine once, takes about 4 s\n");
     const bake::Rates rates = bake::measure_rates(machine.threads);
     if (path.empty()) {
         return {rates, "measured; neither XDG_CACHE_HOME nor HOME says where to keep it"};

@@ -285,7 +285,8 @@ struct Prediction {
             const double share =
                 facts.receivers > 0 ? facts.material[m].receivers / facts.receivers : 0;
             if (layouts[m].direct) {
-                bill.add(direct_check_work(input, share * opaque));
+                const Work work = direct_check_work(input, share * opaque);
+                bill.add(needs_hierarchy(layouts) ? work : without_rays(work));
             } else if (layouts[m].translucent) {
                 bill.add(medium_check_work(input, facts.material[m], layouts[m],
                                            share * translucent, effort));
