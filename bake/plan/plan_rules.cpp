@@ -173,8 +173,9 @@ bool is_worth(double bound, const PlanInput& input, bool& forced) {
     // Four of a material's rows may be left out: together they take a quarter of the error at most.
     constexpr double kShareOfError = 1.0 / 16;
     const double error = input.knobs.error_target;
+    // An unknown bound (NaN) is none.
     const bool worth =
-        bound >= (error > 0 ? std::min(kLeastBound, kShareOfError * error) : kLeastBound);
+        !(bound < (error > 0 ? std::min(kLeastBound, kShareOfError * error) : kLeastBound));
     forced = input.knobs.simulate_all && !worth;
     return worth || forced;
 }

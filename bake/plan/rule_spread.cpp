@@ -68,7 +68,7 @@ PlanEntry decide_spread(const PlanInput& input) {
     // thick on average, and its thin parts are not much thinner than a quarter of that.
     const Shape shape{4 * subject.mean_edge,
                       subject.is_closed() ? 0.5 * subject.volume / subject.area : 0,
-                      std::acos(1 - 2 * subject.horizon.behind_facets)};
+                      std::acos(std::clamp(1 - 2 * subject.horizon.behind_facets, -1.0, 1.0))};
     PlanEntry entry;
     entry.on = true;
     if (!(shape.feature > 0)) {
@@ -80,6 +80,7 @@ PlanEntry decide_spread(const PlanInput& input) {
         entry.bound = std::max(entry.bound, spread_of_multiple(band, g, eta, shape) +
                                                 spread_of_single(band, eta, shape));
     }
+    entry.bound = std::min(entry.bound, 1.0);
     if (input.knobs.separate_terms) {
         entry.reason = "multiple and single scattering are asked for apart";
     } else if (choose_terms(medium, input.knobs) > 1) {

@@ -69,6 +69,9 @@ TEST(Spread, IsSimulatedAsSoonAsItCouldShow) {
     const auto sheet = tests::make_translucent_scene(
         {tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4)}, clay(5e-5f));
     EXPECT_TRUE(plan_of(sheet).on) << "an open surface may be thin";
+    auto inverted = ball(5, clay(5e-5f));
+    inverted.primitives[0].normal[0] *= -1.0000002f;  // as scans have some, and a little too long
+    EXPECT_TRUE(plan_of(inverted).on) << "a facet seen from behind";
     formats::Medium forward = clay(5e-5f);
     forward.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.6f, 0, {}, {}};
     EXPECT_TRUE(plan_of(ball(5, forward)).on) << "single scattering takes several terms";
