@@ -191,7 +191,7 @@ void look_up_columns(const LightView& view, const ColumnPoints& points, std::siz
     job.last = static_cast<float>(view.size) - 2.0f;
     job.size = static_cast<std::int32_t>(view.size);
     // Both of all light that a receiver can have.
-    constexpr float kFaint = 0.02f, kBend = 0.01f;
+    constexpr float kFaint = 0.02f, kBend = 0.04f;
     job.faint = kFaint;
     job.bend = kBend / std::max(*largest, 1e-30f);
     job.least_sigma_t = *least;

@@ -13,7 +13,7 @@ namespace opaline::bake {
 /// the loader.
 #if defined(__x86_64__) && defined(__ELF__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define OPALINE_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#define OPALINE_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #else
 #define OPALINE_VECTOR_CLONES
 #endif

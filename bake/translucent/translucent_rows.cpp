@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/receivers/spatial_order.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 
@@ -25,6 +26,27 @@ void add_coarse(std::span<const float> coarse, std::uint32_t m, std::span<float>
             }
         }
     }
+}
+
+std::vector<std::uint32_t> order_of(std::span<const BodyPoint> points) {
+    std::vector<glm::vec3> positions;
+    positions.reserve(points.size());
+    for (const BodyPoint& point : points) {
+        positions.push_back(point.position);
+    }
+    return spatial_order(positions);
+}
+
+// The `terms` rows of each receiver, which stand in the order of `order`, as receivers are given.
+formats::SparseRows as_given(const formats::SparseRows& rows, std::span<const std::uint32_t> order,
+                             std::uint32_t terms) {
+    std::vector<std::uint32_t> from(order.size() * terms);
+    for (std::uint32_t place = 0; place < order.size(); ++place) {
+        for (std::uint32_t k = 0; k < terms; ++k) {
+            from[std::size_t{order[place]} * terms + k] = place * terms + k;
+        }
+    }
+    return formats::pick_rows(rows, 3, from);
 }
 
 }  // namespace
@@ -77,7 +99,8 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
                                      std::span<const BodyPoint> points, const Context& context,
                                      EntryCounts& counts) {
     const std::uint32_t n = recipe.selector.cubemap_size;
-    const std::size_t size = formats::cubemap_texels(n), terms = recipe.layout.terms();
+    const std::size_t size = formats::cubemap_texels(n);
+    const std::uint32_t terms = recipe.layout.terms();
     const std::size_t step = recipe.single != nullptr
                                  ? receivers_per_batch(*recipe.single, recipe.batch_bytes)
                                  : std::max<std::size_t>(1, points.size());
@@ -85,9 +108,18 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
         formats::SparseRows rows;
         std::uint64_t rays = 0;
     };
+    // Neighbours gather from the same clusters and read the same lines of packed rows: one after
+    // the other they find them in the cache. Files may list vertices in any order.
+    const std::vector<std::uint32_t> order = order_of(points);
+    std::vector<BodyPoint> part;
     formats::SparseRows rows = formats::make_sparse_rows(n, recipe.code_bits);
     for (std::size_t begin = 0; begin < points.size() && !context.cancelled(); begin += step) {
-        const auto part = points.subspan(begin, std::min(step, points.size() - begin));
+        const std::span<const std::uint32_t> index =
+            std::span(order).subspan(begin, std::min(step, points.size() - begin));
+        part.clear();
+        for (const std::uint32_t i : index) {
+            part.push_back(points[i]);
+        }
         SingleBatch batch;
         if (recipe.single != nullptr) {
             batch = gather_single_batch(*recipe.single, rays, part, context);
@@ -101,7 +133,7 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
                 std::vector<float> values(terms * 3 * size);
                 for (std::size_t v = range.begin; v < range.end; ++v) {
                     block.rays +=
-                        assemble_rows(recipe, rays, receivers[begin + v], part[v],
+                        assemble_rows(recipe, rays, receivers[index[v]], part[v],
                                       recipe.single != nullptr ? &batch : nullptr, v, values);
                     for (std::size_t k = 0; k < terms; ++k) {
                         formats::append_row(
@@ -121,7 +153,7 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
                 }
             });
     }
-    return rows;
+    return context.cancelled() ? rows : as_given(rows, order, terms);
 }
 
 }  // namespace opaline::bake

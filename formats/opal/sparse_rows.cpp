@@ -110,6 +110,42 @@ bool append_rows(SparseRows& rows, const SparseRows& tail) {
     return true;
 }
 
+SparseRows pick_rows(const SparseRows& rows, std::uint32_t bands,
+                     std::span<const std::uint32_t> from) {
+    SparseRows picked = make_sparse_rows(rows.cubemap_size, rows.code_bits);
+    const auto copy = [](auto& to, const auto& values, std::size_t first, std::size_t count) {
+        if (!values.empty()) {
+            const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+            to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+        }
+    };
+    std::size_t details = 0;
+    for (const std::uint32_t r : from) {
+        details += rows.row_offset[r + 1] - rows.row_offset[r];
+    }
+    picked.row_offset.reserve(from.size() + 1);
+    picked.average_scale.reserve(from.size() * bands);
+    picked.detail_scale.reserve(from.size() * bands);
+    picked.average_code.reserve(from.size() * bands * kCubeFaces);
+    picked.index16.reserve(rows.index16.empty() ? 0 : details);
+    picked.index32.reserve(rows.index32.empty() ? 0 : details);
+    picked.code8.reserve(rows.code8.empty() ? 0 : details * bands);
+    picked.code16.reserve(rows.code16.empty() ? 0 : details * bands);
+    for (const std::uint32_t r : from) {
+        const std::size_t first = rows.row_offset[r], count = rows.row_offset[r + 1] - first;
+        const std::size_t band_row = std::size_t{r} * bands;
+        picked.row_offset.push_back(picked.row_offset.back() + static_cast<std::uint32_t>(count));
+        copy(picked.average_scale, rows.average_scale, band_row, bands);
+        copy(picked.detail_scale, rows.detail_scale, band_row, bands);
+        copy(picked.average_code, rows.average_code, band_row * kCubeFaces, bands * kCubeFaces);
+        copy(picked.index16, rows.index16, first, count);
+        copy(picked.index32, rows.index32, first, count);
+        copy(picked.code8, rows.code8, first * bands, count * bands);
+        copy(picked.code16, rows.code16, first * bands, count * bands);
+    }
+    return picked;
+}
+
 void decode_row(const SparseRowsView& rows, const RowRange& range, std::uint32_t row,
                 std::uint32_t band, std::span<float> dense) {
     std::fill(dense.begin(), dense.end(), 0.0f);

@@ -70,6 +70,11 @@ bool append_row(SparseRows& rows, const SparseRow& row);
 /// Appends all rows of `tail`, which must have the same basis and code width.
 bool append_rows(SparseRows& rows, const SparseRows& tail);
 
+/// Rows in another order: row i of the result is row from[i]. Every row of `rows` has `bands`
+/// bands; each stands in `from` at most once.
+SparseRows pick_rows(const SparseRows& rows, std::uint32_t bands,
+                     std::span<const std::uint32_t> from);
+
 /// Where a primitive's rows stand (see SparseRowsView).
 struct RowRange {
     std::uint32_t first_row = 0, rows = 0, bands = 1;
