@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "formats/opal/cubemap.h"
 #include "tests/bake/single/single_support.h"
 
@@ -64,6 +66,26 @@ TEST(TranslucentRows, RowsDoNotDependOnTheMemoryOfABatch) {
     EXPECT_EQ(whole.code16, cut.code16);
     EXPECT_EQ(whole.average_code, cut.average_code);
     EXPECT_EQ(whole.detail_scale, cut.detail_scale);
+}
+
+TEST(TranslucentRows, RowsStandAsReceiversAreGivenInWhateverOrder) {
+    const auto setup = small_ball();
+    auto shuffled = small_ball();
+    std::reverse(shuffled.points.begin(), shuffled.points.end());
+    const auto count = static_cast<std::uint32_t>(setup.points.size());
+    const auto rows = bake_single_alone(setup, {8, 4, 4, false}, 8, std::size_t{1} << 30);
+    const auto other = bake_single_alone(shuffled, {8, 4, 4, false}, 8, std::size_t{1} << 30);
+    constexpr std::uint32_t kTerms = 4;
+    std::vector<float> expected(6 * 8 * 8), actual(expected.size());
+    for (std::uint32_t v = 0; v < count; ++v) {
+        for (std::uint32_t k = 0; k < kTerms; ++k) {
+            const std::uint32_t mirrored = (count - 1 - v) * kTerms + k;
+            formats::decode_row(rows.view(), {0, kTerms * count, 3, 0, 0}, kTerms * v + k, 1,
+                                expected);
+            formats::decode_row(other.view(), {0, kTerms * count, 3, 0, 0}, mirrored, 1, actual);
+            ASSERT_EQ(actual, expected) << v << ' ' << k;
+        }
+    }
 }
 
 TEST(TranslucentRows, RaysGiveWhatLightMapsGive) {

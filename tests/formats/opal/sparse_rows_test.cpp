@@ -86,6 +86,30 @@ TEST(SparseRows, AppendingBlocksEqualsAppendingRows) {
     EXPECT_EQ(one_by_one.detail_scale, joined.detail_scale);
 }
 
+TEST(SparseRows, PickedRowsDecodeAsTheRowsTheyWere) {
+    for (const std::uint32_t n : {8u, 128u}) {  // indices of two and of four bytes
+        for (const std::uint32_t bits : {8u, 16u}) {
+            for (const std::uint32_t bands : {1u, 3u}) {
+                SparseRows rows = make_sparse_rows(n, bits);
+                for (unsigned i = 0; i < 5; ++i) {
+                    ASSERT_TRUE(append_row(rows, random_row(n, bands, 4 + 3 * i, i)));
+                }
+                const std::vector<std::uint32_t> from{3, 0, 4, 1};
+                const SparseRows picked = pick_rows(rows, bands, from);
+                ASSERT_EQ(picked.row_offset.size(), from.size() + 1);
+                std::vector<float> expected(cubemap_texels(n)), actual(expected.size());
+                for (std::uint32_t i = 0; i < from.size(); ++i) {
+                    for (std::uint32_t band = 0; band < bands; ++band) {
+                        decode_row(rows.view(), {0, 5, bands, 0, 0}, from[i], band, expected);
+                        decode_row(picked.view(), {0, 4, bands, 0, 0}, i, band, actual);
+                        ASSERT_EQ(actual, expected) << n << ' ' << bits << ' ' << bands;
+                    }
+                }
+            }
+        }
+    }
+}
+
 TEST(SparseRows, ZeroAndDenormalRowsDecodeToZeroNotToNan) {
     SparseRows rows = make_sparse_rows(8, 8);
     ASSERT_TRUE(append_row(rows, {1, {1, 2}, {1e-44f, 0}, {0, 0, 1e-44f, 0, 0, 0}}));
