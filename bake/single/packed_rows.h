@@ -34,7 +34,8 @@ inline std::uint32_t pack_shared_exponent(const std::array<float, 3>& value, boo
 }
 
 inline std::array<float, 3> unpack_shared_exponent(std::uint32_t packed, bool has_sign) {
-    const float unit = std::ldexp(1.0f, -static_cast<int>(packed & 31u) - (has_sign ? 8 : 9));
+    const std::uint32_t bits = has_sign ? 8 : 9;
+    const float unit = std::bit_cast<float>((127 - bits - (packed & 31u)) << 23);  // 2^-(e + bits)
     std::array<float, 3> value;
     for (std::size_t c = 0; c < 3; ++c) {
         const std::uint32_t code = (packed >> (5 + 9 * c)) & 511u;
