@@ -81,6 +81,35 @@ double gather(const ClusterTree& tree, const MediumProfile& profile, glm::vec3 x
     return static_cast<double>(rgbx[0]);
 }
 
+// The same nodes are taken, with the same weights and sums, bit for bit: with the near part (few
+// samples) and without.
+TEST(GatherMultiple, OneBandIsEachOfThreeEqualBands) {
+    const auto profile = classic_profile(45, 5, 1.3);
+    for (const int samples : {500, 20000}) {
+        const Samples set = make_sphere(1, samples, [](glm::dvec3 n) { return 1 + n.x; });
+        const ClusterTree tree = set.tree();
+        const double spacing = std::sqrt(tree.total_area / samples);
+        const GatherProfile three = make_gather_profile(profile, spacing, 10);
+        const GatherProfile one = make_gather_profile(profile, spacing, 10, 1);
+        EXPECT_EQ(three.near_radius > 0, samples == 500);
+        EXPECT_EQ(one.near_radius, three.near_radius);
+        EXPECT_EQ(3 * one.table.size(), three.table.size());
+        std::vector<ClusterWeight> weights, own;
+        collect_weights(tree, three, {0, 1, 0}, {0, 1, 0}, {1e-3}, weights);
+        collect_weights(tree, one, {0, 1, 0}, {0, 1, 0}, {1e-3}, own);
+        ASSERT_EQ(own.size(), weights.size());
+        std::vector<float> rgbx(24), grey(6);
+        accumulate(tree, weights, rgbx);
+        accumulate_grey(tree, own, grey);
+        EXPECT_GT(grey[0], 0);
+        for (std::size_t k = 0; k < grey.size(); ++k) {
+            for (std::size_t band = 0; band < 3; ++band) {
+                EXPECT_EQ(grey[k], rgbx[4 * k + band]) << k;
+            }
+        }
+    }
+}
+
 TEST(GatherMultiple, SphereUnderUniformIrradianceHasItsClosedForm) {
     OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "sphere_int_Rd");
     for (const auto& row : rows) {
