@@ -15,8 +15,8 @@ namespace opaline::bake {
 template <std::size_t kBands>
 using BandValues = std::array<float, kBands>;
 
-/// Values in [-1, 1] in 5 + 9 bits each: mantissas of 8 bits and a sign, and one exponent of 5
-/// bits: three in four bytes, one in two. Error at most 2^-8 of the largest magnitude of them, down
+/// Values in [-1, 1], three in four bytes or one in two: mantissas of 8 bits and a sign, and one
+/// exponent of 5 bits for all. Error at most 2^-8 of the largest magnitude of them, down
 /// to 2^-31. Not negative (`has_sign` false): mantissas of 9 bits, 2^-9. NaN is not allowed.
 template <std::size_t kBands>
 std::uint32_t pack_values(const BandValues<kBands>& value, bool has_sign) {
