@@ -18,7 +18,7 @@ using std::numbers::pi;
 constexpr double kTruthRays = 12.0 * 64 * 64;  // truth.h: a cube map of 64, half of it
 
 // What one band costs of what three do; measured.
-constexpr double kGreyEntry = 0.7, kGreyLookUp = 0.8, kGreyUnpacking = 0.4;
+constexpr double kGreyEntry = 0.8, kGreyLookUp = 0.8, kGreyUnpacking = 0.4;
 
 double texels(std::uint32_t n) {
     return static_cast<double>(formats::cubemap_texels(n));
