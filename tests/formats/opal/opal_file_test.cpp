@@ -184,10 +184,10 @@ TEST(OpalFile, ImpossibleShadingIsRefusedByName) {
                     testing::HasSubstr("terms"));
     }
     for (const std::uint32_t bands : {0u, 2u, 4u, 0xffffffffu}) {
-        EXPECT_THAT(fault_of([bands](Primitives& p) { p[2].bands = bands; }),
-                    testing::AllOf(testing::HasSubstr(std::to_string(bands) + " bands"),
-                                   testing::HasSubstr("expected"),
-                                   testing::HasSubstr("1 or 3 bands")));
+        EXPECT_THAT(
+            fault_of([bands](Primitives& p) { p[2].bands = bands; }),
+            testing::AllOf(testing::HasSubstr(std::to_string(bands) + " bands"),
+                           testing::HasSubstr("expected"), testing::HasSubstr("1 or 3 bands")));
     }
     for (const float eta : {0.0f, 0.33f, 3.01f, -1.3f, std::numeric_limits<float>::quiet_NaN(),
                             std::numeric_limits<float>::infinity()}) {
