@@ -36,17 +36,18 @@ MediaStages prepare_media(const PilotScene& pilot, const Knobs& knobs, const Con
         }
         if (layouts[m].local) {
             stages.local = make_local_stage(*scene.materials[m].medium, stages.recipe.profile,
-                                            layouts[m].single_terms > 0, knobs.cubemap_size);
+                                            layouts[m].single_terms > 0, knobs.cubemap_size,
+                                            layouts[m].bands());
             stages.recipe.local = &*stages.local;
         } else if (layouts[m].multiple) {
             const std::string name = "samples of material '" + scene.materials[m].name + "'";
             stages.multiple = run_stage(result, name, [&](std::uint64_t& traced) {
                 const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
-                MultipleStage stage =
-                    prepare_multiple(scene, pilot.rays_of(m), m, pilot.profiles.at(m),
-                                     {knobs.cubemap_size, knobs.samples, knobs.exact_samples,
-                                      knobs.samples_per_path, kept, knobs.seed, !knobs.exact_rays},
-                                     context);
+                MultipleStage stage = prepare_multiple(
+                    scene, pilot.rays_of(m), m, pilot.profiles.at(m),
+                    {knobs.cubemap_size, knobs.samples, knobs.exact_samples, knobs.samples_per_path,
+                     kept, knobs.seed, !knobs.exact_rays, layouts[m].bands()},
+                    context);
                 traced = stage.transport.rays;
                 return stage;
             });
@@ -63,11 +64,12 @@ void finish_media(const PilotScene& pilot, const Knobs& knobs, const Context& co
         if (recipe.layout.single_terms > 0 && !recipe.layout.local) {
             const std::string name =
                 "light maps of material '" + pilot.scene.materials[m].name + "'";
-            const std::uint32_t material = m, terms = recipe.layout.single_terms;
+            const std::uint32_t material = m;
+            const SingleOptions options{knobs.single_cubemap, knobs.depth_samples,
+                                        recipe.layout.single_terms, knobs.exact_rays,
+                                        recipe.layout.bands()};
             stages.single = run_stage(result, name, [&](std::uint64_t&) {
-                return prepare_single(
-                    pilot.scene, pilot.rays, material,
-                    {knobs.single_cubemap, knobs.depth_samples, terms, knobs.exact_rays}, context);
+                return prepare_single(pilot.scene, pilot.rays, material, options, context);
             });
             recipe.single = &*stages.single;
         }

@@ -17,6 +17,7 @@
 #include "bake/cli/scene_options.h"
 #include "bake/pipeline.h"
 #include "bake/plan/inspect_scene.h"
+#include "bake/plan/savings.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/write_opal.h"
 
@@ -77,6 +78,7 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
     const bake::SceneFacts facts = bake::inspect_scene(scene);
     std::vector<bake::PlanEntry> first = bake::plan_bake(scene, facts, wanted);
     bake::predict_costs(scene, facts, result.knobs, machine.rates, result.threads, result.plan);
+    bake::predict_savings(scene, facts, result.knobs, machine.rates, result.threads, result.plan);
     return {bake::predict_costs(scene, facts, wanted, machine.rates, result.threads, first),
             machine.note};
 }

@@ -10,6 +10,7 @@
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/plan/inspect_scene.h"
+#include "bake/plan/savings.h"
 
 namespace opaline::cli {
 namespace {
@@ -38,8 +39,10 @@ int run(const Options& options) {
     const unsigned threads = bake::thread_count(context);
     const bake::SceneFacts facts = bake::inspect_scene(imported->scene);
     auto plan = bake::plan_bake(imported->scene, facts, *knobs);
-    const bake::CostPrediction cost = bake::predict_costs(
-        imported->scene, facts, *knobs, find_machine_rates().rates, threads, plan);
+    const bake::Rates rates = find_machine_rates().rates;
+    const bake::CostPrediction cost =
+        bake::predict_costs(imported->scene, facts, *knobs, rates, threads, plan);
+    bake::predict_savings(imported->scene, facts, *knobs, rates, threads, plan);
     fmt::print("{}",
                options.json ? make_plan_json(plan, cost) : make_plan_table(plan, cost, threads));
     return kExitSuccess;

@@ -28,9 +28,22 @@ Json plan_array(const std::vector<bake::PlanEntry>& plan) {
                          {"reason", entry.reason},
                          {"bound", entry.bound},
                          {"predicted_seconds", entry.predicted_seconds},
-                         {"predicted_bytes", entry.predicted_bytes}});
+                         {"predicted_bytes", entry.predicted_bytes},
+                         {"saved_seconds", entry.saved_seconds},
+                         {"saved_bytes", entry.saved_bytes}});
     }
     return array;
+}
+
+// At the end of a reason; empty where nothing worth mentioning is saved.
+std::string savings_text(const bake::PlanEntry& entry) {
+    constexpr double kLeastSeconds = 0.01, kLeastBytes = 1000;
+    const auto size = static_cast<double>(entry.saved_bytes);
+    if (entry.saved_seconds < kLeastSeconds && size < kLeastBytes) {
+        return {};
+    }
+    return fmt::format("; saves {}{}", format_seconds(entry.saved_seconds),
+                       size < kLeastBytes ? "" : " and " + format_bytes(size));
 }
 
 // Of the first of that name that is left. A pilot's further rounds are not predicted: 0.
@@ -138,7 +151,7 @@ std::string make_plan_table(const std::vector<bake::PlanEntry>& plan,
         table += fmt::format("{:<{}} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.effect,
                              widest_effect, entry.subject, widest, entry.on ? "on" : "off",
                              entry.bound, format_seconds(entry.predicted_seconds),
-                             bytes(entry.predicted_bytes), entry.reason);
+                             bytes(entry.predicted_bytes), entry.reason + savings_text(entry));
     }
     table += fmt::format("{:<{}} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", rest, widest_effect,
                          everything, widest, "always", "", format_seconds(cost.shared_seconds),

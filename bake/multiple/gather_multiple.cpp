@@ -45,8 +45,8 @@ struct Gather {
         const std::array<float, 3> least = eval_far(profile, d.farthest);
         const float norm = tree.sums.norm[v];
         return norm * (most[0] - least[0]) <= allowed[0] &&
-               norm * (most[1] - least[1]) <= allowed[1] &&
-               norm * (most[2] - least[2]) <= allowed[2];
+               (profile.bands == 1 || (norm * (most[1] - least[1]) <= allowed[1] &&
+                                       norm * (most[2] - least[2]) <= allowed[2]));
     }
 
     void visit() {
@@ -88,12 +88,27 @@ struct Gather {
             sum += share[i] * tree.area[s];
         }
         for (std::size_t i = 0; i < near.size() && sum > 0; ++i) {
-            for (std::size_t band = 0; band < 3; ++band) {
+            for (std::size_t band = 0; band < profile.bands; ++band) {
                 weights[near[i]].weight[band] += profile.near_mass[band] * share[i] / sum;
             }
         }
     }
 };
+
+// Of a node's or a sample's vector.
+struct Entries {
+    const std::uint32_t* index;
+    const float* value;
+    std::size_t count;
+};
+
+Entries entries_of(const ClusterTree& tree, const ClusterWeight& w) {
+    const std::size_t nodes = tree.nodes.size();
+    const SparseVectors& vectors = w.id < nodes ? tree.sums : tree.samples;
+    const std::size_t v = w.id < nodes ? w.id : w.id - nodes;
+    const std::uint64_t first = vectors.offset[v];
+    return {&vectors.index[first], &vectors.value[first], vectors.offset[v + 1] - first};
+}
 
 }  // namespace
 
@@ -106,7 +121,7 @@ void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm:
     }
     const float radius = profile.near_radius;
     Gather gather{tree, profile, position, {}, radius * radius, weights, {}};
-    for (std::size_t band = 0; band < 3; ++band) {
+    for (std::size_t band = 0; band < profile.bands; ++band) {
         // A negative allowance for nothing: no node is taken whole, whatever its sum.
         gather.allowed[band] =
             options.tolerance > 0
@@ -128,21 +143,28 @@ void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm:
 void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
                 std::span<float> rgbx) {
     std::fill(rgbx.begin(), rgbx.end(), 0.0f);
-    const std::size_t nodes = tree.nodes.size();
     float* const sums = rgbx.data();
     for (const ClusterWeight& w : weights) {
-        const SparseVectors& vectors = w.id < nodes ? tree.sums : tree.samples;
-        const std::size_t v = w.id < nodes ? w.id : w.id - nodes;
+        const Entries entries = entries_of(tree, w);
         const Float4 weight{w.weight[0], w.weight[1], w.weight[2], 0.0f};
-        const std::uint64_t first = vectors.offset[v], last = vectors.offset[v + 1];
-        const std::uint32_t* const index = &vectors.index[first];
-        const float* const value = &vectors.value[first];
-        for (std::size_t i = 0; i < last - first; ++i) {
-            float* const place = sums + std::size_t{4} * index[i];
+        for (std::size_t i = 0; i < entries.count; ++i) {
+            float* const place = sums + std::size_t{4} * entries.index[i];
             Float4 sum;
             std::memcpy(&sum, place, sizeof sum);
-            sum += weight * value[i];
+            sum += weight * entries.value[i];
             std::memcpy(place, &sum, sizeof sum);
+        }
+    }
+}
+
+void accumulate_grey(const ClusterTree& tree, std::span<const ClusterWeight> weights,
+                     std::span<float> sums) {
+    std::fill(sums.begin(), sums.end(), 0.0f);
+    float* const to = sums.data();
+    for (const ClusterWeight& w : weights) {
+        const Entries entries = entries_of(tree, w);
+        for (std::size_t i = 0; i < entries.count; ++i) {
+            to[entries.index[i]] += w.weight[0] * entries.value[i];
         }
     }
 }

@@ -11,7 +11,8 @@
 
 namespace opaline::bake {
 
-/// How much of one node or sample reaches a receiver, per band [1/m^2].
+/// How much of one node or sample reaches a receiver, per band [1/m^2]; 0 where the profile has no
+/// such band.
 struct ClusterWeight {
     std::uint32_t id = 0;  ///< a node, or nodes + sample
     std::array<float, 3> weight{};
@@ -34,5 +35,8 @@ void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm:
 /// n values, overwritten.
 void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
                 std::span<float> rgbx);
+/// The same of the first band alone, 6 n n values.
+void accumulate_grey(const ClusterTree& tree, std::span<const ClusterWeight> weights,
+                     std::span<float> sums);
 
 }  // namespace opaline::bake

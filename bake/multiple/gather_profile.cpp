@@ -39,14 +39,15 @@ float start_of(std::uint32_t step) {
 }  // namespace
 
 GatherProfile make_gather_profile(const MediumProfile& medium, double spacing,
-                                  double largest_distance) {
+                                  double largest_distance, std::uint32_t bands) {
     GatherProfile profile;
+    profile.bands = bands;
     if (!(medium.smallest > 0)) {
         return profile;  // nothing scatters: an empty table, 0 everywhere
     }
     const double wanted = kWidthPerSpacing * spacing;
     std::array<double, 3> b_squared{};
-    for (std::size_t b = 0; b < 3; ++b) {
+    for (std::size_t b = 0; b < bands; ++b) {
         const double width = profile_width(medium.band[b]);
         profile.total[b] = medium.total(b);
         if (profile.total[b] > 0 && width < wanted) {
@@ -65,26 +66,24 @@ GatherProfile make_gather_profile(const MediumProfile& medium, double spacing,
         place_of(std::min(kMost, 1 + farthest * profile.inverse_z_squared)).step + 2;
     for (std::uint32_t i = 0; i < entries; ++i) {
         const double r2 = z_squared * (static_cast<double>(start_of(i)) - 1);
-        std::array<float, 3> value{};
-        for (std::size_t b = 0; b < 3; ++b) {
-            value[b] = static_cast<float>(medium.eval(b, std::sqrt(r2 + b_squared[b])));
+        for (std::size_t b = 0; b < bands; ++b) {
+            profile.table.push_back(
+                static_cast<float>(medium.eval(b, std::sqrt(r2 + b_squared[b]))));
         }
-        profile.table.push_back(value);
     }
     return profile;
 }
 
 std::array<float, 3> eval_far(const GatherProfile& profile, float r2) {
     const auto [step, f] = place_of(1 + r2 * profile.inverse_z_squared);
-    if (step + 1 >= profile.table.size()) {
+    const std::size_t bands = profile.bands, at = bands * step;
+    if (at + bands >= profile.table.size()) {
         return {};
     }
-    std::array<float, 3> value{};
-    for (std::size_t b = 0; b < 3; ++b) {
-        value[b] =
-            profile.table[step][b] + f * (profile.table[step + 1][b] - profile.table[step][b]);
-    }
-    return value;
+    const float* const here = &profile.table[at];
+    const auto between = [&](std::size_t b) { return here[b] + f * (here[bands + b] - here[b]); };
+    return bands == 1 ? std::array{between(0), 0.0f, 0.0f}
+                      : std::array{between(0), between(1), between(2)};
 }
 
 }  // namespace opaline::bake

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "bake/multiple/medium_profile.h"
@@ -18,18 +19,21 @@ namespace opaline::bake {
 /// sum (b = 0) and an opaque surface (T_d = R E), and nothing is asked of the surface's shape.
 /// Instead of translucency.md 3.7, whose disc must be flat.
 struct GatherProfile {
-    std::vector<std::array<float, 3>> table;  ///< R_far at steps of 1 + r^2 / z^2, 64 an octave
-    float inverse_z_squared = 1;              ///< [1/m^2]
-    std::array<double, 3> total{};            ///< R per band
-    std::array<float, 3> near_mass{};         ///< R - R_>(b) per band
-    float near_radius = 0;                    ///< [m] within which E is averaged; 0: no near part
+    std::uint32_t bands = 3;        ///< or 1, which stands for all; others are 0 below
+    std::vector<float> table;       ///< [step][band]: R_far at steps of 1 + r^2 / z^2, 64 an octave
+    float inverse_z_squared = 1;    ///< [1/m^2]
+    std::array<double, 3> total{};  ///< R per band
+    std::array<float, 3> near_mass{};  ///< R - R_>(b) per band
+    float near_radius = 0;             ///< [m] within which E is averaged; 0: no near part
 };
 
-/// `spacing` [m] between samples, `largest_distance` [m]: the table's reach.
+/// `spacing` [m] between samples, `largest_distance` [m]: the table's reach. `bands`: 3, or 1 where
+/// those of the medium coincide.
 GatherProfile make_gather_profile(const MediumProfile& medium, double spacing,
-                                  double largest_distance);
+                                  double largest_distance, std::uint32_t bands = 3);
 
-/// R_far of the three bands [1/m^2] at squared distance r2 [m^2]; 0 beyond the table.
+/// R_far of each band [1/m^2] at squared distance r2 [m^2]; 0 beyond the table, and where there is
+/// no such band.
 std::array<float, 3> eval_far(const GatherProfile& profile, float r2);
 
 }  // namespace opaline::bake

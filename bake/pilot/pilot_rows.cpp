@@ -62,10 +62,11 @@ PilotSingles gather_pilot_single(const PilotScene& pilot, std::span<const PilotR
         }
     }
     for (auto& [m, single] : singles) {
-        single.stage = prepare_single(
-            pilot.scene, pilot.rays, m,
-            {setting.single_cubemap, setting.depth_samples, pilot.layouts[m].single_terms, true},
-            context);
+        single.stage =
+            prepare_single(pilot.scene, pilot.rays, m,
+                           {setting.single_cubemap, setting.depth_samples,
+                            pilot.layouts[m].single_terms, true, pilot.layouts[m].bands()},
+                           context);
         Context quiet = context;
         quiet.on_progress = nullptr;
         single.batch = gather_single_batch(single.stage, pilot.rays, points[m], quiet);
@@ -96,8 +97,8 @@ std::vector<std::vector<CheckedPair>> measure_rows(
         const bool once = single != singles.end();
         recipe.single = once ? &single->second.stage : nullptr;
         const BodyPoint& point = pilot.points[r.vertex];
-        DenseRows dense{{}, view_of_rows(recipe.layout, point.normal), 3};
-        dense.values.resize(dense.h.size() * 3 * formats::cubemap_texels(cubemap_size));
+        DenseRows dense{{}, view_of_rows(recipe.layout, point.normal), recipe.layout.bands()};
+        dense.values.resize(dense.h.size() * dense.bands * formats::cubemap_texels(cubemap_size));
         assemble_rows(recipe, pilot.rays, pilot.vertices[r.vertex], point,
                       once ? &single->second.batch : nullptr, once ? single->second.place[i] : 0,
                       dense.values);

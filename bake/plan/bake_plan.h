@@ -23,6 +23,8 @@ struct PlanEntry {
     std::uint32_t terms = 0;       ///< `single`: terms of the phase function
     double predicted_seconds = 0;  ///< filled in by predict_costs (cost_model.h)
     std::uint64_t predicted_bytes = 0;  ///< the same; of the rows in the file
+    double saved_seconds = 0;           ///< by being off; filled in by predict_savings (savings.h)
+    std::uint64_t saved_bytes = 0;      ///< the same; of the rows in the file
 };
 
 /// Decides what to simulate, from the scene alone: traces nothing. `facts`: inspect_scene's.

@@ -309,9 +309,13 @@ double measure_unpacking(const RayScene& rays) {
     packed.scale.assign(kReceivers, 1.0f);
     packed.place.resize(kReceivers);
     std::iota(packed.place.begin(), packed.place.end(), 0u);
-    const std::uint32_t value = pack_shared_exponent({0.3f, 0.5f, 0.7f}, true);
-    packed.packed.assign(texels,
-                         std::vector<std::uint32_t>(std::size_t{kReceivers} * kTerms, value));
+    std::uint16_t words[2];
+    store_packed<3>(pack_values<3>({0.3f, 0.5f, 0.7f}, true), words);
+    std::vector<std::uint16_t> texel;
+    for (std::size_t i = 0; i < std::size_t{kReceivers} * kTerms; ++i) {
+        texel.insert(texel.end(), {words[0], words[1]});
+    }
+    packed.packed.assign(texels, texel);
     std::vector<float> rows(std::size_t{3} * kTerms * formats::cubemap_texels(kCubemap));
     const Stopwatch watch;
     for (std::uint32_t r = 0; r < kReceivers; ++r) {

@@ -22,11 +22,11 @@ double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
     return kCompressed * bytes;
 }
 
-std::uint64_t row_bytes(const Knobs& knobs, std::uint64_t bands) {
+std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t bands) {
     const std::uint64_t all = formats::cubemap_texels(knobs.cubemap_size);
-    // Of a surface in the open half of all coefficients vanish, below the horizon.
+    // Of an opaque surface half of all coefficients vanish, below the horizon.
     const std::uint64_t details = knobs.coefficients == kAllCoefficients
-                                      ? (bands == 1 ? all / 2 : all)
+                                      ? (translucent ? all : all / 2)
                                       : std::min<std::uint64_t>(knobs.coefficients, all) - 6;
     const std::uint64_t index_bytes = all <= 65536 ? 2 : 4;
     return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
@@ -166,29 +166,30 @@ struct Prediction {
                              p.material);
                 }
                 bill.add(encode_work(input, 1, 1, receivers), "direct", p.material);
-                bill.add_bytes(receivers * static_cast<double>(row_bytes(knobs, 1)), "direct",
-                               p.material);
+                bill.add_bytes(receivers * static_cast<double>(row_bytes(knobs, false, 1)),
+                               "direct", p.material);
                 continue;
             }
             if (layout.local) {
                 bill.add(traced(layout, direct_rows_work(input, receivers)),
                          layout.multiple ? "multiple" : "single", p.material);
             }
+            const std::uint32_t bands = layout.bands();
             if (layout.multiple && !layout.local) {
-                bill.add(multiple_rows_work(input, medium(p.material), own, receivers), "multiple",
-                         p.material);
+                bill.add(multiple_rows_work(input, medium(p.material), own, bands, receivers),
+                         "multiple", p.material);
             }
             if (layout.single_terms > 0 && !layout.local) {
-                bill.add(single_rows_work(input, own, layout.single_terms, receivers), "single",
-                         p.material);
+                bill.add(single_rows_work(input, own, layout.single_terms, bands, receivers),
+                         "single", p.material);
             }
             // The first row is that of multiple scattering, where there is any.
             const std::uint32_t first = layout.multiple ? 1 : 0;
             const std::uint32_t others = layout.terms() - first;
-            const auto bytes = receivers * static_cast<double>(row_bytes(knobs, 3));
-            bill.add(encode_work(input, first, 3, receivers), "multiple", p.material);
+            const auto bytes = receivers * static_cast<double>(row_bytes(knobs, true, bands));
+            bill.add(encode_work(input, first, bands, receivers), "multiple", p.material);
             bill.add_bytes(first * bytes, "multiple", p.material);
-            bill.add(encode_work(input, others, 3, receivers), "single", p.material);
+            bill.add(encode_work(input, others, bands, receivers), "single", p.material);
             bill.add_bytes(others * bytes, "single", p.material);
         }
     }
@@ -260,12 +261,14 @@ struct Prediction {
                 continue;
             }
             if (layouts[m].multiple) {
-                bill.add(multiple_rows_work(input, medium(m), facts.material[m], kRounds * own));
+                bill.add(multiple_rows_work(input, medium(m), facts.material[m], layouts[m].bands(),
+                                            kRounds * own));
             }
             if (layouts[m].single_terms > 0) {
-                bill.add(single_rows_work(traced, facts.material[m], layouts[m].single_terms, own));
+                bill.add(single_rows_work(traced, facts.material[m], layouts[m].single_terms,
+                                          layouts[m].bands(), own));
             }
-            bill.add(encode_work(input, kEncodings * layouts[m].terms(), 3, own));
+            bill.add(encode_work(input, kEncodings * layouts[m].terms(), layouts[m].bands(), own));
         }
     }
     double opaque_share() const {

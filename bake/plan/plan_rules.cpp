@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/plan/rule_colour.h"
 #include "bake/plan/rule_spread.h"
 #include "bake/plan/rules_visibility.h"
 #include "bake/plan/stage_costs.h"
@@ -70,6 +71,8 @@ PlanEntry decide_direct(const PlanInput& input) {
     }
     return entry;
 }
+
+}  // namespace
 
 PlanEntry decide_multiple(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
@@ -143,6 +146,8 @@ PlanEntry decide_single(const PlanInput& input) {
     return entry;
 }
 
+namespace {
+
 PlanEntry decide_specular(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
     PlanEntry entry;
@@ -158,11 +163,12 @@ PlanEntry decide_specular(const PlanInput& input) {
     return entry;
 }
 
-constexpr std::array<PlanRule, 6> kRules{{{"direct", any_material, decide_direct},
+constexpr std::array<PlanRule, 7> kRules{{{"direct", any_material, decide_direct},
                                           {"light.visibility", any_material, decide_visibility},
                                           {"multiple", has_medium, decide_multiple},
                                           {"multiple.spread", has_medium, decide_spread},
                                           {"single", has_medium, decide_single},
+                                          {"light.colour", has_medium, decide_colour},
                                           {"specular", has_medium, decide_specular}}};
 
 }  // namespace

@@ -32,6 +32,10 @@ struct PlanRule {
 /// Knobs::error_target where that is less. `forced`: it is not, but Knobs::simulate_all wants it.
 bool is_worth(double bound, const PlanInput& input, bool& forced);
 
+/// The rules of the two effects that fill the rows of a medium.
+PlanEntry decide_multiple(const PlanInput& input);
+PlanEntry decide_single(const PlanInput& input);
+
 /// All rules, in the order in which plans list effects.
 extern const std::span<const PlanRule> kPlanRules;
 

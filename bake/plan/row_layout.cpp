@@ -29,6 +29,7 @@ std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vecto
         layout.local = layout.translucent && (layout.multiple || layout.single_terms > 0) &&
                        !is_on("multiple.spread");
         layout.glossy = layout.translucent && is_on("specular");
+        layout.grey = layout.translucent && !is_on("light.colour");
     }
     return layouts;
 }

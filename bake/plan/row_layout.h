@@ -11,7 +11,7 @@ namespace opaline::bake {
 
 /// What stands in the rows of a material's vertices.
 struct RowLayout {
-    bool translucent = false;        ///< otherwise diffuse: one grey row
+    bool translucent = false;        ///< otherwise diffuse: one row of one band
     bool occluded = false;           ///< rays find out what stands before the light
     bool direct = false;             ///< the diffuse row is simulated, otherwise zero
     bool multiple = false;           ///< multiple scattering is simulated
@@ -19,13 +19,14 @@ struct RowLayout {
     bool local = false;              ///< light leaves the medium where it entered
     bool separate = false;           ///< multiple scattering in a row of its own
     bool glossy = false;             ///< with specular reflection
+    bool grey = false;               ///< its three bands coincide: one stands for them
     formats::Rgb tint{1, 1, 1};      ///< times the base colour
 
     /// Rows of a vertex.
     std::uint32_t terms() const {
         return separate ? 1 + single_terms : single_terms > 1 ? single_terms : 1;
     }
-    std::uint32_t bands() const { return translucent ? 3 : 1; }
+    std::uint32_t bands() const { return translucent && !grey ? 3 : 1; }
     /// Row that the first term of single scattering stands in.
     std::uint32_t first_single() const { return separate ? 1 : 0; }
     /// h_0 with which row 0 is seen: multiple scattering is divided by it.

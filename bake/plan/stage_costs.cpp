@@ -17,6 +17,9 @@ using std::numbers::pi;
 
 constexpr double kTruthRays = 12.0 * 64 * 64;  // truth.h: a cube map of 64, half of it
 
+// What one band costs of what three do; measured.
+constexpr double kGreyEntry = 0.8, kGreyLookUp = 0.8, kGreyUnpacking = 0.4;
+
 double texels(std::uint32_t n) {
     return static_cast<double>(formats::cubemap_texels(n));
 }
@@ -183,12 +186,12 @@ Work samples_work(const CostInput& input, const formats::Medium& medium,
 }
 
 Work multiple_rows_work(const CostInput& input, const formats::Medium& medium,
-                        const MaterialFacts& facts, double receivers) {
+                        const MaterialFacts& facts, std::uint32_t bands, double receivers) {
     const double samples = expected_samples(medium, facts.area, input.knobs);
     const double weights = count_weights(medium, facts, samples, input.knobs.tolerance);
-    return {
-        0, receivers * weights *
-               (input.rates.take_weight + kept_by_samples(input.knobs) * input.rates.gather_entry)};
+    const double entry = input.rates.gather_entry * (bands == 1 ? kGreyEntry : 1);
+    return {0,
+            receivers * weights * (input.rates.take_weight + kept_by_samples(input.knobs) * entry)};
 }
 
 Work light_maps_work(const CostInput& input, const MaterialFacts& facts) {
@@ -198,11 +201,13 @@ Work light_maps_work(const CostInput& input, const MaterialFacts& facts) {
 }
 
 Work single_rows_work(const CostInput& input, const MaterialFacts& facts, std::uint32_t terms,
-                      double receivers) {
+                      std::uint32_t bands, double receivers) {
     const Rates& rates = input.rates;
+    const bool grey = bands == 1;
     const double coarse = texels(input.knobs.single_cubemap);
     const double nodes = receivers * input.knobs.depth_samples;
-    const double unpacked = receivers * terms * coarse * rates.unpack_texel;
+    const double unpacked =
+        receivers * terms * coarse * rates.unpack_texel * (grey ? kGreyUnpacking : 1);
     if (input.knobs.exact_rays) {
         constexpr double kRaysPerTexel = 4, kRaysPerPacket = 16;
         return {0, nodes * coarse * kRaysPerTexel / kRaysPerPacket *
@@ -211,7 +216,7 @@ Work single_rows_work(const CostInput& input, const MaterialFacts& facts, std::u
     }
     // TranslucentRecipe::batch_bytes: each batch renders all views anew.
     constexpr double kBatchBytes = 2147483648.0;
-    const double batches = std::ceil(receivers * coarse * terms * 4 / kBatchBytes);
+    const double batches = std::ceil(receivers * coarse * terms * (grey ? 2 : 4) / kBatchBytes);
     const double edge =
         std::sqrt(facts.area / std::max(facts.triangles, 1.0) * 4 / std::numbers::sqrt3);
     const double pixels = std::pow(
@@ -221,7 +226,7 @@ Work single_rows_work(const CostInput& input, const MaterialFacts& facts, std::u
         2);
     const double view = input.triangles * rates.draw_triangle + pixels * rates.draw_pixel;
     return {0, receivers * rates.place_nodes.at(input.triangles) + batches * coarse * view +
-                   nodes * coarse *
+                   nodes * coarse * (grey ? kGreyLookUp : 1) *
                        (rates.look_up.at(input.triangles) + (terms - 1) * rates.look_up_term) +
                    unpacked};
 }

@@ -59,10 +59,10 @@ Work profile_work(const CostInput& input, const formats::Medium& medium);
 Work samples_work(const CostInput& input, const formats::Medium& medium,
                   const MaterialFacts& facts);
 Work multiple_rows_work(const CostInput& input, const formats::Medium& medium,
-                        const MaterialFacts& facts, double receivers);
+                        const MaterialFacts& facts, std::uint32_t bands, double receivers);
 Work light_maps_work(const CostInput& input, const MaterialFacts& facts);
 Work single_rows_work(const CostInput& input, const MaterialFacts& facts, std::uint32_t terms,
-                      double receivers);
+                      std::uint32_t bands, double receivers);
 Work encode_work(const CostInput& input, std::uint32_t rows, std::uint32_t bands, double receivers);
 Work openness_work(const CostInput& input, double glossy_receivers);
 Work direct_check_work(const CostInput& input, double checked);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "bake/single/packed_rows.h"
 #include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::bake {
@@ -30,11 +31,13 @@ Arrival arrival_of(const GatherJob& job, const LightView& view, std::uint32_t tr
             cosine * (frame.w - slope.x * frame.u - slope.y * frame.v)};
 }
 
-// Adds light that arrives to the terms of a receiver.
-void add(const GatherJob& job, glm::vec3 w, const Arrival& arrival,
-         const std::array<float, 3>& light, float* value) {
+// Adds light that arrives to the terms of a receiver. Everything with a number of bands is compiled
+// for one and for three.
+template <std::size_t kBands>
+void add(const GatherJob& job, glm::vec3 w, const Arrival& arrival, const BandValues<kBands>& light,
+         float* value) {
     if (job.terms == 1) {
-        for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t c = 0; c < kBands; ++c) {
             value[c] += job.isotropic * light[c];
         }
         return;
@@ -43,18 +46,19 @@ void add(const GatherJob& job, glm::vec3 w, const Arrival& arrival,
     eval_phase_terms(job.medium.phase, job.medium.boundary.eta, w, arrival.normal, arrival.entry,
                      arrival.cosine, std::span<float>(g).first(job.terms));
     for (std::size_t k = 0; k < job.terms; ++k) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            value[3 * k + c] += g[k] * light[c];
+        for (std::size_t c = 0; c < kBands; ++c) {
+            value[kBands * k + c] += g[k] * light[c];
         }
     }
 }
 
 // What of the light gets to a node, times a factor.
-std::array<float, 3> attenuate(const GatherJob& job, const InteriorNode& node,
-                               const Arrival& arrival, float factor) {
+template <std::size_t kBands>
+BandValues<kBands> attenuate(const GatherJob& job, const InteriorNode& node, const Arrival& arrival,
+                             float factor) {
     const float length = arrival.distance * arrival.entry.path_ratio;
-    std::array<float, 3> light;
-    for (std::size_t c = 0; c < 3; ++c) {
+    BandValues<kBands> light;
+    for (std::size_t c = 0; c < kBands; ++c) {
         light[c] = factor * arrival.entry.throughput * node.weight[c] *
                    exp_of_negative(-job.column.sigma_t[c] * length);
     }
@@ -75,11 +79,12 @@ float number_of(const InteriorNode& node, glm::vec3 w) {
 // How likely an unsure look-up is traced: surely where it matters. Of those that may be dark or lit
 // a random part is, so that errors have mean zero: of the nodes in a thin sheet all may be. Where
 // only the distance is unsure, and little, the likely answer is as near as that on average.
+template <std::size_t kBands>
 float trace_probability(const GatherJob& job, const InteriorNode& node, const LightAnswer& answer,
                         float path_ratio, float scale) {
     constexpr float kSlack = 4.0f;  // what planes disagree by is not all that may be wrong
     float error = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < kBands; ++c) {
         const float sigma = job.column.sigma_t[c] * path_ratio;
         const float change = std::min(1.0f, kSlack * sigma * answer.uncertainty);
         error = std::max(error, change * node.weight[c] * exp_of_negative(-sigma * answer.nearest));
@@ -93,6 +98,7 @@ float trace_probability(const GatherJob& job, const InteriorNode& node, const Li
     return std::clamp(part, kLeast, 1.0f);
 }
 
+template <std::size_t kBands>
 void trace_open(const GatherJob& job, const GatherDirection& direction, GatherWorkspace& work) {
     for (std::size_t begin = 0; begin < work.open.size(); begin += kLanes) {
         const std::size_t count = std::min<std::size_t>(kLanes, work.open.size() - begin);
@@ -124,13 +130,15 @@ void trace_open(const GatherJob& job, const GatherDirection& direction, GatherWo
                 entries.cosine[lane],
                 enter(entries.cosine[lane], job.medium.boundary),
                 {entries.normal_x[lane], entries.normal_y[lane], entries.normal_z[lane]}};
-            add(job, direction.w, arrival, attenuate(job, *open.node, arrival, open.factor),
-                &work.value[3 * job.terms * std::size_t{open.receiver}]);
+            add<kBands>(job, direction.w, arrival,
+                        attenuate<kBands>(job, *open.node, arrival, open.factor),
+                        &work.value[kBands * job.terms * std::size_t{open.receiver}]);
         }
     }
 }
 
 // Looks a node up at a silhouette, a crease or between thin layers.
+template <std::size_t kBands>
 void gather_unclear(const GatherJob& job, const GatherDirection& direction, std::uint32_t receiver,
                     const InteriorNode& node, float margin, GatherWorkspace& work) {
     const glm::vec3 p = project(work.view.frame, node.position - job.mesh.centre);
@@ -142,8 +150,8 @@ void gather_unclear(const GatherJob& job, const GatherDirection& direction, std:
     float factor = direction.share;
     if (!answer.sure) {
         ++work.unsure;
-        const float probability = trace_probability(job, node, answer, arrival.entry.path_ratio,
-                                                    job.list.scale[receiver]);
+        const float probability = trace_probability<kBands>(
+            job, node, answer, arrival.entry.path_ratio, job.list.scale[receiver]);
         if (number_of(node, direction.w) < probability) {
             // The likely answer plus what the rays find more than it: right on average.
             work.open.push_back({&node, receiver, direction.share / probability});
@@ -151,11 +159,12 @@ void gather_unclear(const GatherJob& job, const GatherDirection& direction, std:
         }
     }
     if (answer.lit && factor != 0) {
-        add(job, direction.w, arrival, attenuate(job, node, arrival, factor),
-            &work.value[3 * job.terms * std::size_t{receiver}]);
+        add<kBands>(job, direction.w, arrival, attenuate<kBands>(job, node, arrival, factor),
+                    &work.value[kBands * job.terms * std::size_t{receiver}]);
     }
 }
 
+template <std::size_t kBands>
 void gather_block(const GatherJob& job, const GatherDirection& direction,
                   const NodeList::Block& block, GatherWorkspace& work) {
     const NodeList& list = job.list;
@@ -165,8 +174,8 @@ void gather_block(const GatherJob& job, const GatherDirection& direction,
     look_up_columns(work.view, list.points, begin, end - begin, job.column, work.answers);
     work.look_ups += end - begin;
     for (std::uint32_t r = block.receiver; r < block.receiver + block.receivers; ++r) {
-        float* value = &work.value[3 * job.terms * std::size_t{r}];
-        std::array<float, 3> sum{};
+        float* value = &work.value[kBands * job.terms * std::size_t{r}];
+        BandValues<kBands> sum{};
         for (std::uint32_t i = list.first[r]; i < list.first[r + 1]; ++i) {
             const std::uint32_t k = i - begin;
             const std::int32_t state = answers.state[k];
@@ -176,20 +185,20 @@ void gather_block(const GatherJob& job, const GatherDirection& direction,
                 __builtin_prefetch(&job.mesh.triangle[answers.triangle[k]]);
                 work.unclear.push_back({i, r, answers.triangle[k]});
             } else if (job.terms > 1 && state == ColumnAnswers::lit) {
-                std::array<float, 3> light;
-                for (std::size_t c = 0; c < 3; ++c) {
+                BandValues<kBands> light;
+                for (std::size_t c = 0; c < kBands; ++c) {
                     light[c] = direction.share * answers.light[c][k];
                 }
-                add(job, direction.w,
-                    arrival_of(job, work.view, answers.triangle[k], answers.distance[k]), light,
-                    value);
+                add<kBands>(job, direction.w,
+                            arrival_of(job, work.view, answers.triangle[k], answers.distance[k]),
+                            light, value);
             }
-            for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t c = 0; c < kBands; ++c) {
                 sum[c] += answers.light[c][k];
             }
         }
         if (job.terms == 1) {
-            for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t c = 0; c < kBands; ++c) {
                 value[c] += job.isotropic * direction.share * sum[c];
             }
         }
@@ -201,9 +210,29 @@ void gather_block(const GatherJob& job, const GatherDirection& direction,
         }
     }
     for (const GatherWorkspace::Unclear& unclear : work.unclear) {
-        gather_unclear(job, direction, unclear.receiver, list.node[unclear.node], 0.0f, work);
+        gather_unclear<kBands>(job, direction, unclear.receiver, list.node[unclear.node], 0.0f,
+                               work);
     }
     work.unclear.clear();
+}
+
+template <std::size_t kBands>
+void gather_view(const GatherJob& job, const GatherDirection& direction, GatherWorkspace& work) {
+    const NodeList& list = job.list;
+    for (const NodeList::Block& block : list.blocks) {
+        gather_block<kBands>(job, direction, block, work);
+    }
+    constexpr float kNear = 2.0f;  // [pixels]
+    const float margin = kNear / work.view.frame.pixels_per_metre;
+    for (const NodeList::Hard& hard : list.hard) {
+        if (hard.crease) {
+            gather_unclear<kBands>(job, direction, hard.receiver, hard.node, margin, work);
+            ++work.look_ups;
+        } else {
+            work.open.push_back({&hard.node, hard.receiver, direction.share});
+        }
+    }
+    trace_open<kBands>(job, direction, work);
 }
 
 }  // namespace
@@ -213,6 +242,7 @@ GatherJob make_gather_job(const RayScene& rays, const BodyMesh& mesh, std::uint3
     GatherJob job{rays, mesh, size, medium, list, medium.phase.count(), 0, {}};
     job.isotropic = largest_phase_terms(medium.phase)[0];
     ColumnMedium& column = job.column;
+    column.channels = medium.bands;
     std::copy(medium.path.sigma_t.begin(), medium.path.sigma_t.end(), column.sigma_t.begin());
     constexpr float kOpticalTolerance = 0.02f;
     column.tolerance = kOpticalTolerance /
@@ -224,25 +254,12 @@ GatherJob make_gather_job(const RayScene& rays, const BodyMesh& mesh, std::uint3
 
 void gather_direction(const GatherJob& job, const GatherDirection& direction, glm::vec2 jitter,
                       GatherWorkspace& work) {
-    const NodeList& list = job.list;
     work.open.clear();
     render_light_view(job.mesh, make_light_frame(direction.w, job.mesh.radius, job.size, jitter),
                       job.size, work.view);
-    work.answers.resize(list.largest_block);
-    for (const NodeList::Block& block : list.blocks) {
-        gather_block(job, direction, block, work);
-    }
-    constexpr float kNear = 2.0f;  // [pixels]
-    const float margin = kNear / work.view.frame.pixels_per_metre;
-    for (const NodeList::Hard& hard : list.hard) {
-        if (hard.crease) {
-            gather_unclear(job, direction, hard.receiver, hard.node, margin, work);
-            ++work.look_ups;
-        } else {
-            work.open.push_back({&hard.node, hard.receiver, direction.share});
-        }
-    }
-    trace_open(job, direction, work);
+    work.answers.resize(job.list.largest_block, job.column.channels);
+    job.medium.bands == 1 ? gather_view<1>(job, direction, work)
+                          : gather_view<3>(job, direction, work);
 }
 
 }  // namespace opaline::bake

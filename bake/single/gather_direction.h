@@ -35,7 +35,7 @@ GatherJob make_gather_job(const RayScene& rays, const BodyMesh& mesh, std::uint3
 struct GatherWorkspace {
     LightView view;
     ColumnAnswers answers;
-    std::vector<float> value;  ///< sums, [receiver][term][channel]
+    std::vector<float> value;  ///< sums, [receiver][term][band]
     struct Open {
         const InteriorNode* node;
         std::uint32_t receiver;

@@ -164,12 +164,12 @@ void attenuate(std::int32_t count, float sigma_t, const float* weight, const flo
     }
 }
 
-void ColumnAnswers::resize(std::size_t points) {
+void ColumnAnswers::resize(std::size_t points, std::size_t channels) {
     const std::size_t count = points + kColumnPadding;
     state.resize(count);
     triangle.resize(count);
-    for (std::vector<float>& channel : light) {
-        channel.resize(count);
+    for (std::size_t c = 0; c < channels; ++c) {
+        light[c].resize(count);
     }
     distance.resize(count);
     throughput.resize(count);
@@ -180,8 +180,8 @@ void look_up_columns(const LightView& view, const ColumnPoints& points, std::siz
                      std::size_t count, const ColumnMedium& medium, ColumnAnswers& answers) {
     if (view.slope.empty()) {
         std::fill_n(answers.state.begin(), count, ColumnAnswers::dark);
-        for (std::vector<float>& channel : answers.light) {
-            std::fill_n(channel.begin(), count, 0.0f);
+        for (std::size_t c = 0; c < medium.channels; ++c) {
+            std::fill_n(answers.light[c].begin(), count, 0.0f);
         }
         return;
     }
@@ -212,7 +212,7 @@ void look_up_columns(const LightView& view, const ColumnPoints& points, std::siz
     job.throughput = answers.throughput.data();
     job.path_ratio = answers.path_ratio.data();
     find_columns(job);
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < medium.channels; ++c) {
         attenuate(job.count, medium.sigma_t[c], &points.weight[c][begin], job.distance,
                   job.path_ratio, job.throughput, answers.light[c].data());
     }

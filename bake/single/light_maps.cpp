@@ -44,18 +44,21 @@ std::vector<float> invert(std::vector<float> values) {
     return values;
 }
 
-// `value`: [receiver][term][channel].
+// `value`: [receiver][term][band].
+template <std::size_t kBands>
 void pack_texel(std::span<const float> value, std::span<const float> inverse_scale,
-                std::span<const float> inverse_term, std::uint32_t* packed) {
+                std::span<const float> inverse_term, std::uint16_t* packed) {
     const float* from = value.data();
     for (const float inverse : inverse_scale) {
-        for (std::size_t k = 0; k < inverse_term.size(); ++k, from += 3) {
+        for (std::size_t k = 0; k < inverse_term.size(); ++k) {
             const float scale = inverse * inverse_term[k];
             const float lowest = k == 0 ? 0.0f : -1.0f;
-            *packed++ = pack_shared_exponent({std::clamp(scale * from[0], lowest, 1.0f),
-                                              std::clamp(scale * from[1], lowest, 1.0f),
-                                              std::clamp(scale * from[2], lowest, 1.0f)},
-                                             k > 0);
+            BandValues<kBands> scaled;
+            for (float& band : scaled) {
+                band = std::clamp(scale * *from++, lowest, 1.0f);
+            }
+            store_packed<kBands>(pack_values<kBands>(scaled, k > 0), packed);
+            packed += packed_words(kBands);
         }
     }
 }
@@ -83,8 +86,9 @@ SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::u
     }
     const NodeList list = collect_nodes(rays, medium, mesh.centre, points, context);
     const auto texels = directions_by_texel(directions);
-    const std::size_t terms = medium.phase.count(), stride = 3 * terms;
+    const std::size_t terms = medium.phase.count(), stride = medium.bands * terms;
     result.rows.texels = static_cast<std::uint32_t>(texels.size());
+    result.rows.bands = medium.bands;
     result.rows.largest_term = largest_phase_terms(medium.phase);
     result.rows.scale = list.scale;
     result.rows.scale.resize(points.size());  // cancelled: there may be fewer
@@ -108,8 +112,10 @@ SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::u
             gather_direction(job, texels[j][i], jitter_of(j * texels[j].size() + i), work);
         }
         // By the thread that fills it: making room for all at once takes one thread seconds.
-        result.rows.packed[j].resize(points.size() * terms);
-        pack_texel(work.value, inverse_scale, inverse_term, result.rows.packed[j].data());
+        std::vector<std::uint16_t>& packed = result.rows.packed[j];
+        packed.resize(points.size() * terms * packed_words(medium.bands));
+        (medium.bands == 1 ? pack_texel<1> : pack_texel<3>)(work.value, inverse_scale, inverse_term,
+                                                            packed.data());
     };
     arena.execute([&] { tbb::parallel_for(std::size_t{0}, texels.size(), gather_texel); });
     for (const GatherWorkspace& work : workspaces) {

@@ -34,9 +34,9 @@ std::uint32_t light_view_size(const BodyMesh& mesh);
 /// part is, or the nearest pixel decides.
 ///
 /// Memory: 4 K bytes a receiver and texel (packed_rows_in), 60 bytes a receiver and node, and per
-/// thread one view and 12 K bytes a receiver. Callers cut `points` accordingly; each call renders
-/// all views anew. `size`: pixels across. Bit-identical for any number of threads, and for any
-/// cut. Cancelled: the rows are incomplete.
+/// thread one view and 12 K bytes a receiver; with one band 2 K, 52 and 4 K bytes. Callers cut
+/// `points` accordingly; each call renders all views anew. `size`: pixels across. Bit-identical for
+/// any number of threads, and for any cut. Cancelled: the rows are incomplete.
 SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::uint32_t size,
                               const DirectionSet& directions, const SingleMedium& medium,
                               std::span<const BodyPoint> points, const Context& context);

@@ -27,12 +27,12 @@ bool on_crease(const BodyPoint& point) {
     return glm::dot(outward, point.normal) < kAlong * glm::length(outward);
 }
 
-void add_node(const InteriorNode& node, glm::vec3 centre, NodeList& list) {
+void add_node(const InteriorNode& node, glm::vec3 centre, std::uint32_t bands, NodeList& list) {
     list.node.push_back(node);
     list.points.x.push_back(node.position.x - centre.x);
     list.points.y.push_back(node.position.y - centre.y);
     list.points.z.push_back(node.position.z - centre.z);
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < bands; ++c) {
         list.points.weight[c].push_back(node.weight[c]);
     }
 }
@@ -83,7 +83,7 @@ NodeList collect_nodes(const RayScene& rays, const SingleMedium& medium, glm::ve
                         list.hard.push_back(
                             {node, static_cast<std::uint32_t>(range.begin + i), node.shells == 1});
                     } else {
-                        add_node(node, centre, list);
+                        add_node(node, centre, medium.bands, list);
                     }
                 }
                 list.first.push_back(static_cast<std::uint32_t>(list.node.size()));

@@ -33,12 +33,14 @@ formats::Medium thin_to_resolution(formats::Medium medium, double diagonal) {
 }  // namespace
 
 SingleMedium make_single_medium(const formats::Scene& scene, std::uint32_t material,
-                                std::uint32_t depth_samples, PhaseTerms phase) {
+                                std::uint32_t depth_samples, PhaseTerms phase,
+                                std::uint32_t bands) {
     const formats::Medium& medium = *scene.materials[material].medium;
     const bool paper = medium.fidelity == formats::Medium::Fidelity::paper;
     const double diagonal{body_diagonals(scene)[material]};
     SingleMedium single;
     single.material = material;
+    single.bands = bands;
     single.path = make_path_medium(thin_to_resolution(medium, diagonal));
     single.rule = paper ? make_midpoint_rule(depth_samples) : make_gauss_rule(depth_samples);
     single.boundary = {medium.eta, !paper};
@@ -96,7 +98,8 @@ EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
     EntryCounts counts;
     const InwardPath path = trace_inward_path(rays, point, medium.path_limit);
     const std::vector<InteriorNode> nodes = place_interior_nodes(medium, point, path);
-    const std::size_t terms = medium.phase.count(), texels = transport.size() / (3 * terms);
+    const std::size_t terms = medium.phase.count(), bands = medium.bands;
+    const std::size_t texels = transport.size() / (bands * terms);
     std::array<float, 3> sigma_t;
     std::copy(medium.path.sigma_t.begin(), medium.path.sigma_t.end(), sigma_t.begin());
     std::array<float, formats::kMaxHarmonics> room;
@@ -126,11 +129,11 @@ EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
                     {block.dir_x[lane], block.dir_y[lane], block.dir_z[lane]},
                     {entries.normal_x[lane], entries.normal_y[lane], entries.normal_z[lane]}, entry,
                     entries.cosine[lane], g);
-                for (std::size_t c = 0; c < 3; ++c) {
+                for (std::size_t c = 0; c < bands; ++c) {
                     const float arrives =
                         node.weight[c] * lit * exp_of_negative(-sigma_t[c] * length);
                     for (std::size_t k = 0; k < terms; ++k) {
-                        transport[(3 * k + c) * texels + block.texel[lane]] += g[k] * arrives;
+                        transport[(bands * k + c) * texels + block.texel[lane]] += g[k] * arrives;
                     }
                 }
             }

@@ -21,14 +21,17 @@ struct SingleMedium {
     PathRule rule;
     Interface<float> boundary;
     PhaseTerms phase;
-    float path_limit = 0;  ///< [m], where a path without an exit ends
+    float path_limit = 0;     ///< [m], where a path without an exit ends
+    std::uint32_t bands = 3;  ///< that are gathered; or the first, which stands for all
 };
 
 /// `material` must have a medium. `depth_samples`: nodes along the inward normal; Gauss-Legendre,
 /// or midpoints in a medium of fidelity `paper`. 8 are good to .2-.5 % of a relit value.
-/// `phase`: its terms; the phase function in the scene is not looked at.
+/// `phase`: its terms; the phase function in the scene is not looked at. `bands`: 3, or 1 where
+/// those of the medium coincide.
 SingleMedium make_single_medium(const formats::Scene& scene, std::uint32_t material,
-                                std::uint32_t depth_samples, PhaseTerms phase = {});
+                                std::uint32_t depth_samples, PhaseTerms phase = {},
+                                std::uint32_t bands = 3);
 
 /// Interior points below a body point, where light is looked for.
 struct InteriorNode {
@@ -49,8 +52,8 @@ std::vector<RayPacket::Lane> texel_shares(const DirectionSet& directions);
 /// with the Jacobian of refraction):
 ///     T_k(w) = int_0^d_m sigma_s g_k(w_i') Ft J e^{-sigma_t s_i'} V e^{-sigma_t s} ds,
 /// so that L1 = Ft(w_o) sum_k h_k(w_o') <T_k, L>; g_k, h_k: phase_terms.h. `transport`: mean over
-/// each texel, term by term red then green then blue, K * 3 * 6 n n values, unit 1/sr: the solid
-/// angle is the light's. `shares`: of `directions`. `point` must be of the medium's material.
+/// each texel, term by term band by band, K * bands * 6 n n values, unit 1/sr: the solid angle is
+/// the light's. `shares`: of `directions`. `point` must be of the medium's material.
 EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
                           std::span<const RayPacket::Lane> shares, const SingleMedium& medium,
                           const BodyPoint& point, std::span<float> transport);

@@ -10,7 +10,7 @@
 namespace opaline::bake {
 
 LocalStage make_local_stage(const formats::Medium& medium, const MediumProfile* multiple,
-                            bool single, std::uint32_t cubemap_size) {
+                            bool single, std::uint32_t cubemap_size, std::uint32_t bands) {
     constexpr std::uint32_t kSteps = 1024;
     constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
     LocalStage stage;
@@ -18,7 +18,8 @@ LocalStage make_local_stage(const formats::Medium& medium, const MediumProfile* 
     const PathMedium path = make_path_medium(medium);
     const auto eta = static_cast<double>(medium.eta);
     const Interface<double> boundary{eta, medium.fidelity != formats::Medium::Fidelity::paper};
-    for (std::size_t b = 0; b < 3; ++b) {
+    stage.factor.resize(bands);
+    for (std::size_t b = 0; b < bands; ++b) {
         const double albedo = path.sigma_t[b] > 0 ? path.sigma_s[b] / path.sigma_t[b] : 0;
         for (std::uint32_t i = 0; i <= kSteps; ++i) {
             const double cosine = static_cast<double>(i) / kSteps;

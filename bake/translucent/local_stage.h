@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,14 +21,15 @@ struct LocalStage {
     /// evenly spaced cosines of the light from 0 to 1,
     ///     f(c) = R Ft(c) / (pi c_exit) + alpha / (4 pi) (Ft J / c) c' / (1 + c'):
     /// T_d = R E, and the integral of translucency.md 3.6 along a path without end.
-    std::array<std::vector<float>, 3> factor;
+    std::vector<std::vector<float>> factor;
 };
 
-/// `multiple`: null where it is not simulated; `single`: whether that is, with one term.
+/// `multiple`: null where it is not simulated; `single`: whether that is, with one term. `bands`:
+/// 3, or 1 where those of the medium coincide.
 LocalStage make_local_stage(const formats::Medium& medium, const MediumProfile* multiple,
-                            bool single, std::uint32_t cubemap_size);
+                            bool single, std::uint32_t cubemap_size, std::uint32_t bands);
 
-/// The receiver's row: band by band, means over texels, 3 * 6 n n values, overwritten. Returns the
+/// The receiver's row: band by band, means over texels, 6 n n values each, overwritten. Returns the
 /// number of rays.
 std::uint64_t gather_local(const RayScene& rays, const LocalStage& stage, const Receiver& receiver,
                            std::span<float> row);

@@ -41,7 +41,8 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     const std::vector<SurfaceSample> samples =
         sample_surface(scene, primitives, count, options.seed, context);
     const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
-    stage.profile = make_gather_profile(stage.medium, std::sqrt(per_sample), scene_diagonal(scene));
+    stage.profile = make_gather_profile(stage.medium, std::sqrt(per_sample), scene_diagonal(scene),
+                                        options.bands);
     stage.transport = bake_sample_transport(
         rays, samples, {options.cubemap_size, options.kept, stage.medium.eta, options.share_rays},
         context);

@@ -28,7 +28,8 @@ struct MultipleOptions {
     double samples_per_path = 1;  ///< count_samples
     std::uint32_t kept = 128;     ///< coefficients of each sample
     std::uint64_t seed = 0;
-    bool share_rays = true;  ///< between neighbouring samples
+    bool share_rays = true;   ///< between neighbouring samples
+    std::uint32_t bands = 3;  ///< or 1, where those of the medium coincide
 };
 
 /// Samples the surface of the material's medium, whose profile is `medium`, traces what enters, and

@@ -22,7 +22,7 @@ PhaseTerms make_phase_terms(const formats::PhaseFunction& phase, std::uint32_t t
 }
 
 std::size_t row_size_of(const SingleStage& stage) {
-    return std::size_t{3} * stage.medium.phase.count() *
+    return std::size_t{stage.medium.bands} * stage.medium.phase.count() *
            formats::cubemap_texels(stage.directions.cubemap_size);
 }
 
@@ -34,7 +34,7 @@ SingleStage prepare_single(const formats::Scene& scene, const RayScene& rays,
     SingleStage stage;
     stage.medium = make_single_medium(
         scene, material, options.depth_samples,
-        make_phase_terms(scene.materials[material].medium->phase, options.terms));
+        make_phase_terms(scene.materials[material].medium->phase, options.terms), options.bands);
     stage.by_rays = options.by_rays;
     if (options.by_rays) {
         stage.directions = make_direction_set(options.cubemap_size);
@@ -50,7 +50,7 @@ std::size_t receivers_per_batch(const SingleStage& stage, std::size_t bytes) {
     return stage.by_rays
                ? std::max<std::size_t>(1, bytes / (sizeof(float) * row_size_of(stage)))
                : packed_rows_in(bytes, formats::cubemap_texels(stage.directions.cubemap_size),
-                                stage.medium.phase.count());
+                                stage.medium.phase.count(), stage.medium.bands);
 }
 
 SingleBatch gather_single_batch(const SingleStage& stage, const RayScene& rays,

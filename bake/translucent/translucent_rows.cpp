@@ -39,14 +39,14 @@ std::vector<std::uint32_t> order_of(std::span<const BodyPoint> points) {
 
 // The `terms` rows of each receiver, which stand in the order of `order`, as receivers are given.
 formats::SparseRows as_given(const formats::SparseRows& rows, std::span<const std::uint32_t> order,
-                             std::uint32_t terms) {
+                             std::uint32_t terms, std::uint32_t bands) {
     std::vector<std::uint32_t> from(order.size() * terms);
     for (std::uint32_t place = 0; place < order.size(); ++place) {
         for (std::uint32_t k = 0; k < terms; ++k) {
             from[std::size_t{order[place]} * terms + k] = place * terms + k;
         }
     }
-    return formats::pick_rows(rows, 3, from);
+    return formats::pick_rows(rows, bands, from);
 }
 
 }  // namespace
@@ -55,10 +55,10 @@ std::uint64_t assemble_rows(const TranslucentRecipe& recipe, const RayScene& ray
                             const Receiver& receiver, const BodyPoint& point,
                             const SingleBatch* batch, std::size_t place, std::span<float> rows) {
     const std::uint32_t n = recipe.selector.cubemap_size;
-    const std::size_t size = formats::cubemap_texels(n);
+    const std::size_t size = formats::cubemap_texels(n), bands = recipe.layout.bands();
     if (recipe.local != nullptr) {
         const std::uint64_t traced = gather_local(rays, *recipe.local, receiver, rows);
-        for (std::size_t band = 0; band < 3; ++band) {
+        for (std::size_t band = 0; band < bands; ++band) {
             formats::haar_forward_cube(rows.subspan(band * size, size), n);
         }
         return traced;
@@ -67,15 +67,22 @@ std::uint64_t assemble_rows(const TranslucentRecipe& recipe, const RayScene& ray
     if (recipe.multiple != nullptr) {
         const MultipleStage& stage = *recipe.multiple;
         std::vector<ClusterWeight> weights;
-        std::vector<float> rgbx(4 * size);
         collect_weights(stage.tree, stage.profile, point.position, point.normal, recipe.gather,
                         weights);
-        accumulate(stage.tree, weights, rgbx);
         const auto scale = static_cast<float>(
             1 / (std::numbers::pi * stage.medium.exit * recipe.layout.view_of_multiple()));
-        for (std::size_t k = 0; k < size; ++k) {
-            for (std::size_t band = 0; band < 3; ++band) {
-                rows[band * size + k] = scale * rgbx[4 * k + band];
+        if (bands == 1) {
+            accumulate_grey(stage.tree, weights, rows.first(size));
+            for (float& value : rows.first(size)) {
+                value *= scale;
+            }
+        } else {
+            std::vector<float> rgbx(4 * size);
+            accumulate(stage.tree, weights, rgbx);
+            for (std::size_t k = 0; k < size; ++k) {
+                for (std::size_t band = 0; band < bands; ++band) {
+                    rows[band * size + k] = scale * rgbx[4 * k + band];
+                }
             }
         }
     }
@@ -84,7 +91,7 @@ std::uint64_t assemble_rows(const TranslucentRecipe& recipe, const RayScene& ray
         const std::size_t coarse = formats::cubemap_texels(m);
         std::vector<float> row(batch->row_size);
         read_single(*batch, place, row);
-        const std::size_t first = std::size_t{3} * recipe.layout.first_single();
+        const std::size_t first = bands * recipe.layout.first_single();
         for (std::size_t plane = 0; plane < row.size() / coarse; ++plane) {
             const std::span<float> own = std::span(row).subspan(plane * coarse, coarse);
             formats::haar_forward_cube(own, m);
@@ -99,7 +106,8 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
                                      std::span<const BodyPoint> points, const Context& context,
                                      EntryCounts& counts) {
     const std::uint32_t n = recipe.selector.cubemap_size;
-    const std::size_t size = formats::cubemap_texels(n);
+    const std::uint32_t bands = recipe.layout.bands();
+    const std::size_t row_size = bands * std::size_t{formats::cubemap_texels(n)};
     const std::uint32_t terms = recipe.layout.terms();
     const std::size_t step = recipe.single != nullptr
                                  ? receivers_per_batch(*recipe.single, recipe.batch_bytes)
@@ -130,17 +138,17 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
             part.size(), 64, context,
             [&](Range range) {
                 Block block{formats::make_sparse_rows(n, recipe.code_bits), 0};
-                std::vector<float> values(terms * 3 * size);
+                std::vector<float> values(terms * row_size);
                 for (std::size_t v = range.begin; v < range.end; ++v) {
                     block.rays +=
                         assemble_rows(recipe, rays, receivers[index[v]], part[v],
                                       recipe.single != nullptr ? &batch : nullptr, v, values);
                     for (std::size_t k = 0; k < terms; ++k) {
                         formats::append_row(
-                            block.rows,
-                            select_coefficients(
-                                recipe.selector,
-                                std::span<const float>(values).subspan(3 * k * size, 3 * size), 3));
+                            block.rows, select_coefficients(recipe.selector,
+                                                            std::span<const float>(values).subspan(
+                                                                k * row_size, row_size),
+                                                            bands));
                     }
                 }
                 return block;
@@ -153,7 +161,7 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
                 }
             });
     }
-    return context.cancelled() ? rows : as_given(rows, order, terms);
+    return context.cancelled() ? rows : as_given(rows, order, terms, bands);
 }
 
 }  // namespace opaline::bake

@@ -29,7 +29,7 @@ struct TranslucentRecipe {
 };
 
 /// Values of one receiver's rows before selection: term by term, band by band, Haar coefficients,
-/// layout.terms() * 3 * 6 n n values, overwritten (translucency.md 3.6):
+/// layout.terms() * layout.bands() * 6 n n values, overwritten (translucency.md 3.6):
 ///     T_0 = T_d / (pi c_exit h_0) + T^(1)_0,   T_k = T^(1)_k.
 /// `single`: the receiver's row of a batch; null where there is none. Returns the number of rays
 /// traced, which only a local recipe does, from `receiver`.

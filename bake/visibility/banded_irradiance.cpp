@@ -18,7 +18,7 @@ float look_up(const std::vector<float>& table, float cosine) {
 
 std::uint64_t gather_banded_irradiance(const RayScene& rays, const DirectionSet& directions,
                                        const Receiver& receiver,
-                                       const std::array<std::vector<float>, 3>& factor,
+                                       std::span<const std::vector<float>> factor,
                                        std::span<float> transport) {
     std::fill(transport.begin(), transport.end(), 0.0f);
     const std::size_t texels = directions.inverse_solid_angle.size();
@@ -45,14 +45,14 @@ std::uint64_t gather_banded_irradiance(const RayScene& rays, const DirectionSet&
             if (lanes[lane] != 0 && packet.tfar[lane] > 0.0f) {
                 const float c =
                     glm::dot(n, {block.dir_x[lane], block.dir_y[lane], block.dir_z[lane]});
-                for (std::size_t b = 0; b < 3; ++b) {
+                for (std::size_t b = 0; b < factor.size(); ++b) {
                     transport[b * texels + block.texel[lane]] +=
                         cosine[lane] * look_up(factor[b], c);
                 }
             }
         }
     }
-    for (std::size_t b = 0; b < 3; ++b) {
+    for (std::size_t b = 0; b < factor.size(); ++b) {
         divide_by_solid_angle(directions, transport.subspan(b * texels, texels));
     }
     return traced;

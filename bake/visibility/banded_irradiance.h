@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,12 +10,12 @@
 
 namespace opaline::bake {
 
-/// gather_irradiance with a factor for each of three bands, traced once: `transport` holds
-/// V max(0, n.w) f_b(n.w) band by band, 3 * 6 n n values, `factor[b]` tabulates f_b at evenly
+/// gather_irradiance with a factor for each band, traced once: `transport` holds
+/// V max(0, n.w) f_b(n.w) band by band, 6 n n values each, `factor[b]` tabulates f_b at evenly
 /// spaced cosines from 0 to 1, at least two of them. Returns the number of rays.
 std::uint64_t gather_banded_irradiance(const RayScene& rays, const DirectionSet& directions,
                                        const Receiver& receiver,
-                                       const std::array<std::vector<float>, 3>& factor,
+                                       std::span<const std::vector<float>> factor,
                                        std::span<float> transport);
 
 }  // namespace opaline::bake

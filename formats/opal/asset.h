@@ -41,7 +41,7 @@ enum class Shading : std::uint32_t {
     /// with
     /// w_o' the direction to the eye refracted into the medium and h_k = Y_lm(w_o'), the real
     /// orthonormal spherical harmonics, k = l (l + 1) + m; terms = 1, 4, 9, 16 or 25. With
-    /// one term h_0 = 1, so T_0 carries the factor. RGB.
+    /// one term h_0 = 1, so T_0 carries the factor. Grey or RGB.
     /// Separate (PrimitiveRecord::kSeparate): row 0 is multiple scattering by itself, with h = 1;
     /// the other terms - 1, none or any of the numbers above, are single scattering with the h_k
     /// of that number.

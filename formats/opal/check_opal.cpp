@@ -59,12 +59,12 @@ std::string find_shading_fault(const PrimitiveRecord& p) {
             }
             return p.is_separate() ? "diffuse shading with separate scattering" : std::string();
         case Shading::translucent:
-            if (!has_possible_terms(p) || p.bands != 3 || !(p.eta >= kMinEta) ||
+            if (!has_possible_terms(p) || (p.bands != 1 && p.bands != 3) || !(p.eta >= kMinEta) ||
                 !(p.eta <= kMaxEta)) {
                 return "translucent shading with " + number(p.terms) + " terms, " +
                        number(p.bands) + " bands and index of refraction " + number(p.eta) +
                        "; expected 1, 4, 9, 16 or 25 terms (with separate multiple scattering 1, "
-                       "or one more than these), 3 bands and an index in 1/3 ... 3";
+                       "or one more than these), 1 or 3 bands and an index in 1/3 ... 3";
             }
             return {};
     }

@@ -17,6 +17,10 @@ struct BasisHead {
 };
 static_assert(sizeof(BasisHead) == 16);
 
+/// Section version of PRIM where a translucent primitive has one band, which readers that knew only
+/// three refuse by name; 1 where none has.
+inline constexpr std::uint32_t kGreyMediaVersion = 2;
+
 struct PrimitivesHead {
     std::uint32_t count = 0, record_size = 0;
     std::uint64_t reserved = 0;

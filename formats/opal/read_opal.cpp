@@ -140,12 +140,13 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
         }
         bool (*read)(Cursor, AssetView&) = nullptr;
         unsigned bit = 0;
+        std::uint32_t latest = 1;
         switch (entry.id) {
             case kBasiSection:
                 read = read_basis, bit = 1;
                 break;
             case kPrimSection:
-                read = read_primitives, bit = 2;
+                read = read_primitives, bit = 2, latest = kGreyMediaVersion;
                 break;
             case kTranSection:
                 read = read_transport, bit = 4;
@@ -164,7 +165,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
             default:
                 continue;  // of a later minor version, or somebody else's
         }
-        if (entry.version != 1) {
+        if (entry.version == 0 || entry.version > latest) {
             return make_error(ErrorKind::newer_file, file, where,
                               "version " + std::to_string(entry.version) + " is unknown",
                               "update Opaline");

@@ -3,6 +3,7 @@
 #include <xxhash.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -69,6 +70,16 @@ Stored store(std::uint32_t id, Codec codec, std::span<const std::span<const std:
     }
     stored.entry.checksum = XXH3_64bits_digest(state.get());
     return stored;
+}
+
+// Of PRIM: the earliest version that has all of it.
+std::uint32_t version_of(std::span<const PrimitiveRecord> primitives) {
+    return std::any_of(primitives.begin(), primitives.end(),
+                       [](const PrimitiveRecord& p) {
+                           return p.shading == Shading::translucent && p.bands == 1;
+                       })
+               ? kGreyMediaVersion
+               : 1;
 }
 
 Stored store_provenance(const AssetView& asset) {
@@ -183,6 +194,7 @@ Status write_parts(const AssetView& asset, Write write) {
     sections.push_back(store_provenance(asset));
     sections.push_back(store(kBasiSection, Codec::none, basis_arrays));
     sections.push_back(store(kPrimSection, Codec::none, primitive_arrays));
+    sections.back().entry.version = version_of(asset.primitives);
     sections.push_back(store(kTranSection, Codec::none, transport_arrays));
     sections.push_back(store_mesh(asset));
     if (!asset.images.empty()) {

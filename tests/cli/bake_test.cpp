@@ -224,8 +224,9 @@ TEST(Plan, NamesEffectSubjectAndReasonAsTableAndAsJson) {
     const Json plan = Json::parse(json.out).at("plan");
     ASSERT_FALSE(plan.empty());
     for (const Json& entry : plan) {
-        for (const char* key : {"effect", "subject", "decision", "reason", "bound",
-                                "predicted_seconds", "predicted_bytes"}) {
+        for (const char* key :
+             {"effect", "subject", "decision", "reason", "bound", "predicted_seconds",
+              "predicted_bytes", "saved_seconds", "saved_bytes"}) {
             EXPECT_TRUE(entry.contains(key)) << key;
         }
     }

@@ -81,6 +81,35 @@ double gather(const ClusterTree& tree, const MediumProfile& profile, glm::vec3 x
     return static_cast<double>(rgbx[0]);
 }
 
+// The same nodes are taken, with the same weights and sums, bit for bit: with a near part, which
+// samples far apart have, and without.
+TEST(GatherMultiple, OneBandIsEachOfThreeEqualBands) {
+    const auto profile = classic_profile(20, 1, 1.3);
+    const Samples set = make_sphere(1, 5000, [](glm::dvec3 n) { return 1 + n.x; });
+    const ClusterTree tree = set.tree();
+    for (const bool is_sparse : {false, true}) {
+        const double spacing = (is_sparse ? 10 : 0.1) * profile.smallest;
+        const GatherProfile three = make_gather_profile(profile, spacing, 10);
+        const GatherProfile one = make_gather_profile(profile, spacing, 10, 1);
+        EXPECT_EQ(three.near_radius > 0, is_sparse);
+        EXPECT_EQ(one.near_radius, three.near_radius);
+        EXPECT_EQ(3 * one.table.size(), three.table.size());
+        std::vector<ClusterWeight> weights, own;
+        collect_weights(tree, three, {0, 1, 0}, {0, 1, 0}, {1e-3}, weights);
+        collect_weights(tree, one, {0, 1, 0}, {0, 1, 0}, {1e-3}, own);
+        ASSERT_EQ(own.size(), weights.size());
+        std::vector<float> rgbx(24), grey(6);
+        accumulate(tree, weights, rgbx);
+        accumulate_grey(tree, own, grey);
+        EXPECT_GT(grey[0], 0);
+        for (std::size_t k = 0; k < grey.size(); ++k) {
+            for (std::size_t band = 0; band < 3; ++band) {
+                EXPECT_EQ(grey[k], rgbx[4 * k + band]) << k;
+            }
+        }
+    }
+}
+
 TEST(GatherMultiple, SphereUnderUniformIrradianceHasItsClosedForm) {
     OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "sphere_int_Rd");
     for (const auto& row : rows) {

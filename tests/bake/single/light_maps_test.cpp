@@ -194,7 +194,7 @@ TEST(LightColumns, ClearAnswersAgreeWithCarefulOnes) {
     render_light_view(mesh, make_light_frame(w, mesh.radius, job.size, {0.3f, 0.6f}), job.size,
                       view);
     ColumnAnswers answers;
-    answers.resize(list.node.size());
+    answers.resize(list.node.size(), 3);
     look_up_columns(view, list.points, 0, list.node.size(), job.column, answers);
     std::size_t unclear = 0, lit = 0, differ = 0;
     for (std::size_t i = 0; i < list.node.size(); ++i) {
@@ -269,16 +269,72 @@ TEST(PackedRows, ErrorsStayBelowTheirBound) {
         const float a = std::exp2(-0.01f * static_cast<float>(i));
         const std::array<float, 3> positive{a, 0.37f * a, 0.011f * a};
         const std::array<float, 3> mixed{0.37f * a, -a, -0.011f * a};
-        const auto read = unpack_shared_exponent(pack_shared_exponent(positive, false), false);
-        const auto signs = unpack_shared_exponent(pack_shared_exponent(mixed, true), true);
+        const auto read = unpack_values<3>(pack_values<3>(positive, false), false);
+        const auto signs = unpack_values<3>(pack_values<3>(mixed, true), true);
+        ASSERT_NEAR(unpack_values<1>(pack_values<1>({a}, false), false)[0], a, a / 512) << i;
+        ASSERT_NEAR(unpack_values<1>(pack_values<1>({-a}, true), true)[0], -a, a / 256) << i;
         for (std::size_t c = 0; c < 3; ++c) {
             ASSERT_NEAR(read[c], positive[c], a / 512) << i;
             ASSERT_NEAR(signs[c], mixed[c], a / 256) << i;
         }
     }
     for (const bool has_sign : {false, true}) {
-        EXPECT_EQ(unpack_shared_exponent(pack_shared_exponent({0, 0, 0}, has_sign), has_sign),
+        EXPECT_EQ(unpack_values<3>(pack_values<3>({0, 0, 0}, has_sign), has_sign),
                   (std::array<float, 3>{0, 0, 0}));
+        EXPECT_EQ(unpack_values<1>(pack_values<1>({0}, has_sign), has_sign)[0], 0.0f);
+    }
+}
+
+TEST(PackedRows, OneBandTakesTwoBytesAndOnlyItsOwnBits) {
+    for (int i = 0; i < 2000; ++i) {
+        const float a = std::exp2(-0.02f * static_cast<float>(i));
+        for (const bool has_sign : {false, true}) {
+            std::uint16_t word;
+            const std::uint32_t packed = pack_values<1>({a}, has_sign);
+            store_packed<1>(packed, &word);
+            ASSERT_EQ(load_packed<1>(&word), packed) << a;
+        }
+    }
+    constexpr std::size_t kBytes = std::size_t{384} * 4 * 400;
+    EXPECT_EQ(packed_rows_in(kBytes, 384, 4, 3), 100u);
+    EXPECT_EQ(packed_rows_in(kBytes, 384, 4, 1), 200u);
+}
+
+// One band is gathered with the arithmetic of each of three: the bits are the same. With creases
+// and shells, so that views, rays and what lies between them all have a part.
+TEST(LightMaps, OneBandIsEachOfThreeEqualBands) {
+    auto scene = make_translucent_scene({tests::make_bumpy_body(4)}, make_grey_medium(8, 0.8f));
+    for (const unsigned degrees : {0u, 1u}) {
+        auto setup = set_up(scene);
+        setup.medium.phase.lambda.assign(degrees + 1, 1.0f);
+        if (degrees > 0) {
+            setup.medium.phase.lambda[1] = 0.6f;
+        }
+        SingleMedium grey = setup.medium;
+        grey.bands = 1;
+        const BodyMesh mesh = make_body_mesh(setup.scene, setup.rays, 0, {});
+        const DirectionSet directions = make_texel_directions(8);
+        const auto gather = [&](const SingleMedium& medium) {
+            return gather_single_rows(setup.rays, mesh, light_view_size(mesh), directions, medium,
+                                      setup.points, {});
+        };
+        const SingleRows three = gather(setup.medium), one = gather(grey);
+        EXPECT_EQ(one.counts.rays, three.counts.rays);
+        EXPECT_GT(one.counts.rays, 0u);
+        EXPECT_EQ(2 * one.rows.packed[0].size(), three.rows.packed[0].size());
+        const std::size_t texels = one.rows.texels, terms = setup.medium.phase.count();
+        std::vector<float> own(terms * texels), all(3 * terms * texels);
+        for (std::size_t p = 0; p < setup.points.size(); ++p) {
+            read_packed_row(one.rows, p, own);
+            read_packed_row(three.rows, p, all);
+            for (std::size_t k = 0; k < terms; ++k) {
+                for (std::size_t c = 0; c < 3; ++c) {
+                    for (std::size_t j = 0; j < texels; ++j) {
+                        ASSERT_EQ(own[k * texels + j], all[(3 * k + c) * texels + j]);
+                    }
+                }
+            }
+        }
     }
 }
 

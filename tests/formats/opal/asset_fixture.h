@@ -56,16 +56,16 @@ inline formats::Asset make_small_asset(std::uint32_t code_bits = 8) {
     return asset;
 }
 
-/// Adds a translucent triangle of three vertices, `terms` random RGB rows each; n = 8.
+/// Adds a translucent triangle of three vertices, `terms` random rows each; n = 8.
 inline void add_translucent_triangle(formats::Asset& asset, std::uint32_t terms, float eta,
-                                     bool is_separate = false) {
+                                     bool is_separate = false, std::uint32_t bands = 3) {
     using namespace formats;
     std::mt19937 generator(8);
     std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);
     PrimitiveRecord record;
     record.shading = Shading::translucent;
     record.terms = terms;
-    record.bands = 3;
+    record.bands = bands;
     record.flags = is_separate ? PrimitiveRecord::kSeparate : 0;
     record.eta = eta;
     record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
@@ -84,16 +84,16 @@ inline void add_translucent_triangle(formats::Asset& asset, std::uint32_t terms,
         asset.index.push_back(v);
         for (std::uint32_t k = 0; k < terms; ++k) {
             SparseRow row;
-            row.bands = 3;
+            row.bands = bands;
             for (std::uint32_t i = 1 + k; i < cubemap_texels(8); i += 5 + v) {
                 if (i % 64 != 0) {
                     row.index.push_back(i);
                 }
             }
-            for (std::size_t i = 0; i < 3 * row.index.size(); ++i) {
+            for (std::size_t i = 0; i < bands * row.index.size(); ++i) {
                 row.value.push_back(uniform(generator));
             }
-            for (std::size_t i = 0; i < 18; ++i) {
+            for (std::size_t i = 0; i < bands * std::size_t{6}; ++i) {
                 row.average.push_back(uniform(generator));
             }
             append_row(asset.transport, row);

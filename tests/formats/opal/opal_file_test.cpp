@@ -108,6 +108,66 @@ TEST(OpalFile, TranslucentPrimitivesComeBackWithEveryTerm) {
     }
 }
 
+std::uint32_t version_of_primitives(const LoadedAsset& loaded) {
+    return std::find_if(loaded.sections.begin(), loaded.sections.end(),
+                        [](const SectionEntry& s) { return s.id == kPrimSection; })
+        ->version;
+}
+
+// Readers that expect three bands in media must not take such a file for a damaged one.
+TEST(OpalFile, MediaOfOneBandComeBackUnderAVersionOfTheirOwn) {
+    for (const bool is_separate : {false, true}) {
+        Asset asset = tests::make_small_asset();
+        tests::add_translucent_triangle(asset, is_separate ? 5 : 4, 1.3f, is_separate, 1);
+        tests::add_translucent_triangle(asset, 4, 1.4f, false, 3);
+        AlignedBytes stored(encode(asset));
+        const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+        ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
+        EXPECT_EQ(version_of_primitives(*loaded), 2u);
+        expect_same_bytes(loaded->view.primitives, asset.primitives);
+        EXPECT_EQ(loaded->view.primitives[2].bands, 1u);
+        std::vector<float> stored_row(cubemap_texels(8)), own_row(cubemap_texels(8));
+        for (const std::size_t p : {2u, 3u}) {
+            const RowRange range = asset.primitives[p].rows();
+            decode_row(loaded->view.transport, range, range.rows - 1, 0, stored_row);
+            decode_row(asset.transport.view(), range, range.rows - 1, 0, own_row);
+            EXPECT_EQ(stored_row, own_row);
+        }
+    }
+}
+
+TEST(OpalFile, WithoutMediaOfOneBandEarlierReadersReadIt) {
+    Asset asset = tests::make_small_asset();  // one diffuse primitive of one band
+    tests::add_translucent_triangle(asset, 4, 1.3f);
+    AlignedBytes stored(encode(asset));
+    const auto loaded = read_opal(stored.bytes(), "a.opal");
+    ASSERT_TRUE(loaded);
+    EXPECT_EQ(version_of_primitives(*loaded), 1u);
+}
+
+TEST(OpalFile, ALaterSectionVersionAsksForAnUpdate) {
+    for (const std::uint32_t id : {kPrimSection, kTranSection}) {
+        AlignedBytes stored(encode(tests::make_small_asset()));
+        FileHeader header;
+        std::memcpy(&header, stored.bytes().data(), sizeof header);
+        std::byte* const table = stored.bytes().data() + sizeof header;
+        for (std::uint32_t s = 0; s < header.section_count; ++s) {
+            SectionEntry entry;
+            std::memcpy(&entry, table + s * sizeof entry, sizeof entry);
+            if (entry.id == id) {
+                entry.version = id == kPrimSection ? 3 : 2;
+                std::memcpy(table + s * sizeof entry, &entry, sizeof entry);
+            }
+        }
+        header.table_checksum = checksum({table, header.section_count * sizeof(SectionEntry)});
+        std::memcpy(stored.bytes().data(), &header, sizeof header);
+        const auto loaded = read_opal(stored.bytes(), "a.opal");
+        ASSERT_FALSE(loaded);
+        EXPECT_EQ(loaded.error().kind, ErrorKind::newer_file);
+        EXPECT_EQ(loaded.error().diagnostics.front().where, "section " + section_name(id));
+    }
+}
+
 TEST(OpalFile, ImpossibleShadingIsRefusedByName) {
     const auto fault_of = [](auto change) {
         Asset asset = tests::make_small_asset();
@@ -123,7 +183,12 @@ TEST(OpalFile, ImpossibleShadingIsRefusedByName) {
         EXPECT_THAT(fault_of([terms](Primitives& p) { p[2].terms = terms; }),
                     testing::HasSubstr("terms"));
     }
-    EXPECT_THAT(fault_of([](Primitives& p) { p[2].bands = 1; }), testing::HasSubstr("bands"));
+    for (const std::uint32_t bands : {0u, 2u, 4u, 0xffffffffu}) {
+        EXPECT_THAT(
+            fault_of([bands](Primitives& p) { p[2].bands = bands; }),
+            testing::AllOf(testing::HasSubstr(std::to_string(bands) + " bands"),
+                           testing::HasSubstr("expected"), testing::HasSubstr("1 or 3 bands")));
+    }
     for (const float eta : {0.0f, 0.33f, 3.01f, -1.3f, std::numeric_limits<float>::quiet_NaN(),
                             std::numeric_limits<float>::infinity()}) {
         EXPECT_THAT(fault_of([eta](Primitives& p) { p[2].eta = eta; }),
@@ -280,7 +345,9 @@ TEST(OpalFile, EveryFlippedByteOfASectionIsFoundByTheFullCheck) {
 
 // Damage that keeps its checksum is what a hostile writer makes: nothing may be read out of bounds.
 TEST(OpalFile, ConsistentlyForgedSectionsAreRefusedOrStayInBounds) {
-    const std::vector<std::byte> whole = encode(tests::make_small_asset());
+    Asset asset = tests::make_small_asset();
+    tests::add_translucent_triangle(asset, 4, 1.3f, false, 1);
+    const std::vector<std::byte> whole = encode(asset);
     std::size_t refused = 0, accepted = 0;
     for (std::size_t at = sizeof(FileHeader); at < whole.size(); ++at) {
         for (const int bit : {0, 3, 7}) {
@@ -301,7 +368,7 @@ TEST(OpalFile, ConsistentlyForgedSectionsAreRefusedOrStayInBounds) {
             // Use everything the runtime would use; the address sanitizer watches.
             std::vector<float> dense(cubemap_texels(loaded->view.cubemap_size));
             for (const PrimitiveRecord& p : loaded->view.primitives) {
-                for (std::uint32_t r = 0; r < p.vertex_count; ++r) {
+                for (std::uint32_t r = 0; r < p.rows().rows; ++r) {
                     for (std::uint32_t band = 0; band < p.bands; ++band) {
                         decode_row(loaded->view.transport, p.rows(), r, band, dense);
                     }

@@ -98,6 +98,18 @@ TEST_F(GlPrograms, MediaWithOneTermHaveNoViewMaps) {
     EXPECT_EQ(active(draws->surface[2], GL_UNIFORM), uniforms) << "nothing is mirrored";
 }
 
+TEST_F(GlPrograms, GreyMediaHaveNoCodeForThreeBands) {
+    for (const std::uint32_t terms : {1u, 4u}) {
+        const GlAsset grey = upload(make_sheet_of({.bands = 1, .eta = 1.3f, .terms = terms}));
+        const GlAsset colour = upload(make_sheet_of({.bands = 3, .eta = 1.3f, .terms = terms}));
+        const auto one = make_dot_programs(grey, 8), three = make_dot_programs(colour, 8);
+        EXPECT_EQ(made(one->program), 1u);
+        EXPECT_NE(one->program[1].name(), 0u);
+        EXPECT_EQ(made(three->program), 1u);
+        EXPECT_NE(three->program[3].name(), 0u);
+    }
+}
+
 TEST_F(GlPrograms, EachNumberOfTermsHasItsOwnSum) {
     formats::Asset scene = make_sheet_of({});
     const auto sheet = test::make_sheet({0, 0, 0}, {6, 0, 0}, {0, 0, -6}, 3, 1);

@@ -25,14 +25,14 @@ using test::text_of;
 
 class GlTranslucent : public test::Gl {};
 
-// A translucent sphere over a diffuse floor, and two textured boards seen from behind, of which one
-// is double-sided.
-Asset make_scene(std::uint32_t terms, float eta) {
+// A translucent sphere of so many bands over a diffuse floor, and two textured boards seen from
+// behind, of which one is double-sided.
+Asset make_scene(std::uint32_t terms, float eta, std::uint32_t bands = 3) {
     Asset asset = test::make_asset(16, 8);
     asset.images.push_back(test::make_noise_image(13, 9));
     test::add_primitive(asset, test::make_sheet({0, 0, 0}, {6, 0, 0}, {0, 0, -6}, 3, 1), {});
     test::add_primitive(asset, test::make_sphere({0, 1, 0}, 1, 32, 20),
-                        {.bands = 3, .eta = eta, .terms = terms});
+                        {.bands = bands, .eta = eta, .terms = terms});
     for (const bool is_double_sided : {false, true}) {
         test::add_primitive(asset,
                             test::make_sheet({is_double_sided ? -1.5f : 1.5f, 1.0f, -0.5f},
@@ -53,13 +53,21 @@ std::vector<Rgb> view_on_cpu(const AssetView& asset, const LightVector& light,
     return irradiance;
 }
 
-TEST_F(GlTranslucent, PicturesAgreeWithTheCpuForEveryNumberOfTerms) {
+// Among them grey media next to coloured ones.
+TEST_F(GlTranslucent, PicturesAgreeWithTheCpuForEveryNumberOfTermsAndBands) {
     const Environment sky = test::make_lat_long(128, 64, test::two_lights);
     const Rotation rotation = rotation_about_y(0.7f);
-    for (const auto& [terms, eta] :
-         {std::pair{1u, 1.3f}, {4u, 1.3f}, {4u, 0.7f}, {9u, 1.0f}, {16u, 1.5f}, {25u, 3.0f}}) {
-        SCOPED_TRACE(testing::Message() << terms << " terms, eta " << eta);
-        const Asset asset = make_scene(terms, eta);
+    struct Variant {
+        std::uint32_t terms;
+        float eta;
+        std::uint32_t bands;
+    };
+    for (const auto& [terms, eta, bands] :
+         {Variant{1, 1.3f, 3}, Variant{4, 1.3f, 3}, Variant{4, 0.7f, 3}, Variant{9, 1.0f, 3},
+          Variant{16, 1.5f, 3}, Variant{25, 3.0f, 3}, Variant{1, 1.3f, 1}, Variant{4, 1.3f, 1}}) {
+        SCOPED_TRACE(testing::Message()
+                     << terms << " terms, eta " << eta << ", " << bands << " bands");
+        const Asset asset = make_scene(terms, eta, bands);
         const AssetView view = asset.view();
         const LightVector light = project_environment(sky, 16, rotation);
         auto renderer = GlRenderer::create(view, sky);

@@ -32,7 +32,7 @@ struct TestPrimitive {
     std::uint32_t details = 64;  ///< largest wavelet details kept of each row
     std::uint32_t image = formats::kNoImage;
     formats::Wrap wrap_u = formats::Wrap::repeat, wrap_v = formats::Wrap::repeat;
-    float eta = 0;  ///< above 0: translucent, with `terms` rows a vertex; needs three bands
+    float eta = 0;  ///< above 0: translucent, with `terms` rows a vertex
     std::uint32_t terms = 1;
     bool is_double_sided = false;
     bool is_separate = false;  ///< translucent: PrimitiveRecord::kSeparate

@@ -1,0 +1,70 @@
+#include "bake/plan/savings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "bake/plan/cost_model.h"
+#include "bake/plan/inspect_scene.h"
+#include "tests/support/media.h"
+#include "tests/support/rates.h"
+
+namespace opaline::bake {
+namespace {
+
+struct Planned {
+    formats::Scene scene;
+    SceneFacts facts;
+    std::vector<PlanEntry> plan;
+    CostPrediction cost;
+};
+
+// A grey ball over an opaque floor, and what each entry saves.
+Planned plan_ball(const formats::Medium& medium) {
+    formats::Primitive floor = tests::make_quad({-3, -1.02f, -3}, {0, 0, 6}, {6, 0, 0}, 8);
+    floor.material = 1;
+    Planned p{tests::make_translucent_scene({tests::make_sphere(2), floor}, medium), {}, {}, {}};
+    p.facts = inspect_scene(p.scene);
+    p.plan = plan_bake(p.scene, p.facts, {});
+    p.cost = predict_costs(p.scene, p.facts, {}, tests::make_rates(), 2, p.plan);
+    predict_savings(p.scene, p.facts, {}, tests::make_rates(), 2, p.plan);
+    return p;
+}
+
+TEST(Savings, AreWhatTurningTheEntryOnWouldAdd) {
+    const Planned p = plan_ball(tests::make_grey_medium(40, 1));
+    const auto colour = std::find_if(p.plan.begin(), p.plan.end(), [](const PlanEntry& entry) {
+        return entry.effect == "light.colour";
+    });
+    ASSERT_FALSE(colour->on);
+    std::vector<PlanEntry> forced = p.plan;
+    forced[static_cast<std::size_t>(colour - p.plan.begin())].on = true;
+    const CostPrediction more = predict_costs(p.scene, p.facts, {}, tests::make_rates(), 2, forced);
+    EXPECT_GT(colour->saved_seconds, 0);
+    EXPECT_GT(colour->saved_bytes, 0u);
+    EXPECT_NEAR(colour->saved_seconds, more.seconds - p.cost.seconds, 1e-9 * more.seconds);
+    EXPECT_EQ(colour->saved_bytes, more.bytes - p.cost.bytes);
+}
+
+TEST(Savings, OfWhatIsOnAndOfOtherMaterialsAreNone) {
+    formats::Medium medium = tests::make_grey_medium(40, 1);
+    medium.sigma_a.b = 2;
+    for (const PlanEntry& entry : plan_ball(medium).plan) {
+        const bool may_save = !entry.on && entry.effect != "direct";
+        EXPECT_TRUE(may_save || (entry.saved_seconds == 0 && entry.saved_bytes == 0))
+            << entry.effect << " of " << entry.subject;
+    }
+}
+
+TEST(Savings, LeaveThePredictionAsItWas) {
+    Planned p = plan_ball(tests::make_grey_medium(40, 1));
+    double seconds = p.cost.shared_seconds;
+    for (const PlanEntry& entry : p.plan) {
+        EXPECT_TRUE(entry.on || entry.predicted_seconds == 0) << entry.effect;
+        seconds += entry.predicted_seconds;
+    }
+    EXPECT_NEAR(seconds, p.cost.seconds, 1e-9 * seconds);
+}
+
+}  // namespace
+}  // namespace opaline::bake
