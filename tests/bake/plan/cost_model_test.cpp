@@ -68,6 +68,19 @@ TEST(CostModel, TotalIsTheSumOfStagesAndOfEffectsAndTheRest) {
     }
 }
 
+TEST(CostModel, TermsBeyondTheFirstPayForTheirRows) {
+    Knobs knobs;
+    knobs.phase_terms = 9;
+    const Predicted p = predict(ball_on_floor(), knobs);
+    const auto entry = [&](const char* effect) { return *find_entry(p.plan, effect, 0); };
+    // The first row is that of multiple scattering too, which pays for it.
+    EXPECT_NEAR(static_cast<double>(entry("single.terms").predicted_bytes),
+                8.0 * static_cast<double>(entry("multiple").predicted_bytes), 8);
+    EXPECT_EQ(entry("single").predicted_bytes, 0u);
+    EXPECT_GT(entry("single.terms").predicted_seconds, 0);
+    EXPECT_GT(entry("single").predicted_seconds, 0);
+}
+
 TEST(CostModel, PredictingTwiceIsPredictingOnce) {
     const formats::Scene scene = ball_on_floor();
     Predicted p = predict(scene);
