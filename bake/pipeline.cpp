@@ -183,24 +183,6 @@ void warn_of_thin_parts(const formats::Scene& scene, const RayScene& rays,
     }
 }
 
-// A phase function with too few terms errs by more than any other knob can make good.
-void warn_of_missing_terms(const formats::Scene& scene, const BakeResult& result,
-                           std::vector<formats::Diagnostic>& warnings) {
-    for (const PlanEntry& entry : result.plan) {
-        const bool has_terms = entry.effect == "single" && entry.on;
-        const std::uint32_t needed =
-            has_terms ? needed_terms(*scene.materials[entry.material].medium, result.knobs) : 0;
-        if (needed > entry.terms) {
-            warnings.push_back(formats::make_warning(
-                "", entry.subject,
-                std::to_string(entry.terms) + " terms of the phase function were asked for; " +
-                    (result.knobs.error_target > 0 ? "--error" : "the quality") + " needs " +
-                    std::to_string(needed),
-                "leave --phase-terms out, or give --phase-terms " + std::to_string(needed)));
-        }
-    }
-}
-
 formats::Error interrupted() {
     return make_error(ErrorKind::interrupted, "", "", "interrupted", "nothing was written");
 }
@@ -281,7 +263,6 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     if (!rows) {
         return std::move(rows).error();
     }
-    warn_of_missing_terms(scene, result, result.warnings);
     warn_of_thin_parts(scene, rays, points, media, knobs.seed, result.warnings);
     std::vector<formats::Openness> openness = bake_all_openness(pilot, context, result);
     if (context.cancelled()) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "bake/run_stage.h"
 
@@ -128,12 +129,21 @@ void warn_of_missed_target(const BakeResult& result, std::vector<formats::Diagno
         const std::string text = std::to_string(1e-3 * std::round(1e5 * error));
         return text.substr(0, text.find('.') + 3) + " %";
     };
+    const Knobs::Fixed& fixed = result.knobs.fixed;
+    std::string given;  // by the user: the pilot could not change them
+    for (const auto& [is_given, option] : {std::pair{fixed.cubemap, "--cubemap"},
+                                           {fixed.coefficients, "--coefficients"},
+                                           {fixed.tolerance, "--epsilon"},
+                                           {fixed.depth_samples, "--depth-samples"}}) {
+        given += is_given ? (given.empty() ? "" : ", ") + std::string(option) : "";
+    }
     if (!accuracy.met) {
         warnings.push_back(formats::make_warning(
             "", "--error",
             percent(accuracy.target) + " is out of reach: the finest knobs tried leave " +
                 percent(accuracy.likely) + ", and were taken",
-            "ask for more, or give the scene more vertices where shadows end"));
+            given.empty() ? "ask for more, or give the scene more vertices where shadows end"
+                          : "leave " + given + " out"));
     } else if (result.error.rms_relative > accuracy.target) {
         warnings.push_back(
             formats::make_warning("", "--error",

@@ -18,6 +18,7 @@
 #include "bake/pipeline.h"
 #include "bake/plan/inspect_scene.h"
 #include "bake/plan/savings.h"
+#include "bake/plan/unmet_requests.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/write_opal.h"
 
@@ -98,6 +99,9 @@ int run(const Options& options) {
     if (!imported) {
         return report_error(imported.error());
     }
+    if (auto status = bake::check_effects(imported->scene, *knobs); !status) {
+        return report_error(status.error());
+    }
     for (const std::string* path : {&options.output, &options.report, &options.depfile}) {
         if (auto status = check_output(*path, imported->scene.inputs, {}); !status) {
             return report_error(status.error());
@@ -130,6 +134,10 @@ int run(const Options& options) {
     const std::uint64_t bytes = std::filesystem::is_regular_file(options.output, ignored)
                                     ? std::filesystem::file_size(options.output, ignored)
                                     : 0;
+    for (formats::Diagnostic& unmet :
+         bake::describe_unmet(imported->scene, *wanted, result->knobs, result->plan)) {
+        result->warnings.push_back(std::move(unmet));
+    }
     std::vector<formats::Diagnostic> warnings = imported->warnings;
     warnings.insert(warnings.end(), result->warnings.begin(), result->warnings.end());
     print_warnings(result->warnings);

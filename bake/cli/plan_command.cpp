@@ -11,6 +11,7 @@
 #include "bake/cli/scene_options.h"
 #include "bake/plan/inspect_scene.h"
 #include "bake/plan/savings.h"
+#include "bake/plan/unmet_requests.h"
 
 namespace opaline::cli {
 namespace {
@@ -34,11 +35,15 @@ int run(const Options& options) {
     if (!imported) {
         return report_error(imported.error());
     }
+    if (auto status = bake::check_effects(imported->scene, *knobs); !status) {
+        return report_error(status.error());
+    }
     bake::Context context;
     context.threads = options.scene.bake.threads;
     const unsigned threads = bake::thread_count(context);
     const bake::SceneFacts facts = bake::inspect_scene(imported->scene);
     auto plan = bake::plan_bake(imported->scene, facts, *knobs);
+    print_warnings(bake::describe_unmet(imported->scene, *wanted, *knobs, plan));
     const bake::Rates rates = find_machine_rates().rates;
     const bake::CostPrediction cost =
         bake::predict_costs(imported->scene, facts, *knobs, rates, threads, plan);

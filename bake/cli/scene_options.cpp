@@ -140,8 +140,10 @@ formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
             return std::find(names.begin(), names.end(), name) != names.end();
         };
         if (!is_among(kHere)) {
-            return refuse(is_among(kKnown) ? "this version does not simulate '" + name + "'"
-                                           : "there is no effect named '" + name + "'");
+            return refuse(name == "all" || name == "auto"
+                              ? "'" + name + "' stands by itself, not in a list"
+                          : is_among(kKnown) ? "this version does not simulate '" + name + "'"
+                                             : "there is no effect named '" + name + "'");
         }
         wanted.effects.push_back(name);
     }

@@ -20,7 +20,7 @@ struct PlanEntry {
     bool forced = false;           ///< on although the rule would leave it out: Knobs::simulate_all
     std::string reason;            ///< the rule in words
     double bound = 0;              ///< largest radiance it can contribute under `white`
-    std::uint32_t terms = 0;       ///< `single`: terms of the phase function
+    std::uint32_t terms = 0;       ///< `single.terms`: of the phase function, the first included
     double predicted_seconds = 0;  ///< filled in by predict_costs (cost_model.h)
     std::uint64_t predicted_bytes = 0;  ///< the same; of the rows in the file
     double saved_seconds = 0;           ///< by being off; filled in by predict_savings (savings.h)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bake/plan/row_layout.h"
 #include "bake/plan/stage_costs.h"
@@ -180,17 +181,23 @@ struct Prediction {
                          "multiple", p.material);
             }
             if (layout.single_terms > 0 && !layout.local) {
-                bill.add(single_rows_work(input, own, layout.single_terms, bands, receivers),
-                         "single", p.material);
+                const Work one = single_rows_work(input, own, 1, bands, receivers);
+                const Work all =
+                    single_rows_work(input, own, layout.single_terms, bands, receivers);
+                bill.add(one, "single", p.material);
+                bill.add({all.alone - one.alone, all.shared - one.shared}, "single.terms",
+                         p.material);
             }
             // The first row is that of multiple scattering, where there is any.
             const std::uint32_t first = layout.multiple ? 1 : 0;
-            const std::uint32_t others = layout.terms() - first;
+            const std::uint32_t beyond = std::max(layout.single_terms, 1u) - 1;
             const auto bytes = receivers * static_cast<double>(row_bytes(knobs, true, bands));
-            bill.add(encode_work(input, first, bands, receivers), "multiple", p.material);
-            bill.add_bytes(first * bytes, "multiple", p.material);
-            bill.add(encode_work(input, others, bands, receivers), "single", p.material);
-            bill.add_bytes(others * bytes, "single", p.material);
+            for (const auto& [effect, count] : {std::pair{"multiple", first},
+                                                {"single", layout.terms() - first - beyond},
+                                                {"single.terms", beyond}}) {
+                bill.add(encode_work(input, count, bands, receivers), effect, p.material);
+                bill.add_bytes(count * bytes, effect, p.material);
+            }
         }
     }
 

@@ -49,7 +49,7 @@ struct Knobs {
     double tolerance = 1e-3;        ///< GatherOptions::tolerance
     std::uint32_t depth_samples = 6;
     std::uint32_t phase_terms = 0;  ///< 0: chosen per medium
-    double phase_tolerance = 0.02;  ///< by choose_terms (plan_rules.h)
+    double phase_tolerance = 0.02;  ///< by choose_terms (rules_single.h)
     bool exact_rays = false;        ///< no light maps, no rays shared between samples
     bool separate_terms = false;
     std::vector<std::string> effects;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <string_view>
 
@@ -32,22 +33,17 @@ struct PlanRule {
 /// Knobs::error_target where that is less. `forced`: it is not, but Knobs::simulate_all wants it.
 bool is_worth(double bound, const PlanInput& input, bool& forced);
 
-/// The rules of the two effects that fill the rows of a medium.
-PlanEntry decide_multiple(const PlanInput& input);
-PlanEntry decide_single(const PlanInput& input);
-
 /// All rules, in the order in which plans list effects.
 extern const std::span<const PlanRule> kPlanRules;
 
-/// The share of single scattering in what a half space returns of uniform light: the largest over
-/// the bands. In [0, 1].
-double single_share(const formats::Medium& medium);
+/// Whether the user named the effect; whether they did not rule it out.
+bool is_named(const Knobs& knobs, std::string_view effect);
+bool is_wanted(const Knobs& knobs, std::string_view effect);
 
-/// The smallest K whose error, times the share of single scattering, is at most
-/// `knobs.phase_tolerance` (translucency.md 9).
-std::uint32_t needed_terms(const formats::Medium& medium, const Knobs& knobs);
-
-/// The same, unless the user gave one.
-std::uint32_t choose_terms(const formats::Medium& medium, const Knobs& knobs);
+/// Coefficients [1/m] of one band of a medium.
+struct Band {
+    double sigma_s, sigma_a;
+};
+std::array<Band, 3> bands_of(const formats::Medium& medium);
 
 }  // namespace opaline::bake

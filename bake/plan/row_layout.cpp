@@ -23,7 +23,9 @@ std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vecto
         layout.occluded = is_on("light.visibility");
         layout.translucent = scene.materials[m].medium.has_value() && !layout.direct;
         layout.multiple = is_on("multiple");
-        layout.single_terms = is_on("single") ? find_entry(plan, "single", m)->terms : 0;
+        layout.single_terms = !is_on("single")        ? 0
+                              : is_on("single.terms") ? find_entry(plan, "single.terms", m)->terms
+                                                      : 1;
         // Multiple scattering alone in its row is told to be so.
         layout.separate = layout.translucent && (knobs.separate_terms || layout.single_terms == 0);
         layout.local = layout.translucent && (layout.multiple || layout.single_terms > 0) &&

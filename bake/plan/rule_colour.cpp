@@ -1,5 +1,8 @@
 #include "bake/plan/rule_colour.h"
 
+#include "bake/plan/rule_multiple.h"
+#include "bake/plan/rules_single.h"
+
 namespace opaline::bake {
 
 PlanEntry decide_colour(const PlanInput& input) {

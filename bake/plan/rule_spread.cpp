@@ -1,10 +1,10 @@
 #include "bake/plan/rule_spread.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "bake/plan/rules_single.h"
 #include "bake/scattering/dipole.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/half_space_single.h"
@@ -12,18 +12,6 @@
 
 namespace opaline::bake {
 namespace {
-
-struct Band {
-    double sigma_s, sigma_a;
-};
-
-std::array<Band, 3> bands_of(const formats::Medium& medium) {
-    const auto band = [](float s, float a) {
-        return Band{static_cast<double>(s), static_cast<double>(a)};
-    };
-    return {band(medium.sigma_s.r, medium.sigma_a.r), band(medium.sigma_s.g, medium.sigma_a.g),
-            band(medium.sigma_s.b, medium.sigma_a.b)};
-}
 
 // How a body's shape differs from the half space that a local answer takes it for.
 struct Shape {

@@ -189,9 +189,10 @@ SweepSubject sweep_subject(const std::vector<PlanEntry>& plan, const formats::Sc
         if (entry.effect == "single") {
             subject.single = true;
             const auto& medium = scene.materials[entry.material].medium;
-            subject.anisotropic = subject.anisotropic || entry.terms > 1 ||
-                                  (medium && formats::mean_cosine(medium->phase) != 0);
+            subject.anisotropic =
+                subject.anisotropic || (medium && formats::mean_cosine(medium->phase) != 0);
         }
+        subject.anisotropic = subject.anisotropic || entry.effect == "single.terms";
     }
     return subject;
 }

@@ -254,21 +254,6 @@ TEST(Plan, EffectsAllTurnsOnWhatTheSceneDoesNotCallForAndSaysSo) {
     EXPECT_GE(forced("all", "on"), 2) << "multiple and single at least";
 }
 
-TEST(Bake, FewerPhaseTermsThanTheErrorNeedsAreWarnedOf) {
-    SmallScene small;
-    std::ofstream(small.path("fog.json")) << R"({"materials": {"*": {"sigma_s": [9, 9, 9],
-        "sigma_a": [9, 9, 9], "unit": "1/m", "eta": 1, "phase": {"type": "hg", "g": 0.7}}}})";
-    const auto bake = [&](const char* terms) {
-        return run_opaline({"bake", small.scene(), "--media", small.path("fog.json"), "-o",
-                            small.path("a.opal"), "--quality", "draft", "--effects", "single",
-                            "--phase-terms", terms});
-    };
-    const Outcome few = bake("1"), enough = bake("25");
-    EXPECT_EQ(few.exit_code, 0) << few.err;
-    EXPECT_THAT(few.err, HasSubstr("1 terms of the phase function were asked for"));
-    EXPECT_THAT(enough.err, ::testing::Not(HasSubstr("were asked for")));
-}
-
 TEST(Example, EveryListedSceneBakes) {
     const TemporaryFolder folder;
     const Outcome list = run_opaline({"example", "--list"});

@@ -54,6 +54,10 @@ TEST(Usage, BadCommandLinesExitWithTwoAndSayWhereHelpIs) {
         {"bake", scene, "-o", out, "--coefficients", "many"},
         {"bake", scene, "-o", out, "--effects", "sparkle"},
         {"bake", scene, "-o", out, "--effects", "cloud"},
+        {"bake", scene, "-o", out, "--effects", "volume-single"},
+        {"bake", scene, "-o", out, "--effects", "all,direct"},
+        {"bake", scene, "-o", out, "--effects", "single"},  // no medium
+        {"plan", scene, "--effects", "multiple,specular"},
         {"bake", scene, "-o", out, "--threads", "-1"},
         {"bake", scene, "-o", out, "--threads", "x"},
         {"bake", scene, "-o", out, "--seed", "-1"},

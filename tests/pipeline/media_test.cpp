@@ -7,6 +7,7 @@
 #include "bake/multiple/medium_profile.h"
 #include "bake/plan/inspect_scene.h"
 #include "bake/plan/plan_rules.h"
+#include "bake/plan/rules_single.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/visibility/irradiance_transport.h"
@@ -180,7 +181,7 @@ TEST(TranslucentPipeline, PhaseFunctionWithAPreferenceTakesWholeDegrees) {
     options.quality = Quality::draft;
     const BakeResult result = bake_scene(make_ball_on_floor(forward(0.25f)), options);
     EXPECT_EQ(result.asset.primitives[0].terms, 4u);
-    EXPECT_EQ(find_entry(result.plan, "single", 0)->terms, 4u);
+    EXPECT_EQ(find_entry(result.plan, "single.terms", 0)->terms, 4u);
     EXPECT_TRUE(all_finite(result.asset));
 }
 

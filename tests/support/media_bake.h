@@ -60,6 +60,34 @@ inline double relative_rms(const std::vector<formats::Rgb>& a,
     return sum > 0 ? std::sqrt(error / sum) : std::sqrt(error);
 }
 
+/// The largest difference between the radiance of any two vertices, in any band.
+inline double largest_difference(const formats::Asset& a, const formats::Asset& b,
+                                 const char* light, const runtime::ShadeOptions& options = {}) {
+    const auto shade = [&](const formats::Asset& asset) {
+        std::vector<formats::Rgb> radiance(asset.position.size());
+        runtime::shade(asset.view(), make_light(light, asset.view().cubemap_size), radiance,
+                       options);
+        return radiance;
+    };
+    const auto x = shade(a), y = shade(b);
+    double largest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        largest = std::max({largest, std::abs(double{x[i].r} - y[i].r),
+                            std::abs(double{x[i].g} - y[i].g), std::abs(double{x[i].b} - y[i].b)});
+    }
+    return largest;
+}
+
+/// The largest radiance of a built-in map without discs, in any band.
+inline double peak_of(const char* light) {
+    const formats::Environment environment = bake::make_environment(light).value();
+    float peak = 0;
+    for (const formats::Rgb c : environment.pixel) {
+        peak = std::max({peak, c.r, c.g, c.b});
+    }
+    return static_cast<double>(peak);
+}
+
 /// Every number that a file holds for its receivers is finite.
 inline bool all_finite(const formats::Asset& asset) {
     const auto finite = [](float x) { return std::isfinite(x); };

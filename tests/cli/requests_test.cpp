@@ -1,0 +1,115 @@
+// Requests that contradict the scene or each other: the user learns what was decided instead.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "tests/cli/small_scene.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kFog = R"("sigma_s": [9, 9, 9], "sigma_a": [9, 9, 9], "unit": "1/m")";
+
+class Requests : public ::testing::Test {
+  protected:
+    // Of the two squares, of this medium; opaque if it is empty. Plans say what bakes do.
+    Outcome plan(const std::string& medium, const Arguments& options) {
+        return run({"plan", small_.scene()}, medium, options);
+    }
+    Outcome bake(const std::string& medium, const Arguments& options) {
+        return run({"bake", small_.scene(), "-o", small_.path("a.opal")}, medium, options);
+    }
+
+  private:
+    Outcome run(Arguments line, const std::string& medium, const Arguments& options) {
+        if (!medium.empty()) {
+            std::ofstream(small_.path("media.json"))
+                << "{\"materials\": {\"*\": {" << medium << "}}}";
+            line.insert(line.end(), {"--media", small_.path("media.json")});
+        }
+        line.insert(line.end(), options.begin(), options.end());
+        Outcome outcome = run_opaline(line);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return outcome;
+    }
+
+    SmallScene small_;
+};
+
+TEST_F(Requests, FewerPhaseTermsThanTheErrorNeedsAreTakenWithAWarning) {
+    const std::string forward = std::string(kFog) + R"(, "phase": {"type": "hg", "g": 0.7})";
+    EXPECT_THAT(
+        bake(forward, {"--quality", "draft", "--effects", "single", "--phase-terms", "1"}).err,
+        HasSubstr("material 'Chalk': --phase-terms 1 was taken as given; the quality "
+                  "needs "));
+    EXPECT_THAT(plan(forward, {"--phase-terms", "25"}).err, Not(HasSubstr("--phase-terms")));
+    EXPECT_THAT(plan(forward, {"--phase-terms", "1"}).err,
+                HasSubstr("--phase-terms 1 was taken as given"));
+}
+
+TEST_F(Requests, TermsOfAnIsotropicPhaseFunctionAreOne) {
+    EXPECT_THAT(plan(kFog, {"--phase-terms", "16"}).err,
+                HasSubstr("--phase-terms: does nothing here: nothing scatters once into some "
+                          "directions more than into others"));
+    EXPECT_THAT(plan(kFog, {"--phase-terms", "1"}).err, Not(HasSubstr("--phase-terms")));
+}
+
+TEST_F(Requests, OptionsOfMediaSayThatAnOpaqueSceneHasNone) {
+    const Arguments options = {"--samples",       "500", "--epsilon",     "0.1",
+                               "--depth-samples", "3",   "--phase-terms", "4",
+                               "--separate-terms"};
+    const Outcome opaque = bake("", options);
+    for (const char* option :
+         {"--samples", "--epsilon", "--depth-samples", "--phase-terms", "--separate-terms"}) {
+        EXPECT_THAT(opaque.err, HasSubstr(std::string(option) + ": does nothing here"));
+    }
+    EXPECT_THAT(plan("", {}).err, Not(HasSubstr("does nothing")));
+    EXPECT_THAT(plan(std::string(kFog) + R"(, "phase": {"type": "hg", "g": 0.7})", options).err,
+                Not(HasSubstr("does nothing")));
+}
+
+TEST_F(Requests, NamedEffectsThatAreLeftOutAreExplained) {
+    const std::string matched = std::string(kFog) + R"(, "eta": 1)";
+    EXPECT_THAT(plan(matched, {"--effects", "single,specular"}).err,
+                AllOf(HasSubstr("--effects: 'specular' was left out all the same: the index of "
+                                "refraction is that of the air"),
+                      Not(HasSubstr("'single' was"))));
+    EXPECT_THAT(plan(kFog, {"--effects", "direct,specular"}).err,
+                HasSubstr("'specular' was left out all the same: the medium is shown as a "
+                          "diffuse surface"));
+    EXPECT_THAT(plan("", {"--effects", "direct,single"}).err,
+                HasSubstr("--effects: 'single' concerns nothing in the scene"));
+}
+
+TEST_F(Requests, MultipleScatteringBehindAnOpenMeshIsThatOfAThickBody) {
+    EXPECT_THAT(bake(kFog, {"--quality", "draft", "--effects", "multiple", "--samples", "200"}).err,
+                AllOf(HasSubstr("the surface of the medium is open"), HasSubstr("thick body")));
+}
+
+TEST_F(Requests, ErrorsThatFixedKnobsKeepOutOfReachNameTheKnobs) {
+    const Outcome outcome = bake("", {"--error", "0.01", "--coefficients", "7"});
+    EXPECT_THAT(outcome.err,
+                AllOf(HasSubstr("out of reach"), HasSubstr("leave --coefficients out")));
+}
+
+TEST(Request, OfAnEffectThatConcernsNothingIsRefused) {
+    SmallScene small;
+    for (const char* command : {"bake", "plan"}) {
+        Arguments line = {command, small.scene(), "--effects", "single"};
+        if (command == std::string("bake")) {
+            line.insert(line.end(), {"-o", small.path("a.opal")});
+        }
+        const Outcome outcome = run_opaline(line);
+        EXPECT_EQ(outcome.exit_code, 2) << command;
+        EXPECT_THAT(outcome.err, HasSubstr("'single' concerns nothing in the scene"));
+    }
+    EXPECT_THAT(run_opaline({"plan", small.scene(), "--effects", "direct,auto"}).err,
+                HasSubstr("'auto' stands by itself"));
+}
+
+}  // namespace
+}  // namespace opaline::tests

@@ -1,0 +1,87 @@
+// Phase functions that are nearly the same in all directions: one term, and what more would add.
+#include <gtest/gtest.h>
+
+#include "bake/plan/inspect_scene.h"
+#include "tests/support/media_bake.h"
+
+namespace opaline::bake {
+namespace {
+
+formats::Scene ball_of(
+    float g, formats::PhaseFunction::Type type = formats::PhaseFunction::Type::henyey_greenstein) {
+    formats::Medium medium = tests::make_grey_medium(6, 4, 1.3f);
+    medium.phase.type = type;
+    medium.phase.g = g;
+    return tests::make_translucent_scene({tests::make_sphere(3)}, medium);
+}
+
+BakeResult bake(const formats::Scene& scene, std::uint32_t terms) {
+    BakeOptions options = tests::small_bake();
+    options.phase_terms = terms;
+    return tests::bake_scene(scene, options);
+}
+
+const PlanEntry& terms_of(const BakeResult& result) {
+    return *find_entry(result.plan, "single.terms", 0);
+}
+
+constexpr float kNearlyIsotropic = 0.02f, kJustPast = 0.03f;
+
+TEST(SkippedTerms, OfANearlyIsotropicMediumAddLessThanTheirBoundFromAnyEye) {
+    const auto scene = ball_of(kNearlyIsotropic);
+    const BakeResult one = bake(scene, 0), sixteen = bake(scene, 16);
+    ASSERT_FALSE(terms_of(one).on) << terms_of(one).reason;
+    EXPECT_EQ(terms_of(one).terms, 1u);
+    EXPECT_TRUE(terms_of(sixteen).on);
+    EXPECT_EQ(one.asset.primitives[0].terms, 1u);
+    EXPECT_EQ(sixteen.asset.primitives[0].terms, 16u);
+    EXPECT_LT(one.asset.transport.index16.size(), sixteen.asset.transport.index16.size());
+    runtime::ShadeOptions seen;
+    for (const formats::Vec3 eye : {formats::Vec3{5, 0, 0}, {-2, 4, 1}, {0, 0.5f, -20}}) {
+        seen.eye = eye;
+        const double white = tests::largest_difference(one.asset, sixteen.asset, "white", seen);
+        EXPECT_GT(white, 0) << "nothing was added";
+        EXPECT_LE(white, terms_of(one).bound);
+        EXPECT_LE(tests::largest_difference(one.asset, sixteen.asset, "studio", seen),
+                  terms_of(one).bound * tests::peak_of("studio"));
+    }
+}
+
+TEST(SkippedTerms, AreSimulatedAsSoonAsTheyCouldShow) {
+    const BakeResult past = bake(ball_of(kJustPast), 0);
+    EXPECT_TRUE(terms_of(past).on) << terms_of(past).reason;
+    EXPECT_FALSE(terms_of(past).forced);
+    EXPECT_EQ(terms_of(past).terms, 4u);
+    EXPECT_EQ(past.asset.primitives[0].terms, 4u);
+}
+
+TEST(SkippedTerms, AreForcedWithEverythingElse) {
+    BakeOptions options;
+    options.simulate_all = true;
+    const auto scene = ball_of(kNearlyIsotropic);
+    const auto plan = plan_bake(scene, inspect_scene(scene), *resolve_knobs(options));
+    const PlanEntry& entry = *find_entry(plan, "single.terms", 0);
+    EXPECT_TRUE(entry.on && entry.forced);
+    EXPECT_EQ(entry.terms, 4u);
+}
+
+// There is nothing to simulate, whoever asks for it.
+TEST(SkippedTerms, OfAnIsotropicMediumDoNotExist) {
+    for (const std::uint32_t terms : {0u, 16u}) {
+        const BakeResult result = bake(ball_of(0, formats::PhaseFunction::Type::isotropic), terms);
+        EXPECT_EQ(find_entry(result.plan, "single.terms", 0), nullptr);
+        EXPECT_EQ(result.asset.primitives[0].terms, 1u);
+    }
+}
+
+TEST(SkippedTerms, CostNothingWhereNothingScattersOnce) {
+    BakeOptions options = tests::only({"multiple"});
+    options.phase_terms = 16;
+    const BakeResult result = tests::bake_scene(ball_of(0.5f), options);
+    EXPECT_FALSE(terms_of(result).on);
+    EXPECT_EQ(terms_of(result).terms, 0u);
+    EXPECT_EQ(result.asset.primitives[0].terms, 1u);
+}
+
+}  // namespace
+}  // namespace opaline::bake
