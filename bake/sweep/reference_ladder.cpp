@@ -59,7 +59,7 @@ formats::Result<std::optional<ReferenceLadder>> climb_reference(
     // The next rung takes kStep times as long as all so far, its truth kTruth times that.
     for (std::uint32_t samples = kFewest;
          samples <= options.most_samples &&
-         (climbed.empty() || kStep * (1 + kTruth) * seconds <= options.seconds);
+         (climbed.size() < 2 || kStep * (1 + kTruth) * seconds <= options.seconds);
          samples *= kStep) {
         wanted.samples = samples - wanted.first;
         const auto estimate = estimate_luminance(space, receivers, wanted, context);
@@ -73,9 +73,6 @@ formats::Result<std::optional<ReferenceLadder>> climb_reference(
         ladder.rungs.push_back({samples, seconds});
         climbed.push_back(moments);
         wanted.first = samples;
-    }
-    if (climbed.size() < 2) {
-        return std::optional<ReferenceLadder>();
     }
     wanted.samples = ladder.truth_samples = kTruth * wanted.first;
     const auto truth = estimate_luminance(space, receivers, wanted, context);

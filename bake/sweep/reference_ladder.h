@@ -28,15 +28,15 @@ struct ReferenceLadder {
 };
 
 struct ReferenceLadderOptions {
-    double seconds = 10;  ///< about: rungs that would take longer are left out, but not the first
+    double seconds = 10;  ///< about; the first two rungs are climbed whatever they take
     std::uint32_t most_samples = 65536;  ///< nor are there more than these, for each receiver
     std::uint64_t seed = 0;
 };
 
 /// Estimates the light that vertices send along their normals with 4, 16, 64, ... samples, each
 /// rung with those of the one before, and then by twice as many as the last, others. The truth's
-/// variance is subtracted. Nothing where there is no time for two rungs, or no light at the
-/// receivers. Errors: resource, interrupted.
+/// variance is subtracted. Nothing where no light
+/// reaches the receivers. Errors: resource, interrupted.
 formats::Result<std::optional<ReferenceLadder>> climb_reference(
     const formats::Scene& scene, const ReferenceLadderOptions& options, const Context& context);
 

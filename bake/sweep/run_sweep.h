@@ -38,7 +38,7 @@ struct SweepResult {
     std::vector<PlanEntry> plan;               ///< of the base
     std::vector<PointRecord> points;           ///< in the order in which they were baked
     std::size_t truth = 0;                     ///< index of the finest point (find_finest)
-    std::optional<ReferenceLadder> reference;  ///< nothing: no time, or no light
+    std::optional<ReferenceLadder> reference;  ///< nothing: no light
     std::vector<SkippedPoint> skipped;
     std::vector<std::string> lights;
     std::string picture_light;
