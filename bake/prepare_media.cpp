@@ -92,9 +92,10 @@ MediaStages choose_knobs(const PilotScene& pilot, std::vector<TestLight>& lights
         PilotChoice choice;
         choice.knobs = knobs;
         // Samples of media are not worth taking where the opaque receivers need more texels.
-        const double floor = run_stage(result, "pilot", [&](std::uint64_t&) {
-            return find_direct_floor(pilot, receivers, knobs, lights, context);
+        const OpaquePairs opaque = run_stage(result, "pilot", [&](std::uint64_t&) {
+            return measure_opaque(pilot, receivers, knobs, lights, context);
         });
+        const double floor = find_direct_floor(opaque, receivers);
         MediaStages media;
         bool has_samples = false;
         if (floor <= knobs.error_target || !refine_knobs(choice, false)) {
@@ -103,7 +104,7 @@ MediaStages choose_knobs(const PilotScene& pilot, std::vector<TestLight>& lights
                 has_samples = has_samples || stages.multiple.has_value();
             }
             choice = run_stage(result, "pilot", [&](std::uint64_t&) {
-                return choose_row_knobs(pilot, receivers, knobs, media, lights, context);
+                return choose_row_knobs(pilot, receivers, opaque, knobs, media, lights, context);
             });
         }
         for (const PilotTrial& trial : choice.trials) {

@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <span>
 #include <utility>
 
 #include "bake/environment/builtin_environment.h"
 #include "bake/measure/bootstrap.h"
+#include "bake/measure/model_receivers.h"
 #include "bake/measure/test_lights.h"
 #include "bake/receivers/orient_bodies.h"
 #include "bake/reference/reference_image.h"
-#include "bake/reference/reference_receivers.h"
 #include "formats/opal/rgb.h"
 #include "runtime/light_vector.h"
 #include "runtime/shade.h"
@@ -92,63 +90,6 @@ formats::Result<std::vector<ModelLight>> make_model_lights(bool with_suns,
     return lights;
 }
 
-// In another body, or in the back of everything: nobody sees it, and the bake gives it the light of
-// its neighbours (visibility/hidden_receivers).
-bool is_buried(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
-    if (!receiver.around.empty()) {
-        return true;
-    }
-    for (std::uint32_t i = 0; i < 16; ++i) {
-        RandomStream random(0, i, 0);
-        glm::vec3 d{2 * random.next() - 1, 2 * random.next() - 1, 2 * random.next() - 1};
-        d *= glm::dot(d, receiver.normal) < 0 ? -1.0f : 1.0f;
-        const auto hit = scene.surfaces.closest_hit({receiver.outside}, glm::normalize(d),
-                                                    std::numeric_limits<float>::infinity());
-        if (!hit || glm::dot(hit->flat, d) < 0) {
-            return false;
-        }
-        const formats::Scene& input = scene.surfaces.scene();
-        if (input.materials[input.primitives[hit->primitive].material].double_sided) {
-            return false;
-        }
-    }
-    return true;
-}
-
-// Close behind it, in its own body, lies another surface: a floor that a body has sunk into. There
-// the bake's body, which has nothing in it, is not the reference's.
-bool is_pierced(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
-    if (receiver.medium == formats::kNone) {
-        return false;
-    }
-    constexpr float kClose = 3;  // mean free paths, in the clearest channel
-    const glm::vec3 sigma_t = scene.media[receiver.medium].sigma_t;
-    const auto hit = scene.surfaces.closest_hit(
-        {receiver.inside}, -receiver.normal,
-        kClose / std::max(std::min({sigma_t.x, sigma_t.y, sigma_t.z}), 1e-30f));
-    const formats::Scene& input = scene.surfaces.scene();
-    return hit && scene.medium_of[input.primitives[hit->primitive].material] != receiver.medium;
-}
-
-// At a sharp edge of its body, where radiance jumps: the way in along one face's normal lies in the
-// other face. Rays then start aside of the normal.
-bool is_on_edge(const ReferenceReceiver& receiver) {
-    constexpr float kSharp = 0.9f;
-    return receiver.medium != formats::kNone &&
-           glm::dot(glm::normalize(receiver.outside - receiver.inside), receiver.normal) < kSharp;
-}
-
-std::vector<ReferenceReceiver> choose_visible(const ReferenceScene& scene,
-                                              const ModelCheckOptions& options) {
-    std::vector<ReferenceReceiver> receivers =
-        choose_receivers(scene, options.receivers, options.seed, std::nullopt);
-    std::erase_if(receivers, [&](const ReferenceReceiver& r) {
-        return r.normal == glm::vec3(0) || is_buried(scene, r) || is_pierced(scene, r) ||
-               is_on_edge(r);
-    });
-    return receivers;
-}
-
 // What the file says, seen along the normals.
 std::vector<double> relight_receivers(const formats::AssetView& asset,
                                       std::span<const ReferenceReceiver> receivers,
@@ -163,20 +104,6 @@ std::vector<double> relight_receivers(const formats::AssetView& asset,
         luminance.push_back(static_cast<double>(formats::luminance(radiance)));
     }
     return luminance;
-}
-
-// One number for each, so that its variance knows how the channels go together: luminance.
-formats::Result<Estimate> estimate_luminance(const PathSpace& space,
-                                             std::span<const ReferenceReceiver> receivers,
-                                             const EstimateOptions& options,
-                                             const Context& context) {
-    return estimate_pixels(static_cast<std::uint32_t>(receivers.size()), options, context,
-                           [&](std::uint32_t i, RandomStream& random) {
-                               PathSample sample = trace_receiver(space, receivers[i], random);
-                               const glm::vec3 c = sample.radiance;
-                               sample.radiance = glm::vec3(formats::luminance({c.x, c.y, c.z}));
-                               return sample;
-                           });
 }
 
 /// The pairs of one light, one per receiver.
@@ -264,7 +191,8 @@ formats::Result<ModelErrorReport> check_model(const formats::Scene& given,
     if (!lights) {
         return lights.error();
     }
-    const std::vector<ReferenceReceiver> receivers = choose_visible(*scene, options);
+    const std::vector<ReferenceReceiver> receivers =
+        choose_model_receivers(*scene, options.receivers, options.seed);
     report.receivers_checked = static_cast<std::uint32_t>(receivers.size());
     if (receivers.empty()) {
         return report;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "bake/pilot/opaque_pairs.h"
 #include "bake/pilot/pilot_rows.h"
 
 namespace opaline::bake {
@@ -20,8 +21,6 @@ struct SingleLevel {
     std::uint32_t depth_samples, cubemap;
 };
 constexpr std::array<SingleLevel, 3> kSingleLevels{{{4, 8}, {6, 16}, {10, 16}}};
-constexpr std::array<std::uint32_t, 12> kCoefficients{32,  48,  64,  96,  128,  192,
-                                                      256, 384, 512, 768, 1024, 2048};
 
 double square_error(std::span<const CheckedPair> pairs) {
     const double rms = relative_rms(pairs);
@@ -43,23 +42,29 @@ std::vector<CheckedPair> without_suns(std::span<const CheckedPair> pairs,
 // All that trying a knob takes.
 struct Trials {
     const PilotScene& pilot;
-    std::span<const PilotReceiver> receivers;
+    std::span<const PilotReceiver> receivers;  ///< all
+    const OpaquePairs& opaque;
     const MediaStages& media;
     std::span<const TestLight> lights;
     const Context& context;
     double target;
-    PilotChoice choice;
-    PilotSingles single;
+    std::vector<PilotReceiver> in_media{};
+    PilotChoice choice{};
+    PilotSingles single{};  ///< of those in media
 
     std::vector<std::vector<CheckedPair>> measure(const RowSetting& setting,
                                                   std::span<const Encoding> encodings) const {
-        return measure_rows(pilot, receivers, media, single, setting, choice.knobs.cubemap_size,
-                            encodings, lights, context);
+        auto pairs = measure_rows(pilot, in_media, media, single, setting,
+                                  choice.knobs.cubemap_size, encodings, lights, context);
+        for (std::size_t e = 0; e < encodings.size(); ++e) {
+            pairs[e] =
+                insert_opaque(pilot, receivers, pairs[e], opaque, encodings[e], lights.size());
+        }
+        return pairs;
     }
     // With all coefficients.
     std::vector<CheckedPair> measure(const RowSetting& setting) const {
-        const std::array<Encoding, 1> all{{{kAllCoefficients, 16}}};
-        return measure(setting, all).front();
+        return measure(setting, std::array{kUnencoded}).front();
     }
     void note(const char* knob, double value, double square) {
         choice.trials.push_back({knob, value, std::sqrt(square), 16});
@@ -92,7 +97,7 @@ struct Trials {
             // Never finer than the asset's own cube map.
             const RowSetting coarse{setting.tolerance, level.depth_samples,
                                     std::min(level.cubemap, choice.knobs.cubemap_size)};
-            single = gather_pilot_single(pilot, receivers, coarse, context);
+            single = gather_pilot_single(pilot, in_media, coarse, context);
             const double square = square_error(measure(coarse));
             note("depth_samples", level.depth_samples, square);
             if (square <= floor + kShareOfSingle * target * target) {
@@ -103,24 +108,9 @@ struct Trials {
         single = std::move(finest);
     }
 
-    void choose_encoding(const RowSetting& setting, bool fixed) {
+    void choose_encoding(const RowSetting& setting) {
         const Knobs& knobs = choice.knobs;
-        std::vector<Encoding> encodings;
-        for (const std::uint32_t bits : {8u, 16u}) {
-            for (const std::uint32_t m : kCoefficients) {
-                if (!fixed && m < 6 * knobs.cubemap_size * knobs.cubemap_size) {
-                    encodings.push_back({m, bits});
-                }
-            }
-            encodings.push_back({fixed ? knobs.coefficients : kAllCoefficients, bits});
-        }
-        // By the bytes they take, about: an index of two and one or two for each of three bands.
-        const std::uint32_t texels = 6 * knobs.cubemap_size * knobs.cubemap_size;
-        const auto bytes = [texels](const Encoding& e) {
-            return std::min(e.coefficients, texels) * (e.code_bits == 8 ? 5 : 8);
-        };
-        std::stable_sort(encodings.begin(), encodings.end(),
-                         [&](const Encoding& a, const Encoding& b) { return bytes(a) < bytes(b); });
+        const std::vector<Encoding> encodings = list_encodings(knobs);
         const auto pairs = measure(setting, encodings);
         if (context.cancelled()) {
             return;
@@ -147,39 +137,19 @@ struct Trials {
 
 }  // namespace
 
-double find_direct_floor(const PilotScene& pilot, std::span<const PilotReceiver> receivers,
-                         const Knobs& knobs, std::span<const TestLight> lights,
-                         const Context& context) {
-    std::vector<PilotReceiver> opaque;
-    double reference = 0;
-    for (const PilotReceiver& r : receivers) {
-        if (!pilot.layouts[r.material].translucent) {
-            opaque.push_back(r);
-        }
-        for (std::size_t l = 0; l < lights.size(); ++l) {
-            reference += r.truth.first[l] * r.truth.second[l];
-        }
-    }
-    const std::array<Encoding, 1> all{{{kAllCoefficients, 16}}};
-    const auto pairs =
-        measure_rows(pilot, opaque, {}, {}, {}, knobs.cubemap_size, all, lights, context);
-    double square = 0;
-    for (const CheckedPair& p : pairs.front()) {
-        square += p.error[0] * p.error[1];
-    }
-    return reference > 0 ? std::sqrt(std::max(0.0, square / reference)) : 0.0;
-}
-
 PilotChoice choose_row_knobs(const PilotScene& pilot, std::span<const PilotReceiver> receivers,
-                             const Knobs& knobs, const MediaStages& media,
-                             std::span<const TestLight> lights, const Context& context) {
-    Trials trials{pilot, receivers, media, lights, context, knobs.error_target, {}, {}};
+                             const OpaquePairs& opaque, const Knobs& knobs,
+                             const MediaStages& media, std::span<const TestLight> lights,
+                             const Context& context) {
+    Trials trials{pilot, receivers, opaque, media, lights, context, knobs.error_target};
+    std::copy_if(receivers.begin(), receivers.end(), std::back_inserter(trials.in_media),
+                 [&](const PilotReceiver& r) { return pilot.layouts[r.material].translucent; });
     trials.choice.knobs = knobs;
     RowSetting setting{
         knobs.fixed.tolerance ? knobs.tolerance : kFinestTolerance,
         knobs.fixed.depth_samples ? knobs.depth_samples : kSingleLevels.back().depth_samples,
         std::min(kSingleLevels.back().cubemap, knobs.cubemap_size)};
-    trials.single = gather_pilot_single(pilot, receivers, setting, context);
+    trials.single = gather_pilot_single(pilot, trials.in_media, setting, context);
     const std::vector<CheckedPair> finest = trials.measure(setting);
     const double floor = square_error(finest);
     trials.choice.smooth_error = relative_rms(without_suns(finest, lights));
@@ -192,7 +162,7 @@ PilotChoice choose_row_knobs(const PilotScene& pilot, std::span<const PilotRecei
     trials.choice.knobs.tolerance = setting.tolerance;
     trials.choice.knobs.depth_samples = setting.depth_samples;
     trials.choice.knobs.single_cubemap = setting.single_cubemap;
-    trials.choose_encoding(setting, knobs.fixed.coefficients);
+    trials.choose_encoding(setting);
     return std::move(trials.choice);
 }
 

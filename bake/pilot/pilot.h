@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -46,6 +47,38 @@ std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs
                                             std::span<const TestLight> lights,
                                             const Context& context);
 
+/// How rows are kept.
+struct Encoding {
+    std::uint32_t coefficients = 0, code_bits = 8;
+
+    bool operator==(const Encoding&) const = default;
+};
+inline constexpr Encoding kUnencoded{kAllCoefficients, 16};
+
+/// What the opaque receivers err by however their rows are kept. Besides that only the cube map
+/// matters to them: they are gathered once for each size.
+struct OpaquePairs {
+    std::vector<Encoding> encodings;
+    /// Of each encoding: one for each light, receiver by receiver, those of media left out.
+    std::vector<std::vector<CheckedPair>> pairs;
+
+    /// Precondition: it is one of them.
+    const std::vector<CheckedPair>& of(const Encoding& encoding) const {
+        const auto at = std::find(encodings.begin(), encodings.end(), encoding);
+        return pairs[static_cast<std::size_t>(at - encodings.begin())];
+    }
+};
+
+/// Opaque receivers with all coefficients and with all that may be chosen. `lights`: of
+/// knobs.cubemap_size.
+OpaquePairs measure_opaque(const PilotScene& pilot, std::span<const PilotReceiver> receivers,
+                           const Knobs& knobs, std::span<const TestLight> lights,
+                           const Context& context);
+
+/// What the opaque receivers err by with all coefficients, as a share of what all receivers send
+/// out (relative RMS): only a finer cube map lowers it.
+double find_direct_floor(const OpaquePairs& opaque, std::span<const PilotReceiver> receivers);
+
 /// One value of one knob that was tried, the others at their finest or as already chosen.
 struct PilotTrial {
     std::string knob;  ///< as in knobs_json
@@ -68,16 +101,12 @@ struct PilotChoice {
 /// Tries, at the cube map size and with the media's samples as they are, the other knobs that the
 /// user did not fix: tolerance, depth samples, coefficients, code bits. Measures the error of each
 /// value, and takes the coarsest that leave it under the target. `lights`: of knobs.cubemap_size.
+/// `opaque`: measure_opaque of the same receivers, knobs and lights.
 /// Precondition: knobs.error_target > 0.
 PilotChoice choose_row_knobs(const PilotScene& pilot, std::span<const PilotReceiver> receivers,
-                             const Knobs& knobs, const MediaStages& media,
-                             std::span<const TestLight> lights, const Context& context);
-
-/// What the opaque receivers err by with all coefficients, as a share of what all receivers send
-/// out (relative RMS): only a finer cube map lowers it.
-double find_direct_floor(const PilotScene& pilot, std::span<const PilotReceiver> receivers,
-                         const Knobs& knobs, std::span<const TestLight> lights,
-                         const Context& context);
+                             const OpaquePairs& opaque, const Knobs& knobs,
+                             const MediaStages& media, std::span<const TestLight> lights,
+                             const Context& context);
 
 /// What to try next where a choice did not meet the target: more surface samples or a finer cube
 /// map, whichever the error comes from. Nothing: the user fixed them, or they are at their limit.

@@ -14,11 +14,6 @@ struct RowSetting {
     std::uint32_t depth_samples = 0, single_cubemap = 0;
 };
 
-/// How rows are kept.
-struct Encoding {
-    std::uint32_t coefficients = 0, code_bits = 8;
-};
-
 /// Single scattering of the pilot receivers of each medium by rays, in their order.
 struct PilotSingle {
     SingleStage stage;

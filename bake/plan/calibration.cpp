@@ -1,33 +1,22 @@
 #include "bake/plan/calibration.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <span>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "bake/encode/select_coefficients.h"
 #include "bake/measure/test_lights.h"
-#include "bake/measure/truth.h"
-#include "bake/multiple/gather_multiple.h"
 #include "bake/plan/bake_plan.h"
-#include "bake/plan/dented_ball.h"
+#include "bake/plan/calibrate_media.h"
+#include "bake/plan/calibration_bench.h"
 #include "bake/plan/inspect_scene.h"
 #include "bake/plan/stage_costs.h"
 #include "bake/plan/stopwatch.h"
 #include "bake/receivers/orient_bodies.h"
-#include "bake/receivers/spatial_order.h"
-#include "bake/receivers/surface_samples.h"
-#include "bake/receivers/vertex_receivers.h"
 #include "bake/scattering/half_space_walk.h"
-#include "bake/single/gather_direction.h"
-#include "bake/single/light_maps.h"
-#include "bake/single/texel_directions.h"
 #include "bake/specular/bake_openness.h"
-#include "bake/translucent/translucent_rows.h"
-#include "bake/visibility/hidden_receivers.h"
 #include "bake/visibility/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
@@ -35,62 +24,9 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kCubemap = 32, kKept = 128;
-constexpr std::uint32_t kFewSide = 16, kManySide = 64;
-static_assert(12 * kFewSide * kFewSide == CostBySize::kFew);
-static_assert(12 * kManySide * kManySide == CostBySize::kMany);
-
-Context one_thread() {
-    Context context;
-    context.threads = 1;
-    return context;
-}
-
-// Every `step`-th of a list.
-template <class T>
-std::vector<T> thinned(std::span<const T> all, std::size_t wanted) {
-    std::vector<T> some;
-    const std::size_t step = std::max<std::size_t>(1, all.size() / wanted);
-    for (std::size_t i = 0; i < all.size() && some.size() < wanted; i += step) {
-        some.push_back(all[i]);
-    }
-    return some;
-}
-
-// The ball at one size, and what each stage costs on it.
-struct Bench {
-    formats::Scene scene;
-    double triangles;
-    double build;
-    RayScene rays;
-    std::vector<Receiver> receivers;
-    std::vector<BodyPoint> points;
-    double place_receivers;
-
-    explicit Bench(std::uint32_t side)
-        : scene(make_dented_ball(side)),
-          triangles(static_cast<double>(scene.primitives[0].index.size() / 3)),
-          build(0),
-          rays(make_rays()) {
-        const Stopwatch watch;
-        std::vector<Receiver> all = make_vertex_receivers(scene);
-        points = make_body_points(scene, all);
-        receivers = take_over_hidden(rays, scene, std::move(all), one_thread());
-        place_receivers = watch.seconds();
-    }
-
-  private:
-    RayScene make_rays() {
-        const Stopwatch watch;
-        auto built = RayScene::build(scene, 1);
-        build = watch.seconds();
-        return std::move(built).value();
-    }
-};
-
-double measure_coherent_ray(const Bench& bench, std::size_t wanted) {
-    const DirectionSet directions = make_direction_set(kCubemap);
-    std::vector<float> dense(formats::cubemap_texels(kCubemap));
+double measure_coherent_ray(const CalibrationBench& bench, std::size_t wanted) {
+    const DirectionSet directions = make_direction_set(kCalibrationCubemap);
+    std::vector<float> dense(formats::cubemap_texels(kCalibrationCubemap));
     std::uint64_t traced = 0;
     const auto receivers = thinned(std::span<const Receiver>(bench.receivers), wanted);
     const Stopwatch watch;
@@ -100,7 +36,7 @@ double measure_coherent_ray(const Bench& bench, std::size_t wanted) {
     return watch.seconds() / static_cast<double>(traced);
 }
 
-double measure_openness(const Bench& bench) {
+double measure_openness(const CalibrationBench& bench) {
     const DirectionSet directions = make_sparse_direction_set(8, 0);
     // Rays are shared between neighbours: many must be left.
     const auto receivers = thinned(std::span<const Receiver>(bench.receivers), 4000);
@@ -112,10 +48,10 @@ double measure_openness(const Bench& bench) {
 
 // Of one row: transform of a cube map, selection, quantising.
 double measure_encoding(std::uint32_t bands) {
-    const std::size_t texels = formats::cubemap_texels(kCubemap);
-    const Selector selector = make_selector(kCubemap, kKept);
+    const std::size_t texels = formats::cubemap_texels(kCalibrationCubemap);
+    const Selector selector = make_selector(kCalibrationCubemap, kCalibrationKept);
     std::vector<float> row(texels * bands);
-    formats::SparseRows rows = formats::make_sparse_rows(kCubemap, 8);
+    formats::SparseRows rows = formats::make_sparse_rows(kCalibrationCubemap, 8);
     constexpr int kRows = 200;
     Stopwatch watch;
     for (int r = 0; r < kRows; ++r) {
@@ -123,7 +59,7 @@ double measure_encoding(std::uint32_t bands) {
             row[k] = static_cast<float>((k * 2654435761u + 97u * static_cast<unsigned>(r)) % 1021u);
         }
         if (bands == 1) {
-            formats::haar_forward_cube(std::span<float>(row), kCubemap);
+            formats::haar_forward_cube(std::span<float>(row), kCalibrationCubemap);
         }
         formats::append_row(rows, select_coefficients(selector, row, bands));
     }
@@ -138,228 +74,8 @@ double measure_walk_event() {
     return watch.seconds() / (kPaths * count_walk_events(kAlbedo, 0, kEta));
 }
 
-// As if the traced ones were all of them, so that a tree of some depth costs no more rays.
-SampleTransport repeated(const SampleTransport& traced, std::size_t samples) {
-    SampleTransport all = traced;
-    while (all.rows.size() < samples) {
-        append_vectors(all.rows, traced.rows);
-        all.mean.insert(all.mean.end(), traced.mean.begin(), traced.mean.end());
-    }
-    return all;
-}
-
-// On so small a cube map that sums take longer than their truncation.
-double measure_sum_entry(const Bench& bench, std::span<const SurfaceSample> samples,
-                         double truncate_texel) {
-    constexpr std::uint32_t kSmall = 8;
-    constexpr std::size_t kTraced = 256;
-    const SampleTransport transport =
-        repeated(bake_sample_transport(bench.rays, samples.first(kTraced),
-                                       {kSmall, kKept, 1.3, true}, one_thread()),
-                 samples.size());
-    const Stopwatch watch;
-    const ClusterTree tree = build_cluster_tree(samples, transport, kSmall, kKept, one_thread());
-    const double seconds = watch.seconds();
-    double entries = 0;
-    for (const ClusterNode& node : tree.nodes) {
-        entries += static_cast<double>(tree.samples.offset[node.first + node.count] -
-                                       tree.samples.offset[node.first]);
-    }
-    const double truncated =
-        static_cast<double>(tree.nodes.size() * formats::cubemap_texels(kSmall)) * truncate_texel;
-    return std::max(seconds - truncated, 0.1 * seconds) / entries;
-}
-
-// What enters through samples, and sums of it.
-void measure_multiple(const Bench& bench, bool is_many, Rates& rates) {
-    constexpr std::uint32_t kSamples = 4096;
-    constexpr std::size_t kTraced = 256;
-    const double texels = static_cast<double>(formats::cubemap_texels(kCubemap));
-    const Context context = one_thread();
-    Stopwatch watch;
-    const std::vector<SurfaceSample> samples =
-        sample_surface(bench.scene, {0}, kSamples, 0, context);
-    rates.place_sample = watch.seconds() / static_cast<double>(samples.size());
-
-    watch.restart();
-    SampleTransport transport = bake_sample_transport(bench.rays, std::span(samples).first(kTraced),
-                                                      {kCubemap, kKept, 1.3, true}, context);
-    const double sample = watch.seconds() / kTraced;
-
-    std::vector<float> dense(formats::cubemap_texels(kCubemap));
-    SparseVectors vectors;
-    constexpr int kVectors = 200;
-    double truncate = 0;
-    for (int i = 0; i < kVectors; ++i) {
-        for (std::size_t k = 0; k < dense.size(); ++k) {
-            dense[k] =
-                static_cast<float>((k * 2654435761u + 97u * static_cast<unsigned>(i)) % 1021u);
-        }
-        watch.restart();
-        append_truncated(vectors, dense, kKept);
-        truncate += watch.seconds();
-    }
-    rates.truncate_texel = truncate / (kVectors * texels);
-    (is_many ? rates.shared_texel.many : rates.shared_texel.few) =
-        std::max(0.0, sample / texels - rates.truncate_texel);
-    if (!is_many) {
-        return;
-    }
-    rates.sum_entry = measure_sum_entry(bench, samples, rates.truncate_texel);
-    transport = repeated(transport, samples.size());
-    const ClusterTree tree = build_cluster_tree(samples, transport, kCubemap, kKept, context);
-    const MediumProfile medium = make_medium_profile(*bench.scene.materials[0].medium, 0, context);
-    const double spacing = std::sqrt(tree.total_area / kSamples);
-    const GatherProfile profile = make_gather_profile(medium, spacing, 4);
-    std::vector<ClusterWeight> weights;
-    std::vector<float> sums(4 * formats::cubemap_texels(kCubemap));
-    double collect = 0, gather = 0, taken = 0, gathered = 0;
-    for (const BodyPoint& point : thinned(std::span<const BodyPoint>(bench.points), 150)) {
-        watch.restart();
-        collect_weights(tree, profile, point.position, point.normal, {1e-3}, weights);
-        collect += watch.seconds();
-        watch.restart();
-        accumulate(tree, weights, sums);
-        gather += watch.seconds();
-        taken += static_cast<double>(weights.size());
-        gathered += static_cast<double>(weights.size() * kKept);
-    }
-    rates.take_weight = collect / taken;
-    rates.gather_entry = gather / gathered;
-}
-
-// The same light maps with and without nodes to look up, and with more terms.
-void measure_single(const Bench& bench, bool is_many, Rates& rates) {
-    const Context context = one_thread();
-    const auto pick = [is_many](CostBySize& cost) -> double& {
-        return is_many ? cost.many : cost.few;
-    };
-    Stopwatch watch;
-    const BodyMesh mesh = make_body_mesh(bench.scene, bench.rays, 0, context);
-    pick(rates.body_triangle) = watch.seconds() / bench.triangles;
-    const std::uint32_t size = light_view_size(mesh);
-    // All of them, as gather_single_rows sorts them: what neighbours look up is in the same cache
-    // lines.
-    std::vector<glm::vec3> positions;
-    for (const BodyPoint& point : bench.points) {
-        positions.push_back(point.position);
-    }
-    std::vector<BodyPoint> points;
-    for (const std::uint32_t index : spatial_order(positions)) {
-        points.push_back(bench.points[index]);
-    }
-    const DirectionSet texels = make_texel_directions(16);
-    const auto time_directions = [&](const NodeList& list, const SingleMedium& medium,
-                                     std::uint32_t pixels) {
-        const GatherJob job = make_gather_job(bench.rays, mesh, pixels, medium, list);
-        GatherWorkspace work;
-        work.value.assign(3 * job.terms * points.size(), 0.0f);
-        constexpr std::size_t kDirections = 3;
-        double seconds = 0;
-        for (std::size_t i = 0; i <= kDirections; ++i) {
-            const DirectionBlock& block =
-                texels.blocks[i * (texels.blocks.size() - 1) / kDirections];
-            const glm::vec3 w{block.dir_x[5], block.dir_y[5], block.dir_z[5]};
-            const Stopwatch once;
-            gather_direction(job, {w, 1}, {0.3f, 0.6f}, work);
-            seconds += i == 0 ? 0 : once.seconds();  // the first one finds the memory
-        }
-        return seconds / kDirections;
-    };
-    const SingleMedium isotropic = make_single_medium(bench.scene, 0, 6);
-    watch.restart();
-    const NodeList list = collect_nodes(bench.rays, isotropic, mesh.centre, points, context);
-    pick(rates.place_nodes) = watch.seconds() / static_cast<double>(points.size());
-    NodeList none;
-    none.throughput = list.throughput;
-    const double view = time_directions(none, isotropic, size);
-    const auto nodes = static_cast<double>(list.node.size());
-    const double looked = std::max(0.0, time_directions(list, isotropic, size) - view) / nodes;
-    pick(rates.look_up) = looked;
-    if (is_many) {
-        const double wide = time_directions(none, isotropic, 2 * size);
-        const double pixels = 3.0 * size * size;
-        rates.draw_pixel = std::max(0.0, wide - view) / pixels;
-        rates.draw_triangle = std::max(0.0, view - pixels / 3 * rates.draw_pixel) / bench.triangles;
-        PhaseTerms four;
-        four.lambda = {1.0f, 0.5f};
-        const SingleMedium forward = make_single_medium(bench.scene, 0, 6, four);
-        const double with_four = std::max(0.0, time_directions(list, forward, size) - view) / nodes;
-        rates.look_up_term = std::max(0.0, with_four - looked) / 3;
-    }
-}
-
-// Reading a receiver's terms out of the packed rows of many.
-double measure_unpacking(const RayScene& rays) {
-    constexpr std::uint32_t kCoarse = 16, kTerms = 4;
-    TranslucentRecipe recipe;
-    recipe.layout.translucent = true;
-    recipe.layout.single_terms = kTerms;
-    recipe.selector.cubemap_size = kCubemap;
-    SingleStage stage;
-    stage.directions.cubemap_size = kCoarse;
-    recipe.single = &stage;
-    SingleBatch batch;
-    const std::uint32_t texels = static_cast<std::uint32_t>(formats::cubemap_texels(kCoarse));
-    constexpr std::uint32_t kReceivers = 64;
-    batch.row_size = std::size_t{3} * kTerms * texels;
-    PackedRows& packed = batch.rows.rows;
-    packed.texels = texels;
-    packed.largest_term.assign(kTerms, 1.0f);
-    packed.scale.assign(kReceivers, 1.0f);
-    packed.place.resize(kReceivers);
-    std::iota(packed.place.begin(), packed.place.end(), 0u);
-    std::uint16_t words[2];
-    store_packed<3>(pack_values<3>({0.3f, 0.5f, 0.7f}, true), words);
-    std::vector<std::uint16_t> texel;
-    for (std::size_t i = 0; i < std::size_t{kReceivers} * kTerms; ++i) {
-        texel.insert(texel.end(), {words[0], words[1]});
-    }
-    packed.packed.assign(texels, texel);
-    std::vector<float> rows(std::size_t{3} * kTerms * formats::cubemap_texels(kCubemap));
-    const Stopwatch watch;
-    for (std::uint32_t r = 0; r < kReceivers; ++r) {
-        assemble_rows(recipe, rays, {}, {}, &batch, r, rows);
-    }
-    return watch.seconds() / (double{kReceivers} * kTerms * texels);
-}
-
-void measure_check(const Bench& bench, bool is_many, std::span<const TestLight> lights,
-                   Rates& rates) {
-    const MediumProfile medium =
-        make_medium_profile(*bench.scene.materials[0].medium, 0, one_thread());
-    const TranslucentTruth truth = make_translucent_truth(bench.scene, 0, &medium, 4, lights);
-    constexpr std::uint32_t kPoints = 256;
-    double split = 0, point_rays = 0, single = 0, packets = 0;
-    const auto points = thinned(std::span<const BodyPoint>(bench.points), 8);
-    std::uint64_t traced = 0;
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        const auto integrate = [&](std::uint32_t count) {
-            const Stopwatch watch;
-            integrate_multiple(*truth.multiple, bench.scene, bench.rays, truth.suns, truth.smooth,
-                               points[i].position, count, 0, i, traced);
-            return watch.seconds();
-        };
-        const double without = integrate(0);
-        split += without;
-        point_rays += std::max(0.0, integrate(kPoints) - without);
-        const Stopwatch watch;
-        integrate_single(*truth.single, bench.rays, points[i], traced);
-        single += watch.seconds();
-        packets += 4.0 * static_cast<double>(truth.single->directions.blocks.size() +
-                                             truth.single->suns.packets.size());
-    }
-    const auto count = static_cast<double>(points.size());
-    (is_many ? rates.entry_packet.many : rates.entry_packet.few) = single / packets;
-    (is_many ? rates.surface_point.many : rates.surface_point.few) =
-        point_rays / (count * 2 * kPoints);
-    if (is_many) {
-        rates.split_triangle = split / (count * bench.triangles);
-    }
-}
-
 // How much slower the same rays are while every other thread traces them, too.
-double measure_crowding(const Bench& bench, unsigned threads) {
+double measure_crowding(const CalibrationBench& bench, unsigned threads) {
     const double alone = measure_coherent_ray(bench, 32);
     std::vector<double> together(threads);
     std::vector<std::thread> workers;
@@ -381,7 +97,7 @@ Rates measure_all(std::span<const TestLight> lights, unsigned threads) {
     rates.encode_colour = measure_encoding(3);
     rates.walk_event = measure_walk_event();
     for (const bool is_many : {false, true}) {
-        const Bench bench(is_many ? kManySide : kFewSide);
+        const CalibrationBench bench(is_many ? kManySide : kFewSide);
         const auto pick = [is_many](CostBySize& cost) -> double& {
             return is_many ? cost.many : cost.few;
         };
@@ -390,11 +106,10 @@ Rates measure_all(std::span<const TestLight> lights, unsigned threads) {
             bench.place_receivers / static_cast<double>(bench.receivers.size());
         pick(rates.coherent_ray) = measure_coherent_ray(bench, 48);
         pick(rates.openness) = measure_openness(bench);
-        measure_multiple(bench, is_many, rates);
-        measure_single(bench, is_many, rates);
-        measure_check(bench, is_many, lights, rates);
+        calibrate_multiple(bench, is_many, rates);
+        calibrate_single(bench, is_many, rates);
+        calibrate_check(bench, is_many, lights, rates);
         if (is_many) {
-            rates.unpack_texel = measure_unpacking(bench.rays);
             watch.restart();
             orient_bodies(bench.scene);
             rates.orient_triangle = watch.seconds() / bench.triangles;
@@ -411,7 +126,7 @@ Rates measure_all(std::span<const TestLight> lights, unsigned threads) {
 
 Rates measure_rates(unsigned threads) {
     const Stopwatch watch;
-    const auto lights = make_test_lights(kCubemap, 1);
+    const auto lights = make_test_lights(kCalibrationCubemap, 1);
     const double seconds = watch.seconds();
     // Whatever disturbs a measurement makes it longer: of two the shorter is right.
     std::vector<double> first;

@@ -44,7 +44,8 @@ void predict_savings(const formats::Scene& scene, const SceneFacts& facts, const
         for (PlanEntry& entry : other) {
             if (entry.effect == effect && is_saved(entry)) {
                 entry.on = true;
-                entry.terms = std::max(entry.terms, 1u);
+                // The fewest that depend on the view.
+                entry.terms = std::max(entry.terms, entry.effect == "single.terms" ? 4u : 1u);
             }
         }
         predict_costs(scene, facts, knobs, rates, threads, other);

@@ -16,6 +16,9 @@ struct ReferenceMedium {
     glm::vec3 sigma_s{0}, sigma_t{0};
     float eta = 1;  ///< index of refraction relative to the outside of everything
     PhaseSampler phase;
+
+    /// Extinction is the same in all channels: which one decides makes no difference.
+    bool is_grey() const { return sigma_t.x == sigma_t.y && sigma_t.y == sigma_t.z; }
 };
 
 /// How far a path flew before something happened to it.
@@ -24,6 +27,13 @@ struct Flight {
     float distance = 0;   ///< [m]; infinite: it flies on for ever, neither event happens
     glm::vec3 weight{1};  ///< of the event over its density, scattering coefficient included
 };
+
+/// One of three, with odds that add up to 1.
+inline int draw_channel(glm::vec3 odds, float u) {
+    const int channel = u < odds.x ? 0 : u < odds.x + odds.y || odds.z <= 0 ? 1 : 2;
+    // Rounding may have chosen a channel without odds: then the last one that has any.
+    return odds[channel] > 0 ? channel : odds.y > 0 ? 1 : 0;
+}
 
 /// Samples the free flight of a path with throughput `beta` (not all 0) through a medium.
 /// One channel, drawn in proportion to beta, decides the distance; the weight divides by the mean
@@ -35,12 +45,9 @@ struct Flight {
 template <class FindSurface>
 Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream& random,
                      FindSurface&& find_surface) {
+    const bool is_grey = medium.is_grey();
     const glm::vec3 odds = beta / (beta.x + beta.y + beta.z);
-    const float u = random.next();
-    const int channel = u < odds.x ? 0 : u < odds.x + odds.y || odds.z <= 0 ? 1 : 2;
-    // Rounding may have chosen a channel without odds: then the last one that has any.
-    const int chosen = odds[channel] > 0 ? channel : odds.y > 0 ? 1 : 0;
-    const float sigma = medium.sigma_t[chosen];
+    const float sigma = medium.sigma_t[is_grey ? 0 : draw_channel(odds, random.next())];
     // 1 - u is exact: u has 24 bits.
     const float free =
         sigma > 0 ? -std::log(1 - random.next()) / sigma : std::numeric_limits<float>::infinity();
@@ -53,9 +60,13 @@ Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream
     if (std::isinf(flight.distance)) {
         return flight;
     }
+    if (is_grey) {
+        flight.weight = flight.surface ? glm::vec3(1) : medium.sigma_s / sigma;
+        return flight;
+    }
     // Relative to the chosen channel, whose density neither underflows nor is exceeded by much.
     const glm::vec3 excess = (medium.sigma_t - sigma) * flight.distance;
-    const glm::vec3 passing = excess == glm::vec3(0) ? glm::vec3(1) : glm::exp(-excess);
+    const glm::vec3 passing = glm::exp(-excess);
     if (flight.surface) {
         flight.weight = passing / glm::dot(odds, passing);
     } else {

@@ -48,6 +48,8 @@ class HitScene {
     const formats::Scene& scene() const { return *scene_; }
     /// Bound [m] on how far a point computed along a ray may lie from where it should.
     float rounding() const { return rounding_; }
+    /// Of the box around everything [m], a little more than half of it each way.
+    glm::vec3 half_size() const { return half_size_; }
     /// False outside of the box around everything: a point there is in no body.
     bool is_in_bounds(glm::vec3 position) const {
         return glm::all(glm::lessThanEqual(glm::abs(position), half_size_));

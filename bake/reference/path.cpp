@@ -88,7 +88,10 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
         // A point of scattering just before a boundary must not be rounded to beyond it.
         const float margin = surfaces.rounding();
         bool is_near_surface = false;
-        const auto find = [&](float reach) {
+        const auto find = [&](float reach) -> std::optional<SurfaceHit> {
+            if (reach + margin < space.scene.clearance(path.origin.position)) {
+                return std::nullopt;
+            }
             const auto found = surfaces.closest_hit(path.origin, path.direction, reach + margin);
             is_near_surface = found.has_value();
             return found;

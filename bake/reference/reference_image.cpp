@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "formats/opal/rgb.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -46,6 +48,19 @@ formats::Result<Estimate> estimate_receivers(const PathSpace& space,
     return estimate_pixels(static_cast<std::uint32_t>(receivers.size()), options, context,
                            [&](std::uint32_t i, RandomStream& random) {
                                return trace_receiver(space, receivers[i], random);
+                           });
+}
+
+formats::Result<Estimate> estimate_luminance(const PathSpace& space,
+                                             std::span<const ReferenceReceiver> receivers,
+                                             const EstimateOptions& options,
+                                             const Context& context) {
+    return estimate_pixels(static_cast<std::uint32_t>(receivers.size()), options, context,
+                           [&](std::uint32_t i, RandomStream& random) {
+                               PathSample sample = trace_receiver(space, receivers[i], random);
+                               const glm::vec3 c = sample.radiance;
+                               sample.radiance = glm::vec3(formats::luminance({c.x, c.y, c.z}));
+                               return sample;
                            });
 }
 

@@ -29,4 +29,11 @@ formats::Result<Estimate> estimate_receivers(const PathSpace& space,
                                              const EstimateOptions& options,
                                              const Context& context);
 
+/// Their luminance, in all three channels: one number each, so that its variance knows how the
+/// channels go together. Errors: interrupted.
+formats::Result<Estimate> estimate_luminance(const PathSpace& space,
+                                             std::span<const ReferenceReceiver> receivers,
+                                             const EstimateOptions& options,
+                                             const Context& context);
+
 }  // namespace opaline::bake

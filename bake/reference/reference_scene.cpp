@@ -14,7 +14,8 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
     if (!surfaces) {
         return std::move(surfaces).error();
     }
-    ReferenceScene result{std::move(*surfaces), {}, {}, false};
+    ReferenceScene result{std::move(*surfaces), {}, {}, false, {}};
+    float densest = 0;
     for (const formats::Material& material : scene.materials) {
         result.medium_of.push_back(formats::kNone);
         if (material.medium) {
@@ -26,8 +27,13 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
             medium.eta = m.eta;
             medium.phase = make_phase_sampler(m.phase);
             result.has_matched_boundary = result.has_matched_boundary || is_matched(m.eta);
+            densest = std::max({densest, medium.sigma_t.x, medium.sigma_t.y, medium.sigma_t.z});
             result.media.push_back(std::move(medium));
         }
+    }
+    if (densest > 0) {
+        constexpr float kFreePaths = 0.5f;  // fine enough to tell most flights from rays
+        result.clearance = ClearanceGrid(result.surfaces, kFreePaths / densest);
     }
     return result;
 }

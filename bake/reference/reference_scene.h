@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bake/reference/clearance_grid.h"
 #include "bake/reference/free_flight.h"
 #include "bake/reference/hit_scene.h"
 #include "formats/opal/result.h"
@@ -16,6 +17,7 @@ struct ReferenceScene {
     std::vector<ReferenceMedium> media;    ///< of the materials that have one
     std::vector<std::uint32_t> medium_of;  ///< by material; formats::kNone: opaque
     bool has_matched_boundary = false;     ///< some medium has the index of its surroundings
+    ClearanceGrid clearance;               ///< where there are media; else it knows nothing
 };
 
 /// `scene` must outlive the result. Errors: resource.

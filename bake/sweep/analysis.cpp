@@ -57,14 +57,32 @@ std::optional<LadderFit> fit_ladder(const SweepResult& result, Ladder ladder) {
     LadderFit fit{ladder, *theory, finest.record->point.label, {}, std::nullopt};
     std::vector<Convergence> fitted;
     for (std::size_t i = 0; i + 1 < members.size(); ++i) {
-        const Convergence rung{members[i].value, relative_difference(members[i].record->luminance,
-                                                                     finest.record->luminance)};
+        const Convergence rung{
+            members[i].value,
+            relative_difference(members[i].record->luminance, finest.record->luminance),
+            members[i].record->seconds};
         fit.rungs.push_back(rung);
         if (!is_near(ladder, rung.value, finest.value)) {
             fitted.push_back(rung);
         }
     }
     fit.fit = fit_slope(fitted, theory->semi_log);
+    return fit;
+}
+
+// Against samples of its own truth, none of which it shares: nothing is too near.
+LadderFit fit_reference(const ReferenceLadder& reference) {
+    auto theory = convergence_theory(Ladder::reference_samples, 0);
+    LadderFit fit{
+        Ladder::reference_samples,
+        std::move(*theory),
+        std::to_string(reference.truth_samples) + " other samples under " + reference.light,
+        {},
+        std::nullopt};
+    for (const ReferenceRung& rung : reference.rungs) {
+        fit.rungs.push_back({static_cast<double>(rung.samples), rung.error, rung.seconds});
+    }
+    fit.fit = fit_slope(fit.rungs, fit.theory.semi_log);
     return fit;
 }
 
@@ -109,6 +127,9 @@ SweepAnalysis analyse_sweep(const SweepResult& result) {
         if (auto fit = fit_ladder(result, ladder)) {
             analysis.fits.push_back(std::move(*fit));
         }
+    }
+    if (result.reference) {
+        analysis.fits.push_back(fit_reference(*result.reference));
     }
     return analysis;
 }

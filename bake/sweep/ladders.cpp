@@ -171,10 +171,10 @@ void add_diagonal(Points& points, const Knobs& base) {
 }  // namespace
 
 std::string_view ladder_name(Ladder ladder) {
-    constexpr std::array<std::string_view, 13> names{
-        "preset",     "cubemap", "resolution",    "coefficients", "code_bits",
-        "samples",    "epsilon", "depth_samples", "phase_terms",  "single_cubemap",
-        "exact_rays", "grid",    "diagonal"};
+    constexpr std::array<std::string_view, 14> names{
+        "preset",     "cubemap", "resolution",    "coefficients",     "code_bits",
+        "samples",    "epsilon", "depth_samples", "phase_terms",      "single_cubemap",
+        "exact_rays", "grid",    "diagonal",      "reference_samples"};
     return names[static_cast<std::size_t>(ladder)];
 }
 
@@ -270,6 +270,8 @@ std::vector<SweepPoint> make_truths(const SweepSubject& subject, const BakeOptio
     knobs.coefficients = 1024;
     add();
     knobs.samples = 20000;
+    knobs.coefficients = 512;
+    add();
     knobs.cubemap_size = 16;
     knobs.coefficients = kAllCoefficients;
     add();

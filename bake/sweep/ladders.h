@@ -22,9 +22,10 @@ enum class Ladder {
     depth_samples,  ///< of single scattering
     phase_terms,    ///< K; anisotropic media only
     single_cubemap,
-    exact_rays,  ///< 0: light maps and shared rays, 1: neither
-    grid,        ///< N and M together
-    diagonal     ///< all knobs together, step by step
+    exact_rays,        ///< 0: light maps and shared rays, 1: neither
+    grid,              ///< N and M together
+    diagonal,          ///< all knobs together, step by step
+    reference_samples  ///< of the Monte Carlo reference, which is no bake: no point stands on it
 };
 
 /// "coefficients": as in tables and files.

@@ -14,6 +14,7 @@
 #include "bake/environment/builtin_environment.h"
 #include "bake/plan/cost_model.h"
 #include "bake/plan/inspect_scene.h"
+#include "bake/sweep/finest.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {
@@ -54,7 +55,6 @@ struct Sweep {
     SweepView view{};
     std::map<std::uint32_t, ProbeLights> lights{};  // by cube map size
     std::size_t total = 1;
-    bool has_truth = false;
     double measured = 0, predicted = 0;  // of the points so far
 
     double left() const { return options.seconds - seconds_since(start); }
@@ -159,47 +159,7 @@ formats::Status bake_truth(Sweep& sweep, std::vector<SweepPoint>& points) {
     } else {
         points.erase(same);
     }
-    const std::size_t before = sweep.result.points.size();
-    auto status = sweep.visit(point, sweep.left());
-    if (status && sweep.result.points.size() > before) {
-        sweep.result.truth = before;
-        sweep.has_truth = true;
-    }
-    return status;
-}
-
-// Where nothing better could be afforded: the point that found the least wrong with itself.
-std::size_t most_accurate(const std::vector<PointRecord>& points) {
-    const auto least = std::min_element(
-        points.begin(), points.end(), [](const PointRecord& a, const PointRecord& b) {
-            return a.against_finest.rms_relative < b.against_finest.rms_relative;
-        });
-    return static_cast<std::size_t>(least - points.begin());
-}
-
-std::string medium_effect(const SweepSubject& subject) {
-    return subject.multiple && subject.single ? "multiple+single"
-           : subject.multiple                 ? "multiple"
-                                              : "single";
-}
-
-void compare_all(SweepResult& result, const formats::Scene& scene,
-                 std::span<const std::uint32_t> probes) {
-    std::vector<bool> is_medium;
-    for (const formats::Primitive& p : scene.primitives) {
-        is_medium.insert(is_medium.end(), p.position.size(),
-                         scene.materials[p.material].medium.has_value());
-    }
-    std::vector<bool> of_medium;
-    for (const std::uint32_t probe : probes) {
-        of_medium.push_back(is_medium[probe]);
-    }
-    const PointRecord& finest = result.points[result.truth];
-    for (PointRecord& record : result.points) {
-        record.against_finest = compare_probes(record.luminance, finest.luminance, of_medium,
-                                               result.lights, medium_effect(result.subject));
-        add_error_of_truth(record.against_finest, finest.error);
-    }
+    return sweep.visit(point, sweep.left());
 }
 
 }  // namespace
@@ -256,6 +216,14 @@ formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepO
                                    "give more seconds, or a smaller scene");
     }
     constexpr double kShare = 1.0 / 20;
+    ReferenceLadderOptions climb;
+    climb.seconds = kShare * options.seconds;
+    climb.seed = options.bake.seed;
+    auto reference = climb_reference(scene, climb, context);
+    if (!reference) {
+        return std::move(reference).error();
+    }
+    result.reference = std::move(*reference);
     if (predict(scene, facts, *preview, options.rates, context.threads).seconds * sweep.scale() >
         kShare * options.seconds) {
         result.base = Quality::draft;
@@ -283,11 +251,8 @@ formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepO
             return std::move(status).error();
         }
     }
-    if (!sweep.has_truth) {
-        result.truth = most_accurate(result.points);
-    }
     result.lights = sweep.lights.begin()->second.names;
-    compare_all(result, scene, sweep.view.probes);
+    compare_with_finest(result, scene, sweep.view.probes);
     result.seconds = seconds_since(sweep.start);
     return std::move(sweep.result);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/plan/rates.h"
+#include "bake/sweep/reference_ladder.h"
 #include "bake/sweep/run_point.h"
 
 namespace opaline::bake {
@@ -33,10 +34,11 @@ struct SweepResult {
     std::uint64_t seed = 0;
     double mean_cosine = 0;  ///< of the first medium's phase function
     SweepSubject subject;
-    Quality base = Quality::preview;  ///< what the ladders change one knob of
-    std::vector<PlanEntry> plan;      ///< of the base
-    std::vector<PointRecord> points;  ///< in the order in which they were baked
-    std::size_t truth = 0;            ///< index of the finest point
+    Quality base = Quality::preview;           ///< what the ladders change one knob of
+    std::vector<PlanEntry> plan;               ///< of the base
+    std::vector<PointRecord> points;           ///< in the order in which they were baked
+    std::size_t truth = 0;                     ///< index of the finest point (find_finest)
+    std::optional<ReferenceLadder> reference;  ///< nothing: no light
     std::vector<SkippedPoint> skipped;
     std::vector<std::string> lights;
     std::string picture_light;
@@ -50,12 +52,13 @@ struct SweepStep {
     const std::string& label;
 };
 
-/// Bakes the ladders of a scene: `draft` first, then the most accurate setting that half of the
-/// time allows, the truth, then the other presets, one-at-a-time and diagonal ladders, and grids,
-/// the cheap ones of each first. The ladders stand around `preview`, or `draft` where a twentieth
-/// of the time is less than `preview` takes. Predictions are predict_costs', scaled by how long the
-/// points so far took. A point that runs out of memory is skipped. Errors: as run_bake; usage, for
-/// a light that is none or too little time.
+/// Bakes the ladders of a scene: `draft` first, then climbs that of the Monte Carlo reference for a
+/// twentieth of the time, then bakes the most accurate setting that half of the time allows, then
+/// the other presets, one-at-a-time and diagonal ladders, and grids, the cheap ones of each first.
+/// The ladders stand around `preview`, or `draft` where a twentieth of the time is less than
+/// `preview` takes. Predictions are predict_costs', scaled by how long the points so far took. A
+/// point that runs out of memory is skipped. Errors: as run_bake; usage, for a light that is none
+/// or too little time.
 formats::Result<SweepResult> run_sweep(const formats::Scene& scene, const SweepOptions& options,
                                        const Context& context,
                                        const std::function<void(const SweepStep&)>& on_step);

@@ -94,6 +94,9 @@ std::optional<Theory> convergence_theory(Ladder ladder, double g) {
             }
             return Theory{std::log(std::abs(g)), true, "degree of the phase function",
                           "Legendre coefficients of a Henyey-Greenstein function: g to the degree"};
+        case Ladder::reference_samples:
+            return Theory{-0.5, false, "samples of the Monte Carlo reference",
+                          "independent paths, whose variances add"};
         default:
             return std::nullopt;
     }

@@ -11,8 +11,9 @@ namespace opaline::bake {
 
 /// One rung of a ladder and how far its result is from that of the ladder's finest.
 struct Convergence {
-    double value = 0;  ///< of the knob
-    double error = 0;  ///< relative RMS
+    double value = 0;    ///< of the knob
+    double error = 0;    ///< relative RMS
+    double seconds = 0;  ///< that it took
 };
 
 /// error = exp(intercept) * value^slope, or exp(intercept + slope * value) on a semi-logarithmic

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -97,6 +98,24 @@ Cells cells_of(const SweepResult& result, const SweepAnalysis& analysis, std::si
     cells.emplace_back("on_front_bytes", standing.on_front_bytes ? "1" : "0");
     cells.emplace_back("times_front_time", number_cell(standing.times_front_time));
     cells.emplace_back("times_front_bytes", number_cell(standing.times_front_bytes));
+    cells.emplace_back("reference_samples", "");
+    return cells;
+}
+
+// The Monte Carlo reference in the same columns, as far as they mean anything to it.
+Cells cells_of(const ReferenceRung& rung, const Cells& like) {
+    const std::map<std::string, std::string> known{
+        {"label", text_cell("Monte Carlo, " + std::to_string(rung.samples) + " samples")},
+        {"ladders", std::string(ladder_name(Ladder::reference_samples))},
+        {"truth", "0"},
+        {"seconds", number_cell(rung.seconds)},
+        {"error", number_cell(rung.error)},
+        {"reference_samples", std::to_string(rung.samples)}};
+    Cells cells;
+    for (const auto& [column, other] : like) {
+        const auto own = known.find(column);
+        cells.emplace_back(column, own == known.end() ? "" : own->second);
+    }
     return cells;
 }
 
@@ -137,13 +156,30 @@ Json fit_json(const LadderFit& ladder) {
     for (const Convergence& rung : ladder.rungs) {
         const bool used = ladder.fit && std::find(ladder.fit->used.begin(), ladder.fit->used.end(),
                                                   rung.value) != ladder.fit->used.end();
-        json["rungs"].push_back({{"value", rung.value}, {"error", rung.error}, {"fitted", used}});
+        json["rungs"].push_back({{"value", rung.value},
+                                 {"error", rung.error},
+                                 {"seconds", rung.seconds},
+                                 {"fitted", used}});
     }
     if (ladder.fit) {
         json["measured"] = {{"rate", ladder.fit->slope},
                             {"standard_error", ladder.fit->standard_error},
                             {"intercept", ladder.fit->intercept},
                             {"saturated", ladder.fit->saturated}};
+    }
+    return json;
+}
+
+Json reference_json(const ReferenceLadder& reference) {
+    Json json = {{"light", reference.light},
+                 {"receivers", reference.receivers},
+                 {"truth_samples", reference.truth_samples},
+                 {"rungs", Json::array()}};
+    for (const ReferenceRung& rung : reference.rungs) {
+        json["rungs"].push_back({{"samples", rung.samples},
+                                 {"seconds", rung.seconds},
+                                 {"error", rung.error},
+                                 {"stated", rung.stated}});
     }
     return json;
 }
@@ -176,15 +212,23 @@ Json sweep_knobs_json(const Knobs& knobs) {
 }
 
 std::string make_sweep_csv(const SweepResult& result, const SweepAnalysis& analysis) {
-    std::string table;
+    std::vector<Cells> rows;
     for (std::size_t i = 0; i < result.points.size(); ++i) {
-        const Cells cells = cells_of(result, analysis, i);
+        rows.push_back(cells_of(result, analysis, i));
+    }
+    if (result.reference && !rows.empty()) {
+        for (const ReferenceRung& rung : result.reference->rungs) {
+            rows.push_back(cells_of(rung, rows.front()));
+        }
+    }
+    std::string table;
+    for (const Cells& cells : rows) {
         std::string head, row;
         for (const auto& [column, value] : cells) {
-            head += (head.empty() ? "" : ",") + column;
-            row += (row.empty() ? "" : ",") + value;
+            head += "," + column;
+            row += "," + value;
         }
-        table += (i == 0 ? head + "\n" : "") + row + "\n";
+        table += (table.empty() ? head.substr(1) + "\n" : "") + row.substr(1) + "\n";
     }
     return table;
 }
@@ -218,6 +262,9 @@ Json make_sweep_json(const SweepResult& result, const SweepAnalysis& analysis) {
     json["slopes"] = Json::array();
     for (const LadderFit& fit : analysis.fits) {
         json["slopes"].push_back(fit_json(fit));
+    }
+    if (result.reference) {
+        json["reference"] = reference_json(*result.reference);
     }
     json["pairs"] = {{"equal_time", pair_json(analysis.equal_time)},
                      {"equal_error", pair_json(analysis.equal_error)}};

@@ -27,7 +27,9 @@ TEST(Sweep, WritesTableJsonAndPageThatAgreeAndNamesWhatItLeftOut) {
     const Json& points = json.at("points");
     ASSERT_FALSE(points.empty());
     EXPECT_EQ(points.at(0).at("label"), "draft");
+    const Json& finest = points.at(json.at("truth").get<std::size_t>());
     for (const Json& point : points) {
+        EXPECT_GE(point.at("error").at("rms_relative"), finest.at("error").at("rms_relative"));
         double seconds = 0;
         for (const Json& group : point.at("seconds_by_group")) {
             seconds += group.get<double>();
@@ -35,8 +37,11 @@ TEST(Sweep, WritesTableJsonAndPageThatAgreeAndNamesWhatItLeftOut) {
         EXPECT_NEAR(seconds, point.at("seconds").get<double>(), 1e-6) << point.at("label");
     }
     const std::string csv = read_text(out + "/sweep.csv");
+    const std::size_t rungs = json.at("reference").at("rungs").size();
+    EXPECT_GE(rungs, 2u);
+    EXPECT_EQ(json.at("slopes").back().at("ladder"), "reference_samples");
     EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
-              points.size() + 1);
+              points.size() + rungs + 1);
     EXPECT_THAT(read_text(out + "/report.html"), HasSubstr("scene.glb"));
     ASSERT_FALSE(json.at("skipped").empty());
     for (const Json& skipped : json.at("skipped")) {

@@ -139,7 +139,7 @@ function slopeChart(box, slope) {
   const fitted = rungs.filter(r => r.fitted), left = rungs.filter(r => !r.fitted);
   const values = rungs.map(r => r.value), errors = rungs.map(r => r.error);
   const low = Math.min(...values), high = Math.max(...values);
-  const at = r => ({ x: r.value, y: r.error });
+  const at = r => ({ x: r.value, y: r.error, seconds: r.seconds });
   const line = law => [low, high].map(x => ({ x, y: law(x) }));
   const power = slope.semi_log ? (rate, x, x0) => Math.exp(rate * (x - x0)) : (rate, x, x0) => (x / x0) ** rate;
   const first = rungs[0];
@@ -165,7 +165,8 @@ function slopeChart(box, slope) {
   const rate = v => significant(v, 2).replace('-', '\u2212');
   const text = (slope.measured ? `Measured rate ${rate(slope.measured.rate)}${spread}${unit}; ` :
     'Too few points to fit; ') + `theory ${rate(slope.theory.rate)}${unit}: ${slope.theory.words}. ` +
-    `Against \u201c${slope.against}\u201d.`;
+    `Against \u201c${slope.against}\u201d, in ${seconds(rungs[0].seconds)} to ` +
+    `${seconds(rungs[rungs.length - 1].seconds)}.`;
   const note = element('p', text);
   note.className = 'note';
   box.append(element('div', null, element('h3', name), plot, note));
@@ -178,7 +179,8 @@ function slopeChart(box, slope) {
     options: {
       scales: { x, y: logAxis('y', 'difference', v => percent(v), errors) },
       plugins: { legend: { display: false }, tooltip: { callbacks: {
-        label: c => `${slope.knob}: ${plain(c.raw.x)}; ${percent(c.raw.y)}` } } },
+        label: c => `${slope.knob}: ${plain(c.raw.x)}; ${percent(c.raw.y)}` +
+          (c.raw.seconds > 0 ? ` in ${seconds(c.raw.seconds)}` : '') } } },
     },
   });
 }

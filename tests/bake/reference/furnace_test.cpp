@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "tests/bake/reference/reference_support.h"
@@ -19,22 +21,42 @@ bake::Estimate estimate(const ReferenceFixture& fixture, std::uint32_t receivers
     return bake::estimate_receivers(fixture.space(), chosen, options, context).value();
 }
 
+// 1 to a thousandth, known well enough to say so, and within three of the stored standard errors,
+// over all receivers. Exact where every path carries 1: then the stored variance is rounding.
+void expect_white(const bake::Estimate& estimate, const std::string& what) {
+    bake::Moments all;
+    for (const bake::Moments& m : estimate.pixel) {
+        all.merge(m);
+    }
+    EXPECT_NEAR(all.mean.y, 1, 1e-3) << what;
+    EXPECT_LT(standard_error(all), 3e-4) << what;
+    EXPECT_NEAR(all.mean.y, 1, 3 * standard_error(all) + 2e-6) << what;
+    EXPECT_EQ(estimate.lost, 0u) << what;
+}
+
+std::string describe(float eta, float g) {
+    return "eta " + std::to_string(eta) + " g " + std::to_string(g);
+}
+
 // White light on a body that absorbs nothing: its radiance is 1 wherever light goes.
-TEST(ReferenceFurnace, BodyThatAbsorbsNothingIsAsBrightAsItsSurroundings) {
-    for (const float eta : {1.0f, 1.5f, 0.8f}) {
+TEST(ReferenceFurnace, RefractingBodyThatAbsorbsNothingIsAsBrightAsItsSurroundings) {
+    for (const float eta : {1.5f, 0.8f}) {
         for (const float g : {0.0f, 0.7f, -0.4f}) {
             Scene input = make_scene({make_sphere(2)});
             input.materials[0].medium = make_medium(3, 1, g, eta);
             const auto body = make_fixture(std::move(input), make_white_sky());
-            bake::Moments all;
-            for (const bake::Moments& m : estimate(*body, 8, eta == 1 ? 16000 : 100).pixel) {
-                all.merge(m);
-            }
-            // Index-matched media sample the light, whose weights vary; the others need no luck.
-            EXPECT_NEAR(all.mean.y, 1, eta == 1 ? 3.5 * standard_error(all) : 1e-3)
-                << "eta " << eta << " g " << g;
-            EXPECT_LT(standard_error(all), 1.5e-3);
+            expect_white(estimate(*body, 8, 2000), describe(eta, g));
         }
+    }
+}
+
+// Here the light is sampled too: weights of two strategies, which vary from path to path, add up.
+TEST(ReferenceFurnace, MatchedBodyThatAbsorbsNothingIsAsBrightAsItsSurroundings) {
+    for (const float g : {0.0f, 0.7f, -0.4f}) {
+        Scene input = make_scene({make_sphere(2)});
+        input.materials[0].medium = make_medium(1, 1, g, 1);
+        const auto body = make_fixture(std::move(input), make_white_sky());
+        expect_white(estimate(*body, 8, 200000), describe(1, g));
     }
 }
 
@@ -44,12 +66,16 @@ TEST(ReferenceFurnace, HoldsForEachChannelOfAColouredMedium) {
     Scene input = make_scene({make_sphere(2)});
     input.materials[0].medium = medium;
     const auto body = make_fixture(std::move(input), make_white_sky());
-    for (const bake::Moments& m : estimate(*body, 4, 20000).pixel) {
-        const glm::dvec3 error = glm::sqrt(m.variance_of_mean());
-        for (const int c : {0, 1, 2}) {
-            EXPECT_NEAR(m.mean[c], 1, 4 * error[c]) << c;
-            EXPECT_LT(error[c], 0.02);
-        }
+    bake::Moments all;
+    for (const bake::Moments& m : estimate(*body, 8, 20000).pixel) {
+        all.merge(m);
+    }
+    // A path's channels share what one of them flies: their sum never changes.
+    EXPECT_NEAR((all.mean.x + all.mean.y + all.mean.z) / 3, 1, 1e-3);
+    const glm::dvec3 error = glm::sqrt(all.variance_of_mean());
+    for (const int c : {0, 1, 2}) {
+        EXPECT_NEAR(all.mean[c], 1, 3 * error[c]) << c;
+        EXPECT_LT(error[c], 0.01);
     }
 }
 
@@ -58,13 +84,11 @@ TEST(ReferenceFurnace, WhiteSurfacesThatFaceEachOtherVanish) {
     const auto plates = make_fixture(make_scene({make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}),
                                                  make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2})}),
                                      make_white_sky());
-    bake::Moments all;
-    for (const bake::Moments& m : estimate(*plates, 8, 320000).pixel) {
-        EXPECT_NEAR(m.mean.x, 1, 4 * standard_error(m));
-        all.merge(m);
+    const bake::Estimate found = estimate(*plates, 8, 320000);
+    for (const bake::Moments& m : found.pixel) {
+        EXPECT_NEAR(m.mean.x, 1, 3 * standard_error(m));
     }
-    EXPECT_NEAR(all.mean.x, 1, 1e-3);
-    EXPECT_LT(standard_error(all), 2.6e-4);
+    expect_white(found, "plates");
 }
 
 TEST(ReferenceFurnace, ShellsOfOneMediumInEachOtherAreOneBody) {
@@ -81,7 +105,7 @@ TEST(ReferenceFurnace, ShellsOfOneMediumInEachOtherAreOneBody) {
     const auto both = bake::estimate_receivers(b->space(), chosen, options, {}).value();
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         EXPECT_NEAR(outer.pixel[i].mean.x, both.pixel[i].mean.x,
-                    4 * std::hypot(standard_error(outer.pixel[i]), standard_error(both.pixel[i])));
+                    3 * std::hypot(standard_error(outer.pixel[i]), standard_error(both.pixel[i])));
     }
     EXPECT_EQ(both.lost, 0u);
 }
@@ -106,8 +130,8 @@ TEST(ReferenceFurnace, OpaqueVerticesInsideABodySeeTheSkyThroughItOnly) {
     const auto all = bake::estimate_receivers(body->space(across), chosen, options, {}).value();
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         EXPECT_EQ(none.pixel[i].mean.x, 0);
-        EXPECT_NEAR(all.pixel[i].mean.x, 1, 1e-3);
     }
+    expect_white(all, "plate in a ball");
 }
 
 TEST(ReferenceEstimate, SameBitsForAnyNumberOfThreads) {

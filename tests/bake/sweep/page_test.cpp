@@ -73,6 +73,31 @@ TEST(SweepCsv, HasOneRowAPointAndAsManyCellsAsColumns) {
     EXPECT_EQ(std::count(rows[2].begin(), rows[2].end(), ','), columns);
 }
 
+TEST(SweepCsv, ReferenceStandsBelowTheBakesInTheSameColumns) {
+    SweepResult result = small_sweep("plain");
+    result.reference = {"studio", 256, 32, {{4, 0.5, 0.2, 0.21}, {16, 2, 0.1, 0.1}}};
+    const SweepAnalysis analysis = analyse_sweep(result);
+    std::istringstream lines(make_sweep_csv(result, analysis));
+    std::vector<std::string> rows;
+    for (std::string line; std::getline(lines, line);) {
+        rows.push_back(line);
+    }
+    ASSERT_EQ(rows.size(), 6u);
+    EXPECT_THAT(rows[5], ::testing::StartsWith("\"Monte Carlo, 16 samples\",reference_samples,0,"));
+    EXPECT_THAT(rows[5], ::testing::EndsWith(",16"));
+    EXPECT_THAT(rows[5], HasSubstr(",2,"));
+    EXPECT_THAT(rows[5], HasSubstr(",0.1,"));
+    EXPECT_EQ(std::count(rows[5].begin(), rows[5].end(), ','),
+              std::count(rows[2].begin(), rows[2].end(), ','));
+    const Json json = make_sweep_json(result, analysis);
+    const Json& slope = json.at("slopes").back();
+    EXPECT_EQ(slope.at("ladder"), "reference_samples");
+    EXPECT_EQ(slope.at("theory").at("rate"), -0.5);
+    EXPECT_NEAR(slope.at("measured").at("rate").get<double>(), -0.5, 1e-9);
+    EXPECT_EQ(slope.at("rungs").at(1).at("seconds"), 2);
+    EXPECT_EQ(json.at("reference").at("rungs").at(0).at("stated"), 0.21);
+}
+
 TEST(SweepJson, SaysWhatIsOnTheFrontAndHowFarTheRestIsOff) {
     const SweepResult result = small_sweep("plain");
     const Json json = make_sweep_json(result, analyse_sweep(result));

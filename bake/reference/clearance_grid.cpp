@@ -1,0 +1,94 @@
+#include "bake/reference/clearance_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::uint32_t kMostCells = 128;  // along a side: steps fit into a byte
+
+}  // namespace
+
+ClearanceGrid::ClearanceGrid(const HitScene& surfaces, float cell) {
+    const glm::vec3 half = surfaces.half_size();
+    const float longest = 2 * std::max({half.x, half.y, half.z});
+    cell_ = std::max(cell, longest / (kMostCells - 2));
+    if (!(cell_ > 0) || longest < 8 * cell_) {
+        return;
+    }
+    per_cell_ = 1 / cell_;
+    // Half a cell is left around: what is rounded stays inside.
+    size_ = glm::uvec3(glm::ceil(2.0f * half * per_cell_)) + 1u;
+    count_ = glm::vec3(size_);
+    low_ = -0.5f * cell_ * count_;
+    clear_.assign(std::size_t{size_.x} * size_.y * size_.z, std::uint8_t{kMostCells});
+    mark_triangles(surfaces);
+    measure_distances();
+}
+
+// 0 in all cells that a triangle touches, and in some that it only comes near.
+void ClearanceGrid::mark_triangles(const HitScene& surfaces) {
+    constexpr float kRounding = 1e-3f;  // of a cell
+    const formats::Scene& scene = surfaces.scene();
+    for (const formats::Primitive& p : scene.primitives) {
+        for (std::size_t i = 0; i + 2 < p.index.size(); i += 3) {
+            const auto place = [&](std::size_t k) {
+                return (p.position[p.index[i + k]] - surfaces.centre() - low_) * per_cell_;
+            };
+            const glm::vec3 a = place(0), b = place(1), c = place(2);
+            const glm::vec3 n = glm::cross(b - a, c - a);
+            const glm::uvec3 first(glm::max(glm::min(glm::min(a, b), c) - kRounding, 0.0f));
+            const glm::uvec3 last =
+                glm::min(glm::uvec3(glm::max(glm::max(a, b), c) + kRounding), size_ - 1u);
+            // A cell is cut by the plane if its centre is no farther from it than its corners
+            // reach.
+            const glm::vec3 across = glm::abs(n);
+            const float reach = (0.5f + kRounding) * (across.x + across.y + across.z);
+            for (std::uint32_t z = first.z; z <= last.z; ++z) {
+                for (std::uint32_t y = first.y; y <= last.y; ++y) {
+                    for (std::uint32_t x = first.x; x <= last.x; ++x) {
+                        const glm::vec3 centre = glm::vec3(x, y, z) + 0.5f;
+                        if (std::abs(glm::dot(n, centre - a)) <= reach) {
+                            clear_[index({x, y, z})] = 0;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Steps to the nearest marked cell, diagonal ones included, in two passes over all neighbours that
+// lie before and behind [Rosenfeld1968]; then one fewer: a point may be anywhere in its cell.
+void ClearanceGrid::measure_distances() {
+    const glm::ivec3 size(size_);
+    const auto pass = [&](int direction) {
+        for (int k = 0; k < size.z; ++k) {
+            for (int j = 0; j < size.y; ++j) {
+                for (int i = 0; i < size.x; ++i) {
+                    const glm::ivec3 at =
+                        direction > 0 ? glm::ivec3(i, j, k) : size - 1 - glm::ivec3(i, j, k);
+                    std::uint8_t& own = clear_[index(glm::uvec3(at))];
+                    for (int n = 0; n < 13 && own > 0; ++n) {
+                        // The 13 of 27 that come before the middle.
+                        const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+                        const glm::ivec3 other = at + direction * step;
+                        if (glm::all(glm::greaterThanEqual(other, glm::ivec3(0))) &&
+                            glm::all(glm::lessThan(other, size))) {
+                            const int through = clear_[index(glm::uvec3(other))] + 1;
+                            own = static_cast<std::uint8_t>(std::min<int>(own, through));
+                        }
+                    }
+                }
+            }
+        }
+    };
+    pass(1);
+    pass(-1);
+    for (std::uint8_t& steps : clear_) {
+        steps = static_cast<std::uint8_t>(std::max(0, steps - 1));
+    }
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,85 @@
+#include "bake/sweep/reference_ladder.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "bake/sweep/slopes.h"
+#include "tests/support/media.h"
+
+namespace opaline::bake {
+namespace {
+
+// No clock decides: there is time for all.
+ReferenceLadder climb(const formats::Scene& scene, std::uint64_t seed = 0) {
+    ReferenceLadderOptions options;
+    options.seconds = 1e9;
+    options.most_samples = 1024;
+    options.seed = seed;
+    auto ladder = climb_reference(scene, options, {});
+    EXPECT_TRUE(ladder && *ladder);
+    return ladder && *ladder ? std::move(**ladder) : ReferenceLadder{};
+}
+
+double rate(const ReferenceLadder& ladder) {
+    std::vector<Convergence> rungs;
+    for (const ReferenceRung& rung : ladder.rungs) {
+        rungs.push_back({static_cast<double>(rung.samples), rung.error, rung.seconds});
+    }
+    const auto fit = fit_slope(rungs, false);
+    EXPECT_TRUE(fit && fit->saturated.empty());
+    return fit ? fit->slope : 0;
+}
+
+formats::Scene ball_on_a_floor() {
+    return tests::make_scene({tests::make_sphere(2, 1, {0, 1.1f, 0}),
+                              tests::make_quad({-3, 0, -3}, {0, 0, 6}, {6, 0, 0}, 8)});
+}
+
+formats::Scene milky_ball() {
+    return tests::make_translucent_scene({tests::make_sphere(2)},
+                                         tests::make_grey_medium(4, 0.05f));
+}
+
+TEST(ReferenceLadder, ErrorFallsWithTheRootOfTheSamplesOnSurfacesAndInMedia) {
+    for (const formats::Scene& scene : {ball_on_a_floor(), milky_ball()}) {
+        const ReferenceLadder ladder = climb(scene);
+        ASSERT_EQ(ladder.rungs.size(), 5u);
+        EXPECT_EQ(ladder.rungs.back().samples, 1024u);
+        EXPECT_NEAR(rate(ladder), -0.5, 0.05);
+    }
+}
+
+// Without a truth of other samples the last rung would have no error at all.
+TEST(ReferenceLadder, MeasuredErrorIsWhatTheStoredVarianceSays) {
+    for (const formats::Scene& scene : {ball_on_a_floor(), milky_ball()}) {
+        for (const ReferenceRung& rung : climb(scene, 5).rungs) {
+            // 160 receivers or more; the truth's noise is half the last rung's variance.
+            EXPECT_NEAR(rung.error, rung.stated, 0.25 * rung.stated) << rung.samples;
+        }
+    }
+}
+
+TEST(ReferenceLadder, TruthsOwnNoiseIsSubtracted) {
+    // One receiver: mean 1.5 against 1, of variance .09 and .16.
+    std::vector<Moments> rung(1), truth(1);
+    rung[0] = {2, glm::dvec3(1.5), glm::dvec3(0.18)};
+    truth[0] = {2, glm::dvec3(1), glm::dvec3(0.32)};
+    const ReferenceRung found = compare_rung(rung, truth);
+    EXPECT_NEAR(found.error, std::sqrt((0.25 - 0.16) / (1 - 0.16)), 1e-12);
+    EXPECT_NEAR(found.stated, 0.3 / std::sqrt(1 - 0.16), 1e-12);
+}
+
+TEST(ReferenceLadder, WithoutTimeThereAreTwoRungsAndWithoutLightNone) {
+    ReferenceLadderOptions hurried;
+    hurried.seconds = 0;
+    EXPECT_EQ(climb_reference(milky_ball(), hurried, {}).value()->rungs.size(), 2u);
+    formats::Scene black = ball_on_a_floor();
+    black.materials[0].base_color = {0, 0, 0};
+    ReferenceLadderOptions few;
+    few.most_samples = 16;
+    EXPECT_FALSE(climb_reference(black, few, {}).value());
+}
+
+}  // namespace
+}  // namespace opaline::bake
