@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # The README's matrix of scenes and effects: what the planner leaves on, its bounds, and seconds of the
-# planned bake against everything forced on.
-# usage: matrix.sh OPALINE MODEL.glb [QUALITY]
+# planned bake against everything forced on, and against the prediction, that at production quality, too.
+# usage: matrix.sh OPALINE MODEL.glb
 #   MODEL.glb: a closed body, about 15 cm to 2 m long, with one material
 set -euo pipefail
-[ $# -ge 2 ] || { echo "usage: matrix.sh OPALINE MODEL.glb [QUALITY]" >&2; exit 2; }
+[ $# -ge 2 ] || { echo "usage: matrix.sh OPALINE MODEL.glb" >&2; exit 2; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$1" example knot -o "$work" >/dev/null
 "$1" example statue -o "$work" >/dev/null
-python3 - "$1" "$2" "${3:-preview}" "$work" <<'PY'
+python3 - "$1" "$2" "$work" <<'PY'
 import json, math, struct, subprocess, sys
-opaline, model, quality, work = sys.argv[1:]
+opaline, model, work = sys.argv[1:]
 
 def write_mesh(path, points, normals, triangles):
     """A glTF with one grey, single-sided primitive."""
@@ -95,25 +95,29 @@ scenes = [
      medium(sigma_s=[.001, .001, .001], sigma_a=[1, 1, 1], unit="1/mm", eta=1.33)),
 ]
 
-def bake(scene, options, effects):
+def bake(scene, options, quality, effects="auto"):
     report = work + "/report.json"
     subprocess.run([opaline, "bake", scene, *options, "--quality", quality, "--effects", effects,
                     "--progress", "none", "-o", work + "/baked.opal", "--report", report],
                    check=True, stderr=subprocess.DEVNULL)
     return json.load(open(report))
 
-names = ["direct", "multiple", "single", "specular", "light.visibility", "multiple.spread"]
-print("| scene | " + " | ".join(names) + " | planned | predicted | all | ratio |")
-print("|---|" + "---|" * len(names) + "---:|---:|---:|---:|")
+names = ["direct", "multiple", "single", "specular", "light.visibility", "multiple.spread",
+         "single.terms", "light.colour"]
+times = ["planned", "predicted", "all", "ratio", "production", "predicted"]
+print("| scene | " + " | ".join([name.split(".")[-1] for name in names] + times) + " |")
+print("|---|" + "---|" * len(names) + "---:|" * len(times))
 for name, scene, options in scenes:
-    planned, everything = (bake(scene, options, e) for e in ("auto", "all"))
+    planned, everything = (bake(scene, options, "preview", e) for e in ("auto", "all"))
+    production = bake(scene, options, "production")
     cells = []
     for effect in names:
         rows = [e for e in planned["plan"] if e["effect"] == effect and
-                (e["bound"] > 0 or e["decision"] == "on")]
+                (e["bound"] > 0 or e["decision"] == "on" or effect == "light.colour")]
         mark = lambda e: ("**on** " if e["decision"] == "on" else "off ") + "%.2g" % e["bound"]
         cells.append(", ".join(mark(e) for e in rows) or "-")
+    seconds = lambda r: "%.1f s | %.1f s" % (r["seconds_total"], r["predicted_seconds_total"])
     a, b = planned["seconds_total"], everything["seconds_total"]
-    print("| %s | %s | %.1f s | %.1f s | %.1f s | %.1f |" %
-          (name, " | ".join(cells), a, planned["predicted_seconds_total"], b, b / a), flush=True)
+    print("| %s | %s | %s | %.1f s | %.1f | %s |" %
+          (name, " | ".join(cells), seconds(planned), b, b / a, seconds(production)), flush=True)
 PY

@@ -55,7 +55,9 @@ Rgb eval_specular(const SpecularLight& light, const SpecularLobe& lobe, const Vi
     constexpr float kFade = 0.2f;
     const Vec3 n = view.normal;
     if (lobe.radiance == nullptr || !(dot(n, n) > 0) || !(view.cosine > -kFade)) return {};
-    const float c = std::clamp(view.cosine, 0.0f, 1.0f);
+    // Not 0, where everything is reflected even of a boundary of index 1, which reflects nothing.
+    constexpr float kLeastCosine = 1e-6f;
+    const float c = std::clamp(view.cosine, kLeastCosine, 1.0f);
     const float fade = 1 + std::min(view.cosine, 0.0f) / kFade;
     Vec3 mirrored = 2 * c * n - view.to_eye;
     const float norm = length(mirrored);

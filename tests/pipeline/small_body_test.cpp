@@ -37,6 +37,7 @@ TEST(SmallBodies, SendOutLessThatScatteredTwiceThanTheirBound) {
     wanted.samples = 4096;
     for (const double depth : {0.05, 0.5, 2.0, 10.0}) {
         for (const float g : {0.0f, 0.6f}) {
+            double seen = 0;  // a thin sheet's paths hardly ever scatter twice, a ball's do
             for (const auto& scene : {smoke_ball(depth, g), smoke_sheet(depth, g)}) {
                 const auto fixture = tests::make_fixture(scene, tests::make_white_sky());
                 const auto receivers = choose_receivers(fixture->scene, 12, 0, std::nullopt);
@@ -51,7 +52,7 @@ TEST(SmallBodies, SendOutLessThatScatteredTwiceThanTheirBound) {
                 const double bound = small_body_bound(
                     medium, bands_of(medium)[0],
                     static_cast<double>(glm::length(body.high - body.low)), body.area);
-                EXPECT_GT(largest, 0) << depth;
+                seen = std::max(seen, largest);
                 EXPECT_LE(largest, bound + 4 * error) << depth << " g " << g;
                 // The plan takes it where it is less than what diffusion makes of a half space.
                 EXPECT_LE(multiple_of(scene).bound, bound);
@@ -59,6 +60,7 @@ TEST(SmallBodies, SendOutLessThatScatteredTwiceThanTheirBound) {
                     EXPECT_EQ(multiple_of(scene).bound, bound);
                 }
             }
+            EXPECT_GT(seen, 0) << depth;
         }
     }
 }

@@ -97,7 +97,7 @@ vec3 specular(vec3 n, vec3 w, float cosine, bool is_turned) {
     if (has_specular == 0u || !(dot(n, n) > 0.0) || !(cosine > -0.2)) {
         return vec3(0.0);
     }
-    float c = clamp(cosine, 0.0, 1.0);
+    float c = clamp(cosine, 1e-6, 1.0);
     float fade = 1.0 + min(cosine, 0.0) / 0.2;
     vec3 mirrored = unit_or_zero(2.0 * c * n - w);
     if (!(dot(mirrored, mirrored) > 0.0)) {
