@@ -61,8 +61,10 @@ struct Builder {
     }
 };
 
+// The samples in the order of the tree, times their areas.
 void copy_samples(std::span<const SurfaceSample> samples, const SampleTransport& transport,
-                  ClusterTree& tree) {
+                  const Context& context, ClusterTree& tree) {
+    const SparseVectors& from = transport.rows;
     double squares = 0;
     for (const std::uint32_t s : tree.order) {
         const float area = samples[s].area;
@@ -70,16 +72,30 @@ void copy_samples(std::span<const SurfaceSample> samples, const SampleTransport&
         tree.normal.push_back(samples[s].geometric_normal);
         tree.area.push_back(area);
         tree.total_area += static_cast<double>(area);
-        for (std::uint64_t i = transport.rows.offset[s]; i < transport.rows.offset[s + 1]; ++i) {
-            tree.samples.index.push_back(transport.rows.index[i]);
-            tree.samples.value.push_back(area * transport.rows.value[i]);
-        }
-        tree.samples.offset.push_back(tree.samples.index.size());
-        tree.samples.norm.push_back(area * transport.rows.norm[s]);
-        const auto norm = static_cast<double>(transport.rows.norm[s]);
+        tree.samples.offset.push_back(tree.samples.offset.back() + from.offset[s + 1] -
+                                      from.offset[s]);
+        tree.samples.norm.push_back(area * from.norm[s]);
+        const auto norm = static_cast<double>(from.norm[s]);
         squares += static_cast<double>(area) * norm * norm;
     }
     tree.mean_norm = std::sqrt(squares / tree.total_area);
+    tree.samples.index.resize(from.index.size());
+    tree.samples.value.resize(from.value.size());
+    for_each_block_in_order(
+        tree.order.size(), 256, context,
+        [&](Range range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                const std::uint32_t s = tree.order[i];
+                const float area = samples[s].area;
+                std::uint64_t to = tree.samples.offset[i];
+                for (std::uint64_t k = from.offset[s]; k < from.offset[s + 1]; ++k, ++to) {
+                    tree.samples.index[to] = from.index[k];
+                    tree.samples.value[to] = area * from.value[k];
+                }
+            }
+            return range.end;
+        },
+        [](Range, std::size_t) {});
 }
 
 }  // namespace
@@ -94,11 +110,13 @@ ClusterTree build_cluster_tree(std::span<const SurfaceSample> samples,
     tree.order.resize(samples.size());
     std::iota(tree.order.begin(), tree.order.end(), 0u);
     Builder{samples, transport, tree}.build(0, static_cast<std::uint32_t>(samples.size()));
-    copy_samples(samples, transport, tree);
+    copy_samples(samples, transport, context, tree);
     for_each_block_in_order(
         tree.nodes.size(), 64, context,
         [&](Range range) {
             SparseVectors sums;
+            reserve(sums, (range.end - range.begin) *
+                              std::min<std::size_t>(kept, formats::cubemap_texels(cubemap_size)));
             std::vector<float> dense(formats::cubemap_texels(cubemap_size));
             for (std::size_t v = range.begin; v < range.end; ++v) {
                 const ClusterNode& node = tree.nodes[v];

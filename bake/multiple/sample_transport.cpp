@@ -52,6 +52,8 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
         samples.size(), 4 * kSamplesPerGroup, context,
         [&](Range range) {
             SampleTransport part;
+            reserve(part.rows,
+                    (range.end - range.begin) * std::min<std::size_t>(options.kept, texels));
             std::vector<Receiver> group;
             std::vector<float> dense;
             for (std::size_t s = range.begin; s < range.end; s += group.size()) {

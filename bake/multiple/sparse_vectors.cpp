@@ -47,6 +47,11 @@ void append_truncated(SparseVectors& vectors, std::span<const float> dense, std:
     vectors.norm.push_back(static_cast<float>(std::sqrt(sum_of_squares(dense))));
 }
 
+void reserve(SparseVectors& vectors, std::size_t entries) {
+    vectors.index.reserve(entries);
+    vectors.value.reserve(entries);
+}
+
 void append_vectors(SparseVectors& vectors, const SparseVectors& tail) {
     const std::uint64_t base = vectors.index.size();
     for (std::size_t i = 1; i < tail.offset.size(); ++i) {

@@ -20,6 +20,9 @@ struct SparseVectors {
 /// entry of each of its six faces always. L2-best (translucency.md 3.9).
 void append_truncated(SparseVectors& vectors, std::span<const float> dense, std::size_t kept);
 
+/// Makes room for `entries` entries in all.
+void reserve(SparseVectors& vectors, std::size_t entries);
+
 /// Appends all vectors of `tail`.
 void append_vectors(SparseVectors& vectors, const SparseVectors& tail);
 
