@@ -36,6 +36,19 @@ double measure_coherent_ray(const CalibrationBench& bench, std::size_t wanted) {
     return watch.seconds() / static_cast<double>(traced);
 }
 
+double measure_open_cell(const CalibrationBench& bench) {
+    const auto nothing = RayScene::build({}, 1);
+    const DirectionSet directions = make_direction_set(kCalibrationCubemap);
+    std::vector<float> dense(formats::cubemap_texels(kCalibrationCubemap));
+    const auto receivers = thinned(std::span<const Receiver>(bench.receivers), 48);
+    const Stopwatch watch;
+    for (const Receiver& receiver : receivers) {
+        gather_irradiance(*nothing, directions, receiver, dense);
+    }
+    return watch.seconds() /
+           (static_cast<double>(receivers.size()) * count_rays(kCalibrationCubemap));
+}
+
 double measure_openness(const CalibrationBench& bench) {
     const DirectionSet directions = make_sparse_direction_set(8, 0);
     // Rays are shared between neighbours: many must be left.
@@ -105,6 +118,7 @@ Rates measure_all(std::span<const TestLight> lights, unsigned threads) {
         pick(rates.place_receiver) =
             bench.place_receivers / static_cast<double>(bench.receivers.size());
         pick(rates.coherent_ray) = measure_coherent_ray(bench, 48);
+        rates.open_cell = measure_open_cell(bench);
         pick(rates.openness) = measure_openness(bench);
         calibrate_multiple(bench, is_many, rates);
         calibrate_single(bench, is_many, rates);

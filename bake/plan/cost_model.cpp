@@ -95,10 +95,6 @@ struct Prediction {
 
     const formats::Medium& medium(std::uint32_t m) const { return *scene.materials[m].medium; }
 
-    static Work traced(const RowLayout& layout, const Work& work) {
-        return layout.occluded ? work : without_rays(work);
-    }
-
     void prepare() {
         double body_triangles = 0;
         for (std::uint32_t m = 0; m < layouts.size(); ++m) {
@@ -140,8 +136,8 @@ struct Prediction {
         for (std::uint32_t m = 0; m < layouts.size(); ++m) {
             if (layouts[m].translucent && layouts[m].multiple && !layouts[m].local) {
                 bill.open("samples of material '" + scene.materials[m].name + "'");
-                const Work work = samples_work(input, medium(m), facts.material[m]);
-                bill.add(traced(layouts[m], work), "multiple", m);
+                bill.add(samples_work(input, medium(m), facts.material[m], layouts[m].occluded),
+                         "multiple", m);
             }
         }
     }
@@ -163,7 +159,7 @@ struct Prediction {
             bill.open("rows of '" + p.name + "'");
             if (!layout.translucent) {
                 if (layout.direct) {
-                    bill.add(traced(layout, direct_rows_work(input, receivers)), "direct",
+                    bill.add(direct_rows_work(input, receivers, layout.occluded), "direct",
                              p.material);
                 }
                 bill.add(encode_work(input, 1, 1, receivers), "direct", p.material);
@@ -172,7 +168,7 @@ struct Prediction {
                 continue;
             }
             if (layout.local) {
-                bill.add(traced(layout, direct_rows_work(input, receivers)),
+                bill.add(direct_rows_work(input, receivers, layout.occluded),
                          layout.multiple ? "multiple" : "single", p.material);
             }
             const std::uint32_t bands = layout.bands();
@@ -202,20 +198,14 @@ struct Prediction {
     }
 
     void make_openness() {
-        double glossy = 0;
-        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
-            glossy += layouts[m].glossy ? facts.material[m].receivers : 0;
-        }
         if (!is_any_glossy()) {
             return;
         }
-        const Work all = openness_work(input, glossy);
         bill.open("openness");
         for (std::uint32_t m = 0; m < layouts.size(); ++m) {
             if (layouts[m].glossy) {
-                const double share = glossy > 0 ? facts.material[m].receivers / glossy : 0;
-                bill.add(traced(layouts[m], {share * all.alone, share * all.shared}), "specular",
-                         m);
+                bill.add(openness_work(input, facts.material[m].receivers, layouts[m].occluded),
+                         "specular", m);
                 bill.add_bytes(facts.material[m].receivers * sizeof(formats::Openness), "specular",
                                m);
             }
@@ -247,7 +237,8 @@ struct Prediction {
     // What opaque receivers err by with all coefficients.
     void measure_floor() {
         bill.open("pilot");
-        bill.add(direct_rows_work(input, opaque_share() * pilot_receivers()));
+        bill.add(
+            direct_rows_work(input, opaque_share() * pilot_receivers(), needs_hierarchy(layouts)));
     }
     // Rows of all its receivers, once for each of some values of the knobs, and once for all
     // encodings; single scattering by rays.
@@ -256,7 +247,8 @@ struct Prediction {
         constexpr std::uint32_t kEncodings = 26;
         bill.open("pilot");
         const double opaque = pilot_receivers(), translucent = std::min(opaque, kMostTranslucent);
-        bill.add(direct_rows_work(input, kRounds * opaque_share() * opaque));
+        bill.add(
+            direct_rows_work(input, kRounds * opaque_share() * opaque, needs_hierarchy(layouts)));
         bill.add(encode_work(input, kEncodings, 1, opaque_share() * opaque));
         Knobs by_rays = knobs;
         by_rays.exact_rays = true;
@@ -295,8 +287,7 @@ struct Prediction {
             const double share =
                 facts.receivers > 0 ? facts.material[m].receivers / facts.receivers : 0;
             if (layouts[m].direct) {
-                const Work work = direct_check_work(input, share * opaque);
-                bill.add(needs_hierarchy(layouts) ? work : without_rays(work));
+                bill.add(direct_check_work(input, share * opaque, needs_hierarchy(layouts)));
             } else if (layouts[m].translucent) {
                 bill.add(medium_check_work(input, facts.material[m], layouts[m],
                                            share * translucent, effort));

@@ -29,6 +29,7 @@ struct Rates {
     double test_lights = 0;      ///< all of them
     // Rows.
     CostBySize coherent_ray;   ///< one of a receiver's packets over the cube map, its cosine too
+    double open_cell = 0;      ///< the cosine of such a ray's cell where nothing can be hit
     double encode_grey = 0;    ///< transform, selection and quantising, per texel of a row
     double encode_colour = 0;  ///< the same for three bands
     CostBySize openness;       ///< of a receiver
@@ -70,6 +71,7 @@ void visit_rates(AnyRates&& rates, Visit&& visit) {
     by_size("place_receiver_few", "place_receiver_many", rates.place_receiver);
     visit("test_lights", rates.test_lights);
     by_size("coherent_ray_few", "coherent_ray_many", rates.coherent_ray);
+    visit("open_cell", rates.open_cell);
     visit("encode_grey", rates.encode_grey);
     visit("encode_colour", rates.encode_colour);
     by_size("openness_few", "openness_many", rates.openness);

@@ -135,16 +135,12 @@ double count_weights(const formats::Medium& medium, const MaterialFacts& facts, 
     return std::min(count, samples);
 }
 
-Work direct_rows_work(const CostInput& input, double receivers) {
+Work direct_rows_work(const CostInput& input, double receivers, bool occluded) {
     // Scenes took .8 to 1.6 times what the ball does: rays of some pass closer by more.
     constexpr double kClutter = 1.2;
-    return {0, kClutter * receivers * count_rays(input.knobs.cubemap_size) *
-                   input.rates.coherent_ray.at(input.triangles)};
-}
-
-Work without_rays(Work work) {
-    constexpr double kLeft = 0.15;  // cosines of all cells
-    return {kLeft * work.alone, kLeft * work.shared};
+    const double ray =
+        occluded ? kClutter * input.rates.coherent_ray.at(input.triangles) : input.rates.open_cell;
+    return {0, receivers * count_rays(input.knobs.cubemap_size) * ray};
 }
 
 Work encode_work(const CostInput& input, std::uint32_t rows, std::uint32_t bands,
@@ -166,17 +162,17 @@ Work profile_work(const CostInput& input, const formats::Medium& medium) {
     return albedo_work(input, medium);
 }
 
-Work samples_work(const CostInput& input, const formats::Medium& medium,
-                  const MaterialFacts& facts) {
+Work samples_work(const CostInput& input, const formats::Medium& medium, const MaterialFacts& facts,
+                  bool occluded) {
     const Rates& rates = input.rates;
     const Knobs& knobs = input.knobs;
     const double samples = expected_samples(medium, facts.area, knobs);
     const double own = texels(knobs.cubemap_size);
     Work work{samples * rates.place_sample, 0};
-    work.shared += samples * own *
-                   ((knobs.exact_rays ? 0.5 * rates.coherent_ray.at(input.triangles)
-                                      : rates.shared_texel.at(input.triangles)) +
-                    rates.truncate_texel);
+    const double seen = !occluded          ? 0.5 * rates.open_cell  // half are below the horizon
+                        : knobs.exact_rays ? 0.5 * rates.coherent_ray.at(input.triangles)
+                                           : rates.shared_texel.at(input.triangles);
+    work.shared += samples * own * (seen + rates.truncate_texel);
     // build_cluster_tree: each level adds all samples up; each node is truncated.
     const double levels = std::max(1.0, std::ceil(std::log2(samples / 8)) + 1);
     const double nodes = std::exp2(levels);
@@ -231,12 +227,16 @@ Work single_rows_work(const CostInput& input, const MaterialFacts& facts, std::u
                    unpacked};
 }
 
-Work openness_work(const CostInput& input, double glossy_receivers) {
-    return {0, glossy_receivers * input.rates.openness.at(input.triangles)};
+Work openness_work(const CostInput& input, double glossy_receivers, bool occluded) {
+    const double above = 0.5 * texels(kOpennessCubemap);
+    return {0, glossy_receivers * (occluded ? input.rates.openness.at(input.triangles)
+                                            : above * input.rates.open_cell)};
 }
 
-Work direct_check_work(const CostInput& input, double checked) {
-    return {0, checked * kTruthRays * input.rates.coherent_ray.at(input.triangles)};
+Work direct_check_work(const CostInput& input, double checked, bool occluded) {
+    return {0,
+            checked * kTruthRays *
+                (occluded ? input.rates.coherent_ray.at(input.triangles) : input.rates.open_cell)};
 }
 
 Work medium_check_work(const CostInput& input, const MaterialFacts& facts, const RowLayout& layout,

@@ -51,21 +51,20 @@ double count_weights(const formats::Medium& medium, const MaterialFacts& facts, 
                      double tolerance);
 
 /// Work of the stages. Of one material, primitive or scene, as the name says.
-Work direct_rows_work(const CostInput& input, double receivers);
-/// What is left of work that consists of tracing rays where none is traced.
-Work without_rays(Work work);
+/// `occluded`: RowLayout::occluded, whether rays are traced.
+Work direct_rows_work(const CostInput& input, double receivers, bool occluded);
 Work albedo_work(const CostInput& input, const formats::Medium& medium);
 Work profile_work(const CostInput& input, const formats::Medium& medium);
-Work samples_work(const CostInput& input, const formats::Medium& medium,
-                  const MaterialFacts& facts);
+Work samples_work(const CostInput& input, const formats::Medium& medium, const MaterialFacts& facts,
+                  bool occluded);
 Work multiple_rows_work(const CostInput& input, const formats::Medium& medium,
                         const MaterialFacts& facts, std::uint32_t bands, double receivers);
 Work light_maps_work(const CostInput& input, const MaterialFacts& facts);
 Work single_rows_work(const CostInput& input, const MaterialFacts& facts, std::uint32_t terms,
                       std::uint32_t bands, double receivers);
 Work encode_work(const CostInput& input, std::uint32_t rows, std::uint32_t bands, double receivers);
-Work openness_work(const CostInput& input, double glossy_receivers);
-Work direct_check_work(const CostInput& input, double checked);
+Work openness_work(const CostInput& input, double glossy_receivers, bool occluded);
+Work direct_check_work(const CostInput& input, double checked, bool occluded);
 Work medium_check_work(const CostInput& input, const MaterialFacts& facts, const RowLayout& layout,
                        double checked, const TruthEffort& effort);
 
