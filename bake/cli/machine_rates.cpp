@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
-#include "bake/plan/calibration.h"
-#include "bake/plan/rates_cache.h"
+#include "bake/calibration/calibration.h"
+#include "bake/calibration/rates_cache.h"
 
 namespace opaline::cli {
 

@@ -23,13 +23,19 @@ ClearanceGrid::ClearanceGrid(const HitScene& surfaces, float cell) {
     count_ = glm::vec3(size_);
     low_ = -0.5f * cell_ * count_;
     clear_.assign(std::size_t{size_.x} * size_.y * size_.z, std::uint8_t{kMostCells});
-    mark_triangles(surfaces);
+    if (!mark_triangles(surfaces)) {
+        *this = {};
+        return;
+    }
     measure_distances();
 }
 
-// 0 in all cells that a triangle touches, and in some that it only comes near.
-void ClearanceGrid::mark_triangles(const HitScene& surfaces) {
-    constexpr float kRounding = 1e-3f;  // of a cell
+// 0 in all cells that a triangle touches, and in some that it only comes near. False, and left half
+// way, where triangles as large as the scene are so many that all have to be looked at in turn.
+bool ClearanceGrid::mark_triangles(const HitScene& surfaces) {
+    constexpr float kRounding = 1e-3f;                             // of a cell
+    constexpr std::uint64_t kMostVisits = std::uint64_t{1} << 28;  // a second or so
+    std::uint64_t visits = 0;
     const formats::Scene& scene = surfaces.scene();
     for (const formats::Primitive& p : scene.primitives) {
         for (std::size_t i = 0; i + 2 < p.index.size(); i += 3) {
@@ -44,6 +50,11 @@ void ClearanceGrid::mark_triangles(const HitScene& surfaces) {
             // A cell is cut by the plane if its centre is no farther from it than its corners
             // reach.
             const glm::vec3 across = glm::abs(n);
+            const glm::uvec3 extent = last - first + 1u;
+            visits += std::uint64_t{extent.x} * extent.y * extent.z;
+            if (visits > kMostVisits) {
+                return false;
+            }
             const float reach = (0.5f + kRounding) * (across.x + across.y + across.z);
             for (std::uint32_t z = first.z; z <= last.z; ++z) {
                 for (std::uint32_t y = first.y; y <= last.y; ++y) {
@@ -57,6 +68,7 @@ void ClearanceGrid::mark_triangles(const HitScene& surfaces) {
             }
         }
     }
+    return true;
 }
 
 // Steps to the nearest marked cell, diagonal ones included, in two passes over all neighbours that

@@ -15,7 +15,8 @@ class ClearanceGrid {
     /// Knows nothing: 0 everywhere.
     ClearanceGrid() = default;
     /// Around all triangles, in cells of `cell` [m] > 0 or, if those would be too many, of a 128th
-    /// of the longest side. Nothing is known of a scene of less than 8 cells.
+    /// of the longest side. Nothing is known of a scene of less than 8 cells, nor of one whose
+    /// triangles lie in so many that looking for them would take longer than the rays it saves.
     ClearanceGrid(const HitScene& surfaces, float cell);
 
     /// Lower bound [m] of the distance from a position (relative to HitScene::centre) to the
@@ -33,7 +34,7 @@ class ClearanceGrid {
     std::size_t index(glm::uvec3 c) const {
         return (std::size_t{c.z} * size_.y + c.y) * size_.x + c.x;
     }
-    void mark_triangles(const HitScene& surfaces);
+    bool mark_triangles(const HitScene& surfaces);
     void measure_distances();
 
     glm::vec3 low_{0}, count_{0};  ///< cells along each axis: size_ as floats

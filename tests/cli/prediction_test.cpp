@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bake/plan/rates_cache.h"
+#include "bake/calibration/rates_cache.h"
 #include "tests/cli/small_scene.h"
 #include "tests/support/rates.h"
 

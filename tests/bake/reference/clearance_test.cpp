@@ -52,6 +52,23 @@ TEST(ReferenceClearance, CountsWholeCellsInAHollowCube) {
     EXPECT_EQ(bake::ClearanceGrid()({0, 0, 0}), 0);
 }
 
+// Each triangle spans the whole grid: marking the cells of all would take minutes, and a hundred
+// thousand of them hours.
+TEST(ReferenceClearance, NothingIsKnownOfASoupOfTrianglesAsLargeAsTheScene) {
+    std::vector<Primitive> sheets;
+    for (int i = 0; i < 100; ++i) {
+        const float lean = 0.01f * static_cast<float>(i);
+        sheets.push_back(make_quad({-1, -1, -1}, {2, 0, 2 - lean}, {0, 2, lean}, 1));
+    }
+    const auto soup = make_fixture(make_scene(sheets), make_white_sky());
+    const bake::ClearanceGrid clearance(soup->scene.surfaces, 0.016f);
+    for (const float x : {-0.9f, -0.5f, 0.0f, 0.5f, 0.9f}) {
+        EXPECT_EQ(clearance({x, 0, -x}), 0);
+    }
+    const bake::ClearanceGrid coarse(soup->scene.surfaces, 0.2f);
+    EXPECT_GT(coarse({0.9f, 0, -0.9f}), 0);
+}
+
 // Skipped rays change no walk: the same scene with a grid that knows nothing has the same numbers.
 TEST(ReferenceClearance, WalksAreTheSameBitByBit) {
     Scene input = make_scene({make_sphere(3)});

@@ -1,4 +1,4 @@
-#include "bake/plan/dented_ball.h"
+#include "bake/calibration/dented_ball.h"
 
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "bake/plan/calibration.h"
+#include "bake/calibration/calibration.h"
 
 #include <algorithm>
 #include <numeric>
@@ -9,11 +9,11 @@
 #include "bake/encode/select_coefficients.h"
 #include "bake/measure/test_lights.h"
 #include "bake/plan/bake_plan.h"
-#include "bake/plan/calibrate_media.h"
-#include "bake/plan/calibration_bench.h"
+#include "bake/calibration/calibrate_media.h"
+#include "bake/calibration/calibration_bench.h"
 #include "bake/plan/inspect_scene.h"
 #include "bake/plan/stage_costs.h"
-#include "bake/plan/stopwatch.h"
+#include "bake/calibration/stopwatch.h"
 #include "bake/receivers/orient_bodies.h"
 #include "bake/scattering/half_space_walk.h"
 #include "bake/specular/bake_openness.h"

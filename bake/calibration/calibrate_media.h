@@ -3,7 +3,7 @@
 #include <span>
 
 #include "bake/measure/test_lights.h"
-#include "bake/plan/calibration_bench.h"
+#include "bake/calibration/calibration_bench.h"
 
 namespace opaline::bake {
 

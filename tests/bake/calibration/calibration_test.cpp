@@ -1,10 +1,10 @@
-#include "bake/plan/calibration.h"
+#include "bake/calibration/calibration.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bake/plan/dented_ball.h"
+#include "bake/calibration/dented_ball.h"
 #include "bake/receivers/orient_bodies.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/plan/rates_cache.h"
+#include "bake/calibration/rates_cache.h"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>

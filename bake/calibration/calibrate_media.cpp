@@ -1,4 +1,4 @@
-#include "bake/plan/calibrate_media.h"
+#include "bake/calibration/calibrate_media.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "bake/measure/truth.h"
 #include "bake/multiple/gather_multiple.h"
-#include "bake/plan/stopwatch.h"
+#include "bake/calibration/stopwatch.h"
 #include "bake/receivers/spatial_order.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/single/gather_direction.h"

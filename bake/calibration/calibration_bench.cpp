@@ -1,9 +1,9 @@
-#include "bake/plan/calibration_bench.h"
+#include "bake/calibration/calibration_bench.h"
 
 #include <utility>
 
-#include "bake/plan/dented_ball.h"
-#include "bake/plan/stopwatch.h"
+#include "bake/calibration/dented_ball.h"
+#include "bake/calibration/stopwatch.h"
 #include "bake/visibility/hidden_receivers.h"
 
 namespace opaline::bake {
