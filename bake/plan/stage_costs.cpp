@@ -136,8 +136,8 @@ double count_weights(const formats::Medium& medium, const MaterialFacts& facts, 
 }
 
 Work direct_rows_work(const CostInput& input, double receivers, bool occluded) {
-    // Scenes took .8 to 1.6 times what the ball does: rays of some pass closer by more.
-    constexpr double kClutter = 1.2;
+    // Scenes took 1 to 2.2 times what the ball does: rays of some pass closer by more.
+    constexpr double kClutter = 1.5;
     const double ray =
         occluded ? kClutter * input.rates.coherent_ray.at(input.triangles) : input.rates.open_cell;
     return {0, receivers * count_rays(input.knobs.cubemap_size) * ray};
