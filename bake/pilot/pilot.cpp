@@ -10,10 +10,12 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kLargestCubemap = 128;
 // Parts of the target's square that the tolerance and the single scattering's samples may take;
 // what is left is for coefficients, which cost most bytes.
 constexpr double kShareOfTolerance = 0.1, kShareOfSingle = 0.1;
+
+// Where the target is out of reach: coefficients that lower the error by less cost bytes in vain.
+constexpr double kHardlyMore = 1.05;
 
 constexpr std::array<double, 5> kTolerances{1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
 constexpr double kFinestTolerance = 3e-5;
@@ -25,6 +27,11 @@ constexpr std::array<SingleLevel, 3> kSingleLevels{{{4, 8}, {6, 16}, {10, 16}}};
 double square_error(std::span<const CheckedPair> pairs) {
     const double rms = relative_rms(pairs);
     return rms * rms;
+}
+
+// One standard error above what is expected: a quarter of a 95 % interval's width.
+double likely_error(const ErrorBounds& bounds) {
+    return bounds.rms + 0.25 * (bounds.highest - bounds.lowest);
 }
 
 // Pairs of the lights without suns alone.
@@ -115,23 +122,25 @@ struct Trials {
         if (context.cancelled()) {
             return;
         }
-        for (std::size_t e = 0; e < encodings.size(); ++e) {
-            const ErrorBounds bounds = bound_error(pairs[e], lights.size(), knobs.seed);
+        double least = 0;
+        std::vector<ErrorBounds> errors;
+        for (std::size_t e = 0; e < encodings.size() && (e == 0 || least > target); ++e) {
+            errors.push_back(bound_error(pairs[e], lights.size(), knobs.seed));
             choice.trials.push_back({"coefficients", static_cast<double>(encodings[e].coefficients),
-                                     bounds.rms, encodings[e].code_bits});
-            // One standard error above what is expected: a quarter of a 95 % interval's width.
-            const double likely = bounds.rms + 0.25 * (bounds.highest - bounds.lowest);
-            if (e == 0 || likely < choice.likely || likely <= target) {
-                choice.knobs.coefficients = encodings[e].coefficients;
-                choice.knobs.code_bits = encodings[e].code_bits;
-                choice.error = bounds.rms;
-                choice.likely = likely;
-                choice.met = likely <= target;
-            }
-            if (choice.met) {
-                return;
-            }
+                                     errors[e].rms, encodings[e].code_bits});
+            least = e == 0 ? likely_error(errors[e]) : std::min(least, likely_error(errors[e]));
         }
+        const double enough = least <= target ? target : kHardlyMore * least;
+        const auto chosen = std::find_if(errors.begin(), errors.end(), [&](const ErrorBounds& b) {
+            return likely_error(b) <= enough;
+        });
+        const Encoding& encoding =
+            encodings[static_cast<std::size_t>(std::distance(errors.begin(), chosen))];
+        choice.knobs.coefficients = encoding.coefficients;
+        choice.knobs.code_bits = encoding.code_bits;
+        choice.error = chosen->rms;
+        choice.likely = likely_error(*chosen);
+        choice.met = least <= target;
     }
 };
 
@@ -152,6 +161,7 @@ PilotChoice choose_row_knobs(const PilotScene& pilot, std::span<const PilotRecei
     trials.single = gather_pilot_single(pilot, trials.in_media, setting, context);
     const std::vector<CheckedPair> finest = trials.measure(setting);
     const double floor = square_error(finest);
+    trials.choice.finest_error = std::sqrt(floor);
     trials.choice.smooth_error = relative_rms(without_suns(finest, lights));
     if (trials.has_multiple() && !knobs.fixed.tolerance) {
         trials.choose_tolerance(setting, floor);
@@ -164,30 +174,6 @@ PilotChoice choose_row_knobs(const PilotScene& pilot, std::span<const PilotRecei
     trials.choice.knobs.single_cubemap = setting.single_cubemap;
     trials.choose_encoding(setting);
     return std::move(trials.choice);
-}
-
-std::optional<Knobs> refine_knobs(const PilotChoice& choice, bool has_samples) {
-    constexpr double kMostPerPath = 64;
-    constexpr std::uint32_t kMostSamples = 1000000;
-    Knobs knobs = choice.knobs;
-    if (!knobs.fixed.coefficients) {
-        knobs.coefficients = expected_coefficients(knobs.error_target);
-    }
-    const bool finer_samples = has_samples && !knobs.exact_samples &&
-                               knobs.samples_per_path < kMostPerPath &&
-                               knobs.samples < kMostSamples;
-    const bool finer_cubemap = !knobs.fixed.cubemap && knobs.cubemap_size < kLargestCubemap;
-    const bool is_smooth = choice.smooth_error > 0.5 * knobs.error_target;
-    if (finer_samples && (is_smooth || !finer_cubemap)) {
-        knobs.samples_per_path *= 4;
-        knobs.samples = std::min(4 * knobs.samples, kMostSamples);
-        return knobs;
-    }
-    if (finer_cubemap) {
-        knobs.cubemap_size *= 2;
-        return knobs;
-    }
-    return std::nullopt;
 }
 
 }  // namespace opaline::bake

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -89,12 +88,13 @@ struct PilotTrial {
 
 /// What a pilot makes of a cube map and, in media, of the surface samples there are.
 struct PilotChoice {
-    Knobs knobs;              ///< the cheapest that meet the target, or the finest
+    Knobs knobs;              ///< the cheapest that meet the target; if none do, the cheapest that
+                              ///< err by hardly more than the finest
     double error = 0;         ///< expected, relative RMS
     double likely = 0;        ///< upper end of its 95 % interval
-    bool met = false;         ///< `highest` is not above knobs.error_target
-    double smooth_error = 0;  ///< of lights without suns, with the finest knobs: more texels hardly
-                              ///< lower it, more samples do
+    bool met = false;         ///< `likely` is not above knobs.error_target
+    double finest_error = 0;  ///< with all coefficients and the finest knobs
+    double smooth_error = 0;  ///< the same, of lights without suns
     std::vector<PilotTrial> trials;
 };
 
@@ -107,9 +107,5 @@ PilotChoice choose_row_knobs(const PilotScene& pilot, std::span<const PilotRecei
                              const OpaquePairs& opaque, const Knobs& knobs,
                              const MediaStages& media, std::span<const TestLight> lights,
                              const Context& context);
-
-/// What to try next where a choice did not meet the target: more surface samples or a finer cube
-/// map, whichever the error comes from. Nothing: the user fixed them, or they are at their limit.
-std::optional<Knobs> refine_knobs(const PilotChoice& choice, bool has_samples);
 
 }  // namespace opaline::bake

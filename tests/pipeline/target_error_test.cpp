@@ -1,6 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+#include <utility>
+
 #include "formats/opal/write_opal.h"
 #include "tests/support/media_bake.h"
 
@@ -73,14 +77,40 @@ TEST(TargetError, OpaqueSurfacesTakeTheCoarsestCubeMapThatIsGoodEnough) {
     EXPECT_LE(result.error.rms_relative, 0.05);
 }
 
-TEST(TargetError, OutOfReachIsSaidAndTheFinestTaken) {
+TEST(TargetError, OutOfReachIsSaidAndBytesThatLowerNothingAreNotSpent) {
     BakeOptions options = asking_for(1e-3);
     options.cubemap_size = 8;
     const BakeResult result = tests::bake_scene(tests::make_dented_ball(), options);
     EXPECT_FALSE(result.accuracy->met);
     EXPECT_EQ(result.knobs.cubemap_size, 8u);
+    EXPECT_LT(result.knobs.coefficients, 6u * 8 * 8);
+    double least = 1;
+    for (const auto& [cubemap_size, samples_per_path, trial] : result.accuracy->trials) {
+        least = std::min(least, trial.knob == "coefficients" ? trial.error : 1.0);
+    }
+    EXPECT_LT(result.accuracy->predicted, 1.1 * least);
     ASSERT_FALSE(result.warnings.empty());
     EXPECT_THAT(result.warnings.back().fault, ::testing::HasSubstr("out of reach"));
+    EXPECT_THAT(result.warnings.back().remedy, ::testing::HasSubstr("--cubemap"));
+}
+
+// One term for light that goes on the way it came: no sample and no texel mends that.
+TEST(TargetError, TooFewPhaseTermsEndThePilotAndAreNamed) {
+    auto medium = tests::make_grey_medium(4, 0.4f);
+    medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.8f, 0, {}, {}};
+    BakeOptions options = asking_for(0.03);
+    options.phase_terms = 1;
+    const BakeResult result =
+        tests::bake_scene(tests::make_translucent_scene({tests::make_sphere(2)}, medium), options);
+    EXPECT_FALSE(result.accuracy->met);
+    std::set<std::pair<std::uint32_t, double>> rounds;
+    for (const auto& [cubemap_size, samples_per_path, trial] : result.accuracy->trials) {
+        rounds.insert({cubemap_size, samples_per_path});
+    }
+    EXPECT_LE(rounds.size(), 3u);
+    EXPECT_LE(result.knobs.cubemap_size, 16u);
+    ASSERT_FALSE(result.warnings.empty());
+    EXPECT_THAT(result.warnings.back().remedy, ::testing::HasSubstr("--phase-terms"));
 }
 
 TEST(TargetError, BytesDoNotDependOnTheNumberOfThreads) {
