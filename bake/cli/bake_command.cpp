@@ -162,13 +162,7 @@ void add_bake_command(CLI::App& app, Job& job) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("bake", "Bake a scene into an .opal file");
     add_scene_options(*command, options->scene);
-    command
-        ->add_option("--error", options->scene.bake.error,
-                     "relative RMS error that the file may have: a pilot measures what each knob "
-                     "costs and picks the cheapest; those given stay")
-        ->check(CLI::Range(1e-4, 0.99))
-        ->excludes("--quality")
-        ->option_text("E");
+    add_error_option(*command, options->scene);
     command->add_flag("--check-model", options->scene.bake.check_model,
                       "also measure how far the physical model is from a Monte Carlo reference "
                       "(seconds to a minute); the report gets `model_error`");

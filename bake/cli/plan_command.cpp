@@ -12,6 +12,7 @@
 #include "bake/plan/inspect_scene.h"
 #include "bake/plan/savings.h"
 #include "bake/plan/unmet_requests.h"
+#include "bake/receivers/orient_bodies.h"
 
 namespace opaline::cli {
 namespace {
@@ -20,6 +21,18 @@ struct Options {
     SceneOptions scene;
     bool json = false;
 };
+
+// As the bake will warn of it. Which faces must be turned takes it seconds to find out.
+std::vector<formats::Diagnostic> describe_open_media(const formats::Scene& scene,
+                                                     const bake::SceneFacts& facts) {
+    std::vector<bake::BodySurface> surfaces;
+    for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
+        if (scene.materials[m].medium) {
+            surfaces.push_back({m, 0, facts.material[m].open_edges});
+        }
+    }
+    return bake::describe_faults(scene, surfaces);
+}
 
 int run(const Options& options) {
     const auto wanted = parse_effects(options.scene);
@@ -43,13 +56,14 @@ int run(const Options& options) {
     const unsigned threads = bake::thread_count(context);
     const bake::SceneFacts facts = bake::inspect_scene(imported->scene);
     auto plan = bake::plan_bake(imported->scene, facts, *knobs);
+    print_warnings(describe_open_media(imported->scene, facts));
     print_warnings(bake::describe_unmet(imported->scene, *wanted, *knobs, plan));
     const bake::Rates rates = find_machine_rates().rates;
     const bake::CostPrediction cost =
         bake::predict_costs(imported->scene, facts, *knobs, rates, threads, plan);
     bake::predict_savings(imported->scene, facts, *knobs, rates, threads, plan);
-    fmt::print("{}",
-               options.json ? make_plan_json(plan, cost) : make_plan_table(plan, cost, threads));
+    fmt::print("{}", options.json ? make_plan_json(*knobs, plan, cost)
+                                  : make_plan_table(*knobs, plan, cost, threads));
     return kExitSuccess;
 }
 
@@ -60,6 +74,7 @@ void add_plan_command(CLI::App& app, Job& job) {
     CLI::App* command =
         app.add_subcommand("plan", "Say what a bake of the scene would simulate, and why");
     add_scene_options(*command, options->scene);
+    add_error_option(*command, options->scene);
     command->add_flag("--json", options->json, "print JSON");
     command->footer("Example:\n  opaline plan scene.glb --quality production");
     command->callback([options, &job] { job = [options] { return run(*options); }; });

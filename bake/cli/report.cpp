@@ -46,6 +46,12 @@ std::string savings_text(const bake::PlanEntry& entry) {
                        size < kLeastBytes ? "" : " and " + format_bytes(size));
 }
 
+std::string coefficients_text(const bake::Knobs& knobs) {
+    return knobs.coefficients == bake::kAllCoefficients
+               ? "all coefficients"
+               : fmt::format("{} coefficients a row", knobs.coefficients);
+}
+
 // Of the first of that name that is left. A pilot's further rounds are not predicted: 0.
 double take_predicted(std::vector<bake::StageCost>& costs, const std::string& name) {
     const auto found = std::find_if(costs.begin(), costs.end(),
@@ -120,13 +126,14 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     return dump(report);
 }
 
-std::string make_plan_json(const std::vector<bake::PlanEntry>& plan,
+std::string make_plan_json(const bake::Knobs& knobs, const std::vector<bake::PlanEntry>& plan,
                            const bake::CostPrediction& cost) {
     Json stages = Json::array();
     for (const bake::StageCost& stage : cost.stages) {
         stages.push_back({{"name", stage.name}, {"predicted_seconds", stage.seconds}});
     }
     return dump(Json{{"plan", plan_array(plan)},
+                     {"knobs", bake::knobs_json(knobs)},
                      {"stages", std::move(stages)},
                      {"predicted_seconds_total", cost.seconds},
                      {"predicted_seconds_shared", cost.shared_seconds},
@@ -135,7 +142,7 @@ std::string make_plan_json(const std::vector<bake::PlanEntry>& plan,
                      {"receivers", cost.receivers}});
 }
 
-std::string make_plan_table(const std::vector<bake::PlanEntry>& plan,
+std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::PlanEntry>& plan,
                             const bake::CostPrediction& cost, unsigned threads) {
     const std::string everything = "whole scene", rest = "the rest";
     std::size_t widest = everything.size(), widest_effect = rest.size();
@@ -148,15 +155,24 @@ std::string make_plan_table(const std::vector<bake::PlanEntry>& plan,
                     "subject", widest, "decision", "bound", "time", "size", "reason");
     const auto bytes = [](std::uint64_t count) { return format_bytes(static_cast<double>(count)); };
     for (const bake::PlanEntry& entry : plan) {
+        // A part that is decided by itself costs what its effect does.
+        const std::string seconds =
+            entry.predicted_seconds > 0 ? format_seconds(entry.predicted_seconds) : "-";
+        const std::string size = entry.predicted_bytes > 0 ? bytes(entry.predicted_bytes) : "-";
         table += fmt::format("{:<{}} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.effect,
                              widest_effect, entry.subject, widest, entry.on ? "on" : "off",
-                             entry.bound, format_seconds(entry.predicted_seconds),
-                             bytes(entry.predicted_bytes), entry.reason + savings_text(entry));
+                             entry.bound, seconds, size, entry.reason + savings_text(entry));
     }
     table += fmt::format("{:<{}} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", rest, widest_effect,
                          everything, widest, "always", "", format_seconds(cost.shared_seconds),
                          bytes(cost.shared_bytes),
                          "ray hierarchy, receivers, test lights, self-check; mesh and images");
+    const std::string asked_for =
+        knobs.error_target > 0
+            ? fmt::format("for the pilot of --error {:g} to begin with", knobs.error_target)
+            : fmt::format("--quality {}", bake::quality_name(knobs.quality));
+    table += fmt::format("knobs ({}): {} texels along a face of the light's cube map, {}\n",
+                         asked_for, knobs.cubemap_size, coefficients_text(knobs));
     return table + fmt::format("predicted: {} on {}, {}, {} receivers\n",
                                format_seconds(cost.seconds),
                                threads == 1 ? "1 thread" : fmt::format("{} threads", threads),

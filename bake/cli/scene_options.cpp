@@ -117,6 +117,16 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
                      "show each");
 }
 
+void add_error_option(CLI::App& command, SceneOptions& options) {
+    command
+        .add_option("--error", options.bake.error,
+                    "relative RMS error that the file may have: a pilot measures what each knob "
+                    "costs and picks the cheapest; those given stay")
+        ->check(CLI::Range(1e-4, 0.99))
+        ->excludes("--quality")
+        ->option_text("E");
+}
+
 formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
     constexpr std::array<std::string_view, 11> kKnown{
         "direct",    "multiple",      "single",          "interreflection", "emitters", "specular",

@@ -22,6 +22,9 @@ void add_subject_options(CLI::App& command, SceneOptions& options);
 /// The same and every knob.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
+/// `--error`, in place of `--quality`.
+void add_error_option(CLI::App& command, SceneOptions& options);
+
 /// The options of the bake with the effects to simulate: none named for `auto`, nor for `all`,
 /// which forces every one. Errors: usage, for those that are unknown or that this version does not
 /// simulate.

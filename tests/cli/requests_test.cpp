@@ -9,6 +9,7 @@ namespace opaline::tests {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -109,6 +110,23 @@ TEST(Request, OfAnEffectThatConcernsNothingIsRefused) {
     }
     EXPECT_THAT(run_opaline({"plan", small.scene(), "--effects", "direct,auto"}).err,
                 HasSubstr("'auto' stands by itself"));
+}
+
+TEST_F(Requests, PlansWarnOfOpenMediaAsBakesDo) {
+    const auto warns = HasSubstr("material 'Chalk': the surface of the medium is open at ");
+    EXPECT_THAT(plan(kFog, {}).err, warns);
+    EXPECT_THAT(bake(kFog, {"--quality", "draft"}).err, warns);
+    EXPECT_THAT(plan("", {}).err, Not(HasSubstr("open at")));
+}
+
+TEST_F(Requests, PlansForAnErrorStartFromTheKnobsOfItsPilot) {
+    EXPECT_THAT(plan("", {"--error", "0.02"}).out,
+                HasSubstr("for the pilot of --error 0.02 to begin with"));
+    // What is left out is a small share of the error asked for.
+    const std::string weak = R"("sigma_s": [0.002, 0.002, 0.002], "sigma_a": [1, 1, 1])";
+    EXPECT_THAT(plan(weak, {}).out, ContainsRegex("single +material 'Chalk' +off"));
+    EXPECT_THAT(plan(weak, {"--error", "0.005"}).out,
+                ContainsRegex("single +material 'Chalk' +on"));
 }
 
 }  // namespace
