@@ -107,7 +107,21 @@ Entries entries_of(const ClusterTree& tree, const ClusterWeight& w) {
     const SparseVectors& vectors = w.id < nodes ? tree.sums : tree.samples;
     const std::size_t v = w.id < nodes ? w.id : w.id - nodes;
     const std::uint64_t first = vectors.offset[v];
-    return {&vectors.index[first], &vectors.value[first], vectors.offset[v + 1] - first};
+    return {vectors.index.data() + first, vectors.value.data() + first,
+            vectors.offset[v + 1] - first};
+}
+
+// Adds them to sums as wide as the weight: of one band, or of several at once.
+template <class Weight>
+void add_entries(const Entries& entries, Weight weight, float* sums) {
+    constexpr std::size_t kWidth = sizeof(Weight) / sizeof(float);
+    for (std::size_t i = 0; i < entries.count; ++i) {
+        float* const place = sums + kWidth * entries.index[i];
+        Weight sum;
+        std::memcpy(&sum, place, sizeof sum);
+        sum += weight * entries.value[i];
+        std::memcpy(place, &sum, sizeof sum);
+    }
 }
 
 }  // namespace
@@ -143,29 +157,17 @@ void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm:
 void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
                 std::span<float> rgbx) {
     std::fill(rgbx.begin(), rgbx.end(), 0.0f);
-    float* const sums = rgbx.data();
     for (const ClusterWeight& w : weights) {
-        const Entries entries = entries_of(tree, w);
-        const Float4 weight{w.weight[0], w.weight[1], w.weight[2], 0.0f};
-        for (std::size_t i = 0; i < entries.count; ++i) {
-            float* const place = sums + std::size_t{4} * entries.index[i];
-            Float4 sum;
-            std::memcpy(&sum, place, sizeof sum);
-            sum += weight * entries.value[i];
-            std::memcpy(place, &sum, sizeof sum);
-        }
+        add_entries(entries_of(tree, w), Float4{w.weight[0], w.weight[1], w.weight[2], 0.0f},
+                    rgbx.data());
     }
 }
 
 void accumulate_grey(const ClusterTree& tree, std::span<const ClusterWeight> weights,
                      std::span<float> sums) {
     std::fill(sums.begin(), sums.end(), 0.0f);
-    float* const to = sums.data();
     for (const ClusterWeight& w : weights) {
-        const Entries entries = entries_of(tree, w);
-        for (std::size_t i = 0; i < entries.count; ++i) {
-            to[entries.index[i]] += w.weight[0] * entries.value[i];
-        }
+        add_entries(entries_of(tree, w), w.weight[0], sums.data());
     }
 }
 

@@ -234,22 +234,20 @@ struct Prediction {
                                       : 1024.0,
                     target >= 0.03 ? 8.0 : 16.0});
     }
-    // What opaque receivers err by with all coefficients.
-    void measure_floor() {
+    static constexpr std::uint32_t kEncodings = 26;
+    // Rows of its opaque receivers, under all encodings.
+    void measure_opaque() {
         bill.open("pilot");
-        bill.add(
-            direct_rows_work(input, opaque_share() * pilot_receivers(), needs_hierarchy(layouts)));
+        const double opaque = opaque_share() * pilot_receivers();
+        bill.add(direct_rows_work(input, opaque, needs_hierarchy(layouts)));
+        bill.add(encode_work(input, kEncodings, 1, opaque));
     }
-    // Rows of all its receivers, once for each of some values of the knobs, and once for all
+    // Rows of those in media, once for each of some values of the knobs, and once for all
     // encodings; single scattering by rays.
     void try_knobs() {
         constexpr double kRounds = 4, kMostTranslucent = 192, kDepthSamples = 10;
-        constexpr std::uint32_t kEncodings = 26;
         bill.open("pilot");
-        const double opaque = pilot_receivers(), translucent = std::min(opaque, kMostTranslucent);
-        bill.add(
-            direct_rows_work(input, kRounds * opaque_share() * opaque, needs_hierarchy(layouts)));
-        bill.add(encode_work(input, kEncodings, 1, opaque_share() * opaque));
+        const double translucent = std::min(pilot_receivers(), kMostTranslucent);
         Knobs by_rays = knobs;
         by_rays.exact_rays = true;
         by_rays.depth_samples = kDepthSamples;
@@ -316,7 +314,7 @@ CostPrediction predict_costs(const formats::Scene& scene, const SceneFacts& fact
     prediction.prepare();
     if (knobs.error_target > 0) {
         prediction.find_pilot_truth();
-        prediction.measure_floor();
+        prediction.measure_opaque();
         prediction.take_samples();
         prediction.try_knobs();
     } else {

@@ -11,6 +11,20 @@ formats::Rgb to_rgb(glm::dvec3 v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+// One path from each receiver, of which `keep` is kept of its radiance.
+template <class Keep>
+formats::Result<Estimate> estimate_each(const PathSpace& space,
+                                        std::span<const ReferenceReceiver> receivers,
+                                        const EstimateOptions& options, const Context& context,
+                                        Keep&& keep) {
+    return estimate_pixels(static_cast<std::uint32_t>(receivers.size()), options, context,
+                           [&](std::uint32_t i, RandomStream& random) {
+                               PathSample sample = trace_receiver(space, receivers[i], random);
+                               sample.radiance = keep(sample.radiance);
+                               return sample;
+                           });
+}
+
 }  // namespace
 
 formats::Result<ReferenceImage> estimate_image(const PathSpace& space,
@@ -45,23 +59,16 @@ formats::Result<Estimate> estimate_receivers(const PathSpace& space,
                                              std::span<const ReferenceReceiver> receivers,
                                              const EstimateOptions& options,
                                              const Context& context) {
-    return estimate_pixels(static_cast<std::uint32_t>(receivers.size()), options, context,
-                           [&](std::uint32_t i, RandomStream& random) {
-                               return trace_receiver(space, receivers[i], random);
-                           });
+    return estimate_each(space, receivers, options, context, [](glm::vec3 c) { return c; });
 }
 
 formats::Result<Estimate> estimate_luminance(const PathSpace& space,
                                              std::span<const ReferenceReceiver> receivers,
                                              const EstimateOptions& options,
                                              const Context& context) {
-    return estimate_pixels(static_cast<std::uint32_t>(receivers.size()), options, context,
-                           [&](std::uint32_t i, RandomStream& random) {
-                               PathSample sample = trace_receiver(space, receivers[i], random);
-                               const glm::vec3 c = sample.radiance;
-                               sample.radiance = glm::vec3(formats::luminance({c.x, c.y, c.z}));
-                               return sample;
-                           });
+    return estimate_each(space, receivers, options, context, [](glm::vec3 c) {
+        return glm::vec3(formats::luminance({c.x, c.y, c.z}));
+    });
 }
 
 }  // namespace opaline::bake

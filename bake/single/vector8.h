@@ -8,9 +8,9 @@
 
 namespace opaline::bake {
 
-/// Compiles a function twice, for AVX2 and for any machine, and lets the loader choose. Both give
-/// the same bits: nothing is contracted or reassociated. Not under sanitizers, which start after
-/// the loader.
+/// Compiles a function three times, for AVX-512, for AVX2 and for any machine, and lets the loader
+/// choose. All give the same bits: nothing is contracted or reassociated (-ffp-contract=off). Not
+/// under sanitizers, which start after the loader.
 #if defined(__x86_64__) && defined(__ELF__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define OPALINE_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))

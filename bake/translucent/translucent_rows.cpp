@@ -161,7 +161,10 @@ formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayS
                 }
             });
     }
-    return context.cancelled() ? rows : as_given(rows, order, terms, bands);
+    // Rows are missing where the bake was cancelled, or where they are too many for one file: the
+    // caller counts them.
+    const bool is_whole = rows.row_offset.size() == points.size() * terms + 1;
+    return is_whole ? as_given(rows, order, terms, bands) : rows;
 }
 
 }  // namespace opaline::bake

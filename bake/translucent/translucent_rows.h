@@ -37,8 +37,9 @@ std::uint64_t assemble_rows(const TranslucentRecipe& recipe, const RayScene& ray
                             const Receiver& receiver, const BodyPoint& point,
                             const SingleBatch* batch, std::size_t place, std::span<float> rows);
 
-/// Finished rows of the points of one material's primitive, in order; fewer if the context is
-/// cancelled. `receivers`: of the same vertices. `counts` adds up.
+/// Finished rows of the points of one material's primitive, in order; fewer, in no order, if the
+/// context is cancelled or if they hold more than 2^32 - 1 coefficients. `receivers`: of the same
+/// vertices. `counts` adds up.
 formats::SparseRows bake_translucent(const TranslucentRecipe& recipe, const RayScene& rays,
                                      std::span<const Receiver> receivers,
                                      std::span<const BodyPoint> points, const Context& context,

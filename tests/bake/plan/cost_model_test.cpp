@@ -81,6 +81,22 @@ TEST(CostModel, TermsBeyondTheFirstPayForTheirRows) {
     EXPECT_GT(entry("single").predicted_seconds, 0);
 }
 
+// The pilot gathers them once, before it takes samples of media, and tries all encodings on them.
+TEST(CostModel, OpaqueReceiversOfThePilotPayInItsFirstStageAlone) {
+    Knobs knobs;
+    knobs.error_target = 0.05;
+    std::vector<double> pilot;
+    for (const StageCost& stage :
+         predict(tests::make_scene({tests::make_sphere(3)}), knobs).cost.stages) {
+        if (stage.name == "pilot") {
+            pilot.push_back(stage.seconds);
+        }
+    }
+    ASSERT_EQ(pilot.size(), 2u);
+    EXPECT_GT(pilot[0], 0);
+    EXPECT_EQ(pilot[1], 0);
+}
+
 TEST(CostModel, PredictingTwiceIsPredictingOnce) {
     const formats::Scene scene = ball_on_floor();
     Predicted p = predict(scene);

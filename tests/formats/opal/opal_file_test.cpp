@@ -1,52 +1,21 @@
+// What is written comes back, and what no writer may write is refused by name.
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "formats/opal/mapped_file.h"
-#include "formats/opal/read_opal.h"
-#include "formats/opal/write_opal.h"
 #include "tests/formats/opal/asset_fixture.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/formats/opal/opal_bytes.h"
 
 namespace opaline::formats {
 namespace {
 
-// Bytes at an address aligned like a mapped file's, with nothing readable behind them under the
-// address sanitizer.
-class AlignedBytes {
-  public:
-    explicit AlignedBytes(std::span<const std::byte> bytes)
-        : size_(bytes.size()),
-          data_(static_cast<std::byte*>(
-              ::operator new(std::max<std::size_t>(size_, 1), std::align_val_t(64)))) {
-        std::memcpy(data_, bytes.data(), size_);
-    }
-    AlignedBytes(const AlignedBytes&) = delete;
-    AlignedBytes& operator=(const AlignedBytes&) = delete;
-    ~AlignedBytes() { ::operator delete(data_, std::align_val_t(64)); }
-    std::span<std::byte> bytes() { return {data_, size_}; }
-
-  private:
-    std::size_t size_;
-    std::byte* data_;
-};
-
-std::vector<std::byte> encode(const Asset& asset) {
-    const tests::TemporaryFolder folder;
-    auto file = AtomicFile::create(folder / "a.opal");
-    EXPECT_TRUE(file);
-    EXPECT_TRUE(write_opal(asset.view(), std::move(*file)));
-    auto mapped = MappedFile::open(folder / "a.opal");
-    EXPECT_TRUE(mapped);
-    return {mapped->bytes().begin(), mapped->bytes().end()};
-}
+using tests::AlignedBytes;
+using tests::encode;
 
 template <class A, class B>
 void expect_same_bytes(const A& a, const B& b) {
@@ -143,29 +112,6 @@ TEST(OpalFile, WithoutMediaOfOneBandEarlierReadersReadIt) {
     const auto loaded = read_opal(stored.bytes(), "a.opal");
     ASSERT_TRUE(loaded);
     EXPECT_EQ(version_of_primitives(*loaded), 1u);
-}
-
-TEST(OpalFile, ALaterSectionVersionAsksForAnUpdate) {
-    for (const std::uint32_t id : {kPrimSection, kTranSection}) {
-        AlignedBytes stored(encode(tests::make_small_asset()));
-        FileHeader header;
-        std::memcpy(&header, stored.bytes().data(), sizeof header);
-        std::byte* const table = stored.bytes().data() + sizeof header;
-        for (std::uint32_t s = 0; s < header.section_count; ++s) {
-            SectionEntry entry;
-            std::memcpy(&entry, table + s * sizeof entry, sizeof entry);
-            if (entry.id == id) {
-                entry.version = id == kPrimSection ? 3 : 2;
-                std::memcpy(table + s * sizeof entry, &entry, sizeof entry);
-            }
-        }
-        header.table_checksum = checksum({table, header.section_count * sizeof(SectionEntry)});
-        std::memcpy(stored.bytes().data(), &header, sizeof header);
-        const auto loaded = read_opal(stored.bytes(), "a.opal");
-        ASSERT_FALSE(loaded);
-        EXPECT_EQ(loaded.error().kind, ErrorKind::newer_file);
-        EXPECT_EQ(loaded.error().diagnostics.front().where, "section " + section_name(id));
-    }
 }
 
 TEST(OpalFile, ImpossibleShadingIsRefusedByName) {
@@ -269,35 +215,6 @@ TEST(OpalFile, ImpossibleSpecularIsRefusedByName) {
     EXPECT_EQ(fault_of([](Asset& a) { a.openness.pop_back(); }), "section SPEC");
 }
 
-TEST(Openness, ComesBackWithinItsBits) {
-    for (int i = 0; i < 2000; ++i) {
-        const float t = static_cast<float>(i);
-        const Vec3 axis = normalize({std::sin(t), std::cos(2.3f * t), std::sin(3.1f * t + 1)});
-        const float fraction = 0.5f + 0.5f * std::sin(0.7f * t);
-        const Openness openness = encode_openness(3.0f * axis, fraction);
-        EXPECT_LT(length(open_axis(openness) - axis), 0.0175f);  // 1 degree
-        EXPECT_NEAR(open_fraction(openness), fraction, 1.0f / 255);
-    }
-    for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0},
-                            Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
-        EXPECT_EQ(open_axis(encode_openness(axis, 1)), axis);
-    }
-    // What is exactly open or closed stays so, and nothing else becomes so.
-    EXPECT_EQ(open_fraction(encode_openness({0, 0, 1}, 1)), 1.0f);
-    EXPECT_EQ(open_fraction(encode_openness({0, 0, 1}, 0)), 0.0f);
-    EXPECT_LT(open_fraction(encode_openness({0, 0, 1}, 0.99999f)), 1.0f);
-    EXPECT_GT(open_fraction(encode_openness({0, 0, 1}, 1e-6f)), 0.0f);
-    // Absurd input gives something that can be decoded.
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_EQ(open_axis(encode_openness({0, 0, 0}, nan)), (Vec3{0, 0, 1}));
-    EXPECT_EQ(encode_openness({nan, 1, 0}, nan).fraction, 0);
-    for (int x = -128; x < 128; x += 5) {
-        Openness any;
-        any.axis[0] = any.axis[1] = static_cast<std::int8_t>(x);
-        EXPECT_NEAR(length(open_axis(any)), 1, 1e-6f);
-    }
-}
-
 TEST(OpalFile, TransportIsUsedInPlace) {
     AlignedBytes stored(encode(tests::make_small_asset()));
     const auto loaded = read_opal(stored.bytes(), "a.opal");
@@ -305,125 +222,6 @@ TEST(OpalFile, TransportIsUsedInPlace) {
     const auto* codes = reinterpret_cast<const std::byte*>(loaded->view.transport.code8.data());
     EXPECT_GE(codes, stored.bytes().data());
     EXPECT_LT(codes, stored.bytes().data() + stored.bytes().size());
-}
-
-TEST(OpalFile, EveryTruncationIsRefused) {
-    const std::vector<std::byte> whole = encode(tests::make_small_asset());
-    for (std::size_t size = 0; size < whole.size(); ++size) {
-        AlignedBytes stored(std::span<const std::byte>(whole).first(size));
-        const auto loaded = read_opal(stored.bytes(), "a.opal");
-        ASSERT_FALSE(loaded) << "accepted the first " << size << " bytes";
-        ASSERT_EQ(loaded.error().kind, ErrorKind::bad_input);
-    }
-}
-
-TEST(OpalFile, TrailingBytesAreRefused) {
-    std::vector<std::byte> bytes = encode(tests::make_small_asset());
-    bytes.push_back(std::byte{0});
-    AlignedBytes stored(bytes);
-    EXPECT_FALSE(read_opal(stored.bytes(), "a.opal"));
-}
-
-// Padding between sections is the only place where a flipped bit means nothing.
-TEST(OpalFile, EveryFlippedByteOfASectionIsFoundByTheFullCheck) {
-    const std::vector<std::byte> whole = encode(tests::make_small_asset());
-    AlignedBytes sound(whole);
-    const auto table = read_section_table(sound.bytes(), "a.opal");
-    ASSERT_TRUE(table);
-    for (std::size_t at = 0; at < whole.size(); ++at) {
-        AlignedBytes stored(whole);
-        stored.bytes()[at] ^= std::byte{0x40};
-        const bool in_section = std::any_of(table->begin(), table->end(), [at](const auto& s) {
-            return at >= s.offset && at < s.offset + s.stored_size;
-        });
-        const bool accepted = read_opal(stored.bytes(), "a.opal", Checks::full).has_value();
-        if (in_section) {
-            ASSERT_FALSE(accepted) << "byte " << at;
-        }
-    }
-}
-
-// Damage that keeps its checksum is what a hostile writer makes: nothing may be read out of bounds.
-TEST(OpalFile, ConsistentlyForgedSectionsAreRefusedOrStayInBounds) {
-    Asset asset = tests::make_small_asset();
-    tests::add_translucent_triangle(asset, 4, 1.3f, false, 1);
-    const std::vector<std::byte> whole = encode(asset);
-    std::size_t refused = 0, accepted = 0;
-    for (std::size_t at = sizeof(FileHeader); at < whole.size(); ++at) {
-        for (const int bit : {0, 3, 7}) {
-            AlignedBytes stored(whole);
-            stored.bytes()[at] ^= static_cast<std::byte>(1 << bit);
-            // Repair the table's own checksum, so that forged tables are looked at.
-            FileHeader header;
-            std::memcpy(&header, stored.bytes().data(), sizeof header);
-            header.table_checksum = checksum(
-                stored.bytes().subspan(sizeof header, header.section_count * sizeof(SectionEntry)));
-            std::memcpy(stored.bytes().data(), &header, sizeof header);
-            const auto loaded = read_opal(stored.bytes(), "a.opal");
-            if (!loaded) {
-                ++refused;
-                continue;
-            }
-            ++accepted;
-            // Use everything the runtime would use; the address sanitizer watches.
-            std::vector<float> dense(cubemap_texels(loaded->view.cubemap_size));
-            for (const PrimitiveRecord& p : loaded->view.primitives) {
-                for (std::uint32_t r = 0; r < p.rows().rows; ++r) {
-                    for (std::uint32_t band = 0; band < p.bands; ++band) {
-                        decode_row(loaded->view.transport, p.rows(), r, band, dense);
-                    }
-                }
-                for (std::uint32_t i = 0; i < p.index_count; ++i) {
-                    const std::uint32_t v = p.first_vertex + loaded->view.index[p.first_index + i];
-                    ASSERT_LT(v, loaded->view.position.size());
-                }
-            }
-        }
-    }
-    EXPECT_GT(refused, 100u);
-    EXPECT_GT(accepted, 100u);
-}
-
-TEST(OpalFile, ALaterVersionAsksForAnUpdate) {
-    AlignedBytes stored(encode(tests::make_small_asset()));
-    FileHeader header;
-    std::memcpy(&header, stored.bytes().data(), sizeof header);
-    header.version = kOpalVersion + 1;
-    std::memcpy(stored.bytes().data(), &header, sizeof header);
-    const auto loaded = read_opal(stored.bytes(), "a.opal");
-    ASSERT_FALSE(loaded);
-    EXPECT_EQ(loaded.error().kind, ErrorKind::newer_file);
-}
-
-TEST(OpalFile, AnUnknownSectionIsSkipped) {
-    AlignedBytes stored(encode(tests::make_small_asset()));
-    FileHeader header;
-    std::memcpy(&header, stored.bytes().data(), sizeof header);
-    // The provenance is the one section that nothing else needs: rename it.
-    SectionEntry entry;
-    std::byte* table = stored.bytes().data() + sizeof header;
-    std::memcpy(&entry, table, sizeof entry);
-    ASSERT_EQ(entry.id, kProvSection);
-    entry.id = section_id("XTRA");
-    entry.version = 99;
-    std::memcpy(table, &entry, sizeof entry);
-    header.table_checksum = checksum({table, header.section_count * sizeof(SectionEntry)});
-    std::memcpy(stored.bytes().data(), &header, sizeof header);
-    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
-    ASSERT_TRUE(loaded);
-    EXPECT_TRUE(loaded->view.provenance.empty());
-}
-
-TEST(OpalFile, TheFullCheckFindsNumbersThatAreNotFinite) {
-    Asset asset = tests::make_small_asset();
-    asset.position[3].y = std::numeric_limits<float>::quiet_NaN();
-    AlignedBytes bad_position(encode(asset));
-    EXPECT_TRUE(read_opal(bad_position.bytes(), "a.opal"));
-    EXPECT_FALSE(read_opal(bad_position.bytes(), "a.opal", Checks::full));
-    asset = tests::make_small_asset();
-    asset.transport.detail_scale[2] = std::numeric_limits<float>::infinity();
-    AlignedBytes bad_scale(encode(asset));
-    EXPECT_FALSE(read_opal(bad_scale.bytes(), "a.opal", Checks::full));
 }
 
 }  // namespace
