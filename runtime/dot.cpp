@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "formats/opal/detail_codes.h"
 #include "runtime/dot_paths.h"
 
 namespace opaline::runtime {
@@ -22,7 +23,8 @@ void dot_scalar(const TypedRows<Index, Code>& rows, const LightVector& light, st
         for (std::uint32_t d = rows.row_offset[row]; d < rows.row_offset[row + 1]; ++d) {
             const float* const at = l + std::size_t{4} * rows.index[d];
             for (std::size_t b = 0; b < 3; ++b) {
-                details[b] += static_cast<float>(code[bands == 1 ? 0 : b]) * at[b];
+                details[b] +=
+                    static_cast<float>(formats::detail_value(code[bands == 1 ? 0 : b])) * at[b];
             }
             code += bands;
         }

@@ -6,6 +6,8 @@
 
 #include <cstring>
 
+#include "formats/opal/detail_codes.h"
+
 // Two coefficients share a 256-bit register: (r g b 0) of one in the low half, of the next in the
 // high half, multiplied by their codes spread over the lanes. Only functions marked here use AVX2,
 // so nothing that another file may link against does.
@@ -57,11 +59,12 @@ OPALINE_AVX2 inline __m128i load_12_bytes(const void* p) {
     return _mm_insert_epi32(_mm_loadl_epi64(static_cast<const __m128i*>(p)), last, 2);
 }
 
-OPALINE_AVX2 inline __m256 eight_codes(const std::int8_t* code) {
-    return _mm256_cvtepi32_ps(
-        _mm256_cvtepi8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(code))));
+// What they stand for (detail_codes.h).
+OPALINE_AVX2 inline __m256 eight_values(const std::int8_t* code) {
+    const __m128i c = _mm_cvtepi8_epi16(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(code)));
+    return _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_mullo_epi16(c, _mm_abs_epi16(c))));
 }
-OPALINE_AVX2 inline __m256 eight_codes(const std::int16_t* code) {
+OPALINE_AVX2 inline __m256 eight_values(const std::int16_t* code) {
     return _mm256_cvtepi32_ps(
         _mm256_cvtepi16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(code))));
 }
@@ -75,7 +78,7 @@ OPALINE_AVX2 inline __m128 sum_grey(const float* light, const Index* index, cons
     for (; i + 8 <= count; i += 8) {
         prefetch(index + i);
         prefetch(code + i);
-        const __m256 c = eight_codes(code + i);
+        const __m256 c = eight_values(code + i);
         s0 = _mm256_fmadd_ps(load_pair(light, index[i], index[i + 4]), spread_in_halves<0>(c), s0);
         s1 = _mm256_fmadd_ps(load_pair(light, index[i + 1], index[i + 5]), spread_in_halves<1>(c),
                              s1);
@@ -87,21 +90,22 @@ OPALINE_AVX2 inline __m128 sum_grey(const float* light, const Index* index, cons
     __m128 rest = _mm_setzero_ps();
     for (; i < count; ++i) {
         rest = _mm_fmadd_ps(_mm_loadu_ps(light + std::size_t{4} * index[i]),
-                            _mm_set1_ps(static_cast<float>(code[i])), rest);
+                            _mm_set1_ps(static_cast<float>(formats::detail_value(code[i]))), rest);
     }
     const __m256 sum = _mm256_add_ps(_mm256_add_ps(s0, s1), _mm256_add_ps(s2, s3));
     return _mm_add_ps(add_halves(sum), rest);
 }
 
-// Codes of four RGB details as two registers of (r g b 0 r g b 0).
+// Values of four RGB details as two registers of (r g b 0 r g b 0).
 struct FourDetails {
     __m256 first, second;
 };
 OPALINE_AVX2 inline FourDetails four_details(const std::int8_t* code) {
     const __m128i gaps = _mm_setr_epi8(0, 1, 2, -1, 3, 4, 5, -1, 6, 7, 8, -1, 9, 10, 11, -1);
-    const __m128i bytes = _mm_shuffle_epi8(load_12_bytes(code), gaps);
-    return {_mm256_cvtepi32_ps(_mm256_cvtepi8_epi32(bytes)),
-            _mm256_cvtepi32_ps(_mm256_cvtepi8_epi32(_mm_srli_si128(bytes, 8)))};
+    const __m256i codes = _mm256_cvtepi8_epi16(_mm_shuffle_epi8(load_12_bytes(code), gaps));
+    const __m256i values = _mm256_mullo_epi16(codes, _mm256_abs_epi16(codes));
+    return {_mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm256_castsi256_si128(values))),
+            _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm256_extracti128_si256(values, 1)))};
 }
 OPALINE_AVX2 inline FourDetails four_details(const std::int16_t* code) {
     const __m128i gaps = _mm_setr_epi8(0, 1, 2, 3, 4, 5, -1, -1, 6, 7, 8, 9, 10, 11, -1, -1);
@@ -111,10 +115,14 @@ OPALINE_AVX2 inline FourDetails four_details(const std::int16_t* code) {
             _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(high))};
 }
 
+OPALINE_AVX2 inline __m128 three_floats(const float* v) {
+    return _mm_setr_ps(v[0], v[1], v[2], 0.0f);
+}
 template <class Code>
 OPALINE_AVX2 inline __m128 three_values(const Code* code) {
-    return _mm_setr_ps(static_cast<float>(code[0]), static_cast<float>(code[1]),
-                       static_cast<float>(code[2]), 0.0f);
+    return _mm_setr_ps(static_cast<float>(formats::detail_value(code[0])),
+                       static_cast<float>(formats::detail_value(code[1])),
+                       static_cast<float>(formats::detail_value(code[2])), 0.0f);
 }
 
 template <class Index, class Code>
@@ -194,8 +202,8 @@ OPALINE_AVX2 void dot_typed(const TypedRows<Index, Code>& rows, const LightVecto
         } else {
             details = sum_rgb(l, index, code, count);
             averages = sum_averages_rgb(faces, rows.average_code + row * 18);
-            detail_scale = three_values(rows.detail_scale + row * 3);
-            average_scale = three_values(rows.average_scale + row * 3);
+            detail_scale = three_floats(rows.detail_scale + row * 3);
+            average_scale = three_floats(rows.average_scale + row * 3);
         }
         store_rgb(out[i], _mm_fmadd_ps(details, detail_scale, _mm_mul_ps(averages, average_scale)));
     }

@@ -21,6 +21,10 @@ static_assert(sizeof(BasisHead) == 16);
 /// three refuse by name; 1 where none has.
 inline constexpr std::uint32_t kGreyMediaVersion = 2;
 
+/// Section version of TRAN: 8-bit detail codes stand for their squares (detail_codes.h). Files of
+/// version 1, where they stood for themselves, are refused.
+inline constexpr std::uint32_t kTransportVersion = 2;
+
 struct PrimitivesHead {
     std::uint32_t count = 0, record_size = 0;
     std::uint64_t reserved = 0;

@@ -140,7 +140,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
         }
         bool (*read)(Cursor, AssetView&) = nullptr;
         unsigned bit = 0;
-        std::uint32_t latest = 1;
+        std::uint32_t earliest = 1, latest = 1;
         switch (entry.id) {
             case kBasiSection:
                 read = read_basis, bit = 1;
@@ -149,7 +149,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 read = read_primitives, bit = 2, latest = kGreyMediaVersion;
                 break;
             case kTranSection:
-                read = read_transport, bit = 4;
+                read = read_transport, bit = 4, earliest = latest = kTransportVersion;
                 break;
             case kMeshSection:
                 read = read_mesh, bit = 8;
@@ -164,6 +164,12 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 break;
             default:
                 continue;  // of a later minor version, or somebody else's
+        }
+        if (entry.version > 0 && entry.version < earliest) {
+            return make_error(
+                ErrorKind::bad_input, file, where,
+                "version " + std::to_string(entry.version) + " is of an earlier Opaline",
+                "bake it again");
         }
         if (entry.version == 0 || entry.version > latest) {
             return make_error(ErrorKind::newer_file, file, where,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "formats/opal/cubemap.h"
+#include "formats/opal/detail_codes.h"
 
 namespace opaline::formats {
 namespace {
@@ -30,6 +31,21 @@ std::int16_t quantise(float value, float scale, std::int32_t limit) {
     }
     const auto code = static_cast<std::int32_t>(std::lround(value / scale));
     return static_cast<std::int16_t>(std::clamp(code, -limit, limit));
+}
+
+// The code whose detail_value is nearest.
+std::int8_t quantise_root(float value, float scale) {
+    if (scale == 0.0f) {
+        return 0;
+    }
+    const float target = std::abs(value) / scale;
+    auto root = static_cast<std::int32_t>(std::lround(std::sqrt(target)));
+    // Squares have their middle above that of their roots.
+    if (target < static_cast<float>(root * root - root) + 0.5f) {
+        --root;
+    }
+    root = std::clamp(root, 0, 127);
+    return static_cast<std::int8_t>(value < 0 ? -root : root);
 }
 
 template <class T>
@@ -59,7 +75,7 @@ bool append_row(SparseRows& rows, const SparseRow& row) {
     if (details > std::numeric_limits<std::uint32_t>::max() - rows.row_offset.back()) {
         return false;
     }
-    const std::int32_t limit = rows.code_bits == 8 ? 127 : 32767;
+    const std::int32_t limit = rows.code_bits == 8 ? kLargestDetail8 : kLargestDetail16;
     const std::span<const float> values(row.value), averages(row.average);
     const std::size_t first_band_row = rows.detail_scale.size();
     for (std::uint32_t band = 0; band < row.bands; ++band) {
@@ -80,11 +96,11 @@ bool append_row(SparseRows& rows, const SparseRow& row) {
         }
         for (std::uint32_t band = 0; band < row.bands; ++band) {
             const float scale = rows.detail_scale[first_band_row + band];
-            const std::int16_t code = quantise(values[band * details + i], scale, limit);
+            const float value = values[band * details + i];
             if (rows.code_bits == 8) {
-                rows.code8.push_back(static_cast<std::int8_t>(code));
+                rows.code8.push_back(quantise_root(value, scale));
             } else {
-                rows.code16.push_back(code);
+                rows.code16.push_back(quantise(value, scale, limit));
             }
         }
     }
@@ -161,10 +177,10 @@ void decode_row(const SparseRowsView& rows, const RowRange& range, std::uint32_t
     const std::uint32_t end = rows.row_offset[range.first_row + row + 1];
     for (std::uint32_t i = begin; i < end; ++i) {
         const std::size_t code_at = range.first_code + std::size_t{i - first} * range.bands + band;
-        const float code = rows.code_bits == 8 ? static_cast<float>(rows.code8[code_at])
-                                               : static_cast<float>(rows.code16[code_at]);
+        const std::int32_t value = rows.code_bits == 8 ? detail_value(rows.code8[code_at])
+                                                       : detail_value(rows.code16[code_at]);
         const std::uint32_t index = rows.index_bytes == 2 ? rows.index16[i] : rows.index32[i];
-        dense[index] = code * rows.detail_scale[band_row];
+        dense[index] = static_cast<float>(value) * rows.detail_scale[band_row];
     }
 }
 

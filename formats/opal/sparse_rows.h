@@ -23,8 +23,9 @@ struct SparseRow {
 /// consecutive and have equal band counts, so that
 ///     code of detail i, band b   = codes[first_code + (i - row_offset[first_row]) * bands + b]
 ///     band row of row r, band b  = first_band_row + (r - first_row) * bands + b.
-/// Value of a detail = code * detail_scale[band row]; of a face average = average_code[6 * band row
-/// + face] * average_scale[band row]. Worst rounding error: half a scale.
+/// Value of a detail = detail_value(code) * detail_scale[band row] (detail_codes.h); of a face
+/// average = average_code[6 * band row + face] * average_scale[band row]. Worst rounding error of
+/// an average and of a 16-bit detail: half a scale; of an 8-bit detail |code| + 1/2 scales.
 struct SparseRowsView {
     std::uint32_t cubemap_size = 0;
     std::uint32_t code_bits = 8;    ///< 8 or 16: width of detail codes, two's complement

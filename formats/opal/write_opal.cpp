@@ -196,6 +196,7 @@ Status write_parts(const AssetView& asset, Write write) {
     sections.push_back(store(kPrimSection, Codec::none, primitive_arrays));
     sections.back().entry.version = version_of(asset.primitives);
     sections.push_back(store(kTranSection, Codec::none, transport_arrays));
+    sections.back().entry.version = kTransportVersion;
     sections.push_back(store_mesh(asset));
     if (!asset.images.empty()) {
         sections.push_back(store_images(asset));

@@ -31,12 +31,14 @@ int average_code(uint element) {
     return signed_half(average_word[element >> 1u], element);
 }
 
+// What a code stands for: of eight bits its square, sign kept.
 #if CODE_BITS == 8
-int detail_code(uint element) {
-    return bitfieldExtract(int(code_word[element >> 2u]), int((element & 3u) * 8u), 8);
+int detail_value(uint element) {
+    int code = bitfieldExtract(int(code_word[element >> 2u]), int((element & 3u) * 8u), 8);
+    return code * abs(code);
 }
 #else
-int detail_code(uint element) {
+int detail_value(uint element) {
     return signed_half(code_word[element >> 1u], element);
 }
 #endif
@@ -59,10 +61,10 @@ vec3 lane_sum(uint row, uint lane) {
     for (uint i = begin + lane; i < end; i += uint(LANES)) {
         vec3 l = light[detail_index(index_origin + i)].rgb;
 #if BANDS == 1
-        details += float(detail_code(code_origin + i)) * l;
+        details += float(detail_value(code_origin + i)) * l;
 #else
         uint at = code_origin + 3u * i;
-        details += vec3(detail_code(at), detail_code(at + 1u), detail_code(at + 2u)) * l;
+        details += vec3(detail_value(at), detail_value(at + 1u), detail_value(at + 2u)) * l;
 #endif
     }
     vec3 averages = vec3(0.0);

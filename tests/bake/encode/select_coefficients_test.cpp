@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <numeric>
 #include <random>
 
+#include "bake/plan/knobs.h"
 #include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+#include "formats/opal/sparse_rows.h"
 
 namespace opaline::bake {
 namespace {
@@ -91,6 +96,59 @@ TEST(SelectCoefficients, ZerosAreNeverKeptAndTiesGoByIndex) {
     EXPECT_TRUE(
         select_coefficients(make_selector(kSize, 8), std::vector<float>(dense.size(), 0.0f), 1)
             .index.empty());
+}
+
+// Irradiance transport of a surface before which a wall hides a part of the sky.
+std::vector<float> half_hidden_cosine(std::uint32_t n) {
+    const glm::vec3 normal = glm::normalize(glm::vec3(0.3f, 1, 0.2f));
+    const glm::vec3 wall = glm::normalize(glm::vec3(1, 0.4f, -0.6f));
+    std::vector<float> row(formats::cubemap_texels(n));
+    for (std::uint32_t j = 0; j < row.size(); ++j) {
+        const formats::Vec3 d = formats::texel_direction(n, j / (n * n), j / n % n, j % n);
+        const glm::vec3 w(d.x, d.y, d.z);
+        row[j] = glm::dot(wall, w) > 0.3f ? 0.0f : std::max(0.0f, glm::dot(normal, w));
+    }
+    formats::haar_forward_cube(std::span<float>(row), n);
+    return row;
+}
+
+// Square of what is lost: the mean over lights that have equal energy in every coefficient.
+double lost_energy(const std::vector<float>& dense, const formats::SparseRow& row, std::uint32_t n,
+                   std::uint32_t code_bits) {
+    formats::SparseRows rows = formats::make_sparse_rows(n, code_bits);
+    formats::append_row(rows, row);
+    std::vector<float> stored(dense.size());
+    formats::decode_row(rows.view(), {0, 1, 1, 0, 0}, 0, 0, stored);
+    double lost = 0;
+    for (std::size_t k = 0; k < dense.size(); ++k) {
+        lost += std::pow(double{stored[k]} - double{dense[k]}, 2);
+    }
+    return lost;
+}
+
+TEST(SelectCoefficients, EightBitsLoseHardlyMoreThanSixteenBesideWhatIsLeftOut) {
+    constexpr std::uint32_t n = 32;
+    const std::vector<float> dense = half_hidden_cosine(n);
+    const double whole = energy(dense);
+    for (const std::uint32_t kept : {64u, 256u, 512u}) {
+        const auto row = select_coefficients(make_selector(n, kept), dense, 1);
+        const double eight = lost_energy(dense, row, n, 8),
+                     sixteen = lost_energy(dense, row, n, 16);
+        EXPECT_GT(sixteen, 1e-7 * whole) << kept;
+        EXPECT_LT(eight, 1.1 * sixteen) << kept;
+    }
+    // With nothing left out they lose much less than equal steps would.
+    const auto all = select_coefficients(make_selector(n, kAllCoefficients), dense, 1);
+    float largest = 0;
+    for (const float value : all.value) {
+        largest = std::max(largest, std::abs(value));
+    }
+    double equal_steps = 0;
+    for (const float value : all.value) {
+        const float step = largest / 127;
+        equal_steps += std::pow(step * std::round(value / step) - value, 2);
+    }
+    EXPECT_LT(lost_energy(dense, all, n, 8), 0.2 * equal_steps);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/opal/layout.h"
 #include "tests/formats/opal/asset_fixture.h"
 #include "tests/formats/opal/opal_bytes.h"
 
@@ -104,27 +105,41 @@ TEST(OpalVersion, ALaterVersionAsksForAnUpdate) {
     EXPECT_EQ(loaded.error().kind, ErrorKind::newer_file);
 }
 
+// A small asset whose section `id` claims the version.
+Result<LoadedAsset> read_with_version(std::uint32_t id, std::uint32_t version) {
+    AlignedBytes stored(encode(tests::make_small_asset()));
+    FileHeader header;
+    std::memcpy(&header, stored.bytes().data(), sizeof header);
+    std::byte* const table = stored.bytes().data() + sizeof header;
+    for (std::uint32_t s = 0; s < header.section_count; ++s) {
+        SectionEntry entry;
+        std::memcpy(&entry, table + s * sizeof entry, sizeof entry);
+        if (entry.id == id) {
+            entry.version = version;
+            std::memcpy(table + s * sizeof entry, &entry, sizeof entry);
+        }
+    }
+    header.table_checksum = checksum({table, header.section_count * sizeof(SectionEntry)});
+    std::memcpy(stored.bytes().data(), &header, sizeof header);
+    return read_opal(stored.bytes(), "a.opal");
+}
+
 TEST(OpalVersion, ALaterSectionVersionAsksForAnUpdate) {
     for (const std::uint32_t id : {kPrimSection, kTranSection}) {
-        AlignedBytes stored(encode(tests::make_small_asset()));
-        FileHeader header;
-        std::memcpy(&header, stored.bytes().data(), sizeof header);
-        std::byte* const table = stored.bytes().data() + sizeof header;
-        for (std::uint32_t s = 0; s < header.section_count; ++s) {
-            SectionEntry entry;
-            std::memcpy(&entry, table + s * sizeof entry, sizeof entry);
-            if (entry.id == id) {
-                entry.version = id == kPrimSection ? 3 : 2;
-                std::memcpy(table + s * sizeof entry, &entry, sizeof entry);
-            }
-        }
-        header.table_checksum = checksum({table, header.section_count * sizeof(SectionEntry)});
-        std::memcpy(stored.bytes().data(), &header, sizeof header);
-        const auto loaded = read_opal(stored.bytes(), "a.opal");
+        const auto loaded = read_with_version(id, 3);
         ASSERT_FALSE(loaded);
         EXPECT_EQ(loaded.error().kind, ErrorKind::newer_file);
         EXPECT_EQ(loaded.error().diagnostics.front().where, "section " + section_name(id));
     }
+}
+
+// Its codes would be taken for square roots.
+TEST(OpalVersion, TransportOfAnEarlierVersionAsksForAnotherBake) {
+    ASSERT_TRUE(read_with_version(kTranSection, kTransportVersion));
+    const auto loaded = read_with_version(kTranSection, 1);
+    ASSERT_FALSE(loaded);
+    EXPECT_EQ(loaded.error().kind, ErrorKind::bad_input);
+    EXPECT_EQ(loaded.error().diagnostics.front().remedy, "bake it again");
 }
 
 TEST(OpalVersion, AnUnknownSectionIsSkipped) {
