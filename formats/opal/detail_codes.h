@@ -9,7 +9,8 @@ namespace opaline::formats {
 /// and equal steps would lose these. As accurate as sixteen bits in equal steps down to errors of
 /// half a per cent of what a row relights (tests/bake/encode).
 constexpr std::int32_t detail_value(std::int8_t code) {
-    return code < 0 ? -code * code : code * code;
+    const std::int32_t magnitude = code < 0 ? -code : code;  // no branch: signs are random
+    return code * magnitude;
 }
 constexpr std::int32_t detail_value(std::int16_t code) {
     return code;
