@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::array<std::uint32_t, 12> kCoefficients{32,  48,  64,  96,  128,  192,
                                                       256, 384, 512, 768, 1024, 2048};
+constexpr std::uint32_t kLeastOf16Bits = 768;
 
 }  // namespace
 
@@ -19,7 +20,8 @@ std::vector<Encoding> list_encodings(const Knobs& knobs) {
     std::vector<Encoding> encodings;
     for (const std::uint32_t bits : {8u, 16u}) {
         for (const std::uint32_t m : kCoefficients) {
-            if (!knobs.fixed.coefficients && m < texels) {
+            // With few coefficients more bits of each gain nothing.
+            if (!knobs.fixed.coefficients && m < texels && (bits == 8 || m >= kLeastOf16Bits)) {
                 encodings.push_back({m, bits});
             }
         }

@@ -30,7 +30,7 @@ Knobs preset(Quality quality) {
         case Quality::production:
             // Twice the cube map would cost four times the rays; what errs is truncation.
             knobs.cubemap_size = 32;
-            knobs.coefficients = 512;
+            knobs.coefficients = 1024;
             knobs.samples = 150000;
             knobs.samples_per_path = 4;
             knobs.phase_tolerance = 0.01;
