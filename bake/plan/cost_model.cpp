@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "bake/plan/accuracy_costs.h"
+#include "bake/plan/bill.h"
 #include "bake/plan/row_layout.h"
 #include "bake/plan/stage_costs.h"
 #include "formats/opal/cubemap.h"
@@ -33,67 +35,14 @@ std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t band
     return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
 }
 
-// Adds stages up, and what each effect has in them.
-class Bill {
-  public:
-    Bill(const Rates& rates, unsigned threads, std::vector<PlanEntry>& plan)
-        : crowding_(threads > 1 ? rates.crowding : 1), threads_(threads), plan_(plan) {
-        for (PlanEntry& entry : plan) {
-            entry.predicted_seconds = 0;
-            entry.predicted_bytes = 0;
-        }
-    }
-
-    void open(std::string name) { cost.stages.push_back({std::move(name), 0}); }
-    /// Into the stage that was opened last; for an effect on a material, or for none.
-    void add(const Work& work, std::string_view effect = {}, std::uint32_t material = 0) {
-        const double seconds = work.alone + work.shared * crowding_ / threads_;
-        cost.stages.back().seconds += seconds;
-        cost.seconds += seconds;
-        if (PlanEntry* const entry = find(effect, material)) {
-            entry->predicted_seconds += seconds;
-        } else {
-            cost.shared_seconds += seconds;
-        }
-    }
-    void add_bytes(double bytes, std::string_view effect = {}, std::uint32_t material = 0) {
-        const auto whole = static_cast<std::uint64_t>(bytes);
-        cost.bytes += whole;
-        if (PlanEntry* const entry = find(effect, material)) {
-            entry->predicted_bytes += whole;
-        } else {
-            cost.shared_bytes += whole;
-        }
-    }
-
-    CostPrediction cost;
-
-  private:
-    PlanEntry* find(std::string_view effect, std::uint32_t material) {
-        for (PlanEntry& entry : plan_) {
-            if (entry.on && entry.effect == effect && entry.material == material) {
-                return &entry;
-            }
-        }
-        return nullptr;
-    }
-
-    double crowding_;
-    double threads_;
-    std::vector<PlanEntry>& plan_;
-};
-
-/// One prediction.
-struct Prediction {
-    const formats::Scene& scene;
-    const Knobs& knobs;
-    const Rates& rates;
-    const SceneFacts& facts;
-    std::vector<RowLayout> layouts;
-    CostInput input;
-    Bill bill;
-
-    const formats::Medium& medium(std::uint32_t m) const { return *scene.materials[m].medium; }
+// What the stages cost that make the file.
+struct Making {
+    const CostedBake& bake;
+    Bill& bill;
+    const formats::Scene& scene = bake.scene;
+    const SceneFacts& facts = bake.facts;
+    const CostInput& input = bake.input;
+    const std::vector<RowLayout>& layouts = bake.layouts;
 
     void prepare() {
         double body_triangles = 0;
@@ -101,27 +50,27 @@ struct Prediction {
             body_triangles += scene.materials[m].medium ? facts.material[m].triangles : 0;
         }
         bill.open("bodies");
-        bill.add({body_triangles * rates.orient_triangle, 0});
+        bill.add({body_triangles * input.rates.orient_triangle, 0});
         bill.open("plan");
-        bill.add({facts.triangles * rates.plan_triangle, 0});
+        bill.add({facts.triangles * input.rates.plan_triangle, 0});
         if (needs_hierarchy(layouts)) {
             bill.open("hierarchy");
-            bill.add({0, facts.triangles * rates.build_triangle.at(facts.triangles)});
+            bill.add({0, facts.triangles * input.rates.build_triangle.at(facts.triangles)});
         }
         for (std::uint32_t m = 0; m < layouts.size(); ++m) {
             if (layouts[m].direct && scene.materials[m].medium) {
                 open_once("albedos of media");
-                bill.add(albedo_work(input, medium(m)), "direct", m);
+                bill.add(albedo_work(input, bake.medium(m)), "direct", m);
             }
         }
         bill.open("receivers");
-        bill.add({facts.receivers * rates.place_receiver.at(facts.triangles), 0});
+        bill.add({facts.receivers * input.rates.place_receiver.at(facts.triangles), 0});
         bill.open("test lights");
-        bill.add({0, rates.test_lights});
+        bill.add({0, input.rates.test_lights});
         bill.open("profiles");
         for (std::uint32_t m = 0; m < layouts.size(); ++m) {
             if (layouts[m].translucent && layouts[m].multiple) {
-                bill.add(profile_work(input, medium(m)), "multiple", m);
+                bill.add(profile_work(input, bake.medium(m)), "multiple", m);
             }
         }
     }
@@ -136,8 +85,9 @@ struct Prediction {
         for (std::uint32_t m = 0; m < layouts.size(); ++m) {
             if (layouts[m].translucent && layouts[m].multiple && !layouts[m].local) {
                 bill.open("samples of material '" + scene.materials[m].name + "'");
-                bill.add(samples_work(input, medium(m), facts.material[m], layouts[m].occluded),
-                         "multiple", m);
+                bill.add(
+                    samples_work(input, bake.medium(m), facts.material[m], layouts[m].occluded),
+                    "multiple", m);
             }
         }
     }
@@ -163,7 +113,7 @@ struct Prediction {
                              p.material);
                 }
                 bill.add(encode_work(input, 1, 1, receivers), "direct", p.material);
-                bill.add_bytes(receivers * static_cast<double>(row_bytes(knobs, false, 1)),
+                bill.add_bytes(receivers * static_cast<double>(row_bytes(input.knobs, false, 1)),
                                "direct", p.material);
                 continue;
             }
@@ -173,7 +123,7 @@ struct Prediction {
             }
             const std::uint32_t bands = layout.bands();
             if (layout.multiple && !layout.local) {
-                bill.add(multiple_rows_work(input, medium(p.material), own, bands, receivers),
+                bill.add(multiple_rows_work(input, bake.medium(p.material), own, bands, receivers),
                          "multiple", p.material);
             }
             if (layout.single_terms > 0 && !layout.local) {
@@ -187,7 +137,7 @@ struct Prediction {
             // The first row is that of multiple scattering, where there is any.
             const std::uint32_t first = layout.multiple ? 1 : 0;
             const std::uint32_t beyond = std::max(layout.single_terms, 1u) - 1;
-            const auto bytes = receivers * static_cast<double>(row_bytes(knobs, true, bands));
+            const auto bytes = receivers * static_cast<double>(row_bytes(input.knobs, true, bands));
             for (const auto& [effect, count] : {std::pair{"multiple", first},
                                                 {"single", layout.terms() - first - beyond},
                                                 {"single.terms", beyond}}) {
@@ -212,87 +162,6 @@ struct Prediction {
         }
     }
 
-    // As check_rows does it.
-    void check() {
-        constexpr double kMostChecked = 256;
-        bill.open("self-check");
-        const double drawn =
-            std::min(facts.receivers, std::clamp(facts.receivers / 40, 16.0, 1024.0));
-        find_truth(drawn, drawn / std::ceil(drawn / kMostChecked),
-                   {1024, 2.0 * knobs.depth_samples});
-    }
-
-    // As choose_knobs does it, if the first choice is met.
-    void find_pilot_truth() {
-        constexpr double kMostTranslucent = 192;
-        bill.open("pilot truth");
-        const double drawn = pilot_receivers();
-        const double target = knobs.error_target;
-        find_truth(drawn, std::min(drawn, kMostTranslucent),
-                   {target >= 0.03    ? 256.0
-                    : target >= 0.015 ? 512.0
-                                      : 1024.0,
-                    target >= 0.03 ? 8.0 : 16.0});
-    }
-    static constexpr std::uint32_t kEncodings = 26;
-    // Rows of its opaque receivers, under all encodings.
-    void measure_opaque() {
-        bill.open("pilot");
-        const double opaque = opaque_share() * pilot_receivers();
-        bill.add(direct_rows_work(input, opaque, needs_hierarchy(layouts)));
-        bill.add(encode_work(input, kEncodings, 1, opaque));
-    }
-    // Rows of those in media, once for each of some values of the knobs, and once for all
-    // encodings; single scattering by rays.
-    void try_knobs() {
-        constexpr double kRounds = 4, kMostTranslucent = 192, kDepthSamples = 10;
-        bill.open("pilot");
-        const double translucent = std::min(pilot_receivers(), kMostTranslucent);
-        Knobs by_rays = knobs;
-        by_rays.exact_rays = true;
-        by_rays.depth_samples = kDepthSamples;
-        const CostInput traced{rates, by_rays, facts.triangles, facts.receivers};
-        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
-            const double own = translucent * facts.material[m].receivers / facts.receivers;
-            if (!layouts[m].translucent) {
-                continue;
-            }
-            if (layouts[m].multiple) {
-                bill.add(multiple_rows_work(input, medium(m), facts.material[m], layouts[m].bands(),
-                                            kRounds * own));
-            }
-            if (layouts[m].single_terms > 0) {
-                bill.add(single_rows_work(traced, facts.material[m], layouts[m].single_terms,
-                                          layouts[m].bands(), own));
-            }
-            bill.add(encode_work(input, kEncodings * layouts[m].terms(), layouts[m].bands(), own));
-        }
-    }
-    double opaque_share() const {
-        double direct = 0;
-        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
-            direct += layouts[m].direct ? facts.material[m].receivers : 0;
-        }
-        return direct / facts.receivers;
-    }
-    double pilot_receivers() const {
-        return std::min(facts.receivers, std::clamp(facts.receivers / 40, 64.0, 1024.0));
-    }
-
-    // Of `opaque` receivers out of all materials', and of media as if `translucent` were.
-    void find_truth(double opaque, double translucent, const TruthEffort& effort) {
-        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
-            const double share =
-                facts.receivers > 0 ? facts.material[m].receivers / facts.receivers : 0;
-            if (layouts[m].direct) {
-                bill.add(direct_check_work(input, share * opaque, needs_hierarchy(layouts)));
-            } else if (layouts[m].translucent) {
-                bill.add(medium_check_work(input, facts.material[m], layouts[m],
-                                           share * translucent, effort));
-            }
-        }
-    }
-
     bool is_any_glossy() const {
         return std::any_of(layouts.begin(), layouts.end(),
                            [](const RowLayout& l) { return l.glossy; });
@@ -304,30 +173,28 @@ struct Prediction {
 CostPrediction predict_costs(const formats::Scene& scene, const SceneFacts& facts,
                              const Knobs& knobs, const Rates& rates, unsigned threads,
                              std::vector<PlanEntry>& plan) {
-    Prediction prediction{scene,
-                          knobs,
-                          rates,
+    const CostedBake bake{scene,
                           facts,
                           layout_rows(scene, plan, knobs),
-                          {rates, knobs, facts.triangles, facts.receivers},
-                          Bill(rates, threads, plan)};
-    prediction.prepare();
+                          {rates, knobs, facts.triangles, facts.receivers}};
+    Bill bill(rates, threads, plan);
+    Making making{bake, bill};
+    making.prepare();
     if (knobs.error_target > 0) {
-        prediction.find_pilot_truth();
-        prediction.measure_opaque();
-        prediction.take_samples();
-        prediction.try_knobs();
+        bill_pilot_truth(bake, bill);
+        bill_opaque_trials(bake, bill);
+        making.take_samples();
+        bill_media_trials(bake, bill);
     } else {
-        prediction.take_samples();
+        making.take_samples();
     }
-    prediction.make_light_maps();
-    prediction.make_rows();
-    prediction.make_openness();
-    prediction.check();
-    prediction.bill.add_bytes(mesh_bytes(scene, facts));
-    CostPrediction& cost = prediction.bill.cost;
-    cost.receivers = static_cast<std::uint64_t>(facts.receivers);
-    return cost;
+    making.make_light_maps();
+    making.make_rows();
+    making.make_openness();
+    bill_self_check(bake, bill);
+    bill.add_bytes(mesh_bytes(scene, facts));
+    bill.cost.receivers = static_cast<std::uint64_t>(facts.receivers);
+    return std::move(bill.cost);
 }
 
 }  // namespace opaline::bake

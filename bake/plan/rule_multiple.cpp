@@ -35,16 +35,18 @@ double small_body_bound(const Medium& medium, const Band& band, double diagonal,
     if (!(band.sigma_s > 0)) {
         return 0;
     }
-    const double sigma_t = band.sigma_s + band.sigma_a;
-    const double once = band.sigma_s / sigma_t * -std::expm1(-sigma_t * diagonal);
+    const double sigma_t = band.sigma_s + band.sigma_a, albedo = band.sigma_s / sigma_t;
+    const double once = albedo * -std::expm1(-sigma_t * diagonal);
     const double reduced = (1 - formats::mean_cosine(medium.phase)) * band.sigma_s;
-    const Dipole better = make_dipole(DipoleKind::better, reduced, band.sigma_a, 1);
-    const Dipole classic = make_dipole(DipoleKind::classic, reduced, band.sigma_a, 1);
-    // The better one is scaled to a walk's energy, which is less than the classic one's.
-    const bool is_scaled = medium.profile != Medium::Profile::classic;
-    const double centre =
-        is_scaled ? eval_dipole(better, 0) * dipole_total(classic) / dipole_total(better)
-                  : eval_dipole(classic, 0);
+    const auto dipole_of = [&](DipoleKind kind) {
+        return make_dipole(kind, reduced, band.sigma_a, 1);
+    };
+    // The better one is scaled to a walk's energy beyond single scattering: of what enters a half
+    // space no more returns than what survives two scatterings.
+    const Dipole better = dipole_of(DipoleKind::better);
+    const double centre = medium.profile == Medium::Profile::classic
+                              ? eval_dipole(dipole_of(DipoleKind::classic), 0)
+                              : albedo * albedo * eval_dipole(better, 0) / dipole_total(better);
     return std::max(once * once, centre * area);
 }
 

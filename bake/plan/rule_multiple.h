@@ -18,7 +18,8 @@ PlanEntry decide_multiple(const PlanInput& input);
 /// Light that a line through the body, of length d at most, picks up by scattering is a share
 /// alpha (1 - e^(-sigma_t d)) of what arrives at its points; what of that has scattered before is
 /// such a share of another line's light, which is at most 1. Diffusion sums R_d, which is largest
-/// at its centre, over the surface: at most R_d(0) A.
+/// at its centre, over the surface: at most R_d(0) A; where R_d is scaled to the energy of a walk,
+/// as if that were alpha^2, what survives two scatterings.
 double small_body_bound(const formats::Medium& medium, const Band& band, double diagonal,
                         double area);
 

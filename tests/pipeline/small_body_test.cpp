@@ -2,6 +2,7 @@
 // plan's bound, in truth and by diffusion.
 #include <gtest/gtest.h>
 
+#include "bake/multiple/medium_profile.h"
 #include "bake/plan/inspect_scene.h"
 #include "bake/plan/rule_multiple.h"
 #include "bake/reference/reference_image.h"
@@ -79,6 +80,29 @@ TEST(SmallBodies, MultipleScatteringLeftOutIsLessThanItsBound) {
     EXPECT_GT(difference, 0) << "nothing was forced";
     EXPECT_LE(difference, left_out.bound);
     EXPECT_TRUE(multiple_of(smoke_ball(kJustPast)).on);
+}
+
+// Diffusion sums its profile over the surface, of which folds may have any amount in little room:
+// there the bound is the profile's centre times the area. Of profiles that are scaled to the energy
+// of a walk, which for forward phase functions is more than any dipole's, somewhat more.
+TEST(SmallBodies, ManyFoldsSendOutNoMoreThanTheCentreOfTheProfileAllOverThem) {
+    constexpr double kDiagonal = 0.1, kArea = 50;
+    for (const auto kind : {formats::Medium::Profile::classic, formats::Medium::Profile::better}) {
+        for (const float albedo : {0.1f, 0.5f, 0.99f}) {
+            for (const float g : {-0.8f, 0.0f, 0.5f, 0.9f}) {
+                formats::Medium medium = tests::make_medium(0.01f, albedo, g, 1);
+                medium.profile = kind;
+                const MediumProfile profile = make_medium_profile(medium, 0, {});
+                const double bound =
+                    small_body_bound(medium, bands_of(medium)[0], kDiagonal, kArea);
+                const double sum = profile.eval(0, 0) * kArea;
+                EXPECT_GE(bound, (1 - 1e-9) * sum) << albedo << " g " << g;
+                if (kind == formats::Medium::Profile::classic) {
+                    EXPECT_LE(bound, (1 + 1e-9) * sum) << albedo << " g " << g;
+                }
+            }
+        }
+    }
 }
 
 // Total reflection may keep light in a body for any number of its diameters.

@@ -70,7 +70,11 @@ TEST(Spread, IsSimulatedAsSoonAsItCouldShow) {
         {tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4)}, clay(5e-5f));
     EXPECT_TRUE(plan_of(sheet).on) << "an open surface may be thin";
     auto inverted = ball(5, clay(5e-5f));
-    inverted.primitives[0].normal[0] *= -1.0000002f;  // as scans have some, and a little too long
+    formats::Primitive& p = inverted.primitives[0];
+    const glm::vec3 &a = p.position[p.index[0]], &b = p.position[p.index[1]],
+                    &c = p.position[p.index[2]];
+    // As scans have some: against its facet's, and a little too long.
+    p.normal[p.index[0]] = -1.000001f * glm::normalize(glm::cross(b - a, c - a));
     EXPECT_TRUE(plan_of(inverted).on) << "a facet seen from behind";
     formats::Medium forward = clay(5e-5f);
     forward.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.6f, 0, {}, {}};

@@ -46,10 +46,16 @@ TEST(Savings, AreWhatTurningTheEntryOnWouldAdd) {
     EXPECT_EQ(colour->saved_bytes, more.bytes - p.cost.bytes);
 }
 
-TEST(Savings, OfWhatIsOnAndOfOtherMaterialsAreNone) {
-    formats::Medium medium = tests::make_grey_medium(40, 1);
-    medium.sigma_a.b = 2;
-    for (const PlanEntry& entry : plan_ball(medium).plan) {
+// A medium that lets nothing out saves what scattering would take, and nothing by not being shown
+// as a diffuse surface: that would be another look, not more of the same.
+TEST(Savings, AreOfEffectsThatAreOffAndNotOfAnotherLook) {
+    const Planned p = plan_ball(tests::make_grey_medium(1e-4f, 1));
+    for (const char* effect : {"multiple", "single"}) {
+        ASSERT_FALSE(find_entry(p.plan, effect, 0)->on);
+        EXPECT_GT(find_entry(p.plan, effect, 0)->saved_seconds, 0) << effect;
+    }
+    ASSERT_FALSE(find_entry(p.plan, "direct", 0)->on);
+    for (const PlanEntry& entry : p.plan) {
         const bool may_save = !entry.on && entry.effect != "direct";
         EXPECT_TRUE(may_save || (entry.saved_seconds == 0 && entry.saved_bytes == 0))
             << entry.effect << " of " << entry.subject;
