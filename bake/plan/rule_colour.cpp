@@ -12,9 +12,9 @@ PlanEntry decide_colour(const PlanInput& input) {
                       ? 0
                       : simulated(decide_multiple(input)) + simulated(decide_single(input));
     entry.on = is_worth(entry.bound, input, entry.forced);
-    entry.reason = input.subject.is_grey ? "the three bands coincide: one is stored"
+    entry.reason = input.subject.is_grey ? "the three bands coincide"
                    : entry.on            ? "the medium treats red, green and blue differently"
-                                         : "hardly any light of any colour comes out of the medium";
+                                         : "hardly any scattered light of the medium is simulated";
     return entry;
 }
 

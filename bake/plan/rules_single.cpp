@@ -83,6 +83,10 @@ PlanEntry decide_terms(const PlanInput& input) {
     }
     const std::uint32_t needed = needed_terms(medium, input.knobs);
     entry.terms = choose_terms(medium, input.knobs);
+    if (entry.terms == 1 && input.knobs.simulate_all && input.knobs.phase_terms == 0) {
+        entry.forced = true;
+        entry.terms = 4;
+    }
     entry.on = entry.terms > 1;
     const auto error_of = [&](std::uint32_t terms) {
         return percent(single_share(medium) * phase_rms_relative(series, terms));
@@ -97,10 +101,6 @@ PlanEntry decide_terms(const PlanInput& input) {
     }
     if (needed > entry.terms) {
         entry.reason += "; as asked for, it needs " + std::to_string(needed);
-    }
-    if (!entry.on && input.knobs.simulate_all && input.knobs.phase_terms == 0) {
-        entry.on = entry.forced = true;
-        entry.terms = 4;
     }
     return entry;
 }

@@ -63,6 +63,7 @@ TEST(SkippedTerms, AreForcedWithEverythingElse) {
     const PlanEntry& entry = *find_entry(plan, "single.terms", 0);
     EXPECT_TRUE(entry.on && entry.forced);
     EXPECT_EQ(entry.terms, 4u);
+    EXPECT_TRUE(entry.reason.starts_with("4 terms of the phase function")) << entry.reason;
 }
 
 // There is nothing to simulate, whoever asks for it.
