@@ -19,8 +19,8 @@
 // - A ball around the walk from Embree's nearest-surface query instead of the grid: 0.3. One query
 //   costs as much as tens of rays.
 // Before the grid, a dense medium took 36 % of its time for rays, 13 % for logarithms, sines and
-// exponentials, half for random numbers and arithmetic. Packets of rays and wavefronts were not
-// tried: rays are what they would save, and paths in a medium do not stay together.
+// exponentials, half for random numbers and arithmetic. Packets of rays and wavefronts were tried
+// and lost: bake/reference/README.md.
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
