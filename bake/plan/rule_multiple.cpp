@@ -21,7 +21,8 @@ bool is_dipole(const Medium& medium) {
 
 double half_space_bound(const Medium& medium, const Band& band) {
     const double g = formats::mean_cosine(medium.phase);
-    // Through a thin body light can come from both sides.
+    // Through a thin body light can come from both sides. Of a strongly forward phase function
+    // (g .98 and more, index 1) what is baked is up to 1.9 times the classic total: one side's.
     return 2 * dipole_total(make_dipole(DipoleKind::classic, (1 - g) * band.sigma_s, band.sigma_a,
                                         static_cast<double>(medium.eta)));
 }
