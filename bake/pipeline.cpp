@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/choose_knobs.h"
 #include "bake/direct/bake_direct.h"
 #include "bake/encode/pack_asset.h"
 #include "bake/encode/provenance.h"

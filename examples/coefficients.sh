@@ -18,7 +18,7 @@ for scene in "${scenes[@]}"; do
     echo "| $scene: M | file | bytes a vertex | ${lights[*]/#/error, } |" | sed 's/ error,/ | error,/2g'
     echo "|---:|---:|---:|---:|---:|---:|---:|"
     for m in all 1024 512 256 128 64 32 16; do
-        "$opaline" bake "$folder/$scene.gltf" -o "$folder/$m.opal" --coefficients "$m" --report "$folder/report.json" 2>/dev/null
+        "$opaline" bake "$folder/$scene.gltf" -o "$folder/$m.opal" --cubemap 32 --coefficients "$m" --report "$folder/report.json" 2>/dev/null
         bytes=$(stat -c %s "$folder/$m.opal")
         receivers=$(awk -F'[:,]' '/"receivers":/ { print $2 + 0 }' "$folder/report.json")
         row="| $m | $(awk "BEGIN { printf \"%.1f MB\", $bytes / 1e6 }") | $((bytes / receivers)) |"

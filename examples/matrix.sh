@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The README's matrix of scenes and effects: what the planner leaves on, its bounds, and seconds of the
 # planned bake against everything forced on, and against the prediction, that at production quality, too.
-# usage: matrix.sh OPALINE MODEL.glb
+# usage, from the top folder: matrix.sh OPALINE MODEL.glb
 #   MODEL.glb: a closed body, about 15 cm to 2 m long, with one material
 set -euo pipefail
 [ $# -ge 2 ] || { echo "usage: matrix.sh OPALINE MODEL.glb" >&2; exit 2; }
