@@ -1,6 +1,5 @@
 #include "bake/prepare_media.h"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -41,11 +40,10 @@ MediaStages prepare_media(const PilotScene& pilot, const Knobs& knobs, const Con
         } else if (layouts[m].multiple) {
             const std::string name = "samples of material '" + scene.materials[m].name + "'";
             stages.multiple = run_stage(result, name, [&](std::uint64_t& traced) {
-                const std::uint32_t kept = std::min(knobs.coefficients, 4096u);
                 MultipleStage stage = prepare_multiple(
                     scene, pilot.rays_of(m), m, pilot.profiles.at(m),
                     {knobs.cubemap_size, knobs.samples, knobs.exact_samples, knobs.samples_per_path,
-                     kept, knobs.seed, !knobs.exact_rays, layouts[m].bands()},
+                     sample_coefficients(knobs), knobs.seed, !knobs.exact_rays, layouts[m].bands()},
                     context);
                 traced = stage.transport.rays;
                 return stage;

@@ -60,6 +60,10 @@ std::uint32_t expected_coefficients(double target) {
     return static_cast<std::uint32_t>(std::clamp(4 / target, 64.0, 1024.0));
 }
 
+std::uint32_t sample_coefficients(const Knobs& knobs) {
+    return std::clamp(knobs.coefficients / 2, std::min(knobs.coefficients, 512u), 4096u);
+}
+
 formats::Result<Knobs> resolve_knobs(const BakeOptions& options) {
     Knobs knobs = preset(options.quality);
     knobs.effects = options.effects;

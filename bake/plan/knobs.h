@@ -73,6 +73,10 @@ struct Knobs {
 /// from.
 std::uint32_t expected_coefficients(double target);
 
+/// How many coefficients each surface sample and each cluster of them keeps. A row is a sum of
+/// many: with half as many as the row has, from 1024 on, it errs hardly more, in half the memory.
+std::uint32_t sample_coefficients(const Knobs& knobs);
+
 /// Fills in the quality's values; refuses impossible ones (usage error).
 formats::Result<Knobs> resolve_knobs(const BakeOptions& options);
 

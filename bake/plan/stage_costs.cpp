@@ -26,7 +26,7 @@ double texels(std::uint32_t n) {
 
 // Coefficients that a sample or node keeps: below its horizon they vanish.
 double kept_by_samples(const Knobs& knobs) {
-    return std::min({static_cast<double>(knobs.coefficients), 4096.0, texels(knobs.cubemap_size)});
+    return std::min(static_cast<double>(sample_coefficients(knobs)), texels(knobs.cubemap_size));
 }
 
 std::array<Dipole, 3> dipoles_of(const formats::Medium& medium) {
