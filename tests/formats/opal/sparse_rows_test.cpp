@@ -73,6 +73,28 @@ TEST(SparseRows, DecodedValuesAreTheNearestThatCodesCanStandFor) {
     }
 }
 
+// The middle of two squares is above that of their roots.
+TEST(SparseRows, EightBitsTakeTheNearerOfTwoSquares) {
+    for (const float beyond : {0.4f, 0.6f}) {
+        SparseRow row;
+        row.average.assign(6, 0.0f);
+        for (std::uint32_t q = 0; q < 127; ++q) {
+            row.index.push_back(q + 1);
+            row.value.push_back(static_cast<float>(q * q + q) + beyond);
+        }
+        row.index.push_back(200);
+        row.value.push_back(127.0f * 127.0f);  // a scale of one
+        SparseRows rows = make_sparse_rows(32, 8);
+        ASSERT_TRUE(append_row(rows, row));
+        std::vector<float> dense(cubemap_texels(32));
+        decode_row(rows.view(), {0, 1, 1, 0, 0}, 0, 0, dense);
+        for (std::uint32_t q = 0; q < 127; ++q) {
+            const std::uint32_t root = beyond < 0.5f ? q : q + 1;
+            ASSERT_EQ(dense[q + 1], static_cast<float>(root * root)) << q;
+        }
+    }
+}
+
 TEST(SparseRows, AppendingBlocksEqualsAppendingRows) {
     SparseRows one_by_one = make_sparse_rows(8, 8), joined = one_by_one;
     for (unsigned block = 0; block < 3; ++block) {
