@@ -45,7 +45,7 @@ MediaStages prepare_media(const PilotScene& pilot, const Knobs& knobs, const Con
                     {knobs.cubemap_size, knobs.samples, knobs.exact_samples, knobs.samples_per_path,
                      sample_coefficients(knobs), knobs.seed, !knobs.exact_rays, layouts[m].bands()},
                     context);
-                traced = stage.transport.rays;
+                traced = stage.rays;
                 return stage;
             });
             stages.recipe.multiple = &*stages.multiple;

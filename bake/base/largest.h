@@ -57,8 +57,11 @@ inline std::vector<std::uint32_t> find_largest(std::span<const float> score, std
                              return score[a] != score[b] ? score[a] > score[b] : a < b;
                          });
     }
+    // Both parts ascend: those of higher buckets were found in order.
+    std::sort(candidates.begin(), middle);
+    const auto found = static_cast<std::ptrdiff_t>(chosen.size());
     chosen.insert(chosen.end(), candidates.begin(), middle);
-    std::sort(chosen.begin(), chosen.end());
+    std::inplace_merge(chosen.begin(), chosen.begin() + found, chosen.end());
     return chosen;
 }
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "bake/calibration/stopwatch.h"
 #include "bake/measure/truth.h"
 #include "bake/multiple/gather_multiple.h"
-#include "bake/calibration/stopwatch.h"
 #include "bake/receivers/spatial_order.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/single/gather_direction.h"
@@ -24,8 +24,10 @@ namespace {
 SampleTransport repeated(const SampleTransport& traced, std::size_t samples) {
     SampleTransport all = traced;
     while (all.rows.size() < samples) {
-        append_vectors(all.rows, traced.rows);
+        all.rows.blocks.insert(all.rows.blocks.end(), traced.rows.blocks.begin(),
+                               traced.rows.blocks.end());
         all.mean.insert(all.mean.end(), traced.mean.begin(), traced.mean.end());
+        all.norm.insert(all.norm.end(), traced.norm.begin(), traced.norm.end());
     }
     return all;
 }
@@ -35,18 +37,20 @@ double measure_sum_entry(const CalibrationBench& bench, std::span<const SurfaceS
                          double truncate_texel) {
     constexpr std::uint32_t kSmall = 8;
     constexpr std::size_t kTraced = 256;
-    const SampleTransport transport =
+    static_assert(kTraced % SparseVectors::kPerBlock == 0);
+    SampleTransport transport =
         repeated(bake_sample_transport(bench.rays, samples.first(kTraced),
                                        {kSmall, kCalibrationKept, 1.3, true}, one_thread()),
                  samples.size());
     const Stopwatch watch;
     const ClusterTree tree =
-        build_cluster_tree(samples, transport, kSmall, kCalibrationKept, one_thread());
+        build_cluster_tree(samples, std::move(transport), kSmall, kCalibrationKept, one_thread());
     const double seconds = watch.seconds();
     double entries = 0;
     for (const ClusterNode& node : tree.nodes) {
-        entries += static_cast<double>(tree.samples.offset[node.first + node.count] -
-                                       tree.samples.offset[node.first]);
+        for (std::size_t s = node.first; s < node.first + node.count; ++s) {
+            entries += static_cast<double>(tree.samples[s].index.size());
+        }
     }
     const double truncated =
         static_cast<double>(tree.nodes.size() * formats::cubemap_texels(kSmall)) * truncate_texel;
@@ -120,7 +124,7 @@ void calibrate_multiple(const CalibrationBench& bench, bool is_many, Rates& rate
     const double sample = watch.seconds() / kTraced;
 
     std::vector<float> dense(formats::cubemap_texels(kCalibrationCubemap));
-    SparseVectors vectors;
+    SparseVectors::Block vectors;
     constexpr int kVectors = 200;
     double truncate = 0;
     for (int i = 0; i < kVectors; ++i) {

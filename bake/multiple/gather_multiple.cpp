@@ -36,17 +36,16 @@ struct Gather {
     std::vector<ClusterWeight>& weights;
     std::vector<std::size_t> near;  // places in `weights`
 
-    bool may_take(std::size_t v, const ClusterNode& node) const {
+    bool may_take(const ClusterNode& node) const {
         const BoxDistance d = box_distance(node, position);
         if (d.nearest < near_squared) {
             return false;
         }
         const std::array<float, 3> most = eval_far(profile, d.nearest);
         const std::array<float, 3> least = eval_far(profile, d.farthest);
-        const float norm = tree.sums.norm[v];
-        return norm * (most[0] - least[0]) <= allowed[0] &&
-               (profile.bands == 1 || (norm * (most[1] - least[1]) <= allowed[1] &&
-                                       norm * (most[2] - least[2]) <= allowed[2]));
+        return node.norm * (most[0] - least[0]) <= allowed[0] &&
+               (profile.bands == 1 || (node.norm * (most[1] - least[1]) <= allowed[1] &&
+                                       node.norm * (most[2] - least[2]) <= allowed[2]));
     }
 
     void visit() {
@@ -57,7 +56,7 @@ struct Gather {
         while (height > 0) {
             const std::uint32_t v = stack[--height];
             const ClusterNode& node = tree.nodes[v];
-            if (may_take(v, node)) {
+            if (may_take(node)) {
                 weights.push_back({v, eval_far(profile, squared_distance(position, node.centre))});
             } else if (node.right != 0) {
                 stack[height++] = node.right;
@@ -95,27 +94,17 @@ struct Gather {
     }
 };
 
-// Of a node's or a sample's vector.
-struct Entries {
-    const std::uint32_t* index;
-    const float* value;
-    std::size_t count;
-};
-
-Entries entries_of(const ClusterTree& tree, const ClusterWeight& w) {
+// Of a node or a sample.
+SparseVector entries_of(const ClusterTree& tree, const ClusterWeight& w) {
     const std::size_t nodes = tree.nodes.size();
-    const SparseVectors& vectors = w.id < nodes ? tree.sums : tree.samples;
-    const std::size_t v = w.id < nodes ? w.id : w.id - nodes;
-    const std::uint64_t first = vectors.offset[v];
-    return {vectors.index.data() + first, vectors.value.data() + first,
-            vectors.offset[v + 1] - first};
+    return w.id < nodes ? tree.sums[w.id] : tree.samples[w.id - nodes];
 }
 
 // Adds them to sums as wide as the weight: of one band, or of several at once.
 template <class Weight>
-void add_entries(const Entries& entries, Weight weight, float* sums) {
+void add_entries(const SparseVector& entries, Weight weight, float* sums) {
     constexpr std::size_t kWidth = sizeof(Weight) / sizeof(float);
-    for (std::size_t i = 0; i < entries.count; ++i) {
+    for (std::size_t i = 0; i < entries.index.size(); ++i) {
         float* const place = sums + kWidth * entries.index[i];
         Weight sum;
         std::memcpy(&sum, place, sizeof sum);

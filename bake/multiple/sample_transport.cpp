@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/receivers/kd_order.h"
@@ -48,12 +49,17 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
     const std::size_t texels = formats::cubemap_texels(n);
     const std::size_t together = options.share_rays ? kSamplesPerGroup : 1;
     SampleTransport result;
+    struct Part {
+        SparseVectors::Block rows;
+        std::vector<float> mean, norm;
+        std::uint64_t rays = 0;
+    };
+    static_assert(SparseVectors::kPerBlock % kSamplesPerGroup == 0);
     for_each_block_in_order(
-        samples.size(), 4 * kSamplesPerGroup, context,
+        samples.size(), SparseVectors::kPerBlock, context,
         [&](Range range) {
-            SampleTransport part;
-            reserve(part.rows,
-                    (range.end - range.begin) * std::min<std::size_t>(options.kept, texels));
+            Part part;
+            reserve(part.rows, std::min<std::size_t>(options.kept, texels));
             std::vector<Receiver> group;
             std::vector<float> dense;
             for (std::size_t s = range.begin; s < range.end; s += group.size()) {
@@ -71,14 +77,17 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
                     const std::span<float> own = std::span(dense).subspan(i * texels, texels);
                     part.mean.push_back(mean_over_sphere(own, solid_angle));
                     formats::haar_forward_cube(own, n);
-                    append_truncated(part.rows, own, options.kept);
+                    part.norm.push_back(norm(own));
+                    append_truncated(part.rows, own, options.kept, samples[s + i].area);
                 }
             }
+            shrink(part.rows);
             return part;
         },
-        [&](Range range, const SampleTransport& part) {
-            append_vectors(result.rows, part.rows);
+        [&](Range range, Part&& part) {
+            result.rows.blocks.push_back(std::move(part.rows));
             result.mean.insert(result.mean.end(), part.mean.begin(), part.mean.end());
+            result.norm.insert(result.norm.end(), part.norm.begin(), part.norm.end());
             result.rays += part.rays;
             if (context.on_progress) {
                 context.on_progress({"samples", range.end, samples.size()});

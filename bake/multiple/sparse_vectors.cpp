@@ -30,7 +30,8 @@ double sum_of_squares(std::span<const float> values) {
 
 }  // namespace
 
-void append_truncated(SparseVectors& vectors, std::span<const float> dense, std::size_t kept) {
+void append_truncated(SparseVectors::Block& block, std::span<const float> dense, std::size_t kept,
+                      float scale) {
     const std::size_t face = dense.size() / 6;
     std::vector<float> score(dense.size());
     for (std::size_t k = 0; k < dense.size(); ++k) {
@@ -40,26 +41,24 @@ void append_truncated(SparseVectors& vectors, std::span<const float> dense, std:
         score[k] = std::numeric_limits<float>::max();
     }
     for (const std::uint32_t k : find_largest(score, std::max<std::size_t>(kept, 6))) {
-        vectors.index.push_back(k);
-        vectors.value.push_back(dense[k]);
+        block.index.push_back(k);
+        block.value.push_back(scale * dense[k]);
     }
-    vectors.offset.push_back(vectors.index.size());
-    vectors.norm.push_back(static_cast<float>(std::sqrt(sum_of_squares(dense))));
+    block.offset.push_back(static_cast<std::uint32_t>(block.index.size()));
 }
 
-void reserve(SparseVectors& vectors, std::size_t entries) {
-    vectors.index.reserve(entries);
-    vectors.value.reserve(entries);
+void reserve(SparseVectors::Block& block, std::size_t entries) {
+    block.index.reserve(SparseVectors::kPerBlock * entries);
+    block.value.reserve(SparseVectors::kPerBlock * entries);
 }
 
-void append_vectors(SparseVectors& vectors, const SparseVectors& tail) {
-    const std::uint64_t base = vectors.index.size();
-    for (std::size_t i = 1; i < tail.offset.size(); ++i) {
-        vectors.offset.push_back(base + tail.offset[i]);
-    }
-    vectors.index.insert(vectors.index.end(), tail.index.begin(), tail.index.end());
-    vectors.value.insert(vectors.value.end(), tail.value.begin(), tail.value.end());
-    vectors.norm.insert(vectors.norm.end(), tail.norm.begin(), tail.norm.end());
+void shrink(SparseVectors::Block& block) {
+    block.index.shrink_to_fit();
+    block.value.shrink_to_fit();
+}
+
+float norm(std::span<const float> dense) {
+    return static_cast<float>(std::sqrt(sum_of_squares(dense)));
 }
 
 }  // namespace opaline::bake

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bake/plan/plan_rules.h"
+#include "bake/receivers/kd_order.h"
 #include "bake/scattering/dipole.h"
 #include "formats/media/mean_cosine.h"
 #include "formats/opal/cubemap.h"
@@ -88,7 +89,6 @@ double expected_samples(const formats::Medium& medium, double area, const Knobs&
 double count_weights(const formats::Medium& medium, const MaterialFacts& facts, double samples,
                      double tolerance) {
     constexpr double kWidth = 1.2;      // gather_profile.cpp: of the profile, in spacings
-    constexpr double kLeaf = 5.7;       // samples, 4 to 8
     constexpr double kRounding = 1.44;  // nodes have 1/2 to 1 of the area that would do
     const double sample_area = facts.area / samples;
     const double reach = std::sqrt(facts.area / pi);
@@ -130,7 +130,7 @@ double count_weights(const formats::Medium& medium, const MaterialFacts& facts, 
         }
         const double taken = patch / kRounding;
         count += pi * (outer * outer - inner * inner) /
-                 (taken < kLeaf * sample_area ? sample_area : taken);
+                 (taken < kSamplesPerLeaf * sample_area ? sample_area : taken);
     }
     return std::min(count, samples);
 }
@@ -174,8 +174,8 @@ Work samples_work(const CostInput& input, const formats::Medium& medium, const M
                                            : rates.shared_texel.at(input.triangles);
     work.shared += samples * own * (seen + rates.truncate_texel);
     // build_cluster_tree: each level adds all samples up; each node is truncated.
-    const double levels = std::max(1.0, std::ceil(std::log2(samples / 8)) + 1);
-    const double nodes = std::exp2(levels);
+    const double levels = std::max(1.0, std::ceil(std::log2(samples / kSamplesPerLeaf)) + 1);
+    const double nodes = 2 * samples / kSamplesPerLeaf;
     work.shared += samples * levels * kept_by_samples(knobs) * rates.sum_entry +
                    nodes * own * rates.truncate_texel;
     return work;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bake/receivers/surface_samples.h"
 
@@ -43,11 +44,12 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
     stage.profile = make_gather_profile(stage.medium, std::sqrt(per_sample), scene_diagonal(scene),
                                         options.bands);
-    stage.transport = bake_sample_transport(
+    SampleTransport transport = bake_sample_transport(
         rays, samples, {options.cubemap_size, options.kept, stage.medium.eta, options.share_rays},
         context);
+    stage.rays = transport.rays;
     if (!context.cancelled()) {
-        stage.tree = build_cluster_tree(samples, stage.transport, options.cubemap_size,
+        stage.tree = build_cluster_tree(samples, std::move(transport), options.cubemap_size,
                                         options.kept, context);
     }
     return stage;

@@ -17,8 +17,8 @@ namespace opaline::bake {
 struct MultipleStage {
     MediumProfile medium;
     GatherProfile profile;  ///< of the medium, for these samples
-    SampleTransport transport;
     ClusterTree tree;
+    std::uint64_t rays = 0;  ///< traced
 };
 
 struct MultipleOptions {

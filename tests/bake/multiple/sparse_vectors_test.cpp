@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace opaline::bake {
@@ -12,12 +13,12 @@ using testing::ElementsAre;
 TEST(SparseVectors, KeepsAveragesAndTheLargestEntries) {
     std::vector<float> dense(24, 0.0f);  // faces of four entries
     dense[1] = 3, dense[2] = -5, dense[9] = 4, dense[8] = 0.1f;
-    SparseVectors vectors;
-    append_truncated(vectors, dense, 8);
-    EXPECT_THAT(vectors.index, ElementsAre(0, 2, 4, 8, 9, 12, 16, 20));
-    EXPECT_EQ(vectors.value[1], -5);
-    EXPECT_EQ(vectors.value[3], 0.1f);
-    EXPECT_FLOAT_EQ(vectors.norm[0], std::sqrt(9 + 25 + 16 + 0.01f));
+    SparseVectors::Block block;
+    append_truncated(block, dense, 8, 2);
+    EXPECT_THAT(block.index, ElementsAre(0, 2, 4, 8, 9, 12, 16, 20));
+    EXPECT_EQ(block.value[1], -10);
+    EXPECT_EQ(block.value[3], 0.2f);
+    EXPECT_FLOAT_EQ(norm(dense), std::sqrt(9 + 25 + 16 + 0.01f));
 }
 
 TEST(SparseVectors, DroppedSquaresAreTheErrorAndFallWithTheNumberKept) {
@@ -27,7 +28,7 @@ TEST(SparseVectors, DroppedSquaresAreTheErrorAndFallWithTheNumberKept) {
     }
     double before = 1e9;
     for (const std::size_t kept : {6u, 20u, 50u, 96u, 200u}) {
-        SparseVectors vectors;
+        SparseVectors::Block vectors;
         append_truncated(vectors, dense, kept);
         double error = 0;
         std::vector<float> back(dense.size(), 0.0f);
@@ -43,18 +44,27 @@ TEST(SparseVectors, DroppedSquaresAreTheErrorAndFallWithTheNumberKept) {
     EXPECT_EQ(before, 0);
 }
 
-TEST(SparseVectors, PartsAppendToTheWhole) {
-    std::vector<float> a(12, 1.0f), b(12, 2.0f);
-    SparseVectors whole, head, tail;
-    append_truncated(whole, a, 12);
-    append_truncated(whole, b, 8);
-    append_truncated(head, a, 12);
-    append_truncated(tail, b, 8);
-    append_vectors(head, tail);
-    EXPECT_EQ(head.offset, whole.offset);
-    EXPECT_EQ(head.index, whole.index);
-    EXPECT_EQ(head.value, whole.value);
-    EXPECT_EQ(head.norm, whole.norm);
+TEST(SparseVectors, EachIsFoundInItsBlock) {
+    SparseVectors vectors;
+    constexpr std::size_t kCount = 2 * SparseVectors::kPerBlock + 3;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        if (i % SparseVectors::kPerBlock == 0) {
+            EXPECT_EQ(vectors.size(), i);
+            reserve(vectors.blocks.emplace_back(), 7);
+        }
+        std::vector<float> dense(12);
+        dense[1 + i % 11] = static_cast<float>(i + 1);
+        append_truncated(vectors.blocks.back(), dense, 7);
+        shrink(vectors.blocks.back());
+    }
+    ASSERT_EQ(vectors.size(), kCount);
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const SparseVector vector = vectors[i];
+        ASSERT_EQ(vector.index.size(), vector.value.size());
+        const auto largest = std::ranges::max_element(vector.value) - vector.value.begin();
+        EXPECT_EQ(vector.value[static_cast<std::size_t>(largest)], static_cast<float>(i + 1));
+        EXPECT_EQ(vector.index[static_cast<std::size_t>(largest)], 1 + i % 11);
+    }
 }
 
 }  // namespace
