@@ -91,8 +91,8 @@ struct PilotChoice {
     Knobs knobs;              ///< the cheapest that meet the target; if none do, the cheapest that
                               ///< err by hardly more than the finest
     double error = 0;         ///< expected, relative RMS
-    double likely = 0;        ///< upper end of its 95 % interval
-    bool met = false;         ///< `likely` is not above knobs.error_target
+    double likely = 0;        ///< one standard error above that
+    bool met = false;         ///< it is likely that knobs.error_target is
     double finest_error = 0;  ///< with all coefficients and the finest knobs
     double smooth_error = 0;  ///< the same, of lights without suns
     std::vector<PilotTrial> trials;
