@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "bake/pilot/choose_encoding.h"
 #include "bake/pilot/opaque_pairs.h"
 #include "bake/pilot/pilot_rows.h"
 
@@ -14,9 +14,6 @@ namespace {
 // Parts of the target's square that the tolerance and the single scattering's samples may take;
 // what is left is for coefficients, which cost most bytes.
 constexpr double kShareOfTolerance = 0.1, kShareOfSingle = 0.1;
-
-// Where the target is out of reach: coefficients that lower the error by less cost bytes in vain.
-constexpr double kHardlyMore = 1.05;
 
 constexpr std::array<double, 5> kTolerances{1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
 constexpr double kFinestTolerance = 3e-5;
@@ -28,15 +25,6 @@ constexpr std::array<SingleLevel, 3> kSingleLevels{{{4, 8}, {6, 16}, {10, 16}}};
 double square_error(std::span<const CheckedPair> pairs) {
     const double rms = relative_rms(pairs);
     return rms * rms;
-}
-
-// The width of a 95 % interval is four standard errors. To within one of them an error is likely.
-// The self-check looks at about as many other receivers: two of their difference make it sure.
-double likely_error(const ErrorBounds& bounds) {
-    return bounds.rms + 0.25 * (bounds.highest - bounds.lowest);
-}
-double sure_error(const ErrorBounds& bounds) {
-    return bounds.rms + std::numbers::sqrt2 * 0.5 * (bounds.highest - bounds.lowest);
 }
 
 // Pairs of the lights without suns alone.
@@ -120,38 +108,27 @@ struct Trials {
         single = std::move(finest);
     }
 
-    void choose_encoding(const RowSetting& setting) {
+    void choose_coefficients(const RowSetting& setting) {
         const Knobs& knobs = choice.knobs;
         const std::vector<Encoding> encodings = list_encodings(knobs);
         const auto pairs = measure(setting, encodings);
         if (context.cancelled()) {
             return;
         }
-        double least = 0;
         std::vector<ErrorBounds> errors;
-        for (std::size_t e = 0; e < encodings.size() && (e == 0 || least > target); ++e) {
+        bool is_sure = false;
+        for (std::size_t e = 0; e < encodings.size() && !is_sure; ++e) {
             errors.push_back(bound_error(pairs[e], lights.size(), knobs.seed));
             choice.trials.push_back({"coefficients", static_cast<double>(encodings[e].coefficients),
                                      errors[e].rms, encodings[e].code_bits});
-            least = e == 0 ? sure_error(errors[e]) : std::min(least, sure_error(errors[e]));
+            is_sure = sure_error(errors[e]) <= target;
         }
-        // More coefficients make sure, at the price of bytes; samples and texels cost time, and are
-        // refined only where it is not even likely that these will do.
-        const double enough = least <= target ? target : kHardlyMore * least;
-        const auto is_likely = [&](const ErrorBounds& b) { return likely_error(b) <= target; };
-        auto chosen = std::find_if(errors.begin(), errors.end(),
-                                   [&](const ErrorBounds& b) { return sure_error(b) <= enough; });
-        if (!is_likely(*chosen)) {
-            const auto likely = std::find_if(errors.begin(), errors.end(), is_likely);
-            chosen = likely != errors.end() ? likely : chosen;
-        }
-        const Encoding& encoding =
-            encodings[static_cast<std::size_t>(std::distance(errors.begin(), chosen))];
-        choice.knobs.coefficients = encoding.coefficients;
-        choice.knobs.code_bits = encoding.code_bits;
-        choice.error = chosen->rms;
-        choice.likely = likely_error(*chosen);
-        choice.met = is_likely(*chosen);
+        const std::size_t chosen = choose_encoding(errors, target);
+        choice.knobs.coefficients = encodings[chosen].coefficients;
+        choice.knobs.code_bits = encodings[chosen].code_bits;
+        choice.error = errors[chosen].rms;
+        choice.likely = likely_error(errors[chosen]);
+        choice.met = choice.likely <= target;
     }
 };
 
@@ -183,7 +160,7 @@ PilotChoice choose_row_knobs(const PilotScene& pilot, std::span<const PilotRecei
     trials.choice.knobs.tolerance = setting.tolerance;
     trials.choice.knobs.depth_samples = setting.depth_samples;
     trials.choice.knobs.single_cubemap = setting.single_cubemap;
-    trials.choose_encoding(setting);
+    trials.choose_coefficients(setting);
     return std::move(trials.choice);
 }
 

@@ -77,7 +77,7 @@ formats::Result<Knobs> resolve_knobs(const BakeOptions& options) {
                               "give a relative RMS, such as 0.02 for 2 %");
         }
         knobs.error_target = options.error;
-        knobs.cubemap_size = 16;
+        knobs.cubemap_size = options.error < 0.03 ? 16 : 8;
         knobs.coefficients = expected_coefficients(options.error);
         knobs.phase_tolerance = 0.5 * options.error;
         if (options.error < 0.03) {

@@ -37,7 +37,7 @@ function logAxis(axis, title, format, values) {
   };
 }
 
-// Names beside the marks of datasets that ask for them.
+// Names beside the marks of datasets that ask for them: below where another name stands above.
 const nameMarks = {
   id: 'nameMarks',
   afterDatasetsDraw(chart) {
@@ -45,13 +45,16 @@ const nameMarks = {
     ctx.save();
     ctx.font = `600 13px ${Chart.defaults.font.family}`;
     ctx.textBaseline = 'bottom';
+    const height = 16, taken = [];
     chart.data.datasets.forEach((dataset, d) => {
       if (!dataset.named || !chart.isDatasetVisible(d)) return;
       chart.getDatasetMeta(d).data.forEach((mark, i) => {
         const name = dataset.data[i].name;
-        const right = mark.x + 12 + ctx.measureText(name).width < chartArea.right;
-        ctx.textAlign = right ? 'left' : 'right';
-        const x = mark.x + (right ? 10 : -10), y = mark.y - 6;
+        const { width } = ctx.measureText(name);
+        const x = mark.x + 12 + width < chartArea.right ? mark.x + 10 : mark.x - 10 - width;
+        const meets = y => taken.some(t => x < t.x + t.width && t.x < x + width && Math.abs(y - t.y) < height);
+        const y = [-6, 6 + height, -6 - height].map(step => mark.y + step).find(at => !meets(at)) ?? mark.y - 6;
+        taken.push({ x, y, width });
         ctx.lineWidth = 4;
         ctx.strokeStyle = '#ffffff';
         ctx.strokeText(name, x, y);
