@@ -12,9 +12,19 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kReceivers = 256, kFewest = 4, kStep = 4, kTruth = 2;
+constexpr std::uint32_t kReceivers = 256, kFewestReceivers = 16;
+constexpr std::uint32_t kFewest = 4, kStep = 4, kTruth = 2;
 // Large lamps: a sun alone is hardly ever found from within a body that refracts.
 constexpr const char* kLight = "studio";
+
+// Of how many receivers there is time for the first two rungs and their truth, given what the first
+// rung of the fewest took: walks in clear, dense media are long.
+std::uint32_t count_affordable(double few_seconds, double seconds) {
+    const double each = few_seconds * kStep * (1 + kTruth) / kFewestReceivers;
+    return each * kReceivers <= seconds
+               ? kReceivers
+               : std::max(kFewestReceivers, static_cast<std::uint32_t>(seconds / each));
+}
 
 }  // namespace
 
@@ -48,13 +58,21 @@ formats::Result<std::optional<ReferenceLadder>> climb_reference(
     }
     const LightSampler sampler = make_light_sampler(*light, glm::mat3(1.0f));
     const PathSpace space{*scene, sampler, {}};
-    const auto receivers = choose_receivers(*scene, kReceivers, options.seed, std::nullopt);
+    EstimateOptions wanted;
+    wanted.seed = options.seed;
+    wanted.samples = kFewest;
+    const auto few = estimate_luminance(
+        space, choose_receivers(*scene, kFewestReceivers, options.seed, std::nullopt), wanted,
+        context);
+    if (!few) {
+        return few.error();
+    }
+    const auto receivers = choose_receivers(*scene, count_affordable(few->seconds, options.seconds),
+                                            options.seed, std::nullopt);
 
     ReferenceLadder ladder{kLight, static_cast<std::uint32_t>(receivers.size()), 0, {}};
     std::vector<std::vector<Moments>> climbed;
     std::vector<Moments> moments(receivers.size());
-    EstimateOptions wanted;
-    wanted.seed = options.seed;
     double seconds = 0;
     // The next rung takes kStep times as long as all so far, its truth kTruth times that.
     for (std::uint32_t samples = kFewest;

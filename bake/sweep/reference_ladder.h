@@ -28,7 +28,8 @@ struct ReferenceLadder {
 };
 
 struct ReferenceLadderOptions {
-    double seconds = 10;  ///< about; the first two rungs are climbed whatever they take
+    double seconds = 10;  ///< about; the first two rungs are climbed whatever they take,
+                          ///< of 16 receivers where there is no time for 256
     std::uint32_t most_samples = 65536;  ///< nor are there more than these, for each receiver
     std::uint64_t seed = 0;
 };

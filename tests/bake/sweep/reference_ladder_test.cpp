@@ -70,10 +70,12 @@ TEST(ReferenceLadder, TruthsOwnNoiseIsSubtracted) {
     EXPECT_NEAR(found.stated, 0.3 / std::sqrt(1 - 0.16), 1e-12);
 }
 
-TEST(ReferenceLadder, WithoutTimeThereAreTwoRungsAndWithoutLightNone) {
+TEST(ReferenceLadder, WithoutTimeThereAreTwoRungsOfFewReceiversAndWithoutLightNone) {
     ReferenceLadderOptions hurried;
     hurried.seconds = 0;
-    EXPECT_EQ(climb_reference(milky_ball(), hurried, {}).value()->rungs.size(), 2u);
+    const auto two = climb_reference(milky_ball(), hurried, {}).value();
+    EXPECT_EQ(two->rungs.size(), 2u);
+    EXPECT_EQ(two->receivers, 16u) << "nor more receivers than it takes";
     formats::Scene black = ball_on_a_floor();
     black.materials[0].base_color = {0, 0, 0};
     ReferenceLadderOptions few;
