@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "bake/calibration/stopwatch.h"
-#include "bake/measure/truth.h"
-#include "bake/multiple/gather_multiple.h"
+#include "bake/effects/multiple/gather_multiple.h"
+#include "bake/effects/multiple/true_multiple.h"
 #include "bake/receivers/spatial_order.h"
 #include "bake/receivers/surface_samples.h"
-#include "bake/single/gather_direction.h"
-#include "bake/single/light_maps.h"
-#include "bake/single/texel_directions.h"
-#include "bake/translucent/translucent_rows.h"
+#include "bake/effects/single/gather_direction.h"
+#include "bake/effects/single/light_maps.h"
+#include "bake/effects/single/single.h"
+#include "bake/effects/single/texel_directions.h"
+#include "bake/effects/single/true_single.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -71,15 +72,8 @@ std::vector<BodyPoint> neighbours_together(std::span<const BodyPoint> points) {
 }
 
 // Reading a receiver's terms out of the packed rows of many.
-double measure_unpacking(const RayScene& rays) {
+double measure_unpacking() {
     constexpr std::uint32_t kCoarse = 16, kTerms = 4;
-    TranslucentRecipe recipe;
-    recipe.layout.translucent = true;
-    recipe.layout.single_terms = kTerms;
-    recipe.selector.cubemap_size = kCalibrationCubemap;
-    SingleStage stage;
-    stage.directions.cubemap_size = kCoarse;
-    recipe.single = &stage;
     SingleBatch batch;
     const std::uint32_t texels = static_cast<std::uint32_t>(formats::cubemap_texels(kCoarse));
     constexpr std::uint32_t kReceivers = 64;
@@ -97,10 +91,13 @@ double measure_unpacking(const RayScene& rays) {
         texel.insert(texel.end(), {words[0], words[1]});
     }
     packed.packed.assign(texels, texel);
-    std::vector<float> rows(std::size_t{3} * kTerms * formats::cubemap_texels(kCalibrationCubemap));
+    std::vector<float> values(std::size_t{3} * kTerms *
+                              formats::cubemap_texels(kCalibrationCubemap));
+    const DenseRow row{values, kCalibrationCubemap, kTerms, 3};
     const Stopwatch watch;
     for (std::uint32_t r = 0; r < kReceivers; ++r) {
-        assemble_rows(recipe, rays, {}, {}, &batch, r, rows);
+        std::fill(values.begin(), values.end(), 0.0f);
+        add_single(batch, r, kCoarse, 0, row);
     }
     return watch.seconds() / (double{kReceivers} * kTerms * texels);
 }
@@ -218,7 +215,7 @@ void calibrate_single(const CalibrationBench& bench, bool is_many, Rates& rates)
         const SingleMedium forward = make_single_medium(bench.scene, 0, 6, four);
         const double with_four = std::max(0.0, time_directions(list, forward, size) - view) / nodes;
         rates.look_up_term = std::max(0.0, with_four - looked) / 3;
-        rates.unpack_texel = measure_unpacking(bench.rays);
+        rates.unpack_texel = measure_unpacking();
     }
 }
 
@@ -226,7 +223,10 @@ void calibrate_check(const CalibrationBench& bench, bool is_many, std::span<cons
                      Rates& rates) {
     const MediumProfile medium =
         make_medium_profile(*bench.scene.materials[0].medium, 0, one_thread());
-    const TranslucentTruth truth = make_translucent_truth(bench.scene, 0, &medium, 4, lights);
+    const SurfaceIntegral integral = make_surface_integral(bench.scene, 0, medium);
+    const SingleQuadrature quadrature = make_single_quadrature(bench.scene, 0, 4, lights);
+    const SunRays suns = make_sun_rays(lights, 4);
+    const SmoothLights smooth = make_smooth_lights(lights);
     constexpr std::uint32_t kPoints = 256;
     double split = 0, point_rays = 0, single = 0, packets = 0;
     const auto points = thinned(std::span<const BodyPoint>(bench.points), 8);
@@ -234,18 +234,18 @@ void calibrate_check(const CalibrationBench& bench, bool is_many, std::span<cons
     for (std::uint32_t i = 0; i < points.size(); ++i) {
         const auto integrate = [&](std::uint32_t count) {
             const Stopwatch watch;
-            integrate_multiple(*truth.multiple, bench.scene, bench.rays, truth.suns, truth.smooth,
-                               points[i].position, count, 0, i, traced);
+            integrate_multiple(integral, {bench.scene, bench.rays, suns, smooth, count},
+                               points[i].position, {0, i}, traced);
             return watch.seconds();
         };
         const double without = integrate(0);
         split += without;
         point_rays += std::max(0.0, integrate(kPoints) - without);
         const Stopwatch watch;
-        integrate_single(*truth.single, bench.rays, points[i], traced);
+        integrate_single(quadrature, bench.rays, points[i], traced);
         single += watch.seconds();
-        packets += 4.0 * static_cast<double>(truth.single->directions.blocks.size() +
-                                             truth.single->suns.packets.size());
+        packets += 4.0 * static_cast<double>(quadrature.directions.blocks.size() +
+                                             quadrature.suns.packets.size());
     }
     const auto count = static_cast<double>(points.size());
     (is_many ? rates.entry_packet.many : rates.entry_packet.few) = single / packets;

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "bake/measure/test_lights.h"
+#include "bake/truth/test_lights.h"
 #include "bake/calibration/calibration_bench.h"
 
 namespace opaline::bake {

@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "bake/encode/select_coefficients.h"
-#include "bake/measure/test_lights.h"
-#include "bake/plan/bake_plan.h"
+#include "bake/truth/test_lights.h"
 #include "bake/calibration/calibrate_media.h"
 #include "bake/calibration/calibration_bench.h"
-#include "bake/plan/inspect_scene.h"
-#include "bake/plan/stage_costs.h"
+#include "bake/scene/inspect_scene.h"
+#include "bake/plan/stage_work.h"
+#include "bake/scattering/half_space_medium.h"
 #include "bake/calibration/stopwatch.h"
-#include "bake/receivers/orient_bodies.h"
+#include "bake/scene/orient_bodies.h"
 #include "bake/scattering/half_space_walk.h"
-#include "bake/specular/bake_openness.h"
-#include "bake/visibility/irradiance_transport.h"
+#include "bake/transport/bake_openness.h"
+#include "bake/transport/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 
@@ -128,7 +128,7 @@ Rates measure_all(std::span<const TestLight> lights, unsigned threads) {
             orient_bodies(bench.scene);
             rates.orient_triangle = watch.seconds() / bench.triangles;
             watch.restart();
-            plan_bake(bench.scene, inspect_scene(bench.scene), {});
+            inspect_scene(bench.scene);
             rates.plan_triangle = watch.seconds() / bench.triangles;
             rates.crowding = measure_crowding(bench, threads);
         }

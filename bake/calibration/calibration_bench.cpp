@@ -4,7 +4,8 @@
 
 #include "bake/calibration/dented_ball.h"
 #include "bake/calibration/stopwatch.h"
-#include "bake/visibility/hidden_receivers.h"
+#include "bake/receivers/body_points.h"
+#include "bake/transport/hidden_receivers.h"
 
 namespace opaline::bake {
 

@@ -9,8 +9,8 @@
 #include "bake/plan/rates.h"
 #include "bake/receivers/receiver.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/single/body.h"
-#include "bake/visibility/ray_scene.h"
+#include "bake/transport/body.h"
+#include "bake/transport/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

@@ -15,10 +15,10 @@
 #include "bake/cli/progress.h"
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
-#include "bake/pipeline.h"
-#include "bake/plan/inspect_scene.h"
-#include "bake/plan/savings.h"
-#include "bake/plan/unmet_requests.h"
+#include "bake/effects/effects.h"
+#include "bake/pipeline/pipeline.h"
+#include "bake/pipeline/savings.h"
+#include "bake/pipeline/unmet_requests.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/write_opal.h"
 
@@ -76,11 +76,14 @@ formats::Status write_output(std::optional<formats::AtomicFile>& file, std::stri
 // of the knobs that were used.
 Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
                    const MachineRates& machine, bake::BakeResult& result) {
-    const bake::SceneFacts facts = bake::inspect_scene(scene);
-    std::vector<bake::PlanEntry> first = bake::plan_bake(scene, facts, wanted);
-    bake::predict_costs(scene, facts, result.knobs, machine.rates, result.threads, result.plan);
-    bake::predict_savings(scene, facts, result.knobs, machine.rates, result.threads, result.plan);
-    return {bake::predict_costs(scene, facts, wanted, machine.rates, result.threads, first),
+    const bake::EffectTable& effects = bake::all_effects();
+    const bake::CostRequest used{effects,      scene,         result.facts,
+                                 result.knobs, machine.rates, result.threads};
+    bake::predict_costs(used, result.plan);
+    bake::predict_savings(used, result.plan);
+    std::vector<bake::PlanEntry> first = bake::plan_bake(effects, scene, result.facts, wanted);
+    return {bake::predict_costs(
+                {effects, scene, result.facts, wanted, machine.rates, result.threads}, first),
             machine.note};
 }
 
@@ -90,7 +93,7 @@ int run(const Options& options) {
     if (!wanted) {
         return report_error(wanted.error());
     }
-    const auto knobs = bake::resolve_knobs(*wanted);
+    const auto knobs = bake::resolve_knobs(bake::all_effects(), *wanted);
     if (!knobs) {
         return report_error(knobs.error());
     }
@@ -99,7 +102,7 @@ int run(const Options& options) {
     if (!imported) {
         return report_error(imported.error());
     }
-    if (auto status = bake::check_effects(imported->scene, *knobs); !status) {
+    if (auto status = bake::check_effects(bake::all_effects(), imported->scene, *knobs); !status) {
         return report_error(status.error());
     }
     for (const std::string* path : {&options.output, &options.report, &options.depfile}) {
@@ -123,7 +126,7 @@ int run(const Options& options) {
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
     context.on_progress = make_progress_printer(options.progress);
-    auto result = bake::run_bake(imported->scene, *knobs, context);
+    auto result = bake::run_bake(bake::all_effects(), imported->scene, *knobs, context);
     if (!result) {
         return report_error(result.error());
     }
@@ -135,7 +138,9 @@ int run(const Options& options) {
                                     ? std::filesystem::file_size(options.output, ignored)
                                     : 0;
     for (formats::Diagnostic& unmet :
-         bake::describe_unmet(imported->scene, *wanted, result->knobs, result->plan)) {
+         bake::describe_unmet({bake::all_effects(), imported->scene, result->facts, result->knobs,
+                               result->plan},
+                              *wanted)) {
         result->warnings.push_back(std::move(unmet));
     }
     std::vector<formats::Diagnostic> warnings = imported->warnings;

@@ -9,10 +9,11 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
-#include "bake/plan/inspect_scene.h"
-#include "bake/plan/savings.h"
-#include "bake/plan/unmet_requests.h"
-#include "bake/receivers/orient_bodies.h"
+#include "bake/effects/effects.h"
+#include "bake/scene/inspect_scene.h"
+#include "bake/pipeline/savings.h"
+#include "bake/pipeline/unmet_requests.h"
+#include "bake/scene/orient_bodies.h"
 
 namespace opaline::cli {
 namespace {
@@ -35,11 +36,12 @@ std::vector<formats::Diagnostic> describe_open_media(const formats::Scene& scene
 }
 
 int run(const Options& options) {
+    const bake::EffectTable& effects = bake::all_effects();
     const auto wanted = parse_effects(options.scene);
     if (!wanted) {
         return report_error(wanted.error());
     }
-    const auto knobs = bake::resolve_knobs(*wanted);
+    const auto knobs = bake::resolve_knobs(effects, *wanted);
     if (!knobs) {
         return report_error(knobs.error());
     }
@@ -48,20 +50,20 @@ int run(const Options& options) {
     if (!imported) {
         return report_error(imported.error());
     }
-    if (auto status = bake::check_effects(imported->scene, *knobs); !status) {
+    if (auto status = bake::check_effects(effects, imported->scene, *knobs); !status) {
         return report_error(status.error());
     }
     bake::Context context;
     context.threads = options.scene.bake.threads;
     const unsigned threads = bake::thread_count(context);
     const bake::SceneFacts facts = bake::inspect_scene(imported->scene);
-    auto plan = bake::plan_bake(imported->scene, facts, *knobs);
+    auto plan = bake::plan_bake(effects, imported->scene, facts, *knobs);
     print_warnings(describe_open_media(imported->scene, facts));
-    print_warnings(bake::describe_unmet(imported->scene, *wanted, *knobs, plan));
+    print_warnings(bake::describe_unmet({effects, imported->scene, facts, *knobs, plan}, *wanted));
     const bake::Rates rates = find_machine_rates().rates;
-    const bake::CostPrediction cost =
-        bake::predict_costs(imported->scene, facts, *knobs, rates, threads, plan);
-    bake::predict_savings(imported->scene, facts, *knobs, rates, threads, plan);
+    const bake::CostRequest request{effects, imported->scene, facts, *knobs, rates, threads};
+    const bake::CostPrediction cost = bake::predict_costs(request, plan);
+    bake::predict_savings(request, plan);
     fmt::print("{}", options.json ? make_plan_json(*knobs, plan, cost)
                                   : make_plan_table(*knobs, plan, cost, threads));
     return kExitSuccess;

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/cli/messages.h"
-#include "bake/encode/provenance.h"
+#include "bake/pipeline/provenance.h"
 
 namespace opaline::cli {
 namespace {
@@ -21,8 +21,8 @@ std::string dump(const Json& json) {
 Json plan_array(const std::vector<bake::PlanEntry>& plan) {
     Json array = Json::array();
     for (const bake::PlanEntry& entry : plan) {
-        array.push_back({{"effect", entry.effect},
-                         {"subject", entry.subject},
+        array.push_back({{"effect", entry.name},
+                         {"subject", entry.subject.name},
                          {"decision", entry.on ? "on" : "off"},
                          {"forced", entry.forced},
                          {"reason", entry.reason},
@@ -66,10 +66,9 @@ double take_predicted(std::vector<bake::StageCost>& costs, const std::string& na
 
 Json accuracy_json(const bake::AccuracyReport& accuracy) {
     Json trials = Json::array();
-    for (const auto& [cubemap_size, samples_per_path, trial] : accuracy.trials) {
+    for (const auto& [knobs, trial] : accuracy.trials) {
         trials.push_back(
-            {{"cubemap", cubemap_size},
-             {"samples_per_path", samples_per_path},
+            {{"round", bake::knobs_json(knobs)},
              {"knob", trial.knob},
              {"value", trial.value == bake::kAllCoefficients ? Json("all") : Json(trial.value)},
              {"code_bits", trial.code_bits},
@@ -147,8 +146,8 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
     const std::string everything = "whole scene", rest = "the rest";
     std::size_t widest = everything.size(), widest_effect = rest.size();
     for (const bake::PlanEntry& entry : plan) {
-        widest = std::max(widest, entry.subject.size());
-        widest_effect = std::max(widest_effect, entry.effect.size());
+        widest = std::max(widest, entry.subject.name.size());
+        widest_effect = std::max(widest_effect, entry.name.size());
     }
     std::string table =
         fmt::format("{:<{}} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", "effect", widest_effect,
@@ -159,8 +158,8 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
         const std::string seconds =
             entry.predicted_seconds > 0 ? format_seconds(entry.predicted_seconds) : "-";
         const std::string size = entry.predicted_bytes > 0 ? bytes(entry.predicted_bytes) : "-";
-        table += fmt::format("{:<{}} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.effect,
-                             widest_effect, entry.subject, widest, entry.on ? "on" : "off",
+        table += fmt::format("{:<{}} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.name,
+                             widest_effect, entry.subject.name, widest, entry.on ? "on" : "off",
                              entry.bound, seconds, size, entry.reason + savings_text(entry));
     }
     table += fmt::format("{:<{}} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", rest, widest_effect,

@@ -1,8 +1,11 @@
 #include "bake/cli/scene_options.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <sstream>
+
+#include "bake/effects/effects.h"
 
 namespace opaline::cli {
 namespace {
@@ -23,7 +26,7 @@ std::string quality_help() {
          {Quality::draft, Quality::preview, Quality::production, Quality::reference}) {
         bake::BakeOptions options;
         options.quality = quality;
-        const auto knobs = bake::resolve_knobs(options);
+        const auto knobs = bake::resolve_knobs(bake::all_effects(), options);
         text +=
             std::string(quality == Quality::draft ? " " : ", ") +
             std::string(bake::quality_name(quality)) + " " + std::to_string(knobs->cubemap_size) +
@@ -32,6 +35,33 @@ std::string quality_help() {
                                                            : std::to_string(knobs->coefficients));
     }
     return text;
+}
+
+std::string list_effects(const char* separator) {
+    std::string names;
+    for (const bake::EffectDescriptor& effect : bake::all_effects().effects) {
+        if (!effect.help.empty()) {
+            names += (names.empty() ? "" : separator) + std::string(effect.name);
+        }
+    }
+    return names;
+}
+
+// The option of an effect's knob.
+void add_knob_option(CLI::App& command, const bake::KnobSpec& knob, bake::BakeOptions& options) {
+    const auto take = [&knob, &options](const double& value) { options.set(knob, value); };
+    CLI::Option* const option =
+        command.add_option_function<double>(std::string(knob.option), take, std::string(knob.help));
+    option->option_text(std::string(knob.placeholder));
+    option->check(CLI::Range(knob.lowest, knob.highest));
+    if (knob.whole) {
+        option->check(CLI::Validator(
+            [](const std::string& text) {
+                const bool is_whole = text.find_first_not_of("0123456789") == std::string::npos;
+                return is_whole ? std::string() : text + " is not a whole number";
+            },
+            ""));
+    }
 }
 
 }  // namespace
@@ -48,9 +78,10 @@ void add_subject_options(CLI::App& command, SceneOptions& options) {
     command
         .add_option(
             "--effects", options.effects,
-            "what to simulate: auto, what the scene calls for; all, everything that concerns "
-            "it, however little it adds, and without shortcuts; or a list of effects, of "
-            "which this version has: direct, multiple, single, specular")
+            std::string("what to simulate: auto, what the scene calls for; all, everything that concerns "
+            "it, however little it adds, and without shortcuts; or a list of effects, of ") +
+            "which this version has: " +
+                list_effects(", "))
         ->option_text("auto|all|LIST [auto]");
     command
         .add_option("--seed", options.bake.seed,
@@ -88,30 +119,13 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
                     "quality says")
         ->transform(CLI::Validator(parse_coefficients, ""))
         ->option_text("M");
-    command
-        .add_option("--samples", options.bake.samples,
-                    "samples on the surface of each medium; default: as many as its mean free path "
-                    "asks for, up to a limit that the quality sets")
-        ->check(CLI::Range(100u, 10000000u))
-        ->option_text("N");
-    command
-        .add_option("--epsilon", options.bake.tolerance,
-                    "error that taking a cluster of samples as one may make, as a share of what a "
-                    "half space returns; 0: none; default as the quality says")
-        ->check(CLI::Range(0.0, 1.0))
-        ->option_text("E");
-    command
-        .add_option("--depth-samples", options.bake.depth_samples,
-                    "points along the inward normal at which light is looked for that scatters "
-                    "once; default as the quality says")
-        ->check(CLI::Range(1u, 256u))
-        ->option_text("D");
-    command
-        .add_option("--phase-terms", options.bake.phase_terms,
-                    "terms of the phase function: 1, 4, 9, 16 or 25; default: as many as it and "
-                    "the quality ask for")
-        ->check(CLI::IsMember({1, 4, 9, 16, 25}))
-        ->option_text("K");
+    for (const bake::EffectDescriptor& effect : bake::all_effects().effects) {
+        for (const bake::KnobSpec* knob : effect.knobs) {
+            if (!knob->option.empty()) {
+                add_knob_option(command, *knob, options.bake);
+            }
+        }
+    }
     command.add_flag("--separate-terms", options.bake.separate_terms,
                      "keep multiple scattering apart from single, so that `render --terms` can "
                      "show each");
@@ -128,10 +142,10 @@ void add_error_option(CLI::App& command, SceneOptions& options) {
 }
 
 formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
-    constexpr std::array<std::string_view, 11> kKnown{
-        "direct",    "multiple",      "single",          "interreflection", "emitters", "specular",
-        "filtering", "volume-single", "volume-multiple", "cloud",           "radiosity"};
-    constexpr std::array<std::string_view, 4> kHere{"direct", "multiple", "single", "specular"};
+    // Of later versions; whoever names one should not take it for a slip of the pen.
+    constexpr std::array<std::string_view, 7> kLater{
+        "interreflection", "emitters", "filtering", "volume-single", "volume-multiple",
+        "cloud",           "radiosity"};
     bake::BakeOptions wanted = options.bake;
     if (options.effects == "auto") {
         return wanted;
@@ -142,18 +156,20 @@ formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
     }
     const auto refuse = [](std::string fault) {
         return formats::make_error(formats::ErrorKind::usage, "", "--effects", std::move(fault),
-                                   "give auto, all, or some of direct,multiple,single,specular");
+                                   "give auto, all, or some of " + list_effects(","));
     };
     std::stringstream list(options.effects);
     for (std::string name; std::getline(list, name, ',');) {
-        const auto is_among = [&](const auto& names) {
-            return std::find(names.begin(), names.end(), name) != names.end();
-        };
-        if (!is_among(kHere)) {
+        const auto& here = bake::all_effects().effects;
+        const bool is_here = std::any_of(here.begin(), here.end(), [&](const auto& effect) {
+            return effect.name == name && !effect.help.empty();
+        });
+        if (!is_here) {
+            const bool is_later = std::find(kLater.begin(), kLater.end(), name) != kLater.end();
             return refuse(name == "all" || name == "auto"
                               ? "'" + name + "' stands by itself, not in a list"
-                          : is_among(kKnown) ? "this version does not simulate '" + name + "'"
-                                             : "there is no effect named '" + name + "'");
+                          : is_later ? "this version does not simulate '" + name + "'"
+                                     : "there is no effect named '" + name + "'");
         }
         wanted.effects.push_back(name);
     }

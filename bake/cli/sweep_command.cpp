@@ -15,8 +15,9 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/progress.h"
 #include "bake/cli/scene_options.h"
-#include "bake/sweep/report_page.h"
-#include "bake/sweep/tables.h"
+#include "bake/effects/effects.h"
+#include "bake/accuracy/sweep/report_page.h"
+#include "bake/accuracy/sweep/tables.h"
 #include "formats/opal/atomic_file.h"
 
 namespace opaline::cli {
@@ -100,7 +101,7 @@ int run(const Options& options) {
     context.cancel = &interrupted;
     const auto show = make_progress_printer(options.progress);
     const auto result =
-        bake::run_sweep(imported->scene, wanted, context, [&](const bake::SweepStep& step) {
+        bake::run_sweep(bake::all_effects(), imported->scene, wanted, context, [&](const bake::SweepStep& step) {
             if (show) {
                 show({"sweep", step.done, step.total});
             }

@@ -1,41 +1,85 @@
 #include "bake/plan/bake_plan.h"
 
 #include <algorithm>
+#include <cassert>
 
-#include "bake/plan/plan_rules.h"
+#include "bake/plan/effect.h"
+#include "bake/plan/plan_input.h"
 
 namespace opaline::bake {
+namespace {
 
-std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const SceneFacts& facts,
-                                 const Knobs& knobs) {
-    std::vector<PlanEntry> plan;
+constexpr double kShareOfError = 0.25;  // of the target, for all that is left out of a subject
+
+double least_bound(const EffectTable& effects, const PlanInput& input) {
+    if (!(input.knobs.error_target > 0)) {
+        return kLeastBound;
+    }
+    std::size_t rows = 0;
+    for_each_rule(effects, [&](const EffectDescriptor&, const DecisionRule& rule, std::uint8_t) {
+        rows += rule.concerns(input) ? 1 : 0;
+    });
+    return std::min(kLeastBound, kShareOfError * input.knobs.error_target /
+                                     static_cast<double>(std::max<std::size_t>(1, rows)));
+}
+
+}  // namespace
+
+std::vector<Subject> list_subjects(const formats::Scene& scene, const SceneFacts& facts) {
+    assert(facts.material.size() == scene.materials.size());
+    std::vector<Subject> subjects;
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
-        if (facts.material[m].receivers == 0) {
-            continue;
+        if (facts.material[m].receivers > 0) {
+            subjects.push_back(
+                {Subject::Kind::material, m, "material '" + scene.materials[m].name + "'"});
         }
-        const PlanInput input{scene.materials[m], facts.material[m], knobs};
-        for (const auto& rule : kPlanRules) {
-            if (rule.applies(input)) {
-                PlanEntry entry = rule.decide(input);
-                entry.effect = rule.effect;
-                if (entry.forced) {
-                    entry.reason += "; forced: by its bound it would be left out";
-                }
-                entry.subject = "material '" + input.material.name + "'";
-                entry.material = m;
-                plan.push_back(std::move(entry));
+    }
+    return subjects;
+}
+
+std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scene& scene,
+                                 const SceneFacts& facts, const Knobs& knobs) {
+    std::vector<PlanEntry> plan;
+    for (const Subject& subject : list_subjects(scene, facts)) {
+        PlanInput input{scene.materials[subject.index], facts.material[subject.index], knobs};
+        input.least_bound = least_bound(effects, input);
+        std::vector<PlanEntry> decisions;
+        const auto decide = [&](const EffectDescriptor& effect, const DecisionRule& rule,
+                                std::uint8_t number) {
+            input.earlier = decisions;
+            if (!rule.concerns(input)) {
+                return;
             }
-        }
+            PlanEntry entry = rule.decide(input);
+            entry.effect = effect.id;
+            entry.rule = number;
+            entry.name = rule.name;
+            entry.subject = subject;
+            if (entry.forced) {
+                entry.reason += "; forced: by its bound it would be left out";
+            }
+            decisions.push_back(std::move(entry));
+        };
+        for_each_rule(effects, decide);
+        plan.insert(plan.end(), decisions.begin(), decisions.end());
     }
     return plan;
 }
 
-const PlanEntry* find_entry(const std::vector<PlanEntry>& plan, std::string_view effect,
+const PlanEntry* find_entry(std::span<const PlanEntry> plan, std::string_view name,
                             std::uint32_t material) {
     const auto entry = std::find_if(plan.begin(), plan.end(), [&](const PlanEntry& e) {
-        return e.effect == effect && e.material == material;
+        return e.name == name && e.subject.index == material;
     });
     return entry == plan.end() ? nullptr : &*entry;
+}
+
+std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, std::uint32_t material) {
+    const auto is_own = [&](const PlanEntry& e) { return e.subject.index == material; };
+    const auto first = std::find_if(plan.begin(), plan.end(), is_own);
+    const auto last = std::find_if_not(first, plan.end(), is_own);
+    return plan.subspan(static_cast<std::size_t>(first - plan.begin()),
+                        static_cast<std::size_t>(last - first));
 }
 
 }  // namespace opaline::bake

@@ -1,38 +1,54 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "bake/plan/knobs.h"
-#include "bake/plan/scene_facts.h"
+#include "bake/plan/subject.h"
+#include "bake/scene/scene_facts.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
-/// One decision: an effect, or how much of it (`effect.part`), for a subject (a material).
+/// Identifies an effect; the enumerators stand beside the table (effects/effects.h).
+enum class Effect : std::uint8_t;
+
+/// One decision: an effect, or a part of one, for a subject.
 struct PlanEntry {
-    std::string effect;          ///< design 3, "Effect names"
-    std::string subject;         ///< "material 'Floor'"
-    std::uint32_t material = 0;  ///< index into Scene::materials
+    Effect effect{};
+    std::uint8_t rule = 0;  ///< index into the effect's rules
+    std::string_view name;  ///< the rule's: "single", "single.terms" (design: effect names)
+    Subject subject;
     bool on = false;
-    bool forced = false;           ///< on although the rule would leave it out: Knobs::simulate_all
-    std::string reason;            ///< the rule in words
-    double bound = 0;              ///< largest radiance it can contribute under `white`
-    std::uint32_t terms = 0;       ///< `single.terms`: of the phase function, the first included
-    double predicted_seconds = 0;  ///< filled in by predict_costs (cost_model.h)
+    bool forced = false;  ///< below the bound, but forced on by Knobs::simulate_all
+    bool has_bands = false;    ///< its light differs between red, green and blue
+    bool alternative = false;  ///< it would replace other effects: turning it on is no addition
+    std::string reason;        ///< the rule in words
+    double bound = 0;          ///< largest radiance it can contribute under `white`
+    std::uint32_t terms = 0;  ///< of rules that choose a number of rows: that number; otherwise 0
+    std::uint32_t least_terms = 1;      ///< that number if the rule were on
+    double predicted_seconds = 0;       ///< filled in by predict_costs (cost_model.h)
     std::uint64_t predicted_bytes = 0;  ///< the same; of the rows in the file
     double saved_seconds = 0;           ///< by being off; filled in by predict_savings (savings.h)
     std::uint64_t saved_bytes = 0;      ///< the same; of the rows in the file
 };
 
-/// Decides what to simulate, from the scene alone: traces nothing. `facts`: inspect_scene's.
-std::vector<PlanEntry> plan_bake(const formats::Scene& scene, const SceneFacts& facts,
-                                 const Knobs& knobs);
+/// Decides what to simulate, from the scene alone: traces nothing. Subject by subject, and for each
+/// in the order of the effects and their rules. `facts`: inspect_scene's.
+std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scene& scene,
+                                 const SceneFacts& facts, const Knobs& knobs);
 
-/// The entry of an effect for a material; null: there is none.
-const PlanEntry* find_entry(const std::vector<PlanEntry>& plan, std::string_view effect,
+/// The subjects of a scene: materials that have receivers.
+std::vector<Subject> list_subjects(const formats::Scene& scene, const SceneFacts& facts);
+
+/// The entry of that name for a material; null: there is none.
+const PlanEntry* find_entry(std::span<const PlanEntry> plan, std::string_view name,
                             std::uint32_t material);
+
+/// The entries of one material; they stand together.
+std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, std::uint32_t material);
 
 }  // namespace opaline::bake

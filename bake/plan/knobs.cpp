@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "bake/plan/effect.h"
+#include "bake/plan/plan_input.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -11,45 +14,100 @@ namespace {
 using formats::ErrorKind;
 using formats::make_error;
 
-Knobs preset(Quality quality) {
+// The knobs that belong to no effect. At M = 64, N = 8 has a lower error than N = 16.
+Knobs preset(const EffectTable& effects, Quality quality) {
+    constexpr std::array<std::uint32_t, 4> kCubemap{8, 16, 32, 64};
+    constexpr std::array<std::uint32_t, 4> kCoefficients{64, 128, 1024, kAllCoefficients};
+    const auto q = static_cast<std::size_t>(quality);
     Knobs knobs;
     knobs.quality = quality;
-    switch (quality) {
-        case Quality::draft:
-            // As few coefficients resolve no more texels: they err less of 8 than of 16.
-            knobs.cubemap_size = 8;
-            knobs.coefficients = 64;
-            knobs.samples = 20000;
-            knobs.tolerance = 1e-2;
-            knobs.depth_samples = 4;
-            knobs.phase_tolerance = 0.05;
-            knobs.single_cubemap = 8;
-            return knobs;
-        case Quality::preview:
-            return knobs;
-        case Quality::production:
-            // Twice the cube map would cost four times the rays; what errs is truncation.
-            knobs.cubemap_size = 32;
-            knobs.coefficients = 1024;
-            knobs.samples = 150000;
-            knobs.samples_per_path = 4;
-            knobs.phase_tolerance = 0.01;
-            return knobs;
-        default:
-            knobs.cubemap_size = 64;
-            knobs.coefficients = kAllCoefficients;
-            knobs.code_bits = 16;
-            knobs.samples = 300000;
-            knobs.tolerance = 1e-5;
-            knobs.depth_samples = 16;
-            knobs.phase_tolerance = 1e-3;
-            knobs.single_cubemap = 64;
-            knobs.exact_rays = true;
-            return knobs;
+    knobs.cubemap_size = kCubemap[q];
+    knobs.coefficients = kCoefficients[q];
+    knobs.code_bits = quality == Quality::reference ? 16 : 8;
+    knobs.exact_rays = quality == Quality::reference;
+    for (const EffectDescriptor& effect : effects.effects) {
+        for (const KnobSpec* knob : effect.knobs) {
+            knobs.set(*knob, knob->preset[q]);
+        }
     }
+    return knobs;
+}
+
+formats::Status start_from_target(Knobs& knobs, const EffectTable& effects,
+                                  const BakeOptions& options) {
+    if (!(options.error >= 1e-4 && options.error < 1)) {
+        return make_error(ErrorKind::usage, "", "--error", "the error must be in [0.0001, 1)",
+                          "give a relative RMS, such as 0.02 for 2 %");
+    }
+    knobs.error_target = options.error;
+    knobs.cubemap_size = options.error < 0.03 ? 16 : 8;
+    knobs.coefficients = expected_coefficients(options.error);
+    for (const EffectDescriptor& effect : effects.effects) {
+        for (const KnobSpec* knob : effect.knobs) {
+            if (knob->for_target != nullptr) {
+                knobs.set(*knob, knob->for_target(options.error));
+            }
+        }
+    }
+    return formats::ok_status();
+}
+
+formats::Status take_given(Knobs& knobs, const KnobValues& given) {
+    for (const auto& [knob, value] : given.values) {
+        const auto& allowed = knob->allowed;
+        if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
+            std::string list;
+            for (const double one : allowed) {
+                list += (list.empty() ? "" : ", ") + std::to_string(static_cast<int>(one));
+            }
+            return make_error(ErrorKind::usage, "", std::string(knob->option),
+                              std::to_string(static_cast<long>(value)) + " is not a valid value",
+                              "give one of " + list);
+        }
+        if (!(value >= knob->lowest && value <= knob->highest)) {
+            return make_error(ErrorKind::usage, "", std::string(knob->option),
+                              "the value is out of range", "`opaline bake --help` states it");
+        }
+        knobs.set(*knob, value);
+        knobs.given.push_back(knob);
+    }
+    return formats::ok_status();
 }
 
 }  // namespace
+
+const double* KnobValues::find(const KnobSpec& knob) const {
+    const auto found =
+        std::find_if(values.begin(), values.end(), [&](const Value& v) { return v.knob == &knob; });
+    return found == values.end() ? nullptr : &found->value;
+}
+
+void KnobValues::set(const KnobSpec& knob, double value) {
+    const auto found =
+        std::find_if(values.begin(), values.end(), [&](const Value& v) { return v.knob == &knob; });
+    if (found == values.end()) {
+        values.push_back({&knob, value});
+    } else {
+        found->value = value;
+    }
+}
+
+double Knobs::operator[](const KnobSpec& knob) const {
+    const double* const value = values.find(knob);
+    return value != nullptr ? *value : knob.preset[static_cast<std::size_t>(quality)];
+}
+
+void Knobs::set(const KnobSpec& knob, double value) {
+    values.set(knob, value);
+}
+
+bool Knobs::is_given(const KnobSpec& knob) const {
+    return std::find(given.begin(), given.end(), &knob) != given.end();
+}
+
+std::uint32_t whole(const Knobs& knobs, const KnobSpec& knob) {
+    return static_cast<std::uint32_t>(knobs[knob]);
+}
 
 std::string_view quality_name(Quality quality) {
     constexpr std::array<std::string_view, 4> names{"draft", "preview", "production", "reference"};
@@ -64,53 +122,36 @@ std::uint32_t sample_coefficients(const Knobs& knobs) {
     return std::clamp(knobs.coefficients / 2, std::min(knobs.coefficients, 512u), 4096u);
 }
 
-formats::Result<Knobs> resolve_knobs(const BakeOptions& options) {
-    Knobs knobs = preset(options.quality);
+Knobs settle(Knobs knobs) {
+    for (auto& [knob, value] : knobs.values.values) {
+        if (knob->at_most_cubemap) {
+            value = std::min(value, static_cast<double>(knobs.cubemap_size));
+        }
+    }
+    if (knobs.coefficients >= formats::cubemap_texels(knobs.cubemap_size)) {
+        knobs.coefficients = kAllCoefficients;
+    }
+    return knobs;
+}
+
+formats::Result<Knobs> resolve_knobs(const EffectTable& effects, const BakeOptions& options) {
+    Knobs knobs = preset(effects, options.quality);
     knobs.effects = options.effects;
+    knobs.looks_inside_media =
+        std::any_of(effects.effects.begin(), effects.effects.end(), [&](const auto& effect) {
+            return effect.inside_media && is_wanted(knobs, effect.name);
+        });
     knobs.simulate_all = options.simulate_all;
     knobs.check_model = options.check_model;
     knobs.seed = options.seed;
     knobs.separate_terms = options.separate_terms;
     if (options.error != 0) {
-        if (!(options.error >= 1e-4 && options.error < 1)) {
-            return make_error(ErrorKind::usage, "", "--error", "the error must be in [0.0001, 1)",
-                              "give a relative RMS, such as 0.02 for 2 %");
+        if (auto status = start_from_target(knobs, effects, options); !status) {
+            return std::move(status).error();
         }
-        knobs.error_target = options.error;
-        knobs.cubemap_size = options.error < 0.03 ? 16 : 8;
-        knobs.coefficients = expected_coefficients(options.error);
-        knobs.phase_tolerance = 0.5 * options.error;
-        if (options.error < 0.03) {
-            // One sample for each path errs by .7 to 1.5 %: a pilot of it would be for nothing.
-            knobs.samples_per_path = 4;
-            knobs.samples *= 4;
-        }
-        knobs.fixed = {options.cubemap_size != 0, options.coefficients != 0, options.tolerance >= 0,
-                       options.depth_samples != 0};
     }
-    if (options.samples != 0) {
-        knobs.samples = options.samples;
-        knobs.exact_samples = true;
-    }
-    if (options.tolerance >= 0) {
-        knobs.tolerance = options.tolerance;
-    }
-    if (options.depth_samples != 0) {
-        knobs.depth_samples = options.depth_samples;
-    }
-    if (options.phase_terms != 0) {
-        constexpr std::array<std::uint32_t, 5> kWhole{1, 4, 9, 16, 25};
-        bool is_whole = false;
-        for (const std::uint32_t k : kWhole) {
-            is_whole = is_whole || k == options.phase_terms;
-        }
-        if (!is_whole) {
-            return make_error(ErrorKind::usage, "", "--phase-terms",
-                              std::to_string(options.phase_terms) +
-                                  " terms cut a degree of the phase function in two",
-                              "give 1, 4, 9, 16 or 25");
-        }
-        knobs.phase_terms = options.phase_terms;
+    if (auto status = take_given(knobs, options.given); !status) {
+        return std::move(status).error();
     }
     if (options.cubemap_size != 0) {
         if (!formats::is_valid_cubemap_size(options.cubemap_size)) {
@@ -119,20 +160,18 @@ formats::Result<Knobs> resolve_knobs(const BakeOptions& options) {
                               "give 8, 16, 32, 64 or 128");
         }
         knobs.cubemap_size = options.cubemap_size;
+        knobs.cubemap_given = true;
     }
     if (options.coefficients != 0) {
         if (options.coefficients < 7) {
             return make_error(ErrorKind::usage, "", "--coefficients",
-                              "the six face averages and one detail are the least",
+                              "a row keeps at least the six face averages and one detail",
                               "give 7 or more, or `all`");
         }
         knobs.coefficients = options.coefficients;
+        knobs.coefficients_given = true;
     }
-    knobs.single_cubemap = std::min(knobs.single_cubemap, knobs.cubemap_size);
-    if (knobs.coefficients >= formats::cubemap_texels(knobs.cubemap_size)) {
-        knobs.coefficients = kAllCoefficients;
-    }
-    return knobs;
+    return settle(std::move(knobs));
 }
 
 }  // namespace opaline::bake

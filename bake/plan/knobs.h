@@ -1,18 +1,36 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "bake/plan/knob.h"
 #include "formats/opal/result.h"
 
 namespace opaline::bake {
+
+struct EffectTable;
 
 /// Accuracy presets: each names a set of knobs.
 enum class Quality { draft, preview, production, reference };
 
 inline constexpr std::uint32_t kAllCoefficients = 0xffffffffu;
+
+/// Values of effects' knobs: few, in no order.
+struct KnobValues {
+    struct Value {
+        const KnobSpec* knob;
+        double value;
+
+        bool operator==(const Value&) const = default;
+    };
+    std::vector<Value> values;
+
+    const double* find(const KnobSpec& knob) const;
+    void set(const KnobSpec& knob, double value);
+};
 
 /// What the user asked for. A zero means: as the quality says.
 struct BakeOptions {
@@ -22,20 +40,17 @@ struct BakeOptions {
     std::uint32_t cubemap_size = 0;  ///< N: power of two in [8, 128]
     std::uint32_t coefficients = 0;  ///< M per row, the six face averages included; >= 7, or
                                      ///< kAllCoefficients
-    std::uint32_t samples = 0;  ///< on the surface of each medium; 0: as its mean free path asks
-                                ///< for, at most as many as the quality says
-    double tolerance = -1;      ///< of the hierarchical gather, >= 0; negative: as the quality
-                                ///< says
-    std::uint32_t depth_samples = 0;  ///< of single scattering, along the inward normal
-    std::uint32_t phase_terms = 0;    ///< K: 1, 4, 9, 16 or 25; 0: as the phase function asks for
-    bool separate_terms = false;      ///< multiple scattering in a row of its own
-    std::vector<std::string>
-        effects;                ///< the only ones to simulate; empty: what the scene calls for
-    bool simulate_all = false;  ///< every effect that concerns a material, however little it
+    KnobValues given;                ///< knobs of effects
+    bool separate_terms = false;     ///< rows that all views share apart from the others
+    std::vector<std::string> effects;  ///< names of the only ones to simulate; empty: what the
+                                       ///< scene calls for
+    bool simulate_all = false;  ///< every effect that concerns a subject, however little it
                                 ///< contributes, and no shortcut
     bool check_model = false;   ///< also measure the model's error against Monte Carlo
     std::uint64_t seed = 0;     ///< of everything random
     unsigned threads = 0;       ///< 0: one per core; never changes the result
+
+    void set(const KnobSpec& knob, double value) { given.set(knob, value); }
 };
 
 /// What is going to be done: every knob has its value.
@@ -43,42 +58,42 @@ struct Knobs {
     Quality quality = Quality::preview;  ///< the preset that the others started from
     std::uint32_t cubemap_size = 16;
     std::uint32_t coefficients = 128;
-    std::uint32_t code_bits = 8;    ///< of the stored detail coefficients
-    std::uint32_t samples = 60000;  ///< on the surface of each medium
-    bool exact_samples = false;     ///< otherwise `samples` is the most there may be
-    double tolerance = 1e-3;        ///< GatherOptions::tolerance
-    std::uint32_t depth_samples = 6;
-    std::uint32_t phase_terms = 0;  ///< 0: chosen per medium
-    double phase_tolerance = 0.02;  ///< by choose_terms (rules_single.h)
-    bool exact_rays = false;        ///< no light maps, no rays shared between samples
+    std::uint32_t code_bits = 8;  ///< of the stored detail coefficients
+    bool exact_rays = false;      ///< nothing is shared between receivers or samples: no light maps
     bool separate_terms = false;
     std::vector<std::string> effects;
+    bool looks_inside_media = true;  ///< some effect that acts inside media is wanted
     bool simulate_all = false;
     bool check_model = false;
     std::uint64_t seed = 0;
+    double error_target = 0;  ///< 0: none; otherwise the pilot changes what the user did not give
+    bool cubemap_given = false, coefficients_given = false;
+    KnobValues values;                    ///< of all effects
+    std::vector<const KnobSpec*> given;  ///< those that the user gave
 
-    /// Cube map that single scattering is gathered on. It is smooth, and each texel costs a render:
-    /// 16 texels err by about .6 % of single scattering, which is a tenth of
-    /// what a bright medium returns.
-    std::uint32_t single_cubemap = 16;
-
-    double samples_per_path = 1;  ///< surface samples per square of the depth of a medium's source
-    double error_target = 0;      ///< 0: none; otherwise the pilot changes what is not fixed
-    struct Fixed {
-        bool cubemap = false, coefficients = false, tolerance = false, depth_samples = false;
-    } fixed;  ///< given by the user
+    /// The preset's where it was not set.
+    double operator[](const KnobSpec& knob) const;
+    void set(const KnobSpec& knob, double value);
+    bool is_given(const KnobSpec& knob) const;
 };
 
-/// About as many as a file needs to err by `target` under the test lights: what a pilot starts
-/// from.
+/// The value of an integer knob.
+std::uint32_t whole(const Knobs& knobs, const KnobSpec& knob);
+
+/// Number of coefficients with which a file is expected to err by about `target` under the test
+/// lights: where a pilot starts.
 std::uint32_t expected_coefficients(double target);
 
-/// How many coefficients each surface sample and each cluster of them keeps. A row is a sum of
-/// many: with half as many as the row has, from 1024 on, it errs hardly more, in half the memory.
+/// Coefficients that each surface sample and each cluster keeps: half of a row's when rows have
+/// 1024 or more, which adds little error and halves the memory (tests/bench/RESULTS.md).
 std::uint32_t sample_coefficients(const Knobs& knobs);
 
 /// Fills in the quality's values; refuses impossible ones (usage error).
-formats::Result<Knobs> resolve_knobs(const BakeOptions& options);
+formats::Result<Knobs> resolve_knobs(const EffectTable& effects, const BakeOptions& options);
+
+/// Applies the limits between knobs: no cube map finer than the asset's, `all` where as many
+/// coefficients are asked for as there are.
+Knobs settle(Knobs knobs);
 
 std::string_view quality_name(Quality quality);
 

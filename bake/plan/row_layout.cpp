@@ -3,42 +3,42 @@
 #include <algorithm>
 #include <numbers>
 
+#include "bake/plan/effect.h"
+
 namespace opaline::bake {
 
-double RowLayout::view_of_multiple() const {
+double RowLayout::view_of_constant() const {
     // Y_00 where the row is one of several harmonics, 1 where it stands alone.
-    return !separate && single_terms > 1 ? 0.5 * std::numbers::inv_sqrtpi : 1.0;
+    return !separate && harmonics > 1 ? 0.5 * std::numbers::inv_sqrtpi : 1.0;
 }
 
-std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vector<PlanEntry>& plan,
-                                   const Knobs& knobs) {
-    std::vector<RowLayout> layouts(scene.materials.size());
-    for (std::uint32_t m = 0; m < layouts.size(); ++m) {
-        RowLayout& layout = layouts[m];
-        const auto is_on = [&](const char* effect) {
-            const PlanEntry* const entry = find_entry(plan, effect, m);
-            return entry != nullptr && entry->on;
-        };
-        layout.direct = is_on("direct");
-        layout.occluded = is_on("light.visibility");
-        layout.translucent = scene.materials[m].medium.has_value() && !layout.direct;
-        layout.multiple = is_on("multiple");
-        layout.single_terms = !is_on("single")        ? 0
-                              : is_on("single.terms") ? find_entry(plan, "single.terms", m)->terms
-                                                      : 1;
-        // Multiple scattering alone in its row is told to be so.
-        layout.separate = layout.translucent && (knobs.separate_terms || layout.single_terms == 0);
-        layout.local = layout.translucent && (layout.multiple || layout.single_terms > 0) &&
-                       !is_on("multiple.spread");
-        layout.glossy = layout.translucent && is_on("specular");
-        layout.grey = layout.translucent && !is_on("light.colour");
+RowLayout layout_material(const EffectTable& effects, const formats::Material& material,
+                          std::span<const PlanEntry> decisions, const Knobs& knobs) {
+    RowLayout layout;
+    layout.translucent = material.medium.has_value();
+    for (const PlanEntry& entry : decisions) {
+        rule_of(effects, entry).lay_out(entry, layout);
+    }
+    // A row for all views that stands alone is marked as such in the file.
+    layout.separate = layout.translucent && (knobs.separate_terms || layout.harmonics == 0);
+    layout.local = layout.local && layout.translucent && layout.has_rows();
+    layout.grey = layout.grey && layout.translucent;
+    return layout;
+}
+
+std::vector<RowLayout> layout_rows(const EffectTable& effects, const formats::Scene& scene,
+                                   std::span<const PlanEntry> plan, const Knobs& knobs) {
+    std::vector<RowLayout> layouts;
+    for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
+        layouts.push_back(
+            layout_material(effects, scene.materials[m], entries_of(plan, m), knobs));
     }
     return layouts;
 }
 
 bool needs_hierarchy(std::span<const RowLayout> layouts) {
     return std::any_of(layouts.begin(), layouts.end(), [](const RowLayout& l) {
-        return l.multiple || l.single_terms > 0 || (l.occluded && (l.direct || l.glossy));
+        return (l.translucent && l.has_rows()) || (l.occluded && (l.constant || l.glossy));
     });
 }
 

@@ -9,36 +9,40 @@
 
 namespace opaline::bake {
 
-/// What stands in the rows of a material's vertices.
+/// What stands in the rows of a material's receivers. Every rule of the plan says what its decision
+/// means here (DecisionRule::lay_out); nothing else about a decision reaches the stages.
 struct RowLayout {
-    bool translucent = false;        ///< otherwise diffuse: one row of one band
-    bool occluded = false;           ///< rays find out what stands before the light
-    bool direct = false;             ///< the diffuse row is simulated, otherwise zero
-    bool multiple = false;           ///< multiple scattering is simulated
-    std::uint32_t single_terms = 0;  ///< S, terms of the phase function; 0: no single scattering
-    bool local = false;              ///< light leaves the medium where it entered
-    bool separate = false;           ///< multiple scattering in a row of its own
-    bool glossy = false;             ///< with specular reflection
-    bool grey = false;               ///< its three bands coincide: one stands for them
-    formats::Rgb tint{1, 1, 1};      ///< times the base colour
+    bool translucent = false;  ///< seen through the boundary of a medium; otherwise diffuse, grey
+    bool occluded = false;     ///< rays find out what stands before the light
+    bool constant = false;     ///< some effect fills a row that is the same for all views
+    std::uint32_t harmonics = 0;  ///< rows that are seen through spherical harmonics: 0, 1, 4 … 25
+    bool local = false;     ///< light leaves the medium where it entered
+    bool separate = false;  ///< the row for all views stands apart from the harmonics
+    bool grey = false;      ///< the three bands coincide: one stands for them
+    bool glossy = false;    ///< mirrors its surroundings: needs openness
+    formats::Rgb tint{1, 1, 1};  ///< times the base colour
 
-    /// Rows of a vertex.
+    bool has_rows() const { return constant || harmonics > 0; }
+    /// Rows of a receiver, at least one: a receiver without any is black.
     std::uint32_t terms() const {
-        return separate ? 1 + single_terms : single_terms > 1 ? single_terms : 1;
+        return separate ? 1 + harmonics : harmonics > 1 ? harmonics : 1;
     }
     std::uint32_t bands() const { return translucent && !grey ? 3 : 1; }
-    /// Row that the first term of single scattering stands in.
-    std::uint32_t first_single() const { return separate ? 1 : 0; }
-    /// h_0 with which row 0 is seen: multiple scattering is divided by it.
-    double view_of_multiple() const;
+    /// Row of the first harmonic.
+    std::uint32_t first_harmonic() const { return separate ? 1 : 0; }
+    /// h_0 through which row 0 is seen: what is the same for all views is divided by it.
+    double view_of_constant() const;
 };
 
 /// One layout per material of the scene, from what the plan decided.
-std::vector<RowLayout> layout_rows(const formats::Scene& scene, const std::vector<PlanEntry>& plan,
-                                   const Knobs& knobs);
+std::vector<RowLayout> layout_rows(const EffectTable& effects, const formats::Scene& scene,
+                                   std::span<const PlanEntry> plan, const Knobs& knobs);
 
-/// Whether rays are traced: they cross media, or find out what stands before the light of what is
-/// simulated.
+/// The layout of one material from some of its decisions.
+RowLayout layout_material(const EffectTable& effects, const formats::Material& material,
+                          std::span<const PlanEntry> decisions, const Knobs& knobs);
+
+/// Whether rays are traced: through media, or to find out what stands before the light.
 bool needs_hierarchy(std::span<const RowLayout> layouts);
 
 }  // namespace opaline::bake

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace opaline::bake {
@@ -21,5 +22,30 @@ struct SurfaceSample {
     std::uint32_t primitive = 0;  ///< index into Scene::primitives
     Receiver receiver;            ///< rays from here see the terminator of the smooth surface
 };
+
+/// A point on the boundary of a body, seen from inside.
+struct BodyPoint {
+    glm::vec3 position;          ///< [m]
+    glm::vec3 normal;            ///< unit, outward; {0,0,0}: nothing is gathered
+    glm::vec3 inner;             ///< [m], just inside all triangles that meet at the point
+    std::uint32_t material = 0;  ///< whose triangles bound the body
+};
+
+/// The receivers of one part of a scene, as they stand in the file.
+struct ReceiverSet {
+    enum class Kind : std::uint8_t { vertex, texel, voxel } kind = Kind::vertex;
+    std::uint32_t material = 0;   ///< its subject: index into Scene::materials
+    std::uint32_t primitive = 0;  ///< vertex: whose vertices, index into Scene::primitives
+    std::uint32_t first = 0;      ///< running number of its first receiver
+    std::vector<Receiver> outside;  ///< where rays to the light start
+    std::vector<BodyPoint> inside;  ///< the same points, seen from inside; no normal where opaque
+
+    std::size_t size() const { return outside.size(); }
+};
+
+/// The set that holds a receiver, by its running number. Precondition: there is one.
+const ReceiverSet& set_of(std::span<const ReceiverSet> sets, std::uint32_t receiver);
+/// Receivers of all sets.
+std::uint32_t count_receivers(std::span<const ReceiverSet> sets);
 
 }  // namespace opaline::bake

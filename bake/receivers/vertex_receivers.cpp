@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "bake/receivers/weld.h"
+#include "bake/scene/weld.h"
 
 namespace opaline::bake {
 namespace {

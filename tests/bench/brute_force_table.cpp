@@ -11,16 +11,17 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/measure/measure_error.h"
-#include "bake/pilot/pilot_rows.h"
-#include "bake/plan/inspect_scene.h"
+#include "bake/accuracy/measure_error.h"
+#include "bake/accuracy/pilot/pilot_rows.h"
+#include "bake/scene/inspect_scene.h"
 #include "bake/plan/plan_rules.h"
-#include "bake/prepare_media.h"
-#include "bake/receivers/orient_bodies.h"
+#include "bake/pipeline/prepare_media.h"
+#include "bake/scene/orient_bodies.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "formats/gltf/import_gltf.h"
 #include "formats/media/apply_media.h"
 #include "formats/media/read_media.h"
+#include "tests/support/effects.h"
 
 namespace opaline::bake {
 namespace {
@@ -40,7 +41,7 @@ Rows make_rows(const PilotScene& pilot, std::span<const PilotReceiver> receivers
                const Context& context) {
     BakeResult unused;
     const MediaStages media = prepare_media(pilot, knobs, context, unused);
-    const RowSetting setting{knobs.tolerance, knobs.depth_samples, knobs.single_cubemap};
+    const RowSetting setting{knobs.tolerance, knobs[kDepthSamples], knobs[kSingleCubemap]};
     const PilotSingles single = gather_pilot_single(pilot, receivers, setting, context);
     const Clock::time_point start = Clock::now();
     auto pairs = measure_rows(pilot, receivers, media, single, setting, knobs.cubemap_size,

@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "bake/pipeline.h"
+#include "bake/pipeline/pipeline.h"
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "runtime/light_vector.h"
 #include "runtime/shade.h"
+#include "tests/support/effects.h"
 #include "tests/support/media.h"
 #include "tests/support/sheets.h"
 
@@ -63,8 +64,8 @@ void print_ratio(const Body& body, const formats::Medium& medium) {
     options.effects = {"multiple", "single"};
     options.cubemap_size = 16;
     options.coefficients = kAllCoefficients;
-    options.samples = 40000;  // 5 mm apart
-    options.depth_samples = 16;
+    options.set(kSamples, 40000);  // 5 mm apart
+    options.set(kDepthSamples, 16);
     const BakeResult baked = run_bake(scene, resolve_knobs(options).value(), {}).value();
     formats::Rgb radiance;
     runtime::shade_range(baked.asset.view(), runtime::project_environment(light, 16), body.vertex,

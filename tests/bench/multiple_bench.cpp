@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/multiple/gather_multiple.h"
+#include "bake/effects/multiple/gather_multiple.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "formats/opal/cubemap.h"

@@ -8,10 +8,11 @@
 #include <string>
 
 #include "bake/example/example_scenes.h"
-#include "bake/pipeline.h"
+#include "bake/pipeline/pipeline.h"
 #include "formats/gltf/import_gltf.h"
 #include "formats/media/apply_media.h"
 #include "formats/media/read_media.h"
+#include "tests/support/effects.h"
 #include "tests/support/scenes.h"
 #include "tests/support/temporary_folder.h"
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/single/light_maps.h"
-#include "bake/single/ray_single.h"
-#include "bake/single/texel_directions.h"
+#include "bake/effects/single/light_maps.h"
+#include "bake/effects/single/ray_single.h"
+#include "bake/effects/single/texel_directions.h"
 #include "tests/bench/dented_ball.h"
 
 namespace opaline::bake {

@@ -10,7 +10,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/visibility/irradiance_transport.h"
+#include "bake/transport/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "tests/support/scenes.h"
 

@@ -4,6 +4,7 @@
 
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
+#include "tests/support/effects.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/support/media_bake.h"
 
@@ -29,8 +30,8 @@ BackLit measure_back_lit(tests::Primitive body, const formats::Medium& medium) {
     const formats::Environment sky = tests::make_half_sky(true);
     BakeOptions options = tests::only({"multiple", "single"});
     options.cubemap_size = 16;
-    options.samples = 8000;
-    options.depth_samples = 8;
+    options.set(kSamples, 8000);
+    options.set(kDepthSamples, 8);
     const auto baked = run_bake(scene, *resolve_knobs(options), {});
     EXPECT_TRUE(baked);
     const formats::AssetView asset = baked->asset.view();

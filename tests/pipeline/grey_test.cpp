@@ -3,6 +3,7 @@
 
 #include "formats/opal/cubemap.h"
 #include "formats/opal/write_opal.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {
@@ -44,7 +45,7 @@ const PlanEntry& colour_of(const BakeResult& result) {
 BakeResult bake(const formats::Scene& scene, bool forced, std::uint32_t phase_terms = 0,
                 bool separate = false) {
     BakeOptions options = tests::small_bake();
-    options.phase_terms = phase_terms;
+    options.set(kPhaseTerms, phase_terms);
     options.separate_terms = separate;
     options.simulate_all = forced;
     return tests::bake_scene(scene, options);

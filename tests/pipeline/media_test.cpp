@@ -4,17 +4,18 @@
 #include <iterator>
 #include <numbers>
 
-#include "bake/multiple/medium_profile.h"
-#include "bake/plan/inspect_scene.h"
+#include "bake/effects/multiple/medium_profile.h"
+#include "bake/scene/inspect_scene.h"
 #include "bake/plan/plan_rules.h"
-#include "bake/plan/rules_single.h"
+#include "bake/effects/single/rules_single.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/visibility/irradiance_transport.h"
+#include "bake/transport/irradiance_transport.h"
 #include "formats/media/presets.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "formats/opal/write_opal.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/temporary_folder.h"
 
@@ -62,9 +63,9 @@ std::string file_bytes(const BakeResult& result) {
 std::vector<std::string> effects_of_ball(const std::vector<PlanEntry>& plan) {
     std::vector<std::string> on;
     for (const PlanEntry& entry : plan) {
-        const bool is_part = entry.effect.find('.') != std::string::npos;
-        if (entry.on && entry.material == 0 && !is_part) {
-            on.push_back(entry.effect);
+        const bool is_part = entry.name.find('.') != std::string::npos;
+        if (entry.on && entry.subject.index == 0 && !is_part) {
+            on.push_back(entry.name);
         }
     }
     return on;
@@ -131,7 +132,7 @@ TEST(TranslucentPipeline, MultipleAndSingleBakedApartAddUpToBoth) {
         const auto scene = make_ball_on_floor(forward(g));
         BakeOptions options = small_bake();
         options.quality = Quality::reference;
-        options.phase_terms = g > 0 ? 4 : 1;
+        options.set(kPhaseTerms, g > 0 ? 4 : 1);
         const BakeResult merged = bake_scene(scene, options);
         options.separate_terms = true;
         const BakeResult separate = bake_scene(scene, options);
@@ -217,7 +218,7 @@ TEST(TranslucentPipeline, PlanFollowsTheMedium) {
 TEST(TranslucentPipeline, ScalingSceneAndMediumTogetherChangesNothing) {
     const auto scene = make_ball_on_floor(forward(0.3f));
     BakeOptions options = small_bake();
-    options.phase_terms = 4;
+    options.set(kPhaseTerms, 4);
     const BakeResult metres = bake_scene(scene, options);
     // A power of two is exact in floats but for where rays start; a thousandth rounds everywhere.
     for (const float scale : {1024.0f, 0.001f}) {
@@ -248,7 +249,7 @@ TEST(TranslucentPipeline, OpticallyThickBodyReflectsTheLightThatEntersWhereItSta
     const auto scene = tests::make_translucent_scene({body, wall}, medium);
     BakeOptions options = only({"multiple"});
     options.cubemap_size = 16;
-    options.samples = 20000;
+    options.set(kSamples, 20000);
     const BakeResult result = bake_scene(scene, options);
 
     const double eta = 1.3f, exit = 1 - fresnel_moments(eta).external;

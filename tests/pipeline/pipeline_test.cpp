@@ -1,4 +1,4 @@
-#include "bake/pipeline.h"
+#include "bake/pipeline/pipeline.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "formats/opal/write_opal.h"
+#include "tests/support/effects.h"
 #include "tests/support/bake.h"
 #include "tests/support/temporary_folder.h"
 

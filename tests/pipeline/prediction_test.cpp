@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "bake/plan/cost_model.h"
-#include "bake/plan/inspect_scene.h"
+#include "bake/pipeline/cost_model.h"
+#include "bake/scene/inspect_scene.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/rates.h"
 
@@ -53,7 +54,7 @@ TEST(Prediction, MediumOnAFloorHasTheStagesThatWerePredicted) {
 
 TEST(Prediction, ForwardScatteringMediumHasTheStagesThatWerePredicted) {
     bake::BakeOptions options = small_bake();
-    options.phase_terms = 4;
+    options.set(bake::kPhaseTerms, 4);
     expect_stages_as_predicted(make_ball_on_floor(forward_medium()), options);
 }
 

@@ -2,6 +2,7 @@
 
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
+#include "tests/support/effects.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/sheets.h"
@@ -44,8 +45,8 @@ TEST(ReferenceAgreement, SingleScatteringThatEntersStraight) {
         BakeOptions options = tests::only({"single"});
         options.quality = Quality::production;
         options.cubemap_size = 16;
-        options.depth_samples = 8;
-        options.phase_terms = g > 0 ? 25 : 1;
+        options.set(kDepthSamples, 8);
+        options.set(kPhaseTerms, g > 0 ? 25 : 1);
         const BakeResult baked = tests::bake_scene(scene, options);
         ModelCheckOptions wanted;
         wanted.simulated = term::kSingle;
@@ -73,8 +74,8 @@ Middle look_at_middle(float thickness, const formats::Medium& medium, const char
     const tests::Scene scene =
         tests::make_translucent_scene(tests::make_sheet(thickness, kCells), medium);
     BakeOptions options = tests::only({effect});
-    options.samples = 20000;
-    options.depth_samples = 16;
+    options.set(kSamples, 20000);
+    options.set(kDepthSamples, 16);
     const BakeResult baked = tests::bake_scene(scene, options);
     const auto fixture = tests::make_fixture(scene, tests::make_white_sky());
     const auto receivers = choose_receivers(fixture->scene, 1u << 30, 0, std::nullopt);

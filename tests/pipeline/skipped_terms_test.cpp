@@ -1,7 +1,8 @@
 // Phase functions that are nearly the same in all directions: one term, and what more would add.
 #include <gtest/gtest.h>
 
-#include "bake/plan/inspect_scene.h"
+#include "bake/scene/inspect_scene.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {
@@ -17,7 +18,7 @@ formats::Scene ball_of(
 
 BakeResult bake(const formats::Scene& scene, std::uint32_t terms) {
     BakeOptions options = tests::small_bake();
-    options.phase_terms = terms;
+    options.set(kPhaseTerms, terms);
     return tests::bake_scene(scene, options);
 }
 
@@ -77,7 +78,7 @@ TEST(SkippedTerms, OfAnIsotropicMediumDoNotExist) {
 
 TEST(SkippedTerms, CostNothingWhereNothingScattersOnce) {
     BakeOptions options = tests::only({"multiple"});
-    options.phase_terms = 16;
+    options.set(kPhaseTerms, 16);
     const BakeResult result = tests::bake_scene(ball_of(0.5f), options);
     EXPECT_FALSE(terms_of(result).on);
     EXPECT_EQ(terms_of(result).terms, 0u);

@@ -2,7 +2,8 @@
 // and light maps would find the same.
 #include <gtest/gtest.h>
 
-#include "bake/plan/inspect_scene.h"
+#include "bake/scene/inspect_scene.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "formats/opal/write_opal.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {
@@ -45,13 +46,13 @@ TEST(TargetError, GivenKnobsStay) {
     BakeOptions options = asking_for(0.1);
     options.cubemap_size = 8;
     options.coefficients = 40;
-    options.tolerance = 2e-3;
-    options.depth_samples = 5;
+    options.set(kEpsilon, 2e-3);
+    options.set(kDepthSamples, 5);
     const BakeResult result = tests::bake_scene(soft_ball(), options);
     EXPECT_EQ(result.knobs.cubemap_size, 8u);
     EXPECT_EQ(result.knobs.coefficients, 40u);
     EXPECT_EQ(result.knobs.tolerance, 2e-3);
-    EXPECT_EQ(result.knobs.depth_samples, 5u);
+    EXPECT_EQ(result.knobs[kDepthSamples], 5u);
 }
 
 TEST(TargetError, SingleScatteringIsNeverGatheredOnMoreTexelsThanTheFileHas) {
@@ -61,7 +62,7 @@ TEST(TargetError, SingleScatteringIsNeverGatheredOnMoreTexelsThanTheFileHas) {
     const auto dense =
         tests::make_translucent_scene({tests::make_sphere(3)}, tests::make_grey_medium(40, 1));
     const BakeResult result = tests::bake_scene(dense, options);
-    EXPECT_LE(result.knobs.single_cubemap, 8u);
+    EXPECT_LE(result.knobs[kSingleCubemap], 8u);
     std::uint32_t levels = 0;
     for (const auto& [cubemap_size, samples_per_path, trial] : result.accuracy->trials) {
         levels += trial.knob == "depth_samples" ? 1 : 0;
@@ -99,7 +100,7 @@ TEST(TargetError, TooFewPhaseTermsEndThePilotAndAreNamed) {
     auto medium = tests::make_grey_medium(4, 0.4f);
     medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.8f, 0, {}, {}};
     BakeOptions options = asking_for(0.03);
-    options.phase_terms = 1;
+    options.set(kPhaseTerms, 1);
     const BakeResult result =
         tests::bake_scene(tests::make_translucent_scene({tests::make_sphere(2)}, medium), options);
     EXPECT_FALSE(result.accuracy->met);

@@ -5,7 +5,7 @@
 #include "bake/encode/pack_asset.h"
 #include "bake/encode/select_coefficients.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/visibility/irradiance_transport.h"
+#include "bake/transport/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "tests/support/bake.h"
@@ -43,7 +43,7 @@ formats::Asset pack(const formats::Scene& scene, const std::vector<std::vector<f
     for (const std::vector<float>& row : dense) {
         EXPECT_TRUE(formats::append_row(rows, select_coefficients(selector, row, 1)));
     }
-    const std::vector<RowLayout> layouts(scene.materials.size(), {.direct = true});
+    const std::vector<RowLayout> layouts(scene.materials.size());
     return pack_asset(scene, layouts, std::move(rows), {});
 }
 

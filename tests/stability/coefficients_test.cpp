@@ -3,8 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/multiple/gather_profile.h"
+#include "bake/effects/multiple/gather_profile.h"
 #include "bake/scattering/dipole.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {
@@ -207,7 +208,7 @@ TEST(Phase, ForwardAndBackwardPeaksBakeToSoundRows) {
         medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, g, 0, {}, {}};
         for (const std::uint32_t terms : {1u, 25u}) {
             BakeOptions options = small_bake();
-            options.phase_terms = terms;
+            options.set(kPhaseTerms, terms);
             // A truncated peak rings: 25 terms of g = .99 reach 25/(4 pi) times the mean.
             expect_sound(bake_scene(make_ball_on_floor(medium), options), 25,
                          std::to_string(g).c_str());

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {
@@ -48,7 +49,7 @@ TEST(Mesh, BodyInsideOutLooksLikeTheOneThatIsNot) {
 TEST(Mesh, ShellWithinABodyOfTheSameMediumChangesNothing) {
     const Primitive outer = tests::make_sphere(3);
     BakeOptions options = small_bake();
-    options.samples = 8000;
+    options.set(kSamples, 8000);
     const BakeResult alone = bake({outer}, options);
     const BakeResult nested = bake({outer, tests::make_sphere(2, 0.6f, {0.1f, 0, 0})}, options);
     EXPECT_TRUE(nested.warnings.empty());

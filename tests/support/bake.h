@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "bake/environment/builtin_environment.h"
-#include "bake/pipeline.h"
+#include "bake/pipeline/pipeline.h"
 #include "runtime/light_vector.h"
 #include "runtime/shade.h"
+#include "tests/support/effects.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::tests {

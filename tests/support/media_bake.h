@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/effects.h"
 #include "tests/support/bake.h"
 #include "tests/support/media.h"
 
@@ -16,8 +17,8 @@ inline bake::BakeOptions small_bake() {
     bake::BakeOptions options;
     options.cubemap_size = 8;
     options.coefficients = bake::kAllCoefficients;
-    options.samples = 3000;
-    options.depth_samples = 4;
+    options.set(bake::kSamples, 3000);
+    options.set(bake::kDepthSamples, 4);
     options.threads = 2;
     return options;
 }

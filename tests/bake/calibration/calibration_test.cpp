@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bake/calibration/dented_ball.h"
-#include "bake/receivers/orient_bodies.h"
+#include "bake/scene/orient_bodies.h"
 
 namespace opaline::bake {
 namespace {

@@ -1,8 +1,6 @@
-#include "bake/measure/thin_parts.h"
+#include "bake/effects/multiple/thin_parts.h"
 
 #include <gtest/gtest.h>
-
-#include <numeric>
 
 #include "tests/bake/single/single_support.h"
 
@@ -13,9 +11,7 @@ double excess_of(tests::Primitive body, float sigma) {
     const auto setup = tests::set_up(tests::make_translucent_scene(
         {std::move(body)}, tests::make_grey_medium(sigma, 0.01f * sigma)));
     const MediumProfile profile = make_medium_profile(*setup.scene.materials[0].medium, 0, {});
-    std::vector<std::uint32_t> all(setup.points.size());
-    std::iota(all.begin(), all.end(), 0u);
-    return estimate_thin_excess(profile, setup.rays, 0, setup.points, all);
+    return estimate_thin_excess(profile, setup.rays, setup.points);
 }
 
 TEST(ThinParts, BallsExceedByTheTailBeyondTheirDiameter) {

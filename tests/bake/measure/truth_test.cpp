@@ -1,10 +1,13 @@
-#include "bake/measure/truth.h"
+#include "bake/accuracy/measure_error.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "bake/effects/direct/true_direct.h"
+#include "bake/effects/multiple/true_multiple.h"
+#include "bake/effects/single/true_single.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
@@ -74,11 +77,14 @@ TEST(SurfaceIntegral, MiddleOfALargeSquareReturnsTheProfilesTotal) {
                                       tests::make_grey_medium(100, 0.5f)));
     const std::vector<TestLight> lights = published_lights();
     const MediumProfile profile = make_medium_profile(*setup.scene.materials[0].medium, 0, {});
-    const TranslucentTruth truth = make_translucent_truth(setup.scene, 0, &profile, 0, lights);
+    const SurfaceIntegral integral = make_surface_integral(setup.scene, 0, profile);
+    const SunRays suns = make_sun_rays(lights, 4);
+    const SmoothLights smooth = make_smooth_lights(lights);
     const std::size_t white = place_of(lights, "white"), sun = place_of(lights, "sun:30,60");
     std::uint64_t traced = 0;
     const TwoEstimates found =
-        eval_truth(truth, setup.scene, setup.rays, setup.points[4], 0, 0, traced);
+        integrate_multiple(integral, {setup.scene, setup.rays, suns, smooth, 1024},
+                           setup.points[4].position, {0, 0}, traced);
     const double total = profile.total(1);
     EXPECT_NEAR(mean(found, white) / total, 1, 4e-3);
     const double cosine = std::sin(std::numbers::pi / 3);
@@ -91,7 +97,7 @@ TEST(SingleQuadrature, AgreesWithTransportOfAFineCubeMap) {
     const auto setup = tests::set_up(
         tests::make_translucent_scene({tests::make_sphere(3)}, tests::make_grey_medium(2, 0.2f)));
     const std::vector<TestLight> lights = published_lights();
-    const TranslucentTruth truth = make_translucent_truth(setup.scene, 0, nullptr, 16, lights);
+    const SingleQuadrature quadrature = make_single_quadrature(setup.scene, 0, 16, lights);
     const DirectionSet directions = make_direction_set(32);
     const SingleMedium medium = make_single_medium(setup.scene, 0, 16);
     const std::vector<double> solid_angle = formats::texel_solid_angles(32);
@@ -104,9 +110,8 @@ TEST(SingleQuadrature, AgreesWithTransportOfAFineCubeMap) {
         for (std::size_t j = 0; j < row.size() / 3; ++j) {
             expected += double{row[row.size() / 3 + j]} * solid_angle[j % solid_angle.size()];
         }
-        const TwoEstimates found =
-            eval_truth(truth, setup.scene, setup.rays, setup.points[v], 0, 0, traced);
-        EXPECT_NEAR(mean(found, place_of(lights, "white")) / expected, 1, 5e-3) << v;
+        const Luminance found = integrate_single(quadrature, setup.rays, setup.points[v], traced);
+        EXPECT_NEAR(found[place_of(lights, "white")] / expected, 1, 5e-3) << v;
     }
 }
 

@@ -1,4 +1,4 @@
-#include "bake/multiple/gather_multiple.h"
+#include "bake/effects/multiple/gather_multiple.h"
 
 #include <gtest/gtest.h>
 

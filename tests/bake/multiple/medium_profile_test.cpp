@@ -1,11 +1,11 @@
-#include "bake/multiple/medium_profile.h"
+#include "bake/effects/multiple/medium_profile.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "bake/multiple/gather_profile.h"
+#include "bake/effects/multiple/gather_profile.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/half_space_walk.h"
 

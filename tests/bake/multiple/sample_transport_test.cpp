@@ -1,4 +1,4 @@
-#include "bake/multiple/sample_transport.h"
+#include "bake/transport/sample_transport.h"
 
 #include <gtest/gtest.h>
 

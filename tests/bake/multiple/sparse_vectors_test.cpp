@@ -1,4 +1,4 @@
-#include "bake/multiple/sparse_vectors.h"
+#include "bake/transport/sparse_vectors.h"
 
 #include <gmock/gmock.h>
 

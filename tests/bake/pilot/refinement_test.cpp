@@ -1,4 +1,5 @@
-#include "bake/pilot/refinement.h"
+#include "bake/accuracy/pilot/refinement.h"
+#include "tests/support/effects.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +37,7 @@ Search search(const Knobs& first, const ErrorModel& model) {
         search.tried.push_back(tried);
         const Errors errors = model(tried);
         learn(refinement, {tried, true, errors.all, errors.smooth});
-        next = errors.all <= tried.error_target ? std::nullopt : next_knobs(refinement);
+        next = errors.all <= tried.error_target ? std::nullopt : next_knobs(all_effects(), refinement);
     }
     search.base = *refinement.base;
     return search;
@@ -47,12 +48,12 @@ TEST(Refinement, AnErrorThatNoKnobLowersIsFoundOutInThreeRoundsAndTheCoarsestSta
         return Errors{0.09, 0.09};
     });
     ASSERT_EQ(cut_phase.tried.size(), 3u);
-    EXPECT_GT(cut_phase.tried[1].samples_per_path, cut_phase.tried[0].samples_per_path);
+    EXPECT_GT(cut_phase.tried[1][kSamplesPerPath], cut_phase.tried[0][kSamplesPerPath]);
     EXPECT_GT(cut_phase.tried[2].cubemap_size, cut_phase.tried[0].cubemap_size);
-    EXPECT_EQ(cut_phase.tried[2].samples_per_path, cut_phase.tried[0].samples_per_path)
+    EXPECT_EQ(cut_phase.tried[2][kSamplesPerPath], cut_phase.tried[0][kSamplesPerPath])
         << "samples that did not help were kept";
     EXPECT_EQ(cut_phase.base.knobs.cubemap_size, cut_phase.tried[0].cubemap_size);
-    EXPECT_EQ(cut_phase.base.knobs.samples_per_path, cut_phase.tried[0].samples_per_path);
+    EXPECT_EQ(cut_phase.base.knobs[kSamplesPerPath], cut_phase.tried[0][kSamplesPerPath]);
 }
 
 // A shadow's edge: the share of receivers under it halves with each doubling of the texels, and
@@ -77,18 +78,18 @@ TEST(Refinement, TexelsThatCannotReachTheTargetAreNotPaidFor) {
 
 TEST(Refinement, ErrorsOfSoftLightTakeMoreSamplesAndThoseOfSunsMoreTexels) {
     const Search both = search(asking_for(0.02), [](const Knobs& knobs) {
-        const double smooth = 0.03 / std::sqrt(knobs.samples_per_path);
+        const double smooth = 0.03 / std::sqrt(knobs[kSamplesPerPath]);
         return Errors{smooth, std::hypot(smooth, 0.02 * std::sqrt(16.0 / knobs.cubemap_size))};
     });
     EXPECT_LE(both.base.error, 0.02);
-    EXPECT_GT(both.base.knobs.samples_per_path, 4.0);
+    EXPECT_GT(both.base.knobs[kSamplesPerPath], 4.0);
     EXPECT_GT(both.base.knobs.cubemap_size, 16u);
 }
 
 TEST(Refinement, WhatTheUserGaveStays) {
     BakeOptions options;
     options.error = 0.01;
-    options.samples = 2000;
+    options.set(kSamples, 2000);
     options.cubemap_size = 8;
     options.coefficients = 64;
     const Search given = search(*resolve_knobs(options), shadow_edge);
@@ -99,7 +100,7 @@ TEST(Refinement, WhatTheUserGaveStays) {
 TEST(Refinement, EndsForErrorsThatFallSlowlyForeverAndForNone) {
     const auto slowly = [](const Knobs& knobs) {
         const double gain =
-            std::pow(knobs.samples_per_path, -0.1) * std::pow(knobs.cubemap_size, -0.2);
+            std::pow(knobs[kSamplesPerPath], -0.1) * std::pow(knobs.cubemap_size, -0.2);
         return Errors{gain, gain};
     };
     EXPECT_LT(search(asking_for(1e-4), slowly).tried.size(), 8u);

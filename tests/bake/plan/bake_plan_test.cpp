@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bake/plan/inspect_scene.h"
+#include "bake/scene/inspect_scene.h"
+#include "tests/support/effects.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {
@@ -61,7 +62,7 @@ TEST(BakePlan, UnusedMaterialsAreNotMentioned) {
     auto scene = tests::make_scene({tests::make_sphere(1)});
     scene.materials.push_back({.name = "Unused"});
     for (const PlanEntry& entry : plan_bake(scene, inspect_scene(scene), {})) {
-        EXPECT_EQ(entry.material, 0u);
+        EXPECT_EQ(entry.subject.index, 0u);
     }
 }
 

@@ -1,12 +1,12 @@
-#include "bake/plan/cost_model.h"
-#include "bake/plan/inspect_scene.h"
+#include "bake/pipeline/cost_model.h"
+#include "bake/scene/inspect_scene.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <numeric>
 
-#include "bake/plan/stage_costs.h"
+#include "tests/support/effects.h"
 #include "tests/support/media.h"
 #include "tests/support/rates.h"
 #include "tests/support/scenes.h"
@@ -57,9 +57,9 @@ TEST(CostModel, TotalIsTheSumOfStagesAndOfEffectsAndTheRest) {
             bytes += entry.predicted_bytes;
             // What these cost is the whole effects' own.
             const bool is_how =
-                entry.effect == "light.visibility" || entry.effect == "multiple.spread";
+                entry.name == "light.visibility" || entry.name == "multiple.spread";
             EXPECT_EQ(entry.on && !is_how, entry.predicted_seconds > 0)
-                << entry.effect << entry.subject;
+                << entry.name << entry.subject.name;
         }
         EXPECT_GT(p.cost.shared_seconds, 0);
         EXPECT_NEAR(stages, p.cost.seconds, 1e-9 * p.cost.seconds);
@@ -70,7 +70,7 @@ TEST(CostModel, TotalIsTheSumOfStagesAndOfEffectsAndTheRest) {
 
 TEST(CostModel, TermsBeyondTheFirstPayForTheirRows) {
     Knobs knobs;
-    knobs.phase_terms = 9;
+    knobs.set(kPhaseTerms, 9);
     const Predicted p = predict(ball_on_floor(), knobs);
     const auto entry = [&](const char* effect) { return *find_entry(p.plan, effect, 0); };
     // The first row is that of multiple scattering too, which pays for it.
@@ -146,15 +146,15 @@ TEST(CostModel, FinerKnobsAreNeverCheaper) {
     const Predicted base = predict(scene);
     expect_dearer(base, with([](Knobs& k) { k.cubemap_size = 64; }), "texels");
     expect_dearer(base, with([](Knobs& k) { k.coefficients = 512; }), "coefficients");
-    expect_dearer(base, with([](Knobs& k) { k.single_cubemap = 32; }), "texels of light maps");
-    expect_dearer(base, with([](Knobs& k) { k.depth_samples = 12; }), "depth samples");
-    expect_dearer(base, with([](Knobs& k) { k.tolerance = 1e-4; }), "tolerance");
-    expect_dearer(with([](Knobs& k) { k.phase_terms = 4; }),
-                  with([](Knobs& k) { k.phase_terms = 16; }), "terms");
+    expect_dearer(base, with([](Knobs& k) { k.set(kSingleCubemap, 32); }), "texels of light maps");
+    expect_dearer(base, with([](Knobs& k) { k.set(kDepthSamples, 12); }), "depth samples");
+    expect_dearer(base, with([](Knobs& k) { k.set(kEpsilon, 1e-4); }), "tolerance");
+    expect_dearer(with([](Knobs& k) { k.set(kPhaseTerms, 4); }),
+                  with([](Knobs& k) { k.set(kPhaseTerms, 16); }), "terms");
     const auto sampled = [&](std::uint32_t samples) {
         return with([samples](Knobs& k) {
-            k.samples = samples;
-            k.exact_samples = true;
+            k.set(kSamples, samples);
+            k.given.push_back(&kSamples);
         });
     };
     expect_dearer(sampled(20000), sampled(80000), "samples");

@@ -1,10 +1,10 @@
-#include "bake/plan/inspect_scene.h"
+#include "bake/scene/inspect_scene.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bake/plan/horizon.h"
+#include "bake/scene/horizon.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {

@@ -1,11 +1,12 @@
-#include "bake/plan/rule_colour.h"
+#include "bake/effects/light/rule_colour.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bake/plan/inspect_scene.h"
+#include "bake/scene/inspect_scene.h"
 #include "bake/plan/row_layout.h"
+#include "tests/support/effects.h"
 #include "tests/support/media.h"
 
 namespace opaline::bake {

@@ -1,11 +1,12 @@
-#include "bake/plan/savings.h"
+#include "bake/pipeline/savings.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "bake/plan/cost_model.h"
-#include "bake/plan/inspect_scene.h"
+#include "bake/pipeline/cost_model.h"
+#include "bake/scene/inspect_scene.h"
+#include "tests/support/effects.h"
 #include "tests/support/media.h"
 #include "tests/support/rates.h"
 
@@ -34,7 +35,7 @@ Planned plan_ball(const formats::Medium& medium) {
 TEST(Savings, AreWhatTurningTheEntryOnWouldAdd) {
     const Planned p = plan_ball(tests::make_grey_medium(40, 1));
     const auto colour = std::find_if(p.plan.begin(), p.plan.end(), [](const PlanEntry& entry) {
-        return entry.effect == "light.colour";
+        return entry.name == "light.colour";
     });
     ASSERT_FALSE(colour->on);
     std::vector<PlanEntry> forced = p.plan;
@@ -56,9 +57,9 @@ TEST(Savings, AreOfEffectsThatAreOffAndNotOfAnotherLook) {
     }
     ASSERT_FALSE(find_entry(p.plan, "direct", 0)->on);
     for (const PlanEntry& entry : p.plan) {
-        const bool may_save = !entry.on && entry.effect != "direct";
+        const bool may_save = !entry.on && entry.name != "direct";
         EXPECT_TRUE(may_save || (entry.saved_seconds == 0 && entry.saved_bytes == 0))
-            << entry.effect << " of " << entry.subject;
+            << entry.name << " of " << entry.subject.name;
     }
 }
 
@@ -66,7 +67,7 @@ TEST(Savings, LeaveThePredictionAsItWas) {
     Planned p = plan_ball(tests::make_grey_medium(40, 1));
     double seconds = p.cost.shared_seconds;
     for (const PlanEntry& entry : p.plan) {
-        EXPECT_TRUE(entry.on || entry.predicted_seconds == 0) << entry.effect;
+        EXPECT_TRUE(entry.on || entry.predicted_seconds == 0) << entry.name;
         seconds += entry.predicted_seconds;
     }
     EXPECT_NEAR(seconds, p.cost.seconds, 1e-9 * seconds);

@@ -1,4 +1,4 @@
-#include "bake/receivers/orient_bodies.h"
+#include "bake/scene/orient_bodies.h"
 
 #include <gtest/gtest.h>
 

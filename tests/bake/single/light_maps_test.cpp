@@ -1,10 +1,10 @@
-#include "bake/single/light_maps.h"
+#include "bake/effects/single/light_maps.h"
 
 #include <gtest/gtest.h>
 
-#include "bake/single/gather_direction.h"
-#include "bake/single/inner_triangles.h"
-#include "bake/single/texel_directions.h"
+#include "bake/effects/single/gather_direction.h"
+#include "bake/effects/single/inner_triangles.h"
+#include "bake/effects/single/texel_directions.h"
 #include "tests/bake/single/single_support.h"
 
 namespace opaline::bake {

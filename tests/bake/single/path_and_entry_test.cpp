@@ -4,8 +4,8 @@
 #include <limits>
 #include <numeric>
 
-#include "bake/single/entry.h"
-#include "bake/single/path_quadrature.h"
+#include "bake/scattering/entry.h"
+#include "bake/scattering/path_quadrature.h"
 
 namespace opaline::bake {
 namespace {

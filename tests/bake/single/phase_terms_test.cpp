@@ -1,11 +1,11 @@
-#include "bake/single/phase_terms.h"
+#include "bake/effects/single/phase_terms.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "bake/single/ray_single.h"
+#include "bake/effects/single/ray_single.h"
 #include "tests/bake/single/single_support.h"
 
 namespace opaline::bake {

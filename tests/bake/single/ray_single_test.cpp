@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/single/ray_single.h"
+#include "bake/effects/single/ray_single.h"
 #include "tests/bake/single/single_support.h"
 #include "tests/support/reference_table.h"
 

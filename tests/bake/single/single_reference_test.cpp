@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/single/entry.h"
-#include "bake/single/path_quadrature.h"
+#include "bake/scattering/entry.h"
+#include "bake/scattering/path_quadrature.h"
 #include "tests/support/reference_table.h"
 
 namespace opaline::bake {

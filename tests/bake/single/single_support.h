@@ -6,8 +6,9 @@
 #include <numbers>
 #include <vector>
 
+#include "bake/effects/single/ray_single.h"
+#include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/single/ray_single.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "tests/support/media.h"
 #include "tests/support/scenes.h"

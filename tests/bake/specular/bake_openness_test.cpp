@@ -1,4 +1,4 @@
-#include "bake/specular/bake_openness.h"
+#include "bake/transport/bake_openness.h"
 
 #include <gtest/gtest.h>
 

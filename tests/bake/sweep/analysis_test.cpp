@@ -1,9 +1,11 @@
-#include "bake/sweep/analysis.h"
+#include "bake/accuracy/sweep/analysis.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <numeric>
+
+#include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/single/single_knobs.h"
 
 namespace opaline::bake {
 namespace {
@@ -23,15 +25,16 @@ PointRecord rung(Ladder ladder, double value, double luminance) {
 TEST(Analysis, RateIsMeasuredWithinTheLadderWhateverElseErrs) {
     SweepResult result;
     for (const double s : {4000.0, 1000.0, 64000.0, 16000.0, 32000.0}) {
-        result.points.push_back(rung(Ladder::samples, s, 1 + 8 / s));
+        result.points.push_back(rung(ladder_of(kSamples), s, 1 + 8 / s));
     }
     // The truth is elsewhere: another knob is what makes the ladder's common error.
     result.points.push_back(rung(Ladder::grid, 1, 0.5));
     result.truth = 5;
+    result.subject.knobs = {&kSamples};
     const SweepAnalysis analysis = analyse_sweep(result);
     ASSERT_EQ(analysis.fits.size(), 1u);
     const LadderFit& fit = analysis.fits[0];
-    EXPECT_EQ(fit.ladder, Ladder::samples);
+    EXPECT_EQ(fit.ladder, ladder_of(kSamples));
     EXPECT_EQ(fit.against, "rung 64000.000000");
     ASSERT_TRUE(fit.fit);
     EXPECT_NEAR(fit.fit->slope, -1, 0.1);
@@ -42,13 +45,14 @@ TEST(Analysis, RateIsMeasuredWithinTheLadderWhateverElseErrs) {
 TEST(Analysis, ToleranceZeroIsTheFinestAndTermsCountAsDegrees) {
     SweepResult result;
     for (const double e : {0.0, 1e-3, 1e-2, 1e-1}) {
-        result.points.push_back(rung(Ladder::tolerance, e, 1 + e));
+        result.points.push_back(rung(ladder_of(kEpsilon), e, 1 + e));
     }
     result.mean_cosine = 0.5;
     for (const int degree : {0, 1, 2, 3, 4}) {
         result.points.push_back(
-            rung(Ladder::phase_terms, (degree + 1) * (degree + 1), 1 + std::pow(0.5, degree)));
+            rung(ladder_of(kPhaseTerms), (degree + 1) * (degree + 1), 1 + std::pow(0.5, degree)));
     }
+    result.subject.knobs = {&kEpsilon, &kPhaseTerms};
     const SweepAnalysis analysis = analyse_sweep(result);
     ASSERT_EQ(analysis.fits.size(), 2u);
     EXPECT_NEAR(analysis.fits[0].fit->slope, 1, 1e-9);
@@ -72,24 +76,24 @@ TEST(Analysis, ErrorsAgreeWhereIntervalsMeetAndTheFinestIsNotAsked) {
     EXPECT_EQ(analysis.checks_agreeing, 1u);
 }
 
-TEST(StageGroups, AddUpToTheWholeAndTellMediaFromOpaqueSurfaces) {
-    BakeResult bake;
-    bake.asset.primitives.resize(2);
-    bake.asset.primitives[0].shading = formats::Shading::translucent;
-    bake.asset.primitives[1].shading = formats::Shading::diffuse;
-    bake.stages = {{"bodies", 1, 0, 0},
-                   {"samples of material 'Wax'", 2, 0, 0},
-                   {"light maps of material 'Wax'", 4, 0, 0},
-                   {"rows of 'a'", 8, 0, 0},
-                   {"rows of 'b'", 16, 0, 0},
-                   {"openness", 32, 0, 0},
-                   {"self-check", 64, 0, 0},
-                   {"something new", 128, 0, 0}};
-    bake.seconds_total = 256;
-    const StageGroups groups = group_stages(bake);
-    EXPECT_THAT(groups, ElementsAre(130, 16, 2, 4, 8, 32, 64));
-    EXPECT_EQ(std::accumulate(groups.begin(), groups.end(), 0.0), 256);
-    EXPECT_EQ(groups.size(), stage_group_names().size());
+TEST(StageGroups, AddUpToTheWholeAndStagesOfOneGroupStandTogether) {
+    const StageLog stages{{"bodies", kPreparationGroup, 1, 0, 0},
+                          {"samples of material 'Wax'", "multiple: samples", 2, 0, 0},
+                          {"rows of 'a'", "multiple: rows", 8, 0, 0},
+                          {"rows of 'b'", "direct: rows", 16, 0, 0},
+                          {"rows of 'c'", "multiple: rows", 32, 0, 0}};
+    const StageGroups groups = group_stages(stages, 256);
+    ASSERT_EQ(groups.size(), 4u);
+    EXPECT_EQ(seconds_of(groups, kPreparationGroup), 256 - 58) << "and what is between stages";
+    EXPECT_EQ(seconds_of(groups, "multiple: rows"), 40);
+    EXPECT_EQ(seconds_of(groups, "direct: rows"), 16);
+    EXPECT_EQ(seconds_of(groups, "multiple: samples"), 2);
+    EXPECT_EQ(seconds_of(groups, "no such group"), 0);
+    double sum = 0;
+    for (const GroupSeconds& group : groups) {
+        sum += group.seconds;
+    }
+    EXPECT_EQ(sum, 256);
 }
 
 }  // namespace

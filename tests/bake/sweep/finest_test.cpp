@@ -1,4 +1,4 @@
-#include "bake/sweep/finest.h"
+#include "bake/accuracy/sweep/finest.h"
 
 #include <gtest/gtest.h>
 

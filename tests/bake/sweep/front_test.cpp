@@ -1,4 +1,4 @@
-#include "bake/sweep/front.h"
+#include "bake/accuracy/sweep/front.h"
 
 #include <gmock/gmock.h>
 

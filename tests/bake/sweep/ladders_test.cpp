@@ -1,4 +1,4 @@
-#include "bake/sweep/ladders.h"
+#include "bake/accuracy/sweep/ladders.h"
 
 #include <gmock/gmock.h>
 
@@ -7,13 +7,27 @@
 #include <set>
 
 #include "formats/opal/cubemap.h"
+#include "tests/support/effects.h"
 
 namespace opaline::bake {
 namespace {
 
-constexpr SweepSubject kOpaque{.direct = true};
-constexpr SweepSubject kMarble{.direct = true, .multiple = true, .single = true};
-constexpr SweepSubject kFog{.multiple = true, .single = true, .anisotropic = true};
+const SweepSubject kOpaque{};
+const SweepSubject kMarble{
+    {&kSamples, &kSamplesPerPath, &kEpsilon, &kDepthSamples, &kSingleCubemap, &kPhaseTolerance},
+    true};
+const SweepSubject kFog{{&kSamples, &kSamplesPerPath, &kEpsilon, &kDepthSamples, &kSingleCubemap,
+                         &kPhaseTerms, &kPhaseTolerance},
+                        true};
+
+std::vector<SweepPoint> make_ladders(const SweepSubject& subject, const BakeOptions& options,
+                                     Quality base) {
+    return make_ladders({all_effects(), subject, options}, base);
+}
+
+std::vector<SweepPoint> make_truths(const SweepSubject& subject, const BakeOptions& options) {
+    return make_truths({all_effects(), subject, options});
+}
 
 std::set<Ladder> ladders_in(const std::vector<SweepPoint>& points) {
     std::set<Ladder> ladders;
@@ -41,23 +55,23 @@ TEST(Ladders, NoTwoPointsMakeTheSameBake) {
 
 TEST(Ladders, KnobsOfEffectsThatAreOffAreLeftOut) {
     const auto opaque = ladders_in(make_ladders(kOpaque, {}, Quality::preview));
-    for (const Ladder l : {Ladder::samples, Ladder::tolerance, Ladder::depth_samples,
-                           Ladder::phase_terms, Ladder::single_cubemap, Ladder::exact_rays}) {
-        EXPECT_FALSE(opaque.contains(l)) << ladder_name(l);
+    for (const KnobSpec* knob : kFog.knobs) {
+        EXPECT_FALSE(opaque.contains(ladder_of(*knob))) << knob->name;
     }
+    EXPECT_FALSE(opaque.contains(Ladder::exact_rays));
     const auto marble = ladders_in(make_ladders(kMarble, {}, Quality::preview));
-    EXPECT_TRUE(marble.contains(Ladder::samples));
-    EXPECT_TRUE(marble.contains(Ladder::depth_samples));
-    EXPECT_FALSE(marble.contains(Ladder::phase_terms));
-    EXPECT_TRUE(ladders_in(make_ladders(kFog, {}, Quality::preview)).contains(Ladder::phase_terms));
+    EXPECT_TRUE(marble.contains(ladder_of(kSamples)));
+    EXPECT_TRUE(marble.contains(ladder_of(kDepthSamples)));
+    EXPECT_FALSE(marble.contains(ladder_of(kPhaseTerms)));
+    EXPECT_TRUE(ladders_in(make_ladders(kFog, {}, Quality::preview)).contains(ladder_of(kPhaseTerms)));
 }
 
 // How many of the knobs that ladders climb differ.
 int count_changes(const Knobs& a, const Knobs& b) {
     return (a.cubemap_size != b.cubemap_size) + (a.coefficients != b.coefficients) +
-           (a.code_bits != b.code_bits) + (a.samples != b.samples) + (a.tolerance != b.tolerance) +
-           (a.depth_samples != b.depth_samples) + (a.phase_terms != b.phase_terms) +
-           (a.exact_rays != b.exact_rays);
+           (a.code_bits != b.code_bits) + (a.exact_rays != b.exact_rays) +
+           static_cast<int>(std::count_if(kFog.knobs.begin(), kFog.knobs.end(),
+                                          [&](const KnobSpec* k) { return a[*k] != b[*k]; }));
 }
 
 TEST(Ladders, OneAtATimeChangesOneKnobOfThePreview) {
@@ -65,8 +79,9 @@ TEST(Ladders, OneAtATimeChangesOneKnobOfThePreview) {
     int found = 0;
     for (const SweepPoint& p : make_ladders(kFog, {}, Quality::preview)) {
         for (const Rung& r : p.rungs) {
-            if (r.ladder == Ladder::cubemap ||
-                (r.ladder >= Ladder::coefficients && r.ladder <= Ladder::exact_rays)) {
+            if (r.ladder == Ladder::cubemap || r.ladder == Ladder::coefficients ||
+                r.ladder == Ladder::code_bits || r.ladder == Ladder::exact_rays ||
+                r.ladder.knob != nullptr) {
                 EXPECT_LE(count_changes(p.knobs, base), 1) << p.label;
                 ++found;
             }
@@ -99,14 +114,14 @@ TEST(Ladders, EveryPointIsPossible) {
         }
         for (const SweepPoint& p : points) {
             EXPECT_TRUE(formats::is_valid_cubemap_size(p.knobs.cubemap_size)) << p.label;
-            EXPECT_LE(p.knobs.single_cubemap, p.knobs.cubemap_size) << p.label;
+            EXPECT_LE(p.knobs[kSingleCubemap], p.knobs.cubemap_size) << p.label;
             EXPECT_TRUE(p.knobs.coefficients == kAllCoefficients ||
                         p.knobs.coefficients < formats::cubemap_texels(p.knobs.cubemap_size))
                 << p.label;
             EXPECT_GE(p.knobs.coefficients, 7u) << p.label;
             EXPECT_TRUE(p.knobs.code_bits == 8 || p.knobs.code_bits == 16) << p.label;
-            EXPECT_GE(p.knobs.depth_samples, 1u) << p.label;
-            EXPECT_GE(p.knobs.samples, 100u) << p.label;
+            EXPECT_GE(p.knobs[kDepthSamples], 1) << p.label;
+            EXPECT_GE(p.knobs[kSamples], 100) << p.label;
         }
     }
 }
@@ -114,7 +129,7 @@ TEST(Ladders, EveryPointIsPossible) {
 TEST(Ladders, TruthsGetCheaperOneByOne) {
     const auto work = [](const Knobs& k) {
         return static_cast<double>(k.cubemap_size) * k.cubemap_size * (k.exact_rays ? 100.0 : 1.0) *
-               k.samples *
+               k[kSamples] *
                std::sqrt(static_cast<double>(
                    std::min<std::size_t>(k.coefficients, formats::cubemap_texels(k.cubemap_size))));
     };
@@ -130,8 +145,8 @@ TEST(Ladders, TruthsGetCheaperOneByOne) {
 TEST(Ladders, KnobsOfMediaDoNotTellOpaqueBakesApart) {
     const Knobs a = *resolve_knobs({});
     Knobs b = a;
-    b.samples = 1000;
-    b.depth_samples = 1;
+    b.set(kSamples, 1000);
+    b.set(kDepthSamples, 1);
     b.exact_rays = true;
     EXPECT_TRUE(same_bake(a, b, kOpaque));
     EXPECT_FALSE(same_bake(a, b, kMarble));

@@ -3,9 +3,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "bake/sweep/difference.h"
-#include "bake/sweep/report_page.h"
-#include "bake/sweep/tables.h"
+#include "bake/accuracy/sweep/difference.h"
+#include "bake/accuracy/sweep/report_page.h"
+#include "bake/accuracy/sweep/tables.h"
+#include "tests/support/effects.h"
 
 namespace opaline::bake {
 namespace {
@@ -24,7 +25,7 @@ SweepResult small_sweep(const std::string& name) {
     result.source = name;
     result.lights = {"white", "sun:30,60"};
     PlanEntry entry;
-    entry.effect = "direct";
+    entry.name = "direct";
     entry.subject = "material '" + name + "'";
     entry.on = true;
     result.plan = {entry};
@@ -34,7 +35,7 @@ SweepResult small_sweep(const std::string& name) {
         record.point.label = i == 0 ? "reference" : "N = 8, M = " + std::to_string(i);
         record.point.rungs = {{i == 0 ? Ladder::preset : Ladder::grid, 3}};
         record.seconds = seconds[i];
-        record.groups.assign(stage_group_names().size(), 1.0);
+        record.groups = {{"preparation", 1.0}, {"direct: rows", 1.0}};
         record.bytes = 3000 - 1000 * i;
         record.error.rms_relative = errors[i];
         record.error.ci95[0] = record.error.ci95[1] = errors[i];

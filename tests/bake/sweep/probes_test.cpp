@@ -1,4 +1,4 @@
-#include "bake/sweep/probes.h"
+#include "bake/accuracy/sweep/probes.h"
 
 #include <gmock/gmock.h>
 
@@ -67,14 +67,15 @@ TEST(Probes, ErrorIsRelativeToTheTruth) {
     }
     const std::vector<std::string> lights{"a", "b"};
     const auto report =
-        bake::compare_probes(half, truth, {true, false, true}, lights, "multiple+single");
+        bake::compare_probes(half, truth, std::vector<std::string>{"single", "direct", "single"},
+                             lights);
     EXPECT_NEAR(report.rms_relative, 0.5, 1e-12);
     EXPECT_NEAR(report.ci95[0], 0.5, 1e-12);
     EXPECT_NEAR(report.ci95[1], 0.5, 1e-12);
     EXPECT_EQ(report.receivers_checked, 3u);
     ASSERT_EQ(report.by_effect.size(), 2u);
-    EXPECT_EQ(report.by_effect[0].name, "direct");
-    EXPECT_EQ(report.by_effect[1].name, "multiple+single");
+    EXPECT_EQ(report.by_effect[0].name, "single");
+    EXPECT_EQ(report.by_effect[1].name, "direct");
     for (const auto& light : report.by_light) {
         EXPECT_NEAR(light.rms_relative, 0.5, 1e-12) << light.name;
     }

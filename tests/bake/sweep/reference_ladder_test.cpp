@@ -1,10 +1,10 @@
-#include "bake/sweep/reference_ladder.h"
+#include "bake/accuracy/sweep/reference_ladder.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "bake/sweep/slopes.h"
+#include "bake/accuracy/sweep/slopes.h"
 #include "tests/support/media.h"
 
 namespace opaline::bake {

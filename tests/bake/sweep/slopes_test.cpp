@@ -1,8 +1,10 @@
-#include "bake/sweep/slopes.h"
+#include "bake/accuracy/sweep/slopes.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
+
+#include "bake/effects/single/single_knobs.h"
 
 namespace opaline::bake {
 namespace {
@@ -63,7 +65,7 @@ TEST(Slopes, SemiLogarithmicFitFindsTheAnisotropy) {
     const auto fit = fit_slope(rungs, true);
     ASSERT_TRUE(fit);
     EXPECT_NEAR(std::exp(fit->slope), 0.6, 1e-12);
-    EXPECT_NEAR(fit->slope, convergence_theory(Ladder::phase_terms, 0.6)->rate, 1e-12);
+    EXPECT_NEAR(fit->slope, convergence_theory(ladder_of(kPhaseTerms), 0.6)->rate, 1e-12);
 }
 
 TEST(Slopes, NothingIsClaimedOfLessThanTwoPoints) {
@@ -77,7 +79,7 @@ TEST(Slopes, NothingIsClaimedOfLessThanTwoPoints) {
 TEST(Slopes, SwitchesAndIsotropicPhaseFunctionsHaveNoRate) {
     EXPECT_FALSE(convergence_theory(Ladder::exact_rays, 0.5));
     EXPECT_FALSE(convergence_theory(Ladder::preset, 0.5));
-    EXPECT_FALSE(convergence_theory(Ladder::phase_terms, 0));
+    EXPECT_FALSE(convergence_theory(ladder_of(kPhaseTerms), 0));
 }
 
 }  // namespace

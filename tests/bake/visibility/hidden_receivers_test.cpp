@@ -1,9 +1,9 @@
-#include "bake/visibility/hidden_receivers.h"
+#include "bake/transport/hidden_receivers.h"
 
 #include <gtest/gtest.h>
 
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/visibility/irradiance_transport.h"
+#include "bake/transport/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "tests/support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "bake/visibility/irradiance_transport.h"
+#include "bake/transport/irradiance_transport.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "bake/visibility/ray_scene.h"
+#include "bake/transport/ray_scene.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {

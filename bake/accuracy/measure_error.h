@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bake/truth/draw_receivers.h"
+#include "bake/truth/luminance.h"
+
+namespace opaline::bake {
+
+/// Numerical error of the finished rows against the same model evaluated by brute force, over
+/// held-back receivers and the published test lights; relative to the RMS of the reference
+/// (design 7).
+struct ErrorReport {
+    double rms_relative = 0;
+    double ci95[2] = {0, 0};  ///< of rms_relative: bootstrap over receivers, 2.5 and 97.5 percent
+    double p95_relative = 0, max_relative = 0;
+    std::uint32_t receivers_checked = 0;
+    std::string reference;  ///< what it was measured against, in words
+    struct Part {
+        std::string name;
+        double rms_relative = 0;
+    };
+    std::vector<Part> by_effect;  ///< pairs of one effect, over all lights
+    std::vector<Part> by_light;   ///< pairs of one test light, over all effects
+};
+
+/// One receiver under one light: luminance. Two errors, against two independent estimates of the
+/// truth: the mean of their products is that of the squared error, free of the estimates' noise.
+/// Both are the same where the truth is known exactly.
+struct CheckedPair {
+    std::array<double, 2> error{};
+    double reference = 0;
+};
+
+/// One pair for each light.
+void append_pairs(const Luminance& found, const TwoEstimates& truth,
+                  std::vector<CheckedPair>& pairs);
+
+/// What one effect's check found: the pairs of each receiver stand together, one per light.
+struct EffectCheck {
+    std::string effect, reference;
+    std::vector<CheckedPair> pairs;
+    std::uint64_t rays = 0;
+};
+
+/// sqrt(mean of products of errors / mean square of the reference); 0 without a reference.
+double relative_rms(std::span<const CheckedPair> pairs);
+
+/// That, and the ends of its 95 % interval: bootstrap over receivers, the pairs of each standing
+/// together, `lights` >= 1 of them.
+struct ErrorBounds {
+    double rms = 0, lowest = 0, highest = 0;
+};
+ErrorBounds bound_error(std::span<const CheckedPair> pairs, std::size_t lights, std::uint64_t seed);
+
+/// All effects together, each by itself, and each light by itself. Checks of one effect in several
+/// materials count as one. `lights`: names, in the order of the pairs.
+ErrorReport summarise_checks(std::span<const EffectCheck> checks,
+                             std::span<const std::string> lights, std::uint64_t seed);
+
+}  // namespace opaline::bake

@@ -1,0 +1,68 @@
+#include "bake/accuracy/model_receivers.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace opaline::bake {
+namespace {
+
+// In another body, or in the back of everything: nobody sees it, and the bake gives it the light of
+// its neighbours (visibility/hidden_receivers).
+bool is_buried(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
+    if (!receiver.around.empty()) {
+        return true;
+    }
+    for (std::uint32_t i = 0; i < 16; ++i) {
+        RandomStream random(0, i, 0);
+        glm::vec3 d{2 * random.next() - 1, 2 * random.next() - 1, 2 * random.next() - 1};
+        d *= glm::dot(d, receiver.normal) < 0 ? -1.0f : 1.0f;
+        const auto hit = scene.surfaces.closest_hit({receiver.outside}, glm::normalize(d),
+                                                    std::numeric_limits<float>::infinity());
+        if (!hit || glm::dot(hit->flat, d) < 0) {
+            return false;
+        }
+        const formats::Scene& input = scene.surfaces.scene();
+        if (input.materials[input.primitives[hit->primitive].material].double_sided) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Close behind it, in its own body, lies another surface: a floor that a body has sunk into. There
+// the bake's body, which has nothing in it, is not the reference's.
+bool is_pierced(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
+    if (receiver.medium == formats::kNone) {
+        return false;
+    }
+    constexpr float kClose = 3;  // mean free paths, in the clearest channel
+    const glm::vec3 sigma_t = scene.media[receiver.medium].sigma_t;
+    const auto hit = scene.surfaces.closest_hit(
+        {receiver.inside}, -receiver.normal,
+        kClose / std::max(std::min({sigma_t.x, sigma_t.y, sigma_t.z}), 1e-30f));
+    const formats::Scene& input = scene.surfaces.scene();
+    return hit && scene.medium_of[input.primitives[hit->primitive].material] != receiver.medium;
+}
+
+// At a sharp edge of its body, where radiance jumps: the way in along one face's normal lies in the
+// other face. Rays then start aside of the normal.
+bool is_on_edge(const ReferenceReceiver& receiver) {
+    constexpr float kSharp = 0.9f;
+    return receiver.medium != formats::kNone &&
+           glm::dot(glm::normalize(receiver.outside - receiver.inside), receiver.normal) < kSharp;
+}
+
+}  // namespace
+
+std::vector<ReferenceReceiver> choose_model_receivers(const ReferenceScene& scene,
+                                                      std::uint32_t wanted, std::uint64_t seed) {
+    std::vector<ReferenceReceiver> receivers = choose_receivers(scene, wanted, seed, std::nullopt);
+    std::erase_if(receivers, [&](const ReferenceReceiver& r) {
+        return r.normal == glm::vec3(0) || is_buried(scene, r) || is_pierced(scene, r) ||
+               is_on_edge(r);
+    });
+    return receivers;
+}
+
+}  // namespace opaline::bake

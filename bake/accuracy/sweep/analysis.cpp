@@ -1,0 +1,144 @@
+#include "bake/accuracy/sweep/analysis.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace opaline::bake {
+namespace {
+
+// Ladders that converge: of what all effects share, then of each effect's knobs.
+std::vector<Ladder> converging_ladders(const SweepSubject& subject) {
+    std::vector<Ladder> ladders{Ladder::resolution, Ladder::coefficients};
+    for (const KnobSpec* knob : subject.knobs) {
+        ladders.push_back(ladder_of(*knob));
+    }
+    return ladders;
+}
+
+// The knob as theory counts it.
+double theory_value(const Ladder& ladder, double value) {
+    const auto count = ladder.knob != nullptr ? ladder.knob->theory.value : nullptr;
+    return count != nullptr ? count(value) : value;
+}
+
+struct Member {
+    double value = 0;
+    const PointRecord* record = nullptr;
+};
+
+std::vector<Member> members_of(const SweepResult& result, const Ladder& ladder) {
+    std::vector<Member> members;
+    for (const PointRecord& record : result.points) {
+        for (const Rung& rung : record.point.rungs) {
+            if (rung.ladder == ladder) {
+                members.push_back({theory_value(ladder, rung.value), &record});
+            }
+        }
+    }
+    const bool fine_is_small = ladder.knob != nullptr && ladder.knob->theory.fine_is_small;
+    std::sort(members.begin(), members.end(), [&](const Member& a, const Member& b) {
+        return fine_is_small ? a.value > b.value : a.value < b.value;
+    });
+    return members;
+}
+
+// Next to the finest, a rung shares most of its error and looks better than it is.
+// Of the coefficients of a surface half vanish: "all" is fewer than it says.
+bool is_near(const Ladder& ladder, double value, double finest) {
+    const double near = ladder == Ladder::coefficients ? 4.01 : 2.01;
+    const bool by_step = ladder.knob != nullptr && ladder.knob->theory.rate_by_cosine != nullptr;
+    return !by_step && value > 0 && finest > 0 &&
+           std::max(value, finest) <= near * std::min(value, finest);
+}
+
+std::optional<LadderFit> fit_ladder(const SweepResult& result, const Ladder& ladder) {
+    const auto theory = convergence_theory(ladder, result.mean_cosine);
+    const std::vector<Member> members = members_of(result, ladder);
+    if (!theory || members.size() < 3) {
+        return std::nullopt;
+    }
+    const Member& finest = members.back();
+    LadderFit fit{ladder, *theory, finest.record->point.label, {}, std::nullopt};
+    std::vector<Convergence> fitted;
+    for (std::size_t i = 0; i + 1 < members.size(); ++i) {
+        const Convergence rung{
+            members[i].value,
+            relative_difference(members[i].record->luminance, finest.record->luminance),
+            members[i].record->seconds};
+        fit.rungs.push_back(rung);
+        if (!is_near(ladder, rung.value, finest.value)) {
+            fitted.push_back(rung);
+        }
+    }
+    fit.fit = fit_slope(fitted, theory->semi_log);
+    return fit;
+}
+
+// Against samples of its own truth, none of which it shares: nothing is too near.
+LadderFit fit_reference(const ReferenceLadder& reference) {
+    auto theory = convergence_theory(Ladder::reference_samples, 0);
+    LadderFit fit{
+        Ladder::reference_samples,
+        std::move(*theory),
+        std::to_string(reference.truth_samples) + " other samples under " + reference.light,
+        {},
+        std::nullopt};
+    for (const ReferenceRung& rung : reference.rungs) {
+        fit.rungs.push_back({static_cast<double>(rung.samples), rung.error, rung.seconds});
+    }
+    fit.fit = fit_slope(fit.rungs, fit.theory.semi_log);
+    return fit;
+}
+
+bool meet(const double (&a)[2], const double (&b)[2]) {
+    return a[0] <= b[1] && b[0] <= a[1];
+}
+
+std::optional<Answer> answer_of(std::span<const CostPoint> time, std::span<const CostPoint> bytes) {
+    for (const double error : {0.01, 0.02, 0.05, 0.005, 0.1, 0.002, 0.2, 0.001, 0.5}) {
+        const double seconds = front_cost_at(time, error), size = front_cost_at(bytes, error);
+        if (seconds > 0 && size > 0) {
+            const double half = front_cost_at(time, error / 2);
+            return Answer{error, seconds, size, half > 0 ? half / seconds : 0.0};
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+SweepAnalysis analyse_sweep(const SweepResult& result) {
+    SweepAnalysis analysis;
+    std::vector<CostPoint> time, bytes;
+    for (std::size_t i = 0; i < result.points.size(); ++i) {
+        const PointRecord& record = result.points[i];
+        time.push_back({record.seconds, record.error.rms_relative});
+        bytes.push_back({static_cast<double>(record.bytes), record.error.rms_relative});
+        if (i != result.truth) {
+            ++analysis.checks;
+            analysis.checks_agreeing += meet(record.against_finest.ci95, record.error.ci95) ? 1 : 0;
+        }
+    }
+    const std::vector<bool> on_time = pareto_front(time), on_bytes = pareto_front(bytes);
+    for (std::size_t i = 0; i < result.points.size(); ++i) {
+        analysis.standing.push_back(
+            {on_time[i], on_bytes[i], times_the_front(time, i), times_the_front(bytes, i)});
+    }
+    analysis.answer = answer_of(time, bytes);
+    analysis.equal_time = equal_cost_pair(time);
+    analysis.equal_error = equal_error_pair(time);
+    for (const Ladder& ladder : converging_ladders(result.subject)) {
+        if (auto fit = fit_ladder(result, ladder)) {
+            analysis.fits.push_back(std::move(*fit));
+        }
+    }
+    if (result.reference) {
+        analysis.fits.push_back(fit_reference(*result.reference));
+    }
+    return analysis;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,56 @@
+#include "bake/accuracy/sweep/finest.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace opaline::bake {
+namespace {
+
+// What fills the rows of each material: "multiple+single".
+std::vector<std::string> name_row_effects(const SweepResult& result, const EffectTable& effects,
+                                          const formats::Scene& scene) {
+    std::vector<std::string> names(scene.materials.size());
+    for (std::uint32_t m = 0; m < names.size(); ++m) {
+        const auto decisions = entries_of(result.plan, m);
+        for (const EffectDescriptor& effect : effects.effects) {
+            if (effect.truth.make != nullptr && acts_on(effect, decisions, {})) {
+                names[m] += (names[m].empty() ? "" : "+") + std::string(effect.name);
+            }
+        }
+    }
+    return names;
+}
+
+}  // namespace
+
+std::size_t find_finest(std::span<const PointRecord> points) {
+    const auto finest = std::min_element(points.begin(), points.end(),
+                                         [](const PointRecord& a, const PointRecord& b) {
+                                             return std::pair{a.error.rms_relative, -a.seconds} <
+                                                    std::pair{b.error.rms_relative, -b.seconds};
+                                         });
+    return static_cast<std::size_t>(finest - points.begin());
+}
+
+void compare_with_finest(SweepResult& result, const EffectTable& effects,
+                         const formats::Scene& scene, std::span<const std::uint32_t> probes) {
+    const std::vector<std::string> of_material = name_row_effects(result, effects, scene);
+    std::vector<std::uint32_t> material;
+    for (const formats::Primitive& p : scene.primitives) {
+        material.insert(material.end(), p.position.size(), p.material);
+    }
+    std::vector<std::string> effect;
+    for (const std::uint32_t probe : probes) {
+        effect.push_back(of_material[material[probe]]);
+    }
+    result.truth = find_finest(result.points);
+    const PointRecord& finest = result.points[result.truth];
+    for (PointRecord& record : result.points) {
+        record.against_finest =
+            compare_probes(record.luminance, finest.luminance, effect, result.lights);
+        add_error_of_truth(record.against_finest, finest.error);
+    }
+}
+
+}  // namespace opaline::bake

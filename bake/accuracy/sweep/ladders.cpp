@@ -1,0 +1,252 @@
+#include "bake/accuracy/sweep/ladders.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::array kQualities{Quality::draft, Quality::preview, Quality::production,
+                                Quality::reference};
+
+Knobs preset_knobs(const LadderRequest& request, Quality quality) {
+    BakeOptions wanted;
+    wanted.quality = quality;
+    wanted.effects = request.options.effects;
+    wanted.simulate_all = request.options.simulate_all;
+    wanted.seed = request.options.seed;
+    return *resolve_knobs(request.effects, wanted);  // a preset alone is always possible
+}
+
+double coefficient_count(const Knobs& knobs) {
+    return static_cast<double>(
+        std::min<std::size_t>(knobs.coefficients, formats::cubemap_texels(knobs.cubemap_size)));
+}
+
+std::string label_of(const KnobSpec& knob, double value) {
+    const std::string pattern(knob.label);
+    const std::size_t at = pattern.find("%g");
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return pattern.substr(0, at) + text + pattern.substr(at + 2);
+}
+
+// As the user would give it.
+void give(Knobs& knobs, const KnobSpec& knob, double value) {
+    knobs.set(knob, value);
+    if (knob.exact_if_given) {
+        knobs.given.push_back(&knob);
+    }
+}
+
+std::string coefficients_text(const Knobs& knobs) {
+    return knobs.coefficients == kAllCoefficients ? "all" : std::to_string(knobs.coefficients);
+}
+
+// The list under construction: a setting that is there already gets another rung.
+struct Points {
+    const SweepSubject& subject;
+    std::vector<SweepPoint> list{};
+
+    void add(std::string label, Ladder ladder, double value, const Knobs& wanted) {
+        const Knobs knobs = settle(wanted);
+        const auto same = std::find_if(list.begin(), list.end(), [&](const SweepPoint& p) {
+            return same_bake(p.knobs, knobs, subject);
+        });
+        if (same == list.end()) {
+            list.push_back({std::move(label), {{ladder, value}}, knobs});
+        } else if (std::none_of(same->rungs.begin(), same->rungs.end(),
+                                [&](const Rung& r) { return r.ladder == ladder; })) {
+            same->rungs.push_back({ladder, value});
+        }
+    }
+};
+
+void add_transport_ladders(Points& points, const Knobs& base) {
+    for (const std::uint32_t n : {8u, 16u, 32u, 64u}) {
+        Knobs knobs = base;
+        knobs.cubemap_size = n;
+        points.add("N = " + std::to_string(n), Ladder::cubemap, n, knobs);
+        knobs.coefficients = kAllCoefficients;
+        knobs.code_bits = 16;
+        points.add("N = " + std::to_string(n) + ", all coefficients, 16 bits", Ladder::resolution,
+                   n, knobs);
+    }
+    for (const std::uint32_t m : {16u, 32u, 64u, 128u, 256u, 512u, 1024u, kAllCoefficients}) {
+        Knobs knobs = base;
+        knobs.coefficients = m;
+        points.add("M = " + coefficients_text(knobs), Ladder::coefficients,
+                   coefficient_count(knobs), knobs);
+    }
+    Knobs knobs = base;
+    knobs.code_bits = 16;
+    points.add("16-bit codes", Ladder::code_bits, 16, knobs);
+    points.add("8-bit codes", Ladder::code_bits, 8, base);
+}
+
+void add_knob_ladders(Points& points, const Knobs& base) {
+    for (const KnobSpec* knob : points.subject.knobs) {
+        for (const double value : knob->ladder) {
+            Knobs knobs = base;
+            give(knobs, *knob, value);
+            points.add(label_of(*knob, value), ladder_of(*knob), value, knobs);
+        }
+    }
+    if (!points.subject.in_media) {
+        return;
+    }
+    for (const bool exact : {false, true}) {
+        Knobs knobs = base;
+        knobs.exact_rays = exact;
+        points.add(exact ? "rays instead of light maps" : "light maps", Ladder::exact_rays,
+                   exact ? 1 : 0, knobs);
+    }
+}
+
+void add_grid(Points& points, const Knobs& base) {
+    for (const std::uint32_t n : {8u, 16u, 32u, 64u}) {
+        for (const std::uint32_t m : {16u, 32u, 64u, 128u, 256u, 512u, 1024u}) {
+            // Many coefficients of a coarse map, or few of a fine one, are never a good buy.
+            if (m > 2 * n * n || 16 * m < n * n) {
+                continue;
+            }
+            Knobs knobs = base;
+            knobs.cubemap_size = n;
+            knobs.coefficients = m;
+            const std::string label = "N = " + std::to_string(n) + ", M = " + std::to_string(m);
+            points.add(label, Ladder::grid, n, knobs);
+            // What eight bits cost shows where little is truncated.
+            if (m >= 256) {
+                knobs.code_bits = 16;
+                points.add(label + ", 16 bits", Ladder::grid, n, knobs);
+            }
+        }
+    }
+}
+
+// Step 0 is near the base; each step doubles what most knobs cost.
+void add_diagonal(Points& points, const Knobs& base) {
+    for (int step = -2; step <= 2; ++step) {
+        Knobs knobs = base;
+        knobs.cubemap_size = step < 0 ? 16 : step < 2 ? 32 : 64;
+        knobs.coefficients = static_cast<std::uint32_t>(std::ldexp(128, step));
+        for (const KnobSpec* knob : points.subject.knobs) {
+            if (!knob->diagonal.empty()) {
+                knobs.set(*knob, knob->diagonal[static_cast<std::size_t>(step + 2)]);
+            }
+        }
+        points.add("all knobs " + std::string(step < 0 ? "" : "+") + std::to_string(step),
+                   Ladder::diagonal, step, knobs);
+    }
+}
+
+// One effect's knobs of the truths, number `at` of those beneath the preset.
+Knobs with_truths(const LadderRequest& request, Knobs knobs, std::size_t at) {
+    for (const EffectDescriptor& effect : request.effects.effects) {
+        for (const KnobSpec* knob : effect.knobs) {
+            if (at < knob->truths.size()) {
+                knobs.set(*knob, knob->truths[at]);
+            }
+        }
+    }
+    return knobs;
+}
+
+}  // namespace
+
+bool SweepSubject::has(const KnobSpec& knob) const {
+    return std::find(knobs.begin(), knobs.end(), &knob) != knobs.end();
+}
+
+SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& scene,
+                           std::span<const PlanEntry> plan, const Knobs& knobs) {
+    SweepSubject subject;
+    for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
+        const auto decisions = entries_of(plan, m);
+        if (decisions.empty()) {
+            continue;
+        }
+        const RowLayout layout = layout_material(effects, scene.materials[m], decisions, knobs);
+        for (const EffectDescriptor& effect : effects.effects) {
+            if (!acts_on(effect, decisions, layout)) {
+                continue;
+            }
+            subject.in_media = subject.in_media || effect.inside_media;
+            for (const KnobSpec* knob : effect.knobs) {
+                const bool matters = knob->matters == nullptr || knob->matters(layout, decisions);
+                if (matters && !subject.has(*knob)) {
+                    subject.knobs.push_back(knob);
+                }
+            }
+        }
+    }
+    return subject;
+}
+
+bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject) {
+    const bool same_rows = a.cubemap_size == b.cubemap_size && a.coefficients == b.coefficients &&
+                           a.code_bits == b.code_bits && a.separate_terms == b.separate_terms &&
+                           a.effects == b.effects && a.simulate_all == b.simulate_all &&
+                           a.seed == b.seed;
+    return same_rows && (!subject.in_media || a.exact_rays == b.exact_rays) &&
+           std::all_of(subject.knobs.begin(), subject.knobs.end(), [&](const KnobSpec* knob) {
+               return a[*knob] == b[*knob] &&
+                      (!knob->exact_if_given || a.is_given(*knob) == b.is_given(*knob));
+           });
+}
+
+std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base) {
+    Points points{request.subject};
+    for (std::size_t q = 0; q < kQualities.size(); ++q) {
+        points.add(std::string(quality_name(kQualities[q])), Ladder::preset, static_cast<double>(q),
+                   preset_knobs(request, kQualities[q]));
+    }
+    const Knobs knobs = preset_knobs(request, base);
+    if (request.subject.in_media) {
+        add_diagonal(points, knobs);
+    }
+    add_transport_ladders(points, knobs);
+    add_knob_ladders(points, knobs);
+    add_grid(points, knobs);
+    return std::move(points.list);
+}
+
+std::vector<SweepPoint> make_truths(const LadderRequest& request) {
+    Points points{request.subject};
+    const Knobs reference = preset_knobs(request, Quality::reference);
+    if (!request.subject.in_media) {
+        Knobs finest = reference;
+        finest.cubemap_size = 128;
+        points.add("N = 128, all coefficients, 16 bits", Ladder::resolution, 128, finest);
+    }
+    points.add("reference", Ladder::preset, 3, reference);
+    // Then the knobs that cost most for the least: rays, coefficients, samples, at last resolution.
+    struct Rows {
+        std::uint32_t cubemap, coefficients;
+    };
+    constexpr std::array<Rows, 6> kRows{{{64, kAllCoefficients},
+                                         {64, 1024},
+                                         {32, kAllCoefficients},
+                                         {32, 1024},
+                                         {32, 512},
+                                         {16, kAllCoefficients}}};
+    for (std::size_t at = request.subject.in_media ? 0 : 1; at < kRows.size(); ++at) {
+        Knobs knobs = with_truths(request, reference, at);
+        knobs.exact_rays = false;
+        knobs.cubemap_size = kRows[at].cubemap;
+        knobs.coefficients = kRows[at].coefficients;
+        knobs = settle(std::move(knobs));
+        points.list.push_back({"N = " + std::to_string(knobs.cubemap_size) +
+                                   ", M = " + coefficients_text(knobs) + ", 16 bits, fine",
+                               {},
+                               knobs});
+    }
+    return std::move(points.list);
+}
+
+}  // namespace opaline::bake

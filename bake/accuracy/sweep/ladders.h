@@ -1,0 +1,90 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bake/plan/effect.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// A family of settings that differ in one thing, or together in several.
+struct Ladder {
+    std::string_view name;           ///< as in tables and files; no two ladders share it
+    const KnobSpec* knob = nullptr;  ///< of one effect's knob
+
+    bool operator==(const Ladder& other) const { return name == other.name; }
+    bool operator<(const Ladder& other) const { return name < other.name; }
+
+    static const Ladder preset;        ///< draft, preview, production, reference
+    static const Ladder cubemap;       ///< N, all else as in the base
+    static const Ladder resolution;    ///< N with all coefficients in 16 bits: N alone
+    static const Ladder coefficients;  ///< M
+    static const Ladder code_bits;     ///< of the stored coefficients
+    static const Ladder exact_rays;  ///< 0: light maps and shared rays, 1: neither
+    static const Ladder grid;        ///< N and M together
+    static const Ladder diagonal;    ///< all knobs together, step by step
+    /// Of the Monte Carlo reference, which is no bake: no point stands on it.
+    static const Ladder reference_samples;
+};
+inline constexpr Ladder Ladder::preset{"preset"};
+inline constexpr Ladder Ladder::cubemap{"cubemap"};
+inline constexpr Ladder Ladder::resolution{"resolution"};
+inline constexpr Ladder Ladder::coefficients{"coefficients"};
+inline constexpr Ladder Ladder::code_bits{"code_bits"};
+inline constexpr Ladder Ladder::exact_rays{"exact_rays"};
+inline constexpr Ladder Ladder::grid{"grid"};
+inline constexpr Ladder Ladder::diagonal{"diagonal"};
+inline constexpr Ladder Ladder::reference_samples{"reference_samples"};
+
+/// The ladder of an effect's knob.
+constexpr Ladder ladder_of(const KnobSpec& knob) {
+    return {knob.name, &knob};
+}
+
+/// A point's place on a ladder: `value` is the knob's, or 0 to 3 for presets, N for grids, and the
+/// step for the diagonal. All coefficients count as as many as there are.
+struct Rung {
+    Ladder ladder;
+    double value = 0;
+};
+
+/// One setting to bake with. No two points of a list make the same bake: what stands on several
+/// ladders has several rungs; the truth may stand on none.
+struct SweepPoint {
+    std::string label;  ///< "preview", "M = 256": as its first rung says
+    std::vector<Rung> rungs;
+    Knobs knobs;
+};
+
+/// Which knobs matter to a scene.
+struct SweepSubject {
+    std::vector<const KnobSpec*> knobs;  ///< of effects: those that some subject has use for
+    bool in_media = false;               ///< light is simulated inside media
+
+    bool has(const KnobSpec& knob) const;
+};
+SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& scene,
+                           std::span<const PlanEntry> plan, const Knobs& knobs);
+
+/// True if they make the same transport of a scene: knobs of effects that it does not call for do
+/// not count.
+bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject);
+
+/// What a list of points is made for.
+struct LadderRequest {
+    const EffectTable& effects;
+    const SweepSubject& subject;
+    const BakeOptions& options;  ///< effects and seed go into every point
+};
+
+/// Presets, one-at-a-time ladders around the preset `base`, and joint ladders, without the knobs of
+/// effects that the scene does not call for.
+std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base);
+
+/// Candidates for what the others are measured against, the finest first.
+std::vector<SweepPoint> make_truths(const LadderRequest& request);
+
+}  // namespace opaline::bake

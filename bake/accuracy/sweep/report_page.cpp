@@ -1,0 +1,123 @@
+#include "bake/accuracy/sweep/report_page.h"
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "bake/accuracy/sweep/difference.h"
+#include "bake/accuracy/sweep/page_parts.h"
+#include "formats/image/png.h"
+#include "runtime/picture/tone_map.h"
+
+namespace opaline::bake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using runtime::Picture;
+
+formats::Result<std::string> data_uri(const formats::Image8& image) {
+    const auto png = formats::encode_png(image, "report.html");
+    if (!png) {
+        return png.error();
+    }
+    return "data:image/png;base64," + encode_base64(*png);
+}
+
+formats::Result<std::string> photograph(const Picture& picture) {
+    runtime::DisplayPicture display = runtime::tone_map(picture, 0.0f);
+    return data_uri({display.width, display.height, std::move(display.rgba)});
+}
+
+// The pictures of a pair and what is wrong with each.
+formats::Result<Json> pair_pictures(const SweepResult& result, const CostPair& pair) {
+    const Picture& truth = result.points[result.truth].picture;
+    const Picture* const shown[] = {&result.points[pair.better].picture,
+                                    &result.points[pair.other].picture};
+    Json json;
+    json["scale"] = difference_scale(shown, truth);
+    json["pictures"] = Json::array();
+    json["differences"] = Json::array();
+    for (const Picture* picture : shown) {
+        auto own = photograph(*picture);
+        auto difference = data_uri(draw_difference(*picture, truth, json["scale"].get<double>()));
+        if (!own || !difference) {
+            return own ? difference.error() : own.error();
+        }
+        json["pictures"].push_back(std::move(*own));
+        json["differences"].push_back(std::move(*difference));
+    }
+    return json;
+}
+
+void replace_mark(std::string& page, std::string_view mark, std::string_view text) {
+    if (const std::size_t at = page.find(mark); at != std::string::npos) {
+        page.replace(at, mark.size(), text);
+    }
+}
+
+}  // namespace
+
+std::string json_for_html(const Json& json) {
+    const std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
+    std::string safe;
+    safe.reserve(text.size());
+    // Tags, comments and character references begin with these; in JSON they stand in strings only.
+    for (const char c : text) {
+        safe += c == '<'   ? "\\u003c"
+                : c == '>' ? "\\u003e"
+                : c == '&' ? "\\u0026"
+                           : std::string(1, c);
+    }
+    return safe;
+}
+
+std::string encode_base64(std::string_view bytes) {
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto byte = i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u;
+            group = group << 8 | byte;
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
+        }
+    }
+    return text;
+}
+
+formats::Result<std::string> make_report_page(const SweepResult& result,
+                                              const SweepAnalysis& analysis, const Json& json) {
+    Json pictures;
+    auto truth = photograph(result.points[result.truth].picture);
+    if (!truth) {
+        return truth.error();
+    }
+    pictures["truth"] = std::move(*truth);
+    for (const auto& [name, pair] : {std::pair{"equal_time", &analysis.equal_time},
+                                     std::pair{"equal_error", &analysis.equal_error}}) {
+        if (*pair) {
+            auto own = pair_pictures(result, **pair);
+            if (!own) {
+                return own.error();
+            }
+            pictures[name] = std::move(*own);
+        }
+    }
+    // Data last: nothing that it holds is taken for a mark.
+    std::string page(kPageTemplate);
+    replace_mark(page, "/*STYLE*/", kPageStyle);
+    replace_mark(page, "/*LIBRARY*/", kChartLibrary);
+    replace_mark(page, "/*POINTS*/", kPointsScript);
+    replace_mark(page, "/*CHARTS*/", kChartsScript);
+    replace_mark(page, "/*PAGE*/", kPageScript);
+    replace_mark(page, "/*PICTURES*/", json_for_html(pictures));
+    replace_mark(page, "/*DATA*/", json_for_html(json));
+    return page;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,120 @@
+#include "bake/accuracy/sweep/run_point.h"
+
+#include <malloc.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <fstream>
+#include <utility>
+
+#include "formats/opal/write_opal.h"
+#include "runtime/picture/software_renderer.h"
+#include "runtime/shade.h"
+
+namespace opaline::bake {
+namespace {
+
+// The kernel counts the peak anew, so that each bake of a process has its own. Where it does not,
+// peaks are those of the process so far.
+void forget_peak_memory() {
+    ::malloc_trim(0);
+    std::ofstream("/proc/self/clear_refs") << "5";
+}
+
+// Of the whole process so far.
+double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+formats::Result<runtime::Picture> draw(const formats::AssetView& asset, const SweepView& view,
+                                       unsigned threads) {
+    // The default view of `opaline render`.
+    constexpr float kFieldOfView = 32;
+    const runtime::Camera camera =
+        runtime::frame_asset(asset, kFieldOfView, view.picture_width, view.picture_height);
+    const runtime::LightVector light =
+        runtime::project_environment(view.picture_light, asset.cubemap_size, {}, threads);
+    const std::vector<formats::Rgb> irradiance =
+        runtime::shade_for_picture(asset, light, camera.eye, runtime::kAllTerms, threads);
+    const runtime::SpecularLight specular = runtime::prefilter_specular(
+        view.picture_light, runtime::roughness_levels(asset), {}, threads);
+    runtime::SoftwareOptions options;
+    options.threads = threads;
+    options.specular = specular.maps.empty() ? nullptr : &specular;
+    return runtime::render_software(asset, irradiance, view.picture_light, {}, camera, options);
+}
+
+}  // namespace
+
+StageGroups group_stages(const StageLog& stages, double seconds_total) {
+    StageGroups groups{{kPreparationGroup, seconds_total}};
+    for (const StageReport& stage : stages) {
+        if (stage.group == kPreparationGroup) {
+            continue;
+        }
+        const auto same =
+            std::find_if(groups.begin(), groups.end(),
+                         [&](const GroupSeconds& g) { return g.name == stage.group; });
+        if (same == groups.end()) {
+            groups.push_back({stage.group, stage.seconds});
+        } else {
+            same->seconds += stage.seconds;
+        }
+        groups.front().seconds -= stage.seconds;
+    }
+    groups.front().seconds = std::max(0.0, groups.front().seconds);
+    return groups;
+}
+
+double seconds_of(const StageGroups& groups, const std::string& name) {
+    const auto found = std::find_if(groups.begin(), groups.end(),
+                                    [&](const GroupSeconds& g) { return g.name == name; });
+    return found == groups.end() ? 0 : found->seconds;
+}
+
+formats::Result<PointRecord> run_point(const EffectTable& effects, const formats::Scene& scene,
+                                       const SweepPoint& point, const SweepView& view,
+                                       const ProbeLights& lights, const Context& context) {
+    forget_peak_memory();
+    const double cpu_before = cpu_seconds();
+    Knobs knobs = point.knobs;
+    knobs.check_model = false;  // later: it is no part of what a bake costs
+    auto bake = run_bake(effects, scene, knobs, context);
+    if (!bake) {
+        return std::move(bake).error();
+    }
+    const double cpu_after = cpu_seconds();
+    const formats::AssetView asset = bake->asset.view();
+    PointRecord record;
+    record.point = point;
+    record.seconds = bake->seconds_total;
+    record.cpu_seconds = cpu_after - cpu_before;
+    record.groups = group_stages(bake->stages, bake->seconds_total);
+    record.stages = bake->stages;
+    record.bytes = formats::opal_size(asset);
+    record.peak_bytes = bake->stages.empty() ? 0 : bake->stages.back().peak_rss_bytes;
+    record.error = bake->error;
+    record.luminance = relight_probes(asset, view.probes, lights);
+    if (point.knobs.check_model) {
+        ModelCheckOptions options;
+        options.seed = knobs.seed;
+        auto checked = check_model(scene, asset, options, context);
+        if (!checked) {
+            return std::move(checked).error();
+        }
+        record.model_error = std::move(*checked);
+    }
+    auto picture = draw(asset, view, context.threads);
+    if (!picture) {
+        return std::move(picture).error();
+    }
+    record.picture = std::move(*picture);
+    return record;
+}
+
+}  // namespace opaline::bake

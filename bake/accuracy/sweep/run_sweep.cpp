@@ -1,0 +1,259 @@
+#include "bake/accuracy/sweep/run_sweep.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/environment/builtin_environment.h"
+#include "bake/pipeline/cost_model.h"
+#include "bake/scene/inspect_scene.h"
+#include "bake/accuracy/sweep/finest.h"
+#include "formats/media/mean_cosine.h"
+
+namespace opaline::bake {
+namespace {
+
+struct Prediction {
+    double seconds = 0, bytes = 0;
+};
+
+Prediction predict(const CostRequest& request) {
+    std::vector<PlanEntry> plan =
+        plan_bake(request.effects, request.scene, request.facts, request.knobs);
+    const CostPrediction cost = predict_costs(request, plan);
+    return {cost.seconds, static_cast<double>(cost.bytes)};
+}
+
+std::string amount(double value, const char* unit) {
+    char text[48];
+    std::snprintf(text, sizeof text, value < 10 ? "%.1f %s" : "%.0f %s", value, unit);
+    return text;
+}
+
+// The state of a sweep in progress.
+struct Sweep {
+    const EffectTable& effects;
+    const formats::Scene& scene;
+    const SceneFacts& facts;
+    const SweepOptions& options;
+    const Context& context;
+    const std::function<void(const SweepStep&)>& on_step;
+    Clock::time_point start = Clock::now();
+    SweepResult result{};
+    SweepView view{};
+    std::map<std::uint32_t, ProbeLights> lights{};  // by cube map size
+    std::size_t total = 1;
+    double measured = 0, predicted = 0;  // of the points so far
+
+    Prediction predict_point(const Knobs& knobs) const {
+        return predict({effects, scene, facts, knobs, options.rates, context.threads});
+    }
+    LadderRequest ladder_request() const { return {effects, result.subject, options.bake}; }
+
+    double left() const { return options.seconds - seconds_since(start); }
+    // Predictions are good to a factor of two; one machine is wrong by the same factor each time.
+    double scale() const { return predicted > 0 ? measured / predicted : 2.0; }
+
+    // Why a point is not worth starting; empty: it is.
+    std::string objection(const Prediction& cost, double seconds_left) const {
+        if (cost.bytes > options.most_bytes) {
+            return "the file would be " + amount(cost.bytes * 1e-9, "GB");
+        }
+        const double seconds = cost.seconds * scale();
+        if (seconds_left <= 0) {
+            return "no time was left for its " + amount(seconds, "s");
+        }
+        if (seconds > seconds_left) {
+            return "would take about " + amount(seconds, "s") + ", more than the " +
+                   amount(seconds_left, "s") + " left for it";
+        }
+        return {};
+    }
+
+    formats::Result<const ProbeLights*> lights_of(std::uint32_t n) {
+        auto known = lights.find(n);
+        if (known == lights.end()) {
+            auto made = make_probe_lights(n, context.threads);
+            if (!made) {
+                return std::move(made).error();
+            }
+            known = lights.emplace(n, std::move(*made)).first;
+        }
+        return &known->second;
+    }
+
+    void skip(const SweepPoint& point, const Prediction& cost, std::string reason) {
+        result.skipped.push_back({point, cost.seconds * scale(), cost.bytes, std::move(reason)});
+    }
+
+    // Bakes a point, or notes why not.
+    formats::Status visit(const SweepPoint& point, double seconds_left) {
+        const Prediction cost = predict_point(point.knobs);
+        if (std::string reason = objection(cost, seconds_left); !reason.empty()) {
+            skip(point, cost, std::move(reason));
+            return formats::ok_status();
+        }
+        if (on_step) {
+            on_step({result.points.size() + result.skipped.size(), total, point.label});
+        }
+        const auto probe_lights = lights_of(point.knobs.cubemap_size);
+        if (!probe_lights) {
+            return probe_lights.error();
+        }
+        try {
+            auto record = run_point(effects, scene, point, view, **probe_lights, context);
+            if (!record) {
+                return std::move(record).error();
+            }
+            measured += record->seconds;
+            predicted += cost.seconds;
+            result.points.push_back(std::move(*record));
+        } catch (const std::bad_alloc&) {
+            skip(point, cost, "there is not enough memory");
+        }
+        return formats::ok_status();
+    }
+};
+
+// The finest candidate that half of the time that is left allows.
+std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
+    for (const SweepPoint& candidate : make_truths(sweep.ladder_request())) {
+        const Prediction cost = sweep.predict_point(candidate.knobs);
+        if (sweep.objection(cost, 0.5 * sweep.left()).empty()) {
+            return candidate;
+        }
+    }
+    return std::nullopt;
+}
+
+// The cheapest points teach the most per second, but joint ladders can wait.
+int urgency(const SweepPoint& point) {
+    const auto stands_on = [&](Ladder ladder) {
+        return std::any_of(point.rungs.begin(), point.rungs.end(),
+                           [&](const Rung& r) { return r.ladder == ladder; });
+    };
+    return stands_on(Ladder::preset) ? 0 : point.rungs.front().ladder == Ladder::grid ? 2 : 1;
+}
+
+// Bakes the finest setting that can be afforded. A point of the ladders keeps its label and rungs,
+// and leaves them.
+formats::Status bake_truth(Sweep& sweep, std::vector<SweepPoint>& points) {
+    const auto truth = choose_truth(sweep);
+    if (!truth) {
+        return formats::ok_status();
+    }
+    const auto same = std::find_if(points.begin(), points.end(), [&](const SweepPoint& p) {
+        return same_bake(p.knobs, truth->knobs, sweep.result.subject);
+    });
+    const SweepPoint point = same == points.end() ? *truth : *same;
+    if (same == points.end()) {
+        ++sweep.total;
+    } else {
+        points.erase(same);
+    }
+    return sweep.visit(point, sweep.left());
+}
+
+}  // namespace
+
+formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats::Scene& scene,
+                                       const SweepOptions& options, const Context& outer,
+                                       const std::function<void(const SweepStep&)>& on_step) {
+    Context context = outer;
+    context.threads = thread_count(outer);
+    context.on_progress = {};  // steps are the progress
+    auto picture_light = open_environment(options.light);
+    if (!picture_light) {
+        return std::move(picture_light).error();
+    }
+    const SceneFacts facts = inspect_scene(scene);
+    Sweep sweep{
+        .effects = effects, .scene = scene, .facts = facts, .options = options, .context = context, .on_step = on_step};
+    SweepResult& result = sweep.result;
+    result.source = std::filesystem::path(scene.source).filename().string();
+    result.sha256 = scene.sha256;
+    result.threads = context.threads;
+    result.seed = options.bake.seed;
+    result.picture_light = options.light;
+    for (const formats::Primitive& p : scene.primitives) {
+        result.receivers += p.position.size();
+        result.triangles += p.index.size() / 3;
+        const auto& medium = scene.materials[p.material].medium;
+        if (medium && result.mean_cosine == 0) {
+            result.mean_cosine = formats::mean_cosine(medium->phase);
+        }
+    }
+    sweep.view.probes = choose_probes(result.receivers, options.probes);
+    sweep.view.picture_light = std::move(picture_light->environment);
+
+    BakeOptions base = options.bake;
+    base.quality = Quality::draft;
+    const auto draft = resolve_knobs(effects, base);
+    base.quality = Quality::preview;
+    const auto preview = resolve_knobs(effects, base);
+    if (!draft || !preview) {
+        return (draft ? preview : draft).error();
+    }
+    result.plan = plan_bake(effects, scene, facts, *preview);
+    result.subject = sweep_subject(effects, scene, result.plan, *preview);
+    // A quick one shows how fast this machine is.
+    SweepPoint first{std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
+    first.knobs.check_model = true;
+    if (auto status = sweep.visit(first, sweep.left()); !status) {
+        return std::move(status).error();
+    }
+    if (result.points.empty()) {
+        return formats::make_error(formats::ErrorKind::usage, "", "--seconds",
+                                   "not even a draft fits: it " + result.skipped.front().reason,
+                                   "give more seconds, or a smaller scene");
+    }
+    constexpr double kShare = 1.0 / 20;
+    ReferenceLadderOptions climb;
+    climb.seconds = kShare * options.seconds;
+    climb.seed = options.bake.seed;
+    auto reference = climb_reference(scene, climb, context);
+    if (!reference) {
+        return std::move(reference).error();
+    }
+    result.reference = std::move(*reference);
+    if (sweep.predict_point(*preview).seconds * sweep.scale() >
+        kShare * options.seconds) {
+        result.base = Quality::draft;
+        result.plan = plan_bake(effects, scene, facts, *draft);
+    }
+    std::vector<SweepPoint> points = make_ladders(sweep.ladder_request(), result.base);
+    result.model_error = result.points.front().model_error;
+    result.points.front().point = points.front();  // with the rungs of a base, if it is one
+    points.erase(points.begin());
+    sweep.total = 1 + points.size();
+    if (auto status = bake_truth(sweep, points); !status) {
+        return std::move(status).error();
+    }
+    std::stable_sort(points.begin(), points.end(), [&](const SweepPoint& a, const SweepPoint& b) {
+        if (urgency(a) != urgency(b)) {
+            return urgency(a) < urgency(b);
+        }
+        return sweep.predict_point(a.knobs).seconds <
+               sweep.predict_point(b.knobs).seconds;
+    });
+    for (const SweepPoint& point : points) {
+        // One preset must not take the time of all ladders.
+        const double share = urgency(point) == 0 ? 0.5 : 1.0;
+        if (auto status = sweep.visit(point, share * sweep.left()); !status) {
+            return std::move(status).error();
+        }
+    }
+    result.lights = sweep.lights.begin()->second.names;
+    compare_with_finest(result, effects, scene, sweep.view.probes);
+    result.seconds = seconds_since(sweep.start);
+    return std::move(sweep.result);
+}
+
+}  // namespace opaline::bake

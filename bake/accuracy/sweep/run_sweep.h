@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/plan/rates.h"
+#include "bake/accuracy/sweep/reference_ladder.h"
+#include "bake/accuracy/sweep/run_point.h"
+
+namespace opaline::bake {
+
+struct SweepOptions {
+    BakeOptions bake;           ///< effects, seed and threads; each point sets the knobs itself
+    double seconds = 300;       ///< the sweep starts no point that is predicted to end later
+    double most_bytes = 4e9;    ///< nor one whose file is predicted to be larger
+    std::size_t probes = 2000;  ///< receivers to compare at, at most
+    Rates rates;                ///< of this machine
+    std::string light = "sky:3,35";  ///< of the pictures
+};
+
+/// A point that was not baked.
+struct SkippedPoint {
+    SweepPoint point;
+    double predicted_seconds = 0, predicted_bytes = 0;
+    std::string reason;
+};
+
+struct SweepResult {
+    std::string source, sha256;  ///< of the scene; source without its folder
+    std::uint64_t receivers = 0, triangles = 0;
+    unsigned threads = 1;  ///< as used
+    std::uint64_t seed = 0;
+    double mean_cosine = 0;  ///< of the first medium's phase function
+    SweepSubject subject;
+    Quality base = Quality::preview;           ///< what the ladders change one knob of
+    std::vector<PlanEntry> plan;               ///< of the base
+    std::vector<PointRecord> points;           ///< in the order in which they were baked
+    std::size_t truth = 0;                     ///< index of the finest point (find_finest)
+    std::optional<ReferenceLadder> reference;  ///< nothing: no light
+    std::vector<SkippedPoint> skipped;
+    std::vector<std::string> lights;
+    std::string picture_light;
+    std::optional<ModelErrorReport> model_error;  ///< of the draft: no knob changes it
+    double seconds = 0;                           ///< of the whole sweep
+};
+
+/// What is about to be baked, of how many points at most.
+struct SweepStep {
+    std::size_t done = 0, total = 0;
+    const std::string& label;
+};
+
+/// Bakes the ladders of a scene: `draft` first, then climbs that of the Monte Carlo reference for a
+/// twentieth of the time, then bakes the most accurate setting that half of the time allows, then
+/// the other presets, one-at-a-time and diagonal ladders, and grids, the cheap ones of each first.
+/// The ladders stand around `preview`, or `draft` where a twentieth of the time is less than
+/// `preview` takes. Predictions are predict_costs', scaled by how long the points so far took. A
+/// point that runs out of memory is skipped. Errors: as run_bake; usage, for a light that is none
+/// or too little time.
+formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats::Scene& scene,
+                                       const SweepOptions& options, const Context& context,
+                                       const std::function<void(const SweepStep&)>& on_step);
+
+}  // namespace opaline::bake

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "bake/plan/stage_work.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/direction_set.h"
+#include "bake/truth/luminance.h"
+#include "bake/truth/true_irradiance.h"
+
+namespace opaline::bake {
+
+/// What receivers of an opaque surface truly reflect, albedo 1: rays to the suns, dense quadrature
+/// of all else.
+struct DirectTruth {
+    DirectionSet directions;
+    SunRays suns;
+};
+DirectTruth make_direct_truth(std::span<const TestLight> lights);
+/// Both estimates are the same: no chance is in it. `traced` adds up.
+TwoEstimates eval_truth(const DirectTruth& truth, const RayScene& rays, const Receiver& receiver,
+                        std::span<const TestLight> lights, std::uint64_t& traced);
+Work direct_truth_work(const SubjectCost& cost);
+
+}  // namespace opaline::bake

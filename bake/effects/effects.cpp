@@ -1,0 +1,23 @@
+#include "bake/effects/effects.h"
+
+#include <array>
+
+#include "bake/effects/direct/direct.h"
+#include "bake/effects/light/light.h"
+#include "bake/effects/local/local.h"
+#include "bake/effects/multiple/multiple.h"
+#include "bake/effects/single/single.h"
+#include "bake/effects/specular/specular.h"
+
+namespace opaline::bake {
+
+const EffectTable& all_effects() {
+    static const std::array kDescriptors{
+        describe_direct(Effect::direct),     describe_multiple(Effect::multiple),
+        describe_single(Effect::single),     describe_local(Effect::local),
+        describe_specular(Effect::specular), describe_light(Effect::light)};
+    static const EffectTable kTable{kDescriptors};
+    return kTable;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,26 @@
+#include "bake/effects/light/light.h"
+
+#include <array>
+
+#include "bake/effects/light/rule_colour.h"
+#include "bake/effects/light/rules_visibility.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::array<DecisionRule, 2> kRules{
+    {{"light.visibility", is_any_material, decide_visibility,
+      [](const PlanEntry& entry, RowLayout& layout) { layout.occluded = entry.on; }},
+     {"light.colour", has_medium, decide_colour,
+      [](const PlanEntry& entry, RowLayout& layout) { layout.grey = !entry.on; }}}};
+
+}  // namespace
+
+EffectDescriptor describe_light(Effect id) {
+    return {.id = id,
+            .name = "light",
+            .rules = kRules,
+            .acts = [](const RowLayout&) { return false; }};
+}
+
+}  // namespace opaline::bake

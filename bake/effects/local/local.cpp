@@ -1,0 +1,74 @@
+#include "bake/effects/local/local.h"
+
+#include <array>
+#include <vector>
+
+#include "bake/effects/local/rule_spread.h"
+#include "bake/transport/banded_irradiance.h"
+#include "formats/opal/haar.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::array<DecisionRule, 1> kRules{
+    {{"multiple.spread", has_medium, decide_spread,
+      [](const PlanEntry& entry, RowLayout& layout) { layout.local = !entry.on; }}}};
+
+/// What a half space sends back of the irradiance at the receiver itself: no samples, no tree, no
+/// light maps. factor[band][step]: radiance toward the viewer before its own transmittance, per
+/// irradiance, at evenly spaced cosines of the light from 0 to 1.
+struct Answer : Prepared {
+    DirectionSet directions;
+    std::vector<std::vector<float>> factor;
+};
+
+PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
+    auto answer = std::make_unique<Answer>();
+    answer->directions = make_direction_set(inputs.knobs.cubemap_size);
+    std::vector<std::vector<double>> factor(inputs.layout.bands(),
+                                            std::vector<double>(kLocalSteps + 1));
+    const auto& effects = inputs.bake.effects.effects;
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+        if (inputs.states[e].acts && effects[e].add_local != nullptr) {
+            effects[e].add_local({inputs.bake, inputs.material, inputs.layout, inputs.knobs,
+                                  inputs.context, inputs.states, inputs.states[e]},
+                                 factor);
+        }
+    }
+    for (const std::vector<double>& band : factor) {
+        answer->factor.emplace_back(band.begin(), band.end());
+    }
+    return answer;
+}
+
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver,
+                  const DenseRow& row) {
+    const auto& answer = static_cast<const Answer&>(*inputs.own.prepared);
+    std::vector<float> dense(row.bands * row.size());
+    const std::uint64_t rays = gather_banded_irradiance(
+        inputs.outside(), answer.directions, receiver.outside, answer.factor, dense);
+    for (std::uint32_t band = 0; band < row.bands; ++band) {
+        const std::span<float> own = std::span(dense).subspan(band * row.size(), row.size());
+        formats::haar_forward_cube(own, row.cubemap_size);
+        const std::span<float> to = row.plane(0, band);
+        for (std::size_t k = 0; k < own.size(); ++k) {
+            to[k] += own[k];
+        }
+    }
+    return rays;
+}
+
+}  // namespace
+
+EffectDescriptor describe_local(Effect id) {
+    return {.id = id,
+            .name = "local",
+            .rules = kRules,
+            .acts = [](const RowLayout& layout) { return layout.local; },
+            .prepare = {.run = prepare},
+            .gather = {.add = add, .work = [](const SubjectCost& c) {
+                           return irradiance_work(c.input, c.receivers, c.layout.occluded);
+                       }}};
+}
+
+}  // namespace opaline::bake

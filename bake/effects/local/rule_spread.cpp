@@ -1,0 +1,85 @@
+#include "bake/effects/local/rule_spread.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bake/scattering/dipole.h"
+#include "bake/scattering/fresnel.h"
+#include "bake/scattering/half_space_single.h"
+#include "formats/media/mean_cosine.h"
+
+namespace opaline::bake {
+namespace {
+
+// How a body's shape differs from the half space that a local answer takes it for.
+struct Shape {
+    double feature;    // [m] over which irradiance varies
+    double thickness;  // [m]
+    double angle;      // [rad] between facets and the smooth surface
+};
+
+// What multiple scattering of one band loses of irradiance that varies over a feature, what of it
+// gets through the body, and what facets receive less than the surface that they stand for.
+double spread_of_multiple(const Band& band, double g, double eta, const Shape& shape) {
+    const Dipole dipole =
+        make_dipole(DipoleKind::classic, (1 - g) * band.sigma_s, band.sigma_a, eta);
+    const double escape = 1 - fresnel_moments(eta).external;
+    const double wave = 2 * std::numbers::pi / shape.feature, all = dipole_total(dipole);
+    return escape * (all - dipole_fourier(dipole, wave) + dipole_tail(dipole, shape.thickness) +
+                     0.5 * shape.angle * shape.angle * all);
+}
+
+// The same of single scattering. Light enters r = sin(theta') / (sigma_t (1 + cos(theta'))) beside
+// where it leaves, on average along the path: irradiance is seen shifted by that. A path so short
+// sees its own facets only, whose cosines differ in proportion to their angle.
+double spread_of_single(const Band& band, double eta, const Shape& shape) {
+    const double sigma_t = band.sigma_s + band.sigma_a;
+    if (!(band.sigma_s > 0)) {
+        return 0;
+    }
+    const double sine = std::min(1.0, 1 / eta), cosine = std::sqrt(1 - sine * sine);
+    const double shift = sine / (sigma_t * (1 + cosine));
+    const double lost = std::min(1.0, 2 * std::numbers::pi * shift / shape.feature);
+    return half_space_single(eta) * band.sigma_s / sigma_t *
+           (lost + std::exp(-sigma_t * shape.thickness) + shape.angle);
+}
+
+}  // namespace
+
+PlanEntry decide_spread(const PlanInput& input) {
+    const formats::Medium& medium = *input.material.medium;
+    const auto eta = static_cast<double>(medium.eta), g = formats::mean_cosine(medium.phase);
+    const MaterialFacts& subject = input.subject;
+    // Irradiance varies from vertex to vertex at most; a closed body of volume V and area A is 2V/A
+    // thick on average, and its thin parts are not much thinner than a quarter of that.
+    const Shape shape{4 * subject.mean_edge,
+                      subject.is_closed() ? 0.5 * subject.volume / subject.area : 0,
+                      std::acos(std::clamp(1 - 2 * subject.horizon.behind_facets, -1.0, 1.0))};
+    PlanEntry entry;
+    entry.on = true;
+    if (!(shape.feature > 0)) {
+        entry.bound = 1;
+        entry.reason = "the surface has no size";
+        return entry;
+    }
+    for (const Band& band : bands_of(medium)) {
+        entry.bound = std::max(entry.bound, spread_of_multiple(band, g, eta, shape) +
+                                                spread_of_single(band, eta, shape));
+    }
+    entry.bound = std::min(entry.bound, 1.0);
+    if (input.knobs.separate_terms) {
+        entry.reason = "multiple and single scattering are asked for apart";
+    } else if (std::any_of(input.earlier.begin(), input.earlier.end(),
+                           [](const PlanEntry& e) { return e.on && e.terms > 1; })) {
+        entry.reason = "the phase function asks for several terms";
+    } else if (!is_worth(entry.bound, input, entry.forced)) {
+        entry.on = false;
+        entry.reason = "the medium is so dense that light leaves where it entered";
+    } else {
+        entry.reason = "light comes out elsewhere than where it entered";
+    }
+    return entry;
+}
+
+}  // namespace opaline::bake

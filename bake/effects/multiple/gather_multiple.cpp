@@ -1,0 +1,163 @@
+#include "bake/effects/multiple/gather_multiple.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace opaline::bake {
+namespace {
+
+using Float4 = float __attribute__((vector_size(16)));
+
+// Keeps the mean defined where all samples around face another way.
+constexpr float kLeastFacing = 1e-3f;
+
+float squared_distance(glm::vec3 a, glm::vec3 b) {
+    const glm::vec3 d = a - b;
+    return glm::dot(d, d);
+}
+
+struct BoxDistance {
+    float nearest, farthest;  // squared
+};
+
+BoxDistance box_distance(const ClusterNode& node, glm::vec3 x) {
+    const glm::vec3 outside = glm::max(glm::vec3(0), glm::max(node.low - x, x - node.high));
+    const glm::vec3 across = glm::max(glm::abs(x - node.low), glm::abs(x - node.high));
+    return {glm::dot(outside, outside), glm::dot(across, across)};
+}
+
+struct Gather {
+    const ClusterTree& tree;
+    const GatherProfile& profile;
+    glm::vec3 position;
+    std::array<float, 3> allowed;  // tolerance R ||E|| per band
+    float near_squared;            // radius of the near part, 0 if there is none
+    std::vector<ClusterWeight>& weights;
+    std::vector<std::size_t> near;  // places in `weights`
+
+    bool may_take(const ClusterNode& node) const {
+        const BoxDistance d = box_distance(node, position);
+        if (d.nearest < near_squared) {
+            return false;
+        }
+        const std::array<float, 3> most = eval_far(profile, d.nearest);
+        const std::array<float, 3> least = eval_far(profile, d.farthest);
+        return node.norm * (most[0] - least[0]) <= allowed[0] &&
+               (profile.bands == 1 || (node.norm * (most[1] - least[1]) <= allowed[1] &&
+                                       node.norm * (most[2] - least[2]) <= allowed[2]));
+    }
+
+    void visit() {
+        std::array<std::uint32_t, 64> stack;  // median splits: depth below 32
+        std::size_t height = 0;
+        stack[height++] = 0;
+        const auto node_count = static_cast<std::uint32_t>(tree.nodes.size());
+        while (height > 0) {
+            const std::uint32_t v = stack[--height];
+            const ClusterNode& node = tree.nodes[v];
+            if (may_take(node)) {
+                weights.push_back({v, eval_far(profile, squared_distance(position, node.centre))});
+            } else if (node.right != 0) {
+                stack[height++] = node.right;
+                stack[height++] = v + 1;
+            } else {
+                for (std::uint32_t s = node.first; s < node.first + node.count; ++s) {
+                    const float r2 = squared_distance(position, tree.position[s]);
+                    if (r2 < near_squared) {
+                        near.push_back(weights.size());
+                    }
+                    weights.push_back({node_count + s, eval_far(profile, r2)});
+                }
+            }
+        }
+    }
+
+    // Adds the near part: E averaged over the samples around, as far as they face the same way.
+    // Weights fall smoothly to zero at the rim, so that no sample enters or leaves with a jump.
+    void add_near(glm::vec3 normal) {
+        const std::size_t node_count = tree.nodes.size();
+        std::vector<float> share(near.size());
+        float sum = 0;
+        for (std::size_t i = 0; i < near.size(); ++i) {
+            const std::size_t s = weights[near[i]].id - node_count;
+            const float inside = 1 - squared_distance(position, tree.position[s]) / near_squared;
+            const float facing = std::max(kLeastFacing, glm::dot(normal, tree.normal[s]));
+            share[i] = inside * inside * facing * facing;
+            sum += share[i] * tree.area[s];
+        }
+        for (std::size_t i = 0; i < near.size() && sum > 0; ++i) {
+            for (std::size_t band = 0; band < profile.bands; ++band) {
+                weights[near[i]].weight[band] += profile.near_mass[band] * share[i] / sum;
+            }
+        }
+    }
+};
+
+// Of a node or a sample.
+SparseVector entries_of(const ClusterTree& tree, const ClusterWeight& w) {
+    const std::size_t nodes = tree.nodes.size();
+    return w.id < nodes ? tree.sums[w.id] : tree.samples[w.id - nodes];
+}
+
+// Adds them to sums as wide as the weight: of one band, or of several at once.
+template <class Weight>
+void add_entries(const SparseVector& entries, Weight weight, float* sums) {
+    constexpr std::size_t kWidth = sizeof(Weight) / sizeof(float);
+    for (std::size_t i = 0; i < entries.index.size(); ++i) {
+        float* const place = sums + kWidth * entries.index[i];
+        Weight sum;
+        std::memcpy(&sum, place, sizeof sum);
+        sum += weight * entries.value[i];
+        std::memcpy(place, &sum, sizeof sum);
+    }
+}
+
+}  // namespace
+
+void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm::vec3 position,
+                     glm::vec3 normal, const GatherOptions& options,
+                     std::vector<ClusterWeight>& weights) {
+    weights.clear();
+    if (tree.nodes.empty() || profile.table.empty()) {
+        return;
+    }
+    const float radius = profile.near_radius;
+    Gather gather{tree, profile, position, {}, radius * radius, weights, {}};
+    for (std::size_t band = 0; band < profile.bands; ++band) {
+        // A negative allowance for nothing: no node is taken whole, whatever its sum.
+        gather.allowed[band] =
+            options.tolerance > 0
+                ? static_cast<float>(options.tolerance * profile.total[band] * tree.mean_norm)
+                : -1.0f;
+    }
+    gather.visit();
+    while (radius > 0 && gather.near.empty()) {
+        // A part of the surface too small to have a sample of its own takes the nearest ones.
+        gather.near_squared *= 4;
+        weights.clear();
+        gather.visit();
+    }
+    if (radius > 0) {
+        gather.add_near(normal);
+    }
+}
+
+void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
+                std::span<float> rgbx) {
+    std::fill(rgbx.begin(), rgbx.end(), 0.0f);
+    for (const ClusterWeight& w : weights) {
+        add_entries(entries_of(tree, w), Float4{w.weight[0], w.weight[1], w.weight[2], 0.0f},
+                    rgbx.data());
+    }
+}
+
+void accumulate_grey(const ClusterTree& tree, std::span<const ClusterWeight> weights,
+                     std::span<float> sums) {
+    std::fill(sums.begin(), sums.end(), 0.0f);
+    for (const ClusterWeight& w : weights) {
+        add_entries(entries_of(tree, w), w.weight[0], sums.data());
+    }
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/transport/cluster_tree.h"
+#include "bake/effects/multiple/gather_profile.h"
+
+namespace opaline::bake {
+
+/// How much of one node or sample reaches a receiver, per band [1/m^2]; 0 where the profile has no
+/// such band.
+struct ClusterWeight {
+    std::uint32_t id = 0;  ///< a node, or nodes + sample
+    std::array<float, 3> weight{};
+};
+
+struct GatherOptions {
+    /// A node is taken whole if that errs by at most this share of R ||E||: its sum times how far
+    /// R_d varies over its box (translucency.md 3.10, bound criterion). 0: every sample by itself.
+    double tolerance = 1e-3;
+};
+
+/// The weights of T_d(x) = sum A_i R_far(|x_i - x|) E_i + near_mass mean E at a point with unit
+/// normal. The mean is over the samples around it that face the same way; so a thin part's two
+/// sides do not mix, and where the samples are dense it has no weight. Overwrites `weights`.
+void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm::vec3 position,
+                     glm::vec3 normal, const GatherOptions& options,
+                     std::vector<ClusterWeight>& weights);
+
+/// sum of weight times vector: the Haar vector of T_d in three bands, interleaved as RGBx, 4 * 6 n
+/// n values, overwritten.
+void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
+                std::span<float> rgbx);
+/// The same of the first band alone, 6 n n values.
+void accumulate_grey(const ClusterTree& tree, std::span<const ClusterWeight> weights,
+                     std::span<float> sums);
+
+}  // namespace opaline::bake

@@ -1,0 +1,198 @@
+#include "bake/effects/multiple/multiple.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "bake/effects/multiple/gather_multiple.h"
+#include "bake/effects/multiple/multiple_costs.h"
+#include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/multiple_stage.h"
+#include "bake/effects/multiple/rule_multiple.h"
+#include "bake/effects/multiple/thin_parts.h"
+#include "bake/effects/multiple/true_multiple.h"
+#include "bake/scattering/fresnel.h"
+#include "bake/truth/true_irradiance.h"
+
+namespace opaline::bake {
+namespace {
+
+void lay_out(const PlanEntry& entry, RowLayout& layout) {
+    layout.constant = layout.constant || entry.on;
+}
+
+constexpr std::array<DecisionRule, 1> kRules{{{"multiple", has_medium, decide_multiple, lay_out}}};
+constexpr std::array<const KnobSpec*, 3> kKnobs{&kSamples, &kSamplesPerPath, &kEpsilon};
+
+// A pilot tries the tolerance; samples are refined round by round.
+constexpr std::array<PilotLadder::Setting, 1> kFinest{{{&kEpsilon, 3e-5}}};
+constexpr std::array<std::array<PilotLadder::Setting, 1>, 5> kSettings{{{{{&kEpsilon, 1e-2}}},
+                                                                        {{{&kEpsilon, 3e-3}}},
+                                                                        {{{&kEpsilon, 1e-3}}},
+                                                                        {{{&kEpsilon, 3e-4}}},
+                                                                        {{{&kEpsilon, 1e-4}}}}};
+constexpr std::array<std::span<const PilotLadder::Setting>, 5> kLevels{
+    kSettings[0], kSettings[1], kSettings[2], kSettings[3], kSettings[4]};
+constexpr std::array<PilotLadder, 1> kPilot{{{&kEpsilon, kLevels, kFinest, 0.1}}};
+
+// False: they are as fine as they get, or the user's.
+bool refine_samples(Knobs& knobs) {
+    constexpr double kMostPerPath = 64, kMostSamples = 1000000;
+    if (knobs.is_given(kSamples) || knobs[kSamplesPerPath] >= kMostPerPath ||
+        2 * knobs[kSamples] > kMostSamples) {
+        return false;
+    }
+    knobs.set(kSamplesPerPath, 4 * knobs[kSamplesPerPath]);
+    knobs.set(kSamples, std::min(4 * knobs[kSamples], kMostSamples));
+    return true;
+}
+
+struct Studied : Prepared {
+    MediumProfile profile;
+};
+struct Samples : Prepared {
+    MultipleStage stage;
+};
+
+const MediumProfile& profile_of(const EffectState& state) {
+    return static_cast<const Studied&>(*state.study).profile;
+}
+
+PreparedPtr study(const EffectInputs& inputs, std::uint64_t&) {
+    auto studied = std::make_unique<Studied>();
+    studied->profile = make_medium_profile(inputs.medium(), inputs.knobs.seed, inputs.context);
+    return studied;
+}
+
+bool needs_samples(const formats::Material&, const RowLayout& layout) {
+    return !layout.local;
+}
+
+PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
+    const Knobs& knobs = inputs.knobs;
+    auto samples = std::make_unique<Samples>();
+    samples->stage = prepare_multiple(
+        inputs.bake.scene, inputs.outside(), inputs.material, profile_of(inputs.own),
+        {knobs.cubemap_size, whole(knobs, kSamples), knobs.is_given(kSamples),
+         knobs[kSamplesPerPath], sample_coefficients(knobs), knobs.seed, !knobs.exact_rays,
+         inputs.layout.bands()},
+        inputs.context);
+    rays += samples->stage.rays;
+    return samples;
+}
+
+// T_0 += T_d / (pi c_exit h_0).
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver,
+                  const DenseRow& row) {
+    const MultipleStage& stage = static_cast<const Samples&>(*inputs.own.samples).stage;
+    std::vector<ClusterWeight> weights;
+    collect_weights(stage.tree, stage.profile, receiver.inside.position, receiver.inside.normal,
+                    {inputs.knobs[kEpsilon]}, weights);
+    const auto scale = static_cast<float>(
+        1 / (std::numbers::pi * stage.medium.exit * inputs.layout.view_of_constant()));
+    const std::size_t size = row.size();
+    if (row.bands == 1) {
+        std::vector<float> sums(size);
+        accumulate_grey(stage.tree, weights, sums);
+        const std::span<float> to = row.plane(0, 0);
+        for (std::size_t k = 0; k < size; ++k) {
+            to[k] += scale * sums[k];
+        }
+        return 0;
+    }
+    std::vector<float> rgbx(4 * size);
+    accumulate(stage.tree, weights, rgbx);
+    const std::array<std::span<float>, 3> to{row.plane(0, 0), row.plane(0, 1), row.plane(0, 2)};
+    for (std::size_t k = 0; k < size; ++k) {
+        for (std::size_t band = 0; band < to.size(); ++band) {
+            to[band][k] += scale * rgbx[4 * k + band];
+        }
+    }
+    return 0;
+}
+
+// R Ft(c) / (pi c_exit): T_d = R E where light leaves where it entered.
+void add_local(const EffectInputs& inputs, std::span<std::vector<double>> factor) {
+    const MediumProfile& profile = profile_of(inputs.own);
+    const auto eta = static_cast<double>(inputs.medium().eta);
+    for (std::size_t band = 0; band < factor.size(); ++band) {
+        for (std::uint32_t i = 0; i <= kLocalSteps; ++i) {
+            const double cosine = static_cast<double>(i) / kLocalSteps;
+            factor[band][i] += profile.total(band) * fresnel_transmittance(cosine, eta) /
+                               (std::numbers::pi * profile.exit);
+        }
+    }
+}
+
+struct Truth : Prepared {
+    SurfaceIntegral integral;
+    SunRays suns;
+    SmoothLights smooth;
+    std::uint32_t points = 0;
+};
+
+// Points of the surface for each of two estimates. The truth need be no finer than what is asked
+// for.
+std::uint32_t truth_points(TruthEffort effort) {
+    return effort.target >= 0.03 ? 256 : effort.target >= 0.015 ? 512 : 1024;
+}
+
+PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
+                       std::span<const TestLight> lights) {
+    constexpr std::uint32_t kRaysPerSun = 4;  // at a random point of many
+    auto truth = std::make_unique<Truth>();
+    truth->integral =
+        make_surface_integral(inputs.bake.scene, inputs.material, profile_of(inputs.own));
+    truth->suns = make_sun_rays(lights, kRaysPerSun);
+    truth->smooth = make_smooth_lights(lights);
+    truth->points = truth_points(effort);
+    return truth;
+}
+
+TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
+                  const TruthReceiver& receiver, std::uint64_t& rays) {
+    const auto& truth = static_cast<const Truth&>(prepared);
+    return integrate_multiple(
+        truth.integral,
+        {inputs.bake.scene, inputs.bake.rays, truth.suns, truth.smooth, truth.points},
+        receiver.inside.position, {inputs.knobs.seed, receiver.key}, rays);
+}
+
+void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>& warnings) {
+    warn_of_thin_parts(inputs, profile_of(inputs.own), warnings);
+}
+
+}  // namespace
+
+EffectDescriptor describe_multiple(Effect id) {
+    return {.id = id,
+            .name = "multiple",
+            .help = "light scattered many times inside media",
+            .inside_media = true,
+            .rules = kRules,
+            .knobs = kKnobs,
+            .pilot = kPilot,
+            .refine_samples = refine_samples,
+            .study = {.stage = "profiles", .run = study, .work = profile_work},
+            .samples = {.stage = "samples of",
+                        .by_subject = true,
+                        .applies = needs_samples,
+                        .run = take_samples,
+                        .work = samples_work},
+            .gather = {.applies = [](const RowLayout& layout) { return !layout.local; },
+                       .add = add,
+                       .work = multiple_rows_work},
+            .truth = {.reference = "the surface integral by Monte Carlo",
+                      .is_expensive = true,
+                      .make = make_truth,
+                      .eval = eval,
+                      .work =
+                          [](const SubjectCost& cost, TruthEffort effort) {
+                              return multiple_truth_work(cost, truth_points(effort));
+                          }},
+            .add_local = add_local,
+            .warn_of_model = warn_of_model};
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,151 @@
+#include "bake/effects/multiple/multiple_costs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "bake/effects/multiple/gather_profile.h"
+#include "bake/effects/multiple/medium_profile.h"
+#include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/plan/walk_work.h"
+#include "bake/receivers/kd_order.h"
+#include "bake/scattering/dipole.h"
+#include "formats/media/mean_cosine.h"
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kGreyEntry = 0.8;  // what one band costs of what three do; measured
+
+double texels(std::uint32_t n) {
+    return static_cast<double>(formats::cubemap_texels(n));
+}
+
+// Coefficients that a sample or node keeps: below its horizon they vanish.
+double kept_by_samples(const Knobs& knobs) {
+    return std::min(static_cast<double>(sample_coefficients(knobs)), texels(knobs.cubemap_size));
+}
+
+std::array<Dipole, 3> dipoles_of(const formats::Medium& medium) {
+    const double g = formats::mean_cosine(medium.phase);
+    const auto make = [&](float sigma_s, float sigma_a) {
+        return make_dipole(DipoleKind::better, (1 - g) * static_cast<double>(sigma_s),
+                           static_cast<double>(sigma_a), static_cast<double>(medium.eta));
+    };
+    return {make(medium.sigma_s.r, medium.sigma_a.r), make(medium.sigma_s.g, medium.sigma_a.g),
+            make(medium.sigma_s.b, medium.sigma_a.b)};
+}
+
+}  // namespace
+
+double expected_samples(const formats::Medium& medium, double area, const Knobs& knobs) {
+    const double per_path = knobs[kSamplesPerPath];
+    const double least = kLeastSamplesPerPath * per_path;
+    const double most = knobs[kSamples];
+    if (knobs.is_given(kSamples)) {
+        return most;
+    }
+    double depth = HUGE_VAL;
+    for (const Dipole& d : dipoles_of(medium)) {
+        depth = dipole_total(d) > 0 ? std::min(depth, d.z_real) : depth;
+    }
+    return std::clamp(per_path * area / (depth * depth), std::min(least, most), most);
+}
+
+double count_weights(const formats::Medium& medium, const MaterialFacts& facts, double samples,
+                     double tolerance) {
+    constexpr double kRounding = 1.44;  // nodes have 1/2 to 1 of the area that would do
+    const double sample_area = facts.area / samples;
+    const double reach = std::sqrt(facts.area / pi);
+    double count = 0;
+    // Rings, evenly spaced in the logarithm of their radius.
+    constexpr int kRings = 48;
+    const auto dipoles = dipoles_of(medium);
+    double smallest = HUGE_VAL;
+    for (const Dipole& d : dipoles) {
+        smallest = dipole_total(d) > 0 ? std::min(smallest, d.z_real) : smallest;
+    }
+    if (!std::isfinite(smallest)) {
+        return 0;
+    }
+    const double nearest = std::min(0.1 * std::max(smallest, std::sqrt(sample_area)), 0.5 * reach);
+    const double step = std::log(reach / nearest) / kRings;
+    const auto far = [&](const Dipole& d, double r) {
+        const double wanted = kWidthPerSpacing * std::sqrt(sample_area);
+        const double b2 = std::max(0.0, wanted * wanted - d.z_real * d.z_real);
+        return eval_dipole(d, std::sqrt(r * r + b2));
+    };
+    const auto may_take = [&](double r, double patch) {
+        const double side = std::sqrt(patch);
+        for (const Dipole& d : dipoles) {
+            const double change = far(d, std::max(0.0, r - 0.5 * side)) - far(d, r + 0.7 * side);
+            if (patch * change > tolerance * dipole_total(d)) {
+                return false;
+            }
+        }
+        return true;
+    };
+    for (int i = 0; i < kRings; ++i) {
+        const double inner = i == 0 ? 0 : nearest * std::exp(step * i);
+        const double outer = nearest * std::exp(step * (i + 1));
+        const double r = 0.5 * (inner + outer);
+        double patch = facts.area;
+        while (patch > sample_area && !may_take(r, patch)) {
+            patch *= 0.84;
+        }
+        const double taken = patch / kRounding;
+        count += pi * (outer * outer - inner * inner) /
+                 (taken < kSamplesPerLeaf * sample_area ? sample_area : taken);
+    }
+    return std::min(count, samples);
+}
+
+Work profile_work(const SubjectCost& cost) {
+    // make_medium_profile: these two are not matched to a walk.
+    const formats::Medium& medium = cost.medium();
+    if (medium.profile == formats::Medium::Profile::classic ||
+        medium.fidelity == formats::Medium::Fidelity::paper) {
+        return {};
+    }
+    return walk_work(cost.input, medium);
+}
+
+Work samples_work(const SubjectCost& cost) {
+    const CostInput& input = cost.input;
+    const Rates& rates = input.rates;
+    const Knobs& knobs = input.knobs;
+    const double samples = expected_samples(cost.medium(), cost.facts.area, knobs);
+    const double own = texels(knobs.cubemap_size);
+    Work work{samples * rates.place_sample, 0};
+    const double seen = !cost.layout.occluded          ? 0.5 * rates.open_cell  // half are below the horizon
+                        : knobs.exact_rays ? 0.5 * rates.coherent_ray.at(input.triangles)
+                                           : rates.shared_texel.at(input.triangles);
+    work.shared += samples * own * (seen + rates.truncate_texel);
+    // build_cluster_tree: each level adds all samples up; each node is truncated.
+    const double levels = std::max(1.0, std::ceil(std::log2(samples / kSamplesPerLeaf)) + 1);
+    const double nodes = 2 * samples / kSamplesPerLeaf;
+    work.shared += samples * levels * kept_by_samples(knobs) * rates.sum_entry +
+                   nodes * own * rates.truncate_texel;
+    return work;
+}
+
+Work multiple_rows_work(const SubjectCost& cost) {
+    const Knobs& knobs = cost.input.knobs;
+    const double samples = expected_samples(cost.medium(), cost.facts.area, knobs);
+    const double weights = count_weights(cost.medium(), cost.facts, samples, knobs[kEpsilon]);
+    const double entry = cost.input.rates.gather_entry * (cost.layout.bands() == 1 ? kGreyEntry : 1);
+    return {0, cost.receivers * weights *
+                   (cost.input.rates.take_weight + kept_by_samples(knobs) * entry)};
+}
+
+Work multiple_truth_work(const SubjectCost& cost, double points) {
+    const Rates& rates = cost.input.rates;
+    return {0, cost.receivers * (cost.facts.triangles * rates.split_triangle +
+                                 2 * points * rates.surface_point.at(cost.input.triangles))};
+}
+
+}  // namespace opaline::bake

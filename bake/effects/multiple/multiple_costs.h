@@ -1,0 +1,22 @@
+#pragma once
+
+#include "bake/plan/effect.h"
+#include "bake/plan/stage_work.h"
+
+namespace opaline::bake {
+
+/// Samples that the surface of a medium gets.
+double expected_samples(const formats::Medium& medium, double area, const Knobs& knobs);
+
+/// Nodes and samples that a gather on average takes for a receiver: where the profile changes over
+/// a patch by what `tolerance` allows, the patch is one.
+double count_weights(const formats::Medium& medium, const MaterialFacts& facts, double samples,
+                     double tolerance);
+
+/// Work of the steps of this effect (multiple.cpp).
+Work profile_work(const SubjectCost& cost);
+Work samples_work(const SubjectCost& cost);
+Work multiple_rows_work(const SubjectCost& cost);
+Work multiple_truth_work(const SubjectCost& cost, double points);
+
+}  // namespace opaline::bake

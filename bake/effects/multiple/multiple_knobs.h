@@ -1,0 +1,85 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "bake/plan/knob.h"
+#include "bake/plan/row_layout.h"
+
+namespace opaline::bake {
+
+namespace multiple_knobs {
+inline bool carries_light(const RowLayout& layout, std::span<const PlanEntry>) {
+    return layout.translucent && layout.constant && !layout.local;
+}
+inline constexpr const char* kWhyIdle = "no medium carries light across itself";
+
+// More than one sample a path is worth it below 3 %: a pilot of one would be for nothing.
+inline double samples_for(double error) {
+    return error < 0.03 ? 240000 : 60000;
+}
+inline double per_path_for(double error) {
+    return error < 0.03 ? 4 : 1;
+}
+inline constexpr std::array<double, 7> kSampleLadder{1000,  2000,  4000, 8000,
+                                                     16000, 32000, 64000};
+inline constexpr std::array<double, 5> kSampleDiagonal{4000, 8000, 16000, 32000, 64000};
+inline constexpr std::array<double, 6> kSampleTruths{300000, 150000, 150000, 60000, 20000, 20000};
+inline constexpr std::array<double, 8> kEpsilonLadder{1e-1, 3e-2, 1e-2, 3e-3,
+                                                      1e-3, 3e-4, 1e-4, 0.0};
+inline constexpr std::array<double, 5> kEpsilonDiagonal{3.2e-2, 8e-3, 2e-3, 5e-4, 1.25e-4};
+inline constexpr std::array<double, 6> kEpsilonTruths{1e-4, 1e-4, 1e-4, 3e-4, 3e-4, 3e-4};
+}  // namespace multiple_knobs
+
+/// Samples on the surface of each medium, at most; exactly, where the user gives them.
+inline constexpr KnobSpec kSamples{
+    .name = "samples",
+    .option = "--samples",
+    .placeholder = "S",
+    .help = "points on the surface of each translucent material; default: as many as its mean free "
+            "path asks for",
+    .lowest = 16,
+    .highest = 10000000,
+    .exact_if_given = true,
+    .preset = {20000, 60000, 150000, 300000},
+    .for_target = multiple_knobs::samples_for,
+    .label = "%g samples",
+    .ladder = multiple_knobs::kSampleLadder,
+    .diagonal = multiple_knobs::kSampleDiagonal,
+    .truths = multiple_knobs::kSampleTruths,
+    .theory = {.label = "surface samples",
+               .words = "square of the spacing, where transport is smooth at that scale",
+               .rate = -1},
+    .matters = multiple_knobs::carries_light,
+    .why_idle = multiple_knobs::kWhyIdle};
+
+/// Surface samples per square of the depth of a medium's source.
+inline constexpr KnobSpec kSamplesPerPath{.name = "samples_per_path",
+                                          .lowest = 1,
+                                          .highest = 64,
+                                          .preset = {1, 1, 4, 16},
+                                          .for_target = multiple_knobs::per_path_for};
+
+/// GatherOptions::tolerance.
+inline constexpr KnobSpec kEpsilon{
+    .name = "epsilon",
+    .option = "--epsilon",
+    .placeholder = "E",
+    .help = "how far the hierarchical gather may err for one node, as a share of what a half space "
+            "returns; 0: none; default as the quality says",
+    .lowest = 0,
+    .highest = 1,
+    .whole = false,
+    .preset = {1e-2, 1e-3, 1e-3, 1e-5},
+    .label = "epsilon = %g",
+    .ladder = multiple_knobs::kEpsilonLadder,
+    .diagonal = multiple_knobs::kEpsilonDiagonal,
+    .truths = multiple_knobs::kEpsilonTruths,
+    .theory = {.label = "gather tolerance \u03b5",
+               .words = "each cluster errs by at most \u03b5 (signs differ, so sums err by less)",
+               .rate = 1,
+               .fine_is_small = true},
+    .matters = multiple_knobs::carries_light,
+    .why_idle = multiple_knobs::kWhyIdle};
+
+}  // namespace opaline::bake

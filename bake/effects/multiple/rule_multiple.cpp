@@ -1,0 +1,85 @@
+#include "bake/effects/multiple/rule_multiple.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/effects/multiple/multiple_costs.h"
+#include "bake/scattering/dipole.h"
+#include "formats/media/mean_cosine.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Medium;
+
+// Those whose centre is finite and known without a table.
+bool is_dipole(const Medium& medium) {
+    return medium.fidelity == Medium::Fidelity::physical &&
+           medium.profile != Medium::Profile::beams &&
+           medium.profile != Medium::Profile::normalized;
+}
+
+double half_space_bound(const Medium& medium, const Band& band) {
+    const double g = formats::mean_cosine(medium.phase);
+    // Through a thin body light can come from both sides. Of a strongly forward phase function
+    // (g .98 and more, index 1) what is baked is up to 1.9 times the classic total: one side's.
+    return 2 * dipole_total(make_dipole(DipoleKind::classic, (1 - g) * band.sigma_s, band.sigma_a,
+                                        static_cast<double>(medium.eta)));
+}
+
+}  // namespace
+
+double small_body_bound(const Medium& medium, const Band& band, double diagonal, double area) {
+    if (medium.eta != 1 || !is_dipole(medium)) {
+        return HUGE_VAL;
+    }
+    if (!(band.sigma_s > 0)) {
+        return 0;
+    }
+    const double sigma_t = band.sigma_s + band.sigma_a, albedo = band.sigma_s / sigma_t;
+    const double once = albedo * -std::expm1(-sigma_t * diagonal);
+    const double reduced = (1 - formats::mean_cosine(medium.phase)) * band.sigma_s;
+    const auto dipole_of = [&](DipoleKind kind) {
+        return make_dipole(kind, reduced, band.sigma_a, 1);
+    };
+    // The better one is scaled to a walk's energy beyond single scattering: of what enters a half
+    // space no more returns than what survives two scatterings.
+    const Dipole better = dipole_of(DipoleKind::better);
+    const double centre = medium.profile == Medium::Profile::classic
+                              ? eval_dipole(dipole_of(DipoleKind::classic), 0)
+                              : albedo * albedo * eval_dipole(better, 0) / dipole_total(better);
+    return std::max(once * once, centre * area);
+}
+
+PlanEntry decide_multiple(const PlanInput& input) {
+    const Medium& medium = *input.material.medium;
+    const double diagonal =
+        static_cast<double>(glm::length(input.subject.high - input.subject.low));
+    PlanEntry entry;
+    entry.has_bands = true;
+    double of_half_space = 0;
+    for (const Band& band : bands_of(medium)) {
+        const double half_space = half_space_bound(medium, band);
+        of_half_space = std::max(of_half_space, half_space);
+        entry.bound = std::max(
+            entry.bound,
+            std::min(half_space, small_body_bound(medium, band, diagonal, input.subject.area)));
+    }
+    if (!is_wanted(input.knobs, "multiple")) {
+        entry.reason = "left out by --effects";
+        return entry;
+    }
+    entry.on = is_worth(entry.bound, input, entry.forced);
+    if (!entry.on) {
+        entry.reason = entry.bound < of_half_space
+                           ? "the body is so small that light hardly scatters twice in it"
+                           : "the medium absorbs nearly all that it scatters";
+        return entry;
+    }
+    const double samples = expected_samples(medium, input.subject.area, input.knobs);
+    entry.reason = "light scatters many times inside; " +
+                   std::to_string(static_cast<std::uint64_t>(samples)) + " surface samples";
+    return entry;
+}
+
+}  // namespace opaline::bake

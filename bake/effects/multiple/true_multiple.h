@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "bake/truth/luminance.h"
+#include "bake/truth/true_irradiance.h"
+#include "bake/effects/multiple/gather_profile.h"
+#include "bake/receivers/surface_points.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// The diffusion integral over a medium's surface as Monte Carlo takes it: at points of its own
+/// with rays of its own, without the bake's samples, tree, cube map or wavelets.
+struct SurfaceIntegral {
+    struct Triangle {
+        std::array<glm::vec3, 3> corner;  ///< [m]
+        AreaTable::Triangle place;
+    };
+    std::vector<Triangle> triangles;
+    GatherProfile profile;  ///< of samples infinitely dense
+    float smallest = 0;     ///< [m] what the profile falls over in the densest band
+    double scale = 0;       ///< 1 / (pi c_exit)
+    double eta = 1;
+};
+
+/// `profile`: of the scene's medium `material`.
+SurfaceIntegral make_surface_integral(const formats::Scene& scene, std::uint32_t material,
+                                      const MediumProfile& profile);
+
+/// What the integrand sees of its surroundings.
+struct SurfaceLight {
+    const formats::Scene& scene;
+    const RayScene& rays;
+    const SunRays& suns;
+    const SmoothLights& smooth;
+    std::uint32_t points = 0;  ///< of the surface, for each of the two estimates
+};
+
+/// Keys of the random numbers.
+struct IntegralKey {
+    std::uint64_t seed = 0;
+    std::uint32_t receiver = 0;
+};
+
+/// Luminance that leaves the surface at `position` [m] by multiple scattering,
+///     1 / (pi c_exit) int R_d(|x - y|) E(y) dA,    translucency.md 3.3 and 3.5,
+/// from `light.points` points for each estimate, chosen as R_d dA is distributed, at equal steps of
+/// its cumulative distribution. `traced` adds up.
+TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const SurfaceLight& light,
+                                glm::vec3 position, IntegralKey key, std::uint64_t& traced);
+
+}  // namespace opaline::bake

@@ -1,0 +1,156 @@
+#include "bake/effects/single/light_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace opaline::bake {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// The column through a point, on the plane of a triangle.
+struct Crossing {
+    bool holds = false;  // the column goes through the triangle itself
+    float z = 0;
+};
+
+inline Crossing cross_triangle(const BodyMesh& mesh, const LightView& view, std::uint32_t id,
+                               glm::vec3 p) {
+    const glm::uvec3 t = mesh.triangle[id];
+    const glm::vec3 a = view.projected[t.x];
+    const glm::vec3 ab = view.projected[t.y] - a, ac = view.projected[t.z] - a, from = p - a;
+    const float inverse = 1.0f / (ab.x * ac.y - ab.y * ac.x);
+    const float tb = inverse * (from.x * ac.y - from.y * ac.x);
+    const float tc = inverse * (from.y * ab.x - from.x * ab.y);
+    constexpr float kMargin = 1e-4f;  // neighbours overlap rather than leave a gap by rounding
+    return {tb >= -kMargin && tc >= -kMargin && tb + tc <= 1 + kMargin,
+            a.z + (tb * ab.z + tc * ac.z)};
+}
+
+using Corner = std::array<std::size_t, 4>;
+
+// The four pixels around a point, the nearest first.
+Corner nearest_pixels(const LightView& view, glm::vec3 p) {
+    const float last = static_cast<float>(view.size) - 2.0f;
+    const float x = std::clamp(p.x - 0.5f, 0.0f, last), y = std::clamp(p.y - 0.5f, 0.0f, last);
+    const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
+    const std::size_t di = x - static_cast<float>(i) > 0.5f ? 1 : 0;
+    const std::size_t dj = y - static_cast<float>(j) > 0.5f ? 1 : 0;
+    const std::uint32_t size = view.size;
+    return {pixel_index(size, i + di, j + dj), pixel_index(size, i + 1 - di, j + dj),
+            pixel_index(size, i + di, j + 1 - dj), pixel_index(size, i + 1 - di, j + 1 - dj)};
+}
+
+// Whether an obstacle passes above the point.
+struct Above {
+    bool yes = false, sure = true;
+};
+
+Above passes_above(const BodyMesh& mesh, const LightView& view, const Corner& pixels, glm::vec3 p,
+                   float margin) {
+    const LightLayer& layer = view.obstacle;
+    float low = kInfinity, high = -kInfinity;
+    for (const std::size_t pixel : pixels) {
+        low = std::min(low, layer.z[pixel]);
+        high = std::max(high, layer.z[pixel]);
+    }
+    if (high == -kInfinity) {
+        return {false, true};
+    }
+    // Clear by more than the layer varies between the pixels: no need for its triangles.
+    const bool all = low > -kInfinity;
+    const float spread = (all ? high - low : 0.0f) + margin;
+    if (all && low > p.z + spread) {
+        return {true, true};
+    }
+    if (high < p.z - spread) {
+        return {false, true};
+    }
+    std::uint32_t previous = formats::kNone;
+    for (const std::size_t pixel : pixels) {
+        const std::uint32_t id = layer.triangle[pixel];
+        if (layer.z[pixel] > -kInfinity && id != previous) {
+            previous = id;
+            const Crossing c = cross_triangle(mesh, view, id, p);
+            if (c.holds) {
+                return {c.z > p.z, !(std::abs(c.z - p.z) < margin)};
+            }
+        }
+    }
+    return {layer.z[pixels[0]] > p.z, false};
+}
+
+}  // namespace
+
+LightFrame make_light_frame(glm::vec3 toward_light, float radius, std::uint32_t size,
+                            glm::vec2 jitter) {
+    LightFrame frame;
+    frame.w = toward_light;
+    const glm::vec3 helper =
+        std::abs(toward_light.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+    frame.u = glm::normalize(glm::cross(helper, toward_light));
+    frame.v = glm::cross(frame.w, frame.u);
+    // A border of two pixels, and one that the jitter moves through.
+    const float inner = static_cast<float>(size) - 5.0f;
+    frame.pixels_per_metre = radius > 0 ? inner / (2.0f * radius) : 1.0f;
+    frame.offset = glm::vec2(0.5f * inner + 2.0f) + jitter;
+    return frame;
+}
+
+glm::vec3 project(const LightFrame& frame, glm::vec3 position) {
+    return {glm::dot(position, frame.u) * frame.pixels_per_metre + frame.offset.x,
+            glm::dot(position, frame.v) * frame.pixels_per_metre + frame.offset.y,
+            glm::dot(position, frame.w)};
+}
+
+LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 p, float tolerance,
+                    float margin) {
+    const Corner pixels = nearest_pixels(view, p);
+    const Above blocked = passes_above(mesh, view, pixels, p, margin);
+    LightAnswer answer;
+    if (blocked.yes && blocked.sure) {
+        return answer;
+    }
+    float low = kInfinity, high = -kInfinity;
+    bool all = true, known = false;
+    Crossing crossing;
+    std::uint32_t previous = formats::kNone;
+    for (const std::size_t pixel : pixels) {
+        if (!(view.front.z[pixel] > -kInfinity)) {
+            all = false;
+            continue;
+        }
+        const std::uint32_t id = view.front.triangle[pixel];
+        if (id == previous) {
+            continue;
+        }
+        previous = id;
+        const Crossing c = cross_triangle(mesh, view, id, p);
+        if (c.holds || answer.triangle == formats::kNone) {
+            crossing = c;
+            answer.triangle = id;
+        }
+        low = std::min(low, c.z);
+        high = std::max(high, c.z);
+        if (c.holds) {
+            known = c.z > p.z + margin;
+            low = c.z;
+            break;
+        }
+    }
+    const bool surely_above = all && low > p.z + margin;
+    known = known || (surely_above && high - low < tolerance);
+    answer.sure = blocked.sure && known;
+    answer.uncertainty = answer.sure ? 0.0f : blocked.sure && surely_above ? high - low : kInfinity;
+    answer.lit = !blocked.yes && answer.triangle != formats::kNone;
+    if (answer.triangle != formats::kNone) {
+        answer.distance = std::max(crossing.z - p.z, 0.0f);
+        answer.nearest =
+            known ? answer.distance : std::max(low - (high - low) - margin - p.z, 0.0f);
+    }
+    return answer;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "bake/effects/single/body_mesh.h"
+
+namespace opaline::bake {
+
+/// Parallel projection along the light: x and y in pixels, z in metres toward the light.
+struct LightFrame {
+    glm::vec3 u, v, w;  ///< orthonormal, u x v = w: toward the light
+    float pixels_per_metre = 1;
+    glm::vec2 offset{0};  ///< [pixels]
+};
+
+/// `size` pixels across hold a sphere of `radius` [m] around the origin; `jitter` in [0, 1)^2 moves
+/// the grid by less than a pixel.
+LightFrame make_light_frame(glm::vec3 toward_light, float radius, std::uint32_t size,
+                            glm::vec2 jitter);
+
+glm::vec3 project(const LightFrame& frame, glm::vec3 position);
+
+/// What is on top of each pixel, seen from the light, where pixel_index says.
+struct LightLayer {
+    std::vector<float> z;                 ///< [m] at the pixel's centre; -infinity: nothing
+    std::vector<std::uint32_t> triangle;  ///< index into BodyMesh::triangle, where there is one
+};
+
+/// Views of a body along one direction.
+struct LightView {
+    std::uint32_t size = 0;  ///< [pixels]
+    LightFrame frame;
+    std::vector<glm::vec3> projected;  ///< vertices
+    std::vector<glm::vec2> slope;      ///< of triangles in some pixel: dz/dx, dz/dy [m/pixel]
+    LightLayer front;                  ///< of the body, facing the light: light enters
+    LightLayer obstacle;  ///< of the body, facing away, where it would leave; and everything else
+};
+
+/// Strips of eight columns lie one after the other, so that what is near in a view is in few pages.
+constexpr std::uint32_t kStrip = 8;
+
+inline std::size_t pixel_index(std::uint32_t size, std::size_t column, std::size_t row) {
+    return (column / kStrip * size + row) * kStrip + column % kStrip;
+}
+
+/// Renders both layers; pixel (i, j) is sampled in (i + 1/2, j + 1/2). Reuses `view`'s memory,
+/// which must have seen no larger mesh.
+void render_light_view(const BodyMesh& mesh, const LightFrame& frame, std::uint32_t size,
+                       LightView& view);
+
+/// The light's way from a point inside the body.
+struct LightAnswer {
+    bool lit = false;
+    bool sure = true;    ///< otherwise all of this is only likely
+    float distance = 0;  ///< s_i [m], of what may be lit
+    float nearest = 0;   ///< [m] what the distance may come down to, where that is not sure
+    /// [m] how far the distance may be off; infinity where the point may be dark or lit instead.
+    float uncertainty = 0;
+    std::uint32_t triangle = formats::kNone;  ///< where light enters, of what may be lit
+};
+
+/// Looks a projected point up. Lit: the column through it meets a known triangle of the front layer
+/// above it, and no obstacle in between. Not sure: no triangle seen at the four nearest pixels
+/// holds the column, and their planes differ there by more than `tolerance` [m]; or some layer is
+/// not farther than `margin` [m] from the point.
+LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 projected,
+                    float tolerance, float margin);
+
+}  // namespace opaline::bake

@@ -1,0 +1,219 @@
+#include "bake/effects/single/single.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "bake/effects/single/rules_single.h"
+#include "bake/effects/single/single_costs.h"
+#include "bake/effects/single/single_knobs.h"
+#include "bake/effects/single/single_stage.h"
+#include "bake/effects/single/true_single.h"
+#include "bake/scattering/entry.h"
+#include "bake/scattering/path_quadrature.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::array<DecisionRule, 2> kRules{
+    {{"single", has_medium, decide_single,
+      [](const PlanEntry& entry, RowLayout& layout) {
+          layout.harmonics = std::max(layout.harmonics, entry.on ? 1u : 0u);
+      }},
+     {"single.terms", is_anisotropic, decide_terms,
+      [](const PlanEntry& entry, RowLayout& layout) {
+          layout.harmonics = entry.on && layout.harmonics > 0
+                                 ? std::max(layout.harmonics, entry.terms)
+                                 : layout.harmonics;
+      }}}};
+constexpr std::array<const KnobSpec*, 4> kKnobs{&kDepthSamples, &kSingleCubemap, &kPhaseTerms,
+                                                &kPhaseTolerance};
+
+using Setting = PilotLadder::Setting;
+constexpr std::array<Setting, 2> kFinest{{{&kDepthSamples, 10}, {&kSingleCubemap, 16}}};
+constexpr std::array<std::array<Setting, 2>, 2> kSettings{
+    {{{{&kDepthSamples, 4}, {&kSingleCubemap, 8}}},
+     {{{&kDepthSamples, 6}, {&kSingleCubemap, 16}}}}};
+constexpr std::array<std::span<const Setting>, 2> kLevels{kSettings[0], kSettings[1]};
+constexpr std::array<PilotLadder, 1> kPilot{{{&kDepthSamples, kLevels, kFinest, 0.1}}};
+
+struct Stage : Prepared {
+    SingleStage stage;
+};
+struct Batch : Prepared {
+    SingleBatch batch;
+};
+
+const SingleStage& stage_of(const Prepared& prepared) {
+    return static_cast<const Stage&>(prepared).stage;
+}
+
+bool is_not_local(const RowLayout& layout) {
+    return !layout.local;
+}
+
+// Rays inside the body need all triangles, also where nothing stands before the light.
+PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
+    const Knobs& knobs = inputs.knobs;
+    auto prepared = std::make_unique<Stage>();
+    prepared->stage = prepare_single(
+        inputs.bake.scene, inputs.bake.rays, inputs.material,
+        {std::min(whole(knobs, kSingleCubemap), knobs.cubemap_size), whole(knobs, kDepthSamples),
+         inputs.layout.harmonics, knobs.exact_rays, inputs.layout.bands()},
+        inputs.context);
+    return prepared;
+}
+
+PreparedPtr gather_batch(const EffectInputs& inputs, std::span<const BodyPoint> points,
+                         std::uint64_t& rays) {
+    auto batch = std::make_unique<Batch>();
+    batch->batch = gather_single_batch(stage_of(*inputs.own.prepared), inputs.bake.rays, points,
+                                       inputs.context);
+    rays += batch->batch.rows.counts.rays;
+    return batch;
+}
+
+// Adds the Haar transform of a cube map of size m to that of size n >= m: the same function has the
+// same coarse coefficients, n/m times as large, and none finer.
+void add_coarse(std::span<const float> coarse, std::uint32_t m, std::span<float> fine,
+                std::uint32_t n) {
+    const auto scale = static_cast<float>(n) / static_cast<float>(m);
+    for (std::size_t face = 0; face < 6; ++face) {
+        for (std::size_t row = 0; row < m; ++row) {
+            const float* const from = &coarse[(face * m + row) * m];
+            float* const to = &fine[(face * n + row) * n];
+            for (std::size_t column = 0; column < m; ++column) {
+                to[column] += scale * from[column];
+            }
+        }
+    }
+}
+
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver,
+                  const DenseRow& row) {
+    const SingleBatch& batch = static_cast<const Batch&>(*receiver.batch).batch;
+    const std::uint32_t m = stage_of(*inputs.own.prepared).directions.cubemap_size;
+    add_single(batch, receiver.place, m, inputs.layout.first_harmonic(), row);
+    return 0;
+}
+
+// alpha / (4 pi) (Ft J / c) c' / (1 + c'): the integral along a path without end, isotropic.
+void add_local(const EffectInputs& inputs, std::span<std::vector<double>> factor) {
+    constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
+    const formats::Medium& medium = inputs.medium();
+    const PathMedium path = make_path_medium(medium);
+    const Interface<double> boundary{static_cast<double>(medium.eta),
+                                     medium.fidelity != formats::Medium::Fidelity::paper};
+    for (std::size_t b = 0; b < factor.size(); ++b) {
+        const double albedo = path.sigma_t[b] > 0 ? path.sigma_s[b] / path.sigma_t[b] : 0;
+        for (std::uint32_t i = 1; i <= kLocalSteps; ++i) {
+            const double cosine = static_cast<double>(i) / kLocalSteps;
+            const Entry<double> entry = enter(cosine, boundary);
+            factor[b][i] += kIsotropic * albedo * entry.throughput / cosine *
+                            entry.refracted_cosine / (1 + entry.refracted_cosine);
+        }
+    }
+}
+
+struct Truth : Prepared {
+    SingleQuadrature quadrature;
+};
+
+// A self-check looks twice as closely as the bake; a pilot, as closely as its target asks for.
+double truth_depths(const Knobs& knobs, TruthEffort effort) {
+    return effort.target >= 0.03 ? 8 : effort.target > 0 ? 16 : 2 * knobs[kDepthSamples];
+}
+
+PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
+                       std::span<const TestLight> lights) {
+    auto truth = std::make_unique<Truth>();
+    truth->quadrature = make_single_quadrature(
+        inputs.bake.scene, inputs.material,
+        static_cast<std::uint32_t>(truth_depths(inputs.knobs, effort)), lights);
+    return truth;
+}
+
+TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
+                  const TruthReceiver& receiver, std::uint64_t& rays) {
+    const SingleQuadrature& quadrature = static_cast<const Truth&>(prepared).quadrature;
+    if (receiver.inside.normal == glm::vec3(0)) {
+        return {Luminance(quadrature.lights), Luminance(quadrature.lights)};
+    }
+    const Luminance once = integrate_single(quadrature, inputs.bake.rays, receiver.inside, rays);
+    return {once, once};
+}
+
+// A phase function with too few terms errs by more than any other knob can make good.
+void warn_of_plan(const PlanInput& input, const PlanEntry& entry,
+                  std::vector<formats::Diagnostic>& warnings) {
+    if (entry.terms == 0) {
+        return;
+    }
+    const std::uint32_t needed = needed_terms(*input.material.medium, input.knobs);
+    if (needed > entry.terms) {
+        warnings.push_back(formats::make_warning(
+            "", entry.subject.name,
+            "--phase-terms " + std::to_string(entry.terms) + " was taken as given; " +
+                (input.knobs.error_target > 0 ? "--error" : "the quality") + " needs " +
+                std::to_string(needed),
+            "leave --phase-terms out, or give --phase-terms " + std::to_string(needed)));
+    }
+}
+
+}  // namespace
+
+void add_single(const SingleBatch& batch, std::size_t place, std::uint32_t m, std::uint32_t first,
+                const DenseRow& row) {
+    const std::size_t coarse = formats::cubemap_texels(m);
+    std::vector<float> own(batch.row_size);
+    read_single(batch, place, own);
+    for (std::size_t plane = 0; plane < own.size() / coarse; ++plane) {
+        const std::span<float> from = std::span(own).subspan(plane * coarse, coarse);
+        formats::haar_forward_cube(from, m);
+        add_coarse(from, m,
+                   row.values.subspan((std::size_t{row.bands} * first + plane) * row.size(),
+                                      row.size()),
+                   row.cubemap_size);
+    }
+}
+
+EffectDescriptor describe_single(Effect id) {
+    return {.id = id,
+            .name = "single",
+            .help = "light scattered once inside media",
+            .inside_media = true,
+            .rules = kRules,
+            .knobs = kKnobs,
+            .pilot = kPilot,
+            .prepare = {.stage = "light maps of",
+                        .by_subject = true,
+                        .applies = [](const formats::Material&,
+                                      const RowLayout& layout) { return is_not_local(layout); },
+                        .run = prepare,
+                        .work = light_maps_work},
+            .gather = {.applies = is_not_local,
+                       .batch_size =
+                           [](const Prepared& prepared, std::size_t bytes) {
+                               return receivers_per_batch(stage_of(prepared), bytes);
+                           },
+                       .gather_batch = gather_batch,
+                       .add = add,
+                       .work = single_rows_work},
+            .truth = {.reference = "rays to twice as many depths",
+                      .is_expensive = true,
+                      .make = make_truth,
+                      .eval = eval,
+                      .work =
+                          [](const SubjectCost& cost, TruthEffort effort) {
+                              return single_truth_work(cost,
+                                                       truth_depths(cost.input.knobs, effort));
+                          }},
+            .add_local = add_local,
+            .warn_of_plan = warn_of_plan};
+}
+
+}  // namespace opaline::bake

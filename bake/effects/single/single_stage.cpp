@@ -1,0 +1,99 @@
+#include "bake/effects/single/single_stage.h"
+
+#include <algorithm>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/scattering/phase_series.h"
+#include "bake/effects/single/texel_directions.h"
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+PhaseTerms make_phase_terms(const formats::PhaseFunction& phase, std::uint32_t terms) {
+    constexpr unsigned kDegrees = 5;
+    const PhaseSeries series = expand_phase(phase, kDegrees);
+    PhaseTerms result;
+    result.lambda.clear();
+    for (std::uint32_t l = 0; l * l < terms; ++l) {
+        result.lambda.push_back(static_cast<float>(series.lambda[l]));
+    }
+    return result;
+}
+
+std::size_t row_size_of(const SingleStage& stage) {
+    return std::size_t{stage.medium.bands} * stage.medium.phase.count() *
+           formats::cubemap_texels(stage.directions.cubemap_size);
+}
+
+}  // namespace
+
+SingleStage prepare_single(const formats::Scene& scene, const RayScene& rays,
+                           std::uint32_t material, const SingleOptions& options,
+                           const Context& context) {
+    SingleStage stage;
+    stage.medium = make_single_medium(
+        scene, material, options.depth_samples,
+        make_phase_terms(scene.materials[material].medium->phase, options.terms), options.bands);
+    stage.by_rays = options.by_rays;
+    if (options.by_rays) {
+        stage.directions = make_direction_set(options.cubemap_size);
+        return stage;
+    }
+    stage.directions = make_texel_directions(options.cubemap_size);
+    stage.mesh = make_body_mesh(scene, rays, material, context);
+    stage.view_size = light_view_size(stage.mesh);
+    return stage;
+}
+
+std::size_t receivers_per_batch(const SingleStage& stage, std::size_t bytes) {
+    return stage.by_rays
+               ? std::max<std::size_t>(1, bytes / (sizeof(float) * row_size_of(stage)))
+               : packed_rows_in(bytes, formats::cubemap_texels(stage.directions.cubemap_size),
+                                stage.medium.phase.count(), stage.medium.bands);
+}
+
+SingleBatch gather_single_batch(const SingleStage& stage, const RayScene& rays,
+                                std::span<const BodyPoint> points, const Context& context) {
+    SingleBatch batch;
+    batch.row_size = row_size_of(stage);
+    if (!stage.by_rays) {
+        batch.rows = gather_single_rows(rays, stage.mesh, stage.view_size, stage.directions,
+                                        stage.medium, points, context);
+        return batch;
+    }
+    batch.dense.resize(points.size() * batch.row_size);
+    const std::vector<RayPacket::Lane> shares = texel_shares(stage.directions);
+    for_each_block_in_order(
+        points.size(), 4, context,
+        [&](Range range) {
+            EntryCounts counts;
+            for (std::size_t p = range.begin; p < range.end; ++p) {
+                const EntryCounts own = gather_single(
+                    rays, stage.directions, shares, stage.medium, points[p],
+                    std::span(batch.dense).subspan(p * batch.row_size, batch.row_size));
+                counts.rays += own.rays;
+                counts.missing += own.missing;
+            }
+            return counts;
+        },
+        [&](Range range, const EntryCounts& counts) {
+            batch.rows.counts.rays += counts.rays;
+            batch.rows.counts.missing += counts.missing;
+            if (context.on_progress) {
+                context.on_progress({"single", range.end, points.size()});
+            }
+        });
+    return batch;
+}
+
+void read_single(const SingleBatch& batch, std::size_t receiver, std::span<float> row) {
+    if (batch.dense.empty()) {
+        read_packed_row(batch.rows.rows, receiver, row);
+        return;
+    }
+    const auto first = batch.dense.begin() + static_cast<std::ptrdiff_t>(receiver * row.size());
+    std::copy(first, first + static_cast<std::ptrdiff_t>(row.size()), row.begin());
+}
+
+}  // namespace opaline::bake

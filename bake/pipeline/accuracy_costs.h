@@ -1,0 +1,18 @@
+#pragma once
+
+#include "bake/pipeline/costed_bake.h"
+
+namespace opaline::bake {
+
+/// What it costs to know how wrong the file is: one stage each.
+///
+/// The pilot's, as choose_knobs runs them if the first choice is met: the truth of its receivers;
+/// rows of those that depend on no trial, under all encodings; rows of the others, once for each of
+/// some values of the knobs, and once for all encodings.
+void bill_pilot_truth(const CostedBake& bake, Bill& bill);
+void bill_fixed_trials(const CostedBake& bake, Bill& bill);
+void bill_other_trials(const CostedBake& bake, Bill& bill);
+/// As check_rows does it.
+void bill_self_check(const CostedBake& bake, Bill& bill);
+
+}  // namespace opaline::bake

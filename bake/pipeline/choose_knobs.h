@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "bake/accuracy/pilot/pilot.h"
+#include "bake/base/stage_log.h"
+#include "formats/opal/result.h"
+
+namespace opaline::bake {
+
+/// What the pilot of a target error found out.
+struct AccuracyReport {
+    double target = 0;     ///< relative RMS asked for
+    double predicted = 0;  ///< expected of the chosen knobs, before the bake
+    double likely = 0;     ///< one standard error of the pilot more
+    bool met = false;
+    struct Trial {
+        Knobs knobs;  ///< of the round: cube map and samples
+        PilotTrial trial;
+    };
+    std::vector<Trial> trials;
+};
+
+/// What choosing changes.
+struct PilotState {
+    std::vector<SubjectState>& subjects;
+    std::vector<TestLight>& lights;
+    StageLog& log;
+    AccuracyReport& report;
+};
+
+/// The cheapest of the knobs that the user did not fix with which the error meets
+/// knobs.error_target, as far as the pilot can tell. The subjects have been studied; they are left
+/// with the samples of the chosen knobs, the lights with their cube map.
+Knobs choose_knobs(const BakeInputs& bake, const Knobs& knobs, const Context& context,
+                   PilotState state);
+
+/// Says where the target was not reached. `measured`: by the self-check.
+void warn_of_missed_target(const EffectTable& effects, const AccuracyReport& accuracy,
+                           const Knobs& knobs, double measured,
+                           std::vector<formats::Diagnostic>& warnings);
+
+}  // namespace opaline::bake

@@ -1,0 +1,133 @@
+#include "bake/pipeline/cost_model.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "bake/pipeline/accuracy_costs.h"
+#include "bake/pipeline/bill.h"
+#include "bake/pipeline/costed_bake.h"
+#include "bake/rows/subject_states.h"
+#include "formats/opal/openness.h"
+
+namespace opaline::bake {
+namespace {
+
+// Mesh and images, which are compressed to about a half.
+double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
+    constexpr double kCompressed = 0.5;
+    const double vertex = scene.images.empty() ? 36 : 44;
+    double bytes = facts.receivers * vertex + facts.triangles * 12;
+    for (const formats::Image8& image : scene.images) {
+        bytes += static_cast<double>(image.rgba.size()) * 3 / 4;
+    }
+    return kCompressed * bytes;
+}
+
+void bill_placing(const CostedBake& bake, Bill& bill) {
+    const auto& [effects, scene, facts, knobs, rates, threads] = bake.request;
+    double body_triangles = 0;
+    for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
+        body_triangles += scene.materials[m].medium ? facts.material[m].triangles : 0;
+    }
+    bill.open("bodies");
+    bill.add({body_triangles * rates.orient_triangle, 0});
+    bill.open("plan");
+    bill.add({facts.triangles * rates.plan_triangle, 0});
+    if (bake.traces_rays) {
+        bill.open("hierarchy");
+        bill.add({0, facts.triangles * rates.build_triangle.at(facts.triangles)});
+    }
+    bill.open("receivers");
+    bill.add({facts.receivers * rates.place_receiver.at(facts.triangles), 0});
+    bill.open("test lights");
+    bill.add({0, rates.test_lights});
+}
+
+// As run_step runs it.
+void bill_step(const CostedBake& bake, Step step, Bill& bill) {
+    const auto& effects = bake.request.effects.effects;
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+        const PreparationStep& own = step_of(effects[e], step);
+        bool is_open = false;
+        for (const CostedSubject& subject : bake.subjects) {
+            const formats::Material& material = bake.request.scene.materials[subject.material];
+            EffectState state;
+            state.acts = subject.acts[e];
+            if (own.work == nullptr ||
+                !is_taken(effects[e], state, step, material, subject.layout)) {
+                continue;
+            }
+            if (own.by_subject || !is_open) {
+                bill.open(std::string(own.stage) +
+                          (own.by_subject ? " material '" + material.name + "'" : ""));
+                is_open = true;
+            }
+            bill.add(own.work(bake.cost_of(
+                         subject, bake.request.facts.material[subject.material].receivers)),
+                     bake.payer(subject, e));
+        }
+    }
+}
+
+void bill_row_stages(const CostedBake& bake, Bill& bill) {
+    for (const formats::Primitive& p : bake.request.scene.primitives) {
+        bill.open("rows of '" + p.name + "'");
+        for (const CostedSubject& subject : bake.subjects) {
+            if (subject.material == p.material) {
+                const auto receivers = static_cast<double>(p.position.size());
+                bill_rows(bake, subject, receivers, bill);
+                bill_encoding(bake, subject, receivers, bill);
+            }
+        }
+    }
+}
+
+void bill_openness(const CostedBake& bake, Bill& bill) {
+    const auto& effects = bake.request.effects.effects;
+    bool is_open = false;
+    for (const CostedSubject& subject : bake.subjects) {
+        if (!subject.layout.glossy) {
+            continue;
+        }
+        if (!is_open) {
+            bill.open("openness");
+            is_open = true;
+        }
+        std::size_t reader = 0;
+        while (reader + 1 < effects.size() &&
+               !(effects[reader].reads_openness && subject.acts[reader])) {
+            ++reader;
+        }
+        PlanEntry* const payer = bake.payer(subject, reader);
+        const double receivers = bake.request.facts.material[subject.material].receivers;
+        bill.add(openness_work(bake.input, receivers, subject.layout.occluded), payer);
+        bill.add_bytes(receivers * sizeof(formats::Openness), payer);
+    }
+}
+
+}  // namespace
+
+CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan) {
+    Bill bill(request.rates, request.threads, plan);
+    const CostedBake bake = make_costed_bake(request, plan);
+    bill_placing(bake, bill);
+    bill_step(bake, Step::study, bill);
+    if (request.knobs.error_target > 0) {
+        bill_pilot_truth(bake, bill);
+        bill_fixed_trials(bake, bill);
+        bill_step(bake, Step::samples, bill);
+        bill_other_trials(bake, bill);
+    } else {
+        bill_step(bake, Step::samples, bill);
+    }
+    bill_step(bake, Step::prepare, bill);
+    bill_row_stages(bake, bill);
+    bill_openness(bake, bill);
+    bill_self_check(bake, bill);
+    bill.add_bytes(mesh_bytes(request.scene, request.facts));
+    bill.cost.receivers = static_cast<std::uint64_t>(request.facts.receivers);
+    return std::move(bill.cost);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,145 @@
+#include "bake/pipeline/costed_bake.h"
+
+#include <algorithm>
+
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+bool gathers(const EffectDescriptor& effect, const RowLayout& layout) {
+    return effect.gather.work != nullptr &&
+           (effect.gather.applies == nullptr || effect.gather.applies(layout));
+}
+
+std::uint64_t row_bytes(const Knobs& knobs, const RowLayout& layout) {
+    const std::uint64_t all = formats::cubemap_texels(knobs.cubemap_size);
+    // Of an opaque surface half of all coefficients vanish, below the horizon.
+    const std::uint64_t details = knobs.coefficients == kAllCoefficients
+                                      ? (layout.translucent ? all : all / 2)
+                                      : std::min<std::uint64_t>(knobs.coefficients, all) - 6;
+    const std::uint64_t index_bytes = all <= 65536 ? 2 : 4;
+    const std::uint64_t bands = layout.bands();
+    return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
+}
+
+// Calls visit(entry, layout before the decision, layout after it) for all decisions of an effect.
+template <class Visit>
+void for_each_growth(const CostedBake& bake, const CostedSubject& subject, Visit&& visit) {
+    const EffectTable& effects = bake.request.effects;
+    RowLayout grown = subject.layout;
+    grown.constant = false;
+    grown.harmonics = 0;
+    for (PlanEntry& entry : subject.decisions) {
+        const RowLayout before = grown;
+        RowLayout after = grown;
+        rule_of(effects, entry).lay_out(entry, after);
+        grown.constant = after.constant;
+        grown.harmonics = after.harmonics;
+        visit(entry, before, grown);
+    }
+}
+
+std::uint32_t rows_of(const RowLayout& layout) {
+    return layout.has_rows() ? layout.terms() - (layout.separate && !layout.constant ? 1 : 0) : 0;
+}
+
+}  // namespace
+
+SubjectCost CostedBake::cost_of(const CostedSubject& subject, double receivers) const {
+    return {input,
+            request.scene.materials[subject.material],
+            request.facts.material[subject.material],
+            subject.layout,
+            receivers,
+            traces_rays};
+}
+
+PlanEntry* CostedBake::payer(const CostedSubject& subject, std::size_t effect) const {
+    const Effect id = request.effects.effects[effect].id;
+    PlanEntry* first = nullptr;
+    for (PlanEntry& entry : subject.decisions) {
+        if (entry.on && entry.rule == 0 && entry.effect == id) {
+            return &entry;
+        }
+        const bool fills = entry.on && entry.rule == 0 &&
+                           request.effects[entry.effect].gather.work != nullptr;
+        first = first == nullptr && fills ? &entry : first;
+    }
+    return first;
+}
+
+CostedBake make_costed_bake(const CostRequest& request, std::vector<PlanEntry>& plan) {
+    CostedBake bake{
+        request, {request.rates, request.knobs, request.facts.triangles, request.facts.receivers},
+        {},      false};
+    std::vector<RowLayout> layouts;
+    for (const Subject& subject : list_subjects(request.scene, request.facts)) {
+        CostedSubject own;
+        own.material = subject.index;
+        const auto entries = entries_of(plan, subject.index);
+        own.decisions = std::span(plan).subspan(
+            static_cast<std::size_t>(entries.data() - plan.data()), entries.size());
+        own.layout = layout_material(request.effects, request.scene.materials[subject.index],
+                                     entries, request.knobs);
+        for (const EffectDescriptor& effect : request.effects.effects) {
+            const bool acts = acts_on(effect, entries, own.layout);
+            own.acts.push_back(acts);
+            own.has_expensive_truth =
+                own.has_expensive_truth || (acts && effect.truth.is_expensive);
+            own.depends_on_trials = own.depends_on_trials || (acts && !effect.pilot.empty());
+        }
+        layouts.push_back(own.layout);
+        bake.subjects.push_back(std::move(own));
+    }
+    bake.traces_rays = needs_hierarchy(layouts);
+    return bake;
+}
+
+void bill_rows(const CostedBake& bake, const CostedSubject& subject, double receivers, Bill& bill) {
+    const EffectTable& effects = bake.request.effects;
+    for (std::size_t e = 0; e < effects.effects.size(); ++e) {
+        const EffectDescriptor& effect = effects.effects[e];
+        if (!subject.acts[e] || !gathers(effect, subject.layout)) {
+            continue;
+        }
+        SubjectCost cost = bake.cost_of(subject, receivers);
+        const Work all = effect.gather.work(cost);
+        Work of_parts;
+        for_each_growth(bake, subject, [&](PlanEntry& entry, const RowLayout& before,
+                                           const RowLayout& after) {
+            if (entry.effect == effect.id && entry.rule > 0 && entry.on &&
+                rows_of(after) > rows_of(before)) {
+                const SubjectCost less{cost.input,    cost.material,  cost.facts,
+                                       before,        cost.receivers, cost.traces_rays};
+                const SubjectCost more{cost.input,    cost.material,  cost.facts,
+                                       after,         cost.receivers, cost.traces_rays};
+                const Work growth = effect.gather.work(more) - effect.gather.work(less);
+                bill.add(growth, &entry);
+                of_parts += growth;
+            }
+        });
+        bill.add(all - of_parts, bake.payer(subject, e));
+    }
+}
+
+void bill_encoding(const CostedBake& bake, const CostedSubject& subject, double receivers,
+                   Bill& bill) {
+    const std::uint32_t bands = subject.layout.bands();
+    const double bytes =
+        receivers * static_cast<double>(row_bytes(bake.request.knobs, subject.layout));
+    const auto bill_some = [&](std::uint32_t rows, PlanEntry* payer) {
+        bill.add(encode_work(bake.input, rows, bands, receivers), payer);
+        bill.add_bytes(rows * bytes, payer);
+    };
+    std::uint32_t paid = 0;
+    for_each_growth(bake, subject,
+                    [&](PlanEntry& entry, const RowLayout& before, const RowLayout& after) {
+                        const std::uint32_t rows = rows_of(after) - rows_of(before);
+                        bill_some(rows, entry.on ? &entry : nullptr);
+                        paid += rows;
+                    });
+    bill_some(subject.layout.terms() - paid, nullptr);  // of rows that nothing fills
+}
+
+}  // namespace opaline::bake

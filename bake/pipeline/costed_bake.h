@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bake/pipeline/bill.h"
+#include "bake/pipeline/cost_model.h"
+
+namespace opaline::bake {
+
+/// One subject of a bake whose costs are counted.
+struct CostedSubject {
+    std::uint32_t material = 0;
+    RowLayout layout;
+    std::span<PlanEntry> decisions;
+    std::vector<bool> acts;  ///< by effect, in the order of the table
+    bool has_expensive_truth = false, depends_on_trials = false;
+};
+
+/// All that the costs of one bake follow from.
+struct CostedBake {
+    const CostRequest& request;
+    CostInput input;
+    std::vector<CostedSubject> subjects;
+    bool traces_rays = false;
+
+    SubjectCost cost_of(const CostedSubject& subject, double receivers) const;
+    /// Who pays for an effect's work on a subject: the decision that turned the effect on, or where
+    /// there is none (effects/local) the first one that fills rows.
+    PlanEntry* payer(const CostedSubject& subject, std::size_t effect) const;
+};
+CostedBake make_costed_bake(const CostRequest& request, std::vector<PlanEntry>& plan);
+
+/// Work of one subject's dense rows, effect by effect, each billed to its decisions: a part that
+/// adds rows pays for what they add.
+void bill_rows(const CostedBake& bake, const CostedSubject& subject, double receivers, Bill& bill);
+/// Of encoding them, and of their bytes in the file.
+void bill_encoding(const CostedBake& bake, const CostedSubject& subject, double receivers,
+                   Bill& bill);
+
+}  // namespace opaline::bake

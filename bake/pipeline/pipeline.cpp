@@ -1,0 +1,266 @@
+#include "bake/pipeline/pipeline.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "bake/accuracy/check_rows.h"
+#include "bake/base/ordered_parallel.h"
+#include "bake/encode/pack_asset.h"
+#include "bake/encode/row_sink.h"
+#include "bake/pipeline/provenance.h"
+#include "bake/receivers/body_points.h"
+#include "bake/receivers/vertex_receivers.h"
+#include "bake/rows/gather_rows.h"
+#include "bake/scene/inspect_scene.h"
+#include "bake/scene/orient_bodies.h"
+#include "bake/transport/bake_openness.h"
+#include "bake/transport/hidden_receivers.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::ErrorKind;
+using formats::make_error;
+
+formats::Error interrupted() {
+    return make_error(ErrorKind::interrupted, "", "", "interrupted", "nothing was written");
+}
+
+std::vector<ReceiverSet> place_receivers(const formats::Scene& scene, const RayScene& rays,
+                                         const Context& context) {
+    std::vector<Receiver> vertices = make_vertex_receivers(scene);
+    const std::vector<BodyPoint> inside = make_body_points(scene, vertices);
+    return make_vertex_sets(scene, take_over_hidden(rays, scene, std::move(vertices), context),
+                            inside);
+}
+
+// What the rows of a set are for, in the words of comparisons: "multiple+single: rows".
+std::string group_of(std::span<const Gatherer> gatherers) {
+    std::string names;
+    for (const Gatherer& g : gatherers) {
+        names += (names.empty() ? "" : "+") + std::string(g.effect->name);
+    }
+    return names.empty() ? kPreparationGroup : names + ": rows";
+}
+
+// The rows of all receivers, in their order; one stage of the report for each set.
+formats::Result<formats::SparseRows> bake_rows(const BakeInputs& bake,
+                                               std::span<const SubjectState> subjects,
+                                               const Knobs& knobs, const Context& context,
+                                               StageLog& log) {
+    RowSink sink = make_row_sink(
+        make_row_encoder(knobs.cubemap_size, knobs.coefficients, knobs.code_bits));
+    const std::uint32_t total = count_receivers(bake.receivers);
+    for (const ReceiverSet& set : bake.receivers) {
+        const SubjectState* const subject =
+            set.size() == 0 ? nullptr : &state_of(subjects, set.material);
+        if (subject == nullptr) {
+            continue;
+        }
+        std::vector<Gatherer> gatherers = make_gatherers(bake, *subject, knobs, context);
+        std::string group = group_of(gatherers);
+        const formats::SparseRows part = run_stage(
+            log, "rows of '" + bake.scene.primitives[set.primitive].name + "'", std::move(group),
+            [&](std::uint64_t& rays) {
+                return gather_rows({set, subject->layout, sink.encoder, total},
+                                   std::move(gatherers), context, rays);
+            });
+        if (context.cancelled()) {
+            break;
+        }
+        if (part.row_offset.size() != subject->layout.terms() * set.size() + 1 ||
+            !take_rows(sink, part)) {
+            return make_error(ErrorKind::resource, "", "transport",
+                              "more than 2^32 coefficients do not fit into one file",
+                              "lower --coefficients, or split the scene");
+        }
+    }
+    return std::move(sink.rows);
+}
+
+// Of all receivers; empty where nothing is glossy.
+std::vector<formats::Openness> bake_all_openness(const BakeInputs& bake,
+                                                 std::span<const SubjectState> subjects,
+                                                 const Context& context, StageLog& log) {
+    std::vector<formats::Openness> openness;
+    if (std::none_of(subjects.begin(), subjects.end(),
+                     [](const SubjectState& s) { return s.layout.glossy; })) {
+        return openness;
+    }
+    return run_stage(log, "openness", "openness", [&](std::uint64_t& traced) {
+        const DirectionSet directions = make_sparse_direction_set(kOpennessCubemap, 0);
+        for (const ReceiverSet& set : bake.receivers) {
+            if (set.size() > 0 && state_of(subjects, set.material).layout.glossy) {
+                const bool occluded = state_of(subjects, set.material).layout.occluded;
+                const auto part = bake_openness(occluded ? bake.rays : bake.sky, directions,
+                                                set.outside, context, traced);
+                openness.insert(openness.end(), part.begin(), part.end());
+            }
+            openness.resize(set.first + set.size());
+        }
+        return std::move(openness);
+    });
+}
+
+// One layout for each material, with the colours that the studies found for media shown as
+// surfaces.
+std::vector<RowLayout> final_layouts(const BakeInputs& bake,
+                                     std::span<const SubjectState> subjects) {
+    std::vector<RowLayout> layouts(bake.scene.materials.size());
+    for (const SubjectState& subject : subjects) {
+        RowLayout& layout = layouts[subject.material] = subject.layout;
+        for (std::size_t e = 0; e < subject.effects.size(); ++e) {
+            const EffectDescriptor& effect = bake.effects.effects[e];
+            if (effect.tint != nullptr && subject.effects[e].study != nullptr) {
+                layout.tint = effect.tint(*subject.effects[e].study);
+            }
+        }
+    }
+    return layouts;
+}
+
+void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjects,
+                    const Knobs& knobs, const Context& context,
+                    std::vector<formats::Diagnostic>& warnings) {
+    for (const SubjectState& subject : subjects) {
+        for (std::size_t e = 0; e < subject.effects.size(); ++e) {
+            const EffectDescriptor& effect = bake.effects.effects[e];
+            if (subject.effects[e].acts && effect.warn_of_model != nullptr) {
+                effect.warn_of_model(inputs_of(bake, subject, e, knobs, context), warnings);
+            }
+        }
+    }
+}
+
+ErrorReport summarise(std::span<const EffectCheck> checks, std::span<const TestLight> lights,
+                      std::uint64_t seed) {
+    std::vector<std::string> names;
+    for (const TestLight& light : lights) {
+        names.push_back(light.name);
+    }
+    return summarise_checks(checks, names, seed);
+}
+
+// What an inspected scene becomes: all stages from the receivers on.
+formats::Status bake_inspected(const BakeInputs& bake, const Context& context,
+                               BakeResult& result) {
+    Knobs& knobs = result.knobs;
+    StageLog& log = result.stages;
+    auto lights = run_stage(log, "test lights", [&](std::uint64_t&) {
+        return make_test_lights(knobs.cubemap_size, context.threads);
+    });
+    if (!lights) {
+        return std::move(lights).error();
+    }
+    std::vector<SubjectState> subjects = begin_subjects(bake, result.plan, knobs);
+    run_step(Step::study, bake, knobs, context, subjects, log);
+    if (knobs.error_target > 0) {
+        result.accuracy.emplace();
+        knobs = choose_knobs(bake, knobs, context, {subjects, *lights, log, *result.accuracy});
+        result.plan = plan_bake(bake.effects, bake.scene, bake.facts, knobs);
+    } else {
+        run_step(Step::samples, bake, knobs, context, subjects, log);
+    }
+    run_step(Step::prepare, bake, knobs, context, subjects, log);
+    if (context.cancelled()) {
+        return interrupted();
+    }
+    formats::Result<formats::SparseRows> rows = bake_rows(bake, subjects, knobs, context, log);
+    if (!rows) {
+        return std::move(rows).error();
+    }
+    warn_of_models(bake, subjects, knobs, context, result.warnings);
+    std::vector<formats::Openness> openness = bake_all_openness(bake, subjects, context, log);
+    if (context.cancelled()) {
+        return interrupted();
+    }
+    result.asset = pack_asset(bake.scene, final_layouts(bake, subjects), std::move(*rows),
+                              std::move(openness));
+    result.error = run_stage(log, "self-check", "self-check", [&](std::uint64_t& traced) {
+        const std::vector<EffectCheck> checks =
+            check_rows(bake, subjects, knobs, result.asset.view(), *lights, context);
+        for (const EffectCheck& check : checks) {
+            traced += check.rays;
+        }
+        return summarise(checks, *lights, knobs.seed);
+    });
+    if (context.cancelled()) {
+        return interrupted();
+    }
+    if (result.accuracy) {
+        warn_of_missed_target(bake.effects, *result.accuracy, knobs, result.error.rms_relative,
+                              result.warnings);
+    }
+    return formats::ok_status();
+}
+
+formats::Status check_model_of(const formats::Scene& scene, const Context& context,
+                               BakeResult& result) {
+    ModelCheckOptions options;
+    options.seed = result.knobs.seed;
+    auto checked = run_stage(result.stages, "model check", [&](std::uint64_t&) {
+        return check_model(scene, result.asset.view(), options, context);
+    });
+    if (!checked) {
+        return std::move(checked).error();
+    }
+    result.model_error = std::move(*checked);
+    return formats::ok_status();
+}
+
+}  // namespace
+
+formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::Scene& given,
+                                     const Knobs& wanted, const Context& outer) {
+    const Clock::time_point start = Clock::now();
+    Context context = outer;
+    context.threads = thread_count(outer);
+    BakeResult result;
+    result.knobs = wanted;
+    result.threads = context.threads;
+    StageLog& log = result.stages;
+
+    const OrientedBodies bodies =
+        run_stage(log, "bodies", [&](std::uint64_t&) { return orient_bodies(given); });
+    const formats::Scene& scene = bodies.scene ? *bodies.scene : given;
+    result.warnings = describe_faults(given, bodies.surfaces);
+    result.plan = run_stage(log, "plan", [&](std::uint64_t&) {
+        result.facts = inspect_scene(scene);
+        return plan_bake(effects, scene, result.facts, wanted);
+    });
+    formats::Result<RayScene> sky = RayScene::build({}, context.threads);
+    if (!sky) {
+        return std::move(sky).error();
+    }
+    std::optional<RayScene> hierarchy;
+    if (needs_hierarchy(layout_rows(effects, scene, result.plan, wanted))) {
+        formats::Result<RayScene> built = run_stage(log, "hierarchy", [&](std::uint64_t&) {
+            return RayScene::build(scene, context.threads);
+        });
+        if (!built) {
+            return std::move(built).error();
+        }
+        hierarchy = std::move(*built);
+    }
+    const RayScene& rays = hierarchy ? *hierarchy : *sky;
+    const std::vector<ReceiverSet> receivers = run_stage(
+        log, "receivers", [&](std::uint64_t&) { return place_receivers(scene, rays, context); });
+    const BakeInputs bake{effects, scene, result.facts, rays, *sky, receivers};
+    if (auto status = bake_inspected(bake, context, result); !status) {
+        return std::move(status).error();
+    }
+    if (wanted.check_model) {
+        if (auto status = check_model_of(scene, context, result); !status) {
+            return std::move(status).error();
+        }
+    }
+    result.asset.provenance =
+        make_provenance(scene, {result.knobs, result.plan, result.error,
+                                result.model_error ? &*result.model_error : nullptr});
+    result.seconds_total = seconds_since(start);
+    return result;
+}
+
+}  // namespace opaline::bake

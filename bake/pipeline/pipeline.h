@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "bake/accuracy/check_model.h"
+#include "bake/accuracy/measure_error.h"
+#include "bake/pipeline/choose_knobs.h"
+#include "formats/opal/asset.h"
+
+namespace opaline::bake {
+
+struct BakeResult {
+    formats::Asset asset;
+    Knobs knobs;           ///< as used
+    unsigned threads = 1;  ///< as used
+    std::vector<PlanEntry> plan;
+    SceneFacts facts;  ///< that the plan was decided from
+    StageLog stages;
+    ErrorReport error;
+    std::optional<AccuracyReport> accuracy;       ///< where an error was asked for
+    std::optional<ModelErrorReport> model_error;  ///< where Knobs::check_model asks for it
+    std::vector<formats::Diagnostic> warnings;
+    double seconds_total = 0;
+};
+
+/// The whole bake: the stages in order, nothing else. `knobs`: as resolve_knobs makes them for the
+/// same table.
+/// Errors: resource, interrupted (the context was cancelled).
+formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::Scene& scene,
+                                     const Knobs& knobs, const Context& context);
+
+}  // namespace opaline::bake

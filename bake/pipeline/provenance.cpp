@@ -1,0 +1,101 @@
+#include "bake/pipeline/provenance.h"
+
+#include <nlohmann/json.hpp>
+
+#include "bake/transport/ray_scene.h"
+
+namespace opaline::bake {
+
+using Json = nlohmann::ordered_json;
+
+Json knobs_json(const Knobs& knobs) {
+    Json json = {{"cubemap", knobs.cubemap_size},
+                 {"coefficients", knobs.coefficients == kAllCoefficients
+                                      ? Json("all")
+                                      : Json(knobs.coefficients)},
+                 {"code_bits", knobs.code_bits}};
+    for (const auto& [knob, value] : knobs.values.values) {
+        Json& own = json[std::string(knob->name)];
+        if (knob->zero_is_auto && value == 0) {
+            own = "auto";
+        } else if (knob->whole) {
+            own = static_cast<std::uint64_t>(value);
+        } else {
+            own = value;
+        }
+    }
+    json["separate_terms"] = knobs.separate_terms;
+    return json;
+}
+
+Json error_json(const ErrorReport& error) {
+    Json json = {{"rms_relative", error.rms_relative},
+                 {"ci95", {error.ci95[0], error.ci95[1]}},
+                 {"p95_relative", error.p95_relative},
+                 {"max_relative", error.max_relative},
+                 {"receivers_checked", error.receivers_checked},
+                 {"reference", error.reference},
+                 {"by_effect", Json::object()},
+                 {"by_light", Json::object()}};
+    for (const ErrorReport::Part& effect : error.by_effect) {
+        json["by_effect"][effect.name] = effect.rms_relative;
+    }
+    for (const ErrorReport::Part& light : error.by_light) {
+        json["by_light"][light.name] = light.rms_relative;
+    }
+    return json;
+}
+
+Json model_error_json(const ModelErrorReport& error) {
+    Json json = {{"rms_relative", error.rms_relative},
+                 {"ci95", {error.ci95[0], error.ci95[1]}},
+                 {"bias", error.bias},
+                 {"missing", error.missing},
+                 {"receivers_checked", error.receivers_checked},
+                 {"samples", error.samples},
+                 {"reference", error.reference},
+                 {"by_light", Json::object()},
+                 {"left_out", error.left_out}};
+    for (const ModelErrorReport::Part& light : error.by_light) {
+        json["by_light"][light.name] = {{"rms_relative", light.rms_relative},
+                                        {"bias", light.bias},
+                                        {"missing", light.missing},
+                                        {"noise", light.noise},
+                                        {"samples", light.samples}};
+    }
+    return json;
+}
+
+std::string make_provenance(const formats::Scene& scene, const BakeRecord& record) {
+    const Knobs& knobs = record.knobs;
+    Json root;
+    root["generator"] = std::string("Opaline ") + OPALINE_VERSION;
+    root["ray_tracer"] = RayScene::description();
+    root["scene"]["sha256"] = scene.sha256;
+    for (const formats::Primitive& p : scene.primitives) {
+        root["scene"]["primitives"].push_back(
+            {{"name", p.name}, {"material", scene.materials[p.material].name}});
+    }
+    root["seed"] = knobs.seed;
+    root["quality"] = knobs.error_target > 0 ? "as --error asked" : quality_name(knobs.quality);
+    if (knobs.error_target > 0) {
+        root["error_requested"] = knobs.error_target;
+    }
+    root["knobs"] = knobs_json(knobs);
+    root["plan"] = Json::array();
+    for (const PlanEntry& entry : record.plan) {
+        root["plan"].push_back({{"effect", entry.name},
+                                {"subject", entry.subject.name},
+                                {"decision", entry.on ? "on" : "off"},
+                                {"reason", entry.reason},
+                                {"bound", entry.bound}});
+    }
+    root["error"] = error_json(record.error);
+    if (record.model_error != nullptr) {
+        root["model_error"] = model_error_json(*record.model_error);
+    }
+    // Names come from the user's file: bytes that are not UTF-8 must not stop the bake.
+    return root.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace opaline::bake

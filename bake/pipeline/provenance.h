@@ -1,0 +1,32 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+
+#include "bake/accuracy/check_model.h"
+#include "bake/accuracy/measure_error.h"
+#include "bake/plan/bake_plan.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// The knobs and the measured error as they stand in provenance and report.
+nlohmann::ordered_json knobs_json(const Knobs& knobs);
+nlohmann::ordered_json error_json(const ErrorReport& error);
+/// Without the seconds, which differ from run to run.
+nlohmann::ordered_json model_error_json(const ModelErrorReport& error);
+
+/// What became of a bake.
+struct BakeRecord {
+    const Knobs& knobs;
+    std::span<const PlanEntry> plan;
+    const ErrorReport& error;
+    const ModelErrorReport* model_error = nullptr;  ///< null: not measured
+};
+
+/// The PROV section: how the file came about, as JSON. Nothing that differs between two runs of the
+/// same bake: no seconds, dates, paths or thread counts.
+std::string make_provenance(const formats::Scene& scene, const BakeRecord& record);
+
+}  // namespace opaline::bake

@@ -1,0 +1,123 @@
+#include "bake/pipeline/unmet_requests.h"
+
+#include <algorithm>
+#include <string>
+
+namespace opaline::bake {
+namespace {
+
+using formats::Diagnostic;
+using formats::make_warning;
+
+bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const Knobs& knobs,
+                  std::string_view name) {
+    const MaterialFacts unknown;  // whom an effect concerns, its material says
+    return std::any_of(
+        scene.primitives.begin(), scene.primitives.end(), [&](const formats::Primitive& p) {
+            const PlanInput input{scene.materials[p.material], unknown, knobs};
+            return std::any_of(effects.effects.begin(), effects.effects.end(),
+                               [&](const EffectDescriptor& effect) {
+                                   return effect.name == name && !effect.rules.empty() &&
+                                          effect.rules.front().concerns(input);
+                               });
+        });
+}
+
+std::string concerns_nothing(const std::string& effect) {
+    return "'" + effect + "' concerns nothing in the scene: no surface has a medium";
+}
+
+// Effects that were named, and that no subject has.
+void describe_effects(const DecidedBake& decided, std::vector<Diagnostic>& warnings) {
+    for (const std::string& effect : decided.knobs.effects) {
+        const PlanEntry* left_out = nullptr;
+        bool is_on = false;
+        for (const PlanEntry& entry : decided.plan) {
+            if (entry.name == effect) {
+                is_on = is_on || entry.on;
+                left_out = &entry;
+            }
+        }
+        if (is_on) {
+            continue;
+        }
+        if (!is_concerned(decided.effects, decided.scene, decided.knobs, effect)) {
+            warnings.push_back(make_warning("", "--effects", concerns_nothing(effect),
+                                            "describe its medium with --media"));
+        } else if (left_out != nullptr) {
+            warnings.push_back(make_warning(
+                "", "--effects", "'" + effect + "' was left out all the same: " + left_out->reason,
+                "`opaline plan` shows its bound; `--effects all` heeds none"));
+        }
+    }
+}
+
+void warn_of_idle(std::string_view option, std::string_view why,
+                  std::vector<Diagnostic>& warnings) {
+    warnings.push_back(make_warning("", std::string(option),
+                                    "does nothing here: " + std::string(why),
+                                    "`opaline plan` says what is simulated"));
+}
+
+// Options of stages that do not run.
+void describe_options(const DecidedBake& decided, const BakeOptions& options,
+                      std::vector<Diagnostic>& warnings) {
+    const std::vector<RowLayout> layouts =
+        layout_rows(decided.effects, decided.scene, decided.plan, decided.knobs);
+    const auto matters = [&](const KnobSpec& knob) {
+        for (std::uint32_t m = 0; m < layouts.size(); ++m) {
+            if (knob.matters(layouts[m], entries_of(decided.plan, m))) {
+                return true;
+            }
+        }
+        return false;
+    };
+    for (const auto& [knob, value] : options.given.values) {
+        // The least that an `auto` knob may be is what idle subjects get anyway.
+        const bool is_least = knob->zero_is_auto && value <= knob->lowest;
+        if (knob->matters != nullptr && !is_least && !matters(*knob)) {
+            warn_of_idle(knob->option, knob->why_idle, warnings);
+        }
+    }
+    const auto has_both = [](const RowLayout& l) {
+        return l.translucent && l.constant && l.harmonics > 0;
+    };
+    if (options.separate_terms && std::none_of(layouts.begin(), layouts.end(), has_both)) {
+        warn_of_idle("--separate-terms", "no material has both multiple and single scattering",
+                     warnings);
+    }
+}
+
+}  // namespace
+
+formats::Status check_effects(const EffectTable& effects, const formats::Scene& scene,
+                              const Knobs& knobs) {
+    const auto concerned = [&](const std::string& effect) {
+        return is_concerned(effects, scene, knobs, effect);
+    };
+    if (knobs.effects.empty() || scene.primitives.empty() ||
+        std::any_of(knobs.effects.begin(), knobs.effects.end(), concerned)) {
+        return formats::ok_status();
+    }
+    return formats::make_error(formats::ErrorKind::usage, "", "--effects",
+                               concerns_nothing(knobs.effects.front()),
+                               "describe its medium with --media, or leave --effects out");
+}
+
+std::vector<Diagnostic> describe_unmet(const DecidedBake& decided, const BakeOptions& options) {
+    std::vector<Diagnostic> warnings;
+    describe_effects(decided, warnings);
+    describe_options(decided, options, warnings);
+    for (const PlanEntry& entry : decided.plan) {
+        const EffectDescriptor& effect = decided.effects[entry.effect];
+        const std::uint32_t m = entry.subject.index;
+        if (effect.warn_of_plan != nullptr) {
+            effect.warn_of_plan(
+                {decided.scene.materials[m], decided.facts.material[m], decided.knobs}, entry,
+                warnings);
+        }
+    }
+    return warnings;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+
+#include "bake/receivers/receiver.h"
+#include "bake/scene/scene_facts.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+struct EffectTable;
+
+/// What all stages of a bake share, read-only: inspected and placed once, then handed on.
+struct BakeInputs {
+    const EffectTable& effects;
+    const formats::Scene& scene;  ///< its bodies face outward
+    const SceneFacts& facts;
+    const RayScene& rays;  ///< all triangles
+    const RayScene& sky;   ///< none: what surrounds receivers that nothing occludes
+    std::span<const ReceiverSet> receivers;  ///< in the order of the scene's primitives
+};
+
+}  // namespace opaline::bake

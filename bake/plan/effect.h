@@ -1,0 +1,163 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/plan/bake_inputs.h"
+#include "bake/plan/dense_rows.h"
+#include "bake/plan/knob.h"
+#include "bake/plan/plan_input.h"
+#include "bake/plan/row_layout.h"
+#include "bake/plan/stage_work.h"
+#include "bake/truth/luminance.h"
+#include "bake/truth/test_lights.h"
+#include "formats/opal/result.h"
+
+namespace opaline::bake {
+
+/// What an effect keeps between its functions: only the effect knows what it is.
+struct Prepared {
+    virtual ~Prepared() = default;
+};
+using PreparedPtr = std::unique_ptr<Prepared>;
+
+/// One decision of an effect: the effect as a whole, or a part that is decided by itself.
+struct DecisionRule {
+    std::string_view name;  ///< "single", "single.terms"
+    bool (*concerns)(const PlanInput& input);
+    /// Everything but effect, rule, name and subject. Traces nothing.
+    PlanEntry (*decide)(const PlanInput& input);
+    /// What the decision means to the subject's rows.
+    void (*lay_out)(const PlanEntry& entry, RowLayout& layout);
+};
+
+/// How far an effect has come with one subject; null where a step did not run.
+struct EffectState {
+    bool acts = false;
+    PreparedPtr study, samples, prepared;
+};
+
+/// What a function of an effect works on: one material of a bake.
+struct EffectInputs {
+    const BakeInputs& bake;
+    std::uint32_t material = 0;
+    const RowLayout& layout;
+    const Knobs& knobs;
+    const Context& context;
+    std::span<const EffectState> states;  ///< of all effects, in the order of the table
+    const EffectState& own;               ///< the effect's
+
+    const formats::Medium& medium() const { return *bake.scene.materials[material].medium; }
+    /// What stands before the light of the material's receivers; empty where nothing does.
+    const RayScene& outside() const { return layout.occluded ? bake.rays : bake.sky; }
+};
+
+/// A step that runs once for a subject, before its rows. `run` null: the effect has none.
+struct PreparationStep {
+    std::string_view stage{};  ///< of the report, with a subject's name where `by_subject`; empty:
+                               ///< it takes no time worth a stage
+    bool by_subject = false;
+    bool (*applies)(const formats::Material& material, const RowLayout& layout) = nullptr;
+    PreparedPtr (*run)(const EffectInputs& inputs, std::uint64_t& rays) = nullptr;
+    Work (*work)(const SubjectCost& cost) = nullptr;
+};
+
+/// How an effect adds to dense rows. `add` null: it fills none.
+struct GatherStep {
+    bool (*applies)(const RowLayout& layout) = nullptr;  ///< null: always
+    /// Effects that gather many receivers together do so batch by batch: receivers of a batch that
+    /// takes `bytes` of memory, at least 1. Null: receiver by receiver.
+    std::size_t (*batch_size)(const Prepared& prepared, std::size_t bytes) = nullptr;
+    PreparedPtr (*gather_batch)(const EffectInputs& inputs, std::span<const BodyPoint> points,
+                                std::uint64_t& rays) = nullptr;
+    /// Adds the effect's light to the rows of one receiver. Any thread; returns the rays traced.
+    std::uint64_t (*add)(const EffectInputs& inputs, const GatherReceiver& receiver,
+                         const DenseRow& row) = nullptr;
+    /// Of all rows of `cost.receivers` receivers.
+    Work (*work)(const SubjectCost& cost) = nullptr;
+};
+
+/// What a truth is worth: how closely a receiver is looked at.
+struct TruthEffort {
+    double target = 0;  ///< of a pilot: relative RMS asked for; 0: of a self-check
+};
+
+/// The effect's light at a receiver by a way that shares nothing with its other steps. `make` null:
+/// the effect fills no rows.
+struct TruthStep {
+    std::string_view reference{};  ///< in words, for the report
+    bool is_expensive = false;   ///< a check costs as much as the rows of dozens of receivers
+    PreparedPtr (*make)(const EffectInputs& inputs, TruthEffort effort,
+                        std::span<const TestLight> lights) = nullptr;
+    TwoEstimates (*eval)(const EffectInputs& inputs, const Prepared& truth,
+                         const TruthReceiver& receiver, std::uint64_t& rays) = nullptr;
+    /// Of `cost.receivers` receivers.
+    Work (*work)(const SubjectCost& cost, TruthEffort effort) = nullptr;
+};
+
+/// All that the rest of the baker knows of an effect. Plan, cost model, pilot, self-check, sweep,
+/// report and command line iterate the table of these and name no effect.
+struct EffectDescriptor {
+    Effect id{};
+    std::string_view name{};  ///< for --effects and reports; that of its folder
+    std::string_view help{};  ///< what it simulates, in a line; empty: not for --effects
+    bool inside_media = false;  ///< it needs what is inside a medium: the medium is no surface then
+    std::span<const DecisionRule> rules{};  ///< the first one decides the effect itself
+    /// Whether it acts on a subject, where that is not what its first rule says.
+    bool (*acts)(const RowLayout& layout) = nullptr;
+    std::span<const KnobSpec* const> knobs{};
+    std::span<const PilotLadder> pilot{};
+    /// The knobs of its samples, refined together by the pilot's rounds; null: it has none.
+    bool (*refine_samples)(Knobs& knobs) = nullptr;
+
+    PreparationStep study{};    ///< what depends on no knob
+    PreparationStep samples{};  ///< what a pilot's knobs of rows do not change
+    PreparationStep prepare{};  ///< what is left once every knob has its value
+    GatherStep gather{};
+    TruthStep truth{};
+    bool reads_openness = false;
+
+    /// The part of a local answer (effects/local) that is this effect's: adds to f(c), radiance per
+    /// irradiance at kLocalSteps + 1 evenly spaced cosines from 0 to 1, band by band.
+    void (*add_local)(const EffectInputs& inputs, std::span<std::vector<double>> factor) = nullptr;
+    /// Colour that replaces the base colour's own, of a medium shown as a surface.
+    formats::Rgb (*tint)(const Prepared& study) = nullptr;
+    /// Warnings about a decision that knobs contradict; and about what the model leaves out.
+    void (*warn_of_plan)(const PlanInput& input, const PlanEntry& entry,
+                         std::vector<formats::Diagnostic>& warnings) = nullptr;
+    void (*warn_of_model)(const EffectInputs& inputs,
+                          std::vector<formats::Diagnostic>& warnings) = nullptr;
+};
+
+inline constexpr std::uint32_t kLocalSteps = 1024;
+
+/// The effects there are, in the order of plans and reports.
+struct EffectTable {
+    std::span<const EffectDescriptor> effects;
+
+    const EffectDescriptor& operator[](Effect id) const;
+};
+
+const DecisionRule& rule_of(const EffectTable& effects, const PlanEntry& entry);
+
+/// Calls visit(effect, rule, number of the rule) for all rules in order.
+template <class Visit>
+void for_each_rule(const EffectTable& effects, Visit&& visit) {
+    for (const EffectDescriptor& effect : effects.effects) {
+        for (std::size_t r = 0; r < effect.rules.size(); ++r) {
+            visit(effect, effect.rules[r], static_cast<std::uint8_t>(r));
+        }
+    }
+}
+
+/// Whether the effect acts on a subject of these decisions and rows.
+bool acts_on(const EffectDescriptor& effect, std::span<const PlanEntry> decisions,
+             const RowLayout& layout);
+
+}  // namespace opaline::bake

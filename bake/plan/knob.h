@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+namespace opaline::bake {
+
+struct RowLayout;
+struct PlanEntry;
+
+/// How the error falls with a knob, as theory has it.
+struct KnobTheory {
+    std::string_view label{}, words{};  ///< of the knob on a plot; what the rate assumes
+    double rate = 0;                    ///< exponent of the value; 0: no theory
+    /// Not null: the exponent of e per step of the value, by the phase function's mean cosine.
+    double (*rate_by_cosine)(double mean_cosine) = nullptr;
+    double (*value)(double knob) = nullptr;  ///< the knob as theory counts it; null: as it is
+    bool fine_is_small = false;
+};
+
+/// A setting that trades accuracy of one effect for time or bytes. Each stands once, as a constant
+/// of its effect's folder; its address identifies it.
+struct KnobSpec {
+    std::string_view name{};         ///< in reports, "epsilon"
+    std::string_view option{};      ///< on the command line, "--epsilon"; empty: not there
+    std::string_view placeholder{};  ///< of its value in --help
+    std::string_view help{};
+    double lowest = 0, highest = 0;  ///< that the command line accepts
+    bool whole = true;               ///< an integer
+    bool zero_is_auto = false;       ///< 0 stands for a choice by subject; reported as "auto"
+    bool at_most_cubemap = false;    ///< a cube map size: not above Knobs::cubemap_size
+    bool exact_if_given = false;    ///< otherwise an upper limit
+    std::span<const double> allowed{};  ///< not empty: the only values, besides 0 for `auto`
+
+    /// Values of the presets draft, preview, production, reference: each at least as accurate as
+    /// the one before.
+    std::array<double, 4> preset{};
+    /// What a pilot for a target error starts from; null: the value of preview.
+    double (*for_target)(double error) = nullptr;
+
+    // The sweep (accuracy/sweep).
+    std::string_view label{};           ///< of a point, with %g for the value
+    std::span<const double> ladder{};  ///< values to try one by one
+    /// Values where all knobs change together, -2 to 2 steps from the middle; and of the settings
+    /// that serve as truth, finest first. Empty: as in the base.
+    std::span<const double> diagonal{}, truths{};
+
+    KnobTheory theory{};
+
+    /// Whether a subject of these rows and decisions has use for it, and why not, in words.
+    bool (*matters)(const RowLayout& layout, std::span<const PlanEntry> decisions) = nullptr;
+    std::string_view why_idle{};
+};
+
+/// What a pilot tries for one effect: some of its knobs together, from coarse to fine.
+struct PilotLadder {
+    struct Setting {
+        const KnobSpec* knob;
+        double value;
+    };
+    const KnobSpec* knob;  ///< that names the ladder; given by the user, it is not tried
+    std::span<const std::span<const Setting>> levels;  ///< the last one is the finest
+    std::span<const Setting> finest;                   ///< what the others are measured with
+    double share = 0.1;  ///< of the target's square that a coarser level may add
+};
+
+}  // namespace opaline::bake

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "bake/plan/knobs.h"
+#include "bake/plan/rates.h"
+#include "bake/plan/row_layout.h"
+#include "bake/scene/scene_facts.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Work in seconds of one thread: what one thread alone must do, and what all share.
+struct Work {
+    double alone = 0, shared = 0;
+
+    Work& operator+=(const Work& other) {
+        alone += other.alone;
+        shared += other.shared;
+        return *this;
+    }
+    Work operator-(const Work& other) const {
+        return {alone - other.alone, shared - other.shared};
+    }
+};
+
+/// What all costs depend on.
+struct CostInput {
+    const Rates& rates;
+    const Knobs& knobs;
+    double triangles = 0;  ///< of the scene
+    double receivers = 0;  ///< of the scene
+};
+
+/// What the costs of one subject depend on.
+struct SubjectCost {
+    const CostInput& input;
+    const formats::Material& material;
+    const MaterialFacts& facts;
+    const RowLayout& layout;
+    double receivers = 0;     ///< that the work is for
+    bool traces_rays = true;  ///< the scene has a ray hierarchy: truths trace even where rows do not
+
+    const formats::Medium& medium() const { return *material.medium; }
+};
+
+/// Memory for effects that gather many receivers together.
+inline constexpr double kBatchBytes = 2147483648.0;
+
+/// Rays from one receiver to all texels: half of them lie below its horizon.
+double count_rays(std::uint32_t cubemap_size);
+
+/// Irradiance rows of `receivers`, dense.
+Work irradiance_work(const CostInput& input, double receivers, bool occluded);
+/// Transform, selection and quantising.
+Work encode_work(const CostInput& input, std::uint32_t rows, std::uint32_t bands, double receivers);
+Work openness_work(const CostInput& input, double receivers, bool occluded);
+
+}  // namespace opaline::bake

@@ -1,0 +1,143 @@
+#include "bake/rows/gather_rows.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/receivers/spatial_order.h"
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+// Neighbours gather from the same clusters and read the same lines of batches: one after the other
+// they find them in the cache. Files may list vertices in any order.
+std::vector<std::uint32_t> order_of(const ReceiverSet& set, const RowLayout& layout) {
+    std::vector<std::uint32_t> order(set.size());
+    std::iota(order.begin(), order.end(), 0u);
+    if (!layout.translucent) {
+        return order;
+    }
+    std::vector<glm::vec3> positions;
+    positions.reserve(set.size());
+    for (const BodyPoint& point : set.inside) {
+        positions.push_back(point.position);
+    }
+    return spatial_order(positions);
+}
+
+// The `terms` rows of each receiver, which stand in the order of `order`, as receivers are given.
+formats::SparseRows as_given(const formats::SparseRows& rows, std::span<const std::uint32_t> order,
+                             const RowLayout& layout) {
+    const std::uint32_t terms = layout.terms();
+    std::vector<std::uint32_t> from(order.size() * terms);
+    for (std::uint32_t place = 0; place < order.size(); ++place) {
+        for (std::uint32_t k = 0; k < terms; ++k) {
+            from[std::size_t{order[place]} * terms + k] = place * terms + k;
+        }
+    }
+    return formats::pick_rows(rows, layout.bands(), from);
+}
+
+std::size_t batch_size(std::span<const Gatherer> gatherers, std::size_t all, std::size_t bytes) {
+    std::size_t size = std::max<std::size_t>(1, all);
+    for (const Gatherer& g : gatherers) {
+        if (g.effect->gather.batch_size != nullptr) {
+            size = std::min(size, g.effect->gather.batch_size(*g.inputs.own.prepared, bytes));
+        }
+    }
+    return size;
+}
+
+}  // namespace
+
+std::vector<Gatherer> make_gatherers(const BakeInputs& bake, const SubjectState& subject,
+                                     const Knobs& knobs, const Context& context) {
+    std::vector<Gatherer> gatherers;
+    for (std::size_t e = 0; e < subject.effects.size(); ++e) {
+        const EffectDescriptor& effect = bake.effects.effects[e];
+        const GatherStep& gather = effect.gather;
+        if (subject.effects[e].acts && gather.add != nullptr &&
+            (gather.applies == nullptr || gather.applies(subject.layout))) {
+            gatherers.push_back({&effect, inputs_of(bake, subject, e, knobs, context)});
+        }
+    }
+    return gatherers;
+}
+
+std::uint64_t gather_batches(std::vector<Gatherer>& gatherers, std::span<const BodyPoint> points) {
+    std::uint64_t rays = 0;
+    for (Gatherer& g : gatherers) {
+        if (g.effect->gather.gather_batch != nullptr) {
+            g.batch.reset();  // before the next one is made: only one fits into memory
+            g.batch = g.effect->gather.gather_batch(g.inputs, points, rays);
+        }
+    }
+    return rays;
+}
+
+std::uint64_t gather_receiver(std::span<const Gatherer> gatherers, const Receiver& outside,
+                              const BodyPoint& inside, std::size_t place, const DenseRow& row) {
+    std::fill(row.values.begin(), row.values.end(), 0.0f);
+    std::uint64_t rays = 0;
+    for (const Gatherer& g : gatherers) {
+        rays += g.effect->gather.add(g.inputs, {outside, inside, g.batch.get(), place}, row);
+    }
+    return rays;
+}
+
+DenseRow shape_row(const RowLayout& layout, std::uint32_t cubemap_size,
+                   std::vector<float>& values) {
+    values.resize(std::size_t{layout.terms()} * layout.bands() *
+                  formats::cubemap_texels(cubemap_size));
+    return {values, cubemap_size, layout.terms(), layout.bands()};
+}
+
+formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers,
+                                const Context& context, std::uint64_t& rays) {
+    const auto& [set, layout, encoder, total, batch_bytes] = job;
+    constexpr std::size_t kReceiversPerBlock = 64;
+    struct Block {
+        formats::SparseRows rows;
+        std::uint64_t rays = 0;
+    };
+    const std::vector<std::uint32_t> order = order_of(set, layout);
+    const std::size_t step = batch_size(gatherers, set.size(), batch_bytes);
+    formats::SparseRows rows = empty_rows(encoder);
+    std::vector<BodyPoint> points;
+    for (std::size_t begin = 0; begin < set.size() && !context.cancelled(); begin += step) {
+        const std::span<const std::uint32_t> batch =
+            std::span(order).subspan(begin, std::min(step, set.size() - begin));
+        points.clear();
+        for (const std::uint32_t i : batch) {
+            points.push_back(set.inside[i]);
+        }
+        rays += gather_batches(gatherers, points);
+        for_each_block_in_order(
+            batch.size(), kReceiversPerBlock, context,
+            [&](Range range) {
+                Block block{empty_rows(encoder), 0};
+                std::vector<float> values;
+                const DenseRow row = shape_row(layout, encoder.selector.cubemap_size, values);
+                for (std::size_t v = range.begin; v < range.end; ++v) {
+                    block.rays +=
+                        gather_receiver(gatherers, set.outside[batch[v]], points[v], v, row);
+                    encode_receiver(encoder, row, block.rows);
+                }
+                return block;
+            },
+            [&](Range range, const Block& block) {
+                formats::append_rows(rows, block.rows);
+                rays += block.rays;
+                if (context.on_progress) {
+                    context.on_progress({"rows", set.first + begin + range.end, total});
+                }
+            });
+    }
+    // Rows are missing where the bake was cancelled, or where they are too many for one file: the
+    // caller counts them.
+    const bool is_whole = rows.row_offset.size() == set.size() * layout.terms() + 1;
+    return is_whole && layout.translucent ? as_given(rows, order, layout) : std::move(rows);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/encode/row_sink.h"
+#include "bake/rows/subject_states.h"
+
+namespace opaline::bake {
+
+/// One effect at work on the receivers of a subject.
+struct Gatherer {
+    const EffectDescriptor* effect;
+    EffectInputs inputs;
+    PreparedPtr batch{};  ///< of the receivers at hand, where the effect gathers in batches
+};
+
+/// The effects that fill rows of a subject, without batches. They point into all arguments.
+std::vector<Gatherer> make_gatherers(const BakeInputs& bake, const SubjectState& subject,
+                                     const Knobs& knobs, const Context& context);
+
+/// Gathers the batches of some receivers. Returns the rays traced.
+std::uint64_t gather_batches(std::vector<Gatherer>& gatherers, std::span<const BodyPoint> points);
+
+/// A receiver's dense rows: the sum over all effects, overwritten. Any thread. Returns the rays
+/// traced.
+std::uint64_t gather_receiver(std::span<const Gatherer> gatherers, const Receiver& outside,
+                              const BodyPoint& inside, std::size_t place, const DenseRow& row);
+
+/// A dense row of a subject's shape over `values`, which is resized.
+DenseRow shape_row(const RowLayout& layout, std::uint32_t cubemap_size, std::vector<float>& values);
+
+/// The rows to make.
+struct RowJob {
+    const ReceiverSet& set;
+    const RowLayout& layout;
+    const RowEncoder& encoder;
+    std::uint32_t total = 0;  ///< receivers of all sets, for the progress
+    std::size_t batch_bytes = static_cast<std::size_t>(kBatchBytes);
+};
+
+/// The encoded rows of a set's receivers in the order of the set; fewer, in no order, if the
+/// context is cancelled or they hold more than 2^32 - 1 coefficients. `rays` counts up.
+formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers,
+                                const Context& context, std::uint64_t& rays);
+
+}  // namespace opaline::bake

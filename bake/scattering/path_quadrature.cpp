@@ -1,0 +1,95 @@
+#include "bake/scattering/path_quadrature.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace opaline::bake {
+namespace {
+
+// Value and derivative of the Legendre polynomial of degree n, by its three-term recursion.
+struct Legendre {
+    double value, derivative;
+};
+Legendre legendre(std::uint32_t n, double x) {
+    double previous = 1, value = x;
+    for (std::uint32_t k = 2; k <= n; ++k) {
+        const double next = ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k;
+        previous = value;
+        value = next;
+    }
+    return {value, n * (x * value - previous) / (x * x - 1.0)};
+}
+
+}  // namespace
+
+PathRule make_gauss_rule(std::uint32_t count) {
+    PathRule rule;
+    for (std::uint32_t i = count; i-- > 0;) {
+        double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5));
+        constexpr int kNewtonSteps = 8;  // quadratic from a guess good to 1/count^3
+        for (int step = 0; step < kNewtonSteps; ++step) {
+            const Legendre p = legendre(count, x);
+            x -= p.value / p.derivative;
+        }
+        const double slope = legendre(count, x).derivative;
+        rule.position.push_back(0.5 + 0.5 * x);
+        rule.weight.push_back(1.0 / ((1.0 - x * x) * slope * slope));
+    }
+    return rule;
+}
+
+PathRule make_midpoint_rule(std::uint32_t count) {
+    PathRule rule;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        rule.position.push_back((i + 0.5) / count);
+        rule.weight.push_back(1.0 / count);
+    }
+    return rule;
+}
+
+PathMedium make_path_medium(const formats::Medium& medium) {
+    const formats::Rgb& s = medium.sigma_s;
+    const formats::Rgb& a = medium.sigma_a;
+    PathMedium path;
+    path.sigma_s = {s.r, s.g, s.b};
+    path.sigma_t = {double{s.r} + double{a.r}, double{s.g} + double{a.g},
+                    double{s.b} + double{a.b}};
+    path.sigma_m =
+        medium.fidelity == formats::Medium::Fidelity::paper
+            ? 0.2126 * path.sigma_t[0] + 0.7152 * path.sigma_t[1] + 0.0722 * path.sigma_t[2]
+            : *std::min_element(path.sigma_t.begin(), path.sigma_t.end());
+    return path;
+}
+
+std::vector<PathNode> place_path_nodes(const PathRule& rule, const PathMedium& medium,
+                                       double length) {
+    std::vector<PathNode> nodes;
+    const double sigma_m = medium.sigma_m;
+    if (!(length > 0) || (std::isinf(length) && !(sigma_m > 0))) {
+        return nodes;
+    }
+    const double lambda = -std::expm1(-sigma_m * length);
+    for (std::size_t i = 0; i < rule.position.size(); ++i) {
+        // The limit sigma_m -> 0 is the rule in s itself. Also where the product underflows.
+        const bool uniform = !(lambda > 0);
+        const double s =
+            uniform ? length * rule.position[i] : -std::log1p(-lambda * rule.position[i]) / sigma_m;
+        PathNode node{s, {}};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double span = uniform ? length : lambda / sigma_m;
+            node.weight[c] = rule.weight[i] * span * medium.sigma_s[c] *
+                             std::exp(-(medium.sigma_t[c] - (uniform ? 0.0 : sigma_m)) * s);
+        }
+        nodes.push_back(node);
+    }
+    return nodes;
+}
+
+double path_limit(const PathMedium& medium, double diagonal) {
+    const double smallest = *std::min_element(medium.sigma_t.begin(), medium.sigma_t.end());
+    constexpr double kOpaque = 40;  // e^-40 is below anything a float accumulates
+    return smallest > 0 ? std::min(diagonal, kOpaque / smallest) : diagonal;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,193 @@
+#include "bake/scene/body_shells.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <tuple>
+#include <unordered_map>
+
+#include "bake/scene/weld.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Primitive;
+using formats::Scene;
+
+// One side of a triangle: from point `low` to `high` > `low`, or the other way.
+struct Side {
+    std::uint32_t low, high, triangle;
+    bool upward;
+};
+
+// Two triangles that share an edge with each other alone.
+struct Neighbour {
+    std::uint32_t triangle;
+    bool same_way;  // they face the same way as they are
+};
+
+BodyShells collect_triangles(const Scene& scene, std::uint32_t material) {
+    BodyShells body;
+    std::unordered_map<glm::vec3, std::uint32_t, PositionHash> places;
+    std::size_t vertices = 0;
+    for (const Primitive& primitive : scene.primitives) {
+        vertices += primitive.material == material ? primitive.position.size() : 0;
+    }
+    places.reserve(vertices);
+    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
+        const Primitive& primitive = scene.primitives[p];
+        if (primitive.material != material) {
+            continue;
+        }
+        for (std::uint32_t i = 0; i + 2 < primitive.index.size(); i += 3) {
+            BodyTriangle t{{}, p, i};
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const glm::vec3 at = weld_key(primitive.position[primitive.index[i + k]]);
+                const auto [it, added] =
+                    places.try_emplace(at, static_cast<std::uint32_t>(body.position.size()));
+                if (added) {
+                    body.position.push_back(at);
+                }
+                t.point[k] = it->second;
+            }
+            // A triangle that is a line joins its neighbours' edges where they lie on it; one that
+            // is folded together does so by being left out.
+            if (t.point[0] != t.point[1] && t.point[1] != t.point[2] && t.point[2] != t.point[0]) {
+                body.triangle.push_back(t);
+            }
+        }
+    }
+    return body;
+}
+
+std::vector<std::vector<Neighbour>> find_neighbours(BodyShells& body) {
+    std::vector<Side> sides;
+    sides.reserve(3 * body.triangle.size());
+    for (std::uint32_t t = 0; t < body.triangle.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = body.triangle[t].point[k];
+            const std::uint32_t b = body.triangle[t].point[(k + 1) % 3];
+            sides.push_back({std::min(a, b), std::max(a, b), t, a < b});
+        }
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+    });
+    std::vector<std::vector<Neighbour>> neighbours(body.triangle.size());
+    for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+        while (end < sides.size() && sides[end].low == sides[i].low &&
+               sides[end].high == sides[i].high) {
+            ++end;
+        }
+        body.open_edges += (end - i) % 2;
+        if (end - i == 2) {
+            const Side &a = sides[i], &b = sides[i + 1];
+            neighbours[a.triangle].push_back({b.triangle, a.upward != b.upward});
+            neighbours[b.triangle].push_back({a.triangle, a.upward != b.upward});
+        }
+    }
+    return neighbours;
+}
+
+// Sine of the angle by which `other` rises above the plane of `t`, with which it shares an edge;
+// negative if it falls, of size 1 beyond a right angle.
+double fold_sine(const BodyShells& body, const BodyTriangle& t, const BodyTriangle& other) {
+    const std::array<glm::dvec3, 3> corner = corners(body, t);
+    const std::array<std::uint32_t, 3>& p = t.point;
+    const std::array<std::uint32_t, 3> point =
+        t.turned ? std::array{p[0], p[2], p[1]} : std::array{p[0], p[1], p[2]};
+    const auto is_corner = [](const BodyTriangle& of, std::uint32_t at) {
+        return std::find(of.point.begin(), of.point.end(), at) != of.point.end();
+    };
+    const auto apex = std::find_if(other.point.begin(), other.point.end(),
+                                   [&](std::uint32_t at) { return !is_corner(t, at); });
+    const double area = 2 * glm::length(area_vector(body, t));
+    if (apex == other.point.end() || !(area > 0)) {
+        return 0;
+    }
+    const glm::dvec3 normal = 2.0 / area * area_vector(body, t);
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (is_corner(other, point[k]) && is_corner(other, point[(k + 1) % 3])) {
+            const glm::dvec3 edge = glm::normalize(corner[(k + 1) % 3] - corner[k]);
+            const glm::dvec3 rise = glm::dvec3(body.position[*apex]) - corner[k];
+            const double out = glm::dot(glm::cross(edge, normal), rise);
+            const double up = glm::dot(normal, rise);
+            // What lies lower than the coordinates are exact is flat.
+            constexpr double kRoundings = 4 * 0x1p-23;
+            const glm::dvec3 size = glm::abs(corner[k]);
+            if (std::abs(up) <= kRoundings * std::max({size.x, size.y, size.z})) {
+                return 0;
+            }
+            return out > 0 ? up / std::hypot(up, out) : std::copysign(1.0, up);
+        }
+    }
+    return 0;
+}
+
+// Cuts the body into shells and makes each face one way, that of its larger part.
+void cut_into_shells(BodyShells& body) {
+    const auto neighbours = find_neighbours(body);
+    std::vector<bool> seen(body.triangle.size(), false);
+    for (std::uint32_t seed = 0; seed < body.triangle.size(); ++seed) {
+        if (seen[seed]) {
+            continue;
+        }
+        BodyShell shell;
+        shell.first = static_cast<std::uint32_t>(body.order.size());
+        seen[seed] = true;
+        body.order.push_back(seed);
+        double kept = 0, turned = 0;
+        for (std::size_t at = shell.first; at < body.order.size(); ++at) {
+            BodyTriangle& t = body.triangle[body.order[at]];
+            (t.turned ? turned : kept) += glm::length(area_vector(body, t));
+            for (const Neighbour& n : neighbours[body.order[at]]) {
+                if (!seen[n.triangle]) {
+                    seen[n.triangle] = true;
+                    body.triangle[n.triangle].turned = t.turned == n.same_way;
+                    body.order.push_back(n.triangle);
+                }
+            }
+        }
+        shell.count = static_cast<std::uint32_t>(body.order.size()) - shell.first;
+        shell.area = kept + turned;
+        for (std::uint32_t i = shell.first; i < shell.first + shell.count; ++i) {
+            BodyTriangle& t = body.triangle[body.order[i]];
+            t.turned = t.turned != (turned > kept);
+            for (const std::uint32_t p : t.point) {
+                shell.low = glm::min(shell.low, glm::dvec3(body.position[p]));
+                shell.high = glm::max(shell.high, glm::dvec3(body.position[p]));
+            }
+        }
+        const glm::dvec3 centre = 0.5 * (shell.low + shell.high);
+        for (std::uint32_t i = shell.first; i < shell.first + shell.count; ++i) {
+            const BodyTriangle& t = body.triangle[body.order[i]];
+            shell.volume += glm::dot(corners(body, t)[0] - centre, area_vector(body, t)) / 3;
+            for (const Neighbour& n : neighbours[body.order[i]]) {
+                const double fold = fold_sine(body, t, body.triangle[n.triangle]);
+                shell.valley = std::max(shell.valley, fold);
+                shell.ridge = std::max(shell.ridge, -fold);
+            }
+        }
+        body.shell.push_back(shell);
+    }
+}
+
+}  // namespace
+
+std::array<glm::dvec3, 3> corners(const BodyShells& body, const BodyTriangle& t) {
+    const std::size_t second = t.turned ? 2 : 1;
+    return {body.position[t.point[0]], body.position[t.point[second]],
+            body.position[t.point[3 - second]]};
+}
+
+glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t) {
+    const auto [a, b, c] = corners(body, t);
+    return 0.5 * glm::cross(b - a, c - a);
+}
+
+BodyShells make_body_shells(const Scene& scene, std::uint32_t material) {
+    BodyShells body = collect_triangles(scene, material);
+    cut_into_shells(body);
+    return body;
+}
+
+}  // namespace opaline::bake

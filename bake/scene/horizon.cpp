@@ -1,0 +1,213 @@
+#include "bake/scene/horizon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+namespace opaline::bake {
+namespace {
+
+using Triangle = HorizonTree::Triangle;
+using Node = HorizonTree::Node;
+
+glm::dvec3 area_vector(const Triangle& t) {
+    const glm::dvec3 a = t[0];
+    return glm::cross(glm::dvec3(t[1]) - a, glm::dvec3(t[2]) - a);
+}
+
+Node enclose(const std::vector<Triangle>& triangles, std::uint32_t first, std::uint32_t count) {
+    Node node;
+    node.first = first;
+    node.count = count;
+    glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+    glm::dvec3 axis(0);
+    for (std::uint32_t i = first; i < first + count; ++i) {
+        axis += area_vector(triangles[i]);
+        for (const glm::vec3 x : triangles[i]) {
+            low = glm::min(low, x);
+            high = glm::max(high, x);
+        }
+    }
+    node.centre = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
+    const double length = glm::length(axis);
+    node.axis = length > 0 ? axis / length : glm::dvec3(0, 0, 1);
+    node.low = std::numeric_limits<double>::infinity();
+    node.high = -node.low;
+    double squared = 0;
+    for (std::uint32_t i = first; i < first + count; ++i) {
+        for (const glm::vec3 x : triangles[i]) {
+            const glm::dvec3 from = glm::dvec3(x) - node.centre;
+            const double along = glm::dot(from, node.axis);
+            node.low = std::min(node.low, along);
+            node.high = std::max(node.high, along);
+            squared = std::max(squared, glm::dot(from, from));
+        }
+    }
+    node.radius = std::sqrt(squared);
+    return node;
+}
+
+struct Box {
+    glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
+
+    void add(glm::vec3 x) {
+        low = glm::min(low, x);
+        high = glm::max(high, x);
+    }
+    glm::length_t widest() const {
+        const glm::vec3 size = high - low;
+        return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    }
+};
+
+glm::vec3 unit_normal(const Triangle& t) {
+    return glm::vec3(glm::normalize(area_vector(t)));
+}
+
+// How many of the triangles go into the first child; moves them there. Those that face other ways
+// are parted first, so that slabs get thin: no node holds both sides of an edge. Then by place.
+std::uint32_t part(std::span<Triangle> triangles) {
+    constexpr float kAlike = 0.5f;
+    const auto middle_of = [](const Triangle& t) { return t[0] + t[1] + t[2]; };
+    Box normals, places;
+    for (const Triangle& t : triangles) {
+        normals.add(unit_normal(t));
+        places.add(middle_of(t));
+    }
+    const glm::length_t facing = normals.widest(), axis = places.widest();
+    if (normals.high[facing] - normals.low[facing] > kAlike) {
+        const float between = 0.5f * (normals.low[facing] + normals.high[facing]);
+        const auto second =
+            std::partition(triangles.begin(), triangles.end(),
+                           [&](const Triangle& t) { return unit_normal(t)[facing] < between; });
+        return static_cast<std::uint32_t>(second - triangles.begin());
+    }
+    const auto half = static_cast<std::ptrdiff_t>(triangles.size() / 2);
+    std::nth_element(triangles.begin(), triangles.begin() + half, triangles.end(),
+                     [&](const Triangle& a, const Triangle& b) {
+                         return middle_of(a)[axis] < middle_of(b)[axis];
+                     });
+    return static_cast<std::uint32_t>(half);
+}
+
+void build(HorizonTree& tree, std::uint32_t first, std::uint32_t count) {
+    constexpr std::uint32_t kLeaf = 4;
+    const auto self = static_cast<std::uint32_t>(tree.node.size());
+    tree.node.push_back(enclose(tree.triangle, first, count));
+    if (count <= kLeaf) {
+        return;
+    }
+    const std::uint32_t left = part(std::span(tree.triangle).subspan(first, count));
+    build(tree, first, left);
+    tree.node[self].right = static_cast<std::uint32_t>(tree.node.size());
+    build(tree, first + left, count - left);
+}
+
+// Whether all of the node lies lower over the horizon of the point than what was found.
+bool is_lower(const Node& node, glm::dvec3 point, glm::dvec3 normal, const HorizonSearch& found) {
+    const glm::dvec3 to_centre = node.centre - point;
+    const double along = glm::dot(normal, node.axis);
+    const double across = std::sqrt(std::max(0.0, 1 - along * along));
+    const double above = std::max(along * node.low, along * node.high) + across * node.radius;
+    const double height = glm::dot(normal, to_centre) + std::min(above, node.radius);
+    return height <= std::max(found.flat, found.sine * (glm::length(to_centre) - node.radius));
+}
+
+double distance_to_segment(glm::dvec3 a, glm::dvec3 b) {
+    const glm::dvec3 ab = b - a;
+    const double t = std::clamp(-glm::dot(a, ab) / glm::dot(ab, ab), 0.0, 1.0);
+    return glm::length(a + t * ab);
+}
+
+// Of the triangle a, b, c from the origin.
+double distance_to_triangle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+    const glm::dvec3 n = glm::cross(b - a, c - a);
+    const bool is_over = glm::dot(glm::cross(b - a, n), a) >= 0 &&
+                         glm::dot(glm::cross(c - b, n), b) >= 0 &&
+                         glm::dot(glm::cross(a - c, n), c) >= 0;
+    if (is_over) {
+        return std::abs(glm::dot(n, a)) / glm::length(n);
+    }
+    return std::min(
+        {distance_to_segment(a, b), distance_to_segment(b, c), distance_to_segment(c, a)});
+}
+
+double sine_of(const Triangle& triangle, glm::vec3 point, glm::dvec3 normal, double flat) {
+    std::array<glm::dvec3, 3> to;
+    for (std::size_t k = 0; k < 3; ++k) {
+        to[k] = glm::dvec3(triangle[k]) - glm::dvec3(point);
+    }
+    const double height =
+        std::max({glm::dot(normal, to[0]), glm::dot(normal, to[1]), glm::dot(normal, to[2])});
+    if (!(height > flat)) {
+        return 0;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (triangle[k] == point) {
+            // A direction between the two is b u + c v, its height at most (b + c) times the larger
+            // sine, its length at least (b + c) cos(angle / 2).
+            const glm::dvec3 u = glm::normalize(to[(k + 1) % 3]),
+                             v = glm::normalize(to[(k + 2) % 3]);
+            const double larger = std::max(glm::dot(normal, u), glm::dot(normal, v));
+            return std::min(1.0, larger / (0.5 * glm::length(u + v)));
+        }
+    }
+    const double distance = distance_to_triangle(to[0], to[1], to[2]);
+    return height < distance ? height / distance : 1.0;
+}
+
+}  // namespace
+
+HorizonTree make_horizon_tree(std::vector<Triangle> triangles) {
+    HorizonTree tree;
+    tree.triangle = std::move(triangles);
+    std::erase_if(tree.triangle,
+                  [](const Triangle& t) { return !(glm::length(area_vector(t)) > 0); });
+    if (!tree.triangle.empty()) {
+        tree.node.reserve(tree.triangle.size());
+        build(tree, 0, static_cast<std::uint32_t>(tree.triangle.size()));
+    }
+    return tree;
+}
+
+double farthest_along(const HorizonTree& tree, glm::dvec3 direction) {
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const Triangle& t : tree.triangle) {
+        for (const glm::vec3 x : t) {
+            farthest = std::max(farthest, glm::dot(direction, glm::dvec3(x)));
+        }
+    }
+    return farthest;
+}
+
+void look_over_horizon(const HorizonTree& tree, glm::vec3 point, glm::dvec3 normal,
+                       HorizonSearch& search) {
+    if (tree.node.empty()) {
+        return;
+    }
+    // Facing parts at most twice along each axis, then the tree halves: no deeper than 6 + 32.
+    std::array<std::uint32_t, 64> open;
+    std::size_t count = 0;
+    open[count++] = 0;
+    while (count > 0 && !search.is_over()) {
+        const std::uint32_t at = open[--count];
+        const Node& node = tree.node[at];
+        --search.nodes_left;
+        if (is_lower(node, glm::dvec3(point), normal, search)) {
+            continue;
+        }
+        if (node.right != 0) {
+            open[count++] = node.right;
+            open[count++] = at + 1;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            search.sine =
+                std::max(search.sine, sine_of(tree.triangle[i], point, normal, search.flat));
+        }
+    }
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,195 @@
+#include "bake/scene/orient_bodies.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+
+#include "bake/scene/body_shells.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Primitive;
+using formats::Scene;
+
+// Of a sphere volume / area^1.5 is .094, of a sheet about nothing.
+bool has_volume(const BodyShell& shell) {
+    constexpr double kLeastVolume = 1e-3;
+    return std::abs(shell.volume) > kLeastVolume * std::pow(shell.area, 1.5);
+}
+
+using Corners = std::array<glm::dvec3, 3>;
+
+// The triangles of a shell side by side: each is asked for many times.
+std::vector<Corners> corners_of(const BodyShells& body, const BodyShell& shell) {
+    std::vector<Corners> triangles;
+    triangles.reserve(shell.count);
+    for (std::uint32_t i = shell.first; i < shell.first + shell.count; ++i) {
+        triangles.push_back(corners(body, body.triangle[body.order[i]]));
+    }
+    return triangles;
+}
+
+// Whether a shell encloses the point: its solid angle, seen from there, is the whole sphere.
+bool encloses(const std::vector<Corners>& shell, glm::dvec3 point) {
+    double angle = 0;
+    for (const Corners& corner : shell) {
+        const glm::dvec3 a = corner[0] - point, b = corner[1] - point, c = corner[2] - point;
+        const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+        angle += 2 * std::atan2(glm::dot(a, glm::cross(b, c)), la * lb * lc + glm::dot(a, b) * lc +
+                                                                   glm::dot(b, c) * la +
+                                                                   glm::dot(c, a) * lb);
+    }
+    return std::abs(angle) > 2 * std::numbers::pi;
+}
+
+// Which shells lie in `outer`, of those to which it matters: one that faces outward by itself stays
+// as it is in an outer one that does so, too. Bounds the work that a hostile mesh can ask for: when
+// it is used up, being in the bounding box counts.
+std::vector<std::uint32_t> shells_within(const BodyShells& body, const BodyShell& outer,
+                                         std::uint64_t& work_left) {
+    std::vector<std::uint32_t> within;
+    std::vector<Corners> triangles;
+    for (std::uint32_t s = 0; s < body.shell.size(); ++s) {
+        const BodyShell& inner = body.shell[s];
+        if (outer.volume > 0 && (inner.volume > 0 || !has_volume(inner))) {
+            continue;
+        }
+        if (&inner == &outer || !glm::all(glm::greaterThanEqual(inner.low, outer.low)) ||
+            !glm::all(glm::lessThanEqual(inner.high, outer.high))) {
+            continue;
+        }
+        if (work_left >= outer.count) {
+            work_left -= outer.count;
+            if (triangles.empty()) {
+                triangles = corners_of(body, outer);
+            }
+            if (!encloses(triangles,
+                          body.position[body.triangle[body.order[inner.first]].point[0]])) {
+                continue;
+            }
+        }
+        within.push_back(s);
+    }
+    return within;
+}
+
+void turn(BodyShells& body, const BodyShell& shell) {
+    for (std::uint32_t i = shell.first; i < shell.first + shell.count; ++i) {
+        BodyTriangle& t = body.triangle[body.order[i]];
+        t.turned = !t.turned;
+    }
+}
+
+// Outermost shells must enclose a positive volume; those within turn with them.
+void turn_shells_outward(BodyShells& body) {
+    std::uint64_t work_left = 100'000'000;  // a second or two
+    std::vector<std::uint32_t> by_size(body.shell.size());
+    for (std::uint32_t s = 0; s < by_size.size(); ++s) {
+        by_size[s] = s;
+    }
+    std::stable_sort(by_size.begin(), by_size.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::abs(body.shell[a].volume) > std::abs(body.shell[b].volume);
+    });
+    for (const std::uint32_t s : by_size) {
+        const BodyShell& shell = body.shell[s];
+        if (shell.inside || !has_volume(shell)) {
+            continue;
+        }
+        // Most bodies are one shell, or shells beside each other that face outward.
+        if (body.shell.size() > 1) {
+            for (const std::uint32_t inner : shells_within(body, shell, work_left)) {
+                body.shell[inner].inside = true;
+                if (shell.volume < 0) {
+                    turn(body, body.shell[inner]);
+                }
+            }
+        }
+        if (shell.volume < 0) {
+            turn(body, shell);
+        }
+    }
+}
+
+// The normals of turned triangles' vertices, if they point to the back of the triangles.
+void turn_normals(const BodyShells& body, Scene& scene) {
+    std::vector<std::vector<glm::dvec3>> facing(scene.primitives.size());
+    for (const BodyTriangle& t : body.triangle) {
+        if (t.turned) {
+            const Primitive& p = scene.primitives[t.primitive];
+            facing[t.primitive].resize(p.position.size(), glm::dvec3(0));
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                facing[t.primitive][p.index[t.first_index + k]] += area_vector(body, t);
+            }
+        }
+    }
+    for (std::size_t p = 0; p < facing.size(); ++p) {
+        std::vector<glm::vec3>& normal = scene.primitives[p].normal;
+        for (std::size_t v = 0; v < facing[p].size(); ++v) {
+            if (glm::dot(facing[p][v], glm::dvec3(normal[v])) < 0) {
+                normal[v] = -normal[v];
+            }
+        }
+    }
+}
+
+}  // namespace
+
+OrientedBodies orient_bodies(const Scene& scene) {
+    OrientedBodies result;
+    for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
+        if (!scene.materials[m].medium) {
+            continue;
+        }
+        BodyShells body = make_body_shells(scene, m);
+        if (body.triangle.empty()) {
+            continue;
+        }
+        turn_shells_outward(body);
+        BodySurface surface{m, 0, body.open_edges};
+        for (const BodyTriangle& t : body.triangle) {
+            if (t.turned) {
+                if (!result.scene) {
+                    result.scene = scene;
+                }
+                std::vector<std::uint32_t>& index = result.scene->primitives[t.primitive].index;
+                std::swap(index[t.first_index + 1], index[t.first_index + 2]);
+                ++surface.turned;
+            }
+        }
+        if (surface.turned > 0) {
+            turn_normals(body, *result.scene);
+        }
+        result.surfaces.push_back(surface);
+    }
+    return result;
+}
+
+std::vector<formats::Diagnostic> describe_faults(const Scene& scene,
+                                                 const std::vector<BodySurface>& surfaces) {
+    std::vector<formats::Diagnostic> warnings;
+    for (const BodySurface& surface : surfaces) {
+        const std::string where = "material '" + scene.materials[surface.material].name + "'";
+        if (surface.turned > 0) {
+            warnings.push_back(formats::make_warning(
+                scene.source, where,
+                std::to_string(surface.turned) +
+                    " triangles of the medium's surface face into it; they were turned outward",
+                "make all faces point outward"));
+        }
+        if (surface.open_edges > 0) {
+            warnings.push_back(formats::make_warning(
+                scene.source, where,
+                "the surface of the medium is open at " + std::to_string(surface.open_edges) +
+                    " edges: light that scatters once is missing where it would enter or leave "
+                    "through the holes, and light that scatters many times is that of a thick body",
+                "close the surface"));
+        }
+    }
+    return warnings;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/direction_set.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/opal/openness.h"
+
+namespace opaline::bake {
+
+/// Cube map over which openness is measured for mirror reflection.
+inline constexpr std::uint32_t kOpennessCubemap = 8;
+
+/// What a receiver sees of its hemisphere H: with V the visibility,
+///     fraction = 1/pi int_H V (n.w) dw,    axis = direction of int_H V (n.w) w dw,
+/// both over the rays of `directions`, so that an unoccluded receiver has fraction 1 exactly. A
+/// receiver without a normal, or that sees nothing, has fraction 0 and its normal, or +Z, as axis.
+struct OpenHemisphere {
+    glm::vec3 axis{0, 0, 1};  ///< unit
+    float fraction = 0;
+    std::uint64_t rays = 0;  ///< traced
+};
+/// Of up to sixteen receivers, fast where they are neighbours; `seen`: one of each.
+void gather_openness(const RayScene& rays, const DirectionSet& directions,
+                     std::span<const Receiver> receivers, std::span<OpenHemisphere> seen);
+
+/// Openness of each receiver, in order; not of all if the context is cancelled. A sparse direction
+/// set of 8 texels, 192 rays a hemisphere, is enough for four bytes and a cone. The same for any
+/// number of threads. Adds to `traced`.
+std::vector<formats::Openness> bake_openness(const RayScene& rays, const DirectionSet& directions,
+                                             std::span<const Receiver> receivers,
+                                             const Context& context, std::uint64_t& traced);
+
+}  // namespace opaline::bake

@@ -1,0 +1,99 @@
+#include "bake/transport/sample_transport.h"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/receivers/kd_order.h"
+#include "bake/scattering/fresnel.h"
+#include "bake/transport/irradiance_transport.h"
+#include "bake/transport/shared_irradiance.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+
+namespace opaline::bake {
+namespace {
+
+std::vector<float> tabulate_transmittance(double eta) {
+    if (eta == 1) {
+        return {};
+    }
+    constexpr std::size_t kSteps = 1024;
+    std::vector<float> table;
+    for (std::size_t i = 0; i <= kSteps; ++i) {
+        table.push_back(static_cast<float>(
+            fresnel_transmittance(static_cast<double>(i) / static_cast<double>(kSteps), eta)));
+    }
+    return table;
+}
+
+float mean_over_sphere(std::span<const float> radiance, std::span<const double> solid_angle) {
+    double sum = 0;
+    for (std::size_t first = 0; first < radiance.size(); first += solid_angle.size()) {
+        for (std::size_t j = 0; j < solid_angle.size(); ++j) {
+            sum += static_cast<double>(radiance[first + j]) * solid_angle[j];
+        }
+    }
+    return static_cast<float>(sum / (4 * std::numbers::pi));
+}
+
+}  // namespace
+
+SampleTransport bake_sample_transport(const RayScene& rays, std::span<const SurfaceSample> samples,
+                                      const SampleOptions& options, const Context& context) {
+    const std::uint32_t n = options.cubemap_size;
+    const SharedDirections directions = make_shared_directions(n);
+    const std::vector<float> transmittance = tabulate_transmittance(options.eta);
+    const std::vector<double> solid_angle = formats::texel_solid_angles(n);
+    const std::size_t texels = formats::cubemap_texels(n);
+    const std::size_t together = options.share_rays ? kSamplesPerGroup : 1;
+    SampleTransport result;
+    struct Part {
+        SparseVectors::Block rows;
+        std::vector<float> mean, norm;
+        std::uint64_t rays = 0;
+    };
+    static_assert(SparseVectors::kPerBlock % kSamplesPerGroup == 0);
+    for_each_block_in_order(
+        samples.size(), SparseVectors::kPerBlock, context,
+        [&](Range range) {
+            Part part;
+            reserve(part.rows, std::min<std::size_t>(options.kept, texels));
+            std::vector<Receiver> group;
+            std::vector<float> dense;
+            for (std::size_t s = range.begin; s < range.end; s += group.size()) {
+                group.clear();
+                while (group.size() < together && s + group.size() < range.end) {
+                    group.push_back(samples[s + group.size()].receiver);
+                }
+                dense.resize(group.size() * texels);
+                part.rays +=
+                    options.share_rays
+                        ? gather_irradiance_together(rays, directions, group, dense, transmittance)
+                        : gather_irradiance(rays, directions.sets[s % 4], group.front(), dense,
+                                            transmittance);
+                for (std::size_t i = 0; i < group.size(); ++i) {
+                    const std::span<float> own = std::span(dense).subspan(i * texels, texels);
+                    part.mean.push_back(mean_over_sphere(own, solid_angle));
+                    formats::haar_forward_cube(own, n);
+                    part.norm.push_back(norm(own));
+                    append_truncated(part.rows, own, options.kept, samples[s + i].area);
+                }
+            }
+            shrink(part.rows);
+            return part;
+        },
+        [&](Range range, Part&& part) {
+            result.rows.blocks.push_back(std::move(part.rows));
+            result.mean.insert(result.mean.end(), part.mean.begin(), part.mean.end());
+            result.norm.insert(result.norm.end(), part.norm.begin(), part.norm.end());
+            result.rays += part.rays;
+            if (context.on_progress) {
+                context.on_progress({"samples", range.end, samples.size()});
+            }
+        });
+    return result;
+}
+
+}  // namespace opaline::bake

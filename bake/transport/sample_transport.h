@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/transport/sparse_vectors.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/ray_scene.h"
+
+namespace opaline::bake {
+
+/// What enters a medium through its surface samples, E(x, w) = Ft(eta, n.w) V(x, w) max(0, n.w)
+/// (translucency.md 3.5): colour-free.
+struct SampleTransport {
+    SparseVectors rows;       ///< Haar vectors of A_i E_i, truncated [m^2]
+    std::vector<float> mean;  ///< mean of E over the sphere, before truncation
+    std::vector<float> norm;  ///< ||E||, before truncation
+    std::uint64_t rays = 0;
+};
+
+struct SampleOptions {
+    std::uint32_t cubemap_size = 32;
+    std::uint32_t kept = 128;  ///< entries per vector
+    double eta = 1;
+    bool share_rays = true;  ///< between the samples of a group (kd_order.h)
+};
+
+/// Stops early, with fewer samples, if the context is cancelled.
+SampleTransport bake_sample_transport(const RayScene& rays, std::span<const SurfaceSample> samples,
+                                      const SampleOptions& options, const Context& context);
+
+}  // namespace opaline::bake

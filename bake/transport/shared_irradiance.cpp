@@ -1,0 +1,165 @@
+#include "bake/transport/shared_irradiance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bake/transport/block_irradiance.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::uint32_t kLanes = RayPacket::kSize;
+
+enum class Seen : std::uint8_t { nothing, open, blocked, mixed };
+
+bool agrees(Seen seen) {
+    return seen == Seen::open || seen == Seen::blocked;
+}
+
+struct Group {
+    const RayScene& rays;
+    const SharedDirections& directions;
+    std::span<const Receiver> receivers;
+    std::uint64_t traced = 0;
+
+    const DirectionBlock& block(std::size_t i, std::size_t b) const {
+        return directions.sets[i % directions.sets.size()].blocks[b];
+    }
+
+    bool is_above(std::size_t i, std::size_t b) const {
+        return !is_below(block(i, b), receivers[i].normal);
+    }
+
+    // One ray through each cell of the block that any of the receivers has above its horizon: they
+    // take turns, from `shift` on; the next one in line where the cell is below the horizon of the
+    // one whose turn it is.
+    Seen probe(std::size_t b, std::size_t shift) {
+        RayPacket packet{};
+        packet.mask.fill(0xffffffffu);
+        packet.tfar.fill(std::numeric_limits<float>::infinity());
+        LaneMask lanes{};
+        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+            for (std::size_t turn = 0; turn < receivers.size() && lanes[lane] == 0; ++turn) {
+                const std::size_t i = (lane + shift + turn) % receivers.size();
+                if (cosine_integral(block(i, b), lane, receivers[i].normal) > 0.0f) {
+                    const glm::vec3 origin = receivers[i].origin - rays.centre();
+                    packet.org_x[lane] = origin.x;
+                    packet.org_y[lane] = origin.y;
+                    packet.org_z[lane] = origin.z;
+                    packet.dir_x[lane] = block(i, b).dir_x[lane];
+                    packet.dir_y[lane] = block(i, b).dir_y[lane];
+                    packet.dir_z[lane] = block(i, b).dir_z[lane];
+                    lanes[lane] = -1;
+                }
+            }
+        }
+        rays.occluded(lanes, packet);
+        bool open = false, blocked = false;
+        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+            const bool asked = lanes[lane] != 0, passed = packet.tfar[lane] > 0.0f;
+            traced += asked ? 1 : 0;
+            open |= asked && passed;
+            blocked |= asked && !passed;
+        }
+        if (open && blocked) {
+            return Seen::mixed;
+        }
+        return open ? Seen::open : blocked ? Seen::blocked : Seen::nothing;
+    }
+
+    std::vector<Seen> probe_all() {
+        std::vector<Seen> seen(directions.beside.size(), Seen::nothing);
+        for (std::size_t b = 0; b < seen.size(); ++b) {
+            for (std::size_t i = 0; i < receivers.size() && seen[b] == Seen::nothing; ++i) {
+                if (is_above(i, b)) {
+                    seen[b] = probe(b, 0);
+                    break;
+                }
+            }
+        }
+        return seen;
+    }
+
+    // Looks closer wherever a neighbour differs, and around what is found there.
+    void probe_borders(std::vector<Seen>& seen) {
+        std::vector<std::size_t> left;
+        for (std::size_t b = seen.size(); b-- > 0;) {
+            left.push_back(b);
+        }
+        std::vector<bool> is_sure(seen.size(), false);
+        while (!left.empty()) {
+            const std::size_t b = left.back();
+            left.pop_back();
+            const auto differs = [&](std::uint32_t other) {
+                return seen[other] != Seen::nothing && seen[other] != seen[b];
+            };
+            const std::vector<std::uint32_t>& beside = directions.beside[b];
+            if (is_sure[b] || !agrees(seen[b]) ||
+                std::none_of(beside.begin(), beside.end(), differs)) {
+                continue;
+            }
+            is_sure[b] = true;
+            for (std::size_t shift = 1; shift < directions.sets.size(); ++shift) {
+                if (probe(b, shift) != seen[b]) {
+                    seen[b] = Seen::mixed;
+                    left.insert(left.end(), beside.begin(), beside.end());
+                    break;
+                }
+            }
+        }
+    }
+};
+
+}  // namespace
+
+SharedDirections make_shared_directions(std::uint32_t cubemap_size) {
+    SharedDirections shared;
+    for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
+        shared.sets[quarter] = make_sparse_direction_set(cubemap_size, quarter);
+    }
+    const std::vector<DirectionBlock>& blocks = shared.sets[0].blocks;
+    shared.beside.resize(blocks.size());
+    for (std::uint32_t a = 0; a < blocks.size(); ++a) {
+        for (std::uint32_t b = 0; b < blocks.size(); ++b) {
+            // Centres of squares with a common edge are 1.4 radii apart, across a corner 2, but
+            // cells are distorted: some of the latter count, too.
+            const float radii = blocks[a].sine_radius + blocks[b].sine_radius;
+            if (a != b && glm::distance(blocks[a].axis, blocks[b].axis) < 0.85f * radii) {
+                shared.beside[a].push_back(b);
+            }
+        }
+    }
+    return shared;
+}
+
+std::uint64_t gather_irradiance_together(const RayScene& rays, const SharedDirections& directions,
+                                         std::span<const Receiver> receivers,
+                                         std::span<float> transport,
+                                         std::span<const float> transmittance) {
+    std::fill(transport.begin(), transport.end(), 0.0f);
+    const std::size_t size = receivers.empty() ? 0 : transport.size() / receivers.size();
+    Group group{rays, directions, receivers};
+    std::vector<Seen> seen(directions.beside.size(), Seen::open);
+    if (!rays.is_empty()) {
+        seen = group.probe_all();
+        group.probe_borders(seen);
+    }
+    std::uint64_t traced = 0;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        const std::span<float> own = transport.subspan(i * size, size);
+        const glm::vec3 normal = receivers[i].normal;
+        RayPacket packet = rays_from(receivers[i].origin - rays.centre());
+        for (std::size_t b = 0; b < seen.size(); ++b) {
+            if (seen[b] == Seen::mixed && group.is_above(i, b)) {
+                traced += trace_block(rays, group.block(i, b), normal, transmittance, packet, own);
+            } else if (seen[b] == Seen::open && group.is_above(i, b)) {
+                fill_block(group.block(i, b), normal, transmittance, own);
+            }
+        }
+        divide_by_solid_angle(directions.sets[i % directions.sets.size()], own);
+    }
+    return group.traced + traced;
+}
+
+}  // namespace opaline::bake

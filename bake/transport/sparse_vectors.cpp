@@ -1,0 +1,64 @@
+#include "bake/transport/sparse_vectors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "bake/base/largest.h"
+
+namespace opaline::bake {
+
+namespace {
+
+// In eight partial sums, which do not wait for each other.
+double sum_of_squares(std::span<const float> values) {
+    std::array<double, 8> sum{};
+    std::size_t k = 0;
+    for (; k + sum.size() <= values.size(); k += sum.size()) {
+        for (std::size_t l = 0; l < sum.size(); ++l) {
+            const auto value = static_cast<double>(values[k + l]);
+            sum[l] += value * value;
+        }
+    }
+    for (; k < values.size(); ++k) {
+        sum[0] += static_cast<double>(values[k]) * static_cast<double>(values[k]);
+    }
+    return std::accumulate(sum.begin(), sum.end(), 0.0);
+}
+
+}  // namespace
+
+void append_truncated(SparseVectors::Block& block, std::span<const float> dense, std::size_t kept,
+                      float scale) {
+    const std::size_t face = dense.size() / 6;
+    std::vector<float> score(dense.size());
+    for (std::size_t k = 0; k < dense.size(); ++k) {
+        score[k] = std::abs(dense[k]);
+    }
+    for (std::size_t k = 0; k < dense.size(); k += face) {
+        score[k] = std::numeric_limits<float>::max();
+    }
+    for (const std::uint32_t k : find_largest(score, std::max<std::size_t>(kept, 6))) {
+        block.index.push_back(k);
+        block.value.push_back(scale * dense[k]);
+    }
+    block.offset.push_back(static_cast<std::uint32_t>(block.index.size()));
+}
+
+void reserve(SparseVectors::Block& block, std::size_t entries) {
+    block.index.reserve(SparseVectors::kPerBlock * entries);
+    block.value.reserve(SparseVectors::kPerBlock * entries);
+}
+
+void shrink(SparseVectors::Block& block) {
+    block.index.shrink_to_fit();
+    block.value.shrink_to_fit();
+}
+
+float norm(std::span<const float> dense) {
+    return static_cast<float>(std::sqrt(sum_of_squares(dense)));
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/truth/test_lights.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/ray_scene.h"
+
+namespace opaline::bake {
+
+/// Rays to all suns of the test lights, each standing for an equal part of its disc.
+struct SunRays {
+    struct Packet {
+        RayPacket::Lane dir_x, dir_y, dir_z;  ///< unit
+        RayPacket::Lane flux;                 ///< luminance times solid angle; 0: an unused lane
+        std::array<std::uint32_t, RayPacket::kSize> light;
+    };
+    std::vector<Packet> packets;
+};
+
+/// `per_sun`: rays to each disc, >= 1.
+SunRays make_sun_rays(std::span<const TestLight> lights, std::uint32_t per_sun);
+
+/// Adds the irradiance by suns, times Ft(eta, n.w), to that of each light. eta = 1: a diffuse
+/// surface. Returns the number of rays.
+std::uint64_t add_sun_irradiance(const RayScene& rays, const SunRays& suns,
+                                 const Receiver& receiver, double eta,
+                                 std::span<double> irradiance);
+
+/// The smooth part of all lights side by side: radiance[texel * lights + l], mean over the texels
+/// of kTruthCubemap.
+struct SmoothLights {
+    std::size_t lights = 0;
+    std::vector<float> radiance;
+
+    const float* towards(glm::vec3 direction) const;
+};
+SmoothLights make_smooth_lights(std::span<const TestLight> lights);
+
+/// Adds an estimate of the irradiance by everything but suns, times Ft, from sixteen rays
+/// distributed as the cosine. `u`: random, in [0, 1)^2. Unbiased. Returns the number of rays.
+std::uint64_t add_smooth_irradiance(const RayScene& rays, const SmoothLights& lights,
+                                    const Receiver& receiver, double eta, glm::vec2 u,
+                                    std::span<double> irradiance);
+
+}  // namespace opaline::bake
