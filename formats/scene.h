@@ -88,7 +88,7 @@ struct Material {
                                               ///< to (u, v, 1)
     using Wrap = TextureWrap;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;  ///< of the base colour
-    Gloss gloss;                                        ///< of opaque materials: unused in a medium
+    Gloss gloss = {};                                   ///< of opaque materials: unused in a medium
     bool double_sided = false;
     std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque
     std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
