@@ -56,16 +56,41 @@ struct Marble {
     std::vector<Rgb> colors;  ///< from within a vein to halfway between two; 2 or more, in [0, 1]
 };
 
+/// How a texture goes on outside of [0, 1].
+enum class TextureWrap { repeat, clamp, mirror };
+
+/// What an opaque surface adds to its diffuse reflection: the metallic-roughness model of glTF 2.0
+/// with KHR_materials_specular and KHR_materials_ior. Of a metal, the base colour is the
+/// reflectance at normal incidence; of a dielectric that is F0 = min(((ior - 1)/(ior + 1))^2
+/// specular_color, 1) specular, rising to `specular` at grazing. The default reflects diffusely
+/// alone.
+struct Gloss {
+    float metallic = 0;           ///< in [0, 1]
+    float roughness = 1;          ///< in [0, 1]; GGX alpha = roughness^2
+    Rgb specular_color{1, 1, 1};  ///< >= 0, may exceed 1
+    float specular = 0;           ///< in [0, 1]
+    float ior = 1.5f;             ///< >= 1; or 0, for an infinite one: F0 before factors is 1
+    std::uint32_t image = kNone;  ///< index into Scene::images; linear codes: green multiplies
+                                  ///< roughness, blue metallic. Coordinates: Primitive::texcoord
+    TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;  ///< of the image
+
+    /// Nothing but diffuse reflection, whatever the image holds.
+    bool is_diffuse() const { return metallic == 0 && specular == 0; }
+};
+
 /// Surface appearance, as the input formats mean it. Colours are linear Rec. 709.
 struct Material {
     std::string name;
     Rgb base_color{1, 1, 1};                  ///< factor, each in [0,1]
     std::uint32_t base_color_image = kNone;   ///< index into Scene::images
-    std::uint32_t base_color_texcoord = 0;    ///< which texture coordinate set it uses
-    glm::mat3 base_color_uv_transform{1.0f};  ///< KHR_texture_transform, applied to (u, v, 1)
-    enum class Wrap { repeat, clamp, mirror } wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    std::uint32_t base_color_texcoord = 0;    ///< texture coordinate set of both textures
+    glm::mat3 base_color_uv_transform{1.0f};  ///< of both textures: KHR_texture_transform, applied
+                                              ///< to (u, v, 1)
+    using Wrap = TextureWrap;
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;  ///< of the base colour
+    Gloss gloss = {};                                   ///< of opaque materials: unused in a medium
     bool double_sided = false;
-    std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque and diffuse
+    std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque
     std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
 };
 
@@ -76,9 +101,9 @@ struct Primitive {
     std::string name;                                 ///< "node 'Vase' > mesh 3 > primitive 0"
     std::uint32_t material = 0;                       ///< index into Scene::materials, always valid
     std::vector<glm::vec3> position;                  ///< [m], finite
-    std::vector<glm::vec3> normal;    ///< unit; one per vertex; {0,0,0} where none can be defined
-    std::vector<glm::vec2> texcoord;  ///< of the base colour, set 0 without a texture; transform
-                                      ///< applied; empty or one per vertex
+    std::vector<glm::vec3> normal;     ///< unit; one per vertex; {0,0,0} where none can be defined
+    std::vector<glm::vec2> texcoord;   ///< of the textures, set 0 without any; transform
+                                       ///< applied; empty or one per vertex
     std::vector<Rgb> color;            ///< COLOR_0, linear; empty or one per vertex
     std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();
                                        ///< counter-clockwise seen from outside

@@ -6,7 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "formats/gltf/decode_image8.h"
+#include "formats/gltf/load_texture.h"
+#include "formats/gltf/map_gloss.h"
 #include "formats/gltf/map_medium.h"
 
 namespace opaline::formats::gltf {
@@ -15,14 +16,12 @@ namespace {
 
 /// What is lost when an extension is not simulated.
 std::string unsimulated_extension(const std::string& name) {
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 17> kKnown = {{
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kKnown = {{
         {"KHR_materials_volume", "absorption inside the object"},
         {"KHR_materials_scatter", "scattering inside the object"},
         {"KHR_materials_volume_scatter", "scattering inside the object"},
         {"KHR_materials_diffuse_transmission", "diffuse transmission"},
         {"KHR_materials_transmission", "transmission"},
-        {"KHR_materials_ior", "the index of refraction"},
-        {"KHR_materials_specular", "specular reflection"},
         {"KHR_materials_emissive_strength", "emission"},
         {"KHR_materials_clearcoat", "clear coat"},
         {"KHR_materials_sheen", "sheen"},
@@ -44,18 +43,21 @@ std::string unsimulated_extension(const std::string& name) {
 
 /// The extensions that a medium stands for.
 bool is_part_of_medium(std::string_view name) {
-    constexpr std::array<std::string_view, 7> kParts = {
-        "KHR_materials_volume",         "KHR_materials_scatter",
-        "KHR_materials_volume_scatter", "KHR_materials_diffuse_transmission",
-        "KHR_materials_transmission",   "KHR_materials_ior",
-        "KHR_materials_specular"};
+    constexpr std::array<std::string_view, 5> kParts = {
+        "KHR_materials_volume", "KHR_materials_scatter", "KHR_materials_volume_scatter",
+        "KHR_materials_diffuse_transmission", "KHR_materials_transmission"};
     return std::find(kParts.begin(), kParts.end(), name) != kParts.end();
+}
+
+/// The extensions that describe a surface's reflection, of a medium or opaque.
+bool is_part_of_gloss(std::string_view name) {
+    return name == "KHR_materials_ior" || name == "KHR_materials_specular";
 }
 
 std::vector<std::string> unsimulated(const MaterialSource& material, bool has_medium) {
     std::vector<std::string> faults;
     for (const std::string& name : material.extensions) {
-        if (!has_medium || !is_part_of_medium(name)) {
+        if (!is_part_of_gloss(name) && !(has_medium && is_part_of_medium(name))) {
             faults.push_back(unsimulated_extension(name));
         }
     }
@@ -66,10 +68,9 @@ std::vector<std::string> unsimulated(const MaterialSource& material, bool has_me
     if (material.emissive != glm::dvec3(0.0)) {
         faults.push_back("emissiveFactor is not simulated: the surface sends out no light");
     }
-    if (material.metallic > 0.0) {
+    if (has_medium && material.translucency.metallic > 0.0) {
         faults.push_back(
-            std::string("metallicFactor above 0 is not simulated: the surface is baked ") +
-            (has_medium ? "as a dielectric" : "diffuse"));
+            "metallicFactor above 0 is not simulated: the surface is baked as a dielectric");
     }
     if (material.has_normal_map) {
         faults.push_back("normalTexture is not simulated: vertex normals are used alone");
@@ -88,51 +89,6 @@ std::string joined(const std::vector<std::string>& names) {
     }
     return names.size() > kShown ? text + " and " + std::to_string(names.size() - kShown) + " more"
                                  : text;
-}
-
-Material::Wrap wrap_mode(std::uint32_t value, const std::string& where, Report& report) {
-    switch (value) {
-        case 10497:
-            return Material::Wrap::repeat;
-        case 33071:
-            return Material::Wrap::clamp;
-        case 33648:
-            return Material::Wrap::mirror;
-        default:
-            report.error(
-                where, "wrap mode " + std::to_string(value) + " is none of 10497, 33071 and 33648",
-                "export the file again");
-            return Material::Wrap::repeat;
-    }
-}
-
-/// The decoded image as an index into scene.images; `known` holds those already decoded.
-std::uint32_t load_image(const Document& document, std::uint32_t index, Resources& resources,
-                         std::map<std::uint32_t, std::uint32_t>& known, Scene& scene,
-                         Report& report) {
-    if (const auto found = known.find(index); found != known.end()) {
-        return found->second;
-    }
-    known[index] = kNone;
-    const ImageSource& source = document.images[index];
-    const std::string where = label("image", index, source.name);
-    Bytes bytes;
-    if (source.uri.empty()) {
-        const BufferView& view = document.views[source.view];
-        bytes = resources.buffers[view.buffer].subspan(view.offset, view.length);
-    } else if (const auto read = read_uri(resources, source.uri, where, report)) {
-        bytes = *read;
-    } else {
-        return kNone;
-    }
-    DecodedImage8 decoded = decode_image8(bytes);
-    if (!decoded.fault.empty()) {
-        report.error(where, decoded.fault, "save the texture again as 8-bit PNG or JPEG");
-        return kNone;
-    }
-    known[index] = static_cast<std::uint32_t>(scene.images.size());
-    scene.images.push_back(std::move(decoded.image));
-    return known[index];
 }
 
 float unit_factor(double value, bool& clamped) {
@@ -155,6 +111,40 @@ Material convert(const MaterialSource& source, const std::string& where, Report&
     return material;
 }
 
+/// Both textures of a material; a primitive has one set of coordinates for them, the base colour's.
+void add_textures(const MaterialSource& source, const std::string& where, TextureLoader& loader,
+                  Material& material, std::vector<std::string>& remarks) {
+    const TextureUse& color = source.base_color_texture;
+    if (color.texture != kNone) {
+        const LoadedTexture loaded = loader.load(color.texture, where);
+        material.base_color_image = loaded.image;
+        material.base_color_texcoord = color.texcoord;
+        material.base_color_uv_transform = color.transform;
+        material.wrap_u = loaded.wrap_u;
+        material.wrap_v = loaded.wrap_v;
+    }
+    const TextureUse& gloss = source.metallic_roughness_texture;
+    if (gloss.texture == kNone || material.medium || material.gloss.is_diffuse()) {
+        return;
+    }
+    if (color.texture == kNone) {
+        material.base_color_texcoord = gloss.texcoord;
+        material.base_color_uv_transform = gloss.transform;
+    } else if (gloss.texcoord != color.texcoord || gloss.transform != color.transform) {
+        remarks.push_back(
+            "metallicRoughnessTexture is mapped otherwise than baseColorTexture: its mean "
+            "is used (give both the same texCoord and KHR_texture_transform)");
+        if (const auto image = loader.decode(gloss.texture, where)) {
+            apply_mean(*image, material.gloss);
+        }
+        return;
+    }
+    const LoadedTexture loaded = loader.load(gloss.texture, where);
+    material.gloss.image = loaded.image;
+    material.gloss.wrap_u = loaded.wrap_u;
+    material.gloss.wrap_v = loaded.wrap_v;
+}
+
 }  // namespace
 
 void build_materials(const Document& document, const std::vector<MeshInstance>& instances,
@@ -171,40 +161,24 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
             }
         }
     }
-    std::map<std::uint32_t, std::uint32_t> images;
+    TextureLoader loader(document, resources, scene, report);
     std::map<std::string, std::vector<std::string>> lost;
     for (std::size_t i = 0; i < document.materials.size(); ++i) {
         const MaterialSource& source = document.materials[i];
         const std::string where = label("material", i, source.name);
         Material material = convert(source, where, report);
-        const TextureUse& use = source.base_color_texture;
         std::vector<std::string> remarks;
         material.medium = map_medium(source.translucency, metres_per_unit, remarks);
+        if (!material.medium) {
+            material.gloss = map_gloss(source.translucency, remarks);
+        }
         if (used[i]) {
+            add_textures(source, where, loader, material, remarks);
             for (const std::string& fault : unsimulated(source, material.medium.has_value())) {
                 lost[fault].push_back(where);
             }
             for (const std::string& remark : remarks) {
                 lost[remark].push_back(where);
-            }
-        }
-        if (used[i] && use.texture != kNone) {
-            const Texture& texture = document.textures[use.texture];
-            if (texture.image == kNone) {
-                report.error(where,
-                             "texture " + std::to_string(use.texture) + " has no PNG or JPEG image",
-                             "export the texture as PNG or JPEG");
-            } else {
-                material.base_color_image =
-                    load_image(document, texture.image, resources, images, scene, report);
-            }
-            material.base_color_texcoord = use.texcoord;
-            material.base_color_uv_transform = use.transform;
-            if (texture.sampler != kNone) {
-                const Sampler& sampler = document.samplers[texture.sampler];
-                const std::string at = "sampler " + std::to_string(texture.sampler);
-                material.wrap_u = wrap_mode(sampler.wrap_s, at, report);
-                material.wrap_v = wrap_mode(sampler.wrap_t, at, report);
             }
         }
         scene.materials.push_back(std::move(material));

@@ -66,10 +66,10 @@ void place_normals(const PrimitiveData& data, const glm::dmat4& world, Primitive
 
 void place_texcoords(const PrimitiveData& data, const Material& material, Primitive& out,
                      Report& report) {
-    const bool has_image = material.base_color_image != kNone;
+    const bool has_image = material.base_color_image != kNone || material.gloss.image != kNone;
     if (data.texcoord.empty() && has_image) {
         report.warn(out.name,
-                    "its material has a base-colour texture, but TEXCOORD_" +
+                    "its material has a texture, but TEXCOORD_" +
                         std::to_string(material.base_color_texcoord) +
                         " is missing: the texture is not used here",
                     "unwrap the mesh before export");

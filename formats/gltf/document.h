@@ -83,7 +83,8 @@ struct TextureUse {
     glm::mat3 transform{1.0f};  ///< KHR_texture_transform
 };
 
-/// The extensions that say what is inside a material, with the defaults of their specifications.
+/// What says how a material's surface reflects and what is inside, with the defaults of the
+/// specifications.
 struct TranslucencySource {
     bool has_volume = false, has_transmission = false, has_diffuse_transmission = false;
     bool has_specular = false, has_ior = false;
@@ -100,15 +101,15 @@ struct TranslucencySource {
     std::optional<double> scatter_strength;  ///< default 0
     glm::dvec3 multiscatter_color{1.0};      ///< of whichever scatter extension there is
     double anisotropy = 0.0;
-    double roughness = 1.0;
+    double metallic = 1.0, roughness = 1.0;
+    bool is_diffuse = false;  ///< unlit, or specular-glossiness without pbrMetallicRoughness
     std::vector<std::string> textures;  ///< names of the members above that a texture modulates
 };
 
 struct MaterialSource {
     std::string name;
     glm::dvec4 base_color{1.0};
-    TextureUse base_color_texture;
-    double metallic = 1.0;
+    TextureUse base_color_texture, metallic_roughness_texture;
     glm::dvec3 emissive{0.0};
     bool double_sided = false, has_normal_map = false, has_occlusion_map = false;
     std::string alpha_mode;

@@ -223,7 +223,8 @@ MaterialSource convert(const tinygltf::Material& in, std::size_t index, Report& 
     }
     out.base_color_texture =
         convert(pbr.baseColorTexture, label("material", index, in.name), report);
-    out.metallic = pbr.metallicFactor;
+    out.metallic_roughness_texture =
+        convert(pbr.metallicRoughnessTexture, label("material", index, in.name), report);
     if (in.emissiveFactor.size() == 3) {
         out.emissive = glm::make_vec3(in.emissiveFactor.data());
     }

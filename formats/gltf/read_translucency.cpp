@@ -97,9 +97,13 @@ void read_scattering(const Json& extensions, const std::string& where, Transluce
 void read_surface(const Json& material, const Json& extensions, const std::string& where,
                   TranslucencySource& out, Report& report) {
     read_extension(material, "pbrMetallicRoughness", where, out, report, [&](const Extension& pbr) {
+        pbr.number("metallicFactor", out.metallic);
         pbr.number("roughnessFactor", out.roughness);
         pbr.texture("metallicRoughnessTexture");
     });
+    out.is_diffuse = extensions.contains("KHR_materials_unlit") ||
+                     (extensions.contains("KHR_materials_pbrSpecularGlossiness") &&
+                      !material.contains("pbrMetallicRoughness"));
     out.has_ior = read_extension(extensions, "KHR_materials_ior", where, out, report,
                                  [&](const Extension& ior) { ior.number("ior", out.ior); });
     out.has_specular = read_extension(extensions, "KHR_materials_specular", where, out, report,
@@ -139,23 +143,20 @@ std::vector<TranslucencySource> read_translucency(const Json& root, Report& repo
         const std::string where =
             label("material", sources.size() - 1,
                   name != material.end() && name->is_string() ? name->get<std::string>() : "");
-        const auto found = material.find("extensions");
-        if (found == material.end()) {
-            continue;
-        }
-        if (!found->is_object()) {
+        const Json extensions = material.value("extensions", Json::object());
+        if (!extensions.is_object()) {
             report.error(where, "extensions is not an object", "export the file again");
             continue;
         }
         out.has_volume = read_extension(
-            *found, "KHR_materials_volume", where, out, report, [&](const Extension& volume) {
+            extensions, "KHR_materials_volume", where, out, report, [&](const Extension& volume) {
                 volume.number("thicknessFactor", out.thickness);
                 volume.number("attenuationDistance", out.attenuation_distance);
                 volume.color("attenuationColor", out.attenuation_color);
                 volume.texture("thicknessTexture");
             });
-        read_scattering(*found, where, out, report);
-        read_surface(material, *found, where, out, report);
+        read_scattering(extensions, where, out, report);
+        read_surface(material, extensions, where, out, report);
     }
     return sources;
 }

@@ -162,8 +162,12 @@ void validate_links(const Document& document, Report& report) {
         }
     }
     for (std::size_t i = 0; i < document.materials.size(); ++i) {
-        check_link(document.materials[i].base_color_texture.texture, document.textures.size(),
-                   label("material", i, document.materials[i].name), "texture", report);
+        const MaterialSource& material = document.materials[i];
+        for (const TextureUse& use :
+             {material.base_color_texture, material.metallic_roughness_texture}) {
+            check_link(use.texture, document.textures.size(), label("material", i, material.name),
+                       "texture", report);
+        }
     }
     for (std::size_t i = 0; i < document.textures.size(); ++i) {
         const std::string where = "texture " + number(i);

@@ -1,0 +1,86 @@
+#include "formats/gltf/load_texture.h"
+
+#include <utility>
+
+#include "formats/gltf/decode_image8.h"
+
+namespace opaline::formats::gltf {
+
+namespace {
+
+TextureWrap wrap_mode(std::uint32_t value, const std::string& where, Report& report) {
+    switch (value) {
+        case 10497:
+            return TextureWrap::repeat;
+        case 33071:
+            return TextureWrap::clamp;
+        case 33648:
+            return TextureWrap::mirror;
+        default:
+            report.error(
+                where, "wrap mode " + std::to_string(value) + " is none of 10497, 33071 and 33648",
+                "export the file again");
+            return TextureWrap::repeat;
+    }
+}
+
+}  // namespace
+
+std::optional<Image8> TextureLoader::decode_image(std::uint32_t index) {
+    const ImageSource& source = document_.images[index];
+    const std::string where = label("image", index, source.name);
+    Bytes bytes;
+    if (source.uri.empty()) {
+        const BufferView& view = document_.views[source.view];
+        bytes = resources_.buffers[view.buffer].subspan(view.offset, view.length);
+    } else if (const auto read = read_uri(resources_, source.uri, where, report_)) {
+        bytes = *read;
+    } else {
+        return std::nullopt;
+    }
+    DecodedImage8 decoded = decode_image8(bytes);
+    if (!decoded.fault.empty()) {
+        report_.error(where, decoded.fault, "save the texture again as 8-bit PNG or JPEG");
+        return std::nullopt;
+    }
+    return std::move(decoded.image);
+}
+
+std::optional<Image8> TextureLoader::decode(std::uint32_t texture, const std::string& where) {
+    const std::uint32_t image = document_.textures[texture].image;
+    if (image == kNone) {
+        report_.error(where, "texture " + std::to_string(texture) + " has no PNG or JPEG image",
+                      "export the texture as PNG or JPEG");
+        return std::nullopt;
+    }
+    if (const auto found = known_.find(image); found != known_.end()) {
+        return found->second == kNone ? std::nullopt : std::optional(scene_.images[found->second]);
+    }
+    return decode_image(image);
+}
+
+LoadedTexture TextureLoader::load(std::uint32_t texture, const std::string& where) {
+    LoadedTexture loaded;
+    const Texture& source = document_.textures[texture];
+    if (const auto found = known_.find(source.image); found != known_.end()) {
+        loaded.image = found->second;
+    } else {
+        auto image = decode(texture, where);
+        if (image) {
+            loaded.image = static_cast<std::uint32_t>(scene_.images.size());
+            scene_.images.push_back(std::move(*image));
+        }
+        if (source.image != kNone) {
+            known_[source.image] = loaded.image;
+        }
+    }
+    if (source.sampler != kNone) {
+        const Sampler& sampler = document_.samplers[source.sampler];
+        const std::string at = "sampler " + std::to_string(source.sampler);
+        loaded.wrap_u = wrap_mode(sampler.wrap_s, at, report_);
+        loaded.wrap_v = wrap_mode(sampler.wrap_t, at, report_);
+    }
+    return loaded;
+}
+
+}  // namespace opaline::formats::gltf

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "formats/gltf/document.h"
+#include "formats/gltf/report.h"
+#include "formats/gltf/resources.h"
+#include "formats/scene.h"
+
+namespace opaline::formats::gltf {
+
+/// A texture whose image is in Scene::images; `image` is kNone where it cannot be read.
+struct LoadedTexture {
+    std::uint32_t image = kNone;
+    TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
+};
+
+/// Decodes the images of textures, each once. Errors go to `report`. All that it is given must
+/// outlive it, and the links between them must be valid (validate_document).
+class TextureLoader {
+  public:
+    TextureLoader(const Document& document, Resources& resources, Scene& scene, Report& report)
+        : document_(document), resources_(resources), scene_(scene), report_(report) {}
+
+    /// `where` names the material, for messages.
+    LoadedTexture load(std::uint32_t texture, const std::string& where);
+    /// Decodes the image without adding it to the scene. Nothing if it cannot be read.
+    std::optional<Image8> decode(std::uint32_t texture, const std::string& where);
+
+  private:
+    std::optional<Image8> decode_image(std::uint32_t index);
+
+    const Document& document_;
+    Resources& resources_;
+    Scene& scene_;
+    Report& report_;
+    std::map<std::uint32_t, std::uint32_t> known_;  ///< glTF image -> index into Scene::images
+};
+
+}  // namespace opaline::formats::gltf

@@ -1,0 +1,213 @@
+#include "tests/formats/gltf/asset_builder.h"
+#include "tests/formats/gltf/encode_test_image.h"
+
+namespace opaline::tests {
+namespace {
+
+using formats::Gloss;
+using formats::kNone;
+using formats::Rgb;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A triangle with texture coordinates and this material, named Shell.
+AssetBuilder asset_with(Json material) {
+    AssetBuilder asset = triangle_asset();
+    Json& primitive = asset.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["TEXCOORD_0"] = asset.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
+    primitive["attributes"]["TEXCOORD_1"] = asset.add<float>({0, 0, 2, 0, 0, 2}, "VEC2");
+    primitive["material"] = 0u;
+    material["name"] = "Shell";
+    asset.json["materials"] = Json::array({material});
+    return asset;
+}
+
+// Red says nothing; roughness 1 and 0.2, metallic 0 and 1.
+const Blob kRoughThenMetal = {7, 255, 0, 255, 9, 51, 255, 255};
+
+/// Image 0 as texture 0, of the gloss and, where asked for, of the base colour.
+AssetBuilder textured(bool with_base_color) {
+    Json pbr = {{"metallicRoughnessTexture", {{"index", 0u}}}};
+    if (with_base_color) {
+        pbr["baseColorTexture"] = {{"index", 1u}};
+    }
+    AssetBuilder asset = asset_with({{"pbrMetallicRoughness", pbr}});
+    const Blob png = encode_png(kRoughThenMetal, 2, 1);
+    const auto view = asset.add_view(png.data(), png.size());
+    const Json image = {{"bufferView", view}, {"mimeType", "image/png"}};
+    asset.json["images"] = Json::array({image, image});
+    asset.json["textures"] = Json::array({{{"source", 0u}, {"sampler", 0u}}, {{"source", 1u}}});
+    asset.json["samplers"] = Json::array({{{"wrapS", 33071u}, {"wrapT", 33648u}}});
+    return asset;
+}
+
+Gloss gloss_of(const AssetBuilder& asset) {
+    return must_import(asset).scene.materials.at(0).gloss;
+}
+
+TEST(GltfGloss, AbsentMembersHaveTheSpecificationsDefaults) {
+    // glTF 2.0, 5.22: metallicFactor 1, roughnessFactor 1; KHR_materials_ior: 1.5;
+    // KHR_materials_specular: 1 and white.
+    for (const Json& material : {Json::object(), Json{{"pbrMetallicRoughness", Json::object()}},
+                                 Json{{"extensions", {{"KHR_materials_ior", Json::object()}}}}}) {
+        const Gloss gloss = gloss_of(asset_with(material));
+        EXPECT_EQ(gloss.metallic, 1.0f);
+        EXPECT_EQ(gloss.roughness, 1.0f);
+        EXPECT_EQ(gloss.ior, 1.5f);
+        EXPECT_EQ(gloss.specular, 1.0f);
+        EXPECT_EQ(gloss.specular_color, (Rgb{1, 1, 1}));
+        EXPECT_EQ(gloss.image, kNone);
+    }
+}
+
+TEST(GltfGloss, FactorsAreRead) {
+    const auto imported = must_import(
+        asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}},
+                    {"extensions",
+                     {{"KHR_materials_ior", {{"ior", 1.8}}},
+                      {"KHR_materials_specular",
+                       {{"specularFactor", 0.5}, {"specularColorFactor", {2, 1, 0.5}}}}}}}));
+    const Gloss& gloss = imported.scene.materials.at(0).gloss;
+    EXPECT_EQ(gloss.metallic, 0.25f);
+    EXPECT_EQ(gloss.roughness, 0.75f);
+    EXPECT_EQ(gloss.ior, 1.8f);
+    EXPECT_EQ(gloss.specular, 0.5f);
+    EXPECT_EQ(gloss.specular_color, (Rgb{2, 1, 0.5f}));
+    EXPECT_FALSE(gloss.is_diffuse());
+    EXPECT_EQ(lines(imported.warnings), "");
+}
+
+TEST(GltfGloss, NeitherMetalNorSpecularIsDiffuse) {
+    EXPECT_TRUE(gloss_of(asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                                     {"extensions",
+                                      {{"KHR_materials_specular", {{"specularFactor", 0}}}}}}))
+                    .is_diffuse());
+    EXPECT_FALSE(
+        gloss_of(asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 0}}}})).is_diffuse());
+}
+
+TEST(GltfGloss, UnlitAndSpecularGlossinessAreDiffuseAndNamed) {
+    for (const char* extension : {"KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"}) {
+        const auto imported =
+            must_import(asset_with({{"extensions", {{extension, Json::object()}}}}));
+        EXPECT_TRUE(imported.scene.materials.at(0).gloss.is_diffuse()) << extension;
+        EXPECT_THAT(lines(imported.warnings), HasSubstr(extension));
+    }
+    // Its fall-back for other readers.
+    const Gloss fallback = gloss_of(
+        asset_with({{"pbrMetallicRoughness", {{"roughnessFactor", 0.5}}},
+                    {"extensions", {{"KHR_materials_pbrSpecularGlossiness", Json::object()}}}}));
+    EXPECT_EQ(fallback.metallic, 1.0f);
+    EXPECT_EQ(fallback.roughness, 0.5f);
+}
+
+TEST(GltfGloss, ValuesOutOfRangeAreClampedWithAWarning) {
+    const auto imported = must_import(
+        asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 2}, {"roughnessFactor", -1}}},
+                    {"extensions",
+                     {{"KHR_materials_ior", {{"ior", 0.5}}},
+                      {"KHR_materials_specular",
+                       {{"specularFactor", 3}, {"specularColorFactor", {-1, 1, 1}}}}}}}));
+    const Gloss& gloss = imported.scene.materials.at(0).gloss;
+    EXPECT_EQ(gloss.metallic, 1.0f);
+    EXPECT_EQ(gloss.roughness, 0.0f);
+    EXPECT_EQ(gloss.specular, 1.0f);
+    EXPECT_EQ(gloss.specular_color, (Rgb{0, 1, 1}));
+    EXPECT_EQ(gloss.ior, 1.0f);
+    for (const char* name :
+         {"metallicFactor", "roughnessFactor", "specularFactor", "specularColorFactor", "ior is"}) {
+        EXPECT_THAT(lines(imported.warnings), HasSubstr(name));
+    }
+}
+
+TEST(GltfGloss, InfiniteIndexOfRefractionIsKeptAsZero) {
+    const auto imported =
+        must_import(asset_with({{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}));
+    EXPECT_EQ(imported.scene.materials.at(0).gloss.ior, 0.0f);
+    EXPECT_EQ(lines(imported.warnings), "");
+}
+
+TEST(GltfGloss, WrongTypesAreErrorsThatNameTheMember) {
+    for (const char* name : {"metallicFactor", "roughnessFactor"}) {
+        EXPECT_THAT(errors_of(import_asset(asset_with({{"pbrMetallicRoughness", {{name, "x"}}}}))),
+                    HasSubstr(std::string("material 'Shell' > pbrMetallicRoughness: ") + name +
+                              " is not a number"));
+    }
+}
+
+TEST(GltfGloss, TextureKeepsItsCodesAndWrapModes) {
+    const auto imported = must_import(textured(false));
+    const Gloss& gloss = imported.scene.materials.at(0).gloss;
+    ASSERT_EQ(gloss.image, 0u);
+    EXPECT_EQ(imported.scene.images.at(0).rgba, kRoughThenMetal);
+    EXPECT_EQ(gloss.wrap_u, formats::TextureWrap::clamp);
+    EXPECT_EQ(gloss.wrap_v, formats::TextureWrap::mirror);
+    EXPECT_EQ(lines(imported.warnings), "");
+    EXPECT_EQ(imported.scene.materials[0].base_color_image, kNone);
+}
+
+TEST(GltfGloss, WithoutABaseColourTextureItsOwnCoordinatesAreUsed) {
+    AssetBuilder asset = textured(false);
+    Json& use = asset.json["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"];
+    use["texCoord"] = 1u;
+    use["extensions"]["KHR_texture_transform"] = {{"scale", {0.5, 0.5}}};
+    const auto imported = must_import(asset);
+    EXPECT_EQ(imported.scene.materials.at(0).gloss.image, 0u);
+    EXPECT_EQ(imported.scene.primitives.at(0).texcoord.at(1), glm::vec2(1, 0));
+    EXPECT_EQ(lines(imported.warnings), "");
+}
+
+TEST(GltfGloss, BothTexturesShareCoordinates) {
+    AssetBuilder asset = textured(true);
+    const auto same = must_import(asset);
+    EXPECT_EQ(same.scene.materials.at(0).base_color_image, 0u);
+    EXPECT_EQ(same.scene.materials[0].gloss.image, 1u);
+    EXPECT_EQ(lines(same.warnings), "");
+
+    // Of roughness, 1 and 51/255; of metallic, 0 and 1.
+    Json& use = asset.json["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"];
+    const auto expect_mean = [&] {
+        const auto imported = must_import(asset);
+        const Gloss& gloss = imported.scene.materials.at(0).gloss;
+        EXPECT_EQ(gloss.image, kNone);
+        EXPECT_NEAR(gloss.roughness, 0.6f, 1e-6f);
+        EXPECT_NEAR(gloss.metallic, 0.5f, 1e-6f);
+        EXPECT_EQ(imported.scene.images.size(), 1u);
+        EXPECT_THAT(lines(imported.warnings), HasSubstr("mapped otherwise than baseColorTexture"));
+    };
+    use["texCoord"] = 1u;
+    expect_mean();
+    use["texCoord"] = 0u;
+    use["extensions"]["KHR_texture_transform"] = {{"offset", {0.5, 0}}};
+    expect_mean();
+}
+
+TEST(GltfGloss, TextureOfADiffuseMaterialIsNotRead) {
+    AssetBuilder asset = textured(false);
+    asset.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 0;
+    asset.json["materials"][0]["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+    EXPECT_TRUE(must_import(asset).scene.images.empty());
+}
+
+TEST(GltfGloss, TexturesOfSpecularAreNamed) {
+    for (const char* name : {"specularTexture", "specularColorTexture"}) {
+        const std::string warnings = lines(
+            must_import(asset_with({{"extensions",
+                                     {{"KHR_materials_specular", {{name, {{"index", 0u}}}}}}}}))
+                .warnings);
+        EXPECT_THAT(warnings, HasSubstr(std::string(name) + " is not read"));
+        EXPECT_THAT(warnings, Not(HasSubstr("is not simulated")));
+    }
+}
+
+TEST(GltfGloss, DamagedTextureLinksAreErrors) {
+    EXPECT_THAT(errors_of(import_asset(asset_with(
+                    {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 9u}}}}}}))),
+                HasSubstr("texture"));
+    AssetBuilder asset = textured(false);
+    asset.json["textures"][0].erase("source");
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("texture 0 has no PNG or JPEG image"));
+}
+
+}  // namespace
+}  // namespace opaline::tests
