@@ -92,7 +92,7 @@ formats::Result<formats::SparseRows> bake_rows(const PilotScene& all, const Medi
                 }
                 EntryCounts counts;
                 formats::SparseRows baked =
-                    bake_translucent(medium->second.recipe, all.rays_of(primitive.material),
+                    bake_translucent(medium->second.recipe, all.rays_in_medium(primitive.material),
                                      all.vertices.subspan(first, count),
                                      all.points.subspan(first, count), context, counts);
                 traced = counts.rays;

@@ -28,8 +28,14 @@ struct PilotScene {
     std::span<const RowLayout> layouts;
     const MediaProfiles& profiles;
 
+    /// What may stand before the light that reaches a material.
     const RayScene& rays_of(std::uint32_t material) const {
         return layouts[material].occluded ? rays : sky;
+    }
+    /// What the rows of a medium are traced in. Where light goes through the body its own surface
+    /// is looked for, whether or not anything stands before the light.
+    const RayScene& rays_in_medium(std::uint32_t material) const {
+        return layouts[material].local ? rays_of(material) : rays;
     }
 };
 
