@@ -292,7 +292,7 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
         result.model_error = std::move(*checked);
     }
     result.asset.provenance = make_provenance(scene, knobs, result.plan, result.error,
-                                              result.model_error, RayScene::description());
+                                              result.model_error, EmbreeScene::description());
     result.seconds_total = seconds_since(start);
     return result;
 }

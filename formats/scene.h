@@ -69,16 +69,16 @@ struct Material {
     std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
 };
 
-/// One glTF primitive of one node instance, in world space and metres. Vertices keep the original
-/// order and count: receivers and output rows use this numbering.
+/// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.
+/// Vertices keep the original order and count: receivers and output rows use this numbering.
 struct Primitive {
     std::uint32_t node = 0, mesh = 0, primitive = 0;  ///< indices in the file, for messages
     std::string name;                                 ///< "node 'Vase' > mesh 3 > primitive 0"
     std::uint32_t material = 0;                       ///< index into Scene::materials, always valid
-    std::vector<glm::vec3> position;                  ///< [m], finite
-    std::vector<glm::vec3> normal;    ///< unit; one per vertex; {0,0,0} where none can be defined
-    std::vector<glm::vec2> texcoord;  ///< of the base colour, set 0 without a texture; transform
-                                      ///< applied; empty or one per vertex
+    std::vector<glm::vec3> position;                  ///< [m] from Scene::origin, finite
+    std::vector<glm::vec3> normal;     ///< unit; one per vertex; {0,0,0} where none can be defined
+    std::vector<glm::vec2> texcoord;   ///< of the base colour, set 0 without a texture; transform
+                                       ///< applied; empty or one per vertex
     std::vector<Rgb> color;            ///< COLOR_0, linear; empty or one per vertex
     std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();
                                        ///< counter-clockwise seen from outside
@@ -101,10 +101,17 @@ struct Scene {
     std::vector<Primitive> primitives;  ///< scene nodes depth-first, then the mesh's primitives:
                                         ///< a primitive's position here is its running number
     std::vector<Material> materials;    ///< never empty
-    std::vector<Image8> images;         ///< decoded textures that a material uses
-    std::string source;                 ///< path as given by the user
-    std::string sha256;                 ///< of all input bytes, in reading order, lower-case hex
+    /// World position of the frame's origin [m]: world = origin + position; axes are those of the
+    /// world. Everything that is computed is computed in the frame, where floats are fine enough
+    /// however far from the world's origin the scene lies.
+    glm::dvec3 origin{0};
+    std::vector<Image8> images;  ///< decoded textures that a material uses
+    std::string source;          ///< path as given by the user
+    std::string sha256;          ///< of all input bytes, in reading order, lower-case hex
     std::vector<std::filesystem::path> inputs;  ///< files read, for dependency files
+
+    /// World position [m] of a position of the frame.
+    glm::dvec3 to_world(glm::vec3 position) const { return origin + glm::dvec3(position); }
 };
 
 }  // namespace opaline::formats
