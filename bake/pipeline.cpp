@@ -101,7 +101,15 @@ formats::Result<formats::SparseRows> bake_rows(const PilotScene& all, const Medi
         if (context.cancelled()) {
             break;
         }
-        const std::size_t terms = all.layouts[primitive.material].terms();
+        const RowLayout& layout = all.layouts[primitive.material];
+        const std::size_t terms = layout.terms();
+        if (const auto faulty = formats::find_faulty_row(part, layout.bands())) {
+            return make_error(ErrorKind::bad_input, all.scene.source,
+                              "rows of '" + primitive.name + "'",
+                              "the transport of vertex " + std::to_string(*faulty / terms) +
+                                  " is not a finite number",
+                              "look for extreme numbers in its mesh and its medium");
+        }
         if (part.row_offset.size() != terms * count + 1 || !formats::append_rows(rows, part)) {
             return make_error(ErrorKind::resource, "", "transport",
                               "more than 2^32 coefficients do not fit into one file",

@@ -1,7 +1,9 @@
 #include "bake/encode/select_coefficients.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "bake/base/largest.h"
 #include "formats/opal/cubemap.h"
@@ -10,6 +12,19 @@
 namespace opaline::bake {
 
 using formats::kCubeFaces;
+
+namespace {
+
+// Zero times what is not finite is NaN, and stays so in the sum: no branch for each value.
+bool all_finite(std::span<const float> values) {
+    float nothing = 0;
+    for (const float value : values) {
+        nothing += 0 * value;
+    }
+    return nothing == 0;
+}
+
+}  // namespace
 
 Selector make_selector(std::uint32_t cubemap_size, std::uint32_t kept, float area_prior) {
     Selector selector{cubemap_size, kept, {}};
@@ -30,6 +45,11 @@ formats::SparseRow select_coefficients(const Selector& selector,
                                        std::span<const float> coefficients, std::uint32_t bands) {
     constexpr std::array<float, 3> kLuminance{0.2126f, 0.7152f, 0.0722f};
     const std::size_t size = selector.weight.size();
+    assert(coefficients.size() == bands * size && (bands == 1 || bands == 3));
+    if (!all_finite(coefficients)) {
+        constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
+        return {bands, {}, {}, std::vector<float>(std::size_t{bands} * kCubeFaces, kNotANumber)};
+    }
     std::vector<float> score(size);
     for (std::size_t k = 0; k < size; ++k) {
         float squares = 0;

@@ -22,7 +22,8 @@ Selector make_selector(std::uint32_t cubemap_size, std::uint32_t kept, float are
 /// Keeps the face averages and the `kept` - 6 details that score highest,
 ///     score_k = weight_k sqrt(sum over bands of (luminance share T_k)^2),
 /// ties by index; exact zeros are never kept. `coefficients`: `bands` Haar-transformed cube maps
-/// one after the other, finite.
+/// one after the other. If any of them is NaN or infinite, no detail is kept and all averages are
+/// NaN, which append_row keeps.
 formats::SparseRow select_coefficients(const Selector& selector,
                                        std::span<const float> coefficients, std::uint32_t bands);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -65,8 +66,14 @@ SparseRows make_sparse_rows(std::uint32_t cubemap_size, std::uint32_t code_bits)
 
 /// Quantises and appends one row: signed symmetric codes, one scale per band for the details and
 /// one for the six averages (16 bits), round to nearest (translucency.md 3.9).
-/// Values must be finite. Fails (returns false, nothing appended) if details would exceed 2^32 - 1.
+/// NaN or infinity among a band's averages or details makes that scale NaN, so that it stays
+/// NaN whatever is done with it: find_faulty_row.
+/// Fails (returns false, nothing appended) if details would exceed 2^32 - 1.
 bool append_row(SparseRows& rows, const SparseRow& row);
+
+/// The first row that held NaN or infinity when it was appended; nothing if none did. Every row has
+/// `bands` bands.
+std::optional<std::uint32_t> find_faulty_row(const SparseRows& rows, std::uint32_t bands);
 
 /// Appends all rows of `tail`, which must have the same basis and code width.
 bool append_rows(SparseRows& rows, const SparseRows& tail);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -41,6 +42,23 @@ TEST(SelectCoefficients, AllOfThemReproduceTheRow) {
     }
     for (std::size_t face = 0; face < 6; ++face) {
         ASSERT_EQ(row.average[face], dense[face * kSize * kSize]);
+    }
+}
+
+// Wherever it stands: also among those that would not be kept.
+TEST(SelectCoefficients, OneThatIsNotFiniteSpoilsItsRow) {
+    for (const std::uint32_t bands : {1u, 3u}) {
+        for (const float bad :
+             {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+            std::vector<float> dense = random_coefficients(bands);
+            formats::SparseRows rows = formats::make_sparse_rows(kSize, 8);
+            ASSERT_TRUE(formats::append_row(
+                rows, select_coefficients(make_selector(kSize, 8), dense, bands)));
+            dense[dense.size() - 5] = bad;
+            ASSERT_TRUE(formats::append_row(
+                rows, select_coefficients(make_selector(kSize, 8), dense, bands)));
+            EXPECT_EQ(formats::find_faulty_row(rows, bands), 1u);
+        }
     }
 }
 
