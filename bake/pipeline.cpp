@@ -102,14 +102,12 @@ formats::Result<formats::SparseRows> bake_rows(const PilotScene& all, const Medi
             break;
         }
         const RowLayout& layout = all.layouts[primitive.material];
-        const std::size_t terms = layout.terms();
-        if (const auto faulty = formats::find_faulty_row(part, layout.bands())) {
-            return make_error(ErrorKind::bad_input, all.scene.source,
-                              "rows of '" + primitive.name + "'",
-                              "the transport of vertex " + std::to_string(*faulty / terms) +
-                                  " is not a finite number",
-                              "look for extreme numbers in its mesh and its medium");
+        if (auto status = require_finite(part, layout.terms(), layout.bands(),
+                                         "rows of '" + primitive.name + "'");
+            !status) {
+            return std::move(status).error();
         }
+        const std::size_t terms = layout.terms();
         if (part.row_offset.size() != terms * count + 1 || !formats::append_rows(rows, part)) {
             return make_error(ErrorKind::resource, "", "transport",
                               "more than 2^32 coefficients do not fit into one file",

@@ -101,16 +101,16 @@ struct Scene {
     std::vector<Primitive> primitives;  ///< scene nodes depth-first, then the mesh's primitives:
                                         ///< a primitive's position here is its running number
     std::vector<Material> materials;    ///< never empty
-    /// World position of the frame's origin [m]: world = origin + position; axes are those of the
-    /// world. Everything that is computed is computed in the frame, where floats are fine enough
-    /// however far from the world's origin the scene lies.
+    /// World position [m] of the origin of the scene's frame: world = origin + position. The
+    /// frame's axes are parallel to those of the world. All stages compute in the frame, so float
+    /// precision does not depend on the distance between the scene and the world's origin.
     glm::dvec3 origin{0};
     std::vector<Image8> images;  ///< decoded textures that a material uses
     std::string source;          ///< path as given by the user
     std::string sha256;          ///< of all input bytes, in reading order, lower-case hex
     std::vector<std::filesystem::path> inputs;  ///< files read, for dependency files
 
-    /// World position [m] of a position of the frame.
+    /// World position [m] of a point given in the frame.
     glm::dvec3 to_world(glm::vec3 position) const { return origin + glm::dvec3(position); }
 };
 

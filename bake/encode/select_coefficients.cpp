@@ -15,7 +15,7 @@ using formats::kCubeFaces;
 
 namespace {
 
-// Zero times what is not finite is NaN, and stays so in the sum: no branch for each value.
+// 0 * NaN and 0 * infinity are NaN and make the sum NaN: one test for all values.
 bool all_finite(std::span<const float> values) {
     float nothing = 0;
     for (const float value : values) {
@@ -74,6 +74,18 @@ formats::SparseRow select_coefficients(const Selector& selector,
         }
     }
     return row;
+}
+
+formats::Status require_finite(const formats::SparseRows& rows, std::uint32_t terms,
+                               std::uint32_t bands, const std::string& stage) {
+    assert(terms > 0 && bands > 0);
+    if (const auto faulty = formats::find_faulty_row(rows, bands)) {
+        return formats::make_error(formats::ErrorKind::bad_input, "", stage,
+                                   "the light transport of vertex " +
+                                       std::to_string(*faulty / terms) + " is not a finite number",
+                                   "look for extreme numbers in its mesh and its medium");
+    }
+    return formats::ok_status();
 }
 
 }  // namespace opaline::bake

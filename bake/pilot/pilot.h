@@ -28,12 +28,12 @@ struct PilotScene {
     std::span<const RowLayout> layouts;
     const MediaProfiles& profiles;
 
-    /// What may stand before the light that reaches a material.
+    /// Occluders of the light that reaches a material; the empty sky where nothing occludes it.
     const RayScene& rays_of(std::uint32_t material) const {
         return layouts[material].occluded ? rays : sky;
     }
-    /// What the rows of a medium are traced in. Where light goes through the body its own surface
-    /// is looked for, whether or not anything stands before the light.
+    /// Triangles that the rows of a medium are traced against. Single scattering needs the body's
+    /// own far side even where nothing occludes the light.
     const RayScene& rays_in_medium(std::uint32_t material) const {
         return layouts[material].local ? rays_of(material) : rays;
     }

@@ -20,7 +20,7 @@ struct Fans {
     std::vector<std::uint32_t> offset;
     std::vector<glm::vec3> normal;
     std::vector<glm::vec3> corner;  // the two other corners of each triangle
-    std::vector<float> extent;      // largest coordinate of such a corner relative to the point
+    std::vector<float> extent;      // largest coordinate difference from the point to a corner
 };
 
 // Normal of a triangle in double precision, so that slivers keep their direction; {0,0,0} if flat.
@@ -105,9 +105,9 @@ float intersection_error_bound(float magnitude) {
 }
 
 float clearance_bound(glm::vec3 position, float extent) {
-    // The test subtracts the origin first, which is exact near it: what comes after errs by the
-    // extent alone. Left is the rounding of the origin itself, by half an ulp of each coordinate
-    // where it is computed and again where it is moved: across a plane less than 2 epsilon.
+    // The test first subtracts the ray's origin from the corners, so its later roundings scale with
+    // the extent alone. The origin itself is rounded twice by half an ulp per coordinate, when the
+    // point is computed and when it is offset: less than 2 epsilon across any plane.
     constexpr float kRoundings = 4.0f;
     return kRoundings * std::numeric_limits<float>::epsilon() * largest_coordinate(position) +
            intersection_error_bound(extent);

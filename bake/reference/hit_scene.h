@@ -25,10 +25,10 @@ struct SurfaceHit {
 struct RayOrigin {
     glm::vec3 position{0};
     std::uint32_t primitive = formats::kNone, triangle = formats::kNone;
-    float free = 0;  ///< [m] >= 0: nothing is met before, whatever rounding says
+    float free = 0;  ///< [m] >= 0: hits nearer than this are ignored
 };
 
-/// All triangles of a scene, for closest hits one ray at a time in the scene's frame. Immutable;
+/// All triangles of a scene, for closest hits of single rays in the scene's frame. Immutable;
 /// any thread may trace.
 class HitScene {
   public:

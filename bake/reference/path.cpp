@@ -118,8 +118,9 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
     return meet_surface(space, path, *hit, random);
 }
 
-// A path into a body starts at its surface, at `vertex`, not where it is clear of the triangles
-// there, at `inside`: on the way between it meets none of them, but may be scattered.
+// Start of a path that enters a body at a vertex. `inside` is clear of the vertex's triangles, but
+// the path may already scatter between the surface and that point, so the flight starts on the
+// tangent plane and ignores hits before it passes `inside`.
 RayOrigin enter_at(glm::vec3 vertex, glm::vec3 inside, glm::vec3 normal, glm::vec3 direction) {
     constexpr float kGrazing = 0.1f;
     const float depth = glm::dot(vertex - inside, normal);

@@ -31,8 +31,7 @@ struct PathSpace {
 struct ReferenceReceiver {
     std::uint32_t primitive = 0, vertex = 0;  ///< numbers of formats::Scene
     glm::vec3 position{0};                    ///< [m] of the vertex
-    glm::vec3 outside{0}, inside{0};  ///< where rays are clear of the vertex's triangles, on
-                                      ///< either side of them
+    glm::vec3 outside{0}, inside{0};  ///< [m], clear of the vertex's triangles on either side
     glm::vec3 normal{0};              ///< unit; {0,0,0}: black
     glm::vec3 to_eye{0};              ///< unit
     glm::vec3 base_color{1};

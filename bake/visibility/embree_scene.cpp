@@ -17,10 +17,10 @@ using formats::ErrorKind;
 using formats::Primitive;
 using formats::Scene;
 
-// One everywhere: hit distances differ between instruction sets in their last bits.
+// Pinned: the last bits of hit distances differ between instruction sets.
 constexpr const char* kInstructionSet = "avx2";
 
-// False: no memory for it.
+// Returns false if memory runs out.
 bool add_triangles(RTCDevice device, RTCScene scene, const Primitive& p) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
@@ -51,7 +51,7 @@ EmbreeScene::EmbreeScene(EmbreeScene&& other) noexcept {
 }
 
 EmbreeScene& EmbreeScene::operator=(EmbreeScene&& other) noexcept {
-    // What was here is released with `other`.
+    // `other` releases what this object held.
     std::swap(device_, other.device_);
     std::swap(scene_, other.scene_);
     std::swap(geometries_, other.geometries_);

@@ -9,17 +9,17 @@
 #include "formats/opal/result.h"
 #include "formats/scene.h"
 
-struct RTCDeviceTy;  // Embree's handles: its header is for those who trace
+struct RTCDeviceTy;  // Embree's handles; callers that trace include Embree's header themselves
 struct RTCSceneTy;
 
 namespace opaline::bake {
 
-/// All triangles of a scene in an Embree device of their own, in the scene's frame, so that no
-/// coordinate is rounded again. Immutable once built; any thread may trace.
+/// Owns an Embree device and the hierarchy over all triangles of a scene. Coordinates are those of
+/// the scene's frame, without further rounding. Immutable once built; any thread may trace.
 class EmbreeScene {
   public:
-    /// Builds the hierarchy (of a scene without triangles too: the open sky) with `threads` threads
-    /// (0: all). Errors: resource.
+    /// Builds the hierarchy with `threads` threads (0: all). A scene without triangles is valid:
+    /// the open sky. Errors: resource.
     static formats::Result<EmbreeScene> build(const formats::Scene& scene, unsigned threads);
 
     EmbreeScene(EmbreeScene&& other) noexcept;
@@ -32,9 +32,9 @@ class EmbreeScene {
     struct Geometry {
         std::uint32_t primitive, material;  ///< numbers of formats::Scene
         bool double_sided;
-        float error_bound;  ///< [m] on how far a hit on one of them may lie from where it should
+        float error_bound;  ///< [m], of the computed position of a hit
     };
-    /// By Embree's number of a hit.
+    /// `id`: RTCHit::geomID.
     const Geometry& geometry(std::uint32_t id) const { return geometries_[id]; }
 
     std::uint64_t triangles() const { return triangles_; }

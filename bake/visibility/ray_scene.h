@@ -40,7 +40,7 @@ struct PacketHits {
     LaneMask hit;              ///< -1 yes, 0 no
     RayPacket::Lane distance;  ///< along the ray [m]
     RayPacket::Lane cosine;  ///< of the ray with the triangle's normal: > 0 leaves through the back
-    RayPacket::Lane error;   ///< bound [m] on how far the hit may lie from where it should
+    RayPacket::Lane error;   ///< bound [m] on the error of the hit's position
     RayPacket::LaneBits material;                  ///< index into Scene::materials
     RayPacket::Lane normal_x, normal_y, normal_z;  ///< unit, of the triangle; 0 without area
 };

@@ -23,7 +23,7 @@ struct Box {
     bool is_empty() const { return !(low.x <= high.x); }
 };
 
-/// In the mesh's frame and file units. What read_primitive will refuse is left out.
+/// Bounds in the mesh's frame and file units, without primitives that read_primitive will refuse.
 Box bounds_of(const Document& document, const Mesh& mesh, const std::vector<Bytes>& buffers) {
     Box box;
     for (const MeshPrimitive& primitive : mesh.primitives) {
@@ -47,7 +47,7 @@ Box bounds_of(const Document& document, const Mesh& mesh, const std::vector<Byte
 }
 
 double origin_along_axis(double centre, double radius) {
-    constexpr double kNear = 16;  // radii
+    constexpr double kNear = 16;  // [radii]
     if (!std::isfinite(centre) || !(radius > 0) || std::abs(centre) <= kNear * radius) {
         return 0;
     }
@@ -65,7 +65,7 @@ double largest(const std::vector<float>& values) {
     return most;
 }
 
-/// Spacing of floats near a coordinate, over the length of an edge.
+/// Spacing of floats near a coordinate, relative to the length of an edge.
 double coarseness(double coordinate, double edge) {
     constexpr double kSpacing{std::numeric_limits<float>::epsilon()};
     return edge > 0 ? kSpacing * coordinate / edge : 0;
@@ -122,23 +122,23 @@ void warn_of_coarse_positions(const PrimitiveData& stored, const Primitive& plac
     }
     const auto percent = [](double share) {
         return std::to_string(static_cast<int>(std::min(100 * share + 0.5, 1e6))) +
-               " % of the mean length of its edges";
+               " % of its mean edge length";
     };
     if (const double c = coarseness(largest(stored.position), stored_edges / count); c > kCoarse) {
         report.warn(placed.name,
-                    "its POSITION lies so far from the mesh's own origin that floats round it to " +
-                        percent(c),
-                    "move the mesh to its origin, and place it by its node");
+                    "its POSITION values are so large that their float spacing is " + percent(c),
+                    "centre the mesh on its own origin and move it by its node");
     } else if (const double f = coarseness(in_frame, edges / count); f > kCoarse) {
-        report.warn(placed.name,
-                    "the scene is so large that its positions are rounded to " + percent(f),
-                    "bake distant parts as scenes of their own");
+        report.warn(
+            placed.name,
+            "the scene is so large that the float spacing of its positions is " + percent(f),
+            "bake distant parts as separate scenes");
     } else if (const double w = coarseness(in_world, edges / count); w > kCoarse) {
         report.warn(placed.name,
-                    "it lies so far from the world's origin that positions in a baked file are "
-                    "rounded to " +
-                        percent(w) + "; light is not affected",
-                    "bake it near the origin, and move the result");
+                    "it is so far from the world's origin that the float spacing of positions in "
+                    "the baked file is " +
+                        percent(w) + "; the light is computed before this rounding",
+                    "bake it near the origin and move the baked object");
     }
 }
 

@@ -1,4 +1,5 @@
-// Scenes far from the world's origin, and large ones: rays, clearances and positions share a frame.
+// Scenes far from the world's origin and scenes of large extent: positions, clearances and rays use
+// one frame.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -113,8 +114,8 @@ TEST(FarScenes, WhatIsTranslucentAndAtTheOriginKeepsItsLightInALargeScene) {
               1e-3);
 }
 
-// Mean of single scattering that the reference finds at the vertices of a ball, 20 mean free paths
-// in radius, that lies at x [m] of the frame.
+// Mean single scattering of the reference at the vertices of a ball centred at x [m] in the frame.
+// Its radius is 20 mean free paths.
 struct SingleOfBall {
     double mean = 0, variance = 0;
 };
@@ -150,7 +151,7 @@ TEST(FarScenes, TheReferenceFindsTheSameSingleScatteringWhereverABallLies) {
     }
 }
 
-// Eyes are given in world space.
+// Eyes are in world space.
 TEST(FarScenes, TheReferenceSeesTheSamePictureFromAnEyeThatMovesWithTheScene) {
     const auto look = [](double x) {
         auto scene = tests::make_dented_ball();

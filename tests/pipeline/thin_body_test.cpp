@@ -1,5 +1,5 @@
-// Single scattering in convex bodies that stand alone: nothing stands before the light, and their
-// own far side must be found all the same.
+// Single scattering in isolated convex bodies: nothing occludes the light, but rays must still find
+// the far side of the body.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,7 +64,7 @@ double mean_blue(const std::vector<formats::Rgb>& radiance) {
     return sum / static_cast<double>(radiance.size());
 }
 
-// As the bake measures itself.
+// Error of the bake's self-check under the white light.
 double error_under_white(const BakeResult& baked) {
     const auto& lights = baked.error.by_light;
     const auto white = std::find_if(lights.begin(), lights.end(),

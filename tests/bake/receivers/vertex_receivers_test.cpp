@@ -46,8 +46,8 @@ TEST(VertexReceivers, OffsetsAreOfTheOrderOfTheRoundingError) {
     }
 }
 
-// Fine triangles in a large scene: what counts is the rounding where rays start and how far the
-// triangles reach, not how far the scene does.
+// Small triangles in a large scene: the offset depends on the rounding of the vertex and the extent
+// of its triangles, not on the extent of the scene.
 TEST(VertexReceivers, OffsetsOfFineTrianglesAreNoMoreThanAFewRoundings) {
     for (const float x : {0.0f, 10.0f, 30.0f}) {
         const auto scene = tests::make_scene({tests::make_sphere(4, 0.01f, {x, 0, 0})});

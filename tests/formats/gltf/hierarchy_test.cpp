@@ -55,7 +55,7 @@ TEST(GltfHierarchy, ASceneNearTheWorldsOriginKeepsItsCoordinates) {
     }
 }
 
-// What is moved by its node alone has the same floats as where it was modelled.
+// A scene moved by its node keeps the float coordinates that it has at the origin.
 TEST(GltfHierarchy, ADistantSceneHasAFrameOfItsOwn) {
     AssetBuilder asset = triangle_asset();
     const auto here = must_import(asset).scene;
@@ -73,7 +73,7 @@ TEST(GltfHierarchy, ADistantSceneHasAFrameOfItsOwn) {
             EXPECT_EQ(world, expected) << x;
         }
     }
-    EXPECT_THAT(lines(must_import(triangle_asset()).warnings), testing::Not(HasSubstr("round")));
+    EXPECT_THAT(lines(must_import(triangle_asset()).warnings), testing::Not(HasSubstr("spacing")));
 }
 
 TEST(GltfHierarchy, PositionsThatFloatsAreTooCoarseForAreWarnedOf) {
@@ -84,16 +84,16 @@ TEST(GltfHierarchy, PositionsThatFloatsAreTooCoarseForAreWarnedOf) {
         return asset;
     };
     EXPECT_THAT(lines(must_import(triangle_at(1000, 0.1f)).warnings),
-                testing::Not(HasSubstr("round")));
+                testing::Not(HasSubstr("spacing")));
     EXPECT_THAT(lines(must_import(triangle_at(1000, 0.002f)).warnings),
-                HasSubstr("so far from the mesh's own origin that floats round it to"));
+                HasSubstr("its POSITION values are so large that their float spacing is"));
     AssetBuilder large = triangle_at(0, 0.002f);
     large.add_node(0, {{"translation", {5000, 0, 0}}});
     EXPECT_THAT(lines(must_import(large).warnings), HasSubstr("the scene is so large"));
     AssetBuilder far = triangle_at(0, 0.002f);
     far.json["nodes"][0]["translation"] = {5000, 0, 0};
     EXPECT_THAT(lines(must_import(far).warnings),
-                HasSubstr("so far from the world's origin that positions in a baked file"));
+                HasSubstr("so far from the world's origin that the float spacing"));
 }
 
 TEST(GltfHierarchy, MirroredInstancesStayCounterClockwiseOutside) {
