@@ -94,13 +94,13 @@ struct Material {
     std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
 };
 
-/// One glTF primitive of one node instance, in world space and metres. Vertices keep the original
-/// order and count: receivers and output rows use this numbering.
+/// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.
+/// Vertices keep the original order and count: receivers and output rows use this numbering.
 struct Primitive {
     std::uint32_t node = 0, mesh = 0, primitive = 0;  ///< indices in the file, for messages
     std::string name;                                 ///< "node 'Vase' > mesh 3 > primitive 0"
     std::uint32_t material = 0;                       ///< index into Scene::materials, always valid
-    std::vector<glm::vec3> position;                  ///< [m], finite
+    std::vector<glm::vec3> position;                  ///< [m] from Scene::origin, finite
     std::vector<glm::vec3> normal;     ///< unit; one per vertex; {0,0,0} where none can be defined
     std::vector<glm::vec2> texcoord;   ///< of the textures, set 0 without any; transform
                                        ///< applied; empty or one per vertex
@@ -126,10 +126,17 @@ struct Scene {
     std::vector<Primitive> primitives;  ///< scene nodes depth-first, then the mesh's primitives:
                                         ///< a primitive's position here is its running number
     std::vector<Material> materials;    ///< never empty
-    std::vector<Image8> images;         ///< decoded textures that a material uses
-    std::string source;                 ///< path as given by the user
-    std::string sha256;                 ///< of all input bytes, in reading order, lower-case hex
+    /// World position [m] of the origin of the scene's frame: world = origin + position. The
+    /// frame's axes are parallel to those of the world. All stages compute in the frame, so float
+    /// precision does not depend on the distance between the scene and the world's origin.
+    glm::dvec3 origin{0};
+    std::vector<Image8> images;  ///< decoded textures that a material uses
+    std::string source;          ///< path as given by the user
+    std::string sha256;          ///< of all input bytes, in reading order, lower-case hex
     std::vector<std::filesystem::path> inputs;  ///< files read, for dependency files
+
+    /// World position [m] of a point given in the frame.
+    glm::dvec3 to_world(glm::vec3 position) const { return origin + glm::dvec3(position); }
 };
 
 }  // namespace opaline::formats

@@ -104,7 +104,8 @@ formats::Asset make_stand_in(const formats::Scene& scene) {
         record.index_count = static_cast<std::uint32_t>(p.index.size());
         asset.primitives.push_back(record);
         for (const glm::vec3& v : p.position) {
-            asset.position.push_back({v.x, v.y, v.z});
+            const glm::vec3 world(scene.to_world(v));
+            asset.position.push_back({world.x, world.y, world.z});
         }
         asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
     }

@@ -47,8 +47,8 @@ Rgb ramp(const std::vector<Rgb>& colors, double at) {
 
 }  // namespace
 
-Rgb marble_color(const formats::Marble& marble, glm::vec3 position) {
-    const glm::dvec3 q = glm::dvec3(position) / static_cast<double>(marble.scale);
+Rgb marble_color(const formats::Marble& marble, glm::dvec3 position) {
+    const glm::dvec3 q = position / static_cast<double>(marble.scale);
     const double u = glm::dot(kAcross, q) + kDistortion * turbulence(q / kLargestFeature);
     return ramp(marble.colors, std::abs(std::sin(std::numbers::pi * u)));
 }

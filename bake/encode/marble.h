@@ -6,7 +6,8 @@
 
 namespace opaline::bake {
 
-/// The colour of veined stone at a position [m], each band in [0, 1] for every finite position.
+/// The colour of veined stone at a world position [m], each band in [0, 1] for every finite
+/// position.
 ///
 ///     q = position / scale
 ///     t = sum_{o = 0..4} 2^-o |n(2^o q / 2 + s_o)|       turbulence of gradient noise n
@@ -16,6 +17,6 @@ namespace opaline::bake {
 /// after the solid textures of [Perlin1985]; n is gtc/noise of GLM, in [-1, 1], s_o are fixed
 /// offsets that keep the zeros of the octaves apart. The stone is endless: n repeats after 289.
 /// Details finer than the distance of the vertices are lost, as everywhere in a vertex colour.
-formats::Rgb marble_color(const formats::Marble& marble, glm::vec3 position);
+formats::Rgb marble_color(const formats::Marble& marble, glm::dvec3 position);
 
 }  // namespace opaline::bake

@@ -1,6 +1,5 @@
 #include "bake/encode/pack_asset.h"
 
-#include <optional>
 #include <utility>
 
 #include "bake/encode/marble.h"
@@ -26,13 +25,17 @@ Vec3 to_vec3(glm::vec3 v) {
 }
 
 // `mapped`: the primitive shows an image; `textured`: some primitive of the asset does.
-void append_vertices(Asset& asset, const Primitive& p, Rgb base_color,
-                     const std::optional<Marble>& marble, bool mapped, bool textured) {
+void append_vertices(Asset& asset, const Scene& scene, const Primitive& p, Rgb tint, bool mapped,
+                     bool textured) {
+    const Material& material = scene.materials[p.material];
+    const Rgb base_color = material.base_color * tint;
     for (std::size_t v = 0; v < p.position.size(); ++v) {
-        asset.position.push_back(to_vec3(p.position[v]));
+        const glm::dvec3 world = scene.to_world(p.position[v]);
+        asset.position.push_back(to_vec3(glm::vec3(world)));
         asset.normal.push_back(to_vec3(p.normal[v]));
         const Rgb plain = p.color.empty() ? base_color : base_color * p.color[v];
-        asset.base_color.push_back(marble ? plain * marble_color(*marble, p.position[v]) : plain);
+        asset.base_color.push_back(material.marble ? plain * marble_color(*material.marble, world)
+                                                   : plain);
         if (textured) {
             asset.texcoord.push_back(mapped ? Float2{p.texcoord[v].x, p.texcoord[v].y} : Float2{});
         }
@@ -95,8 +98,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
             asset.roughness.push_back(layout.glossy ? material.medium->roughness : kNotGlossy);
         }
         asset.primitives.push_back(record);
-        append_vertices(asset, p, material.base_color * layout.tint, material.marble, mapped,
-                        textured);
+        append_vertices(asset, scene, p, layout.tint, mapped, textured);
         asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
     }
     for (const Image8& image : scene.images) {

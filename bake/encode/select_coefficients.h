@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "formats/opal/result.h"
 #include "formats/opal/sparse_rows.h"
 
 namespace opaline::bake {
@@ -22,8 +24,14 @@ Selector make_selector(std::uint32_t cubemap_size, std::uint32_t kept, float are
 /// Keeps the face averages and the `kept` - 6 details that score highest,
 ///     score_k = weight_k sqrt(sum over bands of (luminance share T_k)^2),
 /// ties by index; exact zeros are never kept. `coefficients`: `bands` Haar-transformed cube maps
-/// one after the other, finite.
+/// one after the other. If one of them is NaN or infinite, the row has no details and its
+/// averages are NaN.
 formats::SparseRow select_coefficients(const Selector& selector,
                                        std::span<const float> coefficients, std::uint32_t bands);
+
+/// Returns an error that names `stage` and the first receiver with a NaN or infinite coefficient.
+/// Each receiver has `terms` rows of `bands` bands. Errors: bad_input.
+formats::Status require_finite(const formats::SparseRows& rows, std::uint32_t terms,
+                               std::uint32_t bands, const std::string& stage);
 
 }  // namespace opaline::bake

@@ -70,7 +70,12 @@ formats::Result<formats::SparseRows> bake_rows(const BakeInputs& bake,
         if (context.cancelled()) {
             break;
         }
-        if (part.row_offset.size() != subject->layout.terms() * set.size() + 1 ||
+        const RowLayout& layout = subject->layout;
+        if (auto status = require_finite(part, layout.terms(), layout.bands(), log.back().name);
+            !status) {
+            return std::move(status).error();
+        }
+        if (part.row_offset.size() != layout.terms() * set.size() + 1 ||
             !take_rows(sink, part)) {
             return make_error(ErrorKind::resource, "", "transport",
                               "more than 2^32 coefficients do not fit into one file",

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bake/transport/ray_scene.h"
+#include "bake/transport/embree_scene.h"
 
 namespace opaline::bake {
 
@@ -70,7 +70,7 @@ std::string make_provenance(const formats::Scene& scene, const BakeRecord& recor
     const Knobs& knobs = record.knobs;
     Json root;
     root["generator"] = std::string("Opaline ") + OPALINE_VERSION;
-    root["ray_tracer"] = RayScene::description();
+    root["ray_tracer"] = EmbreeScene::description();
     root["scene"]["sha256"] = scene.sha256;
     for (const formats::Primitive& p : scene.primitives) {
         root["scene"]["primitives"].push_back(

@@ -37,18 +37,18 @@ SurfaceSample make_surface_sample(const Scene& scene, const SurfacePoint& c, flo
     sample.area = area;
     sample.primitive = c.primitive;
     glm::vec3 normal(0);
-    float magnitude = 0;
+    float extent = 0;
     for (glm::length_t k = 0; k < 3; ++k) {
         const std::uint32_t v = p.index[c.first_index + static_cast<std::uint32_t>(k)];
         normal += c.barycentric[k] * p.normal[v];
-        const glm::vec3 a = glm::abs(p.position[v]);
-        magnitude = std::max({magnitude, a.x, a.y, a.z});
+        const glm::vec3 a = glm::abs(p.position[v] - c.position);
+        extent = std::max({extent, a.x, a.y, a.z});
     }
     const float length = glm::length(normal);
     sample.normal = length > 0 && glm::dot(normal, c.normal) > 0 ? normal / length : c.normal;
     sample.receiver.normal = sample.normal;
     sample.receiver.origin =
-        c.position + lift_to_smooth_surface(p, c) + intersection_error_bound(magnitude) * c.normal;
+        c.position + lift_to_smooth_surface(p, c) + clearance_bound(c.position, extent) * c.normal;
     return sample;
 }
 

@@ -20,7 +20,7 @@ struct Fans {
     std::vector<std::uint32_t> offset;
     std::vector<glm::vec3> normal;
     std::vector<glm::vec3> corner;  // the two other corners of each triangle
-    std::vector<float> magnitude;   // largest coordinate among the triangles of the point
+    std::vector<float> extent;      // largest coordinate difference from the point to a corner
 };
 
 // Normal of a triangle in double precision, so that slivers keep their direction; {0,0,0} if flat.
@@ -49,25 +49,22 @@ Fans collect_fans(const Scene& scene) {
                 const glm::vec3 corner[3] = {p.position[p.index[3 * t]],
                                              p.position[p.index[3 * t + 1]],
                                              p.position[p.index[3 * t + 2]]};
-                const float magnitude =
-                    std::max({largest_coordinate(corner[0]), largest_coordinate(corner[1]),
-                              largest_coordinate(corner[2])});
                 for (std::size_t k = 0; k < 3; ++k) {
-                    visit(weld_key(corner[k]), normal, corner[(k + 1) % 3], corner[(k + 2) % 3],
-                          magnitude);
+                    visit(weld_key(corner[k]), normal, corner[(k + 1) % 3], corner[(k + 2) % 3]);
                 }
             }
         }
     };
-    for_each_corner([&](glm::vec3 at, glm::vec3, glm::vec3, glm::vec3, float magnitude) {
+    for_each_corner([&](glm::vec3 at, glm::vec3, glm::vec3 a, glm::vec3 b) {
         const auto [it, added] =
             fans.point.try_emplace(at, static_cast<std::uint32_t>(fans.point.size()));
         if (added) {
             fans.offset.push_back(0);
-            fans.magnitude.push_back(0);
+            fans.extent.push_back(0);
         }
         ++fans.offset[it->second];
-        fans.magnitude[it->second] = std::max(fans.magnitude[it->second], magnitude);
+        fans.extent[it->second] = std::max(
+            {fans.extent[it->second], largest_coordinate(a - at), largest_coordinate(b - at)});
     });
     fans.offset.push_back(0);
     std::uint32_t sum = 0;
@@ -76,8 +73,8 @@ Fans collect_fans(const Scene& scene) {
     }
     fans.normal.resize(sum);
     fans.corner.resize(2 * std::size_t{sum});
-    std::vector<std::uint32_t> filled(fans.magnitude.size(), 0);
-    for_each_corner([&](glm::vec3 at, glm::vec3 normal, glm::vec3 a, glm::vec3 b, float) {
+    std::vector<std::uint32_t> filled(fans.extent.size(), 0);
+    for_each_corner([&](glm::vec3 at, glm::vec3 normal, glm::vec3 a, glm::vec3 b) {
         const std::uint32_t point = fans.point.find(at)->second;
         const std::size_t slot = fans.offset[point] + filled[point]++;
         fans.normal[slot] = normal;
@@ -105,6 +102,15 @@ float intersection_error_bound(float magnitude) {
     constexpr float kRoundings = 32.0f;
     const float bound = kRoundings * std::numeric_limits<float>::epsilon() * magnitude;
     return std::max(bound, std::numeric_limits<float>::min());
+}
+
+float clearance_bound(glm::vec3 position, float extent) {
+    // The test first subtracts the ray's origin from the corners, so its later roundings scale with
+    // the extent alone. The origin itself is rounded twice by half an ulp per coordinate, when the
+    // point is computed and when it is offset: less than 2 epsilon across any plane.
+    constexpr float kRoundings = 4.0f;
+    return kRoundings * std::numeric_limits<float>::epsilon() * largest_coordinate(position) +
+           intersection_error_bound(extent);
 }
 
 Clearance clearest_direction(std::span<const glm::vec3> normals) {
@@ -139,7 +145,7 @@ Clearance clearest_direction(std::span<const glm::vec3> normals) {
 
 std::vector<Receiver> make_vertex_receivers(const Scene& scene) {
     const Fans fans = collect_fans(scene);
-    std::vector<Clearance> clearance(fans.magnitude.size());
+    std::vector<Clearance> clearance(fans.extent.size());
     for (std::size_t i = 0; i < clearance.size(); ++i) {
         clearance[i] = clearest_direction(
             std::span(fans.normal).subspan(fans.offset[i], fans.offset[i + 1] - fans.offset[i]));
@@ -154,7 +160,7 @@ std::vector<Receiver> make_vertex_receivers(const Scene& scene) {
             Receiver receiver{position, normal};
             if (const auto it = fans.point.find(weld_key(position)); it != fans.point.end()) {
                 const Clearance c = clearance[it->second];
-                const float bound = intersection_error_bound(fans.magnitude[it->second]);
+                const float bound = clearance_bound(position, fans.extent[it->second]);
                 receiver.origin +=
                     c.cosine > kSmallestClearance
                         ? (bound / c.cosine) * c.direction

@@ -17,7 +17,7 @@ namespace opaline::bake {
 /// d: the direction that stays farthest in front of all triangles meeting at that position (welded
 ///    over primitives and vertex duplicates: a floor that meets a wall counts), found by a
 ///    perceptron iteration; clearance: the smallest cosine between d and their normals;
-/// bound: the rounding error of the intersection test, a multiple of the coordinates' ulp.
+/// bound: clearance_bound at the vertex.
 /// Duplicated vertices therefore get identical origins, and no seam.
 /// Where no d is in front of all triangles (a point whose triangles are folded over each other, as
 /// scans and decimation leave them), rays start along the shading normal above the fold, which
@@ -25,8 +25,12 @@ namespace opaline::bake {
 std::vector<Receiver> make_vertex_receivers(const formats::Scene& scene);
 
 /// Bound [m] on how far the computed intersection of a ray with a triangle may lie from the true
-/// one, for coordinates up to `magnitude` [m].
+/// one, for coordinates up to `magnitude` [m], in the frame that rays run in.
 float intersection_error_bound(float magnitude);
+
+/// The same bound for a ray that starts at `position` and triangles whose corners differ from it by
+/// at most `extent` [m] on each axis. It depends on local rounding only, not on the scene's size.
+float clearance_bound(glm::vec3 position, float extent);
 
 /// The unit direction d that maximises the smallest dot(d, normal), and that dot product, which is
 /// not positive where the normals do not fit into an open half space.

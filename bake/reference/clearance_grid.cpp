@@ -21,7 +21,7 @@ ClearanceGrid::ClearanceGrid(const HitScene& surfaces, float cell) {
     // Half a cell is left around: what is rounded stays inside.
     size_ = glm::uvec3(glm::ceil(2.0f * half * per_cell_)) + 1u;
     count_ = glm::vec3(size_);
-    low_ = -0.5f * cell_ * count_;
+    low_ = surfaces.centre() - 0.5f * cell_ * count_;
     clear_.assign(std::size_t{size_.x} * size_.y * size_.z, std::uint8_t{kMostCells});
     if (!mark_triangles(surfaces)) {
         *this = {};
@@ -40,7 +40,7 @@ bool ClearanceGrid::mark_triangles(const HitScene& surfaces) {
     for (const formats::Primitive& p : scene.primitives) {
         for (std::size_t i = 0; i + 2 < p.index.size(); i += 3) {
             const auto place = [&](std::size_t k) {
-                return (p.position[p.index[i + k]] - surfaces.centre() - low_) * per_cell_;
+                return (p.position[p.index[i + k]] - low_) * per_cell_;
             };
             const glm::vec3 a = place(0), b = place(1), c = place(2);
             const glm::vec3 n = glm::cross(b - a, c - a);

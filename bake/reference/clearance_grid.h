@@ -19,8 +19,8 @@ class ClearanceGrid {
     /// triangles lie in so many that looking for them would take longer than the rays it saves.
     ClearanceGrid(const HitScene& surfaces, float cell);
 
-    /// Lower bound [m] of the distance from a position (relative to HitScene::centre) to the
-    /// nearest triangle; 0 outside of the grid.
+    /// Lower bound [m] of the distance from a position to the nearest triangle; 0 outside of the
+    /// grid.
     float operator()(glm::vec3 position) const {
         const glm::vec3 place = (position - low_) * per_cell_;
         if (!(place.x >= 0 && place.y >= 0 && place.z >= 0 && place.x < count_.x &&

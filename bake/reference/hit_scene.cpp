@@ -1,35 +1,18 @@
 #include "bake/reference/hit_scene.h"
 
 #include <embree3/rtcore.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
-#include <string>
-#include <vector>
+#include <utility>
 
 namespace opaline::bake {
 namespace {
 
-using formats::ErrorKind;
 using formats::Primitive;
 using formats::Scene;
-
-struct Box {
-    glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
-};
-
-Box box_of(const Scene& scene) {
-    Box box;
-    for (const Primitive& p : scene.primitives) {
-        for (const glm::vec3& v : p.position) {
-            box.low = glm::min(box.low, v);
-            box.high = glm::max(box.high, v);
-        }
-    }
-    return box.low.x <= box.high.x ? box : Box{glm::vec3(0), glm::vec3(0)};
-}
 
 RTCRay make_ray(const RayOrigin& origin, glm::vec3 direction, float nearest, float reach) {
     RTCRay ray{};
@@ -48,104 +31,46 @@ glm::vec3 unit_or(glm::vec3 v, glm::vec3 otherwise) {
 
 }  // namespace
 
-struct HitScene::Handles {
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
-    std::vector<std::uint32_t> primitive;  // by Embree geometry id
-
-    Handles() = default;
-    Handles(const Handles&) = delete;
-    Handles& operator=(const Handles&) = delete;
-    ~Handles() {
-        if (scene != nullptr) {
-            rtcReleaseScene(scene);
-        }
-        if (device != nullptr) {
-            rtcReleaseDevice(device);
-        }
-    }
-};
-
-HitScene::HitScene() : handles_(std::make_unique<Handles>()) {}
-HitScene::HitScene(HitScene&&) noexcept = default;
-HitScene& HitScene::operator=(HitScene&&) noexcept = default;
-HitScene::~HitScene() = default;
-
 formats::Result<HitScene> HitScene::build(const Scene& scene, unsigned threads) {
-    HitScene result;
-    result.scene_ = &scene;
-    const Box box = box_of(scene);
-    result.centre_ = 0.5f * box.low + 0.5f * box.high;
-    const glm::vec3 size = box.high - result.centre_;
+    auto triangles = EmbreeScene::build(scene, threads);
+    if (!triangles) {
+        return std::move(triangles).error();
+    }
+    return HitScene(scene, std::move(*triangles));
+}
+
+HitScene::HitScene(const Scene& scene, EmbreeScene triangles)
+    : triangles_(std::move(triangles)), scene_(&scene) {
+    const glm::vec3 low = triangles_.low(), high = triangles_.high();
+    if (low.x > high.x) {
+        return;
+    }
+    centre_ = 0.5f * low + 0.5f * high;
+    const glm::vec3 farthest = glm::max(glm::abs(low), glm::abs(high));
     // A product, a sum, and the hit's own distance: a few halves of an ulp.
-    result.rounding_ =
-        4 * std::numeric_limits<float>::epsilon() * std::max({size.x, size.y, size.z});
+    rounding_ =
+        4 * std::numeric_limits<float>::epsilon() * std::max({farthest.x, farthest.y, farthest.z});
     // Rounded outward.
-    result.half_size_ = 1.00001f * glm::max(box.high - result.centre_, result.centre_ - box.low) +
-                        std::numeric_limits<float>::min();
-    Handles& h = *result.handles_;
-    const auto failed = [&] {
-        return formats::make_error(ErrorKind::resource, scene.source, "ray tracer",
-                                   "the ray hierarchy cannot be built",
-                                   "free some memory, or use a smaller scene");
-    };
-    // One instruction set everywhere: distances differ between them in their last bits.
-    h.device = rtcNewDevice("isa=avx2");
-    if (h.device == nullptr) {
-        return failed();
-    }
-    h.scene = rtcNewScene(h.device);
-    rtcSetSceneFlags(h.scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(h.scene, RTC_BUILD_QUALITY_HIGH);
-    for (std::uint32_t number = 0; number < scene.primitives.size(); ++number) {
-        const Primitive& p = scene.primitives[number];
-        if (p.index.empty()) {
-            continue;
-        }
-        RTCGeometry geometry = rtcNewGeometry(h.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* vertex = static_cast<float*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    3 * sizeof(float), p.position.size()));
-        auto* index = static_cast<std::uint32_t*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), p.index.size() / 3));
-        if (vertex == nullptr || index == nullptr) {
-            rtcReleaseGeometry(geometry);
-            return failed();
-        }
-        for (const glm::vec3& position : p.position) {
-            for (int axis = 0; axis < 3; ++axis) {
-                *vertex++ = position[axis] - result.centre_[axis];
-            }
-        }
-        std::copy(p.index.begin(), p.index.end(), index);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(h.scene, geometry);  // ids count up from 0
-        h.primitive.push_back(number);
-        rtcReleaseGeometry(geometry);
-    }
-    tbb::task_arena arena(threads != 0 ? static_cast<int>(threads) : tbb::task_arena::automatic);
-    arena.execute([&h] { rtcCommitScene(h.scene); });
-    if (rtcGetDeviceError(h.device) != RTC_ERROR_NONE) {
-        return failed();
-    }
-    return result;
+    half_size_ = 1.00001f * glm::max(high - centre_, centre_ - low) +
+                 std::numeric_limits<float>::epsilon() * farthest +
+                 std::numeric_limits<float>::min();
 }
 
 std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::vec3 direction,
                                                 float reach) const {
-    float nearest = 0;
-    while (true) {
+    assert(origin.free >= 0);
+    float nearest = origin.free;
+    while (nearest <= reach) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         RTCRayHit ray{make_ray(origin, direction, nearest, reach), {}};
         ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(handles_->scene, &context, &ray);
+        rtcIntersect1(triangles_.handle(), &context, &ray);
         if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
             return std::nullopt;
         }
         SurfaceHit hit;
-        hit.primitive = handles_->primitive[ray.hit.geomID];
+        hit.primitive = triangles_.geometry(ray.hit.geomID).primitive;
         hit.triangle = ray.hit.primID;
         if (hit.primitive == origin.primitive && hit.triangle == origin.triangle) {
             // A straight line leaves a plane once: rounding brought it back. Look behind it.
@@ -157,9 +82,9 @@ std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::ve
         const Primitive& p = scene_->primitives[hit.primitive];
         const std::uint32_t* corner = &p.index[3 * std::size_t{hit.triangle}];
         const float w = 1 - hit.u - hit.v;
-        const glm::vec3 a = w * (p.position[corner[0]] - centre_);
-        const glm::vec3 b = hit.u * (p.position[corner[1]] - centre_);
-        const glm::vec3 c = hit.v * (p.position[corner[2]] - centre_);
+        const glm::vec3 a = w * p.position[corner[0]];
+        const glm::vec3 b = hit.u * p.position[corner[1]];
+        const glm::vec3 c = hit.v * p.position[corner[2]];
         hit.position = a + b + c;
         hit.flat = unit_or({ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z}, -direction);
         const glm::vec3 smooth =
@@ -174,6 +99,7 @@ std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::ve
             kRoundings * glm::dot(glm::abs(hit.flat), glm::abs(a) + glm::abs(b) + glm::abs(c));
         return hit;
     }
+    return std::nullopt;
 }
 
 bool HitScene::is_blocked(const RayOrigin& origin, glm::vec3 direction) const {
@@ -182,8 +108,8 @@ bool HitScene::is_blocked(const RayOrigin& origin, glm::vec3 direction) const {
     }
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRay ray = make_ray(origin, direction, 0, std::numeric_limits<float>::infinity());
-    rtcOccluded1(handles_->scene, &context, &ray);
+    RTCRay ray = make_ray(origin, direction, origin.free, std::numeric_limits<float>::infinity());
+    rtcOccluded1(triangles_.handle(), &context, &ray);
     return ray.tfar < 0;
 }
 

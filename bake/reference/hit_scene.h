@@ -2,15 +2,15 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
 #include <optional>
 
+#include "bake/transport/embree_scene.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
-/// Where a ray met a triangle. Positions are relative to HitScene::centre.
+/// Where a ray met a triangle.
 struct SurfaceHit {
     float distance = 0;  ///< [m] along the ray
     glm::vec3 position{0};
@@ -25,17 +25,15 @@ struct SurfaceHit {
 struct RayOrigin {
     glm::vec3 position{0};
     std::uint32_t primitive = formats::kNone, triangle = formats::kNone;
+    float free = 0;  ///< [m] >= 0: hits nearer than this are ignored
 };
 
-/// All triangles of a scene, for closest hits one ray at a time. Immutable; any thread may trace.
+/// All triangles of a scene, for closest hits of single rays in the scene's frame. Immutable;
+/// any thread may trace.
 class HitScene {
   public:
     /// `scene` must outlive the result. Errors: resource.
     static formats::Result<HitScene> build(const formats::Scene& scene, unsigned threads);
-
-    HitScene(HitScene&&) noexcept;
-    HitScene& operator=(HitScene&&) noexcept;
-    ~HitScene();
 
     /// The first triangle within `reach` [m], front or back. `direction` is unit.
     std::optional<SurfaceHit> closest_hit(const RayOrigin& origin, glm::vec3 direction,
@@ -43,22 +41,20 @@ class HitScene {
     /// True if there is any.
     bool is_blocked(const RayOrigin& origin, glm::vec3 direction) const;
 
-    /// Subtract from world positions before they become ray origins [m].
-    glm::vec3 centre() const { return centre_; }
     const formats::Scene& scene() const { return *scene_; }
     /// Bound [m] on how far a point computed along a ray may lie from where it should.
     float rounding() const { return rounding_; }
-    /// Of the box around everything [m], a little more than half of it each way.
+    /// Of the box around everything [m]: its middle, and a little more than half of it each way.
+    glm::vec3 centre() const { return centre_; }
     glm::vec3 half_size() const { return half_size_; }
     /// False outside of the box around everything: a point there is in no body.
     bool is_in_bounds(glm::vec3 position) const {
-        return glm::all(glm::lessThanEqual(glm::abs(position), half_size_));
+        return glm::all(glm::lessThanEqual(glm::abs(position - centre_), half_size_));
     }
 
   private:
-    struct Handles;
-    HitScene();
-    std::unique_ptr<Handles> handles_;
+    HitScene(const formats::Scene& scene, EmbreeScene triangles);
+    EmbreeScene triangles_;
     const formats::Scene* scene_ = nullptr;
     glm::vec3 centre_{0}, half_size_{0};
     float rounding_ = 0;

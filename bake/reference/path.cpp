@@ -101,8 +101,8 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
         path.beta *= flight.weight;
         hit = flight.surface;
         if (!hit && !std::isinf(flight.distance)) {
-            const float distance =
-                is_near_surface ? std::max(0.0f, flight.distance - margin) : flight.distance;
+            const float distance = std::max(
+                path.origin.free, is_near_surface ? flight.distance - margin : flight.distance);
             const glm::vec3 at = path.origin.position + distance * path.direction;
             if (!surfaces.is_in_bounds(at)) {
                 path.lost = true;
@@ -116,6 +116,16 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
         return false;
     }
     return meet_surface(space, path, *hit, random);
+}
+
+// Start of a path that enters a body at a vertex. `inside` is clear of the vertex's triangles, but
+// the path may already scatter between the surface and that point, so the flight starts on the
+// tangent plane and ignores hits before it passes `inside`.
+RayOrigin enter_at(glm::vec3 vertex, glm::vec3 inside, glm::vec3 normal, glm::vec3 direction) {
+    constexpr float kGrazing = 0.1f;
+    const float depth = glm::dot(vertex - inside, normal);
+    const float way = std::max(0.0f, depth) / std::max(kGrazing, -glm::dot(direction, normal));
+    return {inside - way * direction, formats::kNone, formats::kNone, way};
 }
 
 PathSample finish(const PathSpace& space, Path& path, RandomStream& random) {
@@ -183,6 +193,9 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
             walks = path.beta != glm::vec3(0) && is_wanted(space, path.state);
         } else {
             walks = reflect_or_refract(space, path, crossing, random);
+        }
+        if (glm::dot(path.direction, normal) < 0) {
+            path.origin = enter_at(receiver.position, inside.position, normal, path.direction);
         }
     }
     return walks ? finish(space, path, random) : PathSample{path.radiance, false, path.events};

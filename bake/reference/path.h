@@ -30,10 +30,10 @@ struct PathSpace {
 /// A vertex that radiance is asked for at, and the direction it is seen from.
 struct ReferenceReceiver {
     std::uint32_t primitive = 0, vertex = 0;  ///< numbers of formats::Scene
-    glm::vec3 outside{0}, inside{0};          ///< where rays start on either side of the vertex's
-                                              ///< triangles, relative to HitScene::centre
-    glm::vec3 normal{0};                      ///< unit; {0,0,0}: black
-    glm::vec3 to_eye{0};                      ///< unit
+    glm::vec3 position{0};                    ///< [m] of the vertex
+    glm::vec3 outside{0}, inside{0};  ///< [m], clear of the vertex's triangles on either side
+    glm::vec3 normal{0};              ///< unit; {0,0,0}: black
+    glm::vec3 to_eye{0};              ///< unit
     glm::vec3 base_color{1};
     std::uint32_t medium = formats::kNone;  ///< index into ReferenceScene::media; none: opaque
     MediumStack around;                     ///< other bodies that it lies in

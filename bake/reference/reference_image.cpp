@@ -32,8 +32,8 @@ formats::Result<ReferenceImage> estimate_image(const PathSpace& space,
                                                const EstimateOptions& options,
                                                const Context& context) {
     const runtime::CameraFrame frame = runtime::camera_frame(camera);
-    const glm::vec3 eye =
-        glm::vec3(camera.eye.x, camera.eye.y, camera.eye.z) - space.scene.surfaces.centre();
+    const glm::vec3 eye(glm::dvec3(camera.eye.x, camera.eye.y, camera.eye.z) -
+                        space.scene.surfaces.scene().origin);
     const MediumStack around = surrounding_media(space.scene, eye, {0, 1, 0});
     auto estimate = estimate_pixels(
         camera.width * camera.height, options, context,

@@ -21,8 +21,8 @@ std::vector<std::uint64_t> draw(std::uint64_t count, std::uint64_t wanted, std::
     return drawn;
 }
 
-glm::vec3 direction_to(glm::vec3 from, glm::vec3 to, glm::vec3 otherwise) {
-    const glm::dvec3 way = glm::dvec3(to) - glm::dvec3(from);
+glm::vec3 direction_to(glm::dvec3 from, glm::dvec3 to, glm::vec3 otherwise) {
+    const glm::dvec3 way = to - from;
     const double length = glm::length(way);
     return length > 0 ? glm::vec3(way / length) : otherwise;
 }
@@ -47,11 +47,12 @@ std::vector<ReferenceReceiver> choose_receivers(const ReferenceScene& scene, std
         receiver.primitive = primitive;
         receiver.vertex = static_cast<std::uint32_t>(number - first);
         const glm::vec3 position = p.position[receiver.vertex];
-        const glm::vec3 lift = origins[number].origin - position;
-        receiver.outside = position - scene.surfaces.centre() + lift;
-        receiver.inside = position - scene.surfaces.centre() - lift;
+        receiver.position = position;
+        receiver.outside = origins[number].origin;
+        receiver.inside = position - (origins[number].origin - position);
         receiver.normal = p.normal[receiver.vertex];
-        receiver.to_eye = eye ? direction_to(position, *eye, receiver.normal) : receiver.normal;
+        receiver.to_eye =
+            eye ? direction_to(input.to_world(position), *eye, receiver.normal) : receiver.normal;
         receiver.base_color = base_color_at_vertex(input, primitive, receiver.vertex);
         receiver.medium = scene.medium_of[p.material];
         if (receiver.normal != glm::vec3(0)) {

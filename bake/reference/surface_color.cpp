@@ -89,7 +89,7 @@ glm::vec3 base_color(const formats::Scene& scene, std::uint32_t primitive,
         for (std::size_t k = 0; k < 3; ++k) {
             position += weight[k] * p.position[corner[k]];
         }
-        color *= to_vec(marble_color(*material.marble, position));
+        color *= to_vec(marble_color(*material.marble, scene.to_world(position)));
     }
     return color;
 }

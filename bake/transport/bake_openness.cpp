@@ -25,7 +25,7 @@ void gather_openness(const RayScene& rays, const DirectionSet& directions,
     std::array<Sums, kLanes> sums{};
     RayPacket::Lane normal_x{}, normal_y{}, normal_z{};
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-        const glm::vec3 origin = receivers[i].origin - rays.centre(), n = receivers[i].normal;
+        const glm::vec3 origin = receivers[i].origin, n = receivers[i].normal;
         packet.org_x[i] = origin.x, packet.org_y[i] = origin.y, packet.org_z[i] = origin.z;
         normal_x[i] = n.x, normal_y[i] = n.y, normal_z[i] = n.z;
         seen[i] = {n == glm::vec3(0) ? glm::vec3(0, 0, 1) : n, 0, 0};

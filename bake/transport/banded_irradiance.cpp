@@ -23,7 +23,7 @@ std::uint64_t gather_banded_irradiance(const RayScene& rays, const DirectionSet&
     std::fill(transport.begin(), transport.end(), 0.0f);
     const std::size_t texels = directions.inverse_solid_angle.size();
     const glm::vec3 n = receiver.normal;
-    RayPacket packet = rays_from(receiver.origin - rays.centre());
+    RayPacket packet = rays_from(receiver.origin);
     std::uint64_t traced = 0;
     for (const DirectionBlock& block : directions.blocks) {
         if (is_below(block, n)) {

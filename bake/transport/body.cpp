@@ -14,9 +14,10 @@ constexpr int kMostCrossings = 256;
 
 // How far behind a hit the next query starts: behind its twin in a neighbouring triangle, which
 // lies elsewhere by rounding only. Grazing hits are less certain along the ray.
-float step_behind(const RayScene& rays, float distance, float cosine) {
+float step_behind(const PacketHits& hits, std::uint32_t lane) {
     constexpr float kGrazing = 0.02f;
-    const float bound = rays.error_bound() / std::max(std::abs(cosine), kGrazing);
+    const float distance = hits.distance[lane];
+    const float bound = hits.error[lane] / std::max(std::abs(hits.cosine[lane]), kGrazing);
     return distance + std::max(bound, 1e-6f * distance);
 }
 
@@ -33,14 +34,14 @@ InwardPath follow(const RayScene& rays, const BodyPoint& point, glm::vec3 direct
     InwardPath path;
     LaneMask first{};
     first[0] = -1;
-    RayPacket packet = single_ray(point.inner - rays.centre(), direction);
+    RayPacket packet = single_ray(point.inner, direction);
     std::int32_t shells = 0;
     for (int i = 0; i < kMostCrossings; ++i) {
         const PacketHits hits = rays.closest(first, packet);
         if (hits.hit[0] == 0) {
             break;
         }
-        packet.tnear[0] = step_behind(rays, hits.distance[0], hits.cosine[0]);
+        packet.tnear[0] = step_behind(hits, 0);
         if (hits.material[0] == point.material && hits.cosine[0] != 0.0f) {
             shells += hits.cosine[0] > 0 ? -1 : 1;
             path.steps.push_back({hits.distance[0], shells});
@@ -138,7 +139,7 @@ PacketEntries find_entries(const RayScene& rays, std::uint32_t material, LaneMas
                 continue;
             }
             const float cosine = hits.cosine[lane];
-            packet.tnear[lane] = step_behind(rays, hits.distance[lane], cosine);
+            packet.tnear[lane] = step_behind(hits, lane);
             shells[lane] += cosine > 0 ? -1 : cosine < 0 ? 1 : 0;
             if (shells[lane] == 0) {
                 entries.distance[lane] = hits.distance[lane];

@@ -51,7 +51,7 @@ struct EntryCounts {
 
 /// The exit of each ray in `lanes` by signed depth (translucency.md 4, "Robust exit_hit"), then
 /// one query beyond it against everything. What is not of `material` blocks wherever it is met.
-/// `packet`: origins inside the medium, relative to the scene's centre; unit directions toward the
+/// `packet`: origins inside the medium; unit directions toward the
 /// light. `shells`: how many shells of the medium are around each origin, >= 1.
 PacketEntries find_entries(const RayScene& rays, std::uint32_t material, LaneMask lanes,
                            RayPacket packet, std::array<std::int32_t, RayPacket::kSize> shells,

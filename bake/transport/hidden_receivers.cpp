@@ -13,9 +13,9 @@ namespace opaline::bake {
 namespace {
 
 // Sixteen cosine-weighted directions around the normal, on a golden-angle spiral.
-RayPacket probe_packet(const Receiver& receiver, glm::vec3 centre) {
+RayPacket probe_packet(const Receiver& receiver) {
     RayPacket packet{};
-    const glm::vec3 origin = receiver.origin - centre;
+    const glm::vec3 origin = receiver.origin;
     const Frame frame = make_frame(receiver.normal);
     for (std::uint32_t i = 0; i < RayPacket::kSize; ++i) {
         const float r2 = (static_cast<float>(i) + 0.5f) / static_cast<float>(RayPacket::kSize);
@@ -38,7 +38,7 @@ bool is_hidden(const RayScene& rays, const Receiver& receiver) {
     }
     LaneMask all;
     all.fill(-1);
-    const LaneMask back = rays.meets_back_face(all, probe_packet(receiver, rays.centre()));
+    const LaneMask back = rays.meets_back_face(all, probe_packet(receiver));
     return std::all_of(back.begin(), back.end(), [](std::int32_t lane) { return lane != 0; });
 }
 

@@ -10,7 +10,7 @@ std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& direct
                                 const Receiver& receiver, std::span<float> transport,
                                 std::span<const float> transmittance) {
     std::fill(transport.begin(), transport.end(), 0.0f);
-    RayPacket packet = rays_from(receiver.origin - rays.centre());
+    RayPacket packet = rays_from(receiver.origin);
     std::uint64_t traced = 0;
     for (const DirectionBlock& block : directions.blocks) {
         if (!is_below(block, receiver.normal)) {

@@ -3,11 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
-#include <span>
-#include <string>
-#include <vector>
+#include <utility>
 
+#include "bake/transport/embree_scene.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
 
@@ -24,7 +22,7 @@ struct alignas(64) RayPacket {
     LaneBits mask, id, flags;
 };
 
-/// Rays from one point, relative to RayScene::centre; directions and tfar are still to be given.
+/// Rays from one point; directions and tfar are still to be given.
 inline RayPacket rays_from(glm::vec3 origin) {
     RayPacket packet{};
     packet.org_x.fill(origin.x);
@@ -42,22 +40,17 @@ struct PacketHits {
     LaneMask hit;              ///< -1 yes, 0 no
     RayPacket::Lane distance;  ///< along the ray [m]
     RayPacket::Lane cosine;  ///< of the ray with the triangle's normal: > 0 leaves through the back
+    RayPacket::Lane error;   ///< bound [m] on the error of the hit's position
     RayPacket::LaneBits material;                  ///< index into Scene::materials
     RayPacket::Lane normal_x, normal_y, normal_z;  ///< unit, of the triangle; 0 without area
 };
 
-/// All triangles of a scene, ready for rays. Immutable once built; any thread may trace.
-/// Coordinates are taken relative to the scene's centre, so a scene far from the origin loses no
-/// precision beyond what its own numbers lost.
+/// All triangles of a scene, ready for packets of rays in the scene's frame. Immutable once built;
+/// any thread may trace.
 class RayScene {
   public:
-    /// Builds the hierarchy (of a scene without triangles too: the open sky) with `threads` threads
-    /// (0: all). Errors: resource.
+    /// As EmbreeScene::build.
     static formats::Result<RayScene> build(const formats::Scene& scene, unsigned threads);
-
-    RayScene(RayScene&&) noexcept;
-    RayScene& operator=(RayScene&&) noexcept;
-    ~RayScene();
 
     /// Any-hit test of the rays in `lanes`, between tnear and tfar. Coherent packets are fast:
     /// about one origin, or about one direction.
@@ -71,28 +64,14 @@ class RayScene {
     /// Inside a closed body all do.
     LaneMask meets_back_face(const LaneMask& lanes, const RayPacket& packet) const;
 
-    /// Subtract from world positions before they become ray origins [m].
-    glm::vec3 centre() const { return centre_; }
-
-    std::uint64_t triangles() const { return triangles_; }
+    std::uint64_t triangles() const { return triangles_.triangles(); }
 
     /// Nothing can be hit: those who gather light need not trace at all.
-    bool is_empty() const { return triangles_ == 0; }
-
-    /// Bound [m] on the error of a hit's position.
-    float error_bound() const { return error_bound_; }
-
-    /// Embree's version and the instruction set it is pinned to: hit distances differ between
-    /// instruction sets, so both belong into the provenance.
-    static std::string description();
+    bool is_empty() const { return triangles() == 0; }
 
   private:
-    struct Handles;
-    RayScene();
-    std::unique_ptr<Handles> handles_;
-    glm::vec3 centre_{0};
-    std::uint64_t triangles_ = 0;
-    float error_bound_ = 0;
+    explicit RayScene(EmbreeScene triangles) : triangles_(std::move(triangles)) {}
+    EmbreeScene triangles_;
 };
 
 }  // namespace opaline::bake

@@ -43,7 +43,7 @@ struct Group {
             for (std::size_t turn = 0; turn < receivers.size() && lanes[lane] == 0; ++turn) {
                 const std::size_t i = (lane + shift + turn) % receivers.size();
                 if (cosine_integral(block(i, b), lane, receivers[i].normal) > 0.0f) {
-                    const glm::vec3 origin = receivers[i].origin - rays.centre();
+                    const glm::vec3 origin = receivers[i].origin;
                     packet.org_x[lane] = origin.x;
                     packet.org_y[lane] = origin.y;
                     packet.org_z[lane] = origin.z;
@@ -149,7 +149,7 @@ std::uint64_t gather_irradiance_together(const RayScene& rays, const SharedDirec
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         const std::span<float> own = transport.subspan(i * size, size);
         const glm::vec3 normal = receivers[i].normal;
-        RayPacket packet = rays_from(receivers[i].origin - rays.centre());
+        RayPacket packet = rays_from(receivers[i].origin);
         for (std::size_t b = 0; b < seen.size(); ++b) {
             if (seen[b] == Seen::mixed && group.is_above(i, b)) {
                 traced += trace_block(rays, group.block(i, b), normal, transmittance, packet, own);

@@ -79,7 +79,7 @@ std::uint64_t add_sun_irradiance(const RayScene& rays, const SunRays& suns,
                                  const Receiver& receiver, double eta,
                                  std::span<double> irradiance) {
     std::uint64_t traced = 0;
-    RayPacket packet = rays_from(receiver.origin - rays.centre());
+    RayPacket packet = rays_from(receiver.origin);
     for (const SunRays::Packet& sun : suns.packets) {
         packet.dir_x = sun.dir_x;
         packet.dir_y = sun.dir_y;
@@ -124,7 +124,7 @@ std::uint64_t add_smooth_irradiance(const RayScene& rays, const SmoothLights& li
                                     std::span<double> irradiance) {
     constexpr std::uint32_t kSide = 4;
     const Frame frame = make_frame(receiver.normal);
-    RayPacket packet = rays_from(receiver.origin - rays.centre());
+    RayPacket packet = rays_from(receiver.origin);
     RayPacket::Lane cosine;
     LaneMask lanes;
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {

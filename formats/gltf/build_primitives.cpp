@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "formats/gltf/choose_origin.h"
 #include "formats/gltf/read_primitive.h"
 #include "formats/gltf/smooth_normals.h"
 
@@ -26,14 +27,14 @@ glm::dmat3 cofactors(const glm::dmat3& m) {
 }
 
 void place_positions(const PrimitiveData& data, const glm::dmat4& world, double metres_per_unit,
-                     Primitive& out, Report& report) {
+                     glm::dvec3 origin, Primitive& out, Report& report) {
     const std::size_t count = data.position.size() / 3;
     out.position.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const glm::dvec3 p =
             metres_per_unit * glm::dvec3(world * glm::dvec4(triple(data.position, i), 1.0));
-        out.position[i] = glm::vec3(p);
-        if (!is_finite(glm::dvec3(out.position[i]))) {
+        out.position[i] = glm::vec3(p - origin);
+        if (!is_finite(glm::dvec3(glm::vec3(p))) || !is_finite(glm::dvec3(out.position[i]))) {
             report.error(out.name,
                          "vertex " + std::to_string(i) + " is too far away for single precision",
                          "scale the scene down");
@@ -207,6 +208,7 @@ bool has_area(const Primitive& primitive) {
 void build_primitives(const Document& document, const std::vector<MeshInstance>& instances,
                       const std::vector<Bytes>& buffers, double metres_per_unit, Scene& scene,
                       Report& report) {
+    scene.origin = choose_origin(document, instances, buffers, metres_per_unit);
     std::size_t morphed = 0;
     for (const MeshInstance& instance : instances) {
         const std::uint32_t mesh_index = document.nodes[instance.node].mesh;
@@ -237,11 +239,12 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
             if (!data) {
                 continue;
             }
-            place_positions(*data, instance.world, metres_per_unit, out, report);
+            place_positions(*data, instance.world, metres_per_unit, scene.origin, out, report);
             place_normals(*data, instance.world, out);
             place_texcoords(*data, material, out, report);
             place_colors(*data, out, report);
             place_indices(*data, mirrored, out, report);
+            warn_of_coarse_positions(*data, out, scene.origin, report);
         }
         if (!report.failed()) {
             complete_normals(std::span(scene.primitives).subspan(first), report);

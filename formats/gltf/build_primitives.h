@@ -10,7 +10,7 @@
 
 namespace opaline::formats::gltf {
 
-/// Fills `scene.primitives` in running-number order, in world space and metres. Needs
+/// Fills `scene.primitives` in running-number order and `scene.origin`. Needs
 /// `scene.materials`. Precondition: validate_document found no fault.
 void build_primitives(const Document& document, const std::vector<MeshInstance>& instances,
                       const std::vector<Bytes>& buffers, double metres_per_unit, Scene& scene,

@@ -23,7 +23,8 @@ struct ImportedScene {
 };
 
 /// Reads a glTF 2.0 file, text or binary (told apart by content), with its buffers and the
-/// textures that base colours use, into world space and metres. Untrusted input is safe.
+/// textures that base colours use, into metres and the frame of `Scene::origin`. Untrusted input is
+/// safe.
 ///
 /// Primitives stand in the order of the default scene's nodes depth-first, then the mesh's
 /// primitives; vertices keep their number and order. Points and lines keep their running number as

@@ -1,6 +1,7 @@
 #include "formats/opal/sparse_rows.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -10,9 +11,13 @@
 namespace opaline::formats {
 namespace {
 
+// NaN where any of them is not finite.
 float largest_magnitude(std::span<const float> values) {
     float largest = 0;
     for (const float value : values) {
+        if (!std::isfinite(value)) {
+            return std::numeric_limits<float>::quiet_NaN();
+        }
         largest = std::max(largest, std::abs(value));
     }
     return largest;
@@ -22,11 +27,11 @@ float largest_magnitude(std::span<const float> values) {
 // be inverted means values that are zero for every purpose.
 float code_scale(float largest, std::int32_t limit) {
     const float scale = largest / static_cast<float>(limit);
-    return scale >= std::numeric_limits<float>::min() ? scale : 0.0f;
+    return std::isnan(scale) || scale >= std::numeric_limits<float>::min() ? scale : 0.0f;
 }
 
 std::int16_t quantise(float value, float scale, std::int32_t limit) {
-    if (scale == 0.0f) {
+    if (!(scale > 0)) {
         return 0;
     }
     const auto code = static_cast<std::int32_t>(std::lround(value / scale));
@@ -35,7 +40,7 @@ std::int16_t quantise(float value, float scale, std::int32_t limit) {
 
 // The code whose detail_value is nearest.
 std::int8_t quantise_root(float value, float scale) {
-    if (scale == 0.0f) {
+    if (!(scale > 0)) {
         return 0;
     }
     const float target = std::abs(value) / scale;
@@ -72,6 +77,7 @@ SparseRows make_sparse_rows(std::uint32_t cubemap_size, std::uint32_t code_bits)
 
 bool append_row(SparseRows& rows, const SparseRow& row) {
     const std::size_t details = row.index.size();
+    assert(row.value.size() == details * row.bands && row.average.size() == kCubeFaces * row.bands);
     if (details > std::numeric_limits<std::uint32_t>::max() - rows.row_offset.back()) {
         return false;
     }
@@ -108,7 +114,18 @@ bool append_row(SparseRows& rows, const SparseRow& row) {
     return true;
 }
 
+std::optional<std::uint32_t> find_faulty_row(const SparseRows& rows, std::uint32_t bands) {
+    assert(bands > 0 && rows.detail_scale.size() == rows.average_scale.size());
+    for (std::size_t band_row = 0; band_row < rows.detail_scale.size(); ++band_row) {
+        if (!std::isfinite(rows.average_scale[band_row] + rows.detail_scale[band_row])) {
+            return static_cast<std::uint32_t>(band_row / bands);
+        }
+    }
+    return std::nullopt;
+}
+
 bool append_rows(SparseRows& rows, const SparseRows& tail) {
+    assert(tail.cubemap_size == rows.cubemap_size && tail.code_bits == rows.code_bits);
     const std::uint32_t base = rows.row_offset.back();
     if (tail.row_offset.back() > std::numeric_limits<std::uint32_t>::max() - base) {
         return false;

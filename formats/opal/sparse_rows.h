@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -65,8 +66,13 @@ SparseRows make_sparse_rows(std::uint32_t cubemap_size, std::uint32_t code_bits)
 
 /// Quantises and appends one row: signed symmetric codes, one scale per band for the details and
 /// one for the six averages (16 bits), round to nearest (translucency.md 3.9).
-/// Values must be finite. Fails (returns false, nothing appended) if details would exceed 2^32 - 1.
+/// If an average or a detail of a band is NaN or infinite, its scale becomes NaN: the row decodes
+/// to NaN and find_faulty_row finds it. Fails (returns false, nothing appended) if details would
+/// exceed 2^32 - 1.
 bool append_row(SparseRows& rows, const SparseRow& row);
+
+/// The first row appended with a NaN or infinite value, if any. Every row has `bands` bands.
+std::optional<std::uint32_t> find_faulty_row(const SparseRows& rows, std::uint32_t bands);
 
 /// Appends all rows of `tail`, which must have the same basis and code width.
 bool append_rows(SparseRows& rows, const SparseRows& tail);

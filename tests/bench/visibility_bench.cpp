@@ -84,7 +84,7 @@ struct Bare {
             auto* vertex = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
                 geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, p.position.size()));
             for (const glm::vec3 position : p.position) {
-                *vertex++ = position - setup.rays.centre();
+                *vertex++ = position;
             }
             auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
                 geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, p.index.size() / 3));
@@ -95,7 +95,7 @@ struct Bare {
         }
         rtcCommitScene(scene);
         for (const Receiver& r : setup.receivers) {
-            const glm::vec3 origin = r.origin - setup.rays.centre();
+            const glm::vec3 origin = r.origin;
             for (const DirectionBlock& block : setup.directions.blocks) {
                 RayPacket packet{};
                 LaneMask mask{};

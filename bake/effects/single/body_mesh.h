@@ -16,7 +16,7 @@ struct BodyMesh {
     std::vector<glm::vec3> position;   ///< [m], relative to `centre`
     std::vector<glm::uvec3> triangle;  ///< outward counter-clockwise
     std::uint32_t body_triangles = 0;  ///< of the medium; the rest only blocks light
-    glm::vec3 centre{0};               ///< of the body's bounding box, world [m]
+    glm::vec3 centre{0};               ///< of the body's bounding box [m]
     float radius = 0;                  ///< [m] of a sphere around `centre` that holds the body
     float mean_edge = 0;               ///< [m] of the body's triangles
 };

@@ -111,7 +111,7 @@ void trace_open(const GatherJob& job, const GatherDirection& direction, GatherWo
         std::array<std::int32_t, kLanes> shells{};
         for (std::size_t lane = 0; lane < count; ++lane) {
             const InteriorNode& node = *work.open[begin + lane].node;
-            const glm::vec3 origin = node.position - job.rays.centre();
+            const glm::vec3 origin = node.position;
             packet.org_x[lane] = origin.x;
             packet.org_y[lane] = origin.y;
             packet.org_z[lane] = origin.z;

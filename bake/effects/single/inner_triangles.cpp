@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/receivers/vertex_receivers.h"
 
 namespace opaline::bake {
 namespace {
@@ -47,7 +48,7 @@ std::array<std::int32_t, kLanes> count_shells(const RayScene& rays, std::uint32_
                 shells[lane] += hits.cosine[lane] > 0 ? 1 : hits.cosine[lane] < 0 ? -1 : 0;
             }
             packet.tnear[lane] =
-                hits.distance[lane] + std::max(rays.error_bound(), 1e-6f * hits.distance[lane]);
+                hits.distance[lane] + std::max(hits.error[lane], 1e-6f * hits.distance[lane]);
             any |= lanes[lane];
         }
         if (any == 0) {
@@ -71,6 +72,9 @@ bool lies_inside(const RayScene& rays, std::uint32_t material, const Triangle& t
     const std::array<glm::vec3, kRays> direction{
         normal, glm::normalize(normal + 0.7f * tangent + 0.4f * other),
         glm::normalize(normal - 0.5f * tangent - 0.6f * other)};
+    const glm::vec3 reach = glm::max(glm::abs(b - a), glm::abs(c - a));
+    constexpr float kClear = 4.0f;  // of the triangle itself, by rounding errors
+    const float clear = kClear * clearance_bound(a, std::max({reach.x, reach.y, reach.z}));
     RayPacket packet{};
     packet.mask.fill(0xffffffffu);
     LaneMask lanes{};
@@ -79,9 +83,7 @@ bool lies_inside(const RayScene& rays, std::uint32_t material, const Triangle& t
         if (p < 3) {
             weight[static_cast<glm::length_t>(p)] = 0.8f;
         }
-        constexpr float kClear = 4.0f;  // of the triangle itself, by rounding errors
-        const glm::vec3 origin = weight.x * a + weight.y * b + weight.z * c - rays.centre() +
-                                 kClear * rays.error_bound() * normal;
+        const glm::vec3 origin = weight.x * a + weight.y * b + weight.z * c + clear * normal;
         for (std::size_t r = 0; r < kRays; ++r) {
             const std::size_t lane = p * kRays + r;
             packet.org_x[lane] = origin.x;

@@ -109,7 +109,7 @@ EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
     for (const InteriorNode& node : nodes) {
         std::array<std::int32_t, kLanes> shells;
         shells.fill(node.shells);
-        RayPacket packet = rays_from(node.position - rays.centre());
+        RayPacket packet = rays_from(node.position);
         for (std::size_t b = 0; b < directions.blocks.size(); ++b) {
             const DirectionBlock& block = directions.blocks[b];
             packet.dir_x = block.dir_x;

@@ -35,7 +35,7 @@ SingleMedium make_single_medium(const formats::Scene& scene, std::uint32_t mater
 
 /// Interior points below a body point, where light is looked for.
 struct InteriorNode {
-    glm::vec3 position;       ///< [m], world
+    glm::vec3 position;       ///< [m]
     float weight[3];          ///< of T_p, per channel
     std::int32_t shells = 1;  ///< of the medium around it
 };

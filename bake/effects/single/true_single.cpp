@@ -91,7 +91,7 @@ Luminance integrate_single(const SingleQuadrature& q, const RayScene& rays, cons
     all.fill(-1);
     const InwardPath path = trace_inward_path(rays, point, q.medium.path_limit);
     for (const InteriorNode& node : place_interior_nodes(q.medium, point, path)) {
-        RayPacket packet = rays_from(node.position - rays.centre());
+        RayPacket packet = rays_from(node.position);
         for (const SunRays::Packet& sun : q.suns.packets) {
             packet.dir_x = sun.dir_x;
             packet.dir_y = sun.dir_y;

@@ -35,6 +35,20 @@ TEST(PackAsset, MarbleMultipliesTheBaseColourOfEveryVertex) {
     EXPECT_NE(asset.base_color[0], asset.base_color[5]);
 }
 
+TEST(PackAsset, PositionsAndMarbleAreThoseOfTheWorld) {
+    Scene scene = make_scene({make_sphere(1)});
+    scene.materials[0].marble = {0.3f, {{0.1f, 0.2f, 0.3f}, {1, 0.9f, 0.8f}}};
+    scene.origin = {1024, 0, -2048};
+    const Asset asset = pack(scene);
+    for (std::size_t v = 0; v < asset.position.size(); ++v) {
+        const glm::dvec3 world =
+            glm::dvec3(1024, 0, -2048) + glm::dvec3(scene.primitives[0].position[v]);
+        EXPECT_EQ(asset.position[v].x, static_cast<float>(world.x));
+        EXPECT_EQ(asset.position[v].z, static_cast<float>(world.z));
+        EXPECT_EQ(asset.base_color[v], bake::marble_color(*scene.materials[0].marble, world));
+    }
+}
+
 TEST(PackAsset, OnlyPrimitivesWithAnImageStoreTextureCoordinates) {
     Scene scene =
         make_scene({make_quad({}, {1, 0, 0}, {0, 1, 0}), make_quad({}, {1, 0, 0}, {0, 1, 0})});

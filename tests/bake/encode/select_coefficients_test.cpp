@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -42,6 +43,42 @@ TEST(SelectCoefficients, AllOfThemReproduceTheRow) {
     for (std::size_t face = 0; face < 6; ++face) {
         ASSERT_EQ(row.average[face], dense[face * kSize * kSize]);
     }
+}
+
+// Also if the coefficient would not be kept.
+TEST(SelectCoefficients, OneThatIsNotFiniteSpoilsItsRow) {
+    for (const std::uint32_t bands : {1u, 3u}) {
+        for (const float bad :
+             {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+            std::vector<float> dense = random_coefficients(bands);
+            formats::SparseRows rows = formats::make_sparse_rows(kSize, 8);
+            ASSERT_TRUE(formats::append_row(
+                rows, select_coefficients(make_selector(kSize, 8), dense, bands)));
+            dense[dense.size() - 5] = bad;
+            ASSERT_TRUE(formats::append_row(
+                rows, select_coefficients(make_selector(kSize, 8), dense, bands)));
+            EXPECT_EQ(formats::find_faulty_row(rows, bands), 1u);
+        }
+    }
+}
+
+TEST(SelectCoefficients, TheErrorNamesTheStageAndTheReceiver) {
+    constexpr std::uint32_t kTerms = 4, kBands = 3;
+    formats::SparseRows rows = formats::make_sparse_rows(kSize, 8);
+    std::vector<float> dense = random_coefficients(kBands);
+    for (std::uint32_t row = 0; row < 5 * kTerms; ++row) {
+        dense[70] = row == 14 ? std::numeric_limits<float>::quiet_NaN() : 1.0f;
+        if (row == 14) {
+            EXPECT_TRUE(require_finite(rows, kTerms, kBands, "rows of 'Vase'"));
+        }
+        ASSERT_TRUE(formats::append_row(
+            rows, select_coefficients(make_selector(kSize, 30), dense, kBands)));
+    }
+    const auto status = require_finite(rows, kTerms, kBands, "rows of 'Vase'");
+    ASSERT_FALSE(status);
+    const formats::Diagnostic& said = status.error().diagnostics.at(0);
+    EXPECT_EQ(said.where, "rows of 'Vase'");
+    EXPECT_EQ(said.fault, "the light transport of vertex 3 is not a finite number");
 }
 
 // With beta = 0 the kept set is the L2-best of its size: no dropped value exceeds a kept one.

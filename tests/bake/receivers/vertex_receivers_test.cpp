@@ -46,6 +46,21 @@ TEST(VertexReceivers, OffsetsAreOfTheOrderOfTheRoundingError) {
     }
 }
 
+// Small triangles in a large scene: the offset depends on the rounding of the vertex and the extent
+// of its triangles, not on the extent of the scene.
+TEST(VertexReceivers, OffsetsOfFineTrianglesAreNoMoreThanAFewRoundings) {
+    for (const float x : {0.0f, 10.0f, 30.0f}) {
+        const auto scene = tests::make_scene({tests::make_sphere(4, 0.01f, {x, 0, 0})});
+        const auto receivers = make_vertex_receivers(scene);
+        for (std::size_t v = 0; v < receivers.size(); ++v) {
+            const float offset =
+                glm::distance(receivers[v].origin, scene.primitives[0].position[v]);
+            EXPECT_GT(offset, 0);
+            EXPECT_LT(offset, 6e-7f * (x + 0.02f)) << x;
+        }
+    }
+}
+
 // A scan's flap: two triangles folded onto each other rise above the surface they hang on. Rays
 // that started below it would make a black speck.
 TEST(VertexReceivers, RaysOfAFoldedVertexStartAboveTheFold) {

@@ -45,6 +45,57 @@ TEST(GltfHierarchy, MatrixIsColumnMajor) {
     EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("matrix is not an array of 16 numbers"));
 }
 
+TEST(GltfHierarchy, ASceneNearTheWorldsOriginKeepsItsCoordinates) {
+    AssetBuilder asset = triangle_asset();
+    for (const double x : {0.0, 0.3, 5.0}) {
+        asset.json["nodes"][0]["translation"] = {x, 0, -x};
+        const auto scene = must_import(asset).scene;
+        EXPECT_EQ(scene.origin, glm::dvec3(0)) << x;
+        EXPECT_EQ(scene.primitives[0].position[0].x, static_cast<float>(x));
+    }
+}
+
+// A scene moved by its node keeps the float coordinates that it has at the origin.
+TEST(GltfHierarchy, ADistantSceneHasAFrameOfItsOwn) {
+    AssetBuilder asset = triangle_asset();
+    const auto here = must_import(asset).scene;
+    for (const double x : {1e3, 12345.5, 1e6}) {
+        asset.json["nodes"][0]["translation"] = {x, 0, -x};
+        const auto imported = must_import(asset);
+        const auto& scene = imported.scene;
+        EXPECT_NEAR(scene.origin.x, x, 1);
+        EXPECT_EQ(scene.origin.y, 0) << "not far along this axis";
+        EXPECT_NEAR(scene.origin.z, -x, 1);
+        for (std::size_t v = 0; v < 3; ++v) {
+            const glm::dvec3 world = scene.to_world(scene.primitives[0].position[v]);
+            const glm::dvec3 expected =
+                glm::dvec3(x, 0, -x) + glm::dvec3(here.primitives[0].position[v]);
+            EXPECT_EQ(world, expected) << x;
+        }
+    }
+    EXPECT_THAT(lines(must_import(triangle_asset()).warnings), testing::Not(HasSubstr("spacing")));
+}
+
+TEST(GltfHierarchy, PositionsThatFloatsAreTooCoarseForAreWarnedOf) {
+    const auto triangle_at = [](float x, float size) {
+        AssetBuilder asset;
+        const auto position = asset.add<float>({x, 0, 0, x + size, 0, 0, x, size, 0}, "VEC3");
+        asset.add_node(asset.add_mesh({{"POSITION", position}}));
+        return asset;
+    };
+    EXPECT_THAT(lines(must_import(triangle_at(1000, 0.1f)).warnings),
+                testing::Not(HasSubstr("spacing")));
+    EXPECT_THAT(lines(must_import(triangle_at(1000, 0.002f)).warnings),
+                HasSubstr("its POSITION values are so large that their float spacing is"));
+    AssetBuilder large = triangle_at(0, 0.002f);
+    large.add_node(0, {{"translation", {5000, 0, 0}}});
+    EXPECT_THAT(lines(must_import(large).warnings), HasSubstr("the scene is so large"));
+    AssetBuilder far = triangle_at(0, 0.002f);
+    far.json["nodes"][0]["translation"] = {5000, 0, 0};
+    EXPECT_THAT(lines(must_import(far).warnings),
+                HasSubstr("so far from the world's origin that the float spacing"));
+}
+
 TEST(GltfHierarchy, MirroredInstancesStayCounterClockwiseOutside) {
     AssetBuilder asset = triangle_asset();
     asset.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =

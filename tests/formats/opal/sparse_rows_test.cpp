@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "formats/opal/cubemap.h"
@@ -132,6 +133,33 @@ TEST(SparseRows, PickedRowsDecodeAsTheRowsTheyWere) {
                         ASSERT_EQ(actual, expected) << n << ' ' << bits << ' ' << bands;
                     }
                 }
+            }
+        }
+    }
+}
+
+TEST(SparseRows, WhatIsNotFiniteStaysSoAndIsFound) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float inf = std::numeric_limits<float>::infinity();
+    for (const std::uint32_t bits : {8u, 16u}) {
+        for (const float bad : {nan, inf, -inf}) {
+            for (const bool in_average : {false, true}) {
+                SparseRows rows = make_sparse_rows(8, bits);
+                SparseRow row = random_row(8, 3, 10, 1);
+                ASSERT_TRUE(append_row(rows, row));
+                EXPECT_FALSE(find_faulty_row(rows, 3));
+                (in_average ? row.average : row.value)[7] = bad;
+                ASSERT_TRUE(append_row(rows, row));
+                EXPECT_EQ(find_faulty_row(rows, 3), 1u);
+                SparseRows all = make_sparse_rows(8, bits);
+                ASSERT_TRUE(append_rows(all, rows));
+                ASSERT_TRUE(append_rows(all, rows));
+                EXPECT_EQ(find_faulty_row(all, 3), 1u);
+                const std::uint32_t turned[] = {3, 0, 2, 1};
+                EXPECT_EQ(find_faulty_row(pick_rows(all, 3, turned), 3), 0u);
+                std::vector<float> dense(cubemap_texels(8));
+                decode_row(rows.view(), {0, 2, 3, 0, 0}, 1, in_average ? 1 : 0, dense);
+                EXPECT_TRUE(std::isnan(in_average ? dense[64] : dense[row.index[7]]));
             }
         }
     }

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+struct RTCDeviceTy;  // Embree's handles; callers that trace include Embree's header themselves
+struct RTCSceneTy;
+
+namespace opaline::bake {
+
+/// Owns an Embree device and the hierarchy over all triangles of a scene. Coordinates are those of
+/// the scene's frame, without further rounding. Immutable once built; any thread may trace.
+class EmbreeScene {
+  public:
+    /// Builds the hierarchy with `threads` threads (0: all). A scene without triangles is valid:
+    /// the open sky. Errors: resource.
+    static formats::Result<EmbreeScene> build(const formats::Scene& scene, unsigned threads);
+
+    EmbreeScene(EmbreeScene&& other) noexcept;
+    EmbreeScene& operator=(EmbreeScene&& other) noexcept;
+    ~EmbreeScene();
+
+    RTCSceneTy* handle() const { return scene_; }
+
+    /// The triangles of one primitive.
+    struct Geometry {
+        std::uint32_t primitive, material;  ///< numbers of formats::Scene
+        bool double_sided;
+        float error_bound;  ///< [m], of the computed position of a hit
+    };
+    /// `id`: RTCHit::geomID.
+    const Geometry& geometry(std::uint32_t id) const { return geometries_[id]; }
+
+    std::uint64_t triangles() const { return triangles_; }
+
+    /// Box around all vertices [m]; low > high where there are none.
+    glm::vec3 low() const { return low_; }
+    glm::vec3 high() const { return high_; }
+
+    /// Embree's version and the instruction set it is pinned to: hit distances differ between
+    /// instruction sets, so both belong into the provenance.
+    static std::string description();
+
+  private:
+    EmbreeScene() = default;
+
+    RTCDeviceTy* device_ = nullptr;
+    RTCSceneTy* scene_ = nullptr;
+    std::vector<Geometry> geometries_;
+    std::uint64_t triangles_ = 0;
+    glm::vec3 low_{std::numeric_limits<float>::max()};
+    glm::vec3 high_{std::numeric_limits<float>::lowest()};
+};
+
+}  // namespace opaline::bake
