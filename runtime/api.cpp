@@ -14,22 +14,24 @@ namespace {
 // Fixed size: reporting that memory ran out must not need memory.
 thread_local char last_error[512] = "";
 
-std::uint32_t terms_of(std::uint32_t flags) {
-    const auto keep = [flags](std::uint32_t without, std::uint32_t term) {
-        return (flags & without) == 0 ? term : 0;
+formats::TermSet terms_of(std::uint32_t flags) {
+    const auto keep = [flags](std::uint32_t without, formats::TermSet term) {
+        return (flags & without) == 0 ? term : formats::TermSet::none;
     };
-    return keep(OPALINE_SHADE_WITHOUT_MULTIPLE, runtime::kMultipleTerm) |
-           keep(OPALINE_SHADE_WITHOUT_SINGLE, runtime::kSingleTerm) |
-           keep(OPALINE_SHADE_WITHOUT_SPECULAR, runtime::kSpecularTerm) |
-           keep(OPALINE_SHADE_WITHOUT_DIFFUSE, runtime::kDiffuseTerm);
+    return keep(OPALINE_SHADE_WITHOUT_MULTIPLE, formats::TermSet::multiple) |
+           keep(OPALINE_SHADE_WITHOUT_SINGLE, formats::TermSet::single) |
+           keep(OPALINE_SHADE_WITHOUT_SPECULAR, formats::TermSet::specular) |
+           keep(OPALINE_SHADE_WITHOUT_DIFFUSE, formats::TermSet::diffuse);
 }
 
 // Without allocating: shading is called per frame.
 bool is_prefiltered_for(const opaline_light& light, const formats::AssetView& asset) {
-    return std::ranges::all_of(asset.roughness, [&](float roughness) {
+    const bool has_levels = std::ranges::all_of(asset.roughness, [&](float roughness) {
         return roughness < 0 ||
-               std::ranges::binary_search(light.roughness, runtime::roughness_level(roughness));
+               std::ranges::binary_search(light.needs.levels, runtime::roughness_level(roughness));
     });
+    return has_levels && (light.needs.gloss ||
+                          std::ranges::none_of(asset.gloss, &formats::GlossRecord::is_glossy));
 }
 
 }  // namespace
@@ -208,7 +210,7 @@ opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_ligh
     options.base_color = (flags & OPALINE_SHADE_WITHOUT_BASE_COLOR) == 0;
     options.fresnel = (flags & OPALINE_SHADE_WITHOUT_FRESNEL) == 0;
     options.terms = terms_of(flags);
-    if ((options.terms & runtime::kSpecularTerm) != 0 && options.fresnel) {
+    if (has_any(options.terms, formats::TermSet::specular) && options.fresnel) {
         if (!is_prefiltered_for(*light, view)) {
             return fail(OPALINE_INVALID_ARGUMENT,
                         "the light was made for an asset of other roughnesses: make one for this "

@@ -30,8 +30,8 @@ void project_map(opaline_light& light) {
 
 // What it holds once its map or suns have changed: turning it does not change these maps.
 void prefilter(opaline_light& light) {
-    light.specular = runtime::prefilter_specular(light.environment, light.roughness, light.rotation,
-                                                 light.threads);
+    light.specular =
+        runtime::make_specular_light(light.environment, light.needs, light.rotation, light.threads);
 }
 
 // A black one that keeps everything else.
@@ -40,7 +40,7 @@ opaline_light without_environment(const opaline_light& light) {
     black.n = light.n;
     black.threads = light.threads;
     black.rotation = light.rotation;
-    black.roughness = light.roughness;
+    black.needs = light.needs;
     return black;
 }
 
@@ -85,7 +85,7 @@ opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** 
     return guarded([&] {
         auto light = std::make_unique<opaline_light>();
         light->n = asset->loaded.view.cubemap_size;
-        light->roughness = runtime::roughness_levels(asset->loaded.view);
+        light->needs = runtime::specular_needs(asset->loaded.view);
         project_map(*light);
         project(*light);
         prefilter(*light);

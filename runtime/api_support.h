@@ -24,7 +24,7 @@ struct opaline_light {
     opaline::formats::Environment environment;
     std::vector<double> map_integral;  // kept, so that a sun does not cost a map
     opaline::runtime::LightVector vector;
-    std::vector<std::uint32_t> roughness;  // levels that its asset uses
+    opaline::runtime::SpecularNeeds needs;  // of its asset
     opaline::runtime::SpecularLight specular;
 };
 

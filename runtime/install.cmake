@@ -23,6 +23,9 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/OpalineConfig.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/OpalineConfigVersion.cmake
         DESTINATION ${OPALINE_CONFIG_DIR})
 if(OPALINE_BUILD_SHARED)
+    cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX
+               BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
+               OUTPUT_VARIABLE OPALINE_PC_TO_PREFIX)
     configure_file(cmake/opaline.pc.in opaline.pc @ONLY)
     install(FILES ${CMAKE_CURRENT_BINARY_DIR}/opaline.pc
             DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "formats/opal/cubemap.h"
-#include "runtime/deal_out.h"
 #include "runtime/map_geometry.h"
 #include "runtime/parallel.h"
+#include "runtime/project_small_sources.h"
 #include "runtime/reduce_map.h"
 
 namespace opaline::runtime {
@@ -141,7 +141,7 @@ void integrate_map(const Environment& map, std::uint32_t n, const Rotation& rota
     if (pixel.larger < 0.5 * texel) {
         const std::vector<BrightPixel> bright = take_bright_pixels(fine);
         integrate_bilinear(fine, n, samples(4.0), rotation, threads, integral);
-        deal_out(fine, bright, n, rotation, threads, integral);
+        project_small_sources(fine, bright, n, rotation, threads, integral);
     } else {
         // Pixels as large as texels: sixteen samples across make even a lone bright one exact to
         // 2 / (16.5 pi)^2 < 0.1 %, the worst ripple of a tent summed on a grid.

@@ -79,7 +79,7 @@ OPALINE_API opaline_status opaline_asset_primitive(const opaline_asset* asset, u
                                                    opaline_primitive_info* info);
 
 typedef enum opaline_shading {
-    OPALINE_SHADING_DIFFUSE = 1,    /* looks the same from everywhere */
+    OPALINE_SHADING_DIFFUSE = 1,    /* opaque: without gloss the same from everywhere */
     OPALINE_SHADING_TRANSLUCENT = 2 /* depends on the eye: Fresnel, and directions inside */
 } opaline_shading;
 
@@ -144,15 +144,16 @@ typedef enum opaline_shade_flags {
     OPALINE_SHADE_WITHOUT_BASE_COLOR = 1, /* as if white: multiply by your own texture per pixel */
     /* Translucent receivers without their Fresnel factor, which falls steeply toward the
        silhouette: interpolate, multiply per pixel by 1 - F(normal . to eye; eta), clamp at 0. These
-       values alone may be negative. Diffuse ones stay as they are. No specular reflection, which
+       values alone may be negative. Opaque receivers without the factor that gloss puts before
+       their diffuse part, which depends on roughness and view. No specular reflection, which
        changes as fast. */
     OPALINE_SHADE_WITHOUT_FRESNEL = 2,
     /* Components left out. An asset that was not baked with separate terms holds multiple and
        single scattering as one: leave out both or none. */
     OPALINE_SHADE_WITHOUT_MULTIPLE = 4,  /* scattered often inside a translucent body */
     OPALINE_SHADE_WITHOUT_SINGLE = 8,    /* scattered once */
-    OPALINE_SHADE_WITHOUT_SPECULAR = 16, /* mirrored at its surface */
-    OPALINE_SHADE_WITHOUT_DIFFUSE = 32   /* reflected by opaque surfaces */
+    OPALINE_SHADE_WITHOUT_SPECULAR = 16, /* mirrored by glossy surfaces, translucent or opaque */
+    OPALINE_SHADE_WITHOUT_DIFFUSE = 32   /* scattered back by opaque surfaces */
 } opaline_shade_flags;
 
 /* out_rgb[3 i .. 3 i + 2]: outgoing radiance [W m^-2 sr^-1] of receiver i, finite and not
@@ -160,7 +161,7 @@ typedef enum opaline_shade_flags {
    `out_count` floats, at least 3 * receiver_count. The light must have been made for an asset of
    the same cube map size and, where it is glossy, the same roughnesses. `flags` is a sum of
    opaline_shade_flags. Runs on the calling thread, never allocates, costs in proportion to the
-   stored coefficients. Any thread, concurrently; the light must not change meanwhile. */
+   stored coefficients, with gloss some microseconds a glossy opaque receiver more. Any thread, concurrently; the light must not change meanwhile. */
 OPALINE_API opaline_status opaline_shade(const opaline_asset* asset, const opaline_light* light,
                                          uint32_t flags, float* out_rgb, size_t out_count);
 
@@ -172,8 +173,8 @@ OPALINE_API opaline_status opaline_shade_range(const opaline_asset* asset,
                                                size_t out_count);
 
 /* The same as opaline_shade_range, seen from the point `eye`: three finite floats [m], in world
-   space as the mesh is. NULL: each receiver along its own normal. Only translucent receivers look
-   different; those that face away are black unless their primitive is double-sided, but for a rim
+   space as the mesh is. NULL: each receiver along its own normal. Only translucent and glossy
+   receivers look different; those that face away are black unless their primitive is double-sided, but for a rim
    of specular reflection that fades just behind the silhouette. */
 OPALINE_API opaline_status opaline_shade_from(const opaline_asset* asset,
                                               const opaline_light* light, uint32_t flags,

@@ -3,6 +3,10 @@
 #ifndef OPALINE_HPP
 #define OPALINE_HPP
 
+#if !defined(__cplusplus) || __cplusplus < 201703L
+#error "opaline.hpp needs C++17; opaline.h is enough for C99 and earlier C++"
+#endif
+
 #include <cstddef>
 #include <memory>
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "runtime/parallel.h"
+#include "runtime/surface.h"
 #include "runtime/texture.h"
 #include "runtime/view_terms.h"
 
@@ -13,30 +14,10 @@ namespace opaline::runtime {
 namespace {
 
 using formats::Rgb;
-
-// Truncated rows ring below zero where the truth is black; sums of absurd scales overflow. The
-// comparison is false for NaN, which becomes black.
-float displayable(float x) {
-    return x > 0.0f ? std::min(x, std::numeric_limits<float>::max()) : 0.0f;
-}
+using formats::TermSet;
 
 // Rows per block: their colours stay in the nearest cache between the dot product and the colour.
 constexpr std::uint32_t kBlock = 512;
-
-void shade_block(const formats::AssetView& asset, const formats::PrimitiveRecord& primitive,
-                 const LightVector& light, std::uint32_t first_vertex, std::span<Rgb> out,
-                 const ShadeOptions& options) {
-    if ((options.terms & kDiffuseTerm) == 0) return;  // out is black
-    dot_rows(asset.transport, primitive.rows(), light, first_vertex - primitive.first_vertex, out,
-             options.path);
-    for (std::uint32_t i = 0; i < out.size(); ++i) {
-        Rgb radiance = out[i];
-        if (options.base_color) {
-            radiance = radiance * vertex_base_color(asset, primitive, first_vertex + i);
-        }
-        out[i] = {displayable(radiance.r), displayable(radiance.g), displayable(radiance.b)};
-    }
-}
 
 // What is still to be multiplied keeps its sign.
 float finite(float x) {
@@ -44,53 +25,86 @@ float finite(float x) {
     return std::isnan(x) ? 0.0f : std::clamp(x, -kLargest, kLargest);
 }
 
-Rgb shade_translucent(const formats::AssetView& asset, const formats::PrimitiveRecord& primitive,
-                      std::uint32_t vertex, std::span<const Rgb> product, const SpecularLobe& lobe,
-                      const ShadeOptions& options) {
-    const ViewOfReceiver view =
-        view_receiver(primitive, asset.position[vertex], asset.normal[vertex], options.eye);
-    Rgb radiance = sum_view_terms(view, primitive, product, options.terms);
-    if (options.base_color) {
-        radiance = radiance * vertex_base_color(asset, primitive, vertex);
+// Everything that blocks of a primitive share.
+struct Job {
+    const formats::AssetView& asset;
+    const LightVector& light;
+    const ShadeOptions& options;
+    SurfaceMaterial material;
+
+    const formats::PrimitiveRecord& primitive() const { return *material.primitive; }
+};
+
+Rgb base_color_of(const Job& job, std::uint32_t vertex) {
+    return job.options.base_color ? vertex_base_color(job.asset, job.primitive(), vertex)
+                                  : Rgb{1, 1, 1};
+}
+
+// Of a glossy primitive.
+void set_openness(const Job& job, std::uint32_t vertex, SurfacePoint& point) {
+    const formats::Openness openness = job.asset.openness[vertex];
+    point.open_axis = formats::open_axis(openness);
+    point.open_fraction = formats::open_fraction(openness);
+}
+
+ViewOfReceiver view_of(const Job& job, std::uint32_t vertex) {
+    return view_receiver(job.primitive(), job.asset.position[vertex], job.asset.normal[vertex],
+                         job.options.eye);
+}
+
+void shade_opaque_block(const Job& job, std::uint32_t first_vertex, std::span<Rgb> out) {
+    const bool is_glossy = job.material.gloss != nullptr && job.options.fresnel;
+    if (has_any(job.options.terms, TermSet::diffuse)) {
+        dot_rows(job.asset.transport, job.primitive().rows(), job.light,
+                 first_vertex - job.primitive().first_vertex, out, job.options.path);
+    } else if (!is_glossy) {
+        return;  // out is black
     }
-    if (!options.fresnel) {
+    SurfaceMaterial material = job.material;
+    if (!is_glossy) material.gloss = nullptr;
+    for (std::uint32_t i = 0; i < out.size(); ++i) {
+        const std::uint32_t vertex = first_vertex + i;
+        SurfacePoint point;
+        point.radiance = out[i];
+        point.base_color = base_color_of(job, vertex);
+        if (is_glossy) {
+            point.view = view_of(job, vertex);
+            const bool has_texcoord = !job.asset.texcoord.empty();
+            set_gloss_factors(job.asset, material,
+                              has_texcoord ? job.asset.texcoord[vertex] : formats::Float2{}, point);
+            set_openness(job, vertex, point);
+        }
+        out[i] = shade_surface(material, point);
+    }
+}
+
+Rgb shade_translucent(const Job& job, std::uint32_t vertex, std::span<const Rgb> product) {
+    SurfacePoint point;
+    point.view = view_of(job, vertex);
+    point.radiance = sum_view_terms(point.view, job.primitive(), product, job.options.terms);
+    point.base_color = base_color_of(job, vertex);
+    if (!job.options.fresnel) {
+        const Rgb radiance = point.radiance * point.base_color;
         return {finite(radiance.r), finite(radiance.g), finite(radiance.b)};
     }
-    radiance = fresnel_transmittance(view.cosine, primitive.eta) * radiance;
-    radiance = {displayable(radiance.r), displayable(radiance.g), displayable(radiance.b)};
-    if (lobe.radiance != nullptr) {
-        const formats::Openness openness = asset.openness[vertex];
-        radiance = radiance + eval_specular(*options.specular, lobe, view, primitive.eta,
-                                            formats::open_axis(openness),
-                                            formats::open_fraction(openness));
-    }
-    return {displayable(radiance.r), displayable(radiance.g), displayable(radiance.b)};
+    if (job.material.lobe.radiance != nullptr) set_openness(job, vertex, point);
+    return shade_surface(job.material, point);
 }
 
-bool wants_specular(const ShadeOptions& options) {
-    return options.specular != nullptr && options.fresnel && (options.terms & kSpecularTerm) != 0;
-}
-
-// The same for rows of several terms: as many vertices at a time as fill a block.
-void shade_translucent_block(const formats::AssetView& asset,
-                             const formats::PrimitiveRecord& primitive, const LightVector& light,
-                             std::uint32_t first_vertex, std::span<Rgb> out,
-                             const ShadeOptions& options) {
+// Rows of several terms: as many vertices at a time as fill a block.
+void shade_translucent_block(const Job& job, std::uint32_t first_vertex, std::span<Rgb> out) {
     static_assert(kBlock > formats::kMaxHarmonics);
-    const auto number = static_cast<std::size_t>(&primitive - asset.primitives.data());
-    const SpecularLobe lobe =
-        wants_specular(options) ? specular_lobe(*options.specular, asset, number) : SpecularLobe{};
     std::array<Rgb, kBlock> products;
-    const std::uint32_t terms = primitive.terms, step = kBlock / terms;
+    const std::uint32_t terms = job.primitive().terms, step = kBlock / terms;
     for (std::uint32_t done = 0; done < out.size(); done += step) {
         const std::uint32_t count = std::min(step, static_cast<std::uint32_t>(out.size()) - done);
         const std::span<Rgb> block = std::span<Rgb>(products).first(std::size_t{count} * terms);
-        dot_rows(asset.transport, primitive.rows(), light,
-                 (first_vertex + done - primitive.first_vertex) * terms, block, options.path);
+        dot_rows(job.asset.transport, job.primitive().rows(), job.light,
+                 (first_vertex + done - job.primitive().first_vertex) * terms, block,
+                 job.options.path);
         for (std::uint32_t i = 0; i < count; ++i) {
-            out[done + i] =
-                shade_translucent(asset, primitive, first_vertex + done + i,
-                                  block.subspan(std::size_t{i} * terms, terms), lobe, options);
+            out[done + i] = shade_translucent(job, first_vertex + done + i,
+                                              block.subspan(std::size_t{i} * terms, terms));
         }
     }
 }
@@ -101,15 +115,18 @@ void shade_range(const formats::AssetView& asset, const LightVector& light, std:
                  std::span<Rgb> out, const ShadeOptions& options) {
     std::fill(out.begin(), out.end(), Rgb{});
     const std::uint64_t last = first + std::uint64_t{out.size()};
-    for (const formats::PrimitiveRecord& primitive : asset.primitives) {
+    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+        const formats::PrimitiveRecord& primitive = asset.primitives[p];
         const std::uint64_t end =
             std::min(last, std::uint64_t{primitive.first_vertex} + primitive.vertex_count);
+        if (first >= end) continue;
+        const SpecularLight* const specular = options.fresnel ? options.specular : nullptr;
+        const Job job{asset, light, options, surface_material(asset, p, options.terms, specular)};
         for (std::uint64_t v = std::max(first, primitive.first_vertex); v < end; v += kBlock) {
             const std::size_t count = std::min<std::uint64_t>(kBlock, end - v);
-            (primitive.shading == formats::Shading::translucent
-                 ? shade_translucent_block
-                 : shade_block)(asset, primitive, light, static_cast<std::uint32_t>(v),
-                                out.subspan(v - first, count), options);
+            (primitive.shading == formats::Shading::translucent ? shade_translucent_block
+                                                                : shade_opaque_block)(
+                job, static_cast<std::uint32_t>(v), out.subspan(v - first, count));
         }
     }
 }
@@ -124,7 +141,7 @@ void shade(const formats::AssetView& asset, const LightVector& light, std::span<
 }
 
 std::vector<Rgb> shade_for_picture(const formats::AssetView& asset, const LightVector& light,
-                                   formats::Vec3 eye, std::uint32_t terms, unsigned threads) {
+                                   formats::Vec3 eye, TermSet terms, unsigned threads) {
     ShadeOptions options;
     options.threads = threads;
     options.base_color = options.fresnel = false;

@@ -19,21 +19,23 @@ struct ShadeOptions {
     unsigned threads = 0;    ///< 0: all cores; results have the same bits for any number
     bool base_color = true;  ///< false: as if every base colour were white
     DotPath path = best_dot_path();
-    /// Where translucent receivers are seen from [m, world]; nothing: each along its own normal.
-    /// Diffuse ones look the same from everywhere.
+    /// Where translucent and glossy receivers are seen from [m, world]; nothing: each along its own
+    /// normal. Others look the same from everywhere.
     std::optional<formats::Vec3> eye = std::nullopt;
-    /// false: translucent receivers without their factor Ft and with their sign. That is what a
-    /// renderer interpolates, to multiply by Ft per pixel and to clamp at the end.
+    /// false: translucent receivers without their factor Ft and with their sign, glossy opaque ones
+    /// without the factor before their diffuse part. That is what a renderer interpolates, to
+    /// multiply by these factors per pixel and to clamp at the end.
     bool fresnel = true;
-    std::uint32_t terms = kAllTerms;  ///< components (terms.h); see check_terms
+    formats::TermSet terms = formats::TermSet::all;  ///< components to add up; see check_terms
     /// Light for specular reflections, of the same environment; nothing: none are added. Nor are
     /// they without `fresnel`: a renderer adds them per pixel.
     const SpecularLight* specular = nullptr;
 };
 
 /// Outgoing radiance [W m^-2 sr^-1] of every receiver: L_o = base_color * <T_0, L>
-/// (Shading::diffuse) or base_color * Ft * sum_k h_k(w_o') <T_k, L> (Shading::translucent),
-/// plus L_spec where it is glossy (specular.h). Each of these values is clamped to [0, largest
+/// (Shading::diffuse; with gloss times (1 - metallic) (1 - max E)) or base_color * Ft *
+/// sum_k h_k(w_o') <T_k, L> (Shading::translucent), plus L_spec where it is glossy (gloss.h,
+/// specular.h). Each of these values is clamped to [0, largest
 /// float]; what belongs to no primitive is black, and so are translucent receivers that face away
 /// or have no normal. Preconditions: light.n == asset.cubemap_size, out.size() ==
 /// asset.receivers(), the asset passed read_opal's checks.
@@ -49,6 +51,6 @@ void shade_range(const formats::AssetView& asset, const LightVector& light, std:
 /// the renderer, seen from `eye`. Preconditions: as `shade`.
 std::vector<formats::Rgb> shade_for_picture(const formats::AssetView& asset,
                                             const LightVector& light, formats::Vec3 eye,
-                                            std::uint32_t terms, unsigned threads);
+                                            formats::TermSet terms, unsigned threads);
 
 }  // namespace opaline::runtime

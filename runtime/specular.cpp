@@ -22,6 +22,28 @@ std::vector<std::uint32_t> roughness_levels(const formats::AssetView& asset) {
     return levels;
 }
 
+SpecularNeeds specular_needs(const formats::AssetView& asset) {
+    return {roughness_levels(asset),
+            std::any_of(asset.gloss.begin(), asset.gloss.end(),
+                        [](const formats::GlossRecord& gloss) { return gloss.is_glossy(); })};
+}
+
+SpecularLight make_specular_light(const formats::Environment& environment,
+                                  const SpecularNeeds& needs, const Rotation& rotation,
+                                  unsigned threads) {
+    SpecularLight light = prefilter_specular(environment, needs.levels, rotation, threads);
+    if (needs.gloss) light.gloss = make_gloss_light(environment, threads);
+    return light;
+}
+
+SpecularLobe lobe_of_alpha(float alpha) {
+    alpha = std::max(alpha, 0.05f);
+    SpecularLobe lobe;
+    lobe.cosine = (1 - alpha * alpha) / (1 + alpha * alpha);
+    lobe.sine = 2 * alpha / (1 + alpha * alpha);
+    return lobe;
+}
+
 SpecularLobe specular_lobe(const SpecularLight& light, const formats::AssetView& asset,
                            std::size_t primitive) {
     SpecularLobe lobe;
@@ -31,9 +53,9 @@ SpecularLobe specular_lobe(const SpecularLight& light, const formats::AssetView&
         if (map.level == level) lobe.radiance = &map.radiance;
     }
     const float roughness = static_cast<float>(level) / kRoughnessSteps;
-    const float alpha = std::max(roughness * roughness, 0.05f);
-    lobe.cosine = (1 - alpha * alpha) / (1 + alpha * alpha);
-    lobe.sine = 2 * alpha / (1 + alpha * alpha);
+    const SpecularLobe cone = lobe_of_alpha(roughness * roughness);
+    lobe.cosine = cone.cosine;
+    lobe.sine = cone.sine;
     return lobe;
 }
 

@@ -6,12 +6,13 @@
 
 #include "formats/opal/asset.h"
 #include "formats/opal/environment.h"
+#include "runtime/gloss_light.h"
 #include "runtime/light_vector.h"
 #include "runtime/view_terms.h"
 
 namespace opaline::runtime {
 
-/// Specular reflection of distant light (translucency.md 3.11), for each glossy receiver
+/// Specular reflection of distant light by translucent surfaces, for each glossy receiver
 ///
 ///     L_spec = F(c; eta) * v * Lconv(2 c n - w_o),    F = 1 - Ft, c = n.w_o,
 ///
@@ -24,7 +25,8 @@ namespace opaline::runtime {
 inline constexpr std::uint32_t kRoughnessSteps = 40;
 /// Precondition: roughness in [0, 1].
 std::uint32_t roughness_level(float roughness);
-/// The levels that an asset's glossy primitives use, ascending; empty where none is glossy.
+/// The levels that an asset's glossy translucent primitives use, ascending; empty where none is
+/// glossy.
 std::vector<std::uint32_t> roughness_levels(const formats::AssetView& asset);
 
 /// Distant light as surfaces of some roughnesses mirror it: for each a cube map of mean radiance
@@ -34,9 +36,24 @@ struct SpecularLight {
         std::uint32_t level = 0;  ///< roughness * kRoughnessSteps
         formats::Environment radiance;
     };
-    std::vector<Map> maps;
+    std::vector<Map> maps;  ///< for glossy translucent surfaces
+    GlossLight gloss;       ///< for glossy opaque ones
     Rotation rotation;
 };
+
+/// What of a SpecularLight an asset's glossy primitives use.
+struct SpecularNeeds {
+    std::vector<std::uint32_t> levels;  ///< roughness_levels
+    bool gloss = false;                 ///< whether an opaque primitive is glossy
+
+    bool any() const { return gloss || !levels.empty(); }
+};
+SpecularNeeds specular_needs(const formats::AssetView& asset);
+
+/// Prepares that much. Same bits for any number of threads (0: all cores).
+SpecularLight make_specular_light(const formats::Environment& environment,
+                                  const SpecularNeeds& needs, const Rotation& rotation,
+                                  unsigned threads);
 
 /// Lconv(r) = sum_j w_j L_j dOmega_j / sum_j w_j dOmega_j over the texels j of a cube map of 32, 64
 /// or 128 texels a side, suns included; w = D(theta / 2; alpha) max(0, cos theta), theta the angle
@@ -54,6 +71,8 @@ struct SpecularLobe {
     const formats::Environment* radiance = nullptr;  ///< nothing: no specular reflection
     float cosine = 1, sine = 0;  ///< of the half angle in which half of the lobe lies: 2 atan alpha
 };
+/// Its cone, without radiance; alpha below 0.05 counts as 0.05: openness resolves no sharper edge.
+SpecularLobe lobe_of_alpha(float alpha);
 /// Nothing where the primitive is not glossy or `light` has no map of its level.
 SpecularLobe specular_lobe(const SpecularLight& light, const formats::AssetView& asset,
                            std::size_t primitive);

@@ -55,25 +55,43 @@ Taps find_taps(float coordinate, std::uint32_t size, Wrap wrap) {
     return {wrapped(i, size, wrap), wrapped(i + 1, size, wrap), static_cast<float>(scaled - below)};
 }
 
-}  // namespace
-
-float linear_from_srgb(std::uint8_t code) {
+const std::array<float, 256>& srgb_table() {
     static const std::array<float, 256> kTable = make_srgb_table();
-    return kTable[code];
+    return kTable;
 }
 
-Rgb sample_image_linear(const formats::PreviewImage& image, formats::Float2 uv, Wrap wrap_u,
-                        Wrap wrap_v) {
-    const Taps x = find_taps(uv.x, image.width, wrap_u), y = find_taps(uv.y, image.height, wrap_v);
+template <class Decode>
+Rgb sample_image(const formats::PreviewImage& image, const Taps& x, const Taps& y, Decode decode) {
     const auto texel = [&](std::uint32_t column, std::uint32_t row) {
         const auto rgb = image.rgb.subspan((std::size_t{row} * image.width + column) * 3, 3);
-        return Rgb{linear_from_srgb(rgb[0]), linear_from_srgb(rgb[1]), linear_from_srgb(rgb[2])};
+        return Rgb{decode(rgb[0]), decode(rgb[1]), decode(rgb[2])};
     };
     const Rgb above =
         (1.0f - x.share) * texel(x.first, y.first) + x.share * texel(x.second, y.first);
     const Rgb below =
         (1.0f - x.share) * texel(x.first, y.second) + x.share * texel(x.second, y.second);
     return (1.0f - y.share) * above + y.share * below;
+}
+
+}  // namespace
+
+float linear_from_srgb(std::uint8_t code) {
+    return srgb_table()[code];
+}
+
+Rgb sample_image_linear(const formats::PreviewImage& image, formats::Float2 uv, Wrap wrap_u,
+                        Wrap wrap_v) {
+    const std::array<float, 256>& linear = srgb_table();
+    return sample_image(image, find_taps(uv.x, image.width, wrap_u),
+                        find_taps(uv.y, image.height, wrap_v),
+                        [&linear](std::uint8_t code) { return linear[code]; });
+}
+
+Rgb sample_image_values(const formats::PreviewImage& image, formats::Float2 uv, Wrap wrap_u,
+                        Wrap wrap_v) {
+    return sample_image(image, find_taps(uv.x, image.width, wrap_u),
+                        find_taps(uv.y, image.height, wrap_v),
+                        [](std::uint8_t code) { return static_cast<float>(code) / 255.0f; });
 }
 
 Rgb vertex_base_color(const formats::AssetView& asset, const formats::PrimitiveRecord& primitive,

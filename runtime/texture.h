@@ -16,6 +16,10 @@ float linear_from_srgb(std::uint8_t code);
 formats::Rgb sample_image_linear(const formats::PreviewImage& image, formats::Float2 uv,
                                  formats::Wrap wrap_u, formats::Wrap wrap_v);
 
+/// The same of the codes themselves, divided by 255: for images of linear values.
+formats::Rgb sample_image_values(const formats::PreviewImage& image, formats::Float2 uv,
+                                 formats::Wrap wrap_u, formats::Wrap wrap_v);
+
 /// Base colour of one vertex: its stored colour times the primitive's image, where it has one.
 /// `vertex` counts over the whole asset.
 formats::Rgb vertex_base_color(const formats::AssetView& asset,

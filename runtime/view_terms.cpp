@@ -8,6 +8,7 @@ namespace opaline::runtime {
 namespace {
 
 using formats::Rgb;
+using formats::TermSet;
 using formats::Vec3;
 
 // (eta c')^2 = eta^2 - 1 + c^2, with the difference of squares as a product: exact where the index
@@ -98,10 +99,12 @@ Rgb sum_harmonics(const ViewOfReceiver& view, float eta, std::span<const Rgb> pr
 }  // namespace
 
 Rgb sum_view_terms(const ViewOfReceiver& view, const formats::PrimitiveRecord& primitive,
-                   std::span<const Rgb> product, std::uint32_t terms) {
-    const bool multiple = (terms & kMultipleTerm) != 0, single = (terms & kSingleTerm) != 0;
+                   std::span<const Rgb> product, TermSet terms) {
+    const bool multiple = has_any(terms, TermSet::multiple);
+    const bool single = has_any(terms, TermSet::single);
     if (!primitive.is_separate()) {
-        return multiple && single ? sum_harmonics(view, primitive.eta, product) : Rgb{};
+        const bool shows = single && (multiple || primitive.is_single_only());
+        return shows ? sum_harmonics(view, primitive.eta, product) : Rgb{};
     }
     Rgb sum = multiple ? product[0] : Rgb{};
     if (single && product.size() > 1) {

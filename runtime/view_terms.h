@@ -7,8 +7,8 @@
 #include "formats/opal/asset.h"
 #include "formats/opal/rgb.h"
 #include "formats/opal/spherical_harmonics.h"
+#include "formats/opal/terms.h"
 #include "formats/opal/vec3.h"
-#include "runtime/terms.h"
 
 namespace opaline::runtime {
 
@@ -44,9 +44,10 @@ ViewOfReceiver view_receiver(const formats::PrimitiveRecord& primitive, formats:
 void eval_view_terms(formats::Vec3 refracted, std::span<float> value);
 
 /// sum_k h_k(w_o') <T_k, L> of a translucent primitive, from `product` = <T_k, L>, one for each of
-/// its terms. `terms` (terms.h): which of multiple and single scattering; rows that hold both count
-/// if both are asked for.
+/// its terms. `terms`: which of multiple and single scattering; rows that hold both count
+/// if both are asked for; rows of single scattering alone, if that is.
 formats::Rgb sum_view_terms(const ViewOfReceiver& view, const formats::PrimitiveRecord& primitive,
-                            std::span<const formats::Rgb> product, std::uint32_t terms = kAllTerms);
+                            std::span<const formats::Rgb> product,
+                            formats::TermSet terms = formats::TermSet::all);
 
 }  // namespace opaline::runtime

@@ -156,7 +156,7 @@ formats::Result<double> measure_missing(const PathSpace& space,
                                         std::span<const ReferenceReceiver> receivers,
                                         const ModelCheckOptions& options, const Context& context) {
     PathSpace other = space;
-    other.options.terms = term::kAll & ~term::kSpecular & ~options.simulated;
+    other.options.terms = TermSet::all & ~TermSet::specular & ~options.simulated;
     EstimateOptions wanted;
     wanted.seed = options.seed;
     wanted.samples = 256;

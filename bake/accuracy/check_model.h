@@ -41,7 +41,7 @@ struct ModelCheckOptions {
     std::uint32_t receivers = 48;  ///< to check; fewer if the scene has fewer
     std::uint64_t seed = 0;
     /// What the file's effects stand for, and is compared with.
-    Terms simulated = term::kDiffuse | term::kSingle | term::kMultiple;
+    TermSet simulated = TermSet::diffuse | TermSet::single | TermSet::multiple;
     double noise = 0.01;                  ///< relative to the RMS of the truth: enough for any file
     double noise_share = 0.25;            ///< relative to the difference: enough for this file
     std::uint64_t max_events = 10000000;  ///< most scatterings and surfaces met, for each light

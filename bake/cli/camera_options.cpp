@@ -1,6 +1,8 @@
 #include "bake/cli/camera_options.h"
 
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "bake/cli/inputs.h"
 #include "runtime/picture/software_renderer.h"
@@ -24,14 +26,48 @@ Status parse_size(const std::string& text, std::uint32_t& width, std::uint32_t& 
     return formats::ok_status();
 }
 
+// Angles and distance that are not given stay those of the framing camera: `from` its target to its
+// eye.
+void place_by_angles(const CameraOptions& options, formats::Vec3 from, runtime::Camera& camera) {
+    constexpr double kDegrees = 180 / std::numbers::pi;
+    const double x = static_cast<double>(from.x), y = static_cast<double>(from.y),
+                 z = static_cast<double>(from.z);
+    const double azimuth = options.azimuth.value_or(std::atan2(x, z) * kDegrees);
+    const double elevation = options.elevation.value_or(std::atan2(y, std::hypot(x, z)) * kDegrees);
+    const auto distance = static_cast<float>(options.distance.value_or(std::hypot(x, y, z)));
+    camera.eye = camera.target + distance * runtime::view_direction(azimuth, elevation);
+}
+
+bool is_default(const CameraOptions& options) {
+    return options.eye.empty() && options.target.empty() && !options.azimuth &&
+           !options.elevation && !options.distance;
+}
+
 }  // namespace
 
 void add_camera_options(CLI::App& command, CameraOptions& options) {
     command.add_option("--size", options.size, "of the picture, in pixels")
         ->option_text("WxH [960x720]");
-    command.add_option("--eye", options.eye, "camera position [m]; default: frames the object")
-        ->option_text("X,Y,Z");
-    command.add_option("--target", options.target, "point looked at [m]; default: the object")
+    CLI::Option* const eye =
+        command.add_option("--eye", options.eye, "camera position [m]; default: frames everything")
+            ->option_text("X,Y,Z");
+    command
+        .add_option("--azimuth", options.azimuth,
+                    "from the target to the camera, from +Z toward +X [degrees]")
+        ->check(CLI::Range(-1e6, 1e6))
+        ->excludes(eye)
+        ->option_text("DEG");
+    command
+        .add_option("--elevation", options.elevation,
+                    "from the target to the camera, above the horizon [degrees]")
+        ->check(CLI::Range(-90.0, 90.0))
+        ->excludes(eye)
+        ->option_text("DEG");
+    command.add_option("--distance", options.distance, "from the target to the camera [m]")
+        ->check(CLI::PositiveNumber)
+        ->excludes(eye)
+        ->option_text("M");
+    command.add_option("--target", options.target, "point looked at [m]; default: the middle")
         ->option_text("X,Y,Z");
     command.add_option("--fov", options.fov, "vertical angle of view [degrees]")
         ->option_text("DEG [32]");
@@ -43,12 +79,16 @@ Result<runtime::Camera> make_camera(const CameraOptions& options, const formats:
         return status.error();
     }
     runtime::Camera camera = runtime::frame_asset(view, options.fov, width, height);
+    const formats::Vec3 framing = camera.eye - camera.target;
     if (!options.target.empty()) {
         const auto target = parse_vec3("--target", options.target);
         if (!target) {
             return target.error();
         }
         camera.target = *target;
+    }
+    if (options.azimuth || options.elevation || options.distance) {
+        place_by_angles(options, framing, camera);
     }
     if (!options.eye.empty()) {
         const auto eye = parse_vec3("--eye", options.eye);
@@ -61,7 +101,7 @@ Result<runtime::Camera> make_camera(const CameraOptions& options, const formats:
         return make_error(ErrorKind::usage, "", "--eye", "lies in the target",
                           "move one of them: the camera has no direction");
     }
-    if (!options.eye.empty() || !options.target.empty()) {
+    if (!is_default(options)) {
         camera.near_plane = runtime::near_plane_for(view, camera.eye);
     }
     if (auto status = runtime::check_camera(camera, runtime::SoftwareOptions{}.supersampling);

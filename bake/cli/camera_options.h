@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "formats/opal/asset.h"
@@ -12,6 +13,7 @@ namespace opaline::cli {
 /// What `render` and `reference` have in common.
 struct CameraOptions {
     std::string size = "960x720", eye, target;
+    std::optional<double> azimuth, elevation, distance;  ///< [degrees], [degrees], [m]
     float fov = 32;
 };
 

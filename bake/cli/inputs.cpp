@@ -11,7 +11,6 @@
 #include "bake/environment/builtin_environment.h"
 #include "formats/media/apply_media.h"
 #include "formats/media/read_media.h"
-#include "runtime/terms.h"
 
 namespace opaline::cli {
 
@@ -32,7 +31,7 @@ formats::Status fill_materials(const formats::MediaFile& media, formats::Importe
 }  // namespace
 
 formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, formats::Checks checks) {
-    auto file = formats::MappedFile::open(path);
+    auto file = formats::FileBytes::open(path);
     if (!file) {
         return std::move(file).error();
     }
@@ -131,37 +130,6 @@ formats::Status check_output(const std::filesystem::path& output,
         }
     }
     return formats::ok_status();
-}
-
-namespace {
-
-constexpr std::pair<std::string_view, std::uint32_t> kTermNames[] = {
-    {"multiple", runtime::kMultipleTerm},
-    {"single", runtime::kSingleTerm},
-    {"specular", runtime::kSpecularTerm},
-    {"diffuse", runtime::kDiffuseTerm}};
-
-}  // namespace
-
-formats::Result<std::uint32_t> parse_terms(const std::string& text) {
-    if (text.empty()) {
-        return runtime::kAllTerms;
-    }
-    std::uint32_t terms = 0;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::string name = text.substr(begin, end - begin);
-        const auto known =
-            std::ranges::find(kTermNames, name, [](const auto& t) { return t.first; });
-        if (known == std::end(kTermNames)) {
-            return make_error(ErrorKind::usage, "", "--terms",
-                              "'" + name + "' is not a component of a picture",
-                              "give some of multiple,single,specular,diffuse");
-        }
-        terms |= known->second;
-        begin = end + 1;
-    }
-    return terms;
 }
 
 }  // namespace opaline::cli

@@ -6,16 +6,16 @@
 
 #include "formats/gltf/import_gltf.h"
 #include "formats/opal/environment.h"
-#include "formats/opal/mapped_file.h"
+#include "formats/opal/file_bytes.h"
 #include "formats/opal/read_opal.h"
 #include "formats/opal/result.h"
 #include "runtime/light_vector.h"
 
 namespace opaline::cli {
 
-/// A mapped `.opal` file and the view into it.
+/// The bytes of an `.opal` file and the view into them.
 struct OpenedAsset {
-    formats::MappedFile file;
+    formats::FileBytes file;
     formats::LoadedAsset loaded;
 };
 formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path,
@@ -35,10 +35,6 @@ struct OpenedLight {
 };
 /// Prints warnings about repaired pixels.
 formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees);
-
-/// The components named by `--terms`, "multiple,single,specular,diffuse" or some of them, as bits
-/// of runtime/terms.h; all of them if the text is empty. Errors: usage, listing the names.
-formats::Result<std::uint32_t> parse_terms(const std::string& text);
 
 /// Help text of `--light`.
 std::string light_help();

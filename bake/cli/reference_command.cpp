@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 
 #include "bake/cli/camera_options.h"
@@ -17,6 +16,7 @@
 #include "bake/reference/write_receivers.h"
 #include "formats/image/exr.h"
 #include "formats/opal/atomic_file.h"
+#include "formats/opal/terms.h"
 
 namespace opaline::cli {
 namespace {
@@ -34,33 +34,6 @@ struct Options {
     unsigned threads = 0;
     ProgressStyle progress = ProgressStyle::automatic;
 };
-
-formats::Result<bake::Terms> parse_reference_terms(const std::string& text) {
-    const std::map<std::string, bake::Terms> names{
-        {"diffuse", bake::term::kDiffuse},
-        {"single", bake::term::kSingle},
-        {"multiple", bake::term::kMultiple},
-        {"specular", bake::term::kSpecular},
-        {"unscattered", bake::term::kUnscattered},
-        {"interreflection", bake::term::kInterreflection}};
-    if (text.empty() || text == "all") {
-        return bake::term::kAll;
-    }
-    bake::Terms terms = 0;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::string name = text.substr(begin, end - begin);
-        const auto known = names.find(name);
-        if (known == names.end()) {
-            return make_error(ErrorKind::usage, "", "--terms", "'" + name + "' is not a term",
-                              "give all, or some of diffuse,single,multiple,specular,unscattered,"
-                              "interreflection");
-        }
-        terms |= known->second;
-        begin = end + 1;
-    }
-    return terms;
-}
 
 // Beside OUT.exr: OUT.var.exr.
 std::string variance_path(const std::string& output) {
@@ -201,7 +174,7 @@ int run(const Options& options) {
     if (options.max_depth > 0) {
         paths.max_depth = options.max_depth;
     }
-    const auto terms = parse_reference_terms(options.terms);
+    const auto terms = formats::parse_terms(options.terms, formats::TermSet::all, "--terms");
     if (!terms) {
         return report_error(terms.error());
     }

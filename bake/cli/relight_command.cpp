@@ -4,6 +4,7 @@
 #include "bake/cli/inputs.h"
 #include "bake/cli/messages.h"
 #include "bake/compare/relight_table.h"
+#include "formats/opal/terms.h"
 #include "runtime/shade.h"
 
 namespace opaline::cli {
@@ -53,7 +54,7 @@ int run(const Options& options) {
         }
         shading.eye = *eye;
     }
-    const auto terms = parse_terms(options.terms);
+    const auto terms = formats::parse_terms(options.terms, formats::TermSet::baked, "--terms");
     if (!terms) {
         return report_error(terms.error());
     }
@@ -69,11 +70,11 @@ int run(const Options& options) {
         return report_error(light.error());
     }
     const formats::AssetView& view = asset->loaded.view;
-    const std::vector<std::uint32_t> levels = runtime::roughness_levels(view);
+    const runtime::SpecularNeeds needs = runtime::specular_needs(view);
     const runtime::SpecularLight specular =
-        runtime::prefilter_specular(light->environment, levels, light->rotation, options.threads);
+        runtime::make_specular_light(light->environment, needs, light->rotation, options.threads);
     shading.terms = *terms;
-    shading.specular = levels.empty() ? nullptr : &specular;
+    shading.specular = needs.any() ? &specular : nullptr;
     std::vector<formats::Rgb> radiance(view.receivers());
     runtime::shade(view,
                    runtime::project_environment(light->environment, view.cubemap_size,
@@ -111,8 +112,9 @@ void add_relight_command(CLI::App& app, Job& job) {
         ->option_text("X,Y,Z");
     command
         ->add_option("--terms", options->terms,
-                     "components to add up: multiple,single,specular,diffuse or some of them. "
-                     "multiple and single apart need a bake with --separate-terms")
+                     "components to add up: all, or some of " +
+                         formats::term_names(formats::TermSet::baked) +
+                         ". multiple and single apart need a bake with --separate-terms")
         ->option_text("LIST [all]");
     command
         ->add_option("--rotate-light", options->rotate_light,

@@ -12,6 +12,7 @@
 #include "bake/cli/messages.h"
 #include "formats/image/exr.h"
 #include "formats/image/png.h"
+#include "formats/opal/terms.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/picture/tone_map.h"
@@ -41,8 +42,8 @@ struct Options {
 
 // What of the picture to show.
 struct Shown {
-    std::uint32_t terms = runtime::kAllTerms;
-    bool background() const { return terms == runtime::kAllTerms; }
+    formats::TermSet terms = formats::TermSet::baked;
+    bool background() const { return has_all(terms, formats::TermSet::baked); }
 };
 
 double seconds_since(Clock::time_point start) {
@@ -113,18 +114,18 @@ int render_on_cpu(const Options& options, const formats::AssetView& view, const 
                   const runtime::LightVector& vector, const runtime::Camera& camera, Shown shown) {
     formats::Vec3 shaded_for = camera.eye;
     auto start = Clock::now();
-    std::vector<formats::Rgb> irradiance =
+    std::vector<formats::Rgb> radiance =
         runtime::shade_for_picture(view, vector, shaded_for, shown.terms, options.threads);
     print_stat(options, "dot products", seconds_since(start));
     runtime::SoftwareOptions software;
     software.threads = options.threads;
     software.background = shown.background();
     runtime::SpecularLight specular;
-    if (const auto levels = runtime::roughness_levels(view);
-        !levels.empty() && (shown.terms & runtime::kSpecularTerm) != 0) {
+    if (const runtime::SpecularNeeds needs = runtime::specular_needs(view);
+        needs.any() && has_any(shown.terms, formats::TermSet::specular)) {
         start = Clock::now();
         specular =
-            runtime::prefilter_specular(light.environment, levels, light.rotation, options.threads);
+            runtime::make_specular_light(light.environment, needs, light.rotation, options.threads);
         software.specular = &specular;
         print_stat(options, "specular light", seconds_since(start));
     }
@@ -134,10 +135,10 @@ int render_on_cpu(const Options& options, const formats::AssetView& view, const 
     return render_frames(options, camera, [&](const runtime::Camera& at) {
         if (depends_on_eye && shaded_for != at.eye) {
             shaded_for = at.eye;
-            irradiance =
+            radiance =
                 runtime::shade_for_picture(view, vector, shaded_for, shown.terms, options.threads);
         }
-        return runtime::render_software(view, irradiance, light.environment, light.rotation, at,
+        return runtime::render_software(view, radiance, light.environment, light.rotation, at,
                                         software);
     });
 }
@@ -178,7 +179,7 @@ int run(const Options& options) {
         !status) {
         return report_error(status.error());
     }
-    const auto terms = parse_terms(options.terms);
+    const auto terms = formats::parse_terms(options.terms, formats::TermSet::baked, "--terms");
     if (!terms) {
         return report_error(terms.error());
     }
@@ -236,9 +237,10 @@ void add_render_command(CLI::App& app, Job& job) {
         ->option_text("N [1]");
     command
         ->add_option("--terms", options->terms,
-                     "components to show: multiple,single,specular,diffuse or some of them; the "
-                     "background is black unless all are. multiple and single apart need a bake "
-                     "with --separate-terms")
+                     "components to show: all, or some of " +
+                         formats::term_names(formats::TermSet::baked) +
+                         "; the background is black unless all are. multiple and single apart "
+                         "need a bake with --separate-terms")
         ->option_text("LIST [all]");
     command->add_option("--exposure", options->exposure, "brighter by a factor of 2^EV")
         ->check(CLI::Range(-64.0f, 64.0f))

@@ -14,7 +14,7 @@
 #include "formats/image/image_kind.h"
 #include "formats/image/png.h"
 #include "formats/image/srgb.h"
-#include "formats/opal/mapped_file.h"
+#include "formats/opal/file_bytes.h"
 
 namespace opaline::bake {
 namespace {
@@ -23,7 +23,7 @@ using formats::Error;
 using formats::ErrorKind;
 using formats::Image;
 using formats::ImageKind;
-using formats::MappedFile;
+using formats::FileBytes;
 using formats::Result;
 using formats::Rgb;
 
@@ -33,7 +33,7 @@ Error fault(const std::filesystem::path& file, std::string where, std::string wh
                                std::move(what), std::move(remedy));
 }
 
-Result<Image> decode_image(const MappedFile& file, ImageKind kind, const std::string& name) {
+Result<Image> decode_image(const FileBytes& file, ImageKind kind, const std::string& name) {
     if (kind == ImageKind::exr) {
         Result<formats::ExrImage> exr = formats::decode_exr(file.bytes(), name);
         if (!exr) return std::move(exr).error();
@@ -50,7 +50,7 @@ Result<Image> decode_image(const MappedFile& file, ImageKind kind, const std::st
 }
 
 /// The image, once every value is known to be finite.
-Result<Image> finite_image(const MappedFile& file, ImageKind kind,
+Result<Image> finite_image(const FileBytes& file, ImageKind kind,
                            const std::filesystem::path& path) {
     Result<Image> image = decode_image(file, kind, path.string());
     if (!image) return image;
@@ -66,8 +66,8 @@ Result<Image> finite_image(const MappedFile& file, ImageKind kind,
     return image;
 }
 
-Result<Comparison> compare_images(const MappedFile& file_a, ImageKind kind_a,
-                                  const std::filesystem::path& a, const MappedFile& file_b,
+Result<Comparison> compare_images(const FileBytes& file_a, ImageKind kind_a,
+                                  const std::filesystem::path& a, const FileBytes& file_b,
                                   ImageKind kind_b, const std::filesystem::path& b) {
     Result<Image> image_a = finite_image(file_a, kind_a, a);
     if (!image_a) return std::move(image_a).error();
@@ -85,7 +85,7 @@ Result<Comparison> compare_images(const MappedFile& file_a, ImageKind kind_a,
 }
 
 /// Rows by receiver, each receiver once.
-Result<std::vector<RelightRow>> sorted_rows(const MappedFile& file,
+Result<std::vector<RelightRow>> sorted_rows(const FileBytes& file,
                                             const std::filesystem::path& path) {
     Result<std::vector<RelightRow>> rows = decode_relight_csv(file.bytes(), path.string());
     if (!rows) return rows;
@@ -108,14 +108,14 @@ Result<std::vector<RelightRow>> sorted_rows(const MappedFile& file,
 }
 
 /// True for a table that `opaline reference` wrote.
-bool has_standard_errors(const MappedFile& file) {
+bool has_standard_errors(const FileBytes& file) {
     const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()),
                                 file.bytes().size());
     return text.substr(0, text.find('\n')).find(",se_r") != std::string_view::npos;
 }
 
-Result<Comparison> compare_tables(const MappedFile& file_a, const std::filesystem::path& a,
-                                  const MappedFile& file_b, const std::filesystem::path& b) {
+Result<Comparison> compare_tables(const FileBytes& file_a, const std::filesystem::path& a,
+                                  const FileBytes& file_b, const std::filesystem::path& b) {
     Result<std::vector<RelightRow>> rows_a = sorted_rows(file_a, a);
     if (!rows_a) return std::move(rows_a).error();
     Result<std::vector<RelightRow>> rows_b = sorted_rows(file_b, b);
@@ -182,9 +182,9 @@ Comparison compare_values(std::span<const Rgb> a, std::span<const Rgb> b) {
 }
 
 Result<Comparison> compare_files(const std::filesystem::path& a, const std::filesystem::path& b) {
-    Result<MappedFile> file_a = MappedFile::open(a);
+    Result<FileBytes> file_a = FileBytes::open(a);
     if (!file_a) return std::move(file_a).error();
-    Result<MappedFile> file_b = MappedFile::open(b);
+    Result<FileBytes> file_b = FileBytes::open(b);
     if (!file_b) return std::move(file_b).error();
     const ImageKind kind_a = formats::image_kind(file_a->bytes());
     const ImageKind kind_b = formats::image_kind(file_b->bytes());

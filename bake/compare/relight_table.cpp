@@ -11,7 +11,7 @@
 
 #include "formats/image/exr.h"
 #include "formats/opal/atomic_file.h"
-#include "formats/opal/mapped_file.h"
+#include "formats/opal/file_bytes.h"
 
 namespace opaline::bake {
 namespace {
@@ -151,7 +151,7 @@ Result<std::vector<RelightRow>> decode_relight_csv(std::span<const std::byte> by
 }
 
 Result<std::vector<RelightRow>> read_relight_csv(const std::filesystem::path& path) {
-    Result<formats::MappedFile> file = formats::MappedFile::open(path);
+    Result<formats::FileBytes> file = formats::FileBytes::open(path);
     if (!file) return std::move(file).error();
     return decode_relight_csv(file->bytes(), path.string());
 }

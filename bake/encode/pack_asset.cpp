@@ -92,8 +92,12 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
             record.wrap_u = to_wrap(material.wrap_u);
             record.wrap_v = to_wrap(material.wrap_v);
         }
-        record.flags = (material.double_sided ? PrimitiveRecord::kDoubleSided : 0) |
-                       (layout.separate ? PrimitiveRecord::kSeparate : 0);
+        record.flags =
+            (material.double_sided ? PrimitiveRecord::kDoubleSided : 0) |
+            (layout.separate ? PrimitiveRecord::kSeparate : 0) |
+            (layout.translucent && !layout.separate && !layout.multiple && layout.single_terms > 0
+                 ? PrimitiveRecord::kSingleOnly
+                 : 0);
         if (!openness.empty()) {
             asset.roughness.push_back(layout.glossy ? material.medium->roughness : kNotGlossy);
         }

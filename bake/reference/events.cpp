@@ -34,7 +34,7 @@ glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction, M
     const ReferenceScene& scene = space.scene;
     const HitScene& surfaces = scene.surfaces;
     if (!scene.has_matched_boundary) {
-        return stack.empty() && (term_of(state) & space.options.terms) != 0 &&
+        return stack.empty() && has_any(term_of(state), space.options.terms) &&
                        !surfaces.is_blocked(from, direction)
                    ? glm::vec3(1)
                    : glm::vec3(0);
@@ -65,7 +65,7 @@ glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction, M
         }
         from = leave_surface(*hit, direction);
     }
-    return stack.empty() && (term_of(state) & space.options.terms) != 0 ? passing : glm::vec3(0);
+    return stack.empty() && has_any(term_of(state), space.options.terms) ? passing : glm::vec3(0);
 }
 
 /// Light that arrives straight from the sky at an event, sampled from the light. `density(d)`: of

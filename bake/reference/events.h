@@ -33,7 +33,7 @@ struct Crossing {
 
 /// True if the path may still end in a term that is counted.
 inline bool is_wanted(const PathSpace& space, PathState state) {
-    return (reachable_terms(state) & space.options.terms) != 0;
+    return has_any(reachable_terms(state), space.options.terms);
 }
 
 /// A diffuse surface. Normals face the path; `flat` may be {0,0,0} at a vertex, which lies on

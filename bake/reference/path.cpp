@@ -70,8 +70,8 @@ void reach_sky(const PathSpace& space, Path& path) {
     const bool is_background = path.state.stage == PathState::Stage::camera;
     if (!path.stack.empty()) {
         path.lost = true;
-    } else if (is_background ? space.options.terms == term::kAll
-                             : (term_of(path.state) & space.options.terms) != 0) {
+    } else if (is_background ? space.options.terms == TermSet::all
+                             : has_any(term_of(path.state), space.options.terms)) {
         const float weight =
             path.pdf > 0 ? path.pdf / (path.pdf + pdf_light(space.light, path.direction)) : 1.0f;
         path.radiance += weight * path.beta * eval_light(space.light, path.direction);

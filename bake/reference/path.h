@@ -12,7 +12,7 @@ namespace opaline::bake {
 
 /// Which light of which paths is counted.
 struct PathOptions {
-    Terms terms = term::kAll;
+    TermSet terms = TermSet::all;
     /// Most scattering events along a path: on surfaces (refraction and mirror reflection count)
     /// or in media. Crossings between equal indices do not count.
     std::uint32_t max_depth = 0xffffffffu;

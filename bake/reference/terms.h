@@ -2,21 +2,11 @@
 
 #include <cstdint>
 
+#include "formats/opal/terms.h"
+
 namespace opaline::bake {
 
-/// The light of a path belongs to exactly one of these, by what the path did between the receiver
-/// and the sky. The first two of a body's are what the bake's effects of the same name stand for.
-using Terms = std::uint32_t;
-namespace term {
-inline constexpr Terms kDiffuse = 1;       ///< one reflection from an opaque surface
-inline constexpr Terms kSingle = 2;        ///< into a body, scattered once, out again
-inline constexpr Terms kMultiple = 4;      ///< into a body, scattered more often or reflected at
-                                           ///< its boundary from inside, out again
-inline constexpr Terms kSpecular = 8;      ///< one mirror reflection at a body's boundary
-inline constexpr Terms kUnscattered = 16;  ///< through a body without being scattered
-inline constexpr Terms kInterreflection = 32;  ///< everything that met a second body or surface
-inline constexpr Terms kAll = 63;
-}  // namespace term
+using formats::TermSet;
 
 /// What a path has met so far, as far as its term depends on it.
 struct PathState {
@@ -67,43 +57,43 @@ constexpr PathState after_crossing(PathState s, bool out) {
 }
 
 /// The term of a path that now reaches the sky; the camera's own view of it counts as all.
-constexpr Terms term_of(PathState s) {
+constexpr TermSet term_of(PathState s) {
     switch (s.stage) {
         case PathState::Stage::camera:
-            return term::kAll;
+            return TermSet::all;
         case PathState::Stage::diffuse:
-            return term::kDiffuse;
+            return TermSet::diffuse;
         case PathState::Stage::mirrored:
-            return term::kSpecular;
+            return TermSet::specular;
         case PathState::Stage::inside:  // the body is open: such light is not counted
-            return 0;
+            return TermSet::none;
         case PathState::Stage::left:
-            return s.scatterings == 0                          ? term::kUnscattered
-                   : s.scatterings == 1 && !s.reflected_inside ? term::kSingle
-                                                               : term::kMultiple;
+            return s.scatterings == 0                          ? TermSet::unscattered
+                   : s.scatterings == 1 && !s.reflected_inside ? TermSet::single
+                                                               : TermSet::multiple;
         case PathState::Stage::other:
             break;
     }
-    return term::kInterreflection;
+    return TermSet::interreflection;
 }
 
 /// All terms that a path may still end in.
-constexpr Terms reachable_terms(PathState s) {
+constexpr TermSet reachable_terms(PathState s) {
     switch (s.stage) {
         case PathState::Stage::camera:
-            return term::kAll;
+            return TermSet::all;
         case PathState::Stage::inside: {
-            Terms terms = term::kMultiple | term::kInterreflection;
+            TermSet terms = TermSet::multiple | TermSet::interreflection;
             if (s.scatterings == 0) {
-                terms |= term::kUnscattered;
+                terms |= TermSet::unscattered;
             }
             if (s.scatterings < 2 && !s.reflected_inside) {
-                terms |= term::kSingle;
+                terms |= TermSet::single;
             }
             return terms;
         }
         default:
-            return term_of(s) | term::kInterreflection;
+            return term_of(s) | TermSet::interreflection;
     }
 }
 

@@ -1,23 +1,23 @@
 /* Loads a baked asset, puts it under a white sky or a sun, and prints the mean outgoing radiance.
        minimal FILE.opal [sun]                                                                    */
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "opaline.h"
 
-/* The asset is used where it lies: memory aligned to 64 bytes, or a memory map. */
-static void* read_file(const char* path, size_t* size) {
-    void* bytes = NULL;
+/* The asset is used where it lies, aligned to 64 bytes (C99 has no aligned_alloc): *block is to be
+   freed. */
+static void* read_file(const char* path, size_t* size, void** block) {
+    char* bytes = NULL;
     FILE* file = fopen(path, "rb");
     if (file != NULL && fseek(file, 0, SEEK_END) == 0 && ftell(file) > 0) {
         *size = (size_t)ftell(file);
         rewind(file);
-        bytes = aligned_alloc(64, (*size + 63) / 64 * 64);
-        if (bytes != NULL && fread(bytes, 1, *size, file) != *size) {
-            free(bytes);
-            bytes = NULL;
-        }
+        *block = malloc(*size + 63);
+        if (*block != NULL) bytes = (char*)(((uintptr_t)*block + 63) / 64 * 64);
+        if (bytes != NULL && fread(bytes, 1, *size, file) != *size) bytes = NULL;
     }
     if (file != NULL) fclose(file);
     return bytes;
@@ -25,7 +25,7 @@ static void* read_file(const char* path, size_t* size) {
 
 int main(int argc, char** argv) {
     size_t size = 0;
-    void* bytes = argc > 1 ? read_file(argv[1], &size) : NULL;
+    void *block = NULL, *bytes = argc > 1 ? read_file(argv[1], &size, &block) : NULL;
     opaline_asset* asset = NULL;
     opaline_light* light = NULL;
     const float white[3] = {1, 1, 1}, direction[3] = {1, 2, 1}, sun[3] = {5e4f, 5e4f, 5e4f};
@@ -53,6 +53,6 @@ int main(int argc, char** argv) {
     free(radiance);
     opaline_light_release(light);
     opaline_asset_release(asset);
-    free(bytes);
+    free(block);
     return 0;
 }

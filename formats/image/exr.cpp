@@ -14,7 +14,7 @@
 
 #include "formats/image/exr_header.h"
 #include "formats/image/image_kind.h"
-#include "formats/opal/mapped_file.h"
+#include "formats/opal/file_bytes.h"
 
 namespace opaline::formats {
 namespace {
@@ -138,7 +138,7 @@ Result<ExrImage> decode_exr(std::span<const std::byte> bytes, const std::string&
 }
 
 Result<Image> read_exr(const std::filesystem::path& path) {
-    Result<MappedFile> file = MappedFile::open(path);
+    Result<FileBytes> file = FileBytes::open(path);
     if (!file) return std::move(file).error();
     Result<ExrImage> decoded = decode_exr(file->bytes(), path.string());
     if (!decoded) return std::move(decoded).error();

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "formats/image/image_kind.h"
-#include "formats/opal/mapped_file.h"
+#include "formats/opal/file_bytes.h"
 
 namespace opaline::formats {
 namespace {
@@ -206,7 +206,7 @@ Result<HdrImage> decode_hdr(std::span<const std::byte> bytes, const std::string&
 }
 
 Result<Image> read_hdr(const std::filesystem::path& path) {
-    Result<MappedFile> file = MappedFile::open(path);
+    Result<FileBytes> file = FileBytes::open(path);
     if (!file) return std::move(file).error();
     Result<HdrImage> decoded = decode_hdr(file->bytes(), path.string());
     if (!decoded) return std::move(decoded).error();

@@ -8,7 +8,7 @@
 #include "formats/image/hdr.h"
 #include "formats/image/image_kind.h"
 #include "formats/opal/cubemap.h"
-#include "formats/opal/mapped_file.h"
+#include "formats/opal/file_bytes.h"
 
 namespace opaline::formats {
 namespace {
@@ -234,7 +234,7 @@ Result<LoadedEnvironment> decode_environment(std::span<const std::byte> bytes,
 }
 
 Result<LoadedEnvironment> load_environment(const std::filesystem::path& path) {
-    Result<MappedFile> file = MappedFile::open(path);
+    Result<FileBytes> file = FileBytes::open(path);
     if (!file) return std::move(file).error();
     return decode_environment(file->bytes(), path.string());
 }

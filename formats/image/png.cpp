@@ -7,7 +7,7 @@
 
 #include "formats/image/image_kind.h"
 #include "formats/opal/atomic_file.h"
-#include "formats/opal/mapped_file.h"
+#include "formats/opal/file_bytes.h"
 
 namespace opaline::formats {
 namespace {
@@ -56,7 +56,7 @@ Result<Image8> decode_png(std::span<const std::byte> bytes, const std::string& n
 }
 
 Result<Image8> read_png(const std::filesystem::path& path) {
-    Result<MappedFile> file = MappedFile::open(path);
+    Result<FileBytes> file = FileBytes::open(path);
     if (!file) return std::move(file).error();
     return decode_png(file->bytes(), path.string());
 }

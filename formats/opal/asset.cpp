@@ -21,6 +21,7 @@ AssetView Asset::view() const {
     }
     view.roughness = roughness;
     view.openness = openness;
+    view.gloss = gloss;
     return view;
 }
 

@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/opal/gloss.h"
 #include "formats/opal/openness.h"
+#include "formats/opal/preview_image.h"
 #include "formats/opal/rgb.h"
 #include "formats/opal/sparse_rows.h"
 #include "formats/opal/vec3.h"
@@ -18,16 +20,9 @@ namespace opaline::formats {
 /// What an `.opal` file holds; formats/README.md specifies the bytes.
 
 inline constexpr std::uint32_t kOpalVersion = 1;
-inline constexpr std::uint32_t kNoImage = 0xffffffffu;
 
 /// Which side of <T, L> carries the solid angle (translucency.md 3.9). Only A is defined so far.
 enum class Pairing : std::uint32_t { light_carries_solid_angle = 1 };
-
-/// Roughness of a primitive without specular reflection.
-inline constexpr float kNotGlossy = -1.0f;
-
-/// How a texture coordinate outside [0, 1] is brought back inside.
-enum class Wrap : std::uint32_t { repeat = 0, clamp = 1, mirror = 2 };
 
 /// Relative indices of refraction of a translucent primitive; outside them the exact hemispherical
 /// moments and the fits that bakers use lose their digits (translucency.md 3.2).
@@ -35,7 +30,8 @@ inline constexpr float kMinEta = 1.0f / 3.0f, kMaxEta = 3.0f;
 
 /// What row values mean and how a receiver is shaded from them.
 enum class Shading : std::uint32_t {
-    /// L_o = base_color * <T_0, L>; T_0 = V max(0, n.w) / pi, one term, grey or RGB.
+    /// L_o = base_color * <T_0, L>; T_0 = V max(0, n.w) / pi, one term, grey or RGB. With gloss
+    /// (GlossRecord) the diffuse part shrinks and a specular part is added: gloss_model.h.
     diffuse = 1,
     /// L_o = base_color * Ft(eta, n.w_o) * sum_k h_k(w_o') <T_k, L> (translucency.md 3.6, 3.8),
     /// with
@@ -61,13 +57,16 @@ struct PrimitiveRecord {
     Shading shading = Shading::diffuse;
     std::uint32_t base_color_image = kNoImage;  ///< index into images
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    std::uint32_t flags = 0;  ///< kDoubleSided, kSeparate
+    std::uint32_t flags = 0;  ///< kDoubleSided, kSeparate, kSingleOnly
     float eta = 0;            ///< translucent: index of refraction in [1/3, 3]; else 0
 
     static constexpr std::uint32_t kDoubleSided = 1;
     static constexpr std::uint32_t kSeparate = 2;  ///< translucent: multiple scattering in row 0
+    /// Translucent, not separate: its rows hold single scattering alone.
+    static constexpr std::uint32_t kSingleOnly = 4;
 
     bool is_separate() const { return (flags & kSeparate) != 0; }
+    bool is_single_only() const { return (flags & kSingleOnly) != 0; }
 
     RowRange rows() const {
         return {first_row, vertex_count * terms, bands, first_band_row, first_code};
@@ -79,13 +78,7 @@ struct Float2 {
     float x = 0, y = 0;
 };
 
-/// 8-bit sRGB colour, three bytes a pixel, row 0 on top.
-struct PreviewImage {
-    std::uint32_t width = 0, height = 0;
-    std::span<const std::uint8_t> rgb;
-};
-
-/// The whole asset as spans, into a mapped file or into an `Asset`. Immutable.
+/// The whole asset as spans, into the bytes of a file or into an `Asset`. Immutable.
 struct AssetView {
     std::string_view provenance;  ///< JSON text, for people and tools
     std::uint32_t cubemap_size = 0;
@@ -98,22 +91,18 @@ struct AssetView {
     std::span<const Float2> texcoord;  ///< empty, or one per vertex
     std::span<const std::uint32_t> index;
     std::vector<PreviewImage> images;
-    /// Specular reflection: both empty (none), or GGX roughness in [0, 1] per primitive, kNotGlossy
-    /// where a primitive has none, and openness per vertex.
+    /// Specular reflection: both empty (none), or GGX roughness in [0, 1] per translucent primitive
+    /// (kNotGlossy where it has none, and for opaque primitives), and openness per vertex.
     std::span<const float> roughness;
     std::span<const Openness> openness;
+    /// Gloss of opaque primitives: empty (none), or one per primitive; needs `openness`.
+    std::span<const GlossRecord> gloss;
 
     std::uint32_t receivers() const { return static_cast<std::uint32_t>(position.size()); }
 };
 
 /// The primitive that a receiver belongs to. Precondition: receiver < asset.receivers().
 const PrimitiveRecord& primitive_of(const AssetView& asset, std::uint32_t receiver);
-
-/// Owning twin of `PreviewImage`.
-struct PreviewImageData {
-    std::uint32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgb;
-};
 
 /// Owning twin of `AssetView`: what the baker builds.
 struct Asset {
@@ -125,8 +114,9 @@ struct Asset {
     std::vector<Float2> texcoord;
     std::vector<std::uint32_t> index;
     std::vector<PreviewImageData> images;
-    std::vector<float> roughness;    ///< empty, or one per primitive; only translucent ones gloss
-    std::vector<Openness> openness;  ///< empty, or one per vertex
+    std::vector<float> roughness;    ///< empty, or one per primitive; kNotGlossy for opaque ones
+    std::vector<Openness> openness;  ///< empty, or one per vertex; where `roughness` is not empty
+    std::vector<GlossRecord> gloss;  ///< empty, or one per primitive; kNotGlossy if translucent
 
     AssetView view() const;
 };

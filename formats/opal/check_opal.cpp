@@ -57,8 +57,14 @@ std::string find_shading_fault(const PrimitiveRecord& p) {
                        " bands and index of refraction " + number(p.eta) +
                        "; expected 1 term, 1 or 3 bands and index 0";
             }
-            return p.is_separate() ? "diffuse shading with separate scattering" : std::string();
+            return p.is_separate() || p.is_single_only()
+                       ? "diffuse shading with separate scattering"
+                       : std::string();
         case Shading::translucent:
+            if (p.is_separate() && p.is_single_only()) {
+                return "rows of single scattering alone with multiple scattering in a row of its "
+                       "own";
+            }
             if (!has_possible_terms(p) || (p.bands != 1 && p.bands != 3) || !(p.eta >= kMinEta) ||
                 !(p.eta <= kMaxEta)) {
                 return "translucent shading with " + number(p.terms) + " terms, " +
@@ -126,6 +132,44 @@ Fault find_specular_fault(const AssetView& asset) {
     return {};
 }
 
+// Records decide which images are sampled: part of the structure.
+std::string find_gloss_record_fault(const AssetView& asset, std::size_t i) {
+    const GlossRecord& g = asset.gloss[i];
+    const auto share = [](float x) { return x >= 0.0f && x <= 1.0f; };
+    if (g.roughness == kNotGlossy) return {};
+    if (asset.primitives[i].shading != Shading::diffuse) {
+        return "it is not opaque: its roughness must be -1";
+    }
+    if (!share(g.roughness) || !share(g.metallic) || !share(g.f90) || !share(g.f0.r) ||
+        !share(g.f0.g) || !share(g.f0.b)) {
+        return "a roughness, metallic factor or reflectance is not in 0 ... 1";
+    }
+    if (g.image != kNoImage && (g.image >= asset.images.size() || asset.texcoord.empty())) {
+        return "it uses an image or texture coordinates that are not there";
+    }
+    if (static_cast<std::uint32_t>(g.wrap_u) > 2 || static_cast<std::uint32_t>(g.wrap_v) > 2) {
+        return "unknown texture wrap mode";
+    }
+    return {};
+}
+
+Fault find_gloss_fault(const AssetView& asset) {
+    if (asset.gloss.empty()) return {};
+    if (asset.gloss.size() != asset.primitives.size() ||
+        asset.openness.size() != asset.position.size()) {
+        return {"section GLOS", "it has " + std::to_string(asset.gloss.size()) +
+                                    " primitives, expected " +
+                                    std::to_string(asset.primitives.size()) +
+                                    " and a section SPEC with the openness of every vertex"};
+    }
+    for (std::size_t i = 0; i < asset.gloss.size(); ++i) {
+        if (std::string fault = find_gloss_record_fault(asset, i); !fault.empty()) {
+            return {"section GLOS, primitive " + std::to_string(i), std::move(fault)};
+        }
+    }
+    return {};
+}
+
 bool finite(Vec3 v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -144,6 +188,9 @@ Fault find_structure_fault(const AssetView& asset) {
         return fault;
     }
     if (const Fault fault = find_specular_fault(asset); !fault.what.empty()) {
+        return fault;
+    }
+    if (const Fault fault = find_gloss_fault(asset); !fault.what.empty()) {
         return fault;
     }
     for (std::size_t i = 0; i < asset.primitives.size(); ++i) {

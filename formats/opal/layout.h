@@ -21,6 +21,10 @@ static_assert(sizeof(BasisHead) == 16);
 /// three refuse by name; 1 where none has.
 inline constexpr std::uint32_t kGreyMediaVersion = 2;
 
+/// Section version of PRIM where a primitive has the flag kSingleOnly: earlier readers would take
+/// its rows for multiple and single scattering together.
+inline constexpr std::uint32_t kSingleOnlyVersion = 3;
+
 /// Section version of TRAN: 8-bit detail codes stand for their squares (detail_codes.h). Files of
 /// version 1, where they stood for themselves, are refused.
 inline constexpr std::uint32_t kTransportVersion = 2;
@@ -49,6 +53,11 @@ struct SpecularHead {
     std::uint32_t primitives = 0, vertices = 0, reserved[2] = {};
 };
 static_assert(sizeof(SpecularHead) == 16);
+
+struct GlossHead {
+    std::uint32_t primitives = 0, record_size = 0, reserved[2] = {};
+};
+static_assert(sizeof(GlossHead) == 16);
 
 struct TransportHead {
     std::uint32_t rows = 0, code_bits = 0, index_bytes = 0, reserved = 0;

@@ -96,6 +96,12 @@ bool read_specular(Cursor cursor, AssetView& view) {
            cursor.take(head.vertices, view.openness) && cursor.at_end();
 }
 
+bool read_gloss(Cursor cursor, AssetView& view) {
+    GlossHead head;
+    return cursor.take_one(head) && head.record_size == sizeof(GlossRecord) &&
+           cursor.take(head.primitives, view.gloss) && cursor.at_end();
+}
+
 bool read_transport(Cursor cursor, AssetView& view) {
     TransportHead head;
     if (!cursor.take_one(head) || (head.code_bits != 8 && head.code_bits != 16) ||
@@ -146,7 +152,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 read = read_basis, bit = 1;
                 break;
             case kPrimSection:
-                read = read_primitives, bit = 2, latest = kGreyMediaVersion;
+                read = read_primitives, bit = 2, latest = kSingleOnlyVersion;
                 break;
             case kTranSection:
                 read = read_transport, bit = 4, earliest = latest = kTransportVersion;
@@ -159,6 +165,9 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 break;
             case kSpecSection:
                 read = read_specular;
+                break;
+            case kGlosSection:
+                read = read_gloss;
                 break;
             case kProvSection:
                 break;

@@ -35,6 +35,7 @@ inline constexpr std::uint32_t kPrimSection = section_id("PRIM");
 inline constexpr std::uint32_t kMeshSection = section_id("MESH");
 inline constexpr std::uint32_t kImagSection = section_id("IMAG");
 inline constexpr std::uint32_t kSpecSection = section_id("SPEC");
+inline constexpr std::uint32_t kGlosSection = section_id("GLOS");
 inline constexpr std::uint32_t kTranSection = section_id("TRAN");
 
 struct FileHeader {

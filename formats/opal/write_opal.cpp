@@ -74,6 +74,10 @@ Stored store(std::uint32_t id, Codec codec, std::span<const std::span<const std:
 
 // Of PRIM: the earliest version that has all of it.
 std::uint32_t version_of(std::span<const PrimitiveRecord> primitives) {
+    if (std::any_of(primitives.begin(), primitives.end(),
+                    [](const PrimitiveRecord& p) { return p.is_single_only(); })) {
+        return kSingleOnlyVersion;
+    }
     return std::any_of(primitives.begin(), primitives.end(),
                        [](const PrimitiveRecord& p) {
                            return p.shading == Shading::translucent && p.bands == 1;
@@ -150,6 +154,17 @@ Stored store_specular(const AssetView& asset) {
     return stored;
 }
 
+Stored store_gloss(const AssetView& asset) {
+    const GlossHead head{static_cast<std::uint32_t>(asset.gloss.size()), sizeof(GlossRecord), {}};
+    const std::span<const std::byte> arrays[] = {bytes_of(head), std::as_bytes(asset.gloss)};
+    Stored stored = store(kGlosSection, Codec::zstd, arrays);
+    if (stored.entry.codec == 0) {
+        stored.compressed.assign(reinterpret_cast<const char*>(&head), sizeof head);
+        stored.parts.front() = std::as_bytes(std::span(stored.compressed));
+    }
+    return stored;
+}
+
 template <class Write>
 Status write_padded(Write& write, std::uint64_t& position, std::uint64_t target) {
     while (position < target) {
@@ -190,8 +205,10 @@ Status write_parts(const AssetView& asset, Write write) {
         rows.code_bits == 8 ? std::as_bytes(rows.code8) : std::as_bytes(rows.code16)};
 
     std::vector<Stored> sections;
-    sections.reserve(7);
-    sections.push_back(store_provenance(asset));
+    sections.reserve(8);
+    if (!asset.provenance.empty()) {
+        sections.push_back(store_provenance(asset));
+    }
     sections.push_back(store(kBasiSection, Codec::none, basis_arrays));
     sections.push_back(store(kPrimSection, Codec::none, primitive_arrays));
     sections.back().entry.version = version_of(asset.primitives);
@@ -203,6 +220,9 @@ Status write_parts(const AssetView& asset, Write write) {
     }
     if (!asset.roughness.empty()) {
         sections.push_back(store_specular(asset));
+    }
+    if (!asset.gloss.empty()) {
+        sections.push_back(store_gloss(asset));
     }
 
     std::vector<SectionEntry> table;

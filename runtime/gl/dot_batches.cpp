@@ -47,9 +47,9 @@ DotBatch make_batch(const formats::AssetView& asset, std::uint32_t number, std::
     batch.average_scale = bind_elements(band_row, row_count * bands, 4, alignment);
     batch.detail_scale = batch.average_scale;
     batch.average_code = bind_elements(band_row * 6, row_count * bands * 6, 2, alignment);
-    batch.irradiance = bind_elements(batch.first_vertex, vertices, kIrradianceBytes, alignment);
+    batch.radiance = bind_elements(batch.first_vertex, vertices, kRadianceBytes, alignment);
     if (needs_view(primitive)) {
-        batch.product = bind_elements(row, row_count, kIrradianceBytes, alignment);
+        batch.product = bind_elements(row, row_count, kRadianceBytes, alignment);
         batch.point = bind_elements(std::uint64_t{3} * batch.first_vertex,
                                     std::uint64_t{3} * vertices, sizeof(float), alignment);
     }
@@ -59,7 +59,7 @@ DotBatch make_batch(const formats::AssetView& asset, std::uint32_t number, std::
 bool fits(const DotBatch& batch, const DotLimits& limits) {
     return std::uint64_t{batch.vertices} * batch.terms <= limits.max_vertices &&
            std::max({batch.row_offset.size, batch.index.size, batch.code.size,
-                     batch.average_scale.size, batch.average_code.size, batch.irradiance.size,
+                     batch.average_scale.size, batch.average_code.size, batch.radiance.size,
                      batch.product.size, batch.point.size}) <= limits.max_block_bytes;
 }
 

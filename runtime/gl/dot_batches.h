@@ -22,7 +22,7 @@ struct DotBatch {
     std::uint32_t bands = 1, terms = 1;
     std::uint32_t first_detail = 0;  ///< row_offset of the first row
     std::uint32_t primitive = 0;
-    BoundRange row_offset, index, code, average_scale, detail_scale, average_code, irradiance;
+    BoundRange row_offset, index, code, average_scale, detail_scale, average_code, radiance;
     BoundRange product;  ///< where needs_view: <T_k, L> of every row
     BoundRange point;    ///< where needs_view: positions and normals, counted in floats
 };
@@ -38,7 +38,7 @@ struct DotLimits {
 };
 
 /// Bytes of one vertex's or row's result: four floats, the fourth unused.
-inline constexpr std::size_t kIrradianceBytes = 16;
+inline constexpr std::size_t kRadianceBytes = 16;
 
 /// Splits all primitives' rows so that every range of every batch keeps the limits; covers every
 /// vertex that belongs to a primitive exactly once per primitive. Errors: resource, where a single

@@ -61,15 +61,15 @@ void make_vertex_array(const AssetView& asset, GlAsset& gl) {
     glCreateVertexArrays(1, &name);
     gl.vertex_array = GlVertexArray(name);
     bind_attribute(name, 0, gl.position, 3, sizeof(formats::Vec3));
-    bind_attribute(name, 1, gl.irradiance, 3, kIrradianceBytes);
+    bind_attribute(name, 1, gl.radiance, 3, kRadianceBytes);
     bind_attribute(name, 2, gl.base_color, 3, sizeof(formats::Rgb));
     if (!asset.texcoord.empty()) {
         bind_attribute(name, 3, gl.texcoord, 2, sizeof(formats::Float2));
     }
-    if (gl.has_translucent) {
+    if (gl.has_translucent || !gl.gloss.empty()) {
         bind_attribute(name, 4, gl.normal, 3, sizeof(formats::Vec3));
     }
-    if (!gl.roughness.empty()) {
+    if (!gl.roughness.empty() || !gl.gloss.empty()) {
         // Openness: the octahedral axis and the fraction, scaled to [-1, 1] and [0, 1] on the way.
         for (const GLuint attribute : {5u, 6u}) {
             glVertexArrayVertexBuffer(name, attribute, gl.openness.name(), 0,
@@ -117,18 +117,24 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& l
     gl.average_scale = make_buffer_of(rows.average_scale, gl.resident);
     gl.detail_scale = make_buffer_of(rows.detail_scale, gl.resident);
     gl.average_code = make_buffer_of(rows.average_code, gl.resident);
-    gl.irradiance = make_zero_buffer(gl.vertices * kIrradianceBytes, gl.resident);
+    gl.radiance = make_zero_buffer(gl.vertices * kRadianceBytes, gl.resident);
     gl.has_translucent = std::ranges::any_of(gl.primitives, [](const auto& primitive) {
         return primitive.shading == formats::Shading::translucent;
     });
     if (std::ranges::any_of(gl.primitives, needs_view)) {
-        gl.product = make_zero_buffer(rows.rows() * kIrradianceBytes, gl.resident);
+        gl.product = make_zero_buffer(rows.rows() * kRadianceBytes, gl.resident);
     }
-    if (gl.has_translucent) {
+    const SpecularNeeds needs = specular_needs(asset);
+    if (gl.has_translucent || needs.gloss) {
         gl.normal = make_buffer_of(asset.normal, gl.resident);
     }
-    if (!roughness_levels(asset).empty()) {
+    if (!needs.levels.empty()) {
         gl.roughness.assign(asset.roughness.begin(), asset.roughness.end());
+    }
+    if (needs.gloss) {
+        gl.gloss.assign(asset.gloss.begin(), asset.gloss.end());
+    }
+    if (needs.any()) {
         gl.openness = make_buffer_of(asset.openness, gl.resident);
     }
     gl.position = make_buffer_of(asset.position, gl.resident);

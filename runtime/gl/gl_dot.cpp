@@ -97,7 +97,7 @@ formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
         // A result for each row: that of a vertex, or one of those to be added up toward an eye.
         const bool is_added = needs_view(asset.primitives[batch.primitive]);
         const std::uint32_t results = batch.vertices * batch.terms;
-        const BoundRange& result = is_added ? batch.product : batch.irradiance;
+        const BoundRange& result = is_added ? batch.product : batch.radiance;
         const std::array<std::pair<Uniform, std::uint32_t>, 9> uniforms{
             {{kResults, results},
              {kFaceTexels, asset.cubemap_size * asset.cubemap_size},
@@ -117,7 +117,7 @@ formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
         bind_storage(3, asset.average_scale, batch.average_scale);
         bind_storage(4, asset.detail_scale, batch.detail_scale);
         bind_storage(5, asset.average_code, batch.average_code);
-        bind_storage(7, is_added ? asset.product : asset.irradiance, result);
+        bind_storage(7, is_added ? asset.product : asset.radiance, result);
         glDispatchCompute(1, (results + programs.rows_per_group - 1) / programs.rows_per_group, 1);
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |

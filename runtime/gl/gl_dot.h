@@ -25,7 +25,7 @@ DotLimits query_dot_limits(std::size_t max_block_bytes, std::uint32_t lanes_per_
 
 formats::Result<DotPrograms> make_dot_programs(const GlAsset& asset, std::uint32_t lanes_per_row);
 
-/// Fills asset.irradiance, or asset.product for primitives that need a view, from `light`, a buffer
+/// Fills asset.radiance, or asset.product for primitives that need a view, from `light`, a buffer
 /// of 6 n n vec4.
 formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
                               const GlBuffer& light);

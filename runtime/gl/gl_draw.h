@@ -1,21 +1,18 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "formats/opal/result.h"
-#include "runtime/gl/gl_asset.h"
-#include "runtime/gl/gl_environment.h"
+#include "formats/opal/terms.h"
 #include "runtime/gl/gl_objects.h"
-#include "runtime/light_vector.h"
-#include "runtime/picture/camera.h"
+#include "runtime/gl/gl_scene.h"
+#include "runtime/gl/gl_surfaces.h"
 #include "runtime/picture/picture.h"
-#include "runtime/terms.h"
 
 namespace opaline::runtime {
 
 struct DrawPrograms {
-    std::array<GlProgram, 6> surface;  ///< plain, textured; translucent, both; glossy, both
+    SurfacePrograms surfaces;
     GlProgram background, resolve;
     GlVertexArray nothing;  ///< for passes without vertex data
 };
@@ -36,22 +33,7 @@ struct Tile {
     std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
-/// About 1 / the distances in the picture: the scale at which shaders measure them.
-double view_unit(const Camera& camera);
-
-/// Everything a tile is drawn from.
-struct DrawScene {
-    const GlAsset& asset;
-    const GlEnvironment& environment;
-    const GlSpecular& specular;
-    const Rotation& rotation;
-    const Camera& camera;
-    std::uint32_t supersampling = 1;
-    std::uint32_t terms = kAllTerms;  ///< terms.h
-    bool background = true;           ///< false: black
-};
-
-/// Surfaces, then the background where none is seen, then the box filter.
+/// The passes of the picture (passes.h), then the box filter.
 void draw_tile(const DrawScene& scene, const DrawPrograms& programs, const DrawTarget& target,
                const Tile& tile);
 

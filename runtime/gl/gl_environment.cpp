@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "formats/opal/ggx_albedo.h"
+
 namespace opaline::runtime {
 namespace {
 
@@ -51,6 +53,41 @@ formats::Status upload_map(const Environment& environment, GlEnvironment& gl) {
     return formats::ok_status();
 }
 
+void upload_gloss_light(const GlossLight& light, GlSpecular& gl) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &name);
+    gl.light_maps = GlTexture(name);
+    glTextureStorage3D(name, static_cast<GLsizei>(light.map.size()), GL_RGBA32F,
+                       static_cast<GLsizei>(light.map[0].width),
+                       static_cast<GLsizei>(light.map[0].width), 6);
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    for (std::size_t level = 0; level < light.map.size(); ++level) {
+        const Environment& map = light.map[level];
+        const auto size = static_cast<GLsizei>(map.width);
+        glTextureSubImage3D(name, static_cast<GLint>(level), 0, 0, 0, size, size, 6, GL_RGB,
+                            GL_FLOAT, map.pixel.data());
+        gl.resident += 16 * map.pixel.size();
+    }
+    const GlossLight::Cells& c = light.cells;
+    std::vector<float> cells, suns;
+    for (std::size_t i = 0; i < c.size(); ++i) {
+        cells.insert(cells.end(), {c.x[i], c.y[i], c.z[i], c.solid_angle[i], c.r[i], c.g[i], c.b[i],
+                                   c.widening[i]});
+    }
+    for (const formats::DistantDisc& sun : light.suns) {
+        suns.insert(suns.end(),
+                    {sun.direction.x, sun.direction.y, sun.direction.z, sun.angular_radius,
+                     sun.radiance.r, sun.radiance.g, sun.radiance.b,
+                     static_cast<float>(formats::disc_solid_angle(sun.angular_radius))});
+    }
+    gl.cells = make_buffer_of(std::span<const float>(cells), gl.resident);
+    gl.suns = make_buffer_of(std::span<const float>(suns), gl.resident);
+    gl.suns_count = static_cast<std::int32_t>(light.suns.size());
+    gl.albedo = make_buffer_of(formats::ggx_albedo_table(), gl.resident);
+}
+
 }  // namespace
 
 formats::Result<GlEnvironment> upload_environment(const Environment& environment) {
@@ -79,6 +116,10 @@ formats::Result<GlSpecular> upload_specular(SpecularLight light) {
         const std::uint32_t size = map.radiance.width;
         gl.texture.push_back(upload_layers(map.radiance, size, size, 6, gl.resident));
         map.radiance.pixel = {};
+    }
+    if (!light.gloss.map.empty()) {
+        upload_gloss_light(light.gloss, gl);
+        light.gloss = {};
     }
     gl.light = std::move(light);
     if (const auto status = check_gl("uploading specular light"); !status) return status.error();

@@ -30,6 +30,12 @@ formats::Result<GlEnvironment> upload_environment(const formats::Environment& en
 struct GlSpecular {
     SpecularLight light;  ///< for its levels; its pixels are on the GPU
     std::vector<GlTexture> texture;
+    // For glossy opaque surfaces, where there are some (GlossLight, ggx_albedo_table):
+    GlTexture light_maps;  ///< an array of six layers, half as wide at each level
+    GlBuffer cells;        ///< direction, solid angle; flux, widening
+    GlBuffer suns;         ///< direction, radius; radiance, solid angle
+    std::int32_t suns_count = 0;
+    GlBuffer albedo;
     std::size_t resident = 0;  ///< [bytes]
 };
 

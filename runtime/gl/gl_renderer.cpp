@@ -99,7 +99,7 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     if (!gl_environment) return gl_environment.error();
     state->stats.upload_seconds = clock.lap();
     auto gl_specular =
-        upload_specular(prefilter_specular(environment, roughness_levels(asset), {}, 0));
+        upload_specular(make_specular_light(environment, specular_needs(asset), {}, 0));
     if (!gl_specular) return gl_specular.error();
     state->stats.specular_seconds = clock.lap();
 
@@ -184,22 +184,22 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
     return picture;
 }
 
-formats::Result<std::vector<formats::Rgb>> GlRenderer::read_irradiance() {
+formats::Result<std::vector<formats::Rgb>> GlRenderer::read_radiance() {
     const CurrentContext current(state_->context);
     if (auto status = current.status(); !status) return status.error();
     const GlAsset& asset = state_->resources->asset;
     std::vector<float> padded(std::size_t{asset.vertices} * 4);
     if (!padded.empty()) {
-        glGetNamedBufferSubData(asset.irradiance.name(), 0,
+        glGetNamedBufferSubData(asset.radiance.name(), 0,
                                 static_cast<GLsizeiptr>(padded.size() * sizeof(float)),
                                 padded.data());
     }
-    if (auto status = check_gl("reading irradiance"); !status) return status.error();
-    std::vector<formats::Rgb> irradiance(asset.vertices);
-    for (std::size_t v = 0; v < irradiance.size(); ++v) {
-        irradiance[v] = {padded[4 * v], padded[4 * v + 1], padded[4 * v + 2]};
+    if (auto status = check_gl("reading radiance"); !status) return status.error();
+    std::vector<formats::Rgb> radiance(asset.vertices);
+    for (std::size_t v = 0; v < radiance.size(); ++v) {
+        radiance[v] = {padded[4 * v], padded[4 * v + 1], padded[4 * v + 2]};
     }
-    return irradiance;
+    return radiance;
 }
 
 const GlStats& GlRenderer::stats() const {

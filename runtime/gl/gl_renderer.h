@@ -9,10 +9,10 @@
 #include "formats/opal/asset.h"
 #include "formats/opal/environment.h"
 #include "formats/opal/result.h"
+#include "formats/opal/terms.h"
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/picture.h"
-#include "runtime/terms.h"
 
 namespace opaline::runtime {
 
@@ -27,8 +27,8 @@ struct GlOptions {
 struct GlRenderOptions {
     std::uint32_t supersampling = 3;        ///< S: S x S samples a pixel, box filter; in [1, 8]
     std::uint32_t max_tile_samples = 2048;  ///< side of the tiles drawn at once, >= S
-    std::uint32_t terms = kAllTerms;        ///< components (terms.h); see check_terms
-    bool background = true;                 ///< false: black where no triangle is seen
+    formats::TermSet terms = formats::TermSet::all;  ///< components to add up; see check_terms
+    bool background = true;                          ///< false: black where no triangle is seen
 };
 
 /// Wall-clock seconds of the last upload, set_light and render; each ends with glFinish.
@@ -48,7 +48,7 @@ struct GlStats {
 /// Pictures of an asset by OpenGL 4.5, without a window.
 ///
 /// Owns its GL context, which is current only inside calls; the caller's context is restored. One
-/// thread at a time. The same image as render_software with the same irradiance and specular light,
+/// thread at a time. The same image as render_software with the same radiance and specular light,
 /// up to rounding and to which sample an edge falls on. Reads the asset and environment only in
 /// `create`.
 class GlRenderer {
@@ -73,7 +73,7 @@ class GlRenderer {
 
     /// Reads back <T_0, L> of every vertex, as the last set_light left it; of vertices with several
     /// rows sum_k h_k(w_o') <T_k, L> toward the eye of the last render (0 before it).
-    formats::Result<std::vector<formats::Rgb>> read_irradiance();
+    formats::Result<std::vector<formats::Rgb>> read_radiance();
 
     const GlStats& stats() const;
 

@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "runtime/terms.h"
 #include "shader_text.h"
 
 namespace opaline::runtime {
@@ -14,7 +13,7 @@ namespace {
 enum Uniform : GLint {
     kVertices,
     kProductOrigin,
-    kIrradianceOrigin,
+    kRadianceOrigin,
     kShows,
     kEye,
     kUnit,
@@ -57,7 +56,7 @@ formats::Result<ViewPrograms> make_view_programs(const GlAsset& asset) {
 }
 
 formats::Status dispatch_views(const GlAsset& asset, const ViewPrograms& programs,
-                               formats::Vec3 eye, float unit, std::uint32_t terms) {
+                               formats::Vec3 eye, float unit, formats::TermSet terms) {
     if (programs.sums.empty()) return formats::ok_status();
     for (const DotBatch& batch : asset.batches) {
         const formats::PrimitiveRecord& primitive = asset.primitives[batch.primitive];
@@ -66,10 +65,14 @@ formats::Status dispatch_views(const GlAsset& asset, const ViewPrograms& program
         glUseProgram(sum.program.name());
         glUniform1ui(kVertices, batch.vertices);
         glUniform1ui(kProductOrigin, batch.product.origin);
-        glUniform1ui(kIrradianceOrigin, batch.irradiance.origin);
-        glUniform2ui(kShows, terms & kMultipleTerm, terms & kSingleTerm);
+        glUniform1ui(kRadianceOrigin, batch.radiance.origin);
+        // Rows of single scattering alone need no multiple scattering beside them.
+        const bool single = has_any(terms, formats::TermSet::single);
+        const bool multiple =
+            primitive.is_single_only() ? single : has_any(terms, formats::TermSet::multiple);
+        glUniform2ui(kShows, multiple ? 1u : 0u, single ? 1u : 0u);
         bind_storage(0, asset.product, batch.product);
-        bind_storage(3, asset.irradiance, batch.irradiance);
+        bind_storage(3, asset.radiance, batch.radiance);
         if (harmonics(sum) > 1) {
             glUniform3f(kEye, eye.x, eye.y, eye.z);
             glUniform1f(kUnit, unit);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "formats/opal/result.h"
+#include "formats/opal/terms.h"
 #include "formats/opal/vec3.h"
 #include "runtime/gl/gl_asset.h"
 #include "runtime/gl/gl_objects.h"
@@ -22,10 +23,10 @@ struct ViewPrograms {
 };
 formats::Result<ViewPrograms> make_view_programs(const GlAsset& asset);
 
-/// Fills the part of asset.irradiance of primitives that need a view from asset.product: what they
-/// show `eye` of the components `terms` (terms.h) without their Fresnel factor. `unit` is about 1 /
+/// Fills the part of asset.radiance of primitives that need a view from asset.product: what they
+/// show `eye` of the components `terms` without their Fresnel factor. `unit` is about 1 /
 /// the distances in the scene. Errors: resource.
 formats::Status dispatch_views(const GlAsset& asset, const ViewPrograms& programs,
-                               formats::Vec3 eye, float unit, std::uint32_t terms);
+                               formats::Vec3 eye, float unit, formats::TermSet terms);
 
 }  // namespace opaline::runtime

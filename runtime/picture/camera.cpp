@@ -172,14 +172,60 @@ BoundingSphere bound_object(const AssetView& asset) {
             largest = p;
         }
     }
-    if (chosen.size() > 1) {
-        const PrimitiveRecord& primitive = asset.primitives[largest];
-        if (is_flat(asset, primitive, box_of(positions_of(asset, primitive)))) {
-            std::erase(chosen, largest);
+    const BoundingSphere all = bound_primitives(asset, chosen);
+    if (chosen.size() < 2) return all;
+    const PrimitiveRecord& primitive = asset.primitives[largest];
+    if (!is_flat(asset, primitive, box_of(positions_of(asset, primitive)))) return all;
+    constexpr double kDwarfs = 3;
+    std::erase(chosen, largest);
+    const BoundingSphere rest = bound_primitives(asset, chosen);
+    return all.radius >= kDwarfs * rest.radius ? rest : all;
+}
+
+Vec3 view_direction(double azimuth, double elevation) {
+    const double a = azimuth * std::numbers::pi / 180.0, e = elevation * std::numbers::pi / 180.0;
+    return {narrow(std::sin(a) * std::cos(e)), narrow(std::sin(e)),
+            narrow(std::cos(a) * std::cos(e))};
+}
+
+double front_share(const AssetView& asset, Vec3 direction) {
+    const Double3 d = widen(direction);
+    double front = 0, back = 0;
+    for (const PrimitiveRecord& primitive : asset.primitives) {
+        const bool is_double_sided = (primitive.flags & PrimitiveRecord::kDoubleSided) != 0;
+        const auto positions = positions_of(asset, primitive);
+        const auto indices = asset.index.subspan(primitive.first_index, primitive.index_count);
+        for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+            const Double3 a = widen(positions[indices[i]]);
+            const Double3 n = cross_product(minus(widen(positions[indices[i + 1]]), a),
+                                            minus(widen(positions[indices[i + 2]]), a));
+            const double facing = n.x * d.x + n.y * d.y + n.z * d.z;
+            if (!std::isfinite(facing)) continue;
+            (facing > 0 || is_double_sided ? front : back) += std::abs(facing);
         }
     }
-    return bound_primitives(asset, chosen);
+    return front + back > 0 && std::isfinite(front + back) ? front / (front + back) : 1;
 }
+
+namespace {
+
+// Closed surfaces show as much front as back: half. Less than a quarter are backs of sheets.
+Vec3 choose_direction(const AssetView& asset) {
+    constexpr double kAzimuth = 30, kElevation = 18, kLeastFront = 0.25;
+    Vec3 best = view_direction(kAzimuth, kElevation);
+    double most = front_share(asset, best);
+    for (int turn = 1; turn < 4 && most < kLeastFront; ++turn) {
+        const Vec3 direction = view_direction(kAzimuth + 90 * turn, kElevation);
+        const double share = front_share(asset, direction);
+        if (share > most) {
+            most = share;
+            best = direction;
+        }
+    }
+    return best;
+}
+
+}  // namespace
 
 float near_plane_for(const AssetView& asset, Vec3 eye) {
     const BoundingSphere sphere = bound_asset(asset);
@@ -198,12 +244,10 @@ Camera frame_asset(const AssetView& asset, float fov_y, std::uint32_t width, std
     const double half = std::atan(std::min(frame.tan_half_x, frame.tan_half_y));
     constexpr double kMargin = 1.04;
     const double distance = kMargin * usable_radius(sphere) / std::max(std::sin(half), 1e-3);
-    constexpr double kAzimuth = 30.0 * std::numbers::pi / 180.0;
-    constexpr double kElevation = 18.0 * std::numbers::pi / 180.0;
+    const Double3 d = widen(choose_direction(asset));
     camera.target = {narrow(sphere.x), narrow(sphere.y), narrow(sphere.z)};
-    camera.eye = {narrow(sphere.x + distance * std::sin(kAzimuth) * std::cos(kElevation)),
-                  narrow(sphere.y + distance * std::sin(kElevation)),
-                  narrow(sphere.z + distance * std::cos(kAzimuth) * std::cos(kElevation))};
+    camera.eye = {narrow(sphere.x + distance * d.x), narrow(sphere.y + distance * d.y),
+                  narrow(sphere.z + distance * d.z)};
     camera.near_plane = near_plane_for(asset, camera.eye);
     return camera;
 }

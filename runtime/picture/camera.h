@@ -38,13 +38,23 @@ struct BoundingSphere {
 /// Around all vertices of the asset.
 BoundingSphere bound_asset(const formats::AssetView& asset);
 
-/// Around the object that a picture is about: all primitives but the ground it stands on. As long
-/// as something else is left, the largest primitive is ground if it is flat: a thin box, or a
-/// sheet whose triangles all face nearly the same way.
+/// Around what a picture is about: everything, but for a ground that would dwarf it. The largest
+/// primitive is such a ground if it is flat (a thin box, or a sheet whose triangles all face nearly
+/// the same way) and at least three times as large as all the rest.
 BoundingSphere bound_object(const formats::AssetView& asset);
 
-/// The default view: the object fills the frame, seen from the front, 30 degrees from +Z toward +X
-/// and 18 degrees above the horizon. Defined for every asset: empty, a point, any size.
+/// From a target to the eye, by angles [degrees]: azimuth from +Z toward +X, elevation above the
+/// horizon. Unit.
+formats::Vec3 view_direction(double azimuth, double elevation);
+
+/// Of the triangle area that faces `direction` or faces away from it, projected, the share that
+/// faces it; double-sided primitives always do. 1 for an asset without triangles.
+double front_share(const formats::AssetView& asset, formats::Vec3 direction);
+
+/// The default view: bound_object fills the frame, seen 18 degrees above the horizon, 30 degrees
+/// from +Z toward +X. Where more than three quarters of the area face away from there, the azimuth
+/// is that of the quarter turns that shows the largest share of front faces. Defined for every
+/// asset: empty, a point, any size.
 Camera frame_asset(const formats::AssetView& asset, float fov_y, std::uint32_t width,
                    std::uint32_t height);
 

@@ -6,8 +6,9 @@
 
 #include "runtime/parallel.h"
 #include "runtime/picture/band.h"
+#include "runtime/picture/passes.h"
+#include "runtime/surface.h"
 #include "runtime/texture.h"
-#include "runtime/view_terms.h"
 
 namespace opaline::runtime {
 namespace {
@@ -21,7 +22,7 @@ using formats::Rgb;
 // Everything that the bands share, read-only.
 struct Job {
     const AssetView& asset;
-    std::span<const Rgb> irradiance;
+    std::span<const Rgb> radiance;
     const formats::Environment& environment;
     const Rotation& rotation;
     const Camera& camera;
@@ -29,15 +30,14 @@ struct Job {
     SampleGrid grid;
     std::uint32_t supersampling = 1;
     std::uint32_t band_rows = 1;  ///< samples
+    std::vector<PicturePass> passes;
     std::vector<GridVertex> vertices;
     std::vector<GridTriangle> triangles;
     std::vector<std::vector<std::uint32_t>> triangles_of_band;
-    const SpecularLight* specular = nullptr;
-    std::vector<SpecularLobe> lobes;  // of each primitive, where there is specular light
-    bool background = true;
+    std::vector<SurfaceMaterial> materials;  // of each primitive
 };
 
-// NaN fails the comparison and becomes 0; the limit keeps sums of samples finite.
+// The limit keeps sums of samples finite.
 float tame(float value) {
     return value > 0.0f ? std::min(value, 1e35f) : 0.0f;
 }
@@ -50,6 +50,17 @@ T interpolate(std::span<const T> values, const std::array<std::uint32_t, 3>& ver
               const std::array<float, 3>& weight) {
     return weight[0] * values[vertex[0]] + weight[1] * values[vertex[1]] +
            weight[2] * values[vertex[2]];
+}
+
+Float2 interpolate_texcoord(const Job& job, const GridTriangle& triangle,
+                            const std::array<float, 3>& weight) {
+    Float2 uv;
+    if (job.asset.texcoord.empty()) return uv;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Float2 at = job.asset.texcoord[triangle.vertex[k]];
+        uv = {uv.x + weight[k] * at.x, uv.y + weight[k] * at.y};
+    }
+    return uv;
 }
 
 formats::Vec3 unit_or_zero(formats::Vec3 v) {
@@ -66,8 +77,8 @@ ViewOfReceiver view_at(const Job& job, const PrimitiveRecord& primitive,
                          job.camera.eye);
 }
 
-Rgb mirrored_at(const Job& job, const SpecularLobe& lobe, const ViewOfReceiver& view, float eta,
-                const GridTriangle& triangle, const std::array<float, 3>& weight) {
+void set_openness(const Job& job, const GridTriangle& triangle, const std::array<float, 3>& weight,
+                  SurfacePoint& point) {
     formats::Vec3 axis;
     float open = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -75,10 +86,33 @@ Rgb mirrored_at(const Job& job, const SpecularLobe& lobe, const ViewOfReceiver& 
         axis = axis + weight[k] * formats::open_axis(openness);
         open += weight[k] * formats::open_fraction(openness);
     }
-    return eval_specular(*job.specular, lobe, view, eta, unit_or_zero(axis), open);
+    point.open_axis = unit_or_zero(axis);
+    point.open_fraction = open;
 }
 
-Rgb shade_surface(const Job& job, const GridTriangle& triangle, double x, double y) {
+SurfacePoint point_at(const Job& job, const GridTriangle& triangle,
+                      const std::array<float, 3>& weight) {
+    const SurfaceMaterial& material = job.materials[triangle.primitive];
+    const PrimitiveRecord& primitive = *material.primitive;
+    const Float2 uv = interpolate_texcoord(job, triangle, weight);
+    SurfacePoint point;
+    point.radiance = interpolate(job.radiance, triangle.vertex, weight);
+    point.base_color = interpolate(job.asset.base_color, triangle.vertex, weight);
+    if (primitive.base_color_image != formats::kNoImage && !job.asset.texcoord.empty()) {
+        point.base_color =
+            point.base_color * sample_image_linear(job.asset.images[primitive.base_color_image], uv,
+                                                   primitive.wrap_u, primitive.wrap_v);
+    }
+    const bool is_glossy = material.gloss != nullptr || material.lobe.radiance != nullptr;
+    if (is_glossy || primitive.shading == formats::Shading::translucent) {
+        point.view = view_at(job, primitive, triangle, weight);
+    }
+    if (is_glossy) set_openness(job, triangle, weight, point);
+    if (material.gloss != nullptr) set_gloss_factors(job.asset, material, uv, point);
+    return point;
+}
+
+Rgb shade_triangle(const Job& job, const GridTriangle& triangle, double x, double y) {
     const EdgeFunctions edges =
         edge_functions({job.vertices[triangle.vertex[0]], job.vertices[triangle.vertex[1]],
                         job.vertices[triangle.vertex[2]]});
@@ -87,52 +121,70 @@ Rgb shade_surface(const Job& job, const GridTriangle& triangle, double x, double
     const std::array<float, 3> weight{static_cast<float>(e[0] * scale),
                                       static_cast<float>(e[1] * scale),
                                       static_cast<float>(e[2] * scale)};
-    Rgb radiance = interpolate(job.irradiance, triangle.vertex, weight) *
-                   interpolate(job.asset.base_color, triangle.vertex, weight);
-    const PrimitiveRecord& primitive = job.asset.primitives[triangle.primitive];
-    if (primitive.base_color_image != formats::kNoImage && !job.asset.texcoord.empty()) {
-        Float2 uv;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Float2 at = job.asset.texcoord[triangle.vertex[k]];
-            uv = {uv.x + weight[k] * at.x, uv.y + weight[k] * at.y};
-        }
-        radiance = radiance * sample_image_linear(job.asset.images[primitive.base_color_image], uv,
-                                                  primitive.wrap_u, primitive.wrap_v);
-    }
-    if (primitive.shading == formats::Shading::translucent) {
-        const ViewOfReceiver view = view_at(job, primitive, triangle, weight);
-        radiance = tame(fresnel_transmittance(view.cosine, primitive.eta) * radiance);
-        if (!job.lobes.empty() && job.lobes[triangle.primitive].radiance != nullptr) {
-            radiance = radiance + mirrored_at(job, job.lobes[triangle.primitive], view,
-                                              primitive.eta, triangle, weight);
-        }
-    }
-    return tame(radiance);
+    return tame(shade_surface(job.materials[triangle.primitive], point_at(job, triangle, weight)));
 }
 
-Rgb shade_sample(const Job& job, const Band& band, std::uint32_t column, std::uint32_t row) {
-    const std::uint32_t number =
-        band.triangle[std::size_t{row - band.first_row} * band.columns + column];
-    const double x = column + 0.5, y = row + 0.5;
-    if (number != Band::kNothing) return shade_surface(job, job.triangles[number], x, y);
-    if (!job.background) return {};
-    const formats::Vec3 ray =
-        view_ray(job.camera, job.frame, x / job.supersampling, y / job.supersampling);
-    return tame(formats::sample_radiance(job.environment, job.rotation.light_from_world(ray)));
+// A band of samples while its passes run: what is nearest, and the colour so far.
+struct Samples {
+    Band band;  ///< depth, and the triangle seen
+    std::vector<Rgb> color;
+
+    // Calls draw(sample, column, row), the last two of the whole grid.
+    template <class Draw>
+    void for_each(Draw draw) const {
+        for (std::uint32_t row = 0; row < band.rows; ++row) {
+            for (std::uint32_t column = 0; column < band.columns; ++column) {
+                draw(std::size_t{row} * band.columns + column, column, band.first_row + row);
+            }
+        }
+    }
+};
+
+void draw_surfaces(const Job& job, std::uint32_t number, Samples& samples) {
+    for (const std::uint32_t t : job.triangles_of_band[number]) {
+        draw_triangle(samples.band, t, job.triangles[t], job.vertices, job.grid);
+    }
+    samples.for_each([&](std::size_t i, std::uint32_t column, std::uint32_t row) {
+        const std::uint32_t seen = samples.band.triangle[i];
+        if (seen == Band::kNothing) return;
+        samples.color[i] = shade_triangle(job, job.triangles[seen], column + 0.5, row + 0.5);
+    });
 }
 
-void resolve_band(const Job& job, const Band& band, Picture& picture) {
+void draw_background(const Job& job, Samples& samples) {
+    samples.for_each([&](std::size_t i, std::uint32_t column, std::uint32_t row) {
+        if (samples.band.inverse_distance[i] > 0) return;
+        const formats::Vec3 ray =
+            view_ray(job.camera, job.frame, (column + 0.5) / job.supersampling,
+                     (row + 0.5) / job.supersampling);
+        samples.color[i] =
+            tame(formats::sample_radiance(job.environment, job.rotation.light_from_world(ray)));
+    });
+}
+
+void draw_pass(PicturePass pass, const Job& job, std::uint32_t number, Samples& samples) {
+    switch (pass) {
+        case PicturePass::surfaces:
+            return draw_surfaces(job, number, samples);
+        case PicturePass::background:
+            return draw_background(job, samples);
+    }
+}
+
+void resolve_band(const Job& job, const Samples& samples, Picture& picture) {
     const std::uint32_t s = job.supersampling;
+    const Band& band = samples.band;
     const float share = 1.0f / static_cast<float>(s * s);
-    for (std::uint32_t y = band.first_row / s; y < (band.first_row + band.rows) / s; ++y) {
+    for (std::uint32_t y = 0; y < band.rows / s; ++y) {
         for (std::uint32_t x = 0; x < picture.width; ++x) {
             Rgb sum;
             for (std::uint32_t j = 0; j < s; ++j) {
                 for (std::uint32_t i = 0; i < s; ++i) {
-                    sum = sum + shade_sample(job, band, x * s + i, y * s + j);
+                    const std::size_t row = std::size_t{y} * s + j;
+                    sum = sum + samples.color[row * band.columns + x * s + i];
                 }
             }
-            picture.pixel[std::size_t{y} * picture.width + x] = share * sum;
+            picture.pixel[(std::size_t{band.first_row / s} + y) * picture.width + x] = share * sum;
         }
     }
 }
@@ -146,13 +198,15 @@ std::uint32_t rows_of_band(const SampleGrid& grid, std::uint32_t supersampling) 
 }
 
 void render_band(const Job& job, std::uint32_t number, Picture& picture) {
-    Band band;
+    Samples samples;
     const std::uint32_t first = number * job.band_rows;
-    reset_band(band, first, std::min(job.band_rows, job.grid.rows - first), job.grid.columns);
-    for (const std::uint32_t t : job.triangles_of_band[number]) {
-        draw_triangle(band, t, job.triangles[t], job.vertices, job.grid);
+    reset_band(samples.band, first, std::min(job.band_rows, job.grid.rows - first),
+               job.grid.columns);
+    samples.color.assign(samples.band.triangle.size(), Rgb{});
+    for (const PicturePass pass : job.passes) {
+        draw_pass(pass, job, number, samples);
     }
-    resolve_band(job, band, picture);
+    resolve_band(job, samples, picture);
 }
 
 void sort_into_bands(Job& job) {
@@ -201,16 +255,16 @@ formats::Status check_camera(const Camera& camera, std::uint32_t supersampling) 
     return formats::ok_status();
 }
 
-formats::Result<Picture> render_software(const AssetView& asset, std::span<const Rgb> irradiance,
+formats::Result<Picture> render_software(const AssetView& asset, std::span<const Rgb> radiance,
                                          const formats::Environment& environment,
                                          const Rotation& rotation, const Camera& camera,
                                          const SoftwareOptions& options) {
     if (const auto status = check_camera(camera, options.supersampling); !status) {
         return status.error();
     }
-    if (irradiance.size() != asset.position.size()) {
-        return formats::make_error(ErrorKind::usage, {}, "irradiance",
-                                   "found " + std::to_string(irradiance.size()) +
+    if (radiance.size() != asset.position.size()) {
+        return formats::make_error(ErrorKind::usage, {}, "radiance",
+                                   "found " + std::to_string(radiance.size()) +
                                        " values, expected one for each of " +
                                        std::to_string(asset.position.size()) + " vertices");
     }
@@ -219,25 +273,23 @@ formats::Result<Picture> render_software(const AssetView& asset, std::span<const
     const std::uint32_t s = options.supersampling;
     const SampleGrid grid{camera.width * s, camera.height * s,
                           static_cast<double>(camera.near_plane)};
-    Job job{asset,
-            irradiance,
-            environment,
-            rotation,
-            camera,
-            camera_frame(camera),
-            grid,
-            s,
-            rows_of_band(grid, s),
-            {},
-            {},
-            {},
-            options.specular,
-            {},
-            options.background};
-    if (options.specular != nullptr) {
-        for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
-            job.lobes.push_back(specular_lobe(*options.specular, asset, p));
-        }
+    Job job{.asset = asset,
+            .radiance = radiance,
+            .environment = environment,
+            .rotation = rotation,
+            .camera = camera,
+            .frame = camera_frame(camera),
+            .grid = grid,
+            .supersampling = s,
+            .band_rows = rows_of_band(grid, s),
+            .passes = list_passes(options.background),
+            .vertices = {},
+            .triangles = {},
+            .triangles_of_band = {},
+            .materials = {}};
+    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+        job.materials.push_back(
+            surface_material(asset, p, formats::TermSet::all, options.specular));
     }
     job.vertices = project_vertices(asset.position, camera, grid);
     job.triangles = select_triangles(asset, job.vertices, grid);

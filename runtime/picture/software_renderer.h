@@ -24,19 +24,18 @@ struct SoftwareOptions {
 
 /// A picture of the asset in front of its environment, on the CPU.
 ///
-/// `irradiance` holds, for each vertex, <T_0, L> per band: outgoing radiance without base colour;
-/// for translucent vertices sum_k h_k(w_o') <T_k, L> toward the camera's eye (`shade` with
-/// `base_color` and `fresnel` false and that eye). It is interpolated with perspective correction,
-/// then multiplied by the interpolated base colour and the bilinearly sampled base-colour image,
-/// and where translucent by the Fresnel transmittance under the interpolated normal; glossy ones
-/// add their specular reflection (specular.h). Triangles show from both sides; diffuse ones are
-/// shaded alike, translucent ones face away with one of them unless they are double-sided. Where no
-/// triangle is seen stands the radiance of the environment, turned by `rotation` like the light.
-/// Depth and clipping: what is nearest, from the near plane on.
+/// `radiance`: of each vertex <T_0, L> per band, outgoing radiance without base colour; of
+/// translucent vertices sum_k h_k(w_o') <T_k, L> toward the camera's eye (`shade` with `base_color`
+/// and `fresnel` false and that eye). It is interpolated with perspective correction, like base
+/// colour, normal and openness; each sample is then shaded as surface.h says, with images sampled
+/// bilinearly. Triangles show from both sides; diffuse ones are shaded alike, translucent and
+/// glossy ones face away with one of them unless they are double-sided. Where no triangle is seen
+/// stands the radiance of the environment, turned by `rotation` like the light. Depth and clipping:
+/// what is nearest, from the near plane on. Passes: passes.h.
 ///
 /// Errors: usage (see check_camera; not one value per vertex), resource (memory).
 formats::Result<Picture> render_software(const formats::AssetView& asset,
-                                         std::span<const formats::Rgb> irradiance,
+                                         std::span<const formats::Rgb> radiance,
                                          const formats::Environment& environment,
                                          const Rotation& rotation, const Camera& camera,
                                          const SoftwareOptions& options = {});

@@ -74,7 +74,7 @@ void print_ratio(const Body& body, const formats::Medium& medium) {
     const ReferenceScene walked = make_reference_scene(scene, 0).value();
     const LightSampler sampler = make_light_sampler(light, glm::mat3(1.0f));
     PathOptions paths;
-    paths.terms = term::kSingle | term::kMultiple;
+    paths.terms = TermSet::single | TermSet::multiple;
     const auto receivers = choose_receivers(walked, 1u << 30, 0, std::nullopt);
     EstimateOptions wanted;
     wanted.samples = 20000;

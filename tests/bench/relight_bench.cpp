@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "formats/opal/mapped_file.h"
+#include "formats/opal/file_bytes.h"
 #include "formats/opal/read_opal.h"
 #include "runtime/gl/gl_renderer.h"
 #include "runtime/shade.h"
@@ -17,7 +17,7 @@ namespace {
 using namespace opaline;
 
 struct File {
-    formats::MappedFile bytes;
+    formats::FileBytes bytes;
     formats::LoadedAsset asset;
 };
 
@@ -27,7 +27,7 @@ std::optional<File> open_file(benchmark::State& state) {
         state.SkipWithError("set OPALINE_BENCH_ASSET to an .opal file");
         return std::nullopt;
     }
-    auto bytes = formats::MappedFile::open(path);
+    auto bytes = formats::FileBytes::open(path);
     if (!bytes) {
         state.SkipWithError(bytes.error().diagnostics.front().fault.c_str());
         return std::nullopt;

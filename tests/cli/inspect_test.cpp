@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
+#include "formats/opal/write_opal.h"
 #include "tests/cli/small_scene.h"
+#include "tests/formats/opal/asset_fixture.h"
 
 namespace opaline::tests {
 namespace {
@@ -23,6 +25,19 @@ TEST(Info, TellsKnobsPlanErrorAndSections) {
 TEST(Verify, SoundFileIsSound) {
     SmallScene small;
     EXPECT_EQ(run_opaline({"verify", small.baked()}).exit_code, 0);
+}
+
+// Review 1, fault 22: nothing is computed from PROV, so a file without it conforms.
+TEST(Verify, AFileWithoutProvenanceIsSound) {
+    SmallScene small;
+    formats::Asset asset = make_small_asset();
+    asset.provenance.clear();
+    const std::string path = small.path("bare.opal");
+    auto file = formats::AtomicFile::create(path);
+    ASSERT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    EXPECT_EQ(read_text(path).find("PROV"), std::string::npos);
+    const Outcome verify = run_opaline({"verify", path});
+    EXPECT_EQ(verify.exit_code, 0) << verify.err;
 }
 
 TEST(Verify, EveryFlippedByteIsFoundOutAndNamed) {

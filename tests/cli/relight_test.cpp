@@ -151,6 +151,18 @@ TEST(Terms, UnknownNamesAreRefusedWithTheList) {
     }
 }
 
+// Help says "[all]": the word must work, also for rows that hold multiple and single together.
+TEST(Terms, AllIsTheDefault) {
+    SmallScene small;
+    const std::string file = write_glossy(small, false);
+    const std::string plain = small.path("plain.csv"), all = small.path("all.csv");
+    ASSERT_EQ(run_opaline({"relight", file, "--light", "studio", "-o", plain}).exit_code, 0);
+    const Outcome named =
+        run_opaline({"relight", file, "--light", "studio", "--terms", "all", "-o", all});
+    ASSERT_EQ(named.exit_code, 0) << named.err;
+    EXPECT_EQ(read_text(plain), read_text(all));
+}
+
 TEST(Terms, MergedFilesSayWhatToDoForOneOfTheirTerms) {
     SmallScene small;
     const std::string merged = write_glossy(small, false), out = small.path("o.png");

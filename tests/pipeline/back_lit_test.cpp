@@ -41,7 +41,7 @@ BackLit measure_back_lit(tests::Primitive body, const formats::Medium& medium) {
 
     const auto fixture = tests::make_fixture(scene, sky);
     PathOptions paths;
-    paths.terms = term::kSingle | term::kMultiple;
+    paths.terms = TermSet::single | TermSet::multiple;
     auto receivers = choose_receivers(fixture->scene, 1u << 30, 0, std::nullopt);
     EstimateOptions estimate;
     estimate.samples = 50000;

@@ -16,6 +16,7 @@
 #include "formats/opal/haar.h"
 #include "formats/opal/write_opal.h"
 #include "tests/support/effects.h"
+#include "runtime/terms.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/temporary_folder.h"
 
@@ -139,13 +140,13 @@ TEST(TranslucentPipeline, MultipleAndSingleBakedApartAddUpToBoth) {
         EXPECT_EQ(merged.asset.primitives[0].terms, options.phase_terms);
         EXPECT_EQ(separate.asset.primitives[0].terms, options.phase_terms + 1);
         for (const char* light : kLights) {
-            const auto part = [&](std::uint32_t terms) {
+            const auto part = [&](formats::TermSet terms) {
                 runtime::ShadeOptions shown;
                 shown.terms = terms;
                 return relight_primitive(separate.asset, light, 0, shown);
             };
-            std::vector<Rgb> sum = part(runtime::kMultipleTerm);
-            const std::vector<Rgb> single = part(runtime::kSingleTerm);
+            std::vector<Rgb> sum = part(formats::TermSet::multiple);
+            const std::vector<Rgb> single = part(formats::TermSet::single);
             EXPECT_GT(mean_green(sum), 0) << light;
             EXPECT_GT(mean_green(single), 0) << light;
             for (std::size_t v = 0; v < sum.size(); ++v) {
@@ -158,7 +159,13 @@ TEST(TranslucentPipeline, MultipleAndSingleBakedApartAddUpToBoth) {
         options.effects = {"multiple"};
         const BakeResult multiple = bake_scene(scene, options);
         runtime::ShadeOptions shown;
-        shown.terms = runtime::kMultipleTerm;
+        shown.terms = formats::TermSet::multiple;
+        options.effects = {"single"};
+        options.separate_terms = false;
+        const BakeResult single = bake_scene(scene, options);
+        EXPECT_TRUE(single.asset.primitives[0].is_single_only());
+        EXPECT_TRUE(runtime::check_terms(single.asset.view(), formats::TermSet::single));
+        EXPECT_FALSE(runtime::check_terms(merged.asset.view(), formats::TermSet::single));
         EXPECT_LT(relative_rms(relight_primitive(multiple.asset, "studio"),
                                relight_primitive(separate.asset, "studio", 0, shown)),
                   1e-6);

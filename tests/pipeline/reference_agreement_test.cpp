@@ -49,7 +49,7 @@ TEST(ReferenceAgreement, SingleScatteringThatEntersStraight) {
         options.set(kPhaseTerms, g > 0 ? 25 : 1);
         const BakeResult baked = tests::bake_scene(scene, options);
         ModelCheckOptions wanted;
-        wanted.simulated = term::kSingle;
+        wanted.simulated = TermSet::single;
         wanted.noise = 0.02;
         const auto report = check_model(scene, baked.asset.view(), wanted, {}).value();
         for (const char* soft : {"white", "studio"}) {
@@ -69,7 +69,7 @@ struct Middle {
 };
 
 Middle look_at_middle(float thickness, const formats::Medium& medium, const char* effect,
-                      Terms terms) {
+                      TermSet terms) {
     constexpr std::uint32_t kCells = 8, kMiddle = (kCells / 2) * (kCells + 2);
     const tests::Scene scene =
         tests::make_translucent_scene(tests::make_sheet(thickness, kCells), medium);
@@ -100,7 +100,7 @@ TEST(ReferenceAgreement, DiffusionOnAThickFlatSlabUnderWhiteLight) {
     for (const float eta : {1.0f, 1.3f, 1.5f}) {
         const formats::Medium medium = tests::make_grey_medium(95, 5, eta);
         for (const auto& [effect, terms] :
-             {std::pair{"multiple", term::kMultiple}, {"single", term::kSingle}}) {
+             {std::pair{"multiple", TermSet::multiple}, {"single", TermSet::single}}) {
             const Middle m = look_at_middle(0.4f, medium, effect, terms);
             EXPECT_LT(m.standard_error, 0.035 * m.truth);
             EXPECT_NEAR(m.baked / m.truth, 1, 0.03 + 3 * m.standard_error / m.truth)

@@ -34,7 +34,7 @@ formats::Scene smoke_sheet(double depth, float g = 0) {
 
 TEST(SmallBodies, SendOutLessThatScatteredTwiceThanTheirBound) {
     PathOptions paths;
-    paths.terms = term::kMultiple;
+    paths.terms = TermSet::multiple;
     EstimateOptions wanted;
     wanted.samples = 4096;
     for (const double depth : {0.05, 0.5, 2.0, 10.0}) {

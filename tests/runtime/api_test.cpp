@@ -16,6 +16,7 @@ namespace opaline::runtime {
 namespace {
 
 using formats::Rgb;
+using formats::TermSet;
 using testing::HasSubstr;
 
 /// The bytes of a small file, aligned as a memory map is.
@@ -311,7 +312,7 @@ TEST_F(Api, ComponentsAndGlossAreThoseOfTheLibrary) {
     const LightVector vector = project_environment(map, 8, rotation);
     const std::uint32_t level = roughness_level(0.5f);
     const SpecularLight specular = prefilter_specular(map, {&level, 1}, rotation, 1);
-    const auto expect = [&](std::uint32_t flags, std::uint32_t terms) {
+    const auto expect = [&](std::uint32_t flags, TermSet terms) {
         std::vector<Rgb> expected(p.vertex_count);
         shade(source.view(), vector, expected, {.terms = terms, .specular = &specular});
         std::vector<float> out(3 * std::size_t{p.vertex_count});
@@ -321,11 +322,11 @@ TEST_F(Api, ComponentsAndGlossAreThoseOfTheLibrary) {
             EXPECT_NEAR(out[3 * i + 1], expected[i].g, 1e-5f * (1 + expected[i].g)) << flags;
         }
     };
-    expect(0, kAllTerms);
-    expect(OPALINE_SHADE_WITHOUT_SPECULAR, kAllTerms & ~kSpecularTerm);
-    expect(OPALINE_SHADE_WITHOUT_SINGLE | OPALINE_SHADE_WITHOUT_SPECULAR, kMultipleTerm);
-    expect(OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SPECULAR, kSingleTerm);
-    expect(OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE, kSpecularTerm);
+    expect(0, TermSet::all);
+    expect(OPALINE_SHADE_WITHOUT_SPECULAR, TermSet::all & ~TermSet::specular);
+    expect(OPALINE_SHADE_WITHOUT_SINGLE | OPALINE_SHADE_WITHOUT_SPECULAR, TermSet::multiple);
+    expect(OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SPECULAR, TermSet::single);
+    expect(OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE, TermSet::specular);
     // A light of an asset without gloss has nothing to mirror.
     std::vector<float> out(3 * std::size_t{p.vertex_count});
     EXPECT_EQ(opaline_shade(a, light.get(), 0, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);

@@ -17,6 +17,7 @@ namespace {
 using formats::Asset;
 using formats::Environment;
 using formats::Rgb;
+using formats::TermSet;
 using formats::Vec3;
 
 constexpr std::uint32_t kAllLevels[] = {0, 8, 20, 40};
@@ -253,7 +254,8 @@ TEST(Specular, ShadingAddsItToGlossyPrimitivesAloneAndOnlyWithItsLight) {
     const auto bare = shaded(glossy, {.eye = eye});
     EXPECT_EQ(shaded(matt, {.eye = eye, .specular = &specular}), bare);
     const auto with = shaded(glossy, {.eye = eye, .specular = &specular});
-    const auto alone = shaded(glossy, {.eye = eye, .terms = kSpecularTerm, .specular = &specular});
+    const auto alone =
+        shaded(glossy, {.eye = eye, .terms = TermSet::specular, .specular = &specular});
     std::size_t lit = 0;
     for (std::size_t v = 0; v < with.size(); ++v) {
         EXPECT_NEAR(with[v].g, bare[v].g + alone[v].g, 1e-6f * with[v].g);

@@ -13,6 +13,7 @@ namespace {
 using formats::Asset;
 using formats::PrimitiveRecord;
 using formats::Rgb;
+using formats::TermSet;
 using formats::Vec3;
 
 /// A grey diffuse and a glossy translucent primitive with `terms` rows a vertex, radiance above 0.
@@ -48,7 +49,7 @@ Asset make_asset(std::uint32_t terms, bool is_separate) {
 
 class Terms : public testing::Test {
   protected:
-    std::vector<Rgb> shaded(const Asset& asset, std::uint32_t terms, bool fresnel = true) {
+    std::vector<Rgb> shaded(const Asset& asset, TermSet terms, bool fresnel = true) {
         std::vector<Rgb> out(asset.position.size());
         shade(asset.view(), light_, out,
               {.eye = Vec3{0, 2, 5}, .fresnel = fresnel, .terms = terms, .specular = &specular_});
@@ -64,9 +65,9 @@ class Terms : public testing::Test {
 TEST_F(Terms, MultipleAndSingleAddUpToBoth) {
     for (const std::uint32_t terms : {1u, 2u, 5u, 10u, 17u, 26u}) {
         const Asset asset = make_asset(terms, true);
-        const auto both = shaded(asset, kMultipleTerm | kSingleTerm, false);
-        const auto multiple = shaded(asset, kMultipleTerm, false);
-        const auto single = shaded(asset, kSingleTerm, false);
+        const auto both = shaded(asset, TermSet::multiple | TermSet::single, false);
+        const auto multiple = shaded(asset, TermSet::multiple, false);
+        const auto single = shaded(asset, TermSet::single, false);
         std::size_t differ = 0;
         for (std::uint32_t v = asset.primitives[1].first_vertex; v < both.size(); ++v) {
             const float sum = multiple[v].g + single[v].g;
@@ -79,13 +80,14 @@ TEST_F(Terms, MultipleAndSingleAddUpToBoth) {
 
 TEST_F(Terms, ComponentsAddUpToTheWholeWhereNoneIsClamped) {
     const Asset asset = make_asset(5, true);
-    const auto whole = shaded(asset, kAllTerms);
+    const auto whole = shaded(asset, TermSet::all);
     std::vector<std::vector<Rgb>> parts;
-    for (const std::uint32_t term : {kMultipleTerm, kSingleTerm, kSpecularTerm, kDiffuseTerm}) {
+    for (const TermSet term :
+         {TermSet::multiple, TermSet::single, TermSet::specular, TermSet::diffuse}) {
         parts.push_back(shaded(asset, term));
     }
-    const auto multiple = shaded(asset, kMultipleTerm, false);
-    const auto single = shaded(asset, kSingleTerm, false);
+    const auto multiple = shaded(asset, TermSet::multiple, false);
+    const auto single = shaded(asset, TermSet::single, false);
     std::size_t compared = 0;
     for (std::size_t v = 0; v < whole.size(); ++v) {
         if (multiple[v].r < 0 || single[v].r < 0) continue;
@@ -101,7 +103,7 @@ TEST_F(Terms, ComponentsAddUpToTheWholeWhereNoneIsClamped) {
 // The second row of a separate asset is what a merged one has; its harmonics begin anew.
 TEST_F(Terms, SingleScatteringHasTheViewTermsOfItsOwnNumberOfRows) {
     const Asset asset = make_asset(5, true);
-    const auto single = shaded(asset, kSingleTerm, false);
+    const auto single = shaded(asset, TermSet::single, false);
     const PrimitiveRecord& p = asset.primitives[1];
     for (std::uint32_t v = p.first_vertex; v < single.size(); ++v) {
         std::vector<Rgb> rows(5);
@@ -119,12 +121,32 @@ TEST_F(Terms, SingleScatteringHasTheViewTermsOfItsOwnNumberOfRows) {
     }
 }
 
+// Review 1, fault 12: after a bake of single scattering alone it could not be shown by itself.
+TEST_F(Terms, RowsOfSingleScatteringAloneShowIt) {
+    for (const std::uint32_t terms : {1u, 4u}) {
+        Asset asset = make_asset(terms, false);
+        const auto whole = shaded(asset, TermSet::all, false);
+        asset.primitives[1].flags |= PrimitiveRecord::kSingleOnly;
+        EXPECT_TRUE(check_terms(asset.view(), TermSet::single));
+        EXPECT_TRUE(check_terms(asset.view(), TermSet::multiple));
+        EXPECT_EQ(shaded(asset, TermSet::all, false), whole);
+        const auto single = shaded(asset, TermSet::single, false);
+        const auto multiple = shaded(asset, TermSet::multiple, false);
+        for (std::uint32_t v = asset.primitives[1].first_vertex; v < whole.size(); ++v) {
+            EXPECT_EQ(single[v], whole[v]);
+            EXPECT_EQ(multiple[v], Rgb{});
+        }
+    }
+}
+
 TEST_F(Terms, MergedRowsAreShownWholeOrNotAtAll) {
     const Asset merged = make_asset(4, false), apart = make_asset(5, true);
-    for (std::uint32_t terms = 0; terms <= kAllTerms; ++terms) {
-        const bool needs_both = ((terms & kMultipleTerm) != 0) != ((terms & kSingleTerm) != 0);
+    for (std::uint32_t bits = 0; bits <= static_cast<std::uint32_t>(TermSet::baked); ++bits) {
+        const auto terms = static_cast<TermSet>(bits);
+        const bool needs_both =
+            has_any(terms, TermSet::multiple) != has_any(terms, TermSet::single);
         const auto status = check_terms(merged.view(), terms, "a.opal");
-        EXPECT_EQ(status.has_value(), !needs_both) << terms;
+        EXPECT_EQ(status.has_value(), !needs_both) << bits;
         EXPECT_TRUE(check_terms(apart.view(), terms, "a.opal"));
         if (!status) {
             const formats::Diagnostic& main = status.error().diagnostics.front();
@@ -133,7 +155,7 @@ TEST_F(Terms, MergedRowsAreShownWholeOrNotAtAll) {
             EXPECT_THAT(main.remedy, testing::HasSubstr("--separate-terms"));
         }
     }
-    for (const Rgb c : shaded(merged, 0)) {
+    for (const Rgb c : shaded(merged, TermSet::none)) {
         EXPECT_EQ(c, Rgb{});
     }
 }

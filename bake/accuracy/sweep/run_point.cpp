@@ -39,14 +39,15 @@ formats::Result<runtime::Picture> draw(const formats::AssetView& asset, const Sw
         runtime::frame_asset(asset, kFieldOfView, view.picture_width, view.picture_height);
     const runtime::LightVector light =
         runtime::project_environment(view.picture_light, asset.cubemap_size, {}, threads);
-    const std::vector<formats::Rgb> irradiance =
-        runtime::shade_for_picture(asset, light, camera.eye, runtime::kAllTerms, threads);
-    const runtime::SpecularLight specular = runtime::prefilter_specular(
-        view.picture_light, runtime::roughness_levels(asset), {}, threads);
+    const std::vector<formats::Rgb> radiance =
+        runtime::shade_for_picture(asset, light, camera.eye, formats::TermSet::all, threads);
+    const runtime::SpecularNeeds needs = runtime::specular_needs(asset);
+    const runtime::SpecularLight specular =
+        runtime::make_specular_light(view.picture_light, needs, {}, threads);
     runtime::SoftwareOptions options;
     options.threads = threads;
-    options.specular = specular.maps.empty() ? nullptr : &specular;
-    return runtime::render_software(asset, irradiance, view.picture_light, {}, camera, options);
+    options.specular = needs.any() ? &specular : nullptr;
+    return runtime::render_software(asset, radiance, view.picture_light, {}, camera, options);
 }
 
 }  // namespace

@@ -25,24 +25,29 @@ int cube_point(vec3 d, out vec2 p) {
     return d.z > 0.0 ? 4 : 5;
 }
 
-vec3 cube_texel(sampler2DArray map, int face, vec2 at, int n) {
+vec3 cube_texel(sampler2DArray map, int level, int face, vec2 at) {
+    int n = textureSize(map, level).x;
     if (min(at.x, at.y) < 0.0 || max(at.x, at.y) > float(n - 1)) {
         // Over the edge: the texel of the neighbouring face that this direction falls into.
         vec2 p;
         face = cube_point(cube_position(face, 2.0 * (at + 0.5) / float(n) - 1.0), p);
         at = floor((p * 0.5 + 0.5) * float(n));
     }
-    return texelFetch(map, ivec3(clamp(ivec2(at), ivec2(0), ivec2(n - 1)), face), 0).rgb;
+    return texelFetch(map, ivec3(clamp(ivec2(at), ivec2(0), ivec2(n - 1)), face), level).rgb;
 }
 
-vec3 sample_cube(sampler2DArray map, vec3 d) {
-    int n = textureSize(map, 0).x;
+vec3 sample_cube_level(sampler2DArray map, vec3 d, int level) {
+    int n = textureSize(map, level).x;
     vec2 p;
     int face = cube_point(d, p);
     vec2 at = (p * 0.5 + 0.5) * float(n) - 0.5;
     vec2 low = floor(at), t = at - low;
-    return mix(mix(cube_texel(map, face, low, n),
-                   cube_texel(map, face, low + vec2(1.0, 0.0), n), t.x),
-               mix(cube_texel(map, face, low + vec2(0.0, 1.0), n),
-                   cube_texel(map, face, low + vec2(1.0), n), t.x), t.y);
+    return mix(mix(cube_texel(map, level, face, low),
+                   cube_texel(map, level, face, low + vec2(1.0, 0.0)), t.x),
+               mix(cube_texel(map, level, face, low + vec2(0.0, 1.0)),
+                   cube_texel(map, level, face, low + vec2(1.0)), t.x), t.y);
+}
+
+vec3 sample_cube(sampler2DArray map, vec3 d) {
+    return sample_cube_level(map, d, 0);
 }

@@ -1,7 +1,10 @@
-// Outgoing radiance: irradiance transport times base colour, and its image where TEXTURED, and the
-// Fresnel transmittance where TRANSLUCENT, and a specular reflection on top where GLOSSY (then
-// cube_map.glsl comes before this).
-layout(location = 0) in vec3 v_irradiance;
+// Outgoing radiance of a surface, as shade_surface of runtime/surface.cpp. Specialised:
+// TEXTURED: base colour has an image (image.glsl comes before this);
+// TRANSLUCENT: the rows are multiplied by the Fresnel transmittance;
+// MIRRORING: translucent with a specular reflection on top (cube_map.glsl comes before this);
+// GLOSS: glossy opaque (cube_map.glsl and gloss.glsl come before this); GLOSS_TEXTURED: with an
+// image of roughness and metallic (image.glsl).
+layout(location = 0) in vec3 v_radiance;
 layout(location = 1) in vec3 v_base_color;
 layout(location = 0) out vec4 color;
 layout(location = 11) uniform float shown;  // 1, or 0: left out
@@ -10,57 +13,27 @@ float tame(float value) {
     return value > 0.0 ? min(value, 1e35) : 0.0;
 }
 
-#ifdef TEXTURED
+#ifdef HAS_TEXCOORD
 layout(location = 2) in vec2 v_texcoord;
-// Codes and a table instead of an sRGB format: hardware may filter before or after decoding and at
-// its own precision; the CPU decodes exactly and filters afterwards.
-layout(binding = 0) uniform usampler2D image;
-layout(std430, binding = 0) readonly buffer Decode { float linear_from_srgb[256]; };
+#endif
+#ifdef TEXTURED
+layout(binding = 0) uniform usampler2D base_color_image;
 layout(location = 8) uniform ivec2 wrap;
-
-int wrap_texel(int i, int size, int mode) {
-    if (mode == WRAP_CLAMP) {
-        return clamp(i, 0, size - 1);
-    }
-    int period = mode == WRAP_MIRROR ? 2 * size : size;
-    i = (i + period) % period;  // i >= -1; of negative numbers GLSL leaves % undefined
-    return i < size ? i : period - 1 - i;
-}
-
-vec3 texel(int column, int row, ivec2 size) {
-    uvec4 code = texelFetch(image, ivec2(wrap_texel(column, size.x, wrap.x),
-                                         wrap_texel(row, size.y, wrap.y)), 0);
-    return vec3(linear_from_srgb[code.r], linear_from_srgb[code.g], linear_from_srgb[code.b]);
-}
-
-// Keeps the texel number within what an int holds: two periods are as good as any number of them.
-float reduce(float t, int mode) {
-    if (!(abs(t) < 1e30)) {
-        return 0.0;
-    }
-    return mode == WRAP_CLAMP ? clamp(t, -1.0, 2.0) : t - 2.0 * floor(0.5 * t);
-}
-
-vec3 sample_image(vec2 uv) {
-    ivec2 size = textureSize(image, 0);
-    vec2 at = vec2(reduce(uv.x, wrap.x), reduce(uv.y, wrap.y)) * vec2(size) - 0.5;
-    vec2 low = floor(at), t = at - low;
-    ivec2 i = ivec2(low);
-    return mix(mix(texel(i.x, i.y, size), texel(i.x + 1, i.y, size), t.x),
-               mix(texel(i.x, i.y + 1, size), texel(i.x + 1, i.y + 1, size), t.x), t.y);
-}
 #endif
 
-#ifdef TRANSLUCENT
+#ifdef HAS_VIEW
 layout(location = 3) in vec3 v_normal;
 layout(location = 4) in vec3 v_to_eye;
-layout(location = 9) uniform float eta;
 layout(location = 10) uniform uint is_double_sided;
 
 vec3 unit_or_zero(vec3 v) {
     float size = length(v);
     return size > 0.0 ? v / size : vec3(0.0);
 }
+#endif
+
+#ifdef TRANSLUCENT
+layout(location = 9) uniform float eta;
 
 // As fresnel_transmittance of view_terms.cpp.
 float transmittance(float c) {
@@ -75,15 +48,13 @@ float transmittance(float c) {
 }
 #endif
 
-#ifdef GLOSSY
+#ifdef HAS_OPENNESS
 layout(location = 5) in vec4 v_open;
-layout(binding = 1) uniform sampler2DArray mirrored_light;
 layout(location = 12) uniform mat3 light_from_world;
-layout(location = 13) uniform vec2 lobe;          // cosine and sine of its half angle
 layout(location = 14) uniform uint has_specular;  // 0: left out
 
-// The next two as in specular.cpp.
-float specular_visibility(vec3 axis, float open, vec3 mirrored) {
+// As in specular.cpp; `lobe`: cosine and sine of the lobe's half angle.
+float specular_visibility(vec3 axis, float open, vec3 mirrored, vec2 lobe) {
     float cosine = sqrt(1.0 - open), sine = sqrt(open);
     float low = cosine * lobe.x - sine * lobe.y, high = cosine * lobe.x + sine * lobe.y;
     float at = high > low ? clamp((dot(axis, mirrored) - low) / (high - low), 0.0, 1.0) : 0.0;
@@ -93,6 +64,18 @@ float specular_visibility(vec3 axis, float open, vec3 mirrored) {
     return 1.0 - (1.0 - inside) * (1.0 - fourth * fourth);
 }
 
+// Openness is stored for the front.
+vec3 open_axis(vec3 n, bool is_turned) {
+    vec3 axis = unit_or_zero(v_open.xyz);
+    return is_turned ? axis - 2.0 * dot(axis, n) * n : axis;
+}
+#endif
+
+#ifdef MIRRORING
+layout(binding = 1) uniform sampler2DArray mirrored_light;
+layout(location = 13) uniform vec2 lobe;  // cosine and sine of its half angle
+
+// As eval_specular.
 vec3 specular(vec3 n, vec3 w, float cosine, bool is_turned) {
     if (has_specular == 0u || !(dot(n, n) > 0.0) || !(cosine > -0.2)) {
         return vec3(0.0);
@@ -103,13 +86,47 @@ vec3 specular(vec3 n, vec3 w, float cosine, bool is_turned) {
     if (!(dot(mirrored, mirrored) > 0.0)) {
         return vec3(0.0);
     }
-    vec3 axis = unit_or_zero(v_open.xyz);
-    if (is_turned) {
-        axis -= 2.0 * dot(axis, n) * n;
-    }
     float share = fade * (1.0 - transmittance(c)) *
-                  specular_visibility(axis, clamp(v_open.w, 0.0, 1.0), mirrored);
+                  specular_visibility(open_axis(n, is_turned), clamp(v_open.w, 0.0, 1.0), mirrored,
+                                      lobe);
     return share * sample_cube(mirrored_light, light_from_world * mirrored);
+}
+#endif
+
+#ifdef GLOSS
+layout(location = 15) uniform vec4 f0_f90;
+layout(location = 16) uniform vec2 metallic_roughness;
+#ifdef GLOSS_TEXTURED
+layout(binding = 3) uniform usampler2D gloss_image;
+layout(location = 17) uniform ivec2 gloss_wrap;
+#endif
+
+// As make_gloss_surface.
+Gloss make_gloss(vec3 base_color) {
+    vec2 factors = metallic_roughness;
+#ifdef GLOSS_TEXTURED
+    factors *= sample_image(gloss_image, v_texcoord, gloss_wrap, false).bg;
+#endif
+    factors = clamp(factors, 0.0, 1.0);
+    Gloss g;
+    g.roughness = factors.y;
+    g.alpha = max(factors.y * factors.y, kLeastAlpha);
+    g.f0 = mix(f0_f90.rgb, clamp(base_color, 0.0, 1.0), factors.x);
+    g.f90 = mix(f0_f90.a, 1.0, factors.x);
+    g.diffuse = 1.0 - factors.x;
+    return g;
+}
+
+// As gloss_visibility.
+float gloss_visibility(Gloss g, vec3 n, vec3 w, float cosine, bool is_turned) {
+    vec3 mirrored = unit_or_zero(2.0 * clamp(cosine, kLeastCosine, 1.0) * n - w);
+    if (!(dot(mirrored, mirrored) > 0.0)) {
+        return 0.0;
+    }
+    float a2 = max(g.alpha, 0.05) * max(g.alpha, 0.05);
+    vec2 half_angle = vec2(1.0 - a2, 2.0 * max(g.alpha, 0.05)) / (1.0 + a2);
+    return specular_visibility(open_axis(n, is_turned), clamp(v_open.w, 0.0, 1.0), mirrored,
+                               half_angle);
 }
 #endif
 
@@ -117,12 +134,14 @@ vec3 tame(vec3 v) {
     return vec3(tame(v.r), tame(v.g), tame(v.b));
 }
 
+// As shade_surface of runtime/surface.cpp.
 void main() {
-    vec3 radiance = shown * v_irradiance * v_base_color;
+    vec3 base_color = v_base_color;
 #ifdef TEXTURED
-    radiance *= sample_image(v_texcoord);
+    base_color *= sample_image(base_color_image, v_texcoord, wrap, true);
 #endif
-#ifdef TRANSLUCENT
+    vec3 radiance = shown * v_radiance * base_color;
+#ifdef HAS_VIEW
     vec3 n = unit_or_zero(v_normal), w = unit_or_zero(v_to_eye);
     float c = dot(n, w);
     bool is_turned = c < 0.0 && is_double_sided != 0u;
@@ -130,10 +149,21 @@ void main() {
         n = -n;
         c = -c;
     }
+#endif
+#ifdef TRANSLUCENT
     radiance *= transmittance(c);
 #endif
-#ifdef GLOSSY
+#ifdef MIRRORING
     radiance = tame(radiance) + specular(n, w, c, is_turned);
+#endif
+#ifdef GLOSS
+    Gloss g = make_gloss(base_color);
+    float seen = clamp(abs(c), kLeastCosine, 1.0);
+    radiance = tame(gloss_diffuse(g, ggx_albedo(seen, g.roughness)) * radiance);
+    if (has_specular != 0u) {
+        radiance += gloss_visibility(g, n, w, c, is_turned) *
+                    tame(eval_gloss(g, light_from_world * n, light_from_world * w, c));
+    }
 #endif
     color = vec4(tame(radiance), 1.0);
 }

@@ -1,19 +1,19 @@
 // Homogeneous position without a projection matrix: w is the distance along the view axis, depth is
 // near / w (reversed, no far plane). y points down, so that row 0 is the top of the picture.
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 irradiance;
+layout(location = 1) in vec3 radiance;
 layout(location = 2) in vec3 base_color;
-#ifdef TEXTURED
+#ifdef HAS_TEXCOORD
 layout(location = 3) in vec2 texcoord;
 layout(location = 2) out vec2 v_texcoord;
 #endif
-#ifdef TRANSLUCENT
+#ifdef HAS_VIEW
 layout(location = 4) in vec3 normal;
 layout(location = 3) out vec3 v_normal;
 layout(location = 4) out vec3 v_to_eye;
 #endif
 
-#ifdef GLOSSY
+#ifdef HAS_OPENNESS
 layout(location = 5) in vec2 open_axis;
 layout(location = 6) in float open_fraction;
 layout(location = 5) out vec4 v_open;  // mean open direction, open fraction
@@ -34,7 +34,7 @@ layout(location = 4) uniform float unit;      // 1 / distance scale: keeps w nea
 layout(location = 5) uniform float near_plane;  // in that unit
 layout(location = 6) uniform vec4 tile;       // scale xy, offset zw: the tile out of the picture
 
-layout(location = 0) out vec3 v_irradiance;
+layout(location = 0) out vec3 v_radiance;
 layout(location = 1) out vec3 v_base_color;
 
 void main() {
@@ -42,16 +42,16 @@ void main() {
     float w = dot(forward, p);
     gl_Position = vec4(dot(right, p) * tile.x + w * tile.z, dot(down, p) * tile.y + w * tile.w,
                        near_plane, w);
-    v_irradiance = irradiance;
+    v_radiance = radiance;
     v_base_color = base_color;
-#ifdef TEXTURED
+#ifdef HAS_TEXCOORD
     v_texcoord = texcoord;
 #endif
-#ifdef TRANSLUCENT
+#ifdef HAS_VIEW
     v_normal = normal;
     v_to_eye = -p;
 #endif
-#ifdef GLOSSY
+#ifdef HAS_OPENNESS
     v_open = vec4(decode_axis(open_axis), open_fraction);
 #endif
 }

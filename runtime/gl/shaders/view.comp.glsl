@@ -5,12 +5,12 @@
 layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) readonly buffer Products { vec4 product[]; };
-layout(std430, binding = 3) writeonly buffer Irradiance { vec4 irradiance[]; };
+layout(std430, binding = 3) writeonly buffer Radiance { vec4 radiance[]; };
 
 layout(location = 0) uniform uint vertices;
 // Where the batch's data begin in the bound ranges.
 layout(location = 1) uniform uint product_origin;
-layout(location = 2) uniform uint irradiance_origin;
+layout(location = 2) uniform uint radiance_origin;
 layout(location = 3) uniform uvec2 shows;  // multiple, single
 
 #if HARMONICS > 1
@@ -139,5 +139,5 @@ void main() {
         sum = sum_toward_eye(vertex, product_origin + vertex * uint(HARMONICS));
     }
 #endif
-    irradiance[irradiance_origin + vertex] = vec4(sum, 0.0);
+    radiance[radiance_origin + vertex] = vec4(sum, 0.0);
 }

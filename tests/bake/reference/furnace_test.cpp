@@ -122,8 +122,8 @@ TEST(ReferenceFurnace, OpaqueVerticesInsideABodySeeTheSkyThroughItOnly) {
     auto chosen = bake::choose_receivers(body->scene, 1000000, 0, kAlongNormals);
     chosen.erase(chosen.begin(), chosen.end() - 4);
     bake::PathOptions direct, across;
-    direct.terms = bake::term::kDiffuse;
-    across.terms = bake::term::kInterreflection;
+    direct.terms = formats::TermSet::diffuse;
+    across.terms = formats::TermSet::interreflection;
     bake::EstimateOptions options;
     options.samples = 200;
     const auto none = bake::estimate_receivers(body->space(direct), chosen, options, {}).value();

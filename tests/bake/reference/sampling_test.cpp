@@ -122,7 +122,7 @@ TEST(ReferenceReceivers, DepthOneIsDirectLightOnly) {
     options.samples = 400;
     bake::PathOptions shallow, direct;
     shallow.max_depth = 1;
-    direct.terms = bake::term::kDiffuse;
+    direct.terms = formats::TermSet::diffuse;
     const auto a = bake::estimate_receivers(corner->space(shallow), receivers, options, {});
     const auto b = bake::estimate_receivers(corner->space(direct), receivers, options, {});
     const auto all = bake::estimate_receivers(corner->space(), receivers, options, {});

@@ -186,7 +186,8 @@ TEST(ReferenceSlab, ScattersADistantLightOnceTwiceAndOften) {
     for (const SlabRow& row : rows) {
         const auto slab = make_slab_fixture(row, make_distant_light(row.light));
         bake::PathOptions options;
-        options.terms = row.quantity == "order1" ? bake::term::kSingle : bake::term::kMultiple;
+        options.terms =
+            row.quantity == "order1" ? formats::TermSet::single : formats::TermSet::multiple;
         options.max_depth = row.quantity == "order2" ? 2 : options.max_depth;
         expect_within(row, march(*slab, row, options, 64000), limit_for(rows.size()));
     }
@@ -209,7 +210,7 @@ TEST(ReferenceSlab, LetsABeamOutWhereItIsKnownTo) {
             continue;
         }
         const bool all = row.quantity == "exit_unscattered";
-        options.terms = all ? bake::term::kUnscattered : bake::term::kAll;
+        options.terms = all ? formats::TermSet::unscattered : formats::TermSet::all;
         const auto slab = make_slab_fixture(
             row, all ? make_white_sky() : make_half_sky(row.quantity == "exit_back"));
         expect_within(row, march(*slab, row, options, 64000), limit_for(rows.size()));
@@ -223,7 +224,7 @@ TEST(ReferenceSlab, TransmitsByBeersLawAtAnyDepth) {
         down.march = {0, -1, 0};
         const auto slab = make_slab_fixture(row, make_white_sky());
         bake::PathOptions options;
-        options.terms = bake::term::kUnscattered;
+        options.terms = formats::TermSet::unscattered;
         // The only chance is whether a path gets through.
         const bake::Moments m = march(*slab, down, options, 160000);
         EXPECT_NEAR(m.mean.x, row.value, 3 * std::sqrt(row.value / 160000) + 2e-6 * row.value)
@@ -247,7 +248,7 @@ TEST(ReferenceSlab, ForwardScatteringBrightensABackLitSheet) {
         const auto sheet = make_fixture(
             make_slab(make_medium(0.5f, 1, i == 0 ? -0.7f : 0.7f, 1.3f), 1), make_half_sky(false));
         bake::PathOptions options;
-        options.terms = bake::term::kSingle | bake::term::kMultiple;
+        options.terms = formats::TermSet::single | formats::TermSet::multiple;
         brightness[i] = look_down(sheet->space(options), 0.5f, 1, 8000).mean.x;
     }
     EXPECT_GT(brightness[1], 2 * brightness[0]);

@@ -114,4 +114,22 @@ inline void add_gloss(formats::Asset& asset) {
     }
 }
 
+/// Makes opaque primitives glossy: a textured metal and a plain dielectric in turn.
+inline void add_opaque_gloss(formats::Asset& asset) {
+    using namespace formats;
+    if (asset.roughness.empty()) add_gloss(asset);
+    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+        GlossRecord gloss;
+        if (asset.primitives[p].shading == Shading::diffuse) {
+            gloss.metallic = p % 2 == 0 ? 1.0f : 0.0f;
+            gloss.roughness = 0.25f + 0.5f * gloss.metallic;
+            gloss.f0 = {0.04f, 0.05f, 0.06f};
+            gloss.f90 = 0.5f;
+            gloss.image = p % 2 == 0 ? 0 : kNoImage;
+            gloss.wrap_v = Wrap::mirror;
+        }
+        asset.gloss.push_back(gloss);
+    }
+}
+
 }  // namespace opaline::tests

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "formats/opal/mapped_file.h"
+#include "formats/opal/file_bytes.h"
 #include "formats/opal/read_opal.h"
 #include "formats/opal/write_opal.h"
 #include "tests/support/temporary_folder.h"
@@ -43,7 +43,7 @@ inline std::vector<std::byte> encode(const formats::Asset& asset) {
     auto file = formats::AtomicFile::create(folder / "a.opal");
     EXPECT_TRUE(file);
     EXPECT_TRUE(formats::write_opal(asset.view(), std::move(*file)));
-    auto mapped = formats::MappedFile::open(folder / "a.opal");
+    auto mapped = formats::FileBytes::open(folder / "a.opal");
     EXPECT_TRUE(mapped);
     return {mapped->bytes().begin(), mapped->bytes().end()};
 }

@@ -125,8 +125,9 @@ Result<LoadedAsset> read_with_version(std::uint32_t id, std::uint32_t version) {
 }
 
 TEST(OpalVersion, ALaterSectionVersionAsksForAnUpdate) {
-    for (const std::uint32_t id : {kPrimSection, kTranSection}) {
-        const auto loaded = read_with_version(id, 3);
+    for (const auto& [id, version] : {std::pair{kPrimSection, kSingleOnlyVersion + 1},
+                                      std::pair{kTranSection, kTransportVersion + 1}}) {
+        const auto loaded = read_with_version(id, version);
         ASSERT_FALSE(loaded);
         EXPECT_EQ(loaded.error().kind, ErrorKind::newer_file);
         EXPECT_EQ(loaded.error().diagnostics.front().where, "section " + section_name(id));

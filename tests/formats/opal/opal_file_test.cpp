@@ -175,6 +175,24 @@ TEST(OpalFile, SeparateScatteringHasOneRowMoreThanItsHarmonics) {
     EXPECT_FALSE(read_opal(stored.bytes(), "a.opal"));
 }
 
+TEST(OpalFile, SingleScatteringAloneRaisesTheVersionOfPrimitives) {
+    Asset asset = tests::make_small_asset();
+    tests::add_translucent_triangle(asset, 4, 1.3f);
+    asset.primitives[2].flags |= PrimitiveRecord::kSingleOnly;
+    AlignedBytes stored(encode(asset));
+    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+    ASSERT_TRUE(loaded);
+    EXPECT_TRUE(loaded->view.primitives[2].is_single_only());
+    EXPECT_EQ(version_of_primitives(*loaded), 3u);
+    asset.primitives[0].flags |= PrimitiveRecord::kSingleOnly;  // opaque
+    AlignedBytes opaque(encode(asset));
+    EXPECT_FALSE(read_opal(opaque.bytes(), "a.opal"));
+    asset.primitives[0].flags = 0;
+    asset.primitives[2].flags |= PrimitiveRecord::kSeparate;
+    AlignedBytes both(encode(asset));
+    EXPECT_FALSE(read_opal(both.bytes(), "a.opal"));
+}
+
 TEST(OpalFile, SpecularComesBackAndIsAbsentWithoutIt) {
     Asset asset = tests::make_small_asset();
     tests::add_translucent_triangle(asset, 4, 1.3f);
@@ -213,6 +231,48 @@ TEST(OpalFile, ImpossibleSpecularIsRefusedByName) {
     EXPECT_EQ(fault_of([](Asset& a) { a.roughness[0] = 0.2f; }), "section SPEC, primitive 0");
     EXPECT_EQ(fault_of([](Asset& a) { a.roughness.pop_back(); }), "section SPEC");
     EXPECT_EQ(fault_of([](Asset& a) { a.openness.pop_back(); }), "section SPEC");
+}
+
+TEST(OpalFile, GlossComesBack) {
+    Asset asset = tests::make_small_asset();
+    tests::add_translucent_triangle(asset, 4, 1.3f);
+    tests::add_opaque_gloss(asset);
+    AlignedBytes stored(encode(asset));
+    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+    ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
+    expect_same_bytes(loaded->view.gloss, asset.gloss);
+    EXPECT_EQ(loaded->sections.back().id, kGlosSection);
+    EXPECT_EQ(loaded->sections.back().version, 1u);
+}
+
+TEST(OpalFile, ImpossibleGlossIsRefusedByName) {
+    const auto fault_of = [](auto change) {
+        Asset asset = tests::make_small_asset();
+        tests::add_translucent_triangle(asset, 4, 1.3f);
+        tests::add_opaque_gloss(asset);
+        change(asset);
+        AlignedBytes stored(encode(asset));
+        const auto loaded = read_opal(stored.bytes(), "a.opal");
+        return loaded ? std::string() : loaded.error().diagnostics.front().where;
+    };
+    EXPECT_EQ(fault_of([](Asset&) {}), "");
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const float bad : {-0.5f, 1.01f, nan, std::numeric_limits<float>::infinity()}) {
+        EXPECT_EQ(fault_of([bad](Asset& a) { a.gloss[1].roughness = bad; }),
+                  "section GLOS, primitive 1");
+        EXPECT_EQ(fault_of([bad](Asset& a) { a.gloss[1].metallic = bad; }),
+                  "section GLOS, primitive 1");
+        EXPECT_EQ(fault_of([bad](Asset& a) { a.gloss[0].f0.g = bad; }),
+                  "section GLOS, primitive 0");
+        EXPECT_EQ(fault_of([bad](Asset& a) { a.gloss[0].f90 = bad; }), "section GLOS, primitive 0");
+    }
+    EXPECT_EQ(fault_of([](Asset& a) { a.gloss[2].roughness = 0.2f; }),
+              "section GLOS, primitive 2");  // translucent
+    EXPECT_EQ(fault_of([](Asset& a) { a.gloss[0].image = 1; }), "section GLOS, primitive 0");
+    EXPECT_EQ(fault_of([](Asset& a) { a.gloss[0].wrap_u = static_cast<Wrap>(3); }),
+              "section GLOS, primitive 0");
+    EXPECT_EQ(fault_of([](Asset& a) { a.gloss.pop_back(); }), "section GLOS");
+    EXPECT_EQ(fault_of([](Asset& a) { a.roughness.clear(), a.openness.clear(); }), "section GLOS");
 }
 
 TEST(OpalFile, TransportIsUsedInPlace) {

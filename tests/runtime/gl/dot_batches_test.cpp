@@ -29,7 +29,7 @@ TEST(DotBatches, CoverEveryVertexOnceWithinTheLimits) {
                 next += batch.vertices;
                 for (const BoundRange& range :
                      {batch.row_offset, batch.index, batch.code, batch.average_scale,
-                      batch.detail_scale, batch.average_code, batch.irradiance}) {
+                      batch.detail_scale, batch.average_code, batch.radiance}) {
                     EXPECT_EQ(range.offset % limits.alignment, 0u);
                     EXPECT_EQ(range.size % 4, 0u);
                     EXPECT_LE(range.size, limits.max_block_bytes);

@@ -24,7 +24,7 @@ std::string text_of(const formats::Error& error) {
     return error.diagnostics[0].where + ": " + error.diagnostics[0].fault;
 }
 
-void expect_same_irradiance(const std::vector<Rgb>& cpu, const std::vector<Rgb>& gl) {
+void expect_same_radiance(const std::vector<Rgb>& cpu, const std::vector<Rgb>& gl) {
     ASSERT_EQ(cpu.size(), gl.size());
     for (std::size_t v = 0; v < cpu.size(); ++v) {
         // Float sums of a few hundred products in another order.

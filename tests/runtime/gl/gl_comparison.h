@@ -19,8 +19,8 @@ class Gl : public testing::Test {
 
 std::string text_of(const formats::Error& error);
 
-void expect_same_irradiance(const std::vector<formats::Rgb>& cpu,
-                            const std::vector<formats::Rgb>& gl);
+void expect_same_radiance(const std::vector<formats::Rgb>& cpu,
+                          const std::vector<formats::Rgb>& gl);
 
 /// Mean absolute difference below 1e-3 of the mean, and all but one pixel in a thousand within
 /// 0.5 %: both backends take the same samples, but GL snaps vertices to a subpixel grid, which

@@ -81,10 +81,10 @@ TEST_F(GlPrograms, OpaqueSurfacesHaveNoCodeForMedia) {
     const auto dots = make_dot_programs(asset, 8);
     EXPECT_EQ(made(dots->program), 1u);
     const auto draws = make_draw_programs(asset);
-    ASSERT_EQ(made(draws->surface), 1u);
-    EXPECT_EQ(active(draws->surface[0], GL_UNIFORM), kPlainUniforms);
-    EXPECT_EQ(active(draws->surface[0], GL_PROGRAM_INPUT),
-              (Names{"position", "irradiance", "base_color"}));
+    ASSERT_EQ(made(draws->surfaces.program), 1u);
+    EXPECT_EQ(active(draws->surfaces.program[0], GL_UNIFORM), kPlainUniforms);
+    EXPECT_EQ(active(draws->surfaces.program[0], GL_PROGRAM_INPUT),
+              (Names{"position", "radiance", "base_color"}));
 }
 
 TEST_F(GlPrograms, MediaWithOneTermHaveNoViewMaps) {
@@ -92,10 +92,10 @@ TEST_F(GlPrograms, MediaWithOneTermHaveNoViewMaps) {
     EXPECT_EQ(asset.product.name(), 0u);
     EXPECT_TRUE(make_view_programs(asset)->sums.empty());
     const auto draws = make_draw_programs(asset);
-    ASSERT_EQ(made(draws->surface), 1u);
+    ASSERT_EQ(made(draws->surfaces.program), 1u);
     Names uniforms = kPlainUniforms;
     uniforms.insert({"eta", "is_double_sided"});
-    EXPECT_EQ(active(draws->surface[2], GL_UNIFORM), uniforms) << "nothing is mirrored";
+    EXPECT_EQ(active(draws->surfaces.program[2], GL_UNIFORM), uniforms) << "nothing is mirrored";
 }
 
 TEST_F(GlPrograms, GreyMediaHaveNoCodeForThreeBands) {
@@ -122,18 +122,35 @@ TEST_F(GlPrograms, EachNumberOfTermsHasItsOwnSum) {
     EXPECT_EQ(active(views->sums[0].program, GL_UNIFORM).count("eye"), 1u);
     // Two rows that look alike from everywhere.
     EXPECT_EQ(active(views->sums[1].program, GL_UNIFORM),
-              (Names{"vertices", "product_origin", "irradiance_origin", "shows"}));
+              (Names{"vertices", "product_origin", "radiance_origin", "shows"}));
     EXPECT_EQ(made(make_dot_programs(asset, 8)->program), 2u);
+}
+
+TEST_F(GlPrograms, GlossHasAProgramOfItsOwnAndMattSurfacesNothingOfIt) {
+    formats::Asset scene = make_sheet_of({});
+    const auto sheet = test::make_sheet({0, 0, 0}, {6, 0, 0}, {0, 0, -6}, 3, 1);
+    test::add_primitive(scene, sheet, {});
+    scene.roughness.assign(2, formats::kNotGlossy);
+    scene.openness.resize(scene.position.size());
+    scene.gloss.resize(2);
+    scene.gloss[1].roughness = 0.4f;
+    const auto draws = make_draw_programs(upload(scene));
+    ASSERT_EQ(made(draws->surfaces.program), 2u);
+    EXPECT_EQ(active(draws->surfaces.program[0], GL_UNIFORM), kPlainUniforms);
+    Names uniforms = kPlainUniforms;
+    uniforms.insert({"is_double_sided", "light_from_world", "has_specular", "f0_f90",
+                     "metallic_roughness", "suns", "light_maps"});
+    EXPECT_EQ(active(draws->surfaces.program[8], GL_UNIFORM), uniforms);
 }
 
 TEST_F(GlPrograms, ImagesAreReadOnlyWhereThereAreImages) {
     formats::Asset scene = make_sheet_of({.image = 0});
     scene.images.push_back(test::make_noise_image(3, 3));
     const auto draws = make_draw_programs(upload(scene));
-    ASSERT_EQ(made(draws->surface), 1u);
+    ASSERT_EQ(made(draws->surfaces.program), 1u);
     Names uniforms = kPlainUniforms;
-    uniforms.insert({"image", "wrap"});
-    EXPECT_EQ(active(draws->surface[1], GL_UNIFORM), uniforms);
+    uniforms.insert({"base_color_image", "wrap"});
+    EXPECT_EQ(active(draws->surfaces.program[1], GL_UNIFORM), uniforms);
 }
 
 }  // namespace

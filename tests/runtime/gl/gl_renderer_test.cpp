@@ -19,8 +19,8 @@ using formats::Asset;
 using formats::AssetView;
 using formats::Environment;
 using formats::Rgb;
-using test::expect_same_irradiance;
 using test::expect_same_picture;
+using test::expect_same_radiance;
 using test::Gl;
 using test::text_of;
 
@@ -53,12 +53,12 @@ Asset make_scene(const Variant& variant) {
     return asset;
 }
 
-std::vector<Rgb> irradiance_on_cpu(const AssetView& asset, const LightVector& light) {
-    std::vector<Rgb> irradiance(asset.receivers());
+std::vector<Rgb> radiance_on_cpu(const AssetView& asset, const LightVector& light) {
+    std::vector<Rgb> radiance(asset.receivers());
     ShadeOptions options;
     options.base_color = false;
-    shade(asset, light, irradiance, options);
-    return irradiance;
+    shade(asset, light, radiance, options);
+    return radiance;
 }
 
 TEST_F(Gl, DotProductsAndPicturesAgreeWithTheCpuForEveryKindOfRow) {
@@ -72,17 +72,17 @@ TEST_F(Gl, DotProductsAndPicturesAgreeWithTheCpuForEveryKindOfRow) {
         const Asset asset = make_scene(variant);
         const AssetView view = asset.view();
         const LightVector light = project_environment(sky, variant.n, rotation);
-        const std::vector<Rgb> irradiance = irradiance_on_cpu(view, light);
+        const std::vector<Rgb> radiance = radiance_on_cpu(view, light);
 
         auto renderer = GlRenderer::create(view, sky);
         ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
         ASSERT_TRUE(renderer->set_light(light, rotation));
-        const auto on_gl = renderer->read_irradiance();
+        const auto on_gl = renderer->read_radiance();
         ASSERT_TRUE(on_gl.has_value());
-        expect_same_irradiance(irradiance, *on_gl);
+        expect_same_radiance(radiance, *on_gl);
 
         const Camera camera = frame_asset(view, 45, 240, 180);
-        const auto cpu = render_software(view, irradiance, sky, rotation, camera);
+        const auto cpu = render_software(view, radiance, sky, rotation, camera);
         const auto gl = renderer->render(camera);
         ASSERT_TRUE(cpu.has_value());
         ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
@@ -95,7 +95,7 @@ TEST_F(Gl, ResultDoesNotDependOnLanesBlocksOrTiles) {
     const Asset asset = make_scene({16, 8, 3, 77});
     const AssetView view = asset.view();
     const LightVector light = project_environment(sky, 16);
-    const std::vector<Rgb> irradiance = irradiance_on_cpu(view, light);
+    const std::vector<Rgb> radiance = radiance_on_cpu(view, light);
     const Camera camera = frame_asset(view, 45, 101, 67);
     Picture first;
     for (const GlOptions& options : {GlOptions{1, 0}, GlOptions{4, 0}, GlOptions{16, 0},
@@ -108,9 +108,9 @@ TEST_F(Gl, ResultDoesNotDependOnLanesBlocksOrTiles) {
         EXPECT_EQ(renderer->stats().dispatches > view.primitives.size(),
                   options.max_block_bytes != 0);
         ASSERT_TRUE(renderer->set_light(light, {}));
-        const auto on_gl = renderer->read_irradiance();
+        const auto on_gl = renderer->read_radiance();
         ASSERT_TRUE(on_gl.has_value());
-        expect_same_irradiance(irradiance, *on_gl);
+        expect_same_radiance(radiance, *on_gl);
         for (const std::uint32_t tile : {2048u, 96u, 1u}) {
             if (tile == 1 && !first.pixel.empty()) continue;  // a pixel at a time: once is enough
             const auto picture = renderer->render(camera, {3, tile});
@@ -173,7 +173,7 @@ TEST_F(Gl, CameraInsideTheMeshAgrees) {
     for (const float near_plane : {1e-3f, 1.0f}) {  // in front of the wall and cutting through it
         camera.near_plane = near_plane;
         const auto cpu =
-            render_software(asset.view(), irradiance_on_cpu(asset.view(), light), sky, {}, camera);
+            render_software(asset.view(), radiance_on_cpu(asset.view(), light), sky, {}, camera);
         const auto gl = renderer->render(camera);
         ASSERT_TRUE(cpu && gl);
         expect_same_picture(*cpu, *gl);
@@ -193,7 +193,7 @@ TEST_F(Gl, OnePixelAndExtremeScalesAgree) {
         ASSERT_TRUE(renderer->set_light(light, {}));
         for (const std::uint32_t size : {1u, 120u}) {
             const Camera camera = frame_asset(asset.view(), 40, size, size);
-            const auto cpu = render_software(asset.view(), irradiance_on_cpu(asset.view(), light),
+            const auto cpu = render_software(asset.view(), radiance_on_cpu(asset.view(), light),
                                              sky, {}, camera);
             const auto gl = renderer->render(camera);
             ASSERT_TRUE(cpu && gl);

@@ -15,6 +15,7 @@ using formats::Asset;
 using formats::AssetView;
 using formats::Environment;
 using formats::Rgb;
+using formats::TermSet;
 using test::expect_same_picture;
 using test::text_of;
 
@@ -58,14 +59,14 @@ struct Lit {
 };
 
 formats::Result<Picture> draw_on_cpu(const AssetView& asset, const Lit& lit, const Camera& camera,
-                                     std::uint32_t terms, bool background) {
-    std::vector<Rgb> irradiance(asset.receivers());
-    shade(asset, lit.light, irradiance,
+                                     TermSet terms, bool background) {
+    std::vector<Rgb> radiance(asset.receivers());
+    shade(asset, lit.light, radiance,
           {.base_color = false, .eye = camera.eye, .fresnel = false, .terms = terms});
     SoftwareOptions options;
-    options.specular = (terms & kSpecularTerm) != 0 ? &lit.specular : nullptr;
+    options.specular = has_any(terms, TermSet::specular) ? &lit.specular : nullptr;
     options.background = background;
-    return render_software(asset, irradiance, lit.sky, lit.rotation, camera, options);
+    return render_software(asset, radiance, lit.sky, lit.rotation, camera, options);
 }
 
 TEST_F(GlSpecular, PicturesAgreeWithTheCpu) {
@@ -82,13 +83,13 @@ TEST_F(GlSpecular, PicturesAgreeWithTheCpu) {
     const Camera camera = frame_asset(view, 45, 200, 150);
     for (const float degrees : {0.0f, 170.0f}) {
         const Camera at = orbit(camera, degrees);
-        const auto cpu = draw_on_cpu(view, lit, at, kAllTerms, true);
+        const auto cpu = draw_on_cpu(view, lit, at, TermSet::all, true);
         const auto gl = renderer->render(at);
         ASSERT_TRUE(cpu.has_value());
         ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
         expect_same_picture(*cpu, *gl);
         // The comparison means nothing unless gloss changes the picture.
-        const auto matt = draw_on_cpu(bare.view(), lit, at, kAllTerms, true);
+        const auto matt = draw_on_cpu(bare.view(), lit, at, TermSet::all, true);
         ASSERT_TRUE(matt.has_value());
         double gloss = 0, sum = 0;
         for (std::size_t i = 0; i < cpu->pixel.size(); ++i) {
@@ -109,10 +110,9 @@ TEST_F(GlTerms, EachComponentAgreesWithTheCpuAndTheyAddUp) {
         ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
         ASSERT_TRUE(renderer->set_light(lit.light, lit.rotation));
         const Camera camera = frame_asset(view, 45, 160, 120);
-        for (const std::uint32_t shown :
-             {kAllTerms, std::uint32_t{kMultipleTerm}, std::uint32_t{kSingleTerm},
-              std::uint32_t{kSpecularTerm}, std::uint32_t{kDiffuseTerm}}) {
-            SCOPED_TRACE(testing::Message() << "components " << shown);
+        for (const TermSet shown : {TermSet::all, TermSet::multiple, TermSet::single,
+                                    TermSet::specular, TermSet::diffuse}) {
+            SCOPED_TRACE(testing::Message() << "components " << formats::term_names(shown));
             GlRenderOptions options;
             options.terms = shown;
             options.background = false;
@@ -120,7 +120,7 @@ TEST_F(GlTerms, EachComponentAgreesWithTheCpuAndTheyAddUp) {
             const auto gl = renderer->render(camera, options);
             ASSERT_TRUE(cpu.has_value());
             ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
-            if (terms == 1 && shown == kSingleTerm) {
+            if (terms == 1 && shown == TermSet::single) {
                 for (const Rgb c : gl->pixel)
                     EXPECT_EQ(c, Rgb{});  // it has no such rows
             } else {
@@ -141,7 +141,7 @@ TEST_F(GlTerms, ComponentsAddUpToTheWholePicture) {
     ASSERT_TRUE(renderer->set_light(lit.light, lit.rotation));
     const Camera camera = frame_asset(view, 45, 120, 90);
     for (const bool on_gpu : {false, true}) {
-        const auto draw = [&](std::uint32_t terms) {
+        const auto draw = [&](TermSet terms) {
             GlRenderOptions options;
             options.terms = terms;
             options.background = false;
@@ -150,8 +150,9 @@ TEST_F(GlTerms, ComponentsAddUpToTheWholePicture) {
             EXPECT_TRUE(picture.has_value());
             return picture ? std::move(picture).value().pixel : std::vector<Rgb>();
         };
-        std::vector<Rgb> whole = draw(kAllTerms), sum(whole.size());
-        for (const std::uint32_t term : {kMultipleTerm, kSingleTerm, kSpecularTerm, kDiffuseTerm}) {
+        std::vector<Rgb> whole = draw(TermSet::all), sum(whole.size());
+        for (const TermSet term :
+             {TermSet::multiple, TermSet::single, TermSet::specular, TermSet::diffuse}) {
             const std::vector<Rgb> part = draw(term);
             ASSERT_EQ(part.size(), whole.size());
             double total = 0;
@@ -159,7 +160,7 @@ TEST_F(GlTerms, ComponentsAddUpToTheWholePicture) {
                 sum[i] = sum[i] + part[i];
                 total += part[i].g;
             }
-            EXPECT_GT(total, 0) << term;
+            EXPECT_GT(total, 0) << formats::term_names(term);
         }
         for (std::size_t i = 0; i < whole.size(); ++i) {
             ASSERT_NEAR(sum[i].r, whole[i].r, 2e-3f + 1e-5f * whole[i].r) << on_gpu << " " << i;

@@ -19,8 +19,8 @@ using formats::Asset;
 using formats::AssetView;
 using formats::Environment;
 using formats::Rgb;
-using test::expect_same_irradiance;
 using test::expect_same_picture;
+using test::expect_same_radiance;
 using test::text_of;
 
 class GlTranslucent : public test::Gl {};
@@ -48,9 +48,9 @@ Asset make_scene(std::uint32_t terms, float eta, std::uint32_t bands = 3) {
 
 std::vector<Rgb> view_on_cpu(const AssetView& asset, const LightVector& light,
                              const Camera& camera) {
-    std::vector<Rgb> irradiance(asset.receivers());
-    shade(asset, light, irradiance, {.base_color = false, .eye = camera.eye, .fresnel = false});
-    return irradiance;
+    std::vector<Rgb> radiance(asset.receivers());
+    shade(asset, light, radiance, {.base_color = false, .eye = camera.eye, .fresnel = false});
+    return radiance;
 }
 
 // Among them grey media next to coloured ones.
@@ -77,14 +77,14 @@ TEST_F(GlTranslucent, PicturesAgreeWithTheCpuForEveryNumberOfTermsAndBands) {
         Camera camera = frame_asset(view, 45, 200, 150);
         for (const float degrees : {0.0f, 160.0f}) {
             const Camera at = orbit(camera, degrees);
-            const std::vector<Rgb> irradiance = view_on_cpu(view, light, at);
-            const auto cpu = render_software(view, irradiance, sky, rotation, at);
+            const std::vector<Rgb> radiance = view_on_cpu(view, light, at);
+            const auto cpu = render_software(view, radiance, sky, rotation, at);
             const auto gl = renderer->render(at);
             ASSERT_TRUE(cpu.has_value());
             ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
-            const auto on_gl = renderer->read_irradiance();
+            const auto on_gl = renderer->read_radiance();
             ASSERT_TRUE(on_gl.has_value());
-            expect_same_irradiance(irradiance, *on_gl);
+            expect_same_radiance(radiance, *on_gl);
             expect_same_picture(*cpu, *gl);
         }
     }
@@ -96,8 +96,8 @@ TEST_F(GlTranslucent, SeveralDispatchesMakeTheSamePicture) {
     const AssetView view = asset.view();
     const LightVector light = project_environment(sky, 16);
     const Camera camera = frame_asset(view, 45, 101, 67);
-    const std::vector<Rgb> irradiance = view_on_cpu(view, light, camera);
-    const auto cpu = render_software(view, irradiance, sky, {}, camera);
+    const std::vector<Rgb> radiance = view_on_cpu(view, light, camera);
+    const auto cpu = render_software(view, radiance, sky, {}, camera);
     ASSERT_TRUE(cpu.has_value());
     for (const GlOptions& options : {GlOptions{1, 0}, GlOptions{32, 0}, GlOptions{4, 8192}}) {
         auto renderer = GlRenderer::create(view, sky, options);
@@ -107,7 +107,7 @@ TEST_F(GlTranslucent, SeveralDispatchesMakeTheSamePicture) {
         ASSERT_TRUE(renderer->set_light(light, {}));
         const auto gl = renderer->render(camera);
         ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
-        expect_same_irradiance(irradiance, *renderer->read_irradiance());
+        expect_same_radiance(radiance, *renderer->read_radiance());
         expect_same_picture(*cpu, *gl);
     }
 }

@@ -77,6 +77,34 @@ TEST(FrameAsset, FloorMayLeanOrBeASlab) {
     EXPECT_NEAR(bound_object(slab.view()).radius, 1.0, 1e-5);
 }
 
+// Review 1, fault 25: a flat primitive as large as the others was left out of the frame.
+TEST(FrameAsset, EverythingIsFramedButAGroundThatDwarfsIt) {
+    Asset asset = test::make_asset(8, 8);
+    test::add_bare_primitive(asset, test::make_sphere({0, 1, 0}, 1.0f, 24, 12));
+    const test::TestMesh poster = test::make_sheet({5, 1, 0}, {2, 0, 0}, {0, 2, 0}, 2, 1);
+    test::add_bare_primitive(asset, poster);
+    EXPECT_EQ(bound_object(asset.view()).radius, bound_asset(asset.view()).radius);
+    const Extent seen = project(frame_asset(asset.view(), 40, 640, 480), poster.position);
+    EXPECT_LE(std::max({-seen.low_x, seen.high_x, -seen.low_y, seen.high_y}), 1.0);
+}
+
+TEST(FrameAsset, LooksAtFrontsNotAtBacks) {
+    for (const float side : {1.0f, -1.0f}) {  // facing +Z, then -Z
+        Asset asset = test::make_asset(8, 8);
+        const test::TestMesh sheet = test::make_sheet({0, 0, 0}, {side, 0, 0}, {0, 1, 0}, 2, 1);
+        test::add_bare_primitive(asset, sheet);
+        const Vec3 face = cross(sheet.position[sheet.index[1]] - sheet.position[sheet.index[0]],
+                                sheet.position[sheet.index[2]] - sheet.position[sheet.index[0]]);
+        EXPECT_GT(face.z * side, 0);
+        const Camera camera = frame_asset(asset.view(), 40, 640, 480);
+        EXPECT_GT(dot(camera.eye - camera.target, face), 0) << side;
+        EXPECT_EQ(front_share(asset.view(), face), 1);
+        EXPECT_EQ(front_share(asset.view(), -1.0f * face), 0);
+        asset.primitives[0].flags = formats::PrimitiveRecord::kDoubleSided;
+        EXPECT_EQ(front_share(asset.view(), -1.0f * face), 1);
+    }
+}
+
 TEST(FrameAsset, LoneSheetIsTheObject) {
     Asset asset = test::make_asset(8, 8);
     test::add_bare_primitive(asset, test::make_sheet({0, 0, 0}, {3, 0, 0}, {0, 0, -4}, 2, 1));

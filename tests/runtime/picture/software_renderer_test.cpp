@@ -28,11 +28,10 @@ Camera camera_at(Vec3 eye, Vec3 target, std::uint32_t width, std::uint32_t heigh
     return camera;
 }
 
-Picture draw(const Asset& asset, const std::vector<Rgb>& irradiance, const Environment& environment,
+Picture draw(const Asset& asset, const std::vector<Rgb>& radiance, const Environment& environment,
              const Camera& camera, const Rotation& rotation = {},
              const SoftwareOptions& options = {}) {
-    auto picture =
-        render_software(asset.view(), irradiance, environment, rotation, camera, options);
+    auto picture = render_software(asset.view(), radiance, environment, rotation, camera, options);
     EXPECT_TRUE(picture.has_value());
     return picture ? std::move(picture).value() : Picture{};
 }
@@ -105,20 +104,20 @@ TEST(Background, SunIsADiscOfItsOwnSize) {
 }
 
 // A sheet that reaches behind the eye: every sample below the horizon must show the point that its
-// ray meets, whose irradiance is linear in position: perspective and near clipping at once.
+// ray meets, whose radiance is linear in position: perspective and near clipping at once.
 TEST(Surfaces, PlaneThroughTheEyesFeetIsSeenInExactPerspective) {
     Asset asset = test::make_asset(8, 8);
     const test::TestMesh sheet = test::make_sheet({0, 0, 0}, {40, 0, 0}, {0, 0, -40}, 1, 1);
     test::add_bare_primitive(asset, sheet);
-    std::vector<Rgb> irradiance;
+    std::vector<Rgb> radiance;
     for (const Vec3 p : sheet.position) {
-        irradiance.push_back({p.x + 50, p.z + 50, 1});
+        radiance.push_back({p.x + 50, p.z + 50, 1});
     }
     asset.base_color.assign(asset.position.size(), {1, 1, 1});
     const Camera camera = camera_at({1, 1.5f, 3}, {2, 0.7f, -4}, 90, 70, 70);
     SoftwareOptions options;
     options.supersampling = 1;
-    const Picture picture = draw(asset, irradiance, {}, camera, {}, options);
+    const Picture picture = draw(asset, radiance, {}, camera, {}, options);
     const CameraFrame frame = camera_frame(camera);
     std::uint32_t seen = 0;
     for (std::uint32_t y = 0; y < picture.height; ++y) {
@@ -145,9 +144,9 @@ TEST(Surfaces, ClosedMeshSeenFromInsideHasNoHoles) {
     Asset asset = test::make_asset(8, 8);
     test::add_bare_primitive(asset, test::make_sphere({0, 0, 0}, 1.0f, 37, 23));
     asset.base_color.assign(asset.position.size(), {1, 1, 1});
-    const std::vector<Rgb> irradiance(asset.position.size(), {1, 1, 1});
+    const std::vector<Rgb> radiance(asset.position.size(), {1, 1, 1});
     const Picture picture =
-        draw(asset, irradiance, {}, camera_at({0.3f, 0.2f, -0.5f}, {1, 0.1f, 1}, 160, 120, 110));
+        draw(asset, radiance, {}, camera_at({0.3f, 0.2f, -0.5f}, {1, 0.1f, 1}, 160, 120, 110));
     for (const Rgb pixel : picture.pixel) {
         // One is the sum of weights that are rounded to floats.
         EXPECT_NEAR(pixel.g, 1.0f, 1e-6f);
@@ -161,12 +160,12 @@ TEST(Surfaces, NearerOneHidesTheFartherInAnyOrder) {
         Asset asset = test::make_asset(8, 8);
         test::add_bare_primitive(asset, near_first ? near_sheet : far_sheet);
         test::add_bare_primitive(asset, near_first ? far_sheet : near_sheet);
-        std::vector<Rgb> irradiance;
+        std::vector<Rgb> radiance;
         for (const Vec3 p : asset.position) {
-            irradiance.push_back(p.z > 0.5f ? Rgb{1, 0, 0} : Rgb{0, 1, 0});
+            radiance.push_back(p.z > 0.5f ? Rgb{1, 0, 0} : Rgb{0, 1, 0});
         }
         const Picture picture =
-            draw(asset, irradiance, {}, camera_at({0, 0, 6}, {0, 0, 0}, 50, 50, 40));
+            draw(asset, radiance, {}, camera_at({0, 0, 6}, {0, 0, 0}, 50, 50, 40));
         EXPECT_NEAR(at(picture, 25, 25).r, 0.8f, 1e-6f);
         EXPECT_EQ(at(picture, 25, 25).g, 0.0f);
         EXPECT_NEAR(at(picture, 3, 3).g, 0.8f, 1e-6f);
@@ -176,8 +175,8 @@ TEST(Surfaces, NearerOneHidesTheFartherInAnyOrder) {
 TEST(Surfaces, TopOfTheObjectIsOnTopOfThePicture) {
     Asset asset = test::make_asset(8, 8);
     test::add_bare_primitive(asset, test::make_sphere({0, 0, 0}, 1.0f, 32, 16));
-    const std::vector<Rgb> irradiance(asset.position.size(), {1, 1, 1});
-    const Picture picture = draw(asset, irradiance, {}, frame_asset(asset.view(), 40, 64, 64));
+    const std::vector<Rgb> radiance(asset.position.size(), {1, 1, 1});
+    const Picture picture = draw(asset, radiance, {}, frame_asset(asset.view(), 40, 64, 64));
     EXPECT_GT(at(picture, 32, 8).r, at(picture, 32, 8).b);    // red pole
     EXPECT_LT(at(picture, 32, 56).r, at(picture, 32, 56).b);  // blue pole
 }
@@ -188,12 +187,12 @@ TEST(Surfaces, TextureIsFilteredInLinearLight) {
     test::add_primitive(asset, test::make_sheet({0, 0, 0}, {1, 0, 0}, {0, -1, 0}, 1, 1.7f),
                         {1, 4, 0, formats::Wrap::mirror, formats::Wrap::repeat});
     asset.base_color.assign(asset.position.size(), {1, 1, 1});
-    const std::vector<Rgb> irradiance(asset.position.size(), {1, 1, 1});
+    const std::vector<Rgb> radiance(asset.position.size(), {1, 1, 1});
     Camera camera = camera_at({0, 0, 2}, {0, 0, 0}, 64, 64, 0);
     camera.fov_y = static_cast<float>(2 * std::atan(0.5) * 180 / std::numbers::pi);
     SoftwareOptions options;
     options.supersampling = 1;
-    const Picture picture = draw(asset, irradiance, {}, camera, {}, options);
+    const Picture picture = draw(asset, radiance, {}, camera, {}, options);
     const formats::AssetView view = asset.view();
     for (std::uint32_t y = 0; y < 64; ++y) {
         for (std::uint32_t x = 0; x < 64; ++x) {
@@ -211,17 +210,17 @@ TEST(Picture, IsTheSameForAnyNumberOfThreads) {
     Asset asset = test::make_asset(8, 8);
     test::add_bare_primitive(asset, test::make_sphere({0, 0, 0}, 1.0f, 32, 16));
     test::add_bare_primitive(asset, test::make_sheet({0, -1, 0}, {9, 0, 0}, {0, 0, -9}, 4, 1));
-    std::vector<Rgb> irradiance;
+    std::vector<Rgb> radiance;
     for (const Vec3 n : asset.normal) {
-        irradiance.push_back({n.x + 1, n.y + 1, n.z + 1});
+        radiance.push_back({n.x + 1, n.y + 1, n.z + 1});
     }
     const Environment sky = test::make_lat_long(64, 32, test::two_lights);
     const Camera camera = frame_asset(asset.view(), 50, 97, 71);
     SoftwareOptions one, five;
     one.threads = 1;
     five.threads = 5;
-    EXPECT_EQ(draw(asset, irradiance, sky, camera, {}, one).pixel,
-              draw(asset, irradiance, sky, camera, {}, five).pixel);
+    EXPECT_EQ(draw(asset, radiance, sky, camera, {}, one).pixel,
+              draw(asset, radiance, sky, camera, {}, five).pixel);
 }
 
 TEST(Picture, EmptyAssetShowsTheEnvironmentAlone) {
@@ -238,16 +237,16 @@ TEST(Picture, EmptyAssetShowsTheEnvironmentAlone) {
 TEST(Picture, DamagedValuesNeverReachIt) {
     Asset asset = test::make_asset(8, 8);
     test::add_bare_primitive(asset, test::make_sphere({0, 0, 0}, 1.0f, 8, 6));
-    std::vector<Rgb> irradiance(asset.position.size(), {1, 1, 1});
+    std::vector<Rgb> radiance(asset.position.size(), {1, 1, 1});
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();
     const Camera camera = frame_asset(asset.view(), 40, 40, 40);
-    irradiance[20] = {nan, inf, -5};
-    irradiance[30] = {3e38f, 3e38f, 3e38f};
+    radiance[20] = {nan, inf, -5};
+    radiance[30] = {3e38f, 3e38f, 3e38f};
     asset.position[25] = {nan, 0, 0};
     asset.position[26] = {inf, 0, 0};
     asset.position[27] = {3e38f, -3e38f, 3e38f};
-    for (const Rgb pixel : draw(asset, irradiance, {}, camera).pixel) {
+    for (const Rgb pixel : draw(asset, radiance, {}, camera).pixel) {
         for (const float value : {pixel.r, pixel.g, pixel.b}) {
             EXPECT_TRUE(std::isfinite(value) && value >= 0);
         }

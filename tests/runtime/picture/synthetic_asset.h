@@ -47,7 +47,7 @@ formats::Asset make_asset(std::uint32_t n, std::uint32_t code_bits);
 /// in rows of its own.
 void add_primitive(formats::Asset& asset, const TestMesh& mesh, const TestPrimitive& options);
 
-/// Adds a primitive without transport details or averages: for tests that bring own irradiance.
+/// Adds a primitive without transport details or averages: for tests that bring own radiance.
 void add_bare_primitive(formats::Asset& asset, const TestMesh& mesh);
 
 /// Colourful noise, so that a mirrored or shifted image shows.

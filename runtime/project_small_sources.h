@@ -21,7 +21,8 @@ std::vector<BrightPixel> take_bright_pixels(formats::Environment& map);
 
 /// Adds the flux radiance * solid angle of each pixel's cell, exactly, to the texels its bilinear
 /// footprint covers. Meant for pixels smaller than texels. Bits do not depend on `threads`.
-void deal_out(const formats::Environment& map, std::span<const BrightPixel> bright, std::uint32_t n,
-              const Rotation& rotation, unsigned threads, std::span<double> integral);
+void project_small_sources(const formats::Environment& map, std::span<const BrightPixel> bright,
+                           std::uint32_t n, const Rotation& rotation, unsigned threads,
+                           std::span<double> integral);
 
 }  // namespace opaline::runtime

@@ -1,4 +1,4 @@
-#include "runtime/deal_out.h"
+#include "runtime/project_small_sources.h"
 
 #include <algorithm>
 #include <array>
@@ -180,8 +180,9 @@ std::vector<BrightPixel> take_bright_pixels(Environment& map) {
     return bright;
 }
 
-void deal_out(const Environment& map, std::span<const BrightPixel> bright, std::uint32_t n,
-              const Rotation& rotation, unsigned threads, std::span<double> integral) {
+void project_small_sources(const Environment& map, std::span<const BrightPixel> bright,
+                           std::uint32_t n, const Rotation& rotation, unsigned threads,
+                           std::span<double> integral) {
     if (bright.empty()) {
         return;
     }

@@ -1,0 +1,27 @@
+#include "runtime/gl/gl_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace opaline::runtime {
+
+double view_unit(const Camera& camera) {
+    const formats::Vec3 to_target = camera.target - camera.eye;
+    const double distance =
+        std::hypot(static_cast<double>(to_target.x), static_cast<double>(to_target.y),
+                   static_cast<double>(to_target.z));
+    return 1.0 / std::max(distance, static_cast<double>(camera.near_plane));
+}
+
+void set_vec3(GLuint program, GLint location, formats::Vec3 v) {
+    glProgramUniform3f(program, location, v.x, v.y, v.z);
+}
+
+void set_light_from_world(const Rotation& r, GLuint program, GLint location) {
+    // Rows are the light's axes, so that the product is light_from_world.
+    const std::array<float, 9> rows{r.x.x, r.x.y, r.x.z, r.y.x, r.y.y, r.y.z, r.z.x, r.z.y, r.z.z};
+    glProgramUniformMatrix3fv(program, location, 1, GL_TRUE, rows.data());
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+
+#include "formats/opal/terms.h"
+#include "formats/opal/vec3.h"
+#include "runtime/gl/gl_asset.h"
+#include "runtime/gl/gl_environment.h"
+#include "runtime/light_vector.h"
+#include "runtime/picture/camera.h"
+
+namespace opaline::runtime {
+
+/// Everything a tile is drawn from.
+struct DrawScene {
+    const GlAsset& asset;
+    const GlEnvironment& environment;
+    const GlSpecular& specular;
+    const Rotation& rotation;
+    const Camera& camera;
+    std::uint32_t supersampling = 1;
+    formats::TermSet terms = formats::TermSet::all;
+    bool background = true;  ///< false: black
+};
+
+/// Where a tile's samples lie in the picture.
+struct TileGrid {
+    float columns = 0, rows = 0;            ///< samples of the whole picture
+    float first_column = 0, first_row = 0;  ///< of the tile
+    float tile_columns = 0, tile_rows = 0;
+};
+
+/// What passes draw with: the camera, and the tile it is looked at through.
+struct TileView {
+    CameraFrame frame;
+    TileGrid grid;
+};
+
+/// About 1 / the distances in the picture: the scale at which shaders measure them.
+double view_unit(const Camera& camera);
+
+void set_vec3(GLuint program, GLint location, formats::Vec3 v);
+
+/// Sets a mat3 that turns world directions into the light's frame.
+void set_light_from_world(const Rotation& rotation, GLuint program, GLint location);
+
+}  // namespace opaline::runtime

@@ -1,0 +1,218 @@
+#include "runtime/gl/gl_surfaces.h"
+
+#include <algorithm>
+#include <string>
+
+#include "formats/opal/ggx_albedo.h"
+#include "runtime/gloss.h"
+#include "shader_text.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::TermSet;
+
+// Locations of surface.vert.glsl, surface.frag.glsl and gloss.glsl.
+enum Uniform : GLint {
+    kEye,
+    kRight,
+    kDown,
+    kForward,
+    kUnit,
+    kNearPlane,
+    kTile,
+    kWrap = 8,
+    kEta,
+    kIsDoubleSided,
+    kShown,
+    kLightFromWorld,
+    kLobe,
+    kHasSpecular,
+    kF0F90,
+    kMetallicRoughness,
+    kGlossWrap,
+    kSuns
+};
+
+// What a surface's program has to do.
+struct SurfaceKind {
+    bool is_textured = false, is_translucent = false;
+    bool is_mirroring = false;                        ///< translucent and glossy
+    bool is_glossy = false, has_gloss_image = false;  ///< opaque
+
+    std::size_t number() const {
+        return (is_textured ? 1u : 0u) + (is_translucent ? 2u : 0u) + (is_mirroring ? 4u : 0u) +
+               (is_glossy ? 8u : 0u) + (has_gloss_image ? 16u : 0u);
+    }
+};
+
+SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
+    const formats::PrimitiveRecord& record = asset.primitives[primitive];
+    SurfaceKind kind;
+    kind.is_textured = record.base_color_image < asset.images.size();
+    kind.is_translucent = record.shading == formats::Shading::translucent;
+    kind.is_mirroring = !asset.roughness.empty() && asset.roughness[primitive] >= 0;
+    kind.is_glossy = !asset.gloss.empty() && asset.gloss[primitive].is_glossy();
+    kind.has_gloss_image = kind.is_glossy && asset.gloss[primitive].image < asset.images.size();
+    return kind;
+}
+
+std::string define(const char* name, const std::string& value = {}) {
+    return std::string("#define ") + name + " " + value + "\n";
+}
+
+std::string defines_of(SurfaceKind kind) {
+    std::string text;
+    if (kind.is_textured) text += define("TEXTURED");
+    if (kind.is_translucent) text += define("TRANSLUCENT");
+    if (kind.is_mirroring) text += define("MIRRORING");
+    if (kind.is_glossy) text += define("GLOSS");
+    if (kind.has_gloss_image) text += define("GLOSS_TEXTURED");
+    if (kind.is_textured || kind.has_gloss_image) text += define("HAS_TEXCOORD");
+    if (kind.is_translucent || kind.is_glossy) text += define("HAS_VIEW");
+    if (kind.is_mirroring || kind.is_glossy) text += define("HAS_OPENNESS");
+    return text;
+}
+
+// The fragment shader with what it includes.
+std::string fragment_text(SurfaceKind kind) {
+    std::string text;
+    if (kind.is_textured || kind.has_gloss_image) {
+        text += define("WRAP_CLAMP", std::to_string(static_cast<int>(formats::Wrap::clamp))) +
+                define("WRAP_MIRROR", std::to_string(static_cast<int>(formats::Wrap::mirror))) +
+                image_text;
+    }
+    if (kind.is_mirroring || kind.is_glossy) text += cube_map_text;
+    if (kind.is_glossy) {
+        text += define("LOBE_TAPS", std::to_string(kLobeTaps)) +
+                define("ALBEDO_ROWS", std::to_string(formats::kAlbedoRows)) +
+                define("ALBEDO_COLUMNS", std::to_string(formats::kAlbedoColumns)) +
+                define("NARROW_ROUGHNESS", std::to_string(kNarrowRoughness)) +
+                define("WIDE_ROUGHNESS", std::to_string(kWideRoughness)) + gloss_text;
+    }
+    return text + surface_frag_text;
+}
+
+// Whether the wanted components include those of its single row; several rows are added up as
+// wanted already.
+bool is_shown(const formats::PrimitiveRecord& primitive, TermSet terms) {
+    const TermSet held = primitive.shading != formats::Shading::translucent ? TermSet::diffuse
+                         : needs_view(primitive)                            ? TermSet::none
+                         : primitive.is_separate()                          ? TermSet::multiple
+                         : primitive.is_single_only()                       ? TermSet::single
+                                                      : TermSet::multiple | TermSet::single;
+    return has_all(terms, held);
+}
+
+void set_view(const DrawScene& scene, const TileView& view, GLuint program) {
+    const Camera& camera = scene.camera;
+    const CameraFrame& frame = view.frame;
+    const TileGrid& grid = view.grid;
+    const double unit = view_unit(camera);
+    set_vec3(program, kEye, camera.eye);
+    set_vec3(program, kRight, static_cast<float>(1.0 / frame.tan_half_x) * frame.right);
+    set_vec3(program, kDown, static_cast<float>(-1.0 / frame.tan_half_y) * frame.up);
+    set_vec3(program, kForward, -1.0f * frame.backward);
+    glProgramUniform1f(program, kUnit, static_cast<float>(unit));
+    glProgramUniform1f(program, kNearPlane,
+                       static_cast<float>(unit * static_cast<double>(camera.near_plane)));
+    const float scale_x = grid.columns / grid.tile_columns, scale_y = grid.rows / grid.tile_rows;
+    glProgramUniform4f(program, kTile, scale_x, scale_y,
+                       scale_x - 2.0f * grid.first_column / grid.tile_columns - 1.0f,
+                       scale_y - 2.0f * grid.first_row / grid.tile_rows - 1.0f);
+}
+
+void set_mirroring(const DrawScene& scene, GLuint program, std::size_t primitive) {
+    const SpecularLight& light = scene.specular.light;
+    formats::AssetView asset;  // as much of it as a lobe depends on
+    asset.roughness = scene.asset.roughness;
+    const SpecularLobe lobe = specular_lobe(light, asset, primitive);
+    const bool shows = lobe.radiance != nullptr && has_any(scene.terms, TermSet::specular);
+    set_light_from_world(scene.rotation, program, kLightFromWorld);
+    glProgramUniform2f(program, kLobe, lobe.cosine, lobe.sine);
+    glProgramUniform1ui(program, kHasSpecular, shows ? 1u : 0u);
+    for (std::size_t i = 0; i < light.maps.size(); ++i) {
+        if (&light.maps[i].radiance == lobe.radiance) {
+            glBindTextureUnit(1, scene.specular.texture[i].name());
+        }
+    }
+}
+
+void set_gloss(const DrawScene& scene, GLuint program, const formats::GlossRecord& gloss) {
+    const GlSpecular& specular = scene.specular;
+    set_light_from_world(scene.rotation, program, kLightFromWorld);
+    glProgramUniform1ui(program, kHasSpecular, has_any(scene.terms, TermSet::specular) ? 1u : 0u);
+    glProgramUniform4f(program, kF0F90, gloss.f0.r, gloss.f0.g, gloss.f0.b, gloss.f90);
+    glProgramUniform2f(program, kMetallicRoughness, gloss.metallic, gloss.roughness);
+    glProgramUniform1i(program, kSuns, specular.suns_count);
+    glBindTextureUnit(2, specular.light_maps.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, specular.cells.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, specular.suns.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, specular.albedo.name());
+    if (gloss.image < scene.asset.images.size()) {
+        glBindTextureUnit(3, scene.asset.images[gloss.image].name());
+        glProgramUniform2i(program, kGlossWrap, static_cast<GLint>(gloss.wrap_u),
+                           static_cast<GLint>(gloss.wrap_v));
+    }
+}
+
+void draw_triangles(const formats::PrimitiveRecord& primitive) {
+    // In pieces that a signed count holds; each a whole number of triangles.
+    constexpr std::uint32_t kPiece = 3u << 28;
+    for (std::uint32_t at = 0; at < primitive.index_count; at += kPiece) {
+        const std::size_t first = std::size_t{primitive.first_index} + at;
+        glDrawElementsBaseVertex(
+            GL_TRIANGLES, static_cast<GLsizei>(std::min(kPiece, primitive.index_count - at)),
+            GL_UNSIGNED_INT, reinterpret_cast<const void*>(first * sizeof(std::uint32_t)),
+            static_cast<GLint>(primitive.first_vertex));
+    }
+}
+
+}  // namespace
+
+formats::Result<SurfacePrograms> make_surface_programs(const GlAsset& asset) {
+    SurfacePrograms programs;
+    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+        const SurfaceKind kind = surface_kind(asset, p);
+        GlProgram& program = programs.program[kind.number()];
+        if (program.name() != 0) continue;
+        const std::string fragment = fragment_text(kind);
+        const std::array<StageSource, 2> stages{
+            {{GL_VERTEX_SHADER, surface_vert_text}, {GL_FRAGMENT_SHADER, fragment.c_str()}}};
+        auto made = make_program("surface", defines_of(kind), stages);
+        if (!made) return made.error();
+        program = std::move(made).value();
+    }
+    return programs;
+}
+
+void draw_surfaces(const DrawScene& scene, const SurfacePrograms& programs, const TileView& view) {
+    const GlAsset& asset = scene.asset;
+    for (const GlProgram& program : programs.program) {
+        if (program.name() != 0) set_view(scene, view, program.name());
+    }
+    glDepthFunc(GL_GREATER);
+    glBindVertexArray(asset.vertex_array.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, asset.srgb_table.name());
+    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+        const formats::PrimitiveRecord& primitive = asset.primitives[p];
+        const SurfaceKind kind = surface_kind(asset, p);
+        const GLuint program = programs.program[kind.number()].name();
+        glUseProgram(program);
+        if (kind.is_textured) {
+            glUniform2i(kWrap, static_cast<GLint>(primitive.wrap_u),
+                        static_cast<GLint>(primitive.wrap_v));
+            glBindTextureUnit(0, asset.images[primitive.base_color_image].name());
+        }
+        if (kind.is_translucent) glUniform1f(kEta, primitive.eta);
+        if (kind.is_translucent || kind.is_glossy) {
+            glUniform1ui(kIsDoubleSided, primitive.flags & formats::PrimitiveRecord::kDoubleSided);
+        }
+        glUniform1f(kShown, is_shown(primitive, scene.terms) ? 1.0f : 0.0f);
+        if (kind.is_mirroring) set_mirroring(scene, program, p);
+        if (kind.is_glossy) set_gloss(scene, program, asset.gloss[p]);
+        draw_triangles(primitive);
+    }
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,82 @@
+#include "runtime/surface.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "runtime/gloss.h"
+#include "runtime/texture.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Rgb;
+
+// Truncated rows ring below zero where the truth is black; sums of absurd scales overflow. The
+// comparison is false for NaN, which becomes black.
+float displayable(float x) {
+    return x > 0.0f ? std::min(x, std::numeric_limits<float>::max()) : 0.0f;
+}
+Rgb displayable(Rgb c) {
+    return {displayable(c.r), displayable(c.g), displayable(c.b)};
+}
+
+Rgb shade_translucent(const SurfaceMaterial& material, const SurfacePoint& point) {
+    const float eta = material.primitive->eta;
+    const Rgb inside = displayable(fresnel_transmittance(point.view.cosine, eta) *
+                                   (point.radiance * point.base_color));
+    if (material.lobe.radiance == nullptr) return inside;
+    return displayable(inside + eval_specular(*material.light, material.lobe, point.view, eta,
+                                              point.open_axis, point.open_fraction));
+}
+
+Rgb shade_gloss(const SurfaceMaterial& material, const SurfacePoint& point) {
+    const formats::GlossSurface surface = formats::make_gloss_surface(
+        *material.gloss, point.base_color, point.metallic, point.roughness);
+    const float diffuse =
+        formats::eval_gloss_albedo(surface, gloss_cosine(point.view.cosine)).diffuse;
+    const Rgb reflected = displayable(diffuse * (point.radiance * point.base_color));
+    if (material.light == nullptr) return reflected;
+    const Rgb mirrored =
+        eval_gloss(material.light->gloss, material.light->rotation, surface, point.view);
+    const float visible =
+        gloss_visibility(point.view, surface.roughness, point.open_axis, point.open_fraction);
+    return displayable(reflected + visible * mirrored);
+}
+
+}  // namespace
+
+SurfaceMaterial surface_material(const formats::AssetView& asset, std::size_t primitive,
+                                 formats::TermSet terms, const SpecularLight* light) {
+    SurfaceMaterial material;
+    material.primitive = &asset.primitives[primitive];
+    if (!asset.gloss.empty() && asset.gloss[primitive].is_glossy()) {
+        material.gloss = &asset.gloss[primitive];
+    }
+    if (light != nullptr && has_any(terms, formats::TermSet::specular)) {
+        material.light = light;
+        material.lobe = specular_lobe(*light, asset, primitive);
+    }
+    return material;
+}
+
+void set_gloss_factors(const formats::AssetView& asset, const SurfaceMaterial& material,
+                       formats::Float2 texcoord, SurfacePoint& point) {
+    const formats::GlossRecord& gloss = *material.gloss;
+    point.metallic = gloss.metallic;
+    point.roughness = gloss.roughness;
+    if (gloss.image == formats::kNoImage) return;
+    const Rgb values =
+        sample_image_values(asset.images[gloss.image], texcoord, gloss.wrap_u, gloss.wrap_v);
+    point.roughness *= values.g;
+    point.metallic *= values.b;
+}
+
+Rgb shade_surface(const SurfaceMaterial& material, const SurfacePoint& point) {
+    if (material.primitive->shading == formats::Shading::translucent) {
+        return shade_translucent(material, point);
+    }
+    return material.gloss != nullptr ? shade_gloss(material, point)
+                                     : displayable(point.radiance * point.base_color);
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+
+#include "formats/opal/asset.h"
+#include "formats/opal/rgb.h"
+#include "formats/opal/terms.h"
+#include "formats/opal/vec3.h"
+#include "runtime/specular.h"
+#include "runtime/view_terms.h"
+
+namespace opaline::runtime {
+
+/// What a shaded point is, for vertices (shade.h) and for samples of a picture
+/// (picture/software_renderer.h); shaders/surface.frag.glsl does the same steps.
+
+/// What all points of a primitive share.
+struct SurfaceMaterial {
+    const formats::PrimitiveRecord* primitive = nullptr;
+    const formats::GlossRecord* gloss = nullptr;  ///< of a glossy opaque primitive; else nothing
+    const SpecularLight* light = nullptr;         ///< nothing: no specular reflection is added
+    SpecularLobe lobe;                            ///< of a glossy translucent primitive
+};
+
+/// `light`: as SoftwareOptions::specular. Without TermSet::specular in `terms` none is used.
+SurfaceMaterial surface_material(const formats::AssetView& asset, std::size_t primitive,
+                                 formats::TermSet terms, const SpecularLight* light);
+
+/// One point of it.
+struct SurfacePoint {
+    formats::Rgb radiance;    ///< sum_k h_k <T_k, L>: rows and view terms, without base colour
+    formats::Rgb base_color;  ///< times its image
+    float metallic = 0, roughness = 0;  ///< glossy opaque: factors times their image
+    ViewOfReceiver view;                ///< diffuse primitives without gloss need none
+    formats::Vec3 open_axis;            ///< glossy: mean open direction of the front, unit or zero
+    float open_fraction = 1;
+};
+
+/// Sets metallic and roughness from the primitive's record and image. Precondition: has gloss.
+void set_gloss_factors(const formats::AssetView& asset, const SurfaceMaterial& material,
+                       formats::Float2 texcoord, SurfacePoint& point);
+
+/// Outgoing radiance toward the eye, finite and not negative: diffuse base_color * radiance;
+/// translucent base_color * Ft * radiance, plus what the boundary mirrors; glossy opaque
+/// base_color * radiance * (1 - metallic) (1 - max E), plus the specular lobe.
+formats::Rgb shade_surface(const SurfaceMaterial& material, const SurfacePoint& point);
+
+}  // namespace opaline::runtime

@@ -1,0 +1,136 @@
+// Files of every section version that was ever released: today's reader reads them for ever.
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/opal/cubemap.h"
+#include "formats/opal/file_bytes.h"
+#include "formats/opal/read_opal.h"
+
+namespace opaline::formats {
+namespace {
+
+// The sum of a primitive's last row in one band, and its sum weighted with the coefficient's number
+// modulo 17.
+struct RowSum {
+    std::size_t primitive;
+    std::uint32_t band;
+    double sum, weighted;
+};
+
+struct Golden {
+    const char* name;
+    std::uint32_t prim, tran, receivers;
+    std::vector<RowSum> rows;
+};
+
+class GoldenFile : public testing::Test {
+  protected:
+    const AssetView& read(const std::string& name) {
+        auto file = FileBytes::open(std::string(OPALINE_SOURCE_DIR) + "/tests/data/golden/" + name);
+        EXPECT_TRUE(file) << name;
+        file_.emplace(std::move(*file));
+        auto loaded = read_opal(file_->bytes(), name, Checks::full);
+        EXPECT_TRUE(loaded) << name << ": " << loaded.error().diagnostics.front().fault;
+        loaded_.emplace(std::move(*loaded));
+        return loaded_->view;
+    }
+    std::uint32_t version_of(std::uint32_t id) const {
+        for (const SectionEntry& section : loaded_->sections) {
+            if (section.id == id) return section.version;
+        }
+        return 0;
+    }
+    std::optional<FileBytes> file_;
+    std::optional<LoadedAsset> loaded_;
+};
+
+TEST_F(GoldenFile, TransportHasTheValuesItHadWhenItWasWritten) {
+    const RowSum grey{0, 0, 2.094714, 30.58194}, red{1, 0, 4.867499, 21.49634},
+        blue{1, 2, 5.099615, 18.19239};
+    const RowSum medium{2, 0, -1.861943, -7.296338}, medium_blue{2, 2, -0.9062569, -1.010991};
+    const std::vector<Golden> files{
+        {"prim1-tran2.opal", 1, 2, 8, {grey, red, blue}},
+        {"prim2-codes16.opal",
+         2,
+         2,
+         11,
+         {{0, 0, 2.070188, 30.40623},
+          {1, 0, 4.853886, 21.39535},
+          {1, 2, 5.096532, 18.14928},
+          {2, 0, 1.125904, 3.778791}}},
+        {"prim3.opal", 3, 2, 11, {grey, red, blue, medium, medium_blue}},
+        {"spec1.opal", 1, 2, 11, {grey, red, blue, medium, medium_blue}},
+        {"glos1.opal", 1, 2, 8, {grey, red, blue}},
+        {"index4.opal", 1, 2, 3, {{0, 0, 3.601584, 21.70784}}},
+    };
+    for (const Golden& golden : files) {
+        SCOPED_TRACE(golden.name);
+        const AssetView& asset = read(golden.name);
+        EXPECT_EQ(version_of(kPrimSection), golden.prim);
+        EXPECT_EQ(version_of(kTranSection), golden.tran);
+        ASSERT_EQ(asset.receivers(), golden.receivers);
+        std::vector<float> dense(cubemap_texels(asset.cubemap_size));
+        for (const RowSum& row : golden.rows) {
+            const RowRange range = asset.primitives[row.primitive].rows();
+            decode_row(asset.transport, range, range.rows - 1, row.band, dense);
+            double sum = 0, weighted = 0;
+            for (std::size_t i = 0; i < dense.size(); ++i) {
+                sum += dense[i];
+                weighted += dense[i] * static_cast<double>(i % 17);
+            }
+            EXPECT_NEAR(sum, row.sum, 1e-5) << row.primitive << ' ' << row.band;
+            EXPECT_NEAR(weighted, row.weighted, 1e-4) << row.primitive << ' ' << row.band;
+        }
+    }
+}
+
+TEST_F(GoldenFile, MeshImagesAndFlagsToo) {
+    {
+        const AssetView& asset = read("prim1-tran2.opal");
+        EXPECT_EQ(asset.provenance, R"({"generator":"test"})");
+        EXPECT_EQ(asset.cubemap_size, 8u);
+        EXPECT_EQ(asset.position[7], (Vec3{1, 1, 1}));
+        EXPECT_EQ(asset.base_color[3], (Rgb{0.5f, 0.6f, 0.7f}));
+        EXPECT_EQ(asset.index[10], 3u);
+        ASSERT_EQ(asset.images.size(), 1u);
+        EXPECT_EQ(asset.images[0].rgb[4], 255);
+        EXPECT_EQ(asset.primitives[1].base_color_image, 0u);
+    }
+    EXPECT_TRUE(read("prim2-codes16.opal").primitives[2].is_separate());
+    EXPECT_EQ(loaded_->view.primitives[2].bands, 1u);
+    EXPECT_EQ(loaded_->view.primitives[2].eta, 1.3f);
+    EXPECT_EQ(loaded_->view.transport.code_bits, 16u);
+    EXPECT_TRUE(read("prim3.opal").primitives[2].is_single_only());
+    EXPECT_EQ(read("index4.opal").transport.index_bytes, 4u);
+}
+
+TEST_F(GoldenFile, SpecularReflectionToo) {
+    {
+        const AssetView& asset = read("spec1.opal");
+        EXPECT_EQ(version_of(kSpecSection), 1u);
+        EXPECT_EQ(asset.roughness[1], kNotGlossy);
+        EXPECT_EQ(asset.roughness[2], 0.3f);
+        EXPECT_EQ(asset.openness[10].fraction, 255);
+        EXPECT_EQ(asset.openness[10].axis[0], 21);
+        EXPECT_TRUE(asset.gloss.empty());
+    }
+    const AssetView& asset = read("glos1.opal");
+    EXPECT_EQ(version_of(kGlosSection), 1u);
+    ASSERT_EQ(asset.gloss.size(), 2u);
+    const GlossRecord &metal = asset.gloss[0], &plastic = asset.gloss[1];
+    EXPECT_EQ(metal.metallic, 1);
+    EXPECT_EQ(metal.roughness, 0.75f);
+    EXPECT_EQ(metal.image, 0u);
+    EXPECT_EQ(metal.wrap_v, Wrap::mirror);
+    EXPECT_EQ(plastic.metallic, 0);
+    EXPECT_EQ(plastic.roughness, 0.25f);
+    EXPECT_EQ(plastic.f0, (Rgb{0.04f, 0.05f, 0.06f}));
+    EXPECT_EQ(plastic.f90, 0.5f);
+    EXPECT_EQ(plastic.image, kNoImage);
+}
+
+}  // namespace
+}  // namespace opaline::formats
