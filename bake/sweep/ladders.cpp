@@ -202,8 +202,9 @@ bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject) {
                            a.code_bits == b.code_bits && a.separate_terms == b.separate_terms &&
                            a.effects == b.effects && a.simulate_all == b.simulate_all &&
                            a.seed == b.seed;
-    const bool same_multiple =
-        a.samples == b.samples && a.exact_samples == b.exact_samples && a.tolerance == b.tolerance;
+    const bool same_multiple = a.samples == b.samples && a.exact_samples == b.exact_samples &&
+                               (a.exact_samples || a.samples_per_path == b.samples_per_path) &&
+                               a.tolerance == b.tolerance;
     const bool same_single = a.depth_samples == b.depth_samples && a.phase_terms == b.phase_terms &&
                              a.phase_tolerance == b.phase_tolerance &&
                              a.single_cubemap == b.single_cubemap;
