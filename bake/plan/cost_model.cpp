@@ -141,7 +141,11 @@ struct Making {
             for (const auto& [effect, count] : {std::pair{"multiple", first},
                                                 {"single", layout.terms() - first - beyond},
                                                 {"single.terms", beyond}}) {
-                bill.add(encode_work(input, count, bands, receivers), effect, p.material);
+                // Local rows are gathered by texel and transformed band by band, as grey ones are;
+                // the others are gathered as coefficients.
+                bill.add(layout.local ? encode_work(input, count * bands, 1, receivers)
+                                      : encode_work(input, count, bands, receivers),
+                         effect, p.material);
                 bill.add_bytes(count * bytes, effect, p.material);
             }
         }
