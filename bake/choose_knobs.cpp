@@ -116,12 +116,12 @@ void warn_of_missed_target(const BakeResult& result, std::vector<formats::Diagno
             given.empty() ? "allow a larger error; more vertices where shadows end, or a finer "
                             "--cubemap, come closer"
                           : "leave " + given + " out"));
-    } else if (result.error.rms_relative > accuracy.target) {
-        warnings.push_back(
-            formats::make_warning("", "--error",
-                                  "the self-check measured " + percent(result.error.rms_relative) +
-                                      ", more than the " + percent(accuracy.target) + " asked for",
-                                  "ask for a little less"));
+    } else if (result.error.at_receivers.rms_relative > accuracy.target) {
+        warnings.push_back(formats::make_warning(
+            "", "--error",
+            "the self-check measured " + percent(result.error.at_receivers.rms_relative) +
+                " at vertices, more than the " + percent(accuracy.target) + " asked for",
+            "ask for a little less"));
     }
 }
 

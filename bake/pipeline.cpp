@@ -11,9 +11,9 @@
 #include "bake/encode/pack_asset.h"
 #include "bake/encode/provenance.h"
 #include "bake/encode/select_coefficients.h"
-#include "bake/measure/check_direct.h"
-#include "bake/measure/check_translucent.h"
-#include "bake/measure/thin_parts.h"
+#include "bake/measure/error_warnings.h"
+#include "bake/measure/model_warnings.h"
+#include "bake/measure/self_check.h"
 #include "bake/plan/inspect_scene.h"
 #include "bake/plan/plan_rules.h"
 #include "bake/plan/row_layout.h"
@@ -138,50 +138,8 @@ std::vector<formats::Openness> bake_all_openness(const PilotScene& all, const Co
     });
 }
 
-ErrorReport check_rows(const formats::Scene& scene, const RayScene& rays,
-                       std::span<const Receiver> receivers, std::span<const BodyPoint> points,
-                       const MediaStages& media, const Knobs& knobs,
-                       std::span<const TestLight> lights, const formats::AssetView& asset,
-                       const Context& context, std::uint64_t& traced) {
-    const std::vector<std::uint32_t> drawn = draw_receivers(receivers.size(), knobs.seed);
-    std::vector<EffectCheck> checks{check_direct(rays, receivers, asset, drawn, lights, context)};
-    for (const auto& [m, stages] : media) {
-        if (!stages.multiple && !stages.single && !stages.local) {
-            continue;  // black: nothing to be wrong
-        }
-        checks.push_back(check_translucent(stages.recipe, scene, rays, m, knobs.depth_samples,
-                                           points, asset, drawn, lights, knobs.seed, context));
-    }
-    std::vector<std::string> names;
-    for (const TestLight& light : lights) {
-        names.push_back(light.name);
-    }
-    for (const EffectCheck& check : checks) {
-        traced += check.rays;
-    }
-    return summarise_checks(checks, names, knobs.seed);
-}
-
-// Says where the dipole's half space is far from the truth.
-void warn_of_thin_parts(const formats::Scene& scene, const RayScene& rays,
-                        std::span<const BodyPoint> points, const MediaStages& media,
-                        std::uint64_t seed, std::vector<formats::Diagnostic>& warnings) {
-    constexpr double kWorthSaying = 0.1;
-    const std::vector<std::uint32_t> drawn = draw_receivers(points.size(), seed);
-    for (const auto& [m, stages] : media) {
-        if (!stages.multiple) {
-            continue;
-        }
-        const double excess = estimate_thin_excess(stages.multiple->medium, rays, m, points, drawn);
-        if (excess > kWorthSaying) {
-            warnings.push_back(formats::make_warning(
-                "", "material '" + scene.materials[m].name + "'",
-                "light crosses the body: diffusion takes it for a half space and makes it up to " +
-                    std::to_string(static_cast<int>(100 * excess + 0.5)) +
-                    " % too bright under even light",
-                "compare with `opaline reference`; denser media and thicker bodies err less"));
-        }
-    }
+void append(std::vector<formats::Diagnostic>& warnings, std::vector<formats::Diagnostic> more) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
 }
 
 formats::Error interrupted() {
@@ -264,21 +222,24 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
     if (!rows) {
         return std::move(rows).error();
     }
-    warn_of_thin_parts(scene, rays, points, media, knobs.seed, result.warnings);
+    append(result.warnings, describe_short_series(scene, result.plan, knobs));
+    append(result.warnings, describe_thin_bodies(scene, facts, rays, points, media, knobs.seed));
     std::vector<formats::Openness> openness = bake_all_openness(pilot, context, result);
     if (context.cancelled()) {
         return interrupted();
     }
     result.asset = pack_asset(scene, layouts, std::move(*rows), std::move(openness));
     result.error = run_stage(result, "self-check", [&](std::uint64_t& traced) {
-        return check_rows(scene, rays, receivers, points, media, knobs, *lights,
+        return check_file({scene, rays, receivers, points, layouts, media, knobs, *lights},
                           result.asset.view(), context, traced);
     });
     if (context.cancelled()) {
         return interrupted();
     }
+    append(result.warnings, describe_measured_error(scene, knobs, result.error));
     if (result.accuracy) {
         warn_of_missed_target(result, result.warnings);
+        result.accuracy->met = result.accuracy->met && meets_target(result.error, knobs);
     }
     if (knobs.check_model) {
         ModelCheckOptions options;

@@ -28,7 +28,7 @@ struct AccuracyReport {
     double target = 0;     ///< relative RMS asked for
     double predicted = 0;  ///< expected of the chosen knobs, before the bake
     double likely = 0;     ///< one standard error of the pilot more
-    bool met = false;
+    bool met = false;      ///< expected to, and measured at receivers and between them
     struct Trial {
         std::uint32_t cubemap_size;
         double samples_per_path;

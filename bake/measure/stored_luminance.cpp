@@ -5,31 +5,94 @@
 #include "runtime/view_terms.h"
 
 namespace opaline::bake {
+namespace {
+
+constexpr std::array<float, 3> kLuminance{0.2126f, 0.7152f, 0.0722f};
+
+// Rows of one receiver, and what each counts.
+struct WeightedRows {
+    const formats::RowRange& range;
+    std::uint32_t first_row;
+    std::span<const float> h;
+    float weight;
+};
+
+// Adds weight * sum_k h_k luminance of row k. `band`: as long as `sum`, overwritten.
+void add_luminance(const formats::SparseRowsView& rows, const WeightedRows& added,
+                   std::span<float> band, std::span<float> sum) {
+    for (std::uint32_t k = 0; k < added.h.size(); ++k) {
+        for (std::uint32_t b = 0; b < added.range.bands; ++b) {
+            formats::decode_row(rows, added.range, added.first_row + k, b, band);
+            const float weight =
+                added.weight * added.h[k] * (added.range.bands == 1 ? 1.0f : kLuminance[b]);
+            for (std::size_t j = 0; j < sum.size(); ++j) {
+                sum[j] += weight * band[j];
+            }
+        }
+    }
+}
+
+Luminance relit_by_each(std::span<const float> row, std::span<const TestLight> lights) {
+    Luminance luminance;
+    for (const TestLight& light : lights) {
+        luminance.push_back(relit(row, light.coarse));
+    }
+    return luminance;
+}
+
+formats::Vec3 to_vec3(glm::vec3 v) {
+    return {v.x, v.y, v.z};
+}
+
+// h_k of a vertex for an eye far away in direction `to_eye`; none where the runtime shows black.
+std::vector<float> view_from_far(const RowLayout& layout, float eta, formats::Vec3 normal,
+                                 glm::vec3 to_eye) {
+    if (normal == formats::Vec3{}) {
+        return {};
+    }
+    const formats::Vec3 w = to_vec3(to_eye);
+    const formats::Vec3 inside = runtime::refract_to_eye(normal, w, formats::dot(normal, w), eta);
+    return view_of_rows(layout, {inside.x, inside.y, inside.z});
+}
+
+}  // namespace
 
 std::vector<float> view_of_rows(const RowLayout& layout, glm::vec3 normal) {
     std::vector<float> h(layout.terms(), 1.0f);
     const std::size_t first = layout.first_single();
-    runtime::eval_view_terms({normal.x, normal.y, normal.z}, std::span(h).subspan(first));
+    runtime::eval_view_terms(to_vec3(normal), std::span(h).subspan(first));
     return h;
 }
 
 Luminance relight_rows(const formats::SparseRowsView& rows, const formats::RowRange& range,
                        std::uint32_t first_row, std::span<const float> h,
                        std::span<const TestLight> lights) {
-    constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
-    Luminance luminance(lights.size());
-    std::vector<float> dense(lights.front().coarse.size());
-    for (std::uint32_t k = 0; k < h.size(); ++k) {
-        for (std::uint32_t band = 0; band < range.bands; ++band) {
-            formats::decode_row(rows, range, first_row + k, band, dense);
-            const double weight =
-                static_cast<double>(h[k]) * (range.bands == 1 ? 1.0 : kLuminance[band]);
-            for (std::size_t l = 0; l < lights.size(); ++l) {
-                luminance[l] += weight * relit(dense, lights[l].coarse);
-            }
+    const std::size_t size = lights.front().coarse.size();
+    std::vector<float> band(size), sum(size);
+    add_luminance(rows, {range, first_row, h, 1.0f}, band, sum);
+    return relit_by_each(sum, lights);
+}
+
+Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point,
+                        const RowLayout* layout, std::span<const TestLight> lights) {
+    const formats::PrimitiveRecord& primitive = asset.primitives[point.primitive];
+    const formats::RowRange range = primitive.rows();
+    const std::size_t size = lights.front().coarse.size();
+    std::vector<float> band(size), sum(size);
+    for (std::size_t k = 0; k < point.vertex.size(); ++k) {
+        if (point.weight[k] == 0) {
+            continue;
         }
+        const std::uint32_t v = point.vertex[k];
+        const std::vector<float> h =
+            layout == nullptr
+                ? std::vector<float>{1.0f}
+                : view_from_far(*layout, primitive.eta, asset.normal[v], point.body.normal);
+        add_luminance(asset.transport,
+                      {range, (v - primitive.first_vertex) * primitive.terms, h, point.weight[k]},
+                      band, sum);
     }
-    return luminance;
+    return relit_by_each(sum, lights);
 }
 
 }  // namespace opaline::bake

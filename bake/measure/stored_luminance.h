@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/measure/check_point.h"
 #include "bake/measure/measure_error.h"
 #include "bake/measure/test_lights.h"
 #include "bake/plan/row_layout.h"
@@ -20,5 +21,11 @@ std::vector<float> view_of_rows(const RowLayout& layout, glm::vec3 normal);
 Luminance relight_rows(const formats::SparseRowsView& rows, const formats::RowRange& range,
                        std::uint32_t first_row, std::span<const float> h,
                        std::span<const TestLight> lights);
+
+/// What the runtime shows at `point`, but for base colour and the exit's Ft: the mix of its
+/// vertices, each with its own h_k, for an eye far away along the point's normal. `layout`: of the
+/// point's medium; null: the primitive is diffuse.
+Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point,
+                        const RowLayout* layout, std::span<const TestLight> lights);
 
 }  // namespace opaline::bake

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/plan/check_counts.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -87,11 +89,13 @@ void bill_media_trials(const CostedBake& bake, Bill& bill) {
 }
 
 void bill_self_check(const CostedBake& bake, Bill& bill) {
-    constexpr double kMostChecked = 256;
+    constexpr auto kMostInMedia = static_cast<double>(kMostCheckedInMedia);
     bill.open("self-check");
-    const double receivers = bake.facts.receivers;
-    const double drawn = std::min(receivers, std::clamp(receivers / 40, 16.0, 1024.0));
-    add_truth(bake, drawn, drawn / std::max(1.0, std::ceil(drawn / kMostChecked)),
+    const auto drawn = static_cast<double>(count_checked(
+        static_cast<std::size_t>(bake.facts.receivers), bake.input.knobs.cubemap_size));
+    const double in_media = drawn / std::max(1.0, std::ceil(drawn / kMostInMedia));
+    constexpr double kPlaces = 2;  // at receivers, and between them
+    add_truth(bake, kPlaces * drawn, kPlaces * in_media,
               {1024, 2.0 * bake.input.knobs.depth_samples}, bill);
 }
 

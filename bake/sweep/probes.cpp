@@ -62,8 +62,12 @@ std::vector<double> relight_probes(const formats::AssetView& asset,
 ErrorReport compare_probes(std::span<const double> luminance, std::span<const double> truth,
                            const std::vector<bool>& of_medium, std::span<const std::string> lights,
                            const std::string& medium_effect) {
-    EffectCheck checks[2] = {{"direct", "the most accurate bake of the sweep", {}, 0},
-                             {medium_effect, "the most accurate bake of the sweep", {}, 0}};
+    EffectCheck checks[2];
+    checks[0].effect = "direct";
+    checks[1].effect = medium_effect;
+    for (EffectCheck& check : checks) {
+        check.reference = "the most accurate bake of the sweep";
+    }
     for (std::size_t p = 0; p < of_medium.size(); ++p) {
         for (std::size_t l = 0; l < lights.size(); ++l) {
             const std::size_t i = p * lights.size() + l;
