@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 // A ball whose shadows fall onto a floor of cells x cells.
 formats::Scene ball_over_floor(std::uint32_t cells) {
-    auto floor = tests::make_quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, cells);
+    auto floor = tests::make_quad({-2.5f, 0, -2.5f}, {0, 0, 5}, {5, 0, 0}, cells);
     floor.name = "floor";
     return tests::make_scene({tests::make_sphere(4, 1, {0, 1.1f, 0}), floor});
 }

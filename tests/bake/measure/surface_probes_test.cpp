@@ -44,7 +44,7 @@ TEST(SurfaceProbes, AreSharedOutByAreaAndLieWhereTheirWeightsSay) {
         }
     }
     EXPECT_EQ(first, 360u);  // strata of equal area
-    EXPECT_LT(glm::length(mean) / 360, 0.2);
+    EXPECT_LT(glm::length(mean) / 360, 0.3);
 }
 
 TEST(SurfaceProbes, PrimitivesThatAreNotListedGetNone) {
@@ -62,7 +62,7 @@ TEST(SurfaceProbes, NoneLiesInsideABody) {
         {tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), tests::make_sphere(4)});
     const auto probes = draw(scene, 400, {0});
     // pi of 16 are hidden.
-    EXPECT_NEAR(static_cast<double>(probes.size()), 400 * (1 - 3.1416 / 16), 12);
+    EXPECT_NEAR(static_cast<double>(probes.size()), 400 * (1 - 3.1416 / 16), 32);
     for (const CheckPoint& probe : probes) {
         EXPECT_GT(glm::length(probe.body.position), 0.99f);
     }
