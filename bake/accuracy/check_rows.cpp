@@ -1,63 +1,87 @@
 #include "bake/accuracy/check_rows.h"
 
-#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "bake/accuracy/check_point.h"
 #include "bake/accuracy/stored_luminance.h"
 #include "bake/accuracy/subject_truth.h"
+#include "bake/accuracy/surface_probes.h"
 #include "bake/base/ordered_parallel.h"
-#include "bake/truth/draw_receivers.h"
 
 namespace opaline::bake {
 namespace {
 
-EffectCheck check_subject(const BakeInputs& bake, const SubjectTruth& truth,
-                          const SubjectState& subject, const formats::AssetView& asset,
-                          std::span<const std::uint32_t> drawn,
+EffectCheck check_subject(const SubjectTruth& truth, const SubjectState& subject,
+                          const formats::AssetView& asset, std::span<const CheckPoint> points,
                           std::span<const TestLight> lights) {
-    struct Found {
-        std::vector<CheckedPair> pairs;
-        std::uint64_t rays = 0;
-    };
-    EffectCheck check{truth.name(), truth.reference(), {}, 0};
-    const std::size_t step =
-        truth.is_expensive() ? (drawn.size() + kMostExpensiveChecks - 1) / kMostExpensiveChecks : 1;
+    EffectCheck check;
+    check.effect = truth.name();
+    check.reference = truth.reference();
+    const std::size_t step = truth.is_expensive() ? (points.size() + kMostExpensiveChecks - 1) /
+                                                        kMostExpensiveChecks
+                                                  : 1;
     for_each_block_in_order(
-        drawn.size(), 1, truth.parts.front().inputs.context,
+        points.size(), 1, truth.parts.front().inputs.context,
         [&](Range range) {
-            Found found;
-            const std::uint32_t v = drawn[range.begin];
-            const ReceiverSet& set = set_of(bake.receivers, v);
-            if (set.material != subject.material || range.begin % step != 0) {
-                return found;
+            const CheckPoint& point = points[range.begin];
+            CheckedPoint found{point.primitive, {}, 0};
+            if (point.material == subject.material && range.begin % step == 0) {
+                append_pairs(
+                    relight_point(asset, point, subject.layout, lights),
+                    eval_truth(truth, {point.receiver, point.body, point.key}, found.rays),
+                    found.pairs);
             }
-            const TruthReceiver receiver{set.outside[v - set.first], set.inside[v - set.first], v};
-            append_pairs(relight_rows(rows_of(asset, v),
-                                      view_of_rows(subject.layout, receiver.inside.normal), lights),
-                         eval_truth(truth, receiver, found.rays), found.pairs);
             return found;
         },
-        [&](Range, const Found& found) {
-            check.pairs.insert(check.pairs.end(), found.pairs.begin(), found.pairs.end());
-            check.rays += found.rays;
-        });
+        [&](Range, const CheckedPoint& found) { append_point(found, check); });
     return check;
+}
+
+// Primitives that something is simulated for.
+std::vector<std::uint32_t> find_lit_primitives(const FinishedBake& bake) {
+    std::vector<std::uint32_t> lit;
+    for (const ReceiverSet& set : bake.inputs.receivers) {
+        if (set.size() > 0 && has_truth(bake.inputs, state_of(bake.subjects, set.material))) {
+            lit.push_back(set.primitive);
+        }
+    }
+    return lit;
 }
 
 }  // namespace
 
-std::vector<EffectCheck> check_rows(const BakeInputs& bake, std::span<const SubjectState> subjects,
-                                    const Knobs& knobs, const formats::AssetView& asset,
-                                    std::span<const TestLight> lights, const Context& context) {
+ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset,
+                       const Context& context, std::uint64_t& traced) {
+    const std::uint64_t seed = bake.knobs.seed;
+    const std::size_t all = count_receivers(bake.inputs.receivers);
     const std::vector<std::uint32_t> drawn =
-        draw_receivers(count_receivers(bake.receivers), knobs.seed);
+        draw_evenly(all, count_checked(all, bake.knobs.cubemap_size),
+                    RandomStage::held_back_receivers, seed);
+    const std::vector<CheckPoint> receivers = make_check_points(bake.inputs.receivers, drawn);
+    const std::vector<CheckPoint> between = draw_surface_probes(
+        bake.inputs.scene, bake.inputs.rays, find_lit_primitives(bake),
+        {drawn.size(), seed, static_cast<std::uint32_t>(all)}, context);
     std::vector<EffectCheck> checks;
-    for (const SubjectState& subject : subjects) {
-        const SubjectTruth truth = make_subject_truth(bake, subject, knobs, {}, lights, context);
-        if (!truth.parts.empty()) {
-            checks.push_back(check_subject(bake, truth, subject, asset, drawn, lights));
+    for (const SubjectState& subject : bake.subjects) {
+        const SubjectTruth truth =
+            make_subject_truth(bake.inputs, subject, bake.knobs, {}, bake.lights, context);
+        if (truth.parts.empty()) {
+            continue;  // black: nothing to be wrong
+        }
+        for (const auto* points : {&receivers, &between}) {
+            EffectCheck check = check_subject(truth, subject, asset, *points, bake.lights);
+            check.between = points == &between;
+            traced += check.rays;
+            checks.push_back(std::move(check));
         }
     }
-    return checks;
+    std::vector<std::string> names;
+    for (const TestLight& light : bake.lights) {
+        names.push_back(light.name);
+    }
+    return summarise_checks(checks, names, seed);
 }
 
 }  // namespace opaline::bake

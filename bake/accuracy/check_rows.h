@@ -1,7 +1,7 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
-#include <vector>
 
 #include "bake/accuracy/measure_error.h"
 #include "bake/rows/subject_states.h"
@@ -9,11 +9,18 @@
 
 namespace opaline::bake {
 
-/// How far finished rows are from the truth at held-back receivers, without base colour: each
-/// subject's rows as a whole, seen along the normal, under the lights as they are. Effects whose
-/// truth is expensive are checked at some 256 receivers of all.
-std::vector<EffectCheck> check_rows(const BakeInputs& bake, std::span<const SubjectState> subjects,
-                                    const Knobs& knobs, const formats::AssetView& asset,
-                                    std::span<const TestLight> lights, const Context& context);
+/// What a finished file was baked from.
+struct FinishedBake {
+    const BakeInputs& inputs;
+    std::span<const SubjectState> subjects;
+    const Knobs& knobs;
+    std::span<const TestLight> lights;  ///< of the asset's cube map
+};
+
+/// Compares the file with the truth, without base colour, at held-back receivers and at as many
+/// random points of the surface, where the file is interpolated as the runtime does: each subject's
+/// rows as a whole, seen along the normal, under the lights as they are. `traced` adds up.
+ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset,
+                       const Context& context, std::uint64_t& traced);
 
 }  // namespace opaline::bake

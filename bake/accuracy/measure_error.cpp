@@ -2,11 +2,101 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <map>
 
 #include "bake/accuracy/bootstrap.h"
 
 namespace opaline::bake {
+namespace {
+
+template <class Predicate>
+std::vector<CheckedPair> collect_pairs(std::span<const EffectCheck> checks, Predicate&& wanted) {
+    std::vector<CheckedPair> pairs;
+    for (const EffectCheck& check : checks) {
+        if (wanted(check)) {
+            pairs.insert(pairs.end(), check.pairs.begin(), check.pairs.end());
+        }
+    }
+    return pairs;
+}
+
+// Effects that were checked somewhere, each once, in order.
+std::vector<std::string> name_effects(std::span<const EffectCheck> checks) {
+    std::vector<std::string> names;
+    for (const EffectCheck& check : checks) {
+        if (!check.pairs.empty() &&
+            std::find(names.begin(), names.end(), check.effect) == names.end()) {
+            names.push_back(check.effect);
+        }
+    }
+    return names;
+}
+
+// Of the checks that `wanted` chooses; zeros where they found nothing.
+template <class Predicate>
+MeasuredError measure(std::span<const EffectCheck> checks, std::span<const std::string> lights,
+                      std::uint64_t seed, Predicate&& wanted) {
+    MeasuredError measured;
+    const std::vector<CheckedPair> pairs = collect_pairs(checks, wanted);
+    if (pairs.empty()) {
+        return measured;
+    }
+    for (const std::string& effect : name_effects(checks)) {
+        const std::vector<CheckedPair> own = collect_pairs(checks, [&](const EffectCheck& check) {
+            return wanted(check) && check.effect == effect;
+        });
+        if (!own.empty()) {
+            measured.by_effect.push_back({effect, relative_rms(own)});
+        }
+    }
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+        std::vector<CheckedPair> own;
+        for (std::size_t i = l; i < pairs.size(); i += lights.size()) {
+            own.push_back(pairs[i]);
+        }
+        measured.by_light.push_back({lights[l], relative_rms(own)});
+    }
+    const ErrorBounds bounds = bound_error(pairs, lights.size(), seed);
+    measured.rms_relative = bounds.rms;
+    measured.ci95[0] = bounds.lowest;
+    measured.ci95[1] = bounds.highest;
+    return measured;
+}
+
+std::string describe_reference(std::span<const EffectCheck> checks,
+                               std::span<const std::string> lights) {
+    std::string text;
+    for (const std::string& effect : name_effects(checks)) {
+        const auto first =
+            std::find_if(checks.begin(), checks.end(),
+                         [&](const EffectCheck& check) { return check.effect == effect; });
+        text += (text.empty() ? "" : "; ") + effect + ": " + first->reference;
+    }
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+        text += (l == 0 ? "; luminance under " : ", ") + lights[l];
+    }
+    return text;
+}
+
+std::uint32_t find_worst_between(std::span<const EffectCheck> checks, std::size_t lights) {
+    std::map<std::uint32_t, double> squares;  // of the error, by primitive
+    for (const EffectCheck& check : checks) {
+        if (!check.between) {
+            continue;
+        }
+        for (std::size_t i = 0; i < check.pairs.size(); ++i) {
+            squares[check.primitive[i / lights]] +=
+                check.pairs[i].error[0] * check.pairs[i].error[1];
+        }
+    }
+    const auto worst =
+        std::max_element(squares.begin(), squares.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    return worst == squares.end() ? 0 : worst->first;
+}
+
+}  // namespace
+
 double relative_rms(std::span<const CheckedPair> pairs) {
     double error = 0, reference = 0;
     for (const CheckedPair& p : pairs) {
@@ -48,52 +138,45 @@ void append_pairs(const Luminance& found, const TwoEstimates& truth,
     }
 }
 
+void append_point(const CheckedPoint& point, EffectCheck& check) {
+    if (!point.pairs.empty()) {
+        check.pairs.insert(check.pairs.end(), point.pairs.begin(), point.pairs.end());
+        check.primitive.push_back(point.primitive);
+    }
+    check.rays += point.rays;
+}
+
 ErrorReport summarise_checks(std::span<const EffectCheck> checks,
                              std::span<const std::string> lights, std::uint64_t seed) {
     ErrorReport report;
-    std::vector<CheckedPair> pairs;
-    std::vector<std::pair<std::string, std::vector<CheckedPair>>> by_effect;
-    for (const EffectCheck& check : checks) {
-        if (check.pairs.empty()) {
-            continue;
-        }
-        pairs.insert(pairs.end(), check.pairs.begin(), check.pairs.end());
-        auto same = std::find_if(by_effect.begin(), by_effect.end(),
-                                 [&](const auto& effect) { return effect.first == check.effect; });
-        if (same == by_effect.end()) {
-            same = by_effect.insert(same, {check.effect, {}});
-            report.reference +=
-                (report.reference.empty() ? "" : "; ") + check.effect + ": " + check.reference;
-        }
-        same->second.insert(same->second.end(), check.pairs.begin(), check.pairs.end());
-    }
-    if (pairs.empty()) {
+    const auto count = [&](bool between) {
+        return static_cast<std::uint32_t>(
+            collect_pairs(checks, [&](const EffectCheck& c) { return c.between == between; })
+                .size() /
+            lights.size());
+    };
+    const std::vector<CheckedPair> all =
+        collect_pairs(checks, [](const EffectCheck&) { return true; });
+    if (all.empty()) {
         return report;
     }
-    for (const auto& [effect, own] : by_effect) {
-        report.by_effect.push_back({effect, relative_rms(own)});
-    }
-    for (std::size_t l = 0; l < lights.size(); ++l) {
-        std::vector<CheckedPair> own;
-        for (std::size_t i = l; i < pairs.size(); i += lights.size()) {
-            own.push_back(pairs[i]);
-        }
-        report.by_light.push_back({lights[l], relative_rms(own)});
-        report.reference += (l == 0 ? "; luminance under " : ", ") + lights[l];
-    }
-    report.receivers_checked = static_cast<std::uint32_t>(pairs.size() / lights.size());
-    const ErrorBounds bounds = bound_error(pairs, lights.size(), seed);
-    report.rms_relative = bounds.rms;
-    report.ci95[0] = bounds.lowest;
-    report.ci95[1] = bounds.highest;
+    static_cast<MeasuredError&>(report) =
+        measure(checks, lights, seed, [](const EffectCheck&) { return true; });
+    report.at_receivers =
+        measure(checks, lights, seed, [](const EffectCheck& c) { return !c.between; });
+    report.between = measure(checks, lights, seed, [](const EffectCheck& c) { return c.between; });
+    report.receivers_checked = count(false);
+    report.points_between_checked = count(true);
+    report.worst_between = find_worst_between(checks, lights.size());
+    report.reference = describe_reference(checks, lights);
     double squares = 0;
     std::vector<double> magnitude;
-    for (const CheckedPair& p : pairs) {
+    for (const CheckedPair& p : all) {
         squares += p.reference * p.reference;
         magnitude.push_back(0.5 * std::abs(p.error[0] + p.error[1]));
     }
     std::sort(magnitude.begin(), magnitude.end());
-    const double rms = std::sqrt(squares / static_cast<double>(pairs.size()));
+    const double rms = std::sqrt(squares / static_cast<double>(all.size()));
     if (rms > 0) {
         report.p95_relative =
             magnitude[static_cast<std::size_t>(0.95 * static_cast<double>(magnitude.size() - 1))] /

@@ -11,21 +11,30 @@
 
 namespace opaline::bake {
 
-/// Numerical error of the finished rows against the same model evaluated by brute force, over
-/// held-back receivers and the published test lights; relative to the RMS of the reference
-/// (design 7).
-struct ErrorReport {
+/// Relative RMS of some points under the published test lights: RMS of the error over RMS of the
+/// reference.
+struct MeasuredError {
     double rms_relative = 0;
-    double ci95[2] = {0, 0};  ///< of rms_relative: bootstrap over receivers, 2.5 and 97.5 percent
-    double p95_relative = 0, max_relative = 0;
-    std::uint32_t receivers_checked = 0;
-    std::string reference;  ///< what it was measured against, in words
+    double ci95[2] = {0, 0};  ///< of rms_relative: bootstrap over points, 2.5 and 97.5 percent
     struct Part {
         std::string name;
         double rms_relative = 0;
     };
     std::vector<Part> by_effect;  ///< pairs of one effect, over all lights
     std::vector<Part> by_light;   ///< pairs of one test light, over all effects
+};
+
+/// Numerical error of the finished file against the same model evaluated by brute force (design 7):
+/// at held-back receivers, between receivers, and over both together.
+struct ErrorReport : MeasuredError {
+    double p95_relative = 0, max_relative = 0;
+    std::uint32_t receivers_checked = 0;
+    std::uint32_t points_between_checked = 0;
+    std::string reference;  ///< what it was measured against, in words
+    MeasuredError at_receivers;
+    MeasuredError between;  ///< at random points of the surface, mixed as the runtime does
+    /// Primitive with the largest part of the squared error between receivers.
+    std::uint32_t worst_between = 0;
 };
 
 /// One receiver under one light: luminance. Two errors, against two independent estimates of the
@@ -40,12 +49,22 @@ struct CheckedPair {
 void append_pairs(const Luminance& found, const TwoEstimates& truth,
                   std::vector<CheckedPair>& pairs);
 
-/// What one effect's check found: the pairs of each receiver stand together, one per light.
+/// What one effect's check found: the pairs of each point stand together, one per light.
 struct EffectCheck {
     std::string effect, reference;
     std::vector<CheckedPair> pairs;
+    std::vector<std::uint32_t> primitive;  ///< of each point; empty: nobody asks
+    std::uint64_t rays = 0;
+    bool between = false;  ///< at points between receivers
+};
+
+/// One point's share of a check: no pairs where the check does not concern it.
+struct CheckedPoint {
+    std::uint32_t primitive = 0;
+    std::vector<CheckedPair> pairs;
     std::uint64_t rays = 0;
 };
+void append_point(const CheckedPoint& point, EffectCheck& check);
 
 /// sqrt(mean of products of errors / mean square of the reference); 0 without a reference.
 double relative_rms(std::span<const CheckedPair> pairs);
@@ -57,8 +76,9 @@ struct ErrorBounds {
 };
 ErrorBounds bound_error(std::span<const CheckedPair> pairs, std::size_t lights, std::uint64_t seed);
 
-/// All effects together, each by itself, and each light by itself. Checks of one effect in several
-/// materials count as one. `lights`: names, in the order of the pairs.
+/// All effects together, each by itself, and each light by itself; at receivers, between them, and
+/// over both. Checks of one effect in several materials count as one. `lights`: names, in the
+/// order of the pairs.
 ErrorReport summarise_checks(std::span<const EffectCheck> checks,
                              std::span<const std::string> lights, std::uint64_t seed);
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "bake/accuracy/check_point.h"
 #include "bake/accuracy/measure_error.h"
 #include "bake/truth/test_lights.h"
 #include "bake/plan/row_layout.h"
-#include "formats/opal/asset.h"
 #include "formats/opal/sparse_rows.h"
 
 namespace opaline::bake {
@@ -22,10 +22,15 @@ struct RowSource {
     formats::RowRange range;      ///< of its primitive
     std::uint32_t first_row = 0;  ///< the receiver's, counted from the start of the range
 };
-RowSource rows_of(const formats::AssetView& asset, std::uint32_t receiver);
 
 /// sum over a receiver's rows of h_k <T_k, L>, as the runtime would say; one row for each h.
 Luminance relight_rows(const RowSource& source, std::span<const float> h,
                        std::span<const TestLight> lights);
+
+/// What the runtime shows at `point`, but for base colour and the exit's Ft: the mix of its
+/// vertices, each with its own h_k, for an eye far away along the point's normal. `layout`: of the
+/// point's material.
+Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point,
+                        const RowLayout& layout, std::span<const TestLight> lights);
 
 }  // namespace opaline::bake

@@ -16,7 +16,8 @@ enum class RandomStage : std::uint32_t {
     reference_path = 5,
     reference_receivers = 6,
     check_points = 7,
-    pilot_receivers = 8
+    pilot_receivers = 8,
+    surface_probes = 9
 };
 
 /// Four uniform numbers in [0, 1), a pure function of its arguments: no state, hence the same for

@@ -33,10 +33,14 @@ struct Options {
 
 void print_summary(const Options& options, const bake::BakeResult& result, std::uint64_t bytes,
                    std::size_t warnings) {
-    fmt::print(stderr, "{}: {} receivers, {}, {}; measured error {:.2f} % (95 %: {:.2f} to {:.2f})",
+    fmt::print(stderr,
+               "{}: {} receivers, {}, {}; measured error {:.2f} % (95 %: {:.2f} to {:.2f}; "
+               "{:.2f} % at vertices, {:.2f} % between)",
                options.output, result.asset.position.size(), format_seconds(result.seconds_total),
                format_bytes(static_cast<double>(bytes)), 100 * result.error.rms_relative,
-               100 * result.error.ci95[0], 100 * result.error.ci95[1]);
+               100 * result.error.ci95[0], 100 * result.error.ci95[1],
+               100 * result.error.at_receivers.rms_relative,
+               100 * result.error.between.rms_relative);
     if (result.accuracy) {
         fmt::print(stderr, "; asked for {:g} %, expected {:.2f} %", 100 * result.accuracy->target,
                    100 * result.accuracy->predicted);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
@@ -91,9 +92,16 @@ void print_provenance(const Json& provenance) {
     if (provenance.contains("error") && provenance["error"].is_object() &&
         provenance["error"].contains("rms_relative") &&
         provenance["error"]["rms_relative"].is_number()) {
-        fmt::print("measured error {:.2f} % RMS at {} receivers\n",
-                   100 * provenance["error"]["rms_relative"].get<double>(),
-                   text_of(provenance["error"], "receivers_checked"));
+        const Json& error = provenance["error"];
+        fmt::print("measured error {:.2f} % RMS", 100 * error["rms_relative"].get<double>());
+        for (const auto& [key, place] :
+             {std::pair{"at_receivers", "at receivers"}, {"between", "between them"}}) {
+            if (error.contains(key) && error[key].is_object() &&
+                error[key].contains("rms_relative") && error[key]["rms_relative"].is_number()) {
+                fmt::print(", {:.2f} % {}", 100 * error[key]["rms_relative"].get<double>(), place);
+            }
+        }
+        fmt::print(" ({} receivers checked)\n", text_of(error, "receivers_checked"));
     }
     if (provenance.contains("model_error") && provenance["model_error"].is_object()) {
         const Json& model = provenance["model_error"];

@@ -81,6 +81,15 @@ Json accuracy_json(const bake::AccuracyReport& accuracy) {
             {"trials", std::move(trials)}};
 }
 
+// Of any primitive: they may differ.
+std::uint32_t most_terms(const formats::Asset& asset) {
+    std::uint32_t most = 0;
+    for (const formats::PrimitiveRecord& primitive : asset.primitives) {
+        most = std::max(most, primitive.terms);
+    }
+    return most;
+}
+
 }  // namespace
 
 std::string make_report(const formats::Scene& scene, const bake::BakeResult& result,
@@ -113,11 +122,10 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
         report["model_error"] = bake::model_error_json(*result.model_error);
         report["model_error"]["seconds"] = result.model_error->seconds;
     }
-    report["output"] = {
-        {"bytes", bytes},
-        {"receivers", result.asset.position.size()},
-        {"terms", result.asset.primitives.empty() ? 0 : result.asset.primitives[0].terms},
-        {"coefficients_per_term", report["knobs"]["coefficients"]}};
+    report["output"] = {{"bytes", bytes},
+                        {"receivers", result.asset.position.size()},
+                        {"terms", most_terms(result.asset)},
+                        {"coefficients_per_term", report["knobs"]["coefficients"]}};
     report["warnings"] = Json::array();
     for (const formats::Diagnostic& warning : warnings) {
         report["warnings"].push_back(format_diagnostic(warning));

@@ -95,7 +95,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         record.flags =
             (material.double_sided ? PrimitiveRecord::kDoubleSided : 0) |
             (layout.separate ? PrimitiveRecord::kSeparate : 0) |
-            (layout.translucent && !layout.separate && !layout.multiple && layout.single_terms > 0
+            (layout.translucent && !layout.separate && !layout.constant && layout.harmonics > 0
                  ? PrimitiveRecord::kSingleOnly
                  : 0);
         if (!openness.empty()) {

@@ -93,12 +93,13 @@ void bill_other_trials(const CostedBake& bake, Bill& bill) {
 
 void bill_self_check(const CostedBake& bake, Bill& bill) {
     bill.open("self-check");
-    const double receivers = bake.request.facts.receivers;
-    const double drawn =
-        std::min(receivers, std::clamp(receivers / kReceiversPerCheck, double{kLeastChecked},
-                                       double{kMostChecked}));
-    add_truth(bake, drawn, drawn / std::max(1.0, std::ceil(drawn / kMostExpensiveChecks)), {},
-              bill);
+    const auto drawn = static_cast<double>(
+        count_checked(static_cast<std::size_t>(bake.request.facts.receivers),
+                      bake.request.knobs.cubemap_size));
+    const double expensive =
+        drawn / std::max(1.0, std::ceil(drawn / double{kMostExpensiveChecks}));
+    constexpr double kPlaces = 2;  // at receivers, and between them
+    add_truth(bake, kPlaces * drawn, kPlaces * expensive, {}, bill);
 }
 
 }  // namespace opaline::bake

@@ -132,7 +132,7 @@ void warn_of_missed_target(const EffectTable& effects, const AccuracyReport& acc
     } else if (measured > accuracy.target) {
         warnings.push_back(formats::make_warning(
             "", "--error",
-            "the self-check measured " + percent(measured) + ", more than the " +
+            "the self-check measured " + percent(measured) + " at vertices, more than the " +
                 percent(accuracy.target) + " asked for",
             "ask for a little less"));
     }

@@ -13,7 +13,7 @@ struct AccuracyReport {
     double target = 0;     ///< relative RMS asked for
     double predicted = 0;  ///< expected of the chosen knobs, before the bake
     double likely = 0;     ///< one standard error of the pilot more
-    bool met = false;
+    bool met = false;      ///< expected to, and measured at receivers and between them
     struct Trial {
         Knobs knobs;  ///< of the round: cube map and samples
         PilotTrial trial;

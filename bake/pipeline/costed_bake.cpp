@@ -129,7 +129,11 @@ void bill_encoding(const CostedBake& bake, const CostedSubject& subject, double 
     const double bytes =
         receivers * static_cast<double>(row_bytes(bake.request.knobs, subject.layout));
     const auto bill_some = [&](std::uint32_t rows, PlanEntry* payer) {
-        bill.add(encode_work(bake.input, rows, bands, receivers), payer);
+        // Local rows are gathered by texel and transformed band by band, as grey ones are; the
+        // others are gathered as coefficients.
+        bill.add(subject.layout.local ? encode_work(bake.input, rows * bands, 1, receivers)
+                                      : encode_work(bake.input, rows, bands, receivers),
+                 payer);
         bill.add_bytes(rows * bytes, payer);
     };
     std::uint32_t paid = 0;

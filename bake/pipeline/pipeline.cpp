@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bake/accuracy/check_rows.h"
+#include "bake/accuracy/error_warnings.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/encode/pack_asset.h"
 #include "bake/encode/row_sink.h"
@@ -139,15 +140,6 @@ void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjec
     }
 }
 
-ErrorReport summarise(std::span<const EffectCheck> checks, std::span<const TestLight> lights,
-                      std::uint64_t seed) {
-    std::vector<std::string> names;
-    for (const TestLight& light : lights) {
-        names.push_back(light.name);
-    }
-    return summarise_checks(checks, names, seed);
-}
-
 // What an inspected scene becomes: all stages from the receivers on.
 formats::Status bake_inspected(const BakeInputs& bake, const Context& context,
                                BakeResult& result) {
@@ -184,19 +176,18 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context,
     result.asset = pack_asset(bake.scene, final_layouts(bake, subjects), std::move(*rows),
                               std::move(openness));
     result.error = run_stage(log, "self-check", "self-check", [&](std::uint64_t& traced) {
-        const std::vector<EffectCheck> checks =
-            check_rows(bake, subjects, knobs, result.asset.view(), *lights, context);
-        for (const EffectCheck& check : checks) {
-            traced += check.rays;
-        }
-        return summarise(checks, *lights, knobs.seed);
+        return check_file({bake, subjects, knobs, *lights}, result.asset.view(), context, traced);
     });
     if (context.cancelled()) {
         return interrupted();
     }
+    for (formats::Diagnostic& warning : describe_measured_error(bake.scene, knobs, result.error)) {
+        result.warnings.push_back(std::move(warning));
+    }
     if (result.accuracy) {
-        warn_of_missed_target(bake.effects, *result.accuracy, knobs, result.error.rms_relative,
-                              result.warnings);
+        warn_of_missed_target(bake.effects, *result.accuracy, knobs,
+                              result.error.at_receivers.rms_relative, result.warnings);
+        result.accuracy->met = result.accuracy->met && meets_target(result.error, knobs);
     }
     return formats::ok_status();
 }

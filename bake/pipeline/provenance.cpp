@@ -28,13 +28,24 @@ Json knobs_json(const Knobs& knobs) {
     return json;
 }
 
+namespace {
+
+Json bounds_json(const MeasuredError& error) {
+    return {{"rms_relative", error.rms_relative}, {"ci95", {error.ci95[0], error.ci95[1]}}};
+}
+
+}  // namespace
+
 Json error_json(const ErrorReport& error) {
     Json json = {{"rms_relative", error.rms_relative},
                  {"ci95", {error.ci95[0], error.ci95[1]}},
                  {"p95_relative", error.p95_relative},
                  {"max_relative", error.max_relative},
                  {"receivers_checked", error.receivers_checked},
+                 {"points_between_checked", error.points_between_checked},
                  {"reference", error.reference},
+                 {"at_receivers", bounds_json(error.at_receivers)},
+                 {"between", bounds_json(error.between)},
                  {"by_effect", Json::object()},
                  {"by_light", Json::object()}};
     for (const ErrorReport::Part& effect : error.by_effect) {

@@ -31,7 +31,7 @@ struct Rates {
     CostBySize coherent_ray;   ///< one of a receiver's packets over the cube map, its cosine too
     double open_cell = 0;      ///< the cosine of such a ray's cell where nothing can be hit
     double encode_grey = 0;    ///< transform, selection and quantising, per texel of a row
-    double encode_colour = 0;  ///< the same for three bands
+    double encode_colour = 0;  ///< selection and quantising of three bands, transformed already
     CostBySize openness;       ///< of a receiver
     // Multiple scattering.
     double walk_event = 0;      ///< of a half space's random walk

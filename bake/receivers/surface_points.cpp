@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "bake/base/rng.h"
-
 namespace opaline::bake {
 namespace {
 
@@ -53,12 +51,13 @@ SurfacePoint make_surface_point(const Scene& scene, const AreaTable::Triangle& t
 }
 
 std::vector<SurfacePoint> scatter_points(const Scene& scene, const AreaTable& table,
-                                         std::size_t count, bool even, std::uint64_t seed) {
+                                         std::size_t count, bool even, std::uint64_t seed,
+                                         RandomStage stage) {
     std::vector<SurfacePoint> points;
     points.reserve(count);
     std::size_t at = 0, first_in_triangle = 0;
     for (std::size_t k = 0; k < count; ++k) {
-        const auto u = random_uniform(seed, RandomStage::surface_samples, k, even ? 1 : 0);
+        const auto u = random_uniform(seed, stage, k, even ? 1 : 0);
         const double target = table.total() * (static_cast<double>(k) + static_cast<double>(u[0])) /
                               static_cast<double>(count);
         while (at + 1 < table.cumulative.size() && table.cumulative[at] <= target) {
@@ -74,7 +73,7 @@ std::vector<SurfacePoint> scatter_points(const Scene& scene, const AreaTable& ta
         }
         // The additive recurrence of the plastic number fills a square evenly [Roberts2018]; its
         // upper half is folded onto the lower. Each triangle starts at a place of its own.
-        const auto shift = random_uniform(seed, RandomStage::surface_samples, at, 2);
+        const auto shift = random_uniform(seed, stage, at, 2);
         const auto i = static_cast<double>(k - first_in_triangle);
         double v = fraction(static_cast<double>(shift[0]) + i * 0.7548776662466927);
         double w = fraction(static_cast<double>(shift[1]) + i * 0.5698402909980532);

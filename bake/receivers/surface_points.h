@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "bake/base/rng.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -37,7 +38,9 @@ SurfacePoint make_surface_point(const formats::Scene& scene, const AreaTable::Tr
 
 /// `count` points, uniform by area: one in each of `count` equal parts of the list of triangles, at
 /// random in its triangle. `even`: in large triangles a low-discrepancy set, for quadrature.
+/// (seed, stage): key the random numbers.
 std::vector<SurfacePoint> scatter_points(const formats::Scene& scene, const AreaTable& table,
-                                         std::size_t count, bool even, std::uint64_t seed);
+                                         std::size_t count, bool even, std::uint64_t seed,
+                                         RandomStage stage = RandomStage::surface_samples);
 
 }  // namespace opaline::bake

@@ -24,6 +24,7 @@ std::uint64_t gather_banded_irradiance(const RayScene& rays, const DirectionSet&
     const std::size_t texels = directions.inverse_solid_angle.size();
     const glm::vec3 n = receiver.normal;
     RayPacket packet = rays_from(receiver.origin);
+    const bool is_open = rays.is_empty();
     std::uint64_t traced = 0;
     for (const DirectionBlock& block : directions.blocks) {
         if (is_below(block, n)) {
@@ -34,13 +35,15 @@ std::uint64_t gather_banded_irradiance(const RayScene& rays, const DirectionSet&
         for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
             cosine[lane] = cosine_integral(block, lane, n);
             lanes[lane] = cosine[lane] > 0.0f ? -1 : 0;
-            traced += static_cast<std::uint64_t>(-lanes[lane]);
+            traced += is_open ? 0 : static_cast<std::uint64_t>(-lanes[lane]);
         }
         packet.dir_x = block.dir_x;
         packet.dir_y = block.dir_y;
         packet.dir_z = block.dir_z;
         packet.tfar.fill(std::numeric_limits<float>::infinity());
-        rays.occluded(lanes, packet);
+        if (!is_open) {
+            rays.occluded(lanes, packet);
+        }
         for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
             if (lanes[lane] != 0 && packet.tfar[lane] > 0.0f) {
                 const float c =

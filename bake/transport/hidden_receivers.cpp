@@ -32,16 +32,6 @@ RayPacket probe_packet(const Receiver& receiver) {
     return packet;
 }
 
-bool is_hidden(const RayScene& rays, const Receiver& receiver) {
-    if (receiver.normal == glm::vec3(0)) {
-        return false;
-    }
-    LaneMask all;
-    all.fill(-1);
-    const LaneMask back = rays.meets_back_face(all, probe_packet(receiver));
-    return std::all_of(back.begin(), back.end(), [](std::int32_t lane) { return lane != 0; });
-}
-
 constexpr std::uint32_t kNobody = 0xffffffffu;
 
 // For each vertex, the nearest visible one that shares an edge with it; the first of equally near
@@ -72,6 +62,16 @@ std::vector<std::uint32_t> nearest_visible(const formats::Scene& scene,
 }
 
 }  // namespace
+
+bool is_hidden(const RayScene& rays, const Receiver& receiver) {
+    if (rays.is_empty() || receiver.normal == glm::vec3(0)) {
+        return false;
+    }
+    LaneMask all;
+    all.fill(-1);
+    const LaneMask back = rays.meets_back_face(all, probe_packet(receiver));
+    return std::all_of(back.begin(), back.end(), [](std::int32_t lane) { return lane != 0; });
+}
 
 std::vector<Receiver> take_over_hidden(const RayScene& rays, const formats::Scene& scene,
                                        std::vector<Receiver> receivers, const Context& context) {

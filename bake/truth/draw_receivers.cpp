@@ -17,9 +17,4 @@ std::vector<std::uint32_t> draw_evenly(std::size_t count, std::size_t wanted, Ra
     return drawn;
 }
 
-std::vector<std::uint32_t> draw_receivers(std::size_t count, std::uint64_t seed) {
-    return draw_evenly(count, std::clamp(count / kReceiversPerCheck, kLeastChecked, kMostChecked),
-                       RandomStage::held_back_receivers, seed);
-}
-
 }  // namespace opaline::bake

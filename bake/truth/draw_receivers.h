@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -13,12 +14,20 @@ namespace opaline::bake {
 std::vector<std::uint32_t> draw_evenly(std::size_t count, std::size_t wanted, RandomStage stage,
                                        std::uint64_t seed);
 
-inline constexpr std::size_t kLeastChecked = 16, kMostChecked = 1024, kReceiversPerCheck = 40;
-/// Of those, where the truth of each costs as much as the rows of dozens: enough to tell a tenth.
-inline constexpr std::size_t kMostExpensiveChecks = 256;
+/// How many receivers the self-check compares with the truth out of `receivers`; as many points
+/// between them are compared as well. With these numbers the check costs at most a tenth of the
+/// bake, except in small scenes: the truth of a point costs as much as the rows of some ten
+/// receivers at N = 16 and of two or three at N = 32, whatever the scene.
+inline std::size_t count_checked(std::size_t receivers, std::uint32_t cubemap_size) {
+    constexpr std::size_t kLeast = 32, kMost = 1024;
+    // 1 in 96 at N = 32, in proportion to N, but not more often.
+    constexpr std::size_t kReceiversPerCheck = 96, kFullSize = 32;
+    const std::size_t share = std::min<std::size_t>(cubemap_size, kFullSize);
+    const std::size_t wanted = receivers * share / (kReceiversPerCheck * kFullSize);
+    return std::min(receivers, std::clamp(wanted, kLeast, kMost));
+}
 
-/// Receivers to check out of `count`, ascending: about one in forty, 16 to 1024, drawn by
-/// (seed, draw) so that the check costs at most a tenth of the bake.
-std::vector<std::uint32_t> draw_receivers(std::size_t count, std::uint64_t seed);
+/// The most of these where the truth of each costs as much as the rows of dozens.
+inline constexpr std::size_t kMostExpensiveChecks = 128;
 
 }  // namespace opaline::bake

@@ -56,6 +56,13 @@ TEST(Bake, ReportHasTheKeysOfTheContract) {
     EXPECT_LE(error.at("rms_relative").get<double>(), error.at("ci95").at(1).get<double>());
     EXPECT_LE(error.at("p95_relative").get<double>(), error.at("max_relative").get<double>());
     EXPECT_EQ(error.at("receivers_checked"), 8);
+    EXPECT_GT(error.at("points_between_checked"), 0);
+    for (const char* place : {"at_receivers", "between"}) {
+        const Json& own = error.at(place);
+        EXPECT_GT(own.at("rms_relative").get<double>(), 0) << place;
+        EXPECT_LE(own.at("ci95").at(0).get<double>(), own.at("rms_relative").get<double>());
+        EXPECT_GE(own.at("ci95").at(1).get<double>(), own.at("rms_relative").get<double>());
+    }
     EXPECT_FALSE(error.at("reference").get<std::string>().empty());
     EXPECT_TRUE(error.at("by_effect").contains("direct"));
     const Json& output = report.at("output");
@@ -64,6 +71,23 @@ TEST(Bake, ReportHasTheKeysOfTheContract) {
     EXPECT_EQ(output.at("terms"), 1);
     EXPECT_EQ(output.at("coefficients_per_term"), 64);
     EXPECT_TRUE(report.at("warnings").is_array());
+}
+
+TEST(Bake, TermsOfTheReportAreTheMostThatAnyPrimitiveHas) {
+    SmallScene small;
+    for (const char* material : {"Chalk", "Brick"}) {
+        Json medium = {{"sigma_s", {1, 1, 1}}, {"sigma_a", {0.1, 0.1, 0.1}}};
+        medium["phase"] = {{"type", "hg"}, {"g", 0.5}};
+        write_file(small.path("media.json"),
+                   Json{{"materials", {{material, std::move(medium)}}}}.dump());
+        const Outcome bake = run_opaline({"bake", small.scene(), "-o", small.path("a.opal"),
+                                          "--report", small.path("r.json"), "--quality", "draft",
+                                          "--media", small.path("media.json"), "--phase-terms", "4",
+                                          "--effects", "direct,single"});
+        ASSERT_EQ(bake.exit_code, 0) << bake.err;
+        const Json report = Json::parse(read_text(small.path("r.json")));
+        EXPECT_EQ(report.at("output").at("terms"), 4) << material;
+    }
 }
 
 TEST(Bake, CheckModelComparesWithTheReferenceAndTellsReportFileAndUser) {

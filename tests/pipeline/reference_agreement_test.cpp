@@ -24,7 +24,7 @@ TEST(ReferenceAgreement, DirectLightOnConvexAndConcaveOpaqueBodies) {
         ASSERT_EQ(report.by_light.size(), 6u) << "nothing refracts: every test light";
         for (std::size_t l = 0; l < 6; ++l) {
             const ModelErrorReport::Part& model = report.by_light[l];
-            const ErrorReport::Part& numerical = baked.error.by_light[l];
+            const ErrorReport::Part& numerical = baked.error.at_receivers.by_light[l];
             EXPECT_EQ(model.name, numerical.name);
             // Other receivers: under suns a few at the edges of shadows make the sum.
             EXPECT_LT(model.rms_relative, 3 * numerical.rms_relative + 0.7 * model.noise)

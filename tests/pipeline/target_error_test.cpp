@@ -33,9 +33,10 @@ TEST(TargetError, MeasuredErrorIsWhatWasAskedForAndLessCostsMore) {
         ASSERT_TRUE(result.accuracy);
         EXPECT_TRUE(result.accuracy->met) << error;
         EXPECT_LE(result.accuracy->predicted, error);
-        EXPECT_LE(result.error.rms_relative, error);
+        EXPECT_LE(result.error.at_receivers.rms_relative, error);
+        EXPECT_LE(result.error.between.rms_relative, error);
         // What was not needed was not bought.
-        EXPECT_GT(result.error.rms_relative, 0.2 * error);
+        EXPECT_GT(result.error.at_receivers.rms_relative, 0.2 * error);
         const std::uint64_t size = formats::opal_size(result.asset.view());
         EXPECT_GT(size, bytes) << error;
         bytes = size;

@@ -28,6 +28,18 @@ std::vector<Rgb> studio(const BakeResult& result) {
     return relight_primitive(result.asset, "studio");
 }
 
+// What is said of the mesh: that light crosses the body, and what lies between vertices, is not.
+std::vector<formats::Diagnostic> faults_of_mesh(const BakeResult& result) {
+    std::vector<formats::Diagnostic> faults;
+    for (const formats::Diagnostic& warning : result.warnings) {
+        if (warning.fault.find("turned outward") != std::string::npos ||
+            warning.fault.find("open at") != std::string::npos) {
+            faults.push_back(warning);
+        }
+    }
+    return faults;
+}
+
 // A ball with dents deep enough to shadow each other.
 Primitive dented() {
     auto ball = tests::make_sphere(3);
@@ -40,8 +52,8 @@ Primitive dented() {
 TEST(Mesh, BodyInsideOutLooksLikeTheOneThatIsNot) {
     const BakeResult right = bake({dented()});
     const BakeResult turned = bake({turned_inside_out(dented())});
-    EXPECT_TRUE(right.warnings.empty());
-    EXPECT_EQ(turned.warnings.size(), 1u);
+    EXPECT_TRUE(faults_of_mesh(right).empty());
+    EXPECT_EQ(faults_of_mesh(turned).size(), 1u);
     // Another order of corners rounds otherwise.
     EXPECT_LT(relative_rms(studio(turned), studio(right)), 0.01);
 }
@@ -52,7 +64,7 @@ TEST(Mesh, ShellWithinABodyOfTheSameMediumChangesNothing) {
     options.set(kSamples, 8000);
     const BakeResult alone = bake({outer}, options);
     const BakeResult nested = bake({outer, tests::make_sphere(2, 0.6f, {0.1f, 0, 0})}, options);
-    EXPECT_TRUE(nested.warnings.empty());
+    EXPECT_TRUE(faults_of_mesh(nested).empty());
     // The sum over the outer surface has other samples, fewer of them.
     EXPECT_LT(relative_rms(studio(nested), studio(alone)), 0.01);
     EXPECT_TRUE(all_finite(nested.asset));
@@ -63,8 +75,8 @@ TEST(Mesh, AHoleIsReportedAndDarkensItsSurroundingsOnly) {
     Primitive open = tests::make_sphere(3);
     open.index.resize(open.index.size() - 12);  // four of 1280 triangles
     const BakeResult result = bake({open});
-    ASSERT_EQ(result.warnings.size(), 1u);
-    EXPECT_NE(result.warnings[0].fault.find("open at"), std::string::npos);
+    ASSERT_EQ(faults_of_mesh(result).size(), 1u);
+    EXPECT_NE(faults_of_mesh(result)[0].fault.find("open at"), std::string::npos);
     EXPECT_TRUE(all_finite(result.asset));
     EXPECT_LT(relative_rms(studio(result), studio(whole)), 0.05);
 }
@@ -81,7 +93,7 @@ TEST(Mesh, VerticesThatStandTwiceLookTheSame) {
         split.index[i] = i;
     }
     const BakeResult a = bake({shared}), b = bake({split});
-    EXPECT_TRUE(b.warnings.empty()) << "it is closed";
+    EXPECT_TRUE(faults_of_mesh(b).empty()) << "it is closed";
     const std::vector<Rgb> once = studio(a);
     std::vector<Rgb> expected;
     for (const std::uint32_t i : shared.index) {
@@ -97,7 +109,7 @@ TEST(Mesh, TrianglesWithoutAreaChangeNothing) {
         body.index.insert(body.index.end(), {v, v, v + 1, v, v, v});
     }
     const BakeResult result = bake({body});
-    EXPECT_TRUE(result.warnings.empty());
+    EXPECT_TRUE(faults_of_mesh(result).empty());
     EXPECT_TRUE(all_finite(result.asset));
     EXPECT_LT(relative_rms(studio(result), studio(clean)), 2e-3);
 }

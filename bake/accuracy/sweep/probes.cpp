@@ -67,7 +67,9 @@ ErrorReport compare_probes(std::span<const double> luminance, std::span<const do
         auto own = std::find_if(checks.begin(), checks.end(),
                                 [&](const EffectCheck& c) { return c.effect == effect[p]; });
         if (own == checks.end()) {
-            own = checks.insert(own, {effect[p], "the most accurate bake of the sweep", {}, 0});
+            own = checks.emplace(own);
+            own->effect = effect[p];
+            own->reference = "the most accurate bake of the sweep";
         }
         for (std::size_t l = 0; l < lights.size(); ++l) {
             const std::size_t i = p * lights.size() + l;

@@ -100,6 +100,8 @@ formats::Result<PointRecord> run_point(const EffectTable& effects, const formats
     record.bytes = formats::opal_size(asset);
     record.peak_bytes = bake->stages.empty() ? 0 : bake->stages.back().peak_rss_bytes;
     record.error = bake->error;
+    // Knobs are compared: what a mesh is too coarse for is the same for all of them.
+    static_cast<MeasuredError&>(record.error) = bake->error.at_receivers;
     record.luminance = relight_probes(asset, view.probes, lights);
     if (point.knobs.check_model) {
         ModelCheckOptions options;

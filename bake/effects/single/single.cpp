@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "bake/effects/single/true_single.h"
 #include "bake/scattering/entry.h"
 #include "bake/scattering/path_quadrature.h"
+#include "bake/scattering/phase_series.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 
@@ -147,12 +149,36 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
     return {once, once};
 }
 
+// The largest number of terms is too few for the tolerance asked for: their sum is negative in some
+// directions, and single scattering with it.
+void warn_of_short_series(const PlanInput& input, const PlanEntry& entry,
+                          std::vector<formats::Diagnostic>& warnings) {
+    constexpr std::uint32_t kMostTerms = 25, kDegrees = 5;
+    if (entry.terms != kMostTerms) {
+        return;
+    }
+    const formats::Medium& medium = *input.material.medium;
+    const double error = phase_rms_relative(expand_phase(medium.phase, kDegrees), kMostTerms);
+    if (error * single_share(medium) > input.knobs[kPhaseTolerance]) {
+        warnings.push_back(formats::make_warning(
+            "", entry.subject.name,
+            "the phase function is too narrow for " + std::to_string(kMostTerms) +
+                " terms, the most there are: they err by " +
+                std::to_string(static_cast<int>(std::round(100 * error))) +
+                " % of its RMS, and single scattering is wrong, in some views negative and shown "
+                "as black",
+            "leave it out with --effects multiple, or lower the mean cosine g and keep "
+            "(1 - g) sigma_s"));
+    }
+}
+
 // A phase function with too few terms errs by more than any other knob can make good.
 void warn_of_plan(const PlanInput& input, const PlanEntry& entry,
                   std::vector<formats::Diagnostic>& warnings) {
     if (entry.terms == 0) {
         return;
     }
+    warn_of_short_series(input, entry, warnings);
     const std::uint32_t needed = needed_terms(*input.material.medium, input.knobs);
     if (needed > entry.terms) {
         warnings.push_back(formats::make_warning(

@@ -2,34 +2,78 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/bake/single/single_support.h"
+#include "tests/support/sheets.h"
 
 namespace opaline::bake {
 namespace {
 
-double excess_of(tests::Primitive body, float sigma) {
-    const auto setup = tests::set_up(tests::make_translucent_scene(
-        {std::move(body)}, tests::make_grey_medium(sigma, 0.01f * sigma)));
-    const MediumProfile profile = make_medium_profile(*setup.scene.materials[0].medium, 0, {});
-    return estimate_thin_excess(profile, setup.rays, setup.points);
+constexpr std::array<double, 3> kCentimetre{0.01, 0.01, 0.01};
+
+double open_error(std::vector<tests::Primitive> body, double length) {
+    const auto setup = tests::set_up(
+        tests::make_translucent_scene(std::move(body), tests::make_grey_medium(1, 0)));
+    return open_body_error({length, length, length}, setup.rays, setup.points);
 }
 
-TEST(ThinParts, BallsExceedByTheTailBeyondTheirDiameter) {
-    for (const float sigma : {2.0f, 20.0f}) {
-        const auto medium = tests::make_grey_medium(sigma, 0.01f * sigma);
-        const MediumProfile profile = make_medium_profile(medium, 0, {});
-        // A coarse ball's inward normals leave it a little earlier than after a diameter.
-        EXPECT_NEAR(excess_of(tests::make_sphere(3), sigma), profile.tail(0, 2) / profile.total(0),
-                    0.01);
+// README.md, "What a file shows over the light that there is", albedo .99, index 1, 1.3 and 1.5:
+// a ball of 10 mean free paths .82, .73, .66 under white, a sheet of 1 2.10, 1.98, 1.80, the middle
+// of a slab of 40 .98, 1, 1.
+TEST(ThinParts, EstimateIsNearTheErrorsOfBallSheetAndSlab) {
+    const double ball = closed_body_error(kCentimetre, 4.0 / 3 * 0.05);
+    EXPECT_GT(ball, 0.18);
+    EXPECT_LT(ball, 0.34);
+    const double sheet = closed_body_error(kCentimetre, 2 * 0.01);
+    EXPECT_GT(sheet, 0.5);
+    EXPECT_LT(sheet, 1.1);
+    EXPECT_LT(closed_body_error(kCentimetre, 2 * 0.4), 0.06);
+    // From behind: ball of 10 .48, .46, .44; sheet of 1 2.01, 1.86, 1.70; of 5 .48, .59, .61.
+    EXPECT_GT(4 * ball, 0.56);
+    EXPECT_GT(4 * sheet, 1.01);
+    EXPECT_GT(4 * closed_body_error(kCentimetre, 2 * 0.05), 0.52);
+}
+
+TEST(ThinParts, ErrorPassesThroughWhatWasMeasuredAndFallsWithTheChord) {
+    EXPECT_DOUBLE_EQ(half_space_error(3), 0.47);
+    EXPECT_NEAR(half_space_error(15), 0.14, 1e-12);
+    EXPECT_NEAR(half_space_error(165), 0.04, 1e-12);
+    double previous = 2.001;
+    for (double chord = 0.05; chord < 1e4; chord *= 1.3) {
+        EXPECT_LE(half_space_error(chord), previous) << chord;
+        previous = half_space_error(chord);
     }
+    EXPECT_LT(previous, 0.01);
+    EXPECT_EQ(half_space_error(0), 2);
 }
 
-TEST(ThinParts, DenseBodiesHaveNone) {
-    EXPECT_LT(excess_of(tests::make_sphere(3), 1e4f), 1e-3);
+TEST(ThinParts, SheetWithoutARimErrsAsOneWithARim) {
+    const auto sheet = tests::make_sheet(0.1f);
+    const double length = 0.05;
+    const double closed = closed_body_error({length, length, length}, 2 * 0.1);
+    const double open = open_error({sheet[0], sheet[1]}, length);
+    EXPECT_LT(open, closed + 1e-3);
+    EXPECT_GT(open, 0.6 * closed) << "at the edge the way inward may meet nothing";
 }
 
-TEST(ThinParts, OpenBodiesHaveNoFarSide) {
-    EXPECT_EQ(excess_of(tests::make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 4), 2), 0);
+TEST(ThinParts, DenseBodiesErrLittle) {
+    EXPECT_LT(open_error({tests::make_sphere(3)}, 1e-4), 0.01);
+}
+
+TEST(ThinParts, SurfacesWithoutAFarSideErrByNothing) {
+    EXPECT_EQ(open_error({tests::make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 4)}, 1), 0);
+}
+
+TEST(ThinParts, LengthsAreThoseOfReducedScatteringAndBlackBandsHaveNone) {
+    formats::Medium medium = tests::make_grey_medium(100, 1);
+    medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.8f, 0, {}, {}};
+    medium.sigma_s.b = 0.1f;
+    medium.sigma_a.b = 1000;
+    const auto lengths = transport_lengths(medium, make_medium_profile(medium, 0, {}));
+    EXPECT_NEAR(lengths[0], 1.0 / 21, 1e-5);
+    EXPECT_EQ(lengths[0], lengths[1]);
+    EXPECT_EQ(lengths[2], 0);
 }
 
 }  // namespace

@@ -81,6 +81,26 @@ TEST(CostModel, TermsBeyondTheFirstPayForTheirRows) {
     EXPECT_GT(entry("single").predicted_seconds, 0);
 }
 
+TEST(CostModel, LocalRowsInColourPayForTheTransform) {
+    formats::Medium dense = tests::make_grey_medium(1e6f, 1e3f);
+    dense.sigma_s.r = 5e5f;
+    const auto scene = tests::make_translucent_scene({tests::make_cube(4, false)}, dense);
+    Rates rates;
+    rates.encode_grey = 1e-8;  // with a transform; encode_colour is without
+    rates.crowding = 1;
+    Knobs knobs;
+    const Predicted p = predict(scene, knobs, 1, rates);
+    const auto layouts = layout_rows(scene, p.plan, knobs);
+    ASSERT_TRUE(layouts[0].local);
+    ASSERT_EQ(layouts[0].bands(), 3u);
+    const auto vertices = static_cast<double>(scene.primitives[0].position.size());
+    double rows = 0;
+    for (const StageCost& stage : p.cost.stages) {
+        rows += stage.name.starts_with("rows of ") ? stage.seconds : 0;
+    }
+    EXPECT_NEAR(rows, vertices * 3 * 6 * 16 * 16 * 1e-8, 1e-9);
+}
+
 // The pilot gathers them once, before it takes samples of media, and tries all encodings on them.
 TEST(CostModel, OpaqueReceiversOfThePilotPayInItsFirstStageAlone) {
     Knobs knobs;

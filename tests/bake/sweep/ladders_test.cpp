@@ -155,5 +155,16 @@ TEST(Ladders, KnobsOfMediaDoNotTellOpaqueBakesApart) {
     EXPECT_FALSE(same_bake(a, b, kOpaque));
 }
 
+TEST(Ladders, SamplesPerPathTellBakesApartUnlessTheirNumberIsGiven) {
+    const Knobs a = *resolve_knobs({});
+    Knobs b = a;
+    b.samples_per_path = 4 * a.samples_per_path;
+    EXPECT_FALSE(same_bake(a, b, kMarble));
+    EXPECT_TRUE(same_bake(a, b, kOpaque));
+    Knobs c = a;
+    c.exact_samples = b.exact_samples = true;
+    EXPECT_TRUE(same_bake(c, b, kMarble));
+}
+
 }  // namespace
 }  // namespace opaline::bake

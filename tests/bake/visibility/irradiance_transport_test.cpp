@@ -7,6 +7,7 @@
 #include <random>
 
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/transport/banded_irradiance.h"
 #include "formats/opal/cubemap.h"
 #include "tests/support/scenes.h"
 
@@ -37,6 +38,21 @@ std::vector<glm::vec3> random_normals(int count) {
             glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator))));
     }
     return normals;
+}
+
+TEST(BandedIrradiance, NothingIsTracedWhereThereIsNothingToHit) {
+    const auto sky = RayScene::build({}, 1);
+    ASSERT_TRUE(sky);
+    const DirectionSet directions = make_direction_set(8);
+    const Receiver receiver{{0, 0, 0}, {0, 1, 0}};
+    const std::vector<std::vector<float>> factor{{1.0f, 1.0f}};
+    std::vector<float> banded(formats::cubemap_texels(8)), plain(banded.size());
+    EXPECT_EQ(gather_banded_irradiance(*sky, directions, receiver, factor, banded), 0u);
+    EXPECT_EQ(gather_irradiance(*sky, directions, receiver, plain), 0u);
+    EXPECT_EQ(banded, plain);
+    const auto floor = RayScene::build(
+        tests::make_scene({tests::make_quad({-1, -1, -1}, {0, 0, 2}, {2, 0, 0})}), 1);
+    EXPECT_GT(gather_banded_irradiance(*floor, directions, receiver, factor, banded), 0u);
 }
 
 // A plane sees half of all directions, whatever way the cube map lies: <max(0, n.w), 1> = pi.

@@ -1,0 +1,68 @@
+#include "bake/measure/error_warnings.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+namespace opaline::bake {
+namespace {
+
+std::string percent(double share) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
+    return text;
+}
+
+std::string with_interval(const MeasuredError& error) {
+    return percent(error.rms_relative) + " (95 %: " + percent(error.ci95[0]) + " to " +
+           percent(error.ci95[1]) + ")";
+}
+
+// What lowers the error at receivers, by the effect that errs most.
+std::string remedy_at_receivers(const MeasuredError& error) {
+    const auto worst = std::max_element(
+        error.by_effect.begin(), error.by_effect.end(),
+        [](const auto& a, const auto& b) { return a.rms_relative < b.rms_relative; });
+    return "choose a finer --quality, or more --coefficients and a finer --cubemap; of the effects, '" +
+           worst->name + "' errs most";
+}
+
+}  // namespace
+
+double acceptable_error(Quality quality) {
+    return quality == Quality::draft ? 0.2 : 0.1;
+}
+
+bool meets_target(const ErrorReport& error, const Knobs& knobs) {
+    return error.at_receivers.rms_relative <= knobs.error_target &&
+           error.between.rms_relative <= knobs.error_target;
+}
+
+std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& scene,
+                                                         const Knobs& knobs,
+                                                         const ErrorReport& error) {
+    std::vector<formats::Diagnostic> warnings;
+    const bool asked = knobs.error_target > 0;
+    const double limit = asked ? knobs.error_target : acceptable_error(knobs.quality);
+    const auto is_above = [&](const MeasuredError& e) {
+        return (asked ? e.rms_relative : e.ci95[0]) > limit;
+    };
+    const std::string more =
+        ", more than the " + percent(limit) + (asked ? " asked for" : " that pass unnoticed");
+    if (!asked && is_above(error.at_receivers)) {
+        warnings.push_back(formats::make_warning(
+            "", "self-check",
+            "the file errs by " + with_interval(error.at_receivers) + " at its vertices" + more,
+            remedy_at_receivers(error.at_receivers)));
+    }
+    if (is_above(error.between)) {
+        warnings.push_back(formats::make_warning(
+            "", "primitive '" + scene.primitives[error.worst_between].name + "'",
+            "the file errs by " + with_interval(error.between) + " between its vertices" + more +
+                "; most of that here",
+            "give it more vertices where shadows end and where things touch"));
+    }
+    return warnings;
+}
+
+}  // namespace opaline::bake
