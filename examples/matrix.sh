@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's matrix of scenes and effects: what the planner leaves on, its bounds, and seconds of the
+# The matrix of tests/bench/RESULTS.md: what the planner leaves on, its bounds, and seconds of the
 # planned bake against everything forced on, and against the prediction, that at production quality, too.
 # usage, from the top folder: matrix.sh OPALINE MODEL.glb
 #   MODEL.glb: a closed body, about 15 cm to 2 m long, with one material
