@@ -45,7 +45,7 @@ struct Medium {
         normalized
     } profile = Profile::automatic;
     enum class Fidelity {
-        physical,  ///< corrected formulas (translucency.md 5)
+        physical,  ///< corrected formulas (formats/media/README.md, "Fidelity")
         paper      ///< [Wang2005] to the letter
     } fidelity = Fidelity::physical;
 };
@@ -76,9 +76,9 @@ struct Primitive {
     std::string name;                                 ///< "node 'Vase' > mesh 3 > primitive 0"
     std::uint32_t material = 0;                       ///< index into Scene::materials, always valid
     std::vector<glm::vec3> position;                  ///< [m], finite
-    std::vector<glm::vec3> normal;    ///< unit; one per vertex; {0,0,0} where none can be defined
-    std::vector<glm::vec2> texcoord;  ///< of the base colour, set 0 without a texture; transform
-                                      ///< applied; empty or one per vertex
+    std::vector<glm::vec3> normal;     ///< unit; one per vertex; {0,0,0} where none can be defined
+    std::vector<glm::vec2> texcoord;   ///< of the base colour, set 0 without a texture; transform
+                                       ///< applied; empty or one per vertex
     std::vector<Rgb> color;            ///< COLOR_0, linear; empty or one per vertex
     std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();
                                        ///< counter-clockwise seen from outside

@@ -16,7 +16,7 @@ struct RowsDone {
     std::uint64_t before = 0, total = 0;
 };
 
-/// Grey rows of diffuse receivers, T = V max(0, n.w) / pi (translucency.md 3.11 with albedo 1), one
+/// Grey rows of diffuse receivers, T = V max(0, n.w) / pi (direct/README.md, albedo 1), one
 /// each, in order: dense, Haar, selection, quantisation. Only one dense vector per thread exists at
 /// any time. Fewer rows if the context is cancelled. `rays` counts up.
 formats::SparseRows bake_direct(const RayScene& scene, const DirectionSet& directions,

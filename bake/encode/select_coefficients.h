@@ -8,7 +8,7 @@
 
 namespace opaline::bake {
 
-/// Non-linear approximation of transport vectors (translucency.md 3.9).
+/// Non-linear approximation of transport vectors after [Ng2003] (encode/README.md).
 struct Selector {
     std::uint32_t cubemap_size = 0;
     std::uint32_t kept = 0;     ///< M per row, the six face averages included

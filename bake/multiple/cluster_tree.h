@@ -11,7 +11,7 @@
 
 namespace opaline::bake {
 
-/// A node over a run of samples (translucency.md 3.10).
+/// A node over a run of samples (multiple/README.md, "Hierarchy").
 struct ClusterNode {
     glm::vec3 low, high;  ///< bounding box of its samples [m]
     glm::vec3 centre;     ///< where its light seems to enter: weighted by area and mean of E

@@ -19,8 +19,8 @@ struct ClusterWeight {
 };
 
 struct GatherOptions {
-    /// A node is taken whole if that errs by at most this share of R ||E||: its sum times how far
-    /// R_d varies over its box (translucency.md 3.10, bound criterion). 0: every sample by itself.
+    /// A node is used as a whole where the norm of its sum times the variation of R_far over its
+    /// box is at most `tolerance` R ||E|| (multiple/README.md, "Hierarchy"). 0: every sample.
     double tolerance = 1e-3;
 };
 

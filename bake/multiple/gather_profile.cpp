@@ -9,7 +9,7 @@ namespace opaline::bake {
 namespace {
 
 // A profile of this width, in spacings of a blue-noise set, is summed to better than 1 %
-// (translucency.md 3.7).
+// (multiple/README.md, "Sampling").
 constexpr double kWidthPerSpacing = 1.2;
 // Within this radius lie about twenty samples: enough to average, few enough to stay local.
 constexpr double kNearSpacings = 2.5;

@@ -17,7 +17,7 @@ namespace opaline::bake {
 /// already. On a plane R_far integrates to exactly R_>(b), for r dr = rho d rho; what is left,
 /// R - R_>(b), goes to E around the receiver. Nothing is gained or lost, the limits are the plain
 /// sum (b = 0) and an opaque surface (T_d = R E), and nothing is asked of the surface's shape.
-/// Instead of translucency.md 3.7, whose disc must be flat.
+/// multiple/README.md, "Sampling".
 struct GatherProfile {
     std::uint32_t bands = 3;        ///< or 1, which stands for all; others are 0 below
     std::vector<float> table;       ///< [step][band]: R_far at steps of 1 + r^2 / z^2, 64 an octave

@@ -13,7 +13,7 @@ namespace opaline::bake {
 struct MediumProfile {
     std::array<Profile, 3> band;
     std::array<double, 3> scale{1, 1, 1};  ///< multiplies each: `energy_match`
-    double exit = 1;      ///< c_exit = 1 - F_ext (translucency.md 3.1), 1 in `paper` mode
+    double exit = 1;      ///< c_exit = 1 - F_ext (scattering/README.md, "Exit"), 1 in `paper` mode
     double smallest = 0;  ///< profile_length of the densest band [m]; 0: nothing scatters
     double eta = 1;
 
@@ -24,20 +24,21 @@ struct MediumProfile {
 };
 
 /// Profiles `automatic`, `better` and `beams` are scaled per band, in physical fidelity, so that a
-/// half space returns what a random walk of it returns beyond single scattering (translucency.md
-/// 3.4, energy_match); `normalized` has the walk's whole reflectance, single scattering included;
-/// `classic` is left unscaled. `paper` fidelity: the classic dipole as printed, whatever `profile`.
+/// half space returns what a random walk of it returns beyond single scattering
+/// (scattering/README.md, "Energy match"); `normalized` has the walk's whole reflectance, single
+/// scattering included; `classic` is left unscaled. `paper` fidelity: the classic dipole as
+/// printed, whatever `profile`.
 MediumProfile make_medium_profile(const formats::Medium& medium, std::uint64_t seed,
                                   const Context& context);
 
 /// Share of uniform light that a half space of the medium returns, by a random walk: the albedo of
-/// the diffuse surface to compare the medium with (translucency.md 3.11).
+/// the diffuse surface to compare the medium with (direct/README.md).
 formats::Rgb half_space_albedo(const formats::Medium& medium, std::uint64_t seed,
                                const Context& context);
 
 /// How many samples the surface of a medium needs: `per_path` per square of the depth of its
-/// source; with one their sum has nearly converged (translucency.md 3.7). At least 2000 times that,
-/// at most `most`. `area` [m^2].
+/// source; with one, their sum errs by about 1 % (multiple/README.md, "Sampling"). At least 2000
+/// times that, at most `most`. `area` [m^2].
 std::uint32_t count_samples(double area, const MediumProfile& profile, double per_path,
                             std::uint32_t most);
 

@@ -38,7 +38,8 @@ struct SparseVectors {
 };
 
 /// Appends, times `scale`, the `kept` entries of `dense` that are largest in magnitude, ties by
-/// index; the first entry of each of its six faces always. L2-best (translucency.md 3.9).
+/// index; the first entry of each of its six faces always. L2-optimal, because the basis is
+/// orthonormal.
 void append_truncated(SparseVectors::Block& block, std::span<const float> dense, std::size_t kept,
                       float scale = 1);
 

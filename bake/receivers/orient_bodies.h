@@ -24,7 +24,7 @@ struct OrientedBodies {
 };
 
 /// Turns the triangles of media that face inward, and the normals of their vertices with them
-/// (translucency.md 4, "orient by majority winding first"): what is behind a triangle is taken for
+/// (receivers/README.md, "Orientation"): what is behind a triangle is taken for
 /// medium, so that a body turned inside out would be black.
 ///
 /// Vertices in one place are one. Triangles that share an edge with one other belong to one shell,

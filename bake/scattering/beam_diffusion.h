@@ -7,7 +7,7 @@
 namespace opaline::bake {
 
 /// Photon beam diffusion [Habel2013], multiple part: the better dipole averaged over the depth at
-/// which a beam entering at a right angle first scatters (translucency.md 3.4),
+/// which a beam entering at a right angle first scatters (README.md, "Photon beam diffusion"),
 ///   R_d(r) = mean over t of kappa(r, t) R_d^t(r), kappa = 1 - exp(-2 sigma_t' (d_r + t)).
 struct BeamDiffusion {
     std::vector<Dipole> source;  ///< one per depth t, all of the same weight; empty: black

@@ -67,7 +67,8 @@ double eval_dipole(const Dipole& dipole, double r) {
     double value =
         dipole.w_flux * (flux(dipole.z_real, d_real) + flux(dipole.z_virtual, d_virtual));
     if (dipole.w_phi != 0) {
-        // e_r/d_r - e_v/d_v = (e_r/d_r) (gap/d_v - (d_r/d_v) expm1(-k gap)) (translucency.md 6).
+        // e_r/d_r - e_v/d_v = (e_r/d_r) (gap/d_v - (d_r/d_v) expm1(-k gap)): no cancellation far
+        // away.
         const double gap = distance_gap(dipole, d_real, d_virtual);
         value += dipole.w_phi * std::exp(-k * d_real) / d_real *
                  (gap / d_virtual - d_real / d_virtual * std::expm1(-k * gap));

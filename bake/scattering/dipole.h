@@ -2,8 +2,8 @@
 
 namespace opaline::bake {
 
-/// Diffuse reflectance profile R_d(r) of a half space lit at a point: a real source below the
-/// surface and a virtual one above it (translucency.md 3.3, 3.4),
+/// Diffuse reflectance profile R_d(r) of a half space lit at a point, by a real source below the
+/// surface and a virtual one above it ([Jensen2001], [Deon2012]; README.md, "Dipole"),
 ///   R_d = w_phi (e_r / d_r - e_v / d_v) + w_E sum over z of z (1 + sigma_tr d) e / d^3,
 ///   d = sqrt(r^2 + z^2), e = e^(-sigma_tr d), z in {z_real, z_virtual}.
 /// Lengths in the inverse of the unit that the coefficients have.
@@ -14,8 +14,8 @@ struct Dipole {
 };
 
 enum class DipoleKind {
-    classic,         ///< [Wang2005] Eq 3, exact Fresnel moments
-    classic_fitted,  ///< the same with the rational fit of F_dr, as printed
+    classic,         ///< [Jensen2001], exact Fresnel moments
+    classic_fitted,  ///< with the fit of F_dr, as [Wang2005] prints it
     better           ///< [Deon2012]: Grosjean's diffusion constant, both moments in the boundary
 };
 
@@ -32,7 +32,8 @@ double dipole_total(const Dipole& dipole);
 double dipole_tail(const Dipole& dipole, double a);
 /// Mean of R_d over the disc of radius a > 0: (R - tail(a)) / (pi a^2).
 double dipole_disc_mean(const Dipole& dipole, double a);
-/// Two-dimensional Fourier transform of R_d at wave number k: what a wavy irradiance keeps.
+/// Two-dimensional Fourier transform of R_d at wave number k: the attenuation of a
+/// sinusoidal irradiance.
 double dipole_fourier(const Dipole& dipole, double k);
 
 }  // namespace opaline::bake

@@ -13,7 +13,7 @@ struct HalfSpaceReflectance {
 };
 
 /// By a random walk of `paths` paths with the actual albedo, phase function (Henyey-Greenstein) and
-/// boundary (translucency.md 3.4, `energy_match`). `albedo` in [0, 1], |g| <= 0.99, `eta` in
+/// boundary (README.md, "Energy match"). `albedo` in [0, 1], |g| <= 0.99, `eta` in
 /// [1/3, 3]. The same for any number of threads. Standard error about 0.3 / sqrt(paths).
 HalfSpaceReflectance walk_half_space(double albedo, double g, double eta, std::uint32_t paths,
                                      std::uint64_t seed, const Context& context);

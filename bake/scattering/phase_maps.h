@@ -9,7 +9,7 @@
 namespace opaline::bake {
 
 /// A phase function between the texels a, b of a cube map (formats/opal/cubemap.h) as a sum of
-/// products, p(w_a, w_b) ~ sum_k g[k][a] h[k][b], translucency.md 3.8: the singular value
+/// products, p(w_a, w_b) ~ sum_k g[k][a] h[k][b], as [Wang2005] eq. (9): the singular value
 /// decomposition of sqrt(dW_a) p sqrt(dW_b), dW solid angles, so that it is the best sum on the
 /// sphere and not on the cube. Directions point AWAY from the scattering point: p is evaluated at
 /// the cosine -dot(w_a, w_b). Sums of few terms may be negative.

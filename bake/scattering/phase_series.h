@@ -24,7 +24,7 @@ PhaseSeries expand_phase(const formats::PhaseFunction& phase, unsigned degrees);
 PhaseSeries expand_henyey_greenstein(double g, unsigned degrees);
 
 /// Relative RMS error, over all pairs of directions, of keeping the first `terms` harmonics, degree
-/// by degree, translucency.md 3.8. `terms` in [0, degrees^2].
+/// by degree (README.md, "Phase functions"). `terms` in [0, degrees^2].
 double phase_rms_relative(const PhaseSeries& series, unsigned terms);
 
 /// The same error [1/sr], not divided by the RMS of p.

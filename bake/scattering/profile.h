@@ -19,7 +19,7 @@ double profile_total(const Profile& profile);
 /// The length over which the profile falls from its centre: mean free path or d. 0: black.
 double profile_length(const Profile& profile);
 /// How far apart samples may be whose plain sum is good to a per cent: the depth of a dipole's
-/// source (translucency.md 3.7). 0: the profile's centre is a spike, no spacing is.
+/// source (multiple/README.md, "Sampling"). 0: the profile's centre is a spike, no spacing is.
 double profile_width(const Profile& profile);
 
 }  // namespace opaline::bake

@@ -64,7 +64,7 @@ struct EntryCounts {
     std::uint64_t missing = 0;  ///< directions that left the body nowhere: holes in its boundary
 };
 
-/// The exit of each ray in `lanes` by signed depth (translucency.md 4, "Robust exit_hit"), then
+/// The exit of each ray in `lanes` by signed depth (README.md, "Signed depth"), then
 /// one query beyond it against everything. What is not of `material` blocks wherever it is met.
 /// `packet`: origins inside the medium, relative to the scene's centre; unit directions toward the
 /// light. `shells`: how many shells of the medium are around each origin, >= 1.

@@ -18,9 +18,9 @@ struct Interface {
 /// Light that enters at an angle with cosine c outside and c' inside.
 template <class Real>
 struct Entry {
-    Real throughput = 0;  ///< Ft(c) J, J = c / (eta^2 c'): radiance times solid angle, translucency
-                          ///< .md 3.6
-    Real path_ratio = 1;  ///< s'/s = c/c': length after refraction by the straight distance
+    Real throughput = 0;        ///< Ft(c) J, J = c / (eta^2 c'): radiance times solid angle
+                                ///< (README.md, "Transport")
+    Real path_ratio = 1;        ///< s'/s = c/c': length after refraction by the straight distance
     Real refracted_cosine = 1;  ///< c' = sqrt(1 - (1 - c^2) / eta^2)
 };
 

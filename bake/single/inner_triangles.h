@@ -11,7 +11,7 @@
 namespace opaline::bake {
 
 /// Which triangles of a material lie inside its medium, where another of its shells is around them,
-/// and so are no boundary (translucency.md 4, "nested/overlapping shells"); in the order of the
+/// and so are no boundary (README.md, "Signed depth"); in the order of the
 /// scene's primitives. Judged in four points of each triangle, along three rays each: one that
 /// is only partly inside, or about which the rays disagree, as they do near holes, counts as
 /// boundary. 1: inside. All zero if the context is cancelled.

@@ -26,8 +26,8 @@ struct PathMedium {
 };
 
 /// sigma_m is the smallest channel's extinction, so that no channel's integrand is singular at the
-/// far end of the path (translucency.md 3.6); the luminance of the extinction, as [Wang2005] has
-/// it, in a medium of fidelity `paper`.
+/// far end of the path (README.md, "Path quadrature"); the luminance of the extinction, as
+/// [Wang2005] has it, in a medium of fidelity `paper`.
 PathMedium make_path_medium(const formats::Medium& medium);
 
 /// One point of the inward path.
@@ -36,7 +36,7 @@ struct PathNode {
     std::array<double, 3> weight{};  ///< of T_p(s_i) in T^(1), without unit
 };
 
-/// Nodes s_i and weights with which, for each channel c (translucency.md 3.6),
+/// Nodes s_i and weights with which, for each channel c (README.md, "Path quadrature"),
 ///     sum_i weight_i T_p(s_i) ~= int_0^d_m sigma_s T_p(s) e^{-sigma_t s} ds,
 /// the rule being applied in xi, s = -log1p(-lambda xi) / sigma_m, lambda = -expm1(-sigma_m d_m).
 /// `length`: d_m [m]; infinity is allowed where sigma_m > 0. Not positive or NaN: no nodes.

@@ -48,8 +48,8 @@ std::vector<InteriorNode> place_interior_nodes(const SingleMedium& medium, const
 /// What part of its texel's solid angle each direction of the set stands for, block by block.
 std::vector<RayPacket::Lane> texel_shares(const DirectionSet& directions);
 
-/// Single scattering transport of one receiver by rays (translucency.md 3.6, Eq 10-11 of [Wang2005]
-/// with the Jacobian of refraction):
+/// Single scattering transport of one receiver by rays ([Wang2005] eqs. (10)
+/// and (11) with the Jacobian of refraction; README.md, "Transport"):
 ///     T_k(w) = int_0^d_m sigma_s g_k(w_i') Ft J e^{-sigma_t s_i'} V e^{-sigma_t s} ds,
 /// so that L1 = Ft(w_o) sum_k h_k(w_o') <T_k, L>; g_k, h_k: phase_terms.h. `transport`: mean over
 /// each texel, term by term band by band, K * bands * 6 n n values, unit 1/sr: the solid angle is

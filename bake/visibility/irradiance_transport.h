@@ -9,7 +9,7 @@
 
 namespace opaline::bake {
 
-/// Irradiance transport E(x, w) = V(x, w) max(0, n.w) (translucency.md 3.5 with Ft = 1, a diffuse
+/// Irradiance transport E(x, w) = V(x, w) max(0, n.w) ([Wang2005] eq. (8) with Ft = 1, a diffuse
 /// surface): `transport[j]` is its mean over texel j, 6 n n values, unit 1.
 ///
 /// 2 x 2 visibility rays per texel; the cosine under each ray is integrated over its subtexel

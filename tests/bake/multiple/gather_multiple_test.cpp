@@ -227,8 +227,8 @@ TEST(GatherMultiple, SamplesFartherApartThanTheSourceIsDeepStillConserveEnergy) 
 }
 
 TEST(GatherMultiple, OpticallyThickBodyOfAnyShapeReflectsWhatFallsOnIt) {
-    // The limit of a diffuse surface: T_d = R E (translucency.md 7.16). A sphere is no flat disc
-    // within the samples' reach, and at the poles of a needle the surface turns fastest.
+    // The limit of a diffuse surface: T_d = R E (multiple/README.md, "Sampling"). A sphere is no
+    // flat disc within the samples' reach, and at the poles of a needle the surface turns fastest.
     for (const double stretch : {1.0, 4.0}) {
         Samples set = make_sphere(1, 20000, [](glm::dvec3 n) { return 1 + n.x; });
         for (SurfaceSample& sample : set.samples) {

@@ -12,7 +12,7 @@ namespace opaline::bake {
 namespace {
 
 TEST(HalfSpaceWalk, AgreesWithIndependentlyMeasuredReflectances) {
-    // translucency.md 3.4, table "Which one": eta, albedo, single, multiple; noise about 0.001.
+    // scattering/README.md, "Half space": eta, albedo, single, multiple; standard error 0.001.
     const double rows[][4] = {{1.0, .80, .164, .178},
                               {1.3, .30, .0235, .0072},
                               {1.3, .80, .0629, .1188},

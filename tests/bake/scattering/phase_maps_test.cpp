@@ -93,7 +93,7 @@ TEST(PhaseMaps, ViewMapsAreOrthonormalOnTheSphere) {
     }
 }
 
-// Per translucency.md 3.8 both directions point away: forward scattering sends the light of a
+// Both directions point away from the point: forward scattering sends the light of a
 // texel toward the opposite one.
 TEST(PhaseMaps, ForwardScatteringIsBrightestOppositeTheLight) {
     for (const double g : {0.5, -0.5}) {
@@ -162,7 +162,7 @@ TEST(PhaseMaps, TruncatedFunctionMayBeNegative) {
 
 TEST(PhaseMaps, RowErrorTellsOfPeaksThatTexelsMiss) {
     EXPECT_LT(factor_phase(hg(0.6), kSize, 0).row_error, 1e-3);
-    // translucency.md 6: row sums of 1.02 at 0.9, 1.46 at 0.95.
+    // Point samples miss the peak: row sums of 1.02 at g = 0.9 and 1.46 at 0.95.
     EXPECT_NEAR(factor_phase(hg(0.9), kSize, 0).row_error, 0.02, 0.005);
     EXPECT_NEAR(factor_phase(hg(0.95), kSize, 0).row_error, 0.46, 0.005);
 }
