@@ -11,14 +11,14 @@
 
 namespace opaline::bake {
 
-/// Where rows stand in a larger job, for its progress.
+/// Position of these rows in a larger job, for its progress.
 struct RowsDone {
     std::uint64_t before = 0, total = 0;
 };
 
-/// Grey rows of diffuse receivers, T = V max(0, n.w) / pi (direct/README.md, albedo 1), one
-/// each, in order: dense, Haar, selection, quantisation. Only one dense vector per thread exists at
-/// any time. Fewer rows if the context is cancelled. `rays` counts up.
+/// Grey rows of diffuse receivers, T = V max(0, n.w) / pi (direct/README.md, albedo 1), one row
+/// each, in order: gather, Haar transform, selection, quantisation. Each thread holds one dense
+/// vector. Fewer rows if the context is cancelled. Adds to `rays`.
 formats::SparseRows bake_direct(const RayScene& scene, const DirectionSet& directions,
                                 const Selector& selector, std::uint32_t code_bits,
                                 std::span<const Receiver> receivers, RowsDone done,

@@ -25,7 +25,7 @@ Vec3 to_vec3(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
-// `mapped`: the primitive shows an image; `textured`: some primitive of the asset does.
+// `mapped`: this primitive has an image. `textured`: some primitive of the asset has one.
 void append_vertices(Asset& asset, const Primitive& p, Rgb base_color,
                      const std::optional<Marble>& marble, bool mapped, bool textured) {
     for (std::size_t v = 0; v < p.position.size(); ++v) {
@@ -69,7 +69,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         record.vertex_count = static_cast<std::uint32_t>(p.position.size());
         record.first_index = static_cast<std::uint32_t>(asset.index.size());
         record.index_count = static_cast<std::uint32_t>(p.index.size());
-        // Rows, band rows and codes are numbered on from primitive to primitive.
+        // Rows, band rows and codes are numbered consecutively over the primitives.
         const std::uint32_t count = record.vertex_count * layout.terms();
         record.first_row = rows;
         record.terms = layout.terms();
