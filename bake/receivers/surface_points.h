@@ -17,7 +17,7 @@ struct SurfacePoint {
     glm::vec3 position{0}, normal{0};  ///< [m]; unit normal of the facet
 };
 
-/// The triangles of some primitives that have an area, in order.
+/// The triangles of some primitives with an area above 0, in order.
 struct AreaTable {
     struct Triangle {
         std::uint32_t primitive, first_index;
@@ -35,8 +35,9 @@ AreaTable make_area_table(const formats::Scene& scene,
 SurfacePoint make_surface_point(const formats::Scene& scene, const AreaTable::Triangle& triangle,
                                 glm::vec3 barycentric);
 
-/// `count` points, uniform by area: one in each of `count` equal parts of the list of triangles, at
-/// random in its triangle. `even`: in large triangles a low-discrepancy set, for quadrature.
+/// `count` points, uniform by area: one in each of `count` equal parts of the cumulative area, at a
+/// random position in its triangle. `even`: a low-discrepancy set in large triangles, for
+/// quadrature.
 std::vector<SurfacePoint> scatter_points(const formats::Scene& scene, const AreaTable& table,
                                          std::size_t count, bool even, std::uint64_t seed);
 

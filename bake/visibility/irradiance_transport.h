@@ -14,9 +14,8 @@ namespace opaline::bake {
 ///
 /// 2 x 2 visibility rays per texel; the cosine under each ray is integrated over its subtexel
 /// exactly (texel_moments), so an unoccluded receiver has no quadrature error except along its
-/// horizon, where a subtexel counts as the positive part of its integral.
-/// `transmittance`, if not empty, tabulates a factor at evenly spaced cosines from 0 to 1 that each
-/// ray's irradiance is weighted with: Ft(eta, n.w) of a boundary.
+/// horizon, where a subtexel counts as the positive part of its integral. `transmittance`, if not
+/// empty, tabulates Ft(eta, n.w) at evenly spaced cosines from 0 to 1; each ray is weighted by it.
 /// Returns the number of rays traced. A receiver without a normal gathers nothing.
 std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& directions,
                                 const Receiver& receiver, std::span<float> transport,

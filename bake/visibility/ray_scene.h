@@ -37,7 +37,7 @@ inline RayPacket rays_from(glm::vec3 origin) {
 /// Which lanes of a packet to trace: -1 yes, 0 no.
 using LaneMask = std::array<std::int32_t, RayPacket::kSize>;
 
-/// What each ray of a packet meets first. Meaningful only in lanes that hit something.
+/// The first hit of each ray of a packet. Only lanes with `hit` are defined.
 struct PacketHits {
     LaneMask hit;              ///< -1 yes, 0 no
     RayPacket::Lane distance;  ///< along the ray [m]
@@ -76,14 +76,14 @@ class RayScene {
 
     std::uint64_t triangles() const { return triangles_; }
 
-    /// Nothing can be hit: those who gather light need not trace at all.
+    /// True if nothing can be hit, so that no ray need be traced.
     bool is_empty() const { return triangles_ == 0; }
 
     /// Bound [m] on the error of a hit's position.
     float error_bound() const { return error_bound_; }
 
-    /// Embree's version and the instruction set it is pinned to: hit distances differ between
-    /// instruction sets, so both belong into the provenance.
+    /// Embree's version and the instruction set it is pinned to, for the provenance: hit distances
+    /// differ between instruction sets.
     static std::string description();
 
   private:
