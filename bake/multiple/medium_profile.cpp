@@ -16,7 +16,8 @@ double band_of(const formats::Rgb& c, std::size_t band) {
     return static_cast<double>(band == 0 ? c.r : band == 1 ? c.g : c.b);
 }
 
-// What a half space returns of uniform light, per incident flux, `escape` of which enters.
+// Reflectance of a half space under uniform light; `escape`: share of the incident flux that
+// enters.
 HalfSpaceReflectance half_space(double sigma_s, double sigma_a, double g, double eta, double escape,
                                 std::uint64_t seed, const Context& context) {
     constexpr std::uint32_t kPaths = 65536;  // standard error 0.001
@@ -25,7 +26,8 @@ HalfSpaceReflectance half_space(double sigma_s, double sigma_a, double g, double
     if (absorbed >= kLeastAbsorbed) {
         return walk_half_space(1 - absorbed, g, eta, kPaths, seed, context);
     }
-    // Walks without end: near albedo 1 the loss grows as the root of what is absorbed per event.
+    // Avoids nearly endless walks: near albedo 1 the loss grows as the root of the absorption per
+    // event.
     const HalfSpaceReflectance walked =
         walk_half_space(1 - kLeastAbsorbed, g, eta, kPaths, seed, context);
     const double limit = escape - walked.single;
@@ -106,7 +108,7 @@ formats::Rgb half_space_albedo(const Medium& medium, std::uint64_t seed, const C
 
 std::uint32_t count_samples(double area, const MediumProfile& profile, double per_path,
                             std::uint32_t most) {
-    const double least = 2000 * per_path;  // enough for the shape of a body that light crosses
+    const double least = 2000 * per_path;  // resolves the shape of a body that light crosses
     const double z = profile.smallest;
     const double wanted = z > 0 ? std::ceil(per_path * area / (z * z)) : 0.0;
     return static_cast<std::uint32_t>(

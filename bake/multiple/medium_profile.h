@@ -17,28 +17,27 @@ struct MediumProfile {
     double smallest = 0;  ///< profile_length of the densest band [m]; 0: nothing scatters
     double eta = 1;
 
-    /// R_d [1/m^2], total reflectance R, and what of it leaves beyond `a` [m].
+    /// R_d [1/m^2], total reflectance R, and the part of R beyond distance `a` [m].
     double eval(std::size_t b, double r) const { return scale[b] * eval_profile(band[b], r); }
     double total(std::size_t b) const { return scale[b] * profile_total(band[b]); }
     double tail(std::size_t b, double a) const { return scale[b] * profile_tail(band[b], a); }
 };
 
-/// Profiles `automatic`, `better` and `beams` are scaled per band, in physical fidelity, so that a
-/// half space returns what a random walk of it returns beyond single scattering
-/// (scattering/README.md, "Energy match"); `normalized` has the walk's whole reflectance, single
-/// scattering included; `classic` is left unscaled. `paper` fidelity: the classic dipole as
-/// printed, whatever `profile`.
+/// In physical fidelity, the profiles `automatic`, `better` and `beams` are scaled per band, so
+/// that a half space returns the multiple scattering of a random walk (scattering/README.md,
+/// "Energy match"). `normalized` gets the walk's whole reflectance, single scattering included.
+/// `classic` is not scaled. `paper` fidelity: the classic dipole as printed, whatever `profile`.
 MediumProfile make_medium_profile(const formats::Medium& medium, std::uint64_t seed,
                                   const Context& context);
 
-/// Share of uniform light that a half space of the medium returns, by a random walk: the albedo of
+/// Reflectance of a half space of the medium under uniform light, by a random walk: the albedo of
 /// the diffuse surface to compare the medium with (direct/README.md).
 formats::Rgb half_space_albedo(const formats::Medium& medium, std::uint64_t seed,
                                const Context& context);
 
-/// How many samples the surface of a medium needs: `per_path` per square of the depth of its
-/// source; with one, their sum errs by about 1 % (multiple/README.md, "Sampling"). At least 2000
-/// times that, at most `most`. `area` [m^2].
+/// Number of samples on the surface of a medium: `per_path` per squared depth of its source. At
+/// `per_path` = 1 their sum errs by about 1 % (multiple/README.md, "Sampling"). At least 2000
+/// `per_path`, at most `most`. `area` [m^2].
 std::uint32_t count_samples(double area, const MediumProfile& profile, double per_path,
                             std::uint32_t most);
 

@@ -39,7 +39,7 @@ Dipole make_dipole(DipoleKind kind, double sigma_s_prime, double sigma_a, double
         const double a = (1 + 3 * moments.c2) / (1 - 2 * moments.c1);
         dipole.sigma_tr = std::sqrt(sigma_a / diffusion);
         dipole.z_virtual = dipole.z_real + 4 * a * diffusion;
-        // alpha'^2: the light scattered once is supplied by the single-scattering stage.
+        // alpha'^2, because the single-scattering stage adds the light that scatters once.
         const double strength = albedo * albedo / (4 * kPi);
         dipole.w_phi = strength * 0.25 * (1 - 2 * moments.c1) / diffusion;
         dipole.w_flux = strength * 0.5 * (1 - 3 * moments.c2);

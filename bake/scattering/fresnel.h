@@ -2,9 +2,9 @@
 
 namespace opaline::bake {
 
-/// Unpolarised Fresnel reflectance of a smooth boundary (README.md, "Fresnel"). `cosine`: of the
-/// angle between direction and normal, on the side the light comes from, in [0, 1]. `eta`: index
-/// beyond the boundary over index on this side, > 0. 1 beyond the critical angle, and at grazing.
+/// Unpolarised Fresnel reflectance of a smooth boundary (README.md, "Fresnel"). `cosine`: between
+/// direction and normal on the incident side, in [0, 1]. `eta`: index of the far side over index of
+/// the incident side, > 0. Returns 1 beyond the critical angle and at grazing incidence.
 double fresnel_reflectance(double cosine, double eta);
 /// 1 - fresnel_reflectance, without its cancellation near eta = 1.
 double fresnel_transmittance(double cosine, double eta);

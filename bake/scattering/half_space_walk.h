@@ -6,10 +6,10 @@
 
 namespace opaline::bake {
 
-/// How a half space returns uniform diffuse light, as shares of the incident flux.
+/// Reflectance of a half space under uniform light, as shares of the incident flux.
 struct HalfSpaceReflectance {
-    double single = 0;    ///< scattered once and not reflected at the boundary from inside
-    double multiple = 0;  ///< everything else that enters and leaves again
+    double single = 0;    ///< scattered once, without an internal reflection
+    double multiple = 0;  ///< all other light that leaves again
 };
 
 /// By a random walk of `paths` paths with the actual albedo, phase function (Henyey-Greenstein) and
