@@ -12,8 +12,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // More crossings than any body has; bounds the work that a hostile mesh can ask for.
 constexpr int kMostCrossings = 256;
 
-// How far behind a hit the next query starts: behind its twin in a neighbouring triangle, which
-// lies elsewhere by rounding only. Grazing hits are less certain along the ray.
+// Distance at which the next query starts: beyond the hit's duplicate in a neighbouring triangle,
+// which differs by rounding only. The position of a grazing hit along the ray is less certain.
 float step_behind(const RayScene& rays, float distance, float cosine) {
     constexpr float kGrazing = 0.02f;
     const float bound = rays.error_bound() / std::max(std::abs(cosine), kGrazing);
@@ -46,8 +46,8 @@ InwardPath follow(const RayScene& rays, const BodyPoint& point, glm::vec3 direct
             path.steps.push_back({hits.distance[0], shells});
         }
     }
-    // Nothing around at infinity fixes the number at the start; a way that meets nothing at all
-    // goes through a hole, inside.
+    // No shell remains at infinity, which fixes the number at the start. A path without any hit
+    // starts inside and leaves through a hole.
     const std::int32_t start = path.steps.empty() ? 1 : std::max(0, -shells);
     for (InwardPath::Step& step : path.steps) {
         step.shells += start;
@@ -91,8 +91,8 @@ InwardPath trace_inward_path(const RayScene& rays, const BodyPoint& point, float
         return path;
     }
     path = follow(rays, point, -point.normal, limit);
-    // A ray that aims at a vertex on the far side, as those of symmetric meshes do, may slip
-    // between its triangles. One a little aside does not; a hole it finds again.
+    // A ray that aims exactly at a vertex on the far side, as in symmetric meshes, may slip between
+    // its triangles. A slightly tilted ray hits them, or confirms a hole.
     const glm::vec3 n = point.normal;
     const glm::vec3 aside =
         std::abs(n.x) < 0.5f ? glm::vec3(0, -n.z, n.y) : glm::vec3(-n.z, 0, n.x);

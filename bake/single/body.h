@@ -20,18 +20,19 @@ struct BodyPoint {
     std::uint32_t material = 0;  ///< whose triangles bound the body
 };
 
-/// Body points of all vertices, in output order, from their receivers (make_vertex_receivers): a
-/// receiver starts in front of its triangles, its mirror image in the vertex behind them. Vertices
-/// of opaque materials get no normal.
+/// Body points of all vertices, in output order, from their receivers (make_vertex_receivers). The
+/// receiver's origin lies in front of its triangles; mirrored at the vertex, it lies behind them.
+/// Vertices of opaque materials get no normal.
 std::vector<BodyPoint> make_body_points(const formats::Scene& scene,
                                         std::span<const Receiver> receivers);
 
-/// The way from a body point along its inward normal.
+/// The path from a body point along its inward normal.
 struct InwardPath {
     float length = 0;   ///< d_m [m] to where the medium ends; 0: the normal points out of the body
     bool open = false;  ///< no exit was found and `length` is the limit given
-    bool nested = false;  ///< somewhere on the way more than one shell of the medium is around
-    /// Where the number of shells around changes [m], ascending, and what it is from there on.
+    bool nested = false;  ///< part of the path lies inside more than one shell of the medium
+    /// Depths [m] at which the number of enclosing shells changes, ascending, with the number
+    /// beyond.
     struct Step {
         float depth;
         std::int32_t shells;
@@ -39,20 +40,21 @@ struct InwardPath {
     std::vector<Step> steps;
 };
 
-/// Follows the inward normal by signed depth: leaving a triangle through its back ends one shell
-/// of the medium, entering one through its front begins one. How many shells are around at the
-/// start is what makes none remain at infinity. `limit`: where an open path is cut [m].
+/// Follows the inward normal by signed depth: a crossing from behind a triangle ends one shell of
+/// the medium, a crossing from the front begins one. The number of shells at the start is such that
+/// none remains at infinity. `limit`: length of an open path [m].
 InwardPath trace_inward_path(const RayScene& rays, const BodyPoint& point, float limit);
 
-/// How many shells of the medium are around the point at `depth` on the path.
+/// Number of shells of the medium around the point at `depth` on the path.
 std::int32_t shells_at(const InwardPath& path, float depth);
 
 /// Diagonal [m] of the bounding box of each material's triangles, by material.
 std::vector<float> body_diagonals(const formats::Scene& scene);
 
-/// Where light from sixteen directions enters the medium on its way to sixteen interior points.
+/// Entry points into the medium of light from sixteen directions on its way to sixteen interior
+/// points.
 struct PacketEntries {
-    LaneMask lit;              ///< -1: reached by light from that direction, 0: not
+    LaneMask lit;              ///< -1: light from that direction arrives, 0: it does not
     RayPacket::Lane distance;  ///< s_i [m], straight
     RayPacket::Lane cosine;    ///< n_i . w > 0
     RayPacket::Lane normal_x, normal_y, normal_z;  ///< n_i
@@ -61,13 +63,13 @@ struct PacketEntries {
 /// Counters of a gather.
 struct EntryCounts {
     std::uint64_t rays = 0;     ///< traced, of both kinds
-    std::uint64_t missing = 0;  ///< directions that left the body nowhere: holes in its boundary
+    std::uint64_t missing = 0;  ///< directions without an exit: holes in the boundary
 };
 
-/// The exit of each ray in `lanes` by signed depth (README.md, "Signed depth"), then
-/// one query beyond it against everything. What is not of `material` blocks wherever it is met.
-/// `packet`: origins inside the medium, relative to the scene's centre; unit directions toward the
-/// light. `shells`: how many shells of the medium are around each origin, >= 1.
+/// The exit of each ray in `lanes` by signed depth (README.md, "Signed depth"), then one any-hit
+/// query beyond it. Surfaces of other materials block anywhere. `packet`: origins inside the
+/// medium, relative to the scene's centre; unit directions toward the light. `shells`: number of
+/// shells of the medium around each origin, >= 1.
 PacketEntries find_entries(const RayScene& rays, std::uint32_t material, LaneMask lanes,
                            RayPacket packet, std::array<std::int32_t, RayPacket::kSize> shells,
                            EntryCounts& counts);

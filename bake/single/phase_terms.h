@@ -22,7 +22,7 @@ struct PhaseTerms {
     }
 };
 
-/// No |g_k| is larger than this [1/sr].
+/// Upper bound of |g_k| for each term [1/sr].
 std::vector<float> largest_phase_terms(const PhaseTerms& phase);
 
 /// g_k(w_i') for light from `w` that enters through a boundary of the given outward normal (both
