@@ -77,7 +77,7 @@ formats::Result<HitScene> HitScene::build(const Scene& scene, unsigned threads) 
     const Box box = box_of(scene);
     result.centre_ = 0.5f * box.low + 0.5f * box.high;
     const glm::vec3 size = box.high - result.centre_;
-    // A product, a sum, and the hit's own distance: a few halves of an ulp.
+    // A product, a sum, and the hit's distance: a few half ulps.
     result.rounding_ =
         4 * std::numeric_limits<float>::epsilon() * std::max({size.x, size.y, size.z});
     // Rounded outward.
@@ -89,7 +89,8 @@ formats::Result<HitScene> HitScene::build(const Scene& scene, unsigned threads) 
                                    "the ray hierarchy cannot be built",
                                    "free some memory, or use a smaller scene");
     };
-    // One instruction set everywhere: distances differ between them in their last bits.
+    // A fixed instruction set, because distances differ between instruction sets in their last
+    // bits.
     h.device = rtcNewDevice("isa=avx2");
     if (h.device == nullptr) {
         return failed();
@@ -148,7 +149,8 @@ std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::ve
         hit.primitive = handles_->primitive[ray.hit.geomID];
         hit.triangle = ray.hit.primID;
         if (hit.primitive == origin.primitive && hit.triangle == origin.triangle) {
-            // A straight line leaves a plane once: rounding brought it back. Look behind it.
+            // A straight line leaves a plane once; rounding caused this second hit. Continue behind
+            // it.
             nearest = std::nextafter(ray.ray.tfar, std::numeric_limits<float>::infinity());
             continue;
         }

@@ -4,8 +4,8 @@
 
 namespace opaline::bake {
 
-/// The light of a path belongs to exactly one of these, by what the path did between the receiver
-/// and the sky. The first two of a body's are what the bake's effects of the same name stand for.
+/// The light of a path belongs to exactly one of these terms, by its events between the receiver
+/// and the sky. kSingle and kMultiple correspond to the bake's effects of the same name.
 using Terms = std::uint32_t;
 namespace term {
 inline constexpr Terms kDiffuse = 1;       ///< one reflection from an opaque surface
@@ -18,7 +18,7 @@ inline constexpr Terms kInterreflection = 32;  ///< everything that met a second
 inline constexpr Terms kAll = 63;
 }  // namespace term
 
-/// What a path has met so far, as far as its term depends on it.
+/// The state of a path on which its term depends.
 struct PathState {
     enum class Stage : std::uint8_t {
         camera,    ///< nothing: what it sees is background
@@ -55,7 +55,7 @@ constexpr PathState after_reflection(PathState s) {
     }
     return s;
 }
-/// Through a boundary; `out`: no body is around it any more.
+/// Through a boundary; `out`: the path is now outside all bodies.
 constexpr PathState after_crossing(PathState s, bool out) {
     if (s.stage == PathState::Stage::camera && !out) {
         s.stage = PathState::Stage::inside;
@@ -66,7 +66,7 @@ constexpr PathState after_crossing(PathState s, bool out) {
     return s;
 }
 
-/// The term of a path that now reaches the sky; the camera's own view of it counts as all.
+/// The term of a path that reaches the sky here; a direct view of the sky counts as all terms.
 constexpr Terms term_of(PathState s) {
     switch (s.stage) {
         case PathState::Stage::camera:
