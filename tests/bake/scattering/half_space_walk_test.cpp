@@ -39,7 +39,7 @@ TEST(HalfSpaceWalk, SingleScatteringPerAlbedoIsThatOfTheTable) {
 TEST(HalfSpaceWalk, NothingIsLostWithoutAbsorption) {
     for (const double eta : {1.0, 1.3}) {
         const auto r = walk_half_space(1, 0, eta, 4000, 1, {});
-        // Paths that wander deep return late; all of them do within the event limit or nearly so.
+        // Paths that go deep return late; nearly all return within the event limit.
         EXPECT_NEAR(r.single + r.multiple, 1 - fresnel_moments(eta).external, 0.03) << eta;
     }
 }

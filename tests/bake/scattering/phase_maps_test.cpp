@@ -123,7 +123,7 @@ TEST(PhaseMaps, SignOfGMirrorsTheLight) {
 TEST(PhaseMaps, FirstTermIsConstantAndFirstLargestValuesArePositive) {
     const PhaseMaps maps = factor_phase(hg(-0.6), kSize, 25);
     for (const double h : maps.h[0]) {
-        // 1 / sqrt(4 pi), about as exactly as the rows integrate to 1.
+        // 1 / sqrt(4 pi), about as exact as the rows' integrals of 1.
         EXPECT_NEAR(h, 0.28209479, maps.row_error);
     }
     for (const auto& h : maps.h) {
@@ -138,7 +138,7 @@ TEST(PhaseMaps, FirstTermIsConstantAndFirstLargestValuesArePositive) {
     }
 }
 
-// Rounding must not choose a basis within a multiplet: a relative change of 1e-7 of g, hardly more
+// Rounding must not choose a basis within a multiplet: a relative change of g by 1e-7, hardly more
 // than rounding, hardly changes any map.
 TEST(PhaseMaps, MapsOfAMultipletAreDetermined) {
     const PhaseMaps a = factor_phase(hg(0.4), kSize, 25),

@@ -119,7 +119,7 @@ TEST(Entry, StaysFiniteJustInsideTheCriticalAngle) {
         const double critical = std::sqrt(1 - eta * eta);
         const Entry<double> inside = enter(critical * (1 + 1e-12), Interface<double>{eta, true});
         EXPECT_NEAR(inside.throughput, expected, 0.01) << eta;
-        EXPECT_GT(inside.path_ratio, 1e4);  // no light from there, however short the way
+        EXPECT_GT(inside.path_ratio, 1e4);  // no light from there, even along a short path
         EXPECT_EQ(enter(critical * (1 - 1e-12), Interface<double>{eta, true}).throughput, 0);
     }
 }
