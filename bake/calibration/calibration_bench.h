@@ -15,7 +15,7 @@
 
 namespace opaline::bake {
 
-/// What all measurements of a calibration share.
+/// Parameters that all measurements of a calibration share.
 inline constexpr std::uint32_t kCalibrationCubemap = 32, kCalibrationKept = 128;
 /// Cells along a side of the dented ball, of few triangles and of many.
 inline constexpr std::uint32_t kFewSide = 16, kManySide = 64;

@@ -131,7 +131,7 @@ void split(const Field& solid, double gap, std::vector<double>& value, TriangleM
         }
         const std::uint32_t ca = crossing_of(c, a);
         pieces.push_back({a, ab, ca});
-        // Of the quadrangle that is left, the shorter diagonal.
+        // Split the remaining quadrangle along its shorter diagonal.
         if (glm::distance(floor.position[ab], floor.position[c]) <
             glm::distance(floor.position[b], floor.position[ca])) {
             pieces.insert(pieces.end(), {{ab, b, c}, {ab, c, ca}});

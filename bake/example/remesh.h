@@ -5,7 +5,7 @@
 
 namespace opaline::bake {
 
-/// How fine a remeshed surface is.
+/// Resolution of a remeshed surface.
 struct RemeshOptions {
     double shortest = 0.6;    ///< target edge where the surface bends most [mm]
     double longest = 1.6;     ///< target edge where it is flat [mm]

@@ -94,7 +94,7 @@ struct Gather {
     }
 };
 
-// Of a node or a sample.
+// The vector of a node or a sample.
 SparseVector entries_of(const ClusterTree& tree, const ClusterWeight& w) {
     const std::size_t nodes = tree.nodes.size();
     return w.id < nodes ? tree.sums[w.id] : tree.samples[w.id - nodes];

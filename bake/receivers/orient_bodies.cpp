@@ -33,7 +33,7 @@ std::vector<Corners> corners_of(const BodyShells& body, const BodyShell& shell) 
     return triangles;
 }
 
-// Whether a shell encloses the point: its solid angle, seen from there, is the whole sphere.
+// True if a shell encloses the point: seen from there, its solid angle is the whole sphere.
 bool encloses(const std::vector<Corners>& shell, glm::dvec3 point) {
     double angle = 0;
     for (const Corners& corner : shell) {

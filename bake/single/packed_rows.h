@@ -73,7 +73,7 @@ constexpr std::size_t packed_words(std::uint32_t bands) {
     return bands == 1 ? 1 : 2;
 }
 
-/// How many receivers of `terms` terms fit into `bytes` of memory; at least 1.
+/// Number of receivers with `terms` terms that fit into `bytes` of memory; at least 1.
 inline std::size_t packed_rows_in(std::size_t bytes, std::uint32_t texels, std::uint32_t terms,
                                   std::uint32_t bands) {
     return std::max<std::size_t>(

@@ -14,7 +14,7 @@ inline float cosine_integral(const DirectionBlock& block, std::uint32_t lane, gl
            normal.z * block.moment_z[lane];
 }
 
-/// Whether the whole block is below the horizon, or there is no normal.
+/// True if the whole block is below the horizon, or if there is no normal.
 bool is_below(const DirectionBlock& block, glm::vec3 normal);
 
 /// Traces a block from `packet`'s origins. Adds the cosine integrals of unoccluded cells, times the

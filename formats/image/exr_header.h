@@ -9,7 +9,7 @@
 
 namespace opaline::formats {
 
-/// What we need to know of an OpenEXR header before OpenEXR may see the file.
+/// The contents of an OpenEXR header that are checked before OpenEXR reads the file.
 struct ExrHeader {
     std::int32_t min_x = 0, min_y = 0;  ///< data window
     std::uint32_t width = 0, height = 0;
