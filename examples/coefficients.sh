@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What each wavelet coefficient buys: bakes an example with M = 16 ... all and prints, as a Markdown
-# table, the size of the file and how far the relit radiance is from the one with all of them.
+# Error and size for M coefficients: bakes an example with M = 16 ... all and prints a Markdown table
+# of file sizes and relit errors against the file with all coefficients (tests/bench/RESULTS.md).
 # usage: coefficients.sh OPALINE [SCENE...]     OPALINE: the program; SCENE: statue, knot
 set -euo pipefail
 opaline=$(realpath "$1")

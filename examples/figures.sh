@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Remakes Figures 4 to 8 of Wang, Tran and Luebke 2005 with this program, on the statue and on balls.
+# Remakes Figures 4 to 8 of [Wang2005] with this program, on the statue and on balls.
 # usage: figures.sh OUT_DIR [OPALINE]     OPALINE: the program, default build/opaline
 # Needs the Debian packages imagemagick, gnuplot-nox, fonts-dejavu-core and perl beside Opaline.
-# Bakes are drafts: some 15 minutes of processor time. FIGURES_QUALITY=preview in the environment
-# makes the pictures of marble, jade and wax as they are in images/, in twice that.
+# Bakes are drafts and take about 15 minutes of CPU time. FIGURES_QUALITY=preview in the environment
+# makes the pictures of marble, jade and wax as in images/ and takes twice as long.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 [ $# -ge 1 ] || { echo "usage: figures.sh OUT_DIR [OPALINE]" >&2; exit 2; }

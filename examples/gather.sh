@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# What the tolerance of the gather and the number of coefficients cost: the statue in jade, multiple
-# scattering alone, against the sum over all samples with 1024 coefficients. Prints a table for the README.
+# Time and error for the gather's tolerance and the number of coefficients: the statue in jade,
+# multiple scattering alone, against the sum over all samples with 1024 coefficients. Prints a table of
+# tests/bench/RESULTS.md.
 # usage: gather.sh OPALINE
 set -euo pipefail
 [ $# -eq 1 ] || { echo "usage: gather.sh OPALINE" >&2; exit 2; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The README's matrix of scenes and effects: what the planner leaves on, its bounds, and seconds of the
-# planned bake against everything forced on, and against the prediction, that at production quality, too.
+# The matrix of tests/bench/RESULTS.md: decisions of the planner with their bounds, seconds of the
+# planned bake, of a bake with everything forced on, and predicted; the last also at production quality.
 # usage, from the top folder: matrix.sh OPALINE MODEL.glb
 #   MODEL.glb: a closed body, about 15 cm to 2 m long, with one material
 set -euo pipefail

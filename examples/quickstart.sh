@@ -13,7 +13,7 @@ opaline="$build/opaline"
 
 mkdir -p "$out"
 "$opaline" example statue -o "$out"
-# Four times the coefficients of the default: a hard sun wants them, soft light does not.
+# Four times the default coefficients: a hard sun needs them, soft light does not.
 "$opaline" bake "$out/statue.gltf" -o "$out/statue.opal" --coefficients 512
 "$opaline" render "$out/statue.opal" --light studio --size 1280x960 -o "$out/statue-studio.png"
 "$opaline" render "$out/statue.opal" --light sky:3,35 --size 1280x960 -o "$out/statue-sky.png"

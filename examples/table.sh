@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A row of the README's table of whole bakes: seconds of each stage, size, relights a second.
+# A row of the table of whole bakes in tests/bench/RESULTS.md: seconds of each stage, size, relights a second.
 # Settings of [Wang2005], Table 1: 6 x 32 x 32 directions, 128 coefficients.
 # usage: table.sh OPALINE RELIGHT_BENCH FILE.gltf MEDIA.json SAMPLES
 set -euo pipefail

@@ -16,7 +16,7 @@ namespace opaline::formats {
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
 
-/// How a medium redirects light at one scattering event; int p dw = 1 over the sphere. All are
+/// Angular distribution of light after one scattering event; int p dw = 1 over the sphere. All are
 /// functions of the cosine between propagation directions.
 struct PhaseFunction {
     enum class Type {
@@ -45,7 +45,7 @@ struct Medium {
         normalized
     } profile = Profile::automatic;
     enum class Fidelity {
-        physical,  ///< corrected formulas (translucency.md 5)
+        physical,  ///< corrected formulas (formats/media/README.md, "Fidelity")
         paper      ///< [Wang2005] to the letter
     } fidelity = Fidelity::physical;
 };

@@ -7,13 +7,13 @@
 
 namespace opaline::bake {
 
-/// How far a stage has come. Called from worker threads, one call at a time.
+/// Progress of a stage. The callback runs on worker threads, one call at a time.
 struct Progress {
     std::string_view stage;
     std::uint64_t done = 0, total = 0;
 };
 
-/// What a long stage needs from its surroundings, none of which changes its result.
+/// Surroundings of a long stage: threads, progress, cancellation. None of them changes its result.
 struct Context {
     unsigned threads = 0;                              ///< 0: one per core
     std::function<void(const Progress&)> on_progress;  ///< may be empty

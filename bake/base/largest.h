@@ -9,9 +9,9 @@
 
 namespace opaline::bake {
 
-/// Indices of the `count` largest positive entries of `score`, ascending; of equal ones the first.
-/// Fewer where fewer are positive. Finite values only. Linear time: a histogram over the leading
-/// bits of the scores leaves few to be ordered.
+/// Indices of the `count` largest positive entries of `score`, ascending; ties go to the smaller
+/// index. Fewer if fewer are positive. Finite values only. Linear time: a histogram over the
+/// leading bits leaves few entries to sort.
 inline std::vector<std::uint32_t> find_largest(std::span<const float> score, std::size_t count) {
     // Positive floats order as their bits do: exponent and the first two bits of the mantissa.
     constexpr std::uint32_t kShift = 21;
@@ -19,7 +19,7 @@ inline std::vector<std::uint32_t> find_largest(std::span<const float> score, std
     const auto bucket_of = [](float value) {
         return value > 0 ? std::bit_cast<std::uint32_t>(value) >> kShift : 0u;
     };
-    // Neighbours often fall into one bucket: with a histogram each they need not wait.
+    // Neighbouring entries often share a bucket. Four histograms keep them independent.
     std::array<std::array<std::uint32_t, kBuckets>, 4> histogram{};
     std::size_t k = 0;
     for (; k + 4 <= score.size(); k += 4) {
@@ -57,7 +57,7 @@ inline std::vector<std::uint32_t> find_largest(std::span<const float> score, std
                              return score[a] != score[b] ? score[a] > score[b] : a < b;
                          });
     }
-    // Both parts ascend: those of higher buckets were found in order.
+    // Both parts ascend: entries of higher buckets were found in index order.
     std::sort(candidates.begin(), middle);
     const auto found = static_cast<std::ptrdiff_t>(chosen.size());
     chosen.insert(chosen.end(), candidates.begin(), middle);

@@ -24,9 +24,9 @@ struct Range {
 };
 
 /// Cuts [0, count) into blocks, runs `compute(Range)` on all threads and hands each result to
-/// `consume(Range, result&&)` one at a time and in order, whatever order they finish in: the
-/// consumer's output does not depend on the number of threads. Only a few blocks per thread are
-/// alive at once. Stops early, after consuming what was in flight, once the context is cancelled.
+/// `consume(Range, result&&)` one at a time and in index order, so the consumer's output does not
+/// depend on the number of threads. Only a few blocks per thread are alive at once. Stops early,
+/// after consuming what was in flight, once the context is cancelled.
 template <class Compute, class Consume>
 void for_each_block_in_order(std::size_t count, std::size_t block, const Context& context,
                              Compute&& compute, Consume&& consume) {

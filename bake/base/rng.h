@@ -7,7 +7,8 @@
 
 namespace opaline::bake {
 
-/// Which part of a bake a random number belongs to: a word of the key, so that streams never meet.
+/// The part of a bake that a random number belongs to. It is a word of the counter, so the streams
+/// are disjoint.
 enum class RandomStage : std::uint32_t {
     held_back_receivers = 1,
     surface_samples = 2,
@@ -20,8 +21,8 @@ enum class RandomStage : std::uint32_t {
     surface_probes = 9
 };
 
-/// Four uniform numbers in [0, 1), a pure function of its arguments: no state, hence the same for
-/// any number of threads or shards. Philox4x32-10 [Salmon2011].
+/// Four uniform numbers in [0, 1), a pure function of the arguments. There is no state, so results
+/// do not depend on threads or shards. Philox4x32-10 [Salmon2011].
 inline std::array<float, 4> random_uniform(std::uint64_t seed, RandomStage stage,
                                            std::uint64_t receiver, std::uint32_t sample = 0) {
     const r123::Philox4x32::ctr_type counter{{static_cast<std::uint32_t>(receiver),

@@ -21,7 +21,7 @@
 namespace opaline::bake {
 namespace {
 
-// As if the traced ones were all of them, so that a tree of some depth costs no more rays.
+// Repeats the traced samples up to the given number, so that a deep tree needs no further rays.
 SampleTransport repeated(const SampleTransport& traced, std::size_t samples) {
     SampleTransport all = traced;
     while (all.rows.size() < samples) {
@@ -33,7 +33,7 @@ SampleTransport repeated(const SampleTransport& traced, std::size_t samples) {
     return all;
 }
 
-// On so small a cube map that sums take longer than their truncation.
+// The cube map is small, so that the sums take longer than their truncation.
 double measure_sum_entry(const CalibrationBench& bench, std::span<const SurfaceSample> samples,
                          double truncate_texel) {
     constexpr std::uint32_t kSmall = 8;
@@ -58,7 +58,7 @@ double measure_sum_entry(const CalibrationBench& bench, std::span<const SurfaceS
     return std::max(seconds - truncated, 0.1 * seconds) / entries;
 }
 
-// As stages take them: what neighbours look up is in the same cache lines.
+// In the order of the stages, where neighbours read the same cache lines.
 std::vector<BodyPoint> neighbours_together(std::span<const BodyPoint> points) {
     std::vector<glm::vec3> positions;
     for (const BodyPoint& point : points) {
@@ -191,7 +191,7 @@ void calibrate_single(const CalibrationBench& bench, bool is_many, Rates& rates)
             const glm::vec3 w{block.dir_x[5], block.dir_y[5], block.dir_z[5]};
             const Stopwatch once;
             gather_direction(job, {w, 1}, {0.3f, 0.6f}, work);
-            seconds += i == 0 ? 0 : once.seconds();  // the first one finds the memory
+            seconds += i == 0 ? 0 : once.seconds();  // the first run allocates the memory
         }
         return seconds / kDirections;
     };

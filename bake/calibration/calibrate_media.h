@@ -7,12 +7,12 @@
 
 namespace opaline::bake {
 
-/// What media cost on a ball of few or of many triangles, into the rates of that size; those that
-/// do not depend on it are measured on the one of many.
+/// Measures the rates of media on a ball of few or of many triangles. Rates that do not depend on
+/// the size are measured on the large one.
 
-/// Light that enters through surface samples, and sums of it.
+/// Irradiance transport of surface samples, and its sums over clusters.
 void calibrate_multiple(const CalibrationBench& bench, bool is_many, Rates& rates);
-/// Light maps: with and without nodes to look up, and with more terms.
+/// Light maps: rendering alone, look-ups of nodes, and further phase terms.
 void calibrate_single(const CalibrationBench& bench, bool is_many, Rates& rates);
 /// The self-check's truth under `lights`.
 void calibrate_check(const CalibrationBench& bench, bool is_many, std::span<const TestLight> lights,

@@ -51,7 +51,7 @@ double measure_open_cell(const CalibrationBench& bench) {
 
 double measure_openness(const CalibrationBench& bench) {
     const DirectionSet directions = make_sparse_direction_set(8, 0);
-    // Rays are shared between neighbours: many must be left.
+    // Neighbours share rays, so the set must stay large.
     const auto receivers = thinned(std::span<const Receiver>(bench.receivers), 4000);
     std::uint64_t traced = 0;
     const Stopwatch watch;
@@ -59,7 +59,7 @@ double measure_openness(const CalibrationBench& bench) {
     return watch.seconds() / static_cast<double>(receivers.size());
 }
 
-// Of one row: transform of a cube map, selection, quantising.
+// Seconds per row: Haar transform of a cube map, selection, quantisation.
 double measure_encoding(std::uint32_t bands) {
     const std::size_t texels = formats::cubemap_texels(kCalibrationCubemap);
     const Selector selector = make_selector(kCalibrationCubemap, kCalibrationKept);
@@ -87,7 +87,7 @@ double measure_walk_event() {
     return watch.seconds() / (kPaths * count_walk_events(kAlbedo, 0, kEta));
 }
 
-// How much slower the same rays are while every other thread traces them, too.
+// Slow-down of the same rays while all other threads trace them too.
 double measure_crowding(const CalibrationBench& bench, unsigned threads) {
     const double alone = measure_coherent_ray(bench, 32);
     std::vector<double> together(threads);
@@ -102,7 +102,7 @@ double measure_crowding(const CalibrationBench& bench, unsigned threads) {
     return std::max(1.0, mean / alone);
 }
 
-// All but the test lights, with which the self-check is measured.
+// Everything but the self-check, which needs the test lights.
 Rates measure_all(std::span<const TestLight> lights, unsigned threads) {
     Rates rates;
     Stopwatch watch;
@@ -142,7 +142,7 @@ Rates measure_rates(unsigned threads) {
     const Stopwatch watch;
     const auto lights = make_test_lights(kCalibrationCubemap, 1);
     const double seconds = watch.seconds();
-    // Whatever disturbs a measurement makes it longer: of two the shorter is right.
+    // A disturbance can only lengthen a measurement: the shorter of two is right.
     std::vector<double> first;
     visit_rates(measure_all(*lights, threads),
                 [&](const char*, double rate) { first.push_back(rate); });

@@ -4,9 +4,9 @@
 
 namespace opaline::bake {
 
-/// Measures this machine: runs small pieces of every stage on a dented ball, for about two seconds.
-/// CPU time of the threads at work, not what the clock on the wall says: what else the machine does
-/// in the meantime counts little. `threads` >= 1: as many as a bake here would use at most.
+/// Measures seconds per unit of work on this machine: runs small pieces of every stage on a dented
+/// ball for a few seconds. Times are CPU times of the working threads, so other processes matter
+/// little. `threads` >= 1: the largest number that a bake here would use.
 Rates measure_rates(unsigned threads);
 
 }  // namespace opaline::bake

@@ -15,14 +15,14 @@
 
 namespace opaline::bake {
 
-/// What all measurements of a calibration share.
+/// Parameters that all measurements of a calibration share.
 inline constexpr std::uint32_t kCalibrationCubemap = 32, kCalibrationKept = 128;
 /// Cells along a side of the dented ball, of few triangles and of many.
 inline constexpr std::uint32_t kFewSide = 16, kManySide = 64;
 static_assert(12 * kFewSide * kFewSide == CostBySize::kFew);
 static_assert(12 * kManySide * kManySide == CostBySize::kMany);
 
-/// One thread, so that CPU time is that of the work.
+/// One thread, so that its CPU time is the time of the work.
 inline Context one_thread() {
     Context context;
     context.threads = 1;
@@ -40,7 +40,7 @@ std::vector<T> thinned(std::span<const T> all, std::size_t wanted) {
     return some;
 }
 
-/// The ball at one size, and what it takes to build it.
+/// The ball at one size, with the time to build it.
 struct CalibrationBench {
     formats::Scene scene;
     double triangles;

@@ -10,7 +10,7 @@ glm::vec3 dented(glm::vec3 n) {
     return (1 + 0.12f * std::sin(9 * n.x) * std::sin(8 * n.y) * std::sin(7 * n.z)) * n;
 }
 
-// From how the surface changes along two directions around it.
+// From central differences of the surface along two directions.
 glm::vec3 normal_at(glm::vec3 n) {
     constexpr float kStep = 1e-2f;
     const glm::vec3 helper = std::abs(n.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
@@ -21,13 +21,13 @@ glm::vec3 normal_at(glm::vec3 n) {
                    dented(glm::normalize(n + v)) - dented(glm::normalize(n - v))));
 }
 
-// One side of the cube that the ball is blown up from.
+// One side of the cube that is mapped to the ball.
 void append_side(formats::Primitive& p, glm::length_t axis, float sign, std::uint32_t n) {
     const auto base = static_cast<std::uint32_t>(p.position.size());
     const glm::length_t u = (axis + 1) % 3, v = (axis + 2) % 3;
     for (std::uint32_t j = 0; j <= n; ++j) {
         for (std::uint32_t i = 0; i <= n; ++i) {
-            // Exact at the edges, so that neighbouring sides meet in the same places.
+            // Exact at the edges, so that neighbouring sides share positions.
             const auto at = [n](std::uint32_t k) {
                 return (2 * static_cast<float>(k) - static_cast<float>(n)) / static_cast<float>(n);
             };
@@ -63,7 +63,7 @@ formats::Scene make_dented_ball(std::uint32_t n) {
     formats::Medium medium;
     medium.sigma_s = {88, 96, 80};
     medium.sigma_a = {12, 4, 20};
-    medium.profile = formats::Medium::Profile::classic;  // known at once, without a walk
+    medium.profile = formats::Medium::Profile::classic;  // needs no random walk
     scene.materials[0].medium = medium;
     scene.primitives.push_back(std::move(ball));
     return scene;

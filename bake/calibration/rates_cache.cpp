@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The processor's name; the same empty name on every machine that does not tell.
+// The processor's name, or an empty name where the system does not report one.
 std::string processor_name() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);) {
@@ -63,7 +63,7 @@ std::optional<Rates> read_rates(const std::filesystem::path& path, const Machine
     }
     std::ifstream file(path, std::ios::binary);
     const Json root = Json::parse(file, nullptr, false);
-    // Compared as written: names that are not UTF-8 are changed by writing.
+    // Compare with the text as written, because writing changes names that are not UTF-8.
     if (!root.is_object() || !root.contains("machine") || !root.contains("rates") ||
         dump(root["machine"]) != dump(key_json(machine))) {
         return std::nullopt;

@@ -9,7 +9,7 @@
 
 namespace opaline::bake {
 
-/// What measured rates hold for: this processor, as many threads, and this program.
+/// The key of a set of rates: processor, number of threads, program version.
 struct MachineKey {
     std::string processor;
     unsigned threads = 1;
@@ -19,14 +19,14 @@ struct MachineKey {
 /// The machine that the program runs on.
 MachineKey this_machine();
 
-/// Where rates are kept: $XDG_CACHE_HOME/opaline/calibration.json, or $HOME/.cache/opaline/ where
-/// the first is not set or not absolute. Empty where there is neither.
+/// $XDG_CACHE_HOME/opaline/calibration.json, or $HOME/.cache/opaline/calibration.json where the
+/// variable is not set or not absolute. Empty where neither variable is set.
 std::filesystem::path rates_path();
 
-/// The rates in a file; nothing if it is not there, not readable, damaged, or not of this machine.
+/// The rates in a file. Nothing if the file is missing, unreadable, damaged, or of another machine.
 std::optional<Rates> read_rates(const std::filesystem::path& file, const MachineKey& machine);
 
-/// Puts the rates into a file, whole or not at all; its folder is made if need be. Errors:
+/// Writes the rates to a file, whole or not at all, and creates its folder if necessary. Errors:
 /// resource.
 formats::Status write_rates(const std::filesystem::path& file, const MachineKey& machine,
                             const Rates& rates);

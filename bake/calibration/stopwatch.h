@@ -4,12 +4,12 @@
 
 namespace opaline::bake {
 
-/// CPU time of the calling thread: what others do on the machine counts little.
+/// CPU time of the calling thread, on which other processes have little influence.
 class Stopwatch {
   public:
     Stopwatch() : start_(now()) {}
     void restart() { start_ = now(); }
-    /// Since the start [s]. At least a nanosecond: what is measured takes time.
+    /// Since the start [s], at least 1 ns, so that rates stay finite.
     double seconds() const {
         const double passed = now() - start_;
         return passed > 1e-9 ? passed : 1e-9;

@@ -123,8 +123,7 @@ Result<Comparison> compare_tables(const FileBytes& file_a, const std::filesystem
     std::vector<Rgb> values_a, values_b;
     const auto key = [](const RelightRow& row) { return std::tuple(row.primitive, row.vertex); };
     if (has_standard_errors(file_b)) {
-        // Ground truth has a row for some receivers only: the others have nothing to be compared
-        // with.
+        // A table of `reference` has rows for some receivers only. The other receivers are skipped.
         std::erase_if(*rows_a, [&](const RelightRow& row) {
             return !std::binary_search(
                 rows_b->begin(), rows_b->end(), row,

@@ -9,7 +9,7 @@
 
 namespace opaline::bake {
 
-/// How far the tested values A are from the reference values B. The error of an element (pixel or
+/// The difference of tested values A from reference values B. The error of an element (pixel or
 /// receiver) is the root mean square of its three bands' differences, |a - b| / sqrt(3).
 struct Comparison {
     double rmse = 0;           ///< root mean square of the elements' errors

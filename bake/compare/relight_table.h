@@ -13,7 +13,7 @@
 
 namespace opaline::bake {
 
-/// One row of a relight table: what a receiver sends out.
+/// One row of a relight table: the outgoing radiance of a receiver.
 struct RelightRow {
     std::uint32_t primitive = 0, vertex = 0;  ///< numbering of formats::Scene
     formats::Rgb radiance;                    ///< [W m^-2 sr^-1], linear Rec. 709

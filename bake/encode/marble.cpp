@@ -11,12 +11,12 @@ namespace {
 using formats::Rgb;
 
 constexpr int kOctaves = 5;
-constexpr double kDistortion = 2;      // how far veins wander, in distances between them
+constexpr double kDistortion = 2;  // amplitude of the veins' distortion, in distances between veins
 constexpr double kLargestFeature = 2;  // of the noise, in the same unit
 const glm::dvec3 kAcross = glm::normalize(glm::dvec3(0.8, 0.5, 0.6));
 
-// GLM's noise repeats after this many units on each axis: folded in double precision, positions far
-// away stay finite.
+// GLM's noise repeats after this many units on each axis. Folding in double precision keeps
+// positions far away finite.
 double fold(double x) {
     constexpr double kPeriod = 289;
     return x - kPeriod * std::floor(x / kPeriod);

@@ -72,7 +72,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         record.vertex_count = static_cast<std::uint32_t>(p.position.size());
         record.first_index = static_cast<std::uint32_t>(asset.index.size());
         record.index_count = static_cast<std::uint32_t>(p.index.size());
-        // Rows, band rows and codes are numbered on from primitive to primitive.
+        // Rows, band rows and codes are numbered consecutively over the primitives.
         const std::uint32_t count = record.vertex_count * layout.terms();
         record.first_row = rows;
         record.terms = layout.terms();

@@ -58,7 +58,7 @@ formats::SparseRow select_coefficients(const Selector& selector,
                 (bands == 1 ? 1.0f : kLuminance[band]) * coefficients[band * size + k];
             squares += value * value;
         }
-        // The square of the score: same order, no square root.
+        // The square of the score has the same order and needs no square root.
         score[k] = selector.weight[k] * selector.weight[k] * squares;
     }
     formats::SparseRow row;

@@ -10,15 +10,15 @@
 
 namespace opaline::bake {
 
-/// Non-linear approximation of transport vectors (translucency.md 3.9).
+/// Non-linear approximation of transport vectors after [Ng2003] (encode/README.md).
 struct Selector {
     std::uint32_t cubemap_size = 0;
     std::uint32_t kept = 0;     ///< M per row, the six face averages included
     std::vector<float> weight;  ///< side^beta of each coefficient's support; face averages: 0
 };
 
-/// `area_prior` is beta in [0, 1]: 0 keeps the L2-best coefficients, larger values prefer coarse
-/// ones, of which natural light has more. Default 1/2.
+/// `area_prior` is beta in [0, 1]: 0 keeps the L2-optimal coefficients. Larger values prefer coarse
+/// ones, which natural light excites more.
 Selector make_selector(std::uint32_t cubemap_size, std::uint32_t kept, float area_prior = 0.5f);
 
 /// Keeps the face averages and the `kept` - 6 details that score highest,

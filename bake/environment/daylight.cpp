@@ -46,7 +46,7 @@ Xyz matching(double nm) {
             1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)};
 }
 
-/// Share of sunlight that gets through `mass` atmospheres.
+/// Transmittance of `mass` atmospheres.
 double transmittance(double nm, double turbidity, double mass) {
     const double um = 1e-3 * nm;
     const double molecules = 0.008735 * std::pow(um, -4.08);

@@ -27,8 +27,8 @@ Xyz eval_perez_sky(const PerezSky& sky, double cos_theta, double gamma);
 /// 128 klx outside the atmosphere, dimmed along the relative optical mass by molecules, aerosol
 /// (Angstrom's formula with the turbidity's coefficient, exponent 1.3) and 0.35 cm of ozone, the
 /// transmittances that [Preetham1999] gives in its appendix. Water vapour and mixed gases are left
-/// out: they absorb beyond 680 nm, where the eye sees almost nothing. The colour matching functions
-/// are the analytic fit of [Wyman2013].
+/// out, because they absorb beyond 680 nm, where the colour matching functions almost vanish. The
+/// colour matching functions are the analytic fit of [Wyman2013].
 Xyz sun_irradiance(double turbidity, double sun_zenith);
 
 /// XYZ to linear Rec. 709 (D65); colours outside the gamut have negative components.

@@ -7,9 +7,9 @@
 namespace opaline::bake {
 
 /// A photographer's studio for translucent statues, 1024 x 512: a large warm key light at the left
-/// front, a weak broad fill at the right, two tall cool strips behind (the light that shines
-/// through thin parts), an overhead panel, a dim backdrop and a darker floor. Radiance at most 15,
-/// mean over the sphere about 0.5; every edge is smooth.
+/// front, a weak broad fill at the right, two tall cool strips behind, which light thin parts from
+/// the back, an overhead panel, a dim backdrop and a darker floor. Radiance at most 15, mean over
+/// the sphere about 0.5; every edge is smooth.
 formats::Environment make_studio();
 
 /// Clear daylight sky with its sun as a disc, 1024 x 512, after [Preetham1999]: luminance and

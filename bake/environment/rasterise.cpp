@@ -60,7 +60,7 @@ void rasterise_map(const Environment& environment, Image& image) {
     }
 }
 
-/// Adds a disc: the share of each pixel that it covers, then one factor that makes its flux exact.
+/// Adds a disc by its coverage of each pixel, then scales it to the exact flux.
 void add_disc(const DistantDisc& disc, Image& image) {
     const double width = image.width, height = image.height;
     const Point center{double{disc.direction.x}, double{disc.direction.y},
@@ -71,12 +71,12 @@ void add_disc(const DistantDisc& disc, Image& image) {
         return std::pow(p.x - center.x, 2) + std::pow(p.y - center.y, 2) +
                std::pow(p.z - center.z, 2);
     };
-    // No point of a pixel is farther from its centre than half its sides' lengths together.
+    // A point of a pixel is at most half the sum of the side lengths away from its centre.
     const double reach = kPi * (1 / width + 0.5 / height);
     const double outer = std::min(radius + reach, kPi), inner = std::max(radius - reach, 0.0);
     const double far_squared = 4 * std::pow(std::sin(0.5 * outer), 2);
     const double near_squared = 4 * std::pow(std::sin(0.5 * inner), 2);
-    // Sub-pixels an eighth of the radius apart, so that even a tiny disc is seen.
+    // Sub-pixels are an eighth of the radius apart, so that a tiny disc still covers some.
     const double pixel_size = kPi * std::max(2 / width, 1 / height);
     const int k = static_cast<int>(std::clamp(8 * pixel_size / radius, 16.0, 2048.0));
 
@@ -131,7 +131,7 @@ void add_disc(const DistantDisc& disc, Image& image) {
 }  // namespace
 
 double lat_long_pixel_solid_angle(std::uint32_t width, std::uint32_t height, std::uint32_t row) {
-    // cos a - cos b as a product: the rows at the poles would cancel.
+    // cos a - cos b as a product, which does not cancel at the poles.
     const double middle = kPi * (row + 0.5) / height, half = 0.5 * kPi / height;
     return 2 * kPi / width * 2 * std::sin(middle) * std::sin(half);
 }

@@ -14,7 +14,7 @@ namespace opaline::bake {
 formats::Image rasterise_lat_long(const formats::Environment& environment, std::uint32_t width,
                                   std::uint32_t height);
 
-/// Exact solid angle [sr] of any pixel in a row of a lat-long image (all columns are alike).
+/// Exact solid angle [sr] of a pixel in a row of a lat-long image; it is the same in all columns.
 double lat_long_pixel_solid_angle(std::uint32_t width, std::uint32_t height, std::uint32_t row);
 
 }  // namespace opaline::bake

@@ -74,8 +74,8 @@ Environment make_sky(double turbidity, double elevation, double azimuth) {
         }
     }
 
-    // Lower half: a diffuse ground, hazed into the horizon over three degrees so that no hard line
-    // shows in reflections and backgrounds.
+    // Lower half: a diffuse ground. It fades into the horizon over three degrees, so that
+    // reflections and backgrounds show no hard line.
     const Color albedo{0.21, 0.19, 0.16};
     const double haze = std::sin(3 * kPi / 180);
     for (std::uint32_t row = kHeight / 2; row < kHeight; ++row) {
@@ -92,7 +92,7 @@ Environment make_sky(double turbidity, double elevation, double azimuth) {
         }
     }
 
-    // The luminance of a horizontal white diffuse surface, E / pi, becomes 1.
+    // Scale the luminance of a horizontal white diffuse surface, E / pi, to 1.
     const double scale = kPi / luminance_of(irradiance);
     Environment environment;
     environment.width = kWidth;

@@ -20,7 +20,7 @@ float smooth(float from, float to, float value) {
     return t * t * (3 - 2 * t);
 }
 
-/// A lit rectangle with rounded corners on a stand, seen from the origin.
+/// A bright rectangle with rounded corners, seen from the origin.
 struct SoftBox {
     Vec3 center, right, up;         ///< unit, orthogonal
     float half_width, half_height;  ///< in the plane at distance 1
@@ -60,7 +60,7 @@ Rgb eval_room(Vec3 d) {
     const Rgb below = (1 - fall) * floor_far + fall * floor_near;
     const float horizon = smooth(-0.16f, 0.10f, d.y);  // a curved backdrop has no edge
     Rgb color = (1 - horizon) * below + horizon * above;
-    // A lamp on the wall behind the object, so that a dark outline stands out against it.
+    // A lamp on the wall behind the object separates its dark outline from the backdrop.
     const Vec3 behind = direction_of(180, 6);
     const float glow = std::exp(-5.0f * (1 - dot(d, behind)));
     return color + (0.30f * glow * (0.35f + 0.65f * horizon)) * Rgb{0.92f, 0.97f, 1.06f};

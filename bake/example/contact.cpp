@@ -11,7 +11,7 @@
 namespace opaline::bake {
 namespace {
 
-// The point between the vertices a and b, one with a value below 0, where the value is 0.
+// The point between a and b at which the value is 0; exactly one of them has a value below 0.
 glm::dvec3 find_crossing(const Field& solid, double gap, const TriangleMesh& floor,
                          const std::vector<double>& value, std::uint32_t a, std::uint32_t b) {
     glm::dvec3 inside = floor.position[std::min(a, b)], outside = floor.position[std::max(a, b)];
@@ -30,8 +30,8 @@ double area_from_above(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     return 0.5 * ((c.x - a.x) * (b.z - a.z) - (b.x - a.x) * (c.z - a.z));
 }
 
-// Makes the moves, short ones first, leaving out those that would crush a triangle or turn it over.
-// Vertices moved are on the curve: their value becomes 0.
+// Makes the moves, short ones first. Skips moves that would flatten or flip a triangle. Vertices
+// moved are on the curve: their value becomes 0.
 void move_vertices(const std::vector<double>& distance, const std::vector<glm::dvec3>& target,
                    std::vector<double>& value, TriangleMesh& floor) {
     constexpr double kLeastShare = 0.1;  // of a triangle's area
@@ -131,7 +131,7 @@ void split(const Field& solid, double gap, std::vector<double>& value, TriangleM
         }
         const std::uint32_t ca = crossing_of(c, a);
         pieces.push_back({a, ab, ca});
-        // Of the quadrangle that is left, the shorter diagonal.
+        // Split the remaining quadrangle along its shorter diagonal.
         if (glm::distance(floor.position[ab], floor.position[c]) <
             glm::distance(floor.position[b], floor.position[ca])) {
             pieces.insert(pieces.end(), {{ab, b, c}, {ab, c, ca}});

@@ -19,7 +19,7 @@ struct Edge {
 /// shared by exactly two triangles of opposite direction are left out.
 std::vector<Edge> find_edges(const TriangleMesh& mesh);
 
-/// Which triangles touch each vertex: those of vertex v are triangle[begin[v]] ... [begin[v + 1]).
+/// Triangles around each vertex: vertex v has triangle[begin[v]] ... [begin[v + 1]).
 struct VertexTriangles {
     std::vector<std::size_t> begin;
     std::vector<std::uint32_t> triangle;

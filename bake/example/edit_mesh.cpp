@@ -28,8 +28,8 @@ struct RankedEdge {
     friend auto operator<=>(const RankedEdge&, const RankedEdge&) = default;
 };
 
-/// The edges whose relative length lies in (low, high), shortest first; ties by index keep the
-/// order the same everywhere.
+/// The edges whose relative length lies in (low, high), shortest first; ties by index, so that the
+/// order is reproducible.
 std::vector<RankedEdge> rank_edges(const TriangleMesh& mesh, const std::vector<double>& target,
                                    const std::vector<Edge>& edges, double low, double high) {
     std::vector<RankedEdge> rank;
@@ -59,8 +59,8 @@ std::vector<std::uint32_t> neighbours(const TriangleMesh& mesh, const VertexTria
     return found;
 }
 
-/// Whether the triangles around `v`, save those that also hold `other`, keep facing the way they
-/// do and do not become slivers when v moves to `to`.
+/// True if moving `v` to `to` neither flips its triangles, except those that contain `other`, nor
+/// makes slivers of them.
 bool may_move(const TriangleMesh& mesh, const VertexTriangles& ring, std::uint32_t v,
               std::uint32_t other, const glm::dvec3& to) {
     for (std::size_t i = ring.begin[v]; i < ring.begin[v + 1]; ++i) {
@@ -144,8 +144,7 @@ void collapse_short_edges(TriangleMesh& mesh, std::vector<double>& target) {
         const auto rank = rank_edges(mesh, target, edges, -1.0, 0.8);
         if (rank.empty()) break;
         const VertexTriangles ring = find_vertex_triangles(mesh);
-        // Vertices near an edit are left alone until the next pass, so `ring` stays true for the
-        // others.
+        // Vertices near an edit wait for the next pass, so `ring` stays valid for the others.
         std::vector<bool> locked(mesh.position.size(), false);
         for (const RankedEdge& short_edge : rank) {
             const std::uint32_t a = edges[short_edge.index].a, b = edges[short_edge.index].b;
@@ -204,7 +203,7 @@ void flip_to_delaunay(TriangleMesh& mesh) {
                 const glm::dvec3 u = p[a] - p[apex], v = p[b] - p[apex];
                 return glm::dot(u, v) / std::max(glm::length(glm::cross(u, v)), 1e-12);
             };
-            // A negative sum of cotangents: the angles add up to more than half a turn.
+            // A negative sum of cotangents: the angles sum to more than 180 degrees.
             if (cotangent(c) + cotangent(d) >= -1e-6) continue;
             const Triangle left{c, a, d}, right{d, b, c};
             const glm::dvec3 n0 = area_vector(mesh, mesh.triangles[edge.left]),

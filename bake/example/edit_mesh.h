@@ -13,11 +13,11 @@ namespace opaline::bake {
 /// Halves edges longer than 4/3 of their target, longest first within what one pass can reach.
 void split_long_edges(TriangleMesh& mesh, std::vector<double>& target);
 
-/// Merges the ends of edges shorter than 4/5 of their target, where that folds nothing over.
+/// Collapses edges shorter than 4/5 of their target, where no triangle folds over.
 void collapse_short_edges(TriangleMesh& mesh, std::vector<double>& target);
 
-/// Turns edges whose opposite angles add up to more than half a turn, where the surface is nearly
-/// flat across them.
+/// Flips edges whose opposite angles sum to more than 180 degrees, where the surface is nearly flat
+/// across them.
 void flip_to_delaunay(TriangleMesh& mesh);
 
 }  // namespace opaline::bake

@@ -30,8 +30,8 @@ struct Grid {
     }
 };
 
-/// Samples one block of nodes; far from the surface the value at the centre stands for all, since
-/// only its sign matters there.
+/// Samples one block of nodes. Far from the surface the value at the centre is used for all,
+/// because only its sign matters.
 void sample_block(const Field& field, Grid& grid, std::size_t bx, std::size_t by, std::size_t bz) {
     const std::size_t x1 = std::min(bx + kBlock, grid.nx), y1 = std::min(by + kBlock, grid.ny),
                       z1 = std::min(bz + kBlock, grid.nz);
@@ -85,16 +85,15 @@ std::size_t cell_edge(unsigned a, unsigned b) {
     return 3 * std::min(a, b) + axis;
 }
 
-/// Where the surface's outline leads from each crossed edge of a cell to the next, kCellEdges where
-/// an edge is not crossed; true if some face could be cut in two ways.
+/// For each crossed edge of a cell, the next edge of the surface's outline, or kCellEdges if the
+/// edge is not crossed. True if some face is ambiguous.
 bool link_outline(const bool (&inside)[8], std::size_t (&next)[kCellEdges]) {
     std::fill(std::begin(next), std::end(next), kCellEdges);
     bool ambiguous = false;
     for (const auto& face : kFaces) {
         for (unsigned k = 0; k < 4; ++k) {
-            // Around the face, the outline runs from where one enters the solid to where one left
-            // it before: so opposite inside corners are joined, and cells that share the face
-            // agree.
+            // Around the face, the outline runs from an entry into the solid to the preceding exit.
+            // Opposite inside corners are thereby joined, and cells that share the face agree.
             if (inside[face[k]] || !inside[face[(k + 1) % 4]]) continue;
             unsigned left = (k + 3) % 4;
             while (!inside[face[left]] || inside[face[(left + 1) % 4]]) {
@@ -186,7 +185,8 @@ TriangleMesh polygonize(const Field& field, const Box& bounds, double cell) {
             const double there = grid.value[node + step[axis]];
             if ((here < 0.0) == (there < 0.0)) continue;
             glm::dvec3 p(x, y, z);
-            // Kept off the grid's nodes, where vertices of several edges would coincide.
+            // Keep a distance from the grid's nodes, where vertices of several edges would
+            // coincide.
             p[static_cast<int>(axis)] += std::clamp(here / (here - there), 0.02, 0.98);
             vertex_of[3 * node + axis] = static_cast<std::uint32_t>(mesh.position.size());
             mesh.position.push_back(grid.point(p.x, p.y, p.z));

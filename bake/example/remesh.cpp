@@ -54,8 +54,8 @@ std::vector<double> edge_targets(const TriangleMesh& mesh, const RemeshOptions& 
     return target;
 }
 
-/// Moves each vertex along the surface toward the middle of its triangles, large ones (for the
-/// target there) pulling harder.
+/// Moves each vertex along the surface toward the centroid of its triangles, weighted by area over
+/// target.
 void relax(const std::vector<double>& target, TriangleMesh& mesh) {
     const VertexTriangles ring = find_vertex_triangles(mesh);
     std::vector<glm::dvec3> moved(mesh.position.size());

@@ -5,7 +5,7 @@
 
 namespace opaline::bake {
 
-/// How fine a remeshed surface is.
+/// Resolution of a remeshed surface.
 struct RemeshOptions {
     double shortest = 0.6;    ///< target edge where the surface bends most [mm]
     double longest = 1.6;     ///< target edge where it is flat [mm]
@@ -16,8 +16,8 @@ struct RemeshOptions {
 /// Turns a rough closed mesh of a solid's surface into one of nearly equilateral triangles whose
 /// vertices lie on the surface and whose size follows its curvature; fills in the normals from the
 /// field's gradient. Rounds of splitting long edges, collapsing short ones, flipping to Delaunay
-/// and relaxing along the surface, after [Botsch and Kobbelt 2004, A remeshing approach to
-/// multiresolution modeling]. Keeps the mesh closed, manifold and of the same genus.
+/// and relaxing along the surface, after [Botsch2004]. Keeps the mesh closed, manifold
+/// and of the same genus.
 /// Same result for any number of threads.
 void remesh(const Field& field, const RemeshOptions& options, TriangleMesh& mesh);
 

@@ -6,8 +6,8 @@
 
 namespace opaline::bake {
 
-/// A smooth spine with a radius along it: a uniform cubic B-spline through its two end points,
-/// twice differentiable, so that a tube around it shows no rings.
+/// A smooth spine with a radius along it: a uniform cubic B-spline through its two end points. It
+/// is twice differentiable, so a tube around it shows no rings.
 class TaperedCurve {
   public:
     /// `control`: at least two points as (x, y, z, radius) [mm].
@@ -37,7 +37,7 @@ class TaperedCurve {
 
     std::vector<std::array<glm::dvec4, 4>> spans_;  ///< polynomials, constant term first
     std::vector<glm::dvec3> samples_;  ///< even in the parameter: where the search begins
-    double reach_ = 0.0;               ///< no point of the tube is farther from its chord
+    double reach_ = 0.0;               ///< largest distance of a point of the tube from its chord
     double chord_distance(const glm::dvec3& p) const;
 };
 

@@ -11,7 +11,7 @@
 
 namespace opaline::bake {
 
-/// The knobs and the measured error as they stand in provenance and report.
+/// The knobs and the measured error, as provenance and report state them.
 nlohmann::ordered_json knobs_json(const Knobs& knobs);
 nlohmann::ordered_json error_json(const ErrorReport& error);
 /// Without the seconds, which differ from run to run.

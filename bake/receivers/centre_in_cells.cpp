@@ -10,7 +10,7 @@
 namespace opaline::bake {
 namespace {
 
-// The nearest of the points on the same side of the surface, or of all if there is none.
+// The nearest point on the same side of the surface, or the nearest of all if that side has none.
 std::uint32_t find_nearest(const std::vector<SurfacePoint>& points,
                            const std::vector<std::uint32_t>& candidates, const SurfacePoint& to) {
     std::uint32_t nearest = 0;
@@ -29,11 +29,11 @@ std::uint32_t find_nearest(const std::vector<SurfacePoint>& points,
     return nearest;
 }
 
-// The cell of every point of `dense`: a place in `points`.
+// The cell of every point of `dense`, as an index into `points`.
 std::vector<std::uint32_t> assign(const std::vector<SurfacePoint>& points,
                                   const std::vector<SurfacePoint>& dense, double spacing,
                                   const Context& context) {
-    // Of a maximal set no place on the surface is farther than about one spacing.
+    // In a maximal set no position on the surface is farther than about one spacing from a point.
     const PointGrid grid(points, static_cast<float>(1.2 * spacing));
     std::vector<std::uint32_t> all(points.size());
     std::iota(all.begin(), all.end(), 0u);
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> assign(const std::vector<SurfacePoint>& points,
         dense.size(), 4096, context,
         [&](Range range) {
             std::vector<std::uint32_t> found, around;
-            std::uint64_t at = 0;  // the cell that `around` is of
+            std::uint64_t at = 0;  // the cell whose neighbours `around` holds
             for (std::size_t k = range.begin; k < range.end; ++k) {
                 const std::uint64_t here = grid.cell_of(dense[k].position);
                 if (k == range.begin || here != at) {

@@ -17,7 +17,7 @@ struct Neighbour {
     float crowding;
 };
 
-// Of every point, those nearer than some radius on the same side.
+// For every point, its neighbours within a radius on the same side.
 struct Neighbours {
     std::vector<std::size_t> begin, end;  // into `list`
     std::vector<Neighbour> list;
@@ -73,8 +73,8 @@ Neighbours find_neighbours(const std::vector<SurfacePoint>& points, float radius
     return all;
 }
 
-// Takes away the most crowded until `count` are left; those that are crowded alike to a few per
-// cent in any order: a heap would say which of them is first, and cost more than all the rest.
+// Removes the most crowded points until `count` are left. Points whose crowding differs by a few
+// per cent go in any order: the exact order needs a heap, which costs more than all the rest.
 std::vector<std::uint32_t> thin_out(const Neighbours& neighbours, std::vector<double> weight,
                                     std::size_t count) {
     std::vector<std::uint32_t> left(weight.size());

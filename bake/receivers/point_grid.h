@@ -11,8 +11,8 @@
 
 namespace opaline::bake {
 
-/// Normals at more than 120 degrees belong to different sides of a sheet; those of a box's edge do
-/// not.
+/// Normals more than 120 degrees apart belong to different sides of a sheet. Normals at the edge of
+/// a box are 90 degrees apart.
 inline bool on_same_side(glm::vec3 normal_a, glm::vec3 normal_b) {
     return glm::dot(normal_a, normal_b) > -0.5f;
 }
@@ -46,7 +46,7 @@ class PointGrid {
         return std::span(order_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
     }
 
-    /// All points of the 27 cells around the one that cell_of names.
+    /// All points of the 27 cells around cell `key` (cell_of).
     void collect_around(std::uint64_t key, std::vector<std::uint32_t>& around) const {
         around.clear();
         for (std::uint64_t k = 0; k < 27; ++k) {
@@ -60,7 +60,7 @@ class PointGrid {
         }
     }
 
-    /// Names the cell of a position.
+    /// Key of the cell that holds a position.
     std::uint64_t cell_of(glm::vec3 position) const {
         const glm::ivec3 c(glm::floor(position / cell_));
         return pack(static_cast<std::uint64_t>(c.x) + 1, static_cast<std::uint64_t>(c.y) + 1,
@@ -69,7 +69,8 @@ class PointGrid {
     std::uint64_t name_of(std::size_t cell) const { return keys_[cell]; }
 
   private:
-    // Coordinates wrap around; `pack` takes them one too large, so that neighbours are 0, 1, 2 on.
+    // Coordinates wrap around. `pack` expects them one too large, so that neighbours are +0, +1,
+    // +2.
     static constexpr std::uint64_t kBits = 21, kMask = (std::uint64_t{1} << kBits) - 1;
     static std::uint64_t pack(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
         return ((x - 1) & kMask) | ((y - 1) & kMask) << kBits | ((z - 1) & kMask) << (2 * kBits);

@@ -7,7 +7,7 @@
 namespace opaline::bake {
 namespace {
 
-// Two zero bits after each of the ten lowest.
+// Spreads the ten lowest bits, two zero bits after each.
 std::uint32_t spread_bits(std::uint32_t x) {
     x = (x | (x << 16)) & 0x030000ffu;
     x = (x | (x << 8)) & 0x0300f00fu;
@@ -33,7 +33,7 @@ std::vector<std::uint32_t> spatial_order(std::span<const glm::vec3> positions) {
         std::uint32_t code = 0;
         for (glm::length_t axis = 0; axis < 3; ++axis) {
             const float cell = scale * (positions[i][axis] - low[axis]);
-            // Written so that NaN falls into the first cell.
+            // This form of the comparison puts NaN into the first cell.
             const float clamped = cell > 0 ? std::min(cell, kLastCell) : 0.0f;
             code |= spread_bits(static_cast<std::uint32_t>(clamped)) << axis;
         }

@@ -18,7 +18,7 @@ struct SurfacePoint {
     glm::vec3 position{0}, normal{0};  ///< [m]; unit normal of the facet
 };
 
-/// The triangles of some primitives that have an area, in order.
+/// The triangles of some primitives with an area above 0, in order.
 struct AreaTable {
     struct Triangle {
         std::uint32_t primitive, first_index;

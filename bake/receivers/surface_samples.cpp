@@ -15,8 +15,8 @@ namespace {
 using formats::Primitive;
 using formats::Scene;
 
-// Where the smooth surface suggested by the vertex normals lies above the facet: the point, moved
-// out of each vertex's tangent plane, averaged [Hanika2021].
+// The offset from the facet to the smooth surface [Hanika2021]: the mean offset to the vertices'
+// tangent planes, counting those that the point lies below.
 glm::vec3 lift_to_smooth_surface(const Primitive& p, const SurfacePoint& c) {
     glm::vec3 lift(0);
     for (glm::length_t k = 0; k < 3; ++k) {

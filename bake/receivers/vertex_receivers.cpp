@@ -84,7 +84,7 @@ Fans collect_fans(const Scene& scene) {
     return fans;
 }
 
-// How far the triangles of a point rise above its tangent plane [m].
+// Height of a point's triangles above its tangent plane [m].
 float fold_height(const Fans& fans, std::uint32_t point, glm::vec3 position, glm::vec3 normal) {
     float height = 0;
     for (std::size_t i = 2 * std::size_t{fans.offset[point]};

@@ -4,7 +4,7 @@
 
 namespace opaline::bake {
 
-/// What a smooth dielectric boundary does to a ray.
+/// Reflection and transmission of a ray at a smooth dielectric boundary.
 struct BoundarySplit {
     float reflectance = 0;     ///< unpolarised Fresnel reflectance in [0, 1]; 1: total reflection
     glm::vec3 reflected{0};    ///< unit
@@ -15,9 +15,9 @@ struct BoundarySplit {
 /// dot(direction, normal) < 0. `ratio`: index of refraction beyond over index on this side, > 0.
 BoundarySplit split_at_boundary(glm::vec3 direction, glm::vec3 normal, float ratio);
 
-/// The same for an interpolated normal that may disagree with the triangle: where it sends a ray
-/// to the wrong side of the triangle, the triangle's own normal is used instead. Both normals
-/// point away from the same side; the triangle's is against the direction.
+/// The same for an interpolated normal. Where it sends a ray to the wrong side of the triangle, the
+/// triangle's own normal is used instead. Both normals point away from the same side; the
+/// triangle's normal is against the direction.
 BoundarySplit split_at_smooth_boundary(glm::vec3 direction, glm::vec3 smooth, glm::vec3 flat,
                                        float ratio);
 

@@ -18,7 +18,7 @@ ClearanceGrid::ClearanceGrid(const HitScene& surfaces, float cell) {
         return;
     }
     per_cell_ = 1 / cell_;
-    // Half a cell is left around: what is rounded stays inside.
+    // A margin of half a cell keeps rounded positions inside.
     size_ = glm::uvec3(glm::ceil(2.0f * half * per_cell_)) + 1u;
     count_ = glm::vec3(size_);
     low_ = surfaces.centre() - 0.5f * cell_ * count_;
@@ -30,8 +30,8 @@ ClearanceGrid::ClearanceGrid(const HitScene& surfaces, float cell) {
     measure_distances();
 }
 
-// 0 in all cells that a triangle touches, and in some that it only comes near. False, and left half
-// way, where triangles as large as the scene are so many that all have to be looked at in turn.
+// Sets 0 in all cells that a triangle touches, and in some cells near it. Returns false, with the
+// grid incomplete, if large triangles visit more than kMostVisits cells.
 bool ClearanceGrid::mark_triangles(const HitScene& surfaces) {
     constexpr float kRounding = 1e-3f;                             // of a cell
     constexpr std::uint64_t kMostVisits = std::uint64_t{1} << 28;  // a second or so
@@ -47,8 +47,8 @@ bool ClearanceGrid::mark_triangles(const HitScene& surfaces) {
             const glm::uvec3 first(glm::max(glm::min(glm::min(a, b), c) - kRounding, 0.0f));
             const glm::uvec3 last =
                 glm::min(glm::uvec3(glm::max(glm::max(a, b), c) + kRounding), size_ - 1u);
-            // A cell is cut by the plane if its centre is no farther from it than its corners
-            // reach.
+            // The plane cuts the cell if the centre's distance to it is at most the projected half
+            // diagonal.
             const glm::vec3 across = glm::abs(n);
             const glm::uvec3 extent = last - first + 1u;
             visits += std::uint64_t{extent.x} * extent.y * extent.z;
@@ -72,7 +72,7 @@ bool ClearanceGrid::mark_triangles(const HitScene& surfaces) {
 }
 
 // Steps to the nearest marked cell, diagonal ones included, in two passes over all neighbours that
-// lie before and behind [Rosenfeld1968]; then one fewer: a point may be anywhere in its cell.
+// precede and follow [Rosenfeld1968]; minus one step, because a point may be anywhere in its cell.
 void ClearanceGrid::measure_distances() {
     const glm::ivec3 size(size_);
     const auto pass = [&](int direction) {
@@ -83,7 +83,7 @@ void ClearanceGrid::measure_distances() {
                         direction > 0 ? glm::ivec3(i, j, k) : size - 1 - glm::ivec3(i, j, k);
                     std::uint8_t& own = clear_[index(glm::uvec3(at))];
                     for (int n = 0; n < 13 && own > 0; ++n) {
-                        // The 13 of 27 that come before the middle.
+                        // The 13 of 27 neighbours before the middle.
                         const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
                         const glm::ivec3 other = at + direction * step;
                         if (glm::all(glm::greaterThanEqual(other, glm::ivec3(0))) &&

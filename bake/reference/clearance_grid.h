@@ -8,15 +8,16 @@
 
 namespace opaline::bake {
 
-/// How far surfaces are at least, by cells of a grid: flights that are shorter need no ray. Deep in
-/// a dense medium nearly all are, and the walk stays the same, bit by bit.
+/// Lower bounds on the distance to the nearest surface, per cell of a grid. A shorter flight needs
+/// no ray, which holds for nearly all flights deep in a dense medium. The results keep the same
+/// bits.
 class ClearanceGrid {
   public:
-    /// Knows nothing: 0 everywhere.
+    /// The trivial bound: 0 everywhere.
     ClearanceGrid() = default;
     /// Around all triangles, in cells of `cell` [m] > 0 or, if those would be too many, of a 128th
-    /// of the longest side. Nothing is known of a scene of less than 8 cells, nor of one whose
-    /// triangles lie in so many that looking for them would take longer than the rays it saves.
+    /// of the longest side. The bound is 0 for scenes of fewer than 8 cells, and where triangles
+    /// lie in so many cells that the grid would cost more than the rays that it saves.
     ClearanceGrid(const HitScene& surfaces, float cell);
 
     /// Lower bound [m] of the distance from a position to the nearest triangle; 0 outside of the
@@ -40,7 +41,7 @@ class ClearanceGrid {
     glm::vec3 low_{0}, count_{0};  ///< cells along each axis: size_ as floats
     glm::uvec3 size_{0};
     float cell_ = 0, per_cell_ = 0;
-    std::vector<std::uint8_t> clear_;  ///< whole cells free of triangles on all sides of a cell
+    std::vector<std::uint8_t> clear_;  ///< number of whole cells without triangles around each cell
 };
 
 }  // namespace opaline::bake

@@ -38,8 +38,8 @@ formats::Result<Estimate> estimate_pixels(
     const auto elapsed = [&] {
         return std::chrono::duration<double>(Clock::now() - start).count();
     };
-    // A round is some samples of every pixel, cut into pieces of equal size: few pixels keep all
-    // threads busy too. The pieces do not depend on the number of threads.
+    // A round takes some samples of every pixel, in pieces of equal size, so that few pixels also
+    // occupy all threads. The pieces do not depend on the number of threads.
     constexpr std::uint32_t kPerPiece = 16;
     const std::uint32_t pieces = std::clamp(256 / std::max(count, 1u), 1u, 64u);
     struct Piece {

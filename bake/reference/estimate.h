@@ -23,27 +23,29 @@ struct Moments {
     glm::dvec3 variance_of_mean() const;
 };
 
-/// How long an estimate goes on.
+/// Effort of an estimate.
 struct EstimateOptions {
     std::uint32_t samples = 64;  ///< for each pixel or receiver, >= 1
-    std::uint32_t first = 0;     ///< number of the first one: an estimate over samples 0 to 99 is
-                                 ///< that over 0 to 49 merged with that over 50 to 99
-    double seconds = 0;          ///< 0: no limit; else also stop after the round in which the time
-                                 ///< ran out, when all have the same number of samples
+    /// number of the first sample: the estimate over samples 0 to 99 equals those over 0 to 49 and
+    /// 50 to 99, merged
+    std::uint32_t first = 0;
+    /// 0: no limit; else also stop after the round in which the time runs out, with equal sample
+    /// counts
+    double seconds = 0;
     std::uint64_t seed = 0;
 };
 
 struct Estimate {
     std::vector<Moments> pixel;
     std::uint32_t samples = 0;  ///< taken for each
-    std::uint64_t lost = 0;     ///< paths that got lost (PathSample)
+    std::uint64_t lost = 0;     ///< lost paths (PathSample)
     std::uint64_t events = 0;   ///< of all paths
     double seconds = 0;
 };
 
 /// Estimates `count` pixels. `sample(pixel, random)` must be a pure function; it runs on all
-/// threads. The same bits for any number of threads, except that `seconds` decides how many
-/// samples there are. Errors: interrupted.
+/// threads. The result has the same bits for any number of threads, unless `seconds` limits the
+/// number of samples. Errors: interrupted.
 formats::Result<Estimate> estimate_pixels(
     std::uint32_t count, const EstimateOptions& options, const Context& context,
     const std::function<PathSample(std::uint32_t pixel, RandomStream& random)>& sample);

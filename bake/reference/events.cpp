@@ -17,18 +17,18 @@ bool count_event(const PathSpace& space, Path& path) {
     return ++path.events <= space.options.max_depth;
 }
 
-// A direction of cosine `cosine` to the unit vector n, turned about it by 2 pi u.
+// The direction at cosine `cosine` to the unit vector n, with azimuth 2 pi u.
 glm::vec3 direction_about(glm::vec3 n, float cosine, float u) {
     const float sine = std::sqrt(std::max(0.0f, (1 - cosine) * (1 + cosine)));
     const float phi = 2 * kPi * u;
     const glm::vec3 d =
         make_frame(n).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
-    // Unit up to rounding, which a long walk must not pile up: one step of Newton's.
+    // One Newton step renormalises, so that rounding does not accumulate over a long walk.
     return (1.5f - 0.5f * glm::dot(d, d)) * d;
 }
 
-/// What a straight line to the sky lets through, 0 where anything but a boundary between equal
-/// indices is in its way or where it ends in no wanted term.
+/// Transmittance of a straight line to the sky. 0 if anything but a boundary between equal indices
+/// is in the way, or if the path would end in no requested term.
 glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction, MediumStack stack,
                   PathState state) {
     const ReferenceScene& scene = space.scene;
@@ -68,8 +68,8 @@ glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction, M
     return stack.empty() && has_any(term_of(state), space.options.terms) ? passing : glm::vec3(0);
 }
 
-/// Light that arrives straight from the sky at an event, sampled from the light. `density(d)`: of
-/// the event's own sampling over solid angle, which is also its response for unit throughput.
+/// Direct light at an event, sampled from the light. `density(d)`: density of the event's own
+/// sampling over solid angle, which equals its response for unit throughput.
 template <class Density>
 void gather_light(const PathSpace& space, Path& path, const RayOrigin& from, RandomStream& random,
                   Density&& density) {
@@ -88,12 +88,12 @@ void gather_light(const PathSpace& space, Path& path, const RayOrigin& from, Ran
     }
 }
 
-/// Paths that carry less than `little` end early, and the survivors carry that much. Paths in a
-/// dark room of albedo 1 end as well, some day.
+/// Russian roulette below the throughput `little`; survivors carry `little`. Paths in a closed room
+/// of albedo 1 end as well.
 ///
-/// In bodies, absorption by chance alone (kInBodies) is up to 1.7 times as efficient as letting
-/// paths fade to 0.1 (tests/bench/reference_bench.cpp): what a path finds at its end varies more
-/// than what it carries. Dark surfaces would gain a ray and lose their even samples.
+/// In bodies, roulette at every event (kInBodies) is up to 1.7 times as efficient as a threshold of
+/// 0.1 (tests/bench/reference_bench.cpp), because the light at the end of a path varies more than
+/// its throughput. Dark surfaces would save a ray but lose their stratified samples.
 constexpr float kInBodies = 1, kAtSurfaces = 0.1f;
 bool survives(Path& path, float little, RandomStream& random) {
     constexpr float kPatience = 0.9999f;

@@ -8,9 +8,9 @@
 
 namespace opaline::bake {
 
-/// What happens to a path at surfaces and in media; private to the walk.
+/// Events of a path at surfaces and in media; private to the walk.
 
-/// A path as far as it has been walked, from the eye.
+/// A path from the eye, up to its current vertex.
 struct Path {
     RayOrigin origin;
     glm::vec3 direction{0};
@@ -18,7 +18,8 @@ struct Path {
     MediumStack stack;
     PathState state;
     std::uint32_t events = 0;
-    float pdf = 0;  ///< [1/sr] of `direction`, where the light was sampled at its start too; else 0
+    /// [1/sr] of `direction` if the light was sampled at the last event too; else 0
+    float pdf = 0;
     glm::vec3 radiance{0};
     bool lost = false;
 };
@@ -28,7 +29,7 @@ struct Crossing {
     BoundarySplit split;
     RayOrigin near, far;  ///< where rays start on this side and beyond
     MediumStack beyond;   ///< bodies on the far side
-    glm::vec3 color{1};   ///< what passes into a body from outside is multiplied with
+    glm::vec3 color{1};   ///< factor of light that enters a body
 };
 
 /// True if the path may still end in a term that is counted.
@@ -41,11 +42,11 @@ inline bool is_wanted(const PathSpace& space, PathState state) {
 bool reflect_diffusely(const PathSpace& space, Path& path, const RayOrigin& from, glm::vec3 normal,
                        glm::vec3 flat, glm::vec3 albedo, RandomStream& random);
 
-/// The path goes on behind the boundary, in its present direction.
+/// The path continues beyond the boundary in the same direction.
 void pass_boundary(Path& path, const Crossing& crossing);
 
-/// A boundary between different indices: the path is reflected or passes, by chance, or surely
-/// where the other way leads to no wanted term. False: the path ends.
+/// A boundary between different indices. The path is reflected or transmitted at random, or always
+/// takes one side if the other leads to no requested term. False: the path ends.
 bool reflect_or_refract(const PathSpace& space, Path& path, const Crossing& crossing,
                         RandomStream& random);
 

@@ -17,31 +17,31 @@ struct ReferenceMedium {
     float eta = 1;  ///< index of refraction relative to the outside of everything
     PhaseSampler phase;
 
-    /// Extinction is the same in all channels: which one decides makes no difference.
+    /// Extinction is equal in all channels, so no channel need be drawn.
     bool is_grey() const { return sigma_t.x == sigma_t.y && sigma_t.y == sigma_t.z; }
 };
 
-/// How far a path flew before something happened to it.
+/// A free flight and the event that ended it.
 struct Flight {
-    std::optional<SurfaceHit> surface;  ///< a surface ended the flight; else it was scattered
-    float distance = 0;   ///< [m]; infinite: it flies on for ever, neither event happens
-    glm::vec3 weight{1};  ///< of the event over its density, scattering coefficient included
+    /// the surface that ended the flight; nothing: a scattering event
+    std::optional<SurfaceHit> surface;
+    float distance = 0;   ///< [m]; infinite: the path escapes without an event
+    glm::vec3 weight{1};  ///< contribution over density, scattering coefficient included
 };
 
-/// One of three, with odds that add up to 1.
+/// One of three channels, with probabilities that sum to 1.
 inline int draw_channel(glm::vec3 odds, float u) {
     const int channel = u < odds.x ? 0 : u < odds.x + odds.y || odds.z <= 0 ? 1 : 2;
-    // Rounding may have chosen a channel without odds: then the last one that has any.
+    // Rounding may select a channel of probability 0: take the last one above 0.
     return odds[channel] > 0 ? channel : odds.y > 0 ? 1 : 0;
 }
 
-/// Samples the free flight of a path with throughput `beta` (not all 0) through a medium.
-/// One channel, drawn in proportion to beta, decides the distance; the weight divides by the mean
-/// density of all three under the same odds (the balance heuristic), so that the sum of the
-/// throughput's channels never grows, however different the channels are.
-/// `find_surface(t)` returns the first surface if it is nearer than t [m]; farther ones count as
-/// none. A medium of another kind (a density grid by delta tracking) is one more overload of this
-/// function.
+/// Samples the free flight of a path with throughput `beta` (not all 0) through a medium. One
+/// channel, drawn in proportion to beta, decides the distance. The weight divides by the mean
+/// density of all three with the same probabilities (balance heuristic), so the sum of the
+/// throughput's channels never grows. `find_surface(t)` returns the first surface if it is nearer
+/// than t [m]; farther ones count as none. A medium of another kind (a density grid by delta
+/// tracking) is one more overload of this function.
 template <class FindSurface>
 Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream& random,
                      FindSurface&& find_surface) {
@@ -64,7 +64,7 @@ Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream
         flight.weight = flight.surface ? glm::vec3(1) : medium.sigma_s / sigma;
         return flight;
     }
-    // Relative to the chosen channel, whose density neither underflows nor is exceeded by much.
+    // Relative to the chosen channel, so that the density neither underflows nor overflows.
     const glm::vec3 excess = (medium.sigma_t - sigma) * flight.distance;
     const glm::vec3 passing = glm::exp(-excess);
     if (flight.surface) {

@@ -73,7 +73,8 @@ std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::ve
         hit.primitive = triangles_.geometry(ray.hit.geomID).primitive;
         hit.triangle = ray.hit.primID;
         if (hit.primitive == origin.primitive && hit.triangle == origin.triangle) {
-            // A straight line leaves a plane once: rounding brought it back. Look behind it.
+            // A straight line leaves a plane once; rounding caused this second hit. Continue behind
+            // it.
             nearest = std::nextafter(ray.ray.tfar, std::numeric_limits<float>::infinity());
             continue;
         }

@@ -16,12 +16,12 @@ struct SurfaceHit {
     glm::vec3 position{0};
     glm::vec3 flat{0};    ///< unit normal of the triangle, by its winding: outward
     glm::vec3 smooth{0};  ///< unit interpolated normal, within the hemisphere of `flat`
-    float error = 0;      ///< bound [m] on how far `position` may lie off the triangle
+    float error = 0;      ///< bound [m] on the distance of `position` from the triangle
     float u = 0, v = 0;   ///< weights of the second and third corner
     std::uint32_t primitive = 0, triangle = 0;  ///< numbers of formats::Scene
 };
 
-/// Where a ray starts: on a triangle that it cannot meet again, or in free space.
+/// Start of a ray: on a triangle that it cannot hit again, or in free space.
 struct RayOrigin {
     glm::vec3 position{0};
     std::uint32_t primitive = formats::kNone, triangle = formats::kNone;
@@ -42,12 +42,12 @@ class HitScene {
     bool is_blocked(const RayOrigin& origin, glm::vec3 direction) const;
 
     const formats::Scene& scene() const { return *scene_; }
-    /// Bound [m] on how far a point computed along a ray may lie from where it should.
+    /// Bound [m] on the position error of a point computed along a ray.
     float rounding() const { return rounding_; }
     /// Of the box around everything [m]: its middle, and a little more than half of it each way.
     glm::vec3 centre() const { return centre_; }
     glm::vec3 half_size() const { return half_size_; }
-    /// False outside of the box around everything: a point there is in no body.
+    /// False outside the bounding box, where a point is in no body.
     bool is_in_bounds(glm::vec3 position) const {
         return glm::all(glm::lessThanEqual(glm::abs(position - centre_), half_size_));
     }

@@ -28,8 +28,8 @@ glm::vec3 cell_direction(float column, float row, float columns, float rows) {
     return {r * std::cos(phi), y, r * std::sin(phi)};
 }
 
-// The mean of each cell, spread over its neighbours: the map is interpolated, and a pixel's light
-// may reach beyond the cells whose points fell into it.
+// The mean of each cell, smoothed over its neighbours: interpolation of the map carries a pixel's
+// light beyond its cell.
 std::vector<float> cell_weights(const formats::Environment& map, std::uint32_t columns,
                                 std::uint32_t rows) {
     std::vector<float> mean(std::size_t{columns} * rows), spread(mean.size());
@@ -70,7 +70,8 @@ std::pair<std::size_t, std::size_t> cell_of(const LightSampler& light, glm::vec3
 }
 
 bool is_in_disc(const formats::DistantDisc& disc, glm::vec3 d) {
-    // By the chord in double precision: the sun's cosine differs from one by 1e-5 only.
+    // Compare chords in double precision, because the cosine of the sun's radius differs from 1 by
+    // 1e-5 only.
     const glm::dvec3 axis(disc.direction.x, disc.direction.y, disc.direction.z);
     return glm::length(glm::dvec3(d) - axis) <=
            2 * std::sin(0.5 * static_cast<double>(disc.angular_radius));
@@ -78,7 +79,7 @@ bool is_in_disc(const formats::DistantDisc& disc, glm::vec3 d) {
 
 glm::vec3 sample_disc(const formats::DistantDisc& disc, float u, float v) {
     const glm::vec3 axis(disc.direction.x, disc.direction.y, disc.direction.z);
-    // 1 - cos is uniform in [0, 1 - cos r]; kept apart from 1, which would swallow it.
+    // 1 - cos is uniform in [0, 1 - cos r]; computed directly, because 1 - cos would cancel.
     const double s = std::sin(0.5 * static_cast<double>(disc.angular_radius));
     const double drop = 2 * s * s * static_cast<double>(u);
     const auto sine = static_cast<float>(std::sqrt(drop * (2 - drop)));
@@ -89,7 +90,7 @@ glm::vec3 sample_disc(const formats::DistantDisc& disc, float u, float v) {
                           sine * (std::cos(phi) * t + std::sin(phi) * b));
 }
 
-// Weights to running shares of their sum, the last exactly 1; even shares if all are 0.
+// Turns weights into cumulative shares of their sum, the last exactly 1; equal shares if all are 0.
 void accumulate(std::span<const float> weight, std::span<double> cumulative) {
     double sum = 0;
     for (std::size_t i = 0; i < weight.size(); ++i) {
@@ -140,7 +141,7 @@ LightSampler make_light_sampler(const formats::Environment& environment,
             map_power += static_cast<double>(row_weight.back());
         }
         accumulate(row_weight, light.row_cumulative);
-        // Each of a cell's 4 points counts 9 + 9 times.
+        // Each of a cell's 4 points has weight 9 + 9.
         map_power *= 4 * std::numbers::pi / (72.0 * static_cast<double>(weight.size()));
     }
     power = map_power;

@@ -9,12 +9,12 @@
 
 namespace opaline::bake {
 
-/// Distant light that can be looked at and sampled. `environment` must outlive it.
+/// Distant light, to evaluate and to sample. `environment` must outlive it.
 struct LightSampler {
     const formats::Environment* environment = nullptr;
     glm::mat3 world_from_light{1.0f};  ///< rotation
-    /// The map's samples come from a grid of cells of equal solid angle, uniform in longitude and
-    /// height, in proportion to what they send; 1 in 16 from the whole sphere.
+    /// 15 of 16 samples of the map come from a grid of cells of equal solid angle, uniform in
+    /// longitude and height, in proportion to their flux; 1 of 16 comes from the whole sphere.
     std::uint32_t columns = 0, rows = 0;
     std::vector<double> row_cumulative;     ///< to 1; empty: no map
     std::vector<double> column_cumulative;  ///< to 1 in each row; rows x columns
@@ -28,8 +28,8 @@ LightSampler make_light_sampler(const formats::Environment& environment,
 /// Radiance [W m^-2 sr^-1] from a unit direction, discs included.
 glm::vec3 eval_light(const LightSampler& light, glm::vec3 direction);
 
-/// A unit direction to the light, in proportion to its radiance as far as the grid tells;
-/// {0,0,0} where there is no light at all.
+/// A unit direction to the light, in proportion to its radiance at the resolution of the grid;
+/// {0,0,0} if there is no light.
 glm::vec3 sample_light(const LightSampler& light, RandomStream& random);
 
 /// Density of `sample_light` over solid angle [1/sr].

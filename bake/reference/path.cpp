@@ -26,7 +26,7 @@ bool meet_boundary(const PathSpace& space, Path& path, const SurfaceHit& hit, st
     enters ? crossing.beyond.enter(medium) : crossing.beyond.leave(medium);
     crossing.far = leave_surface(hit, path.direction);
     if (path.stack.top() == crossing.beyond.top()) {
-        // A shell inside a body of the same medium, or one that overlaps: nothing to be seen.
+        // A shell inside or overlapping a body of the same medium has no effect.
         path.stack = crossing.beyond;
         path.origin = crossing.far;
         return true;
@@ -55,7 +55,7 @@ bool meet_surface(const PathSpace& space, Path& path, const SurfaceHit& hit, Ran
     const bool back = glm::dot(path.direction, hit.flat) > 0;
     if (back && !scene.materials[number].double_sided) {
         if (path.state.stage == PathState::Stage::camera) {
-            // Pictures leave such backs out; to other light they are black.
+            // Culled in pictures; black to other light.
             path.origin = leave_surface(hit, path.direction);
             return true;
         }
@@ -78,14 +78,14 @@ void reach_sky(const PathSpace& space, Path& path) {
     }
 }
 
-// One flight and what ends it. False: the path ends.
+// One flight and the event that ends it. False: the path ends.
 bool advance(const PathSpace& space, Path& path, RandomStream& random) {
     const HitScene& surfaces = space.scene.surfaces;
     std::optional<SurfaceHit> hit;
     if (path.stack.empty()) {
         hit = surfaces.closest_hit(path.origin, path.direction, kForever);
     } else {
-        // A point of scattering just before a boundary must not be rounded to beyond it.
+        // Rounding must not move a scattering point beyond the boundary.
         const float margin = surfaces.rounding();
         bool is_near_surface = false;
         const auto find = [&](float reach) -> std::optional<SurfaceHit> {
@@ -164,7 +164,7 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
         std::swap(outside, inside);
     }
     const bool opaque = receiver.medium == formats::kNone;
-    // Diffuse rows look the same from everywhere.
+    // Diffuse rows do not depend on the direction of view.
     if (normal == glm::vec3(0) || (!opaque && !(glm::dot(normal, receiver.to_eye) > 0))) {
         return {};
     }

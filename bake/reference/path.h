@@ -10,24 +10,24 @@
 
 namespace opaline::bake {
 
-/// Which light of which paths is counted.
+/// The paths and light to count.
 struct PathOptions {
     TermSet terms = TermSet::all;
     /// Most scattering events along a path: on surfaces (refraction and mirror reflection count)
     /// or in media. Crossings between equal indices do not count.
     std::uint32_t max_depth = 0xffffffffu;
-    /// false: a receiver's own mirror reflection is left out, whatever is seen in it.
+    /// false: leaves out the receiver's own mirror reflection.
     bool own_mirror = true;
 };
 
-/// What a path walks through. All outlive the walk.
+/// The surroundings of a path. All outlive the walk.
 struct PathSpace {
     const ReferenceScene& scene;
     const LightSampler& light;
     PathOptions options;
 };
 
-/// A vertex that radiance is asked for at, and the direction it is seen from.
+/// A vertex whose radiance is estimated, and the direction from which it is seen.
 struct ReferenceReceiver {
     std::uint32_t primitive = 0, vertex = 0;  ///< numbers of formats::Scene
     glm::vec3 position{0};                    ///< [m] of the vertex
@@ -39,21 +39,22 @@ struct ReferenceReceiver {
     MediumStack around;                     ///< other bodies that it lies in
 };
 
-/// One sample of a path's radiance, and what became of the path.
+/// One sample of radiance, with the state of its path.
 struct PathSample {
-    glm::vec3 radiance{0};     ///< [W m^-2 sr^-1], unbiased
-    bool lost = false;         ///< it flew out of a body that is not closed, or a number overflowed
-    std::uint32_t events = 0;  ///< scatterings and surfaces on its way: a measure of the work
+    glm::vec3 radiance{0};  ///< [W m^-2 sr^-1], unbiased
+    bool lost = false;      ///< it left a body through a hole, or a number overflowed
+    /// scattering events and surfaces on the path: a measure of the work
+    std::uint32_t events = 0;
 };
 
-/// Radiance that comes along a ray against its `direction`; `around`: the bodies it starts in.
-/// Volumetric path tracing; the light is also sampled at each event from where a straight line may
-/// reach it, both combined by the balance heuristic.
+/// Radiance that arrives along a ray against its `direction`; `around`: the bodies it starts in.
+/// Volumetric path tracing. At each event from which a straight line may reach the light, the light
+/// is sampled too; the balance heuristic combines both.
 PathSample trace_ray(const PathSpace& space, glm::vec3 origin, glm::vec3 direction,
                      RandomStream& random, const MediumStack& around = {});
 
-/// Radiance that leaves a receiver toward its eye, whatever stands between them. Black where the
-/// receiver has no normal or faces away (unless its material is double-sided).
+/// Radiance that leaves a receiver toward its eye; surfaces between them are ignored. Black where
+/// the receiver has no normal or faces away (unless its material is double-sided).
 PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& receiver,
                           RandomStream& random);
 

@@ -11,7 +11,8 @@ using formats::PhaseFunction;
 
 constexpr double kPi = std::numbers::pi;
 
-// 2 pi int_0^pi exp(-(angle / rms)^2) sin(angle) dangle, by Simpson's rule on what is above 1e-28.
+// 2 pi int_0^pi exp(-(angle / rms)^2) sin(angle) dangle, by Simpson's rule where the integrand
+// exceeds 1e-28.
 double integrate_gaussian(double rms_angle) {
     constexpr int kIntervals = 2000;
     const double end = std::min(kPi, 8 * rms_angle), step = end / kIntervals;
@@ -104,7 +105,8 @@ float invert_rayleigh(double u) {
 }
 
 GaussianCandidate propose_gaussian(double rms_angle, double u) {
-    // angle * exp(-(angle / rms)^2) has an inverse; sin(angle) / angle is the rest.
+    // angle * exp(-(angle / rms)^2) is sampled by inversion; sin(angle) / angle is the probability
+    // of acceptance.
     const double angle = rms_angle * std::sqrt(-std::log(1 - u));
     if (angle >= kPi) {
         return {};
@@ -119,7 +121,7 @@ float invert_table(const PhaseSampler& sampler, double u) {
     const PhaseFunction& phase = sampler.function;
     const double a = double{phase.cosine[i - 1]}, width = double{phase.cosine[i]} - a;
     const double p = double{phase.value[i - 1]}, q = double{phase.value[i]};
-    // The part x of the interval with p x + (q - p) x^2 / 2 = area; stable for p = q and p = 0.
+    // The fraction x of the interval with p x + (q - p) x^2 / 2 = area; stable for p = q and p = 0.
     const double area = (u - cumulative[i - 1]) / (2 * kPi * sampler.scale * width);
     const double root = std::sqrt(std::max(0.0, p * p + 2 * (q - p) * area));
     const double x = p + root > 0 ? 2 * area / (p + root) : 0.0;

@@ -6,8 +6,8 @@
 
 namespace opaline::bake {
 
-/// A phase function ready to be sampled. It shares no code with the bake's phase functions, which
-/// it is there to check.
+/// A phase function, prepared for sampling. It shares no code with the bake's phase functions,
+/// because it serves to check them.
 struct PhaseSampler {
     formats::PhaseFunction function;
     double scale = 1;                ///< gaussian, tabulated: 1 / integral over the sphere
@@ -17,8 +17,8 @@ struct PhaseSampler {
 /// Precondition: the phase function is within the bounds of formats/scene.h.
 PhaseSampler make_phase_sampler(const formats::PhaseFunction& function);
 
-/// Cosine between the propagation directions before and after a scattering event, distributed as
-/// 2 pi p(cosine). `next_uniform` returns uniform numbers in [0, 1), as many as asked for.
+/// Cosine between the propagation directions before and after a scattering event, distributed as 2
+/// pi p(cosine). `next_uniform` returns the next uniform number in [0, 1).
 template <class NextUniform>
 float sample_phase_cosine(const PhaseSampler& sampler, NextUniform&& next_uniform);
 
@@ -30,7 +30,7 @@ namespace phase_sampler_details {
 float invert_henyey_greenstein(double g, double u);
 float invert_rayleigh(double u);
 float invert_table(const PhaseSampler& sampler, double u);
-/// A candidate angle of the Gaussian and the chance to accept it.
+/// A candidate angle of the Gaussian and its probability of acceptance.
 struct GaussianCandidate {
     double angle = 0, acceptance = 0;
 };

@@ -7,8 +7,8 @@
 
 namespace opaline::bake {
 
-/// The random numbers of one path, one after the other: a pure function of (seed, pixel, sample),
-/// so that a path is the same whoever walks it and when.
+/// The random numbers of one path, a pure function of (seed, pixel, sample), so that a path does
+/// not depend on thread or order.
 class RandomStream {
   public:
     RandomStream(std::uint64_t seed, std::uint32_t pixel, std::uint32_t sample)

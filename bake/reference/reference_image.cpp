@@ -11,7 +11,7 @@ formats::Rgb to_rgb(glm::dvec3 v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-// One path from each receiver, of which `keep` is kept of its radiance.
+// One path from each receiver; `keep` maps its radiance to the estimated quantity.
 template <class Keep>
 formats::Result<Estimate> estimate_each(const PathSpace& space,
                                         std::span<const ReferenceReceiver> receivers,

@@ -16,8 +16,8 @@ struct ReferenceImage {
     Estimate estimate;
 };
 
-/// What a pinhole camera sees; the background only if all terms are counted.
-/// The near plane is ignored. Precondition: fewer than 2^32 pixels. Errors: interrupted.
+/// The image of a pinhole camera; with the background only if all terms are counted. The near plane
+/// is ignored. Precondition: fewer than 2^32 pixels. Errors: interrupted.
 formats::Result<ReferenceImage> estimate_image(const PathSpace& space,
                                                const runtime::Camera& camera,
                                                const EstimateOptions& options,
@@ -29,8 +29,8 @@ formats::Result<Estimate> estimate_receivers(const PathSpace& space,
                                              const EstimateOptions& options,
                                              const Context& context);
 
-/// Their luminance, in all three channels: one number each, so that its variance knows how the
-/// channels go together. Errors: interrupted.
+/// Their luminance, repeated in all three channels: its variance includes the correlation of the
+/// channels. Errors: interrupted.
 formats::Result<Estimate> estimate_luminance(const PathSpace& space,
                                              std::span<const ReferenceReceiver> receivers,
                                              const EstimateOptions& options,

@@ -8,7 +8,7 @@
 namespace opaline::bake {
 namespace {
 
-// One from each of `wanted` equal runs: never the same twice.
+// One from each of `wanted` equal runs, so none is drawn twice.
 std::vector<std::uint64_t> draw(std::uint64_t count, std::uint64_t wanted, std::uint64_t seed) {
     std::vector<std::uint64_t> drawn;
     wanted = std::min(wanted, count);
@@ -33,7 +33,7 @@ std::vector<ReferenceReceiver> choose_receivers(const ReferenceScene& scene, std
                                                 std::uint64_t seed,
                                                 const std::optional<glm::vec3>& eye) {
     const formats::Scene& input = scene.surfaces.scene();
-    // Ray origins as the bake has them: in front of all triangles that meet at the vertex.
+    // Ray origins as in the bake: in front of all triangles that meet at the vertex.
     const std::vector<Receiver> origins = make_vertex_receivers(input);
     std::vector<ReferenceReceiver> receivers;
     std::uint64_t first = 0;

@@ -32,7 +32,8 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
         }
     }
     if (densest > 0) {
-        constexpr float kFreePaths = 0.5f;  // fine enough to tell most flights from rays
+        // cell size in mean free paths: fine enough to save most rays
+        constexpr float kFreePaths = 0.5f;
         result.clearance = ClearanceGrid(result.surfaces, kFreePaths / densest);
     }
     return result;
@@ -40,11 +41,11 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
 
 namespace {
 
-// How much more often each medium's bodies are left than entered along a line.
+// Exits minus entries of each medium's bodies along a line.
 std::vector<int> count_leaving(const ReferenceScene& scene, glm::vec3 point, glm::vec3 direction) {
     std::vector<int> leaving(scene.media.size());
     RayOrigin from{point};
-    constexpr int kMost = 10000;  // crossings; a line that is held up by rounding ends here
+    constexpr int kMost = 10000;  // crossings; ends a line that rounding holds up
     for (int i = 0; i < kMost; ++i) {
         const auto hit =
             scene.surfaces.closest_hit(from, direction, std::numeric_limits<float>::infinity());

@@ -11,13 +11,13 @@
 
 namespace opaline::bake {
 
-/// A scene as the reference walks it.
+/// A scene prepared for the reference.
 struct ReferenceScene {
     HitScene surfaces;
     std::vector<ReferenceMedium> media;    ///< of the materials that have one
     std::vector<std::uint32_t> medium_of;  ///< by material; formats::kNone: opaque
-    bool has_matched_boundary = false;     ///< some medium has the index of its surroundings
-    ClearanceGrid clearance;               ///< where there are media; else it knows nothing
+    bool has_matched_boundary = false;     ///< some medium has an index of 1
+    ClearanceGrid clearance;               ///< trivial if there are no media
 };
 
 /// `scene` must outlive the result. Errors: resource.
@@ -28,7 +28,7 @@ inline bool is_matched(float ratio) {
     return ratio > 1 - 1e-5f && ratio < 1 + 1e-5f;
 }
 
-/// The bodies that a point lies in, the last one entered on top: there its medium fills the space.
+/// The bodies around a point, the last one entered on top: its medium fills the space.
 struct MediumStack {
     static constexpr std::uint32_t kCapacity = 8;
     std::uint32_t medium[kCapacity] = {};  ///< indices into ReferenceScene::media
@@ -38,12 +38,12 @@ struct MediumStack {
     std::uint32_t top() const { return size > 0 ? medium[size - 1] : formats::kNone; }
     /// Deeper nesting than the capacity is forgotten.
     void enter(std::uint32_t m);
-    /// Nothing happens where it was not in (an open or flipped body).
+    /// No effect if the body is not on the stack (an open or flipped body).
     void leave(std::uint32_t m);
 };
 
-/// The bodies around a point: those that lines from it leave more often than they enter, by a vote
-/// of three directions within 60 degrees of `up` (a body may have holes).
+/// The bodies around a point: a line from the point leaves them more often than it enters. Three
+/// directions within 60 degrees of `up` vote, because a body may have holes.
 MediumStack surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm::vec3 up);
 
 }  // namespace opaline::bake

@@ -36,7 +36,7 @@ std::uint32_t wrap(std::int64_t i, std::int64_t size, Material::Wrap mode) {
 }
 
 glm::vec3 sample_texture(const formats::Image8& image, glm::vec2 uv, const Material& material) {
-    // Far outside [0, 1] floats cannot tell texels apart anyway.
+    // Far outside [0, 1], floats do not resolve texels.
     constexpr float kLargest = 1e6f;
     if (!(std::abs(uv.x) < kLargest) || !(std::abs(uv.y) < kLargest)) {
         uv = glm::vec2(0);

@@ -8,7 +8,7 @@ namespace opaline::bake {
 
 using formats::TermSet;
 
-/// What a path has met so far, as far as its term depends on it.
+/// The state of a path on which its term depends.
 struct PathState {
     enum class Stage : std::uint8_t {
         camera,    ///< nothing: what it sees is background
@@ -45,7 +45,7 @@ constexpr PathState after_reflection(PathState s) {
     }
     return s;
 }
-/// Through a boundary; `out`: no body is around it any more.
+/// Through a boundary; `out`: the path is now outside all bodies.
 constexpr PathState after_crossing(PathState s, bool out) {
     if (s.stage == PathState::Stage::camera && !out) {
         s.stage = PathState::Stage::inside;

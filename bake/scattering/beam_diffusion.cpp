@@ -8,7 +8,7 @@
 namespace opaline::bake {
 namespace {
 
-// 1 - kappa: the share of light that is too close to the beam for diffusion.
+// 1 - kappa: the share of light too close to the beam for diffusion.
 double too_close(const BeamDiffusion& profile, const Dipole& source, double r) {
     const double t = source.z_real;
     return std::exp(-2 * profile.sigma_t_prime * (std::hypot(r, t) + t));
@@ -49,7 +49,7 @@ double beam_diffusion_tail(const BeamDiffusion& profile, double a) {
     double sum = 0;
     for (const Dipole& source : profile.source) {
         sum += dipole_tail(source, a);
-        // r dr = d dd from d(a): the integrand peaks at d = t, so panels grow from there.
+        // With r dr = d dd, the integrand peaks at d = t, so panels grow from d(a) on.
         const double from = std::hypot(a, source.z_real), reach = kReach / profile.sigma_t_prime;
         double low = 0;
         for (int panel = 0; panel < kPanels; ++panel) {

@@ -39,7 +39,7 @@ Dipole make_dipole(DipoleKind kind, double sigma_s_prime, double sigma_a, double
         const double a = (1 + 3 * moments.c2) / (1 - 2 * moments.c1);
         dipole.sigma_tr = std::sqrt(sigma_a / diffusion);
         dipole.z_virtual = dipole.z_real + 4 * a * diffusion;
-        // alpha'^2: the light scattered once is supplied by the single-scattering stage.
+        // alpha'^2, because the single-scattering stage adds the light that scatters once.
         const double strength = albedo * albedo / (4 * kPi);
         dipole.w_phi = strength * 0.25 * (1 - 2 * moments.c1) / diffusion;
         dipole.w_flux = strength * 0.5 * (1 - 3 * moments.c2);
@@ -67,7 +67,8 @@ double eval_dipole(const Dipole& dipole, double r) {
     double value =
         dipole.w_flux * (flux(dipole.z_real, d_real) + flux(dipole.z_virtual, d_virtual));
     if (dipole.w_phi != 0) {
-        // e_r/d_r - e_v/d_v = (e_r/d_r) (gap/d_v - (d_r/d_v) expm1(-k gap)) (translucency.md 6).
+        // e_r/d_r - e_v/d_v = (e_r/d_r) (gap/d_v - (d_r/d_v) expm1(-k gap)): no cancellation far
+        // away.
         const double gap = distance_gap(dipole, d_real, d_virtual);
         value += dipole.w_phi * std::exp(-k * d_real) / d_real *
                  (gap / d_virtual - d_real / d_virtual * std::expm1(-k * gap));

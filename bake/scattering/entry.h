@@ -18,22 +18,22 @@ struct Interface {
 /// Light that enters at an angle with cosine c outside and c' inside.
 template <class Real>
 struct Entry {
-    Real throughput = 0;  ///< Ft(c) J, J = c / (eta^2 c'): radiance times solid angle, translucency
-                          ///< .md 3.6
-    Real path_ratio = 1;  ///< s'/s = c/c': length after refraction by the straight distance
+    Real throughput = 0;        ///< Ft(c) J, J = c / (eta^2 c'): radiance times solid angle
+                                ///< (README.md, "Transport")
+    Real path_ratio = 1;        ///< s'/s = c/c': length after refraction by the straight distance
     Real refracted_cosine = 1;  ///< c' = sqrt(1 - (1 - c^2) / eta^2)
 };
 
 /// Beyond the critical angle (eta < 1) and at grazing incidence the throughput is 0.
 ///
-/// Ft J as one product: with the transmittances of both polarisations written as
-/// 4 eta c c' / (c + eta c')^2 and 4 eta c c' / (eta c + c')^2, the c' of J cancels, and
+/// Ft J as one product: with the transmittances of both polarisations written as 4 eta c c' / (c +
+/// eta c')^2 and 4 eta c c' / (eta c + c')^2, the factor c' of J cancels, and
 ///     Ft J = (2 c^2 / eta) (1 / (c + eta c')^2 + 1 / (eta c + c')^2),
-/// which is finite where J is not and loses no digits where Ft is 1 minus nearly 1.
+/// which is finite where J is not, and does not cancel where Ft is nearly 0.
 template <class Real>
 Entry<Real> enter(Real cosine, const Interface<Real>& side) {
     const Real eta = side.eta;
-    // eta^2 c'^2, exact in eta = 1.
+    // eta^2 c'^2, exact for eta = 1.
     const Real inside = cosine * cosine + (eta - Real(1)) * (eta + Real(1));
     if (!(cosine > 0) || !(inside > 0)) {
         return {Real(0), Real(1), Real(0)};
@@ -56,8 +56,8 @@ inline glm::dvec3 refracted_direction(glm::dvec3 w, glm::dvec3 normal, double et
     return (w - cosine * normal) / eta + inside * normal;
 }
 
-/// e^x for x <= 0, 0 below -80; relative error under 3e-7. Branch-free, so that loops over it
-/// vectorise, and the same on every machine, which std::exp is not.
+/// e^x for x <= 0, 0 below -80; relative error under 3e-7. Branch-free, so that loops vectorise.
+/// Unlike std::exp, the same on every machine.
 inline float exp_of_negative(float x) {
     constexpr float kLog2E = 1.44269504f, kLn2High = 0.693359375f, kLn2Low = -2.12194440e-4f;
     const float clamped = std::max(x, -80.0f);

@@ -39,7 +39,7 @@ namespace {
 double reflectance_moment(double eta, int power) {
     static const GaussLegendre rule = make_gauss_legendre(64);
     // Total reflection below the critical cosine is integrated in closed form; mu = m + (1 - m) t^2
-    // takes the square-root edge there out of the rest. For eta >= 1 the edge is at mu = 0.
+    // removes the square-root edge at m. For eta >= 1 the edge is at mu = 0.
     const double m = eta < 1 ? std::sqrt(1 - eta * eta) : 0.0;
     double sum = 0;
     for (std::size_t i = 0; i < rule.node.size(); ++i) {

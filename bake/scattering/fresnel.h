@@ -2,9 +2,9 @@
 
 namespace opaline::bake {
 
-/// Unpolarised Fresnel reflectance of a smooth boundary (translucency.md 3.2). `cosine`: of the
-/// angle between direction and normal, on the side the light comes from, in [0, 1]. `eta`: index
-/// beyond the boundary over index on this side, > 0. 1 beyond the critical angle, and at grazing.
+/// Unpolarised Fresnel reflectance of a smooth boundary (README.md, "Fresnel"). `cosine`: between
+/// direction and normal on the incident side, in [0, 1]. `eta`: index of the far side over index of
+/// the incident side, > 0. Returns 1 beyond the critical angle and at grazing incidence.
 double fresnel_reflectance(double cosine, double eta);
 /// 1 - fresnel_reflectance, without its cancellation near eta = 1.
 double fresnel_transmittance(double cosine, double eta);
@@ -21,7 +21,7 @@ struct FresnelMoments {
     double diffuse_internal() const { return 2 * c1; }  ///< F_dr
 };
 
-/// By quadrature, to about 1e-10 (translucency.md 3.2).
+/// By quadrature, to about 1e-10 (README.md, "Fresnel").
 FresnelMoments fresnel_moments(double eta);
 
 /// F_dr by the rational fit that [Wang2005] uses: good to 2e-3 for eta in [1/2, 2], wrong outside.

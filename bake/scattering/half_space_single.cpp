@@ -10,7 +10,7 @@ namespace opaline::bake {
 
 double half_space_single(double eta) {
     // On a plane the integral over depth is 1 / (sigma_t (1 + mu_o' / mu_i')); the factors of the
-    // isotropic phase function, of both azimuths and of the incident flux cancel to one.
+    // isotropic phase function, of both azimuths and of the incident flux multiply to 1.
     const GaussLegendre rule = make_gauss_legendre(32);
     double sum = 0;
     for (std::size_t o = 0; o < rule.node.size(); ++o) {

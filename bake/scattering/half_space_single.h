@@ -2,9 +2,9 @@
 
 namespace opaline::bake {
 
-/// What a half space returns of uniform diffuse light after exactly one isotropic scattering, as a
-/// share of the incident flux and per albedo; `eta` in [1/3, 3]. By quadrature, with the Jacobian
-/// of refraction (translucency.md 3.6, 7.5).
+/// Reflectance of a half space under uniform light by exactly one isotropic scattering event, per
+/// albedo, as a share of the incident flux; `eta` in [1/3, 3]. By quadrature, with the Jacobian of
+/// refraction (README.md, "Half space").
 double half_space_single(double eta);
 
 }  // namespace opaline::bake

@@ -2,7 +2,7 @@
 
 namespace opaline::bake {
 
-/// Normalised diffusion [Christensen2015] (translucency.md 3.4): a fit to the whole response of a
+/// Normalised diffusion [Christensen2015]: a fit to the whole response of a
 /// half space, single scattering included. Total reflectance is `albedo` exactly.
 struct NormalizedDiffusion {
     double albedo = 0;  ///< of the surface, in [0, 1]

@@ -71,7 +71,8 @@ std::vector<PathNode> place_path_nodes(const PathRule& rule, const PathMedium& m
     }
     const double lambda = -std::expm1(-sigma_m * length);
     for (std::size_t i = 0; i < rule.position.size(); ++i) {
-        // The limit sigma_m -> 0 is the rule in s itself. Also where the product underflows.
+        // In the limit sigma_m -> 0 the rule applies to s directly; also where the product
+        // underflows.
         const bool uniform = !(lambda > 0);
         const double s =
             uniform ? length * rule.position[i] : -std::log1p(-lambda * rule.position[i]) / sigma_m;

@@ -15,7 +15,7 @@ using formats::PhaseFunction;
 constexpr double kPi = std::numbers::pi;
 
 double gaussian_integral(double rms_angle) {
-    // Beyond 8 widths the weight is below 1e-27; on the rest the integrand is smooth.
+    // Beyond 8 widths the weight is below 1e-27; within, the integrand is smooth.
     const GaussLegendre rule = make_gauss_legendre(96);
     const double end = std::min(kPi, 8 * rms_angle);
     double sum = 0;
@@ -26,7 +26,7 @@ double gaussian_integral(double rms_angle) {
     return 2 * kPi * sum;
 }
 
-/// Near 1 already: what rounding to single precision took is given back.
+/// Near 1: corrects the rounding of the table to single precision.
 double table_integral(const PhaseFunction& phase) {
     double sum = 0;
     for (std::size_t i = 1; i < phase.cosine.size(); ++i) {
@@ -51,7 +51,7 @@ double interpolate(const PhaseFunction& phase, double cosine) {
 }  // namespace
 
 double henyey_greenstein(double cosine, double g) {
-    // (1 - g)^2 + 2 g (1 - cos) is 1 + g^2 - 2 g cos without its cancellation.
+    // (1 - g)^2 + 2 g (1 - cos) equals 1 + g^2 - 2 g cos and does not cancel.
     const double base = (1 - g) * (1 - g) + 2 * g * (1 - cosine);
     return (1 - g) * (1 + g) / (4 * std::numbers::pi * base * std::sqrt(base));
 }

@@ -4,7 +4,7 @@
 
 namespace opaline::bake {
 
-/// Henyey-Greenstein phase function [1/sr], translucency.md 3.8. `cosine` between propagation
+/// Henyey-Greenstein phase function [1/sr] [Henyey1941]. `cosine` between propagation
 /// directions, in [-1, 1]; |g| < 1.
 double henyey_greenstein(double cosine, double g);
 

@@ -14,11 +14,11 @@ namespace opaline::bake {
 namespace {
 
 // A phase function of the cosine alone is unchanged when a mirror of the cube moves both
-// directions. The three planes x = 0, y = 0, z = 0 map texels to texels, none to itself: in a
-// basis of vectors that are even or odd in x, y and z the matrix falls into eight blocks of one
-// eighth the size, 64 times less work together. The plane x = y then splits the two blocks in which
-// the cube leaves pairs of equal eigenvalues: after that no two of one block belong together by
-// symmetry, and the eigenvectors are unique up to their sign.
+// directions. The planes x = 0, y = 0 and z = 0 map texels to texels, none to itself. In a basis of
+// vectors that are even or odd in x, y and z, the matrix has eight diagonal blocks of one eighth
+// the size, with 64 times less work in total. The plane x = y splits the two blocks in which the
+// cube leaves pairs of equal eigenvalues. After that no two eigenvalues of a block are equal by
+// symmetry, and the eigenvectors are unique up to sign.
 
 constexpr unsigned kMirrors = 8;  ///< bits: x, y, z
 
@@ -34,8 +34,8 @@ formats::Vec3 mirrored(formats::Vec3 w, unsigned mirror) {
             (mirror & 4u) != 0 ? -w.z : w.z};
 }
 
-/// The cosine between propagation directions where light comes from a and leaves toward the mirror
-/// image of b.
+/// The cosine between propagation directions for light from a that leaves toward the mirror image
+/// of b.
 double cosine(const std::array<double, 3>& a, const std::array<double, 3>& b, unsigned mirror) {
     double dot = 0;
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -201,7 +201,8 @@ void add_maps(const Eigenpair& pair, const Octant& octant, PhaseMaps& maps) {
     for (const double value : h) {
         largest = std::max(largest, std::abs(value));
     }
-    // Mirrors repeat the largest magnitude: rounding must not choose among its places.
+    // Mirror symmetry repeats the largest magnitude, so rounding must not choose among the
+    // repetitions.
     const auto first = std::find_if(
         h.begin(), h.end(), [&](double value) { return std::abs(value) >= (1 - 1e-6) * largest; });
     const double sign = *first < 0 ? -1 : 1;
@@ -233,7 +234,7 @@ PhaseMaps factor_phase(const std::function<double(double)>& p, std::uint32_t siz
     for (const Eigenpair& pair : pairs) {
         maps.singular_value.push_back(std::abs(pair.value));
     }
-    // Equal values, put back into the order of the blocks, may be out of order by rounding.
+    // Rounding can put equal values out of order; restore the order of the blocks.
     std::sort(maps.singular_value.begin(), maps.singular_value.end(), std::greater<>());
     for (unsigned term = 0; term < terms; ++term) {
         add_maps(pairs[term], octant, maps);
@@ -244,7 +245,7 @@ PhaseMaps factor_phase(const std::function<double(double)>& p, std::uint32_t siz
 double phase_rms_relative(const PhaseMaps& maps, unsigned terms) {
     assert(terms <= maps.singular_value.size());
     double kept = 0, dropped = 0;
-    // From the smallest: the sum of the dropped ones must not lose what is far below the largest.
+    // Sum from the smallest, so that small values are not lost beside large ones.
     for (std::size_t k = maps.singular_value.size(); k-- > 0;) {
         const double square = maps.singular_value[k] * maps.singular_value[k];
         (k < terms ? kept : dropped) += square;

@@ -44,7 +44,8 @@ PhaseSeries finish(std::vector<double> lambda, double square) {
 }
 
 PhaseSeries expand_gaussian(const PhaseDensity& density, unsigned degrees) {
-    // In the angle the integrand is smooth however narrow the lobe is; P_l adds l / 2 waves.
+    // As a function of the angle the integrand is smooth for any width of the lobe. P_l adds l / 2
+    // oscillations.
     const GaussLegendre rule = make_gauss_legendre(96 + static_cast<int>(degrees));
     const double end = std::min(kPi, 8 * static_cast<double>(density.function.rms_angle));
     std::vector<double> lambda(degrees, 0.0);

@@ -20,18 +20,18 @@ struct PhaseSeries {
 /// between the rows). Precondition: the phase function is within the bounds of formats/scene.h.
 PhaseSeries expand_phase(const formats::PhaseFunction& phase, unsigned degrees);
 
-/// The same of a Henyey-Greenstein function; |g| < 1.
+/// The same for a Henyey-Greenstein function; |g| < 1.
 PhaseSeries expand_henyey_greenstein(double g, unsigned degrees);
 
 /// Relative RMS error, over all pairs of directions, of keeping the first `terms` harmonics, degree
-/// by degree, translucency.md 3.8. `terms` in [0, degrees^2].
+/// by degree (README.md, "Phase functions"). `terms` in [0, degrees^2].
 double phase_rms_relative(const PhaseSeries& series, unsigned terms);
 
 /// The same error [1/sr], not divided by the RMS of p.
 double phase_rms(const PhaseSeries& series, unsigned terms);
 
-/// The smallest of 1, 4, 9, 16 and 25 terms whose relative RMS error is at most `tolerance`; 25
-/// where none is. Other numbers cut a multiplet, and their error would depend on the direction.
+/// The smallest of 1, 4, 9, 16 and 25 terms whose relative RMS error is at most `tolerance`;
+/// otherwise 25. Other numbers cut a multiplet, and the error would depend on the direction.
 /// Precondition: 5 degrees or more.
 unsigned choose_phase_terms(const PhaseSeries& series, double tolerance);
 

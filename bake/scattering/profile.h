@@ -16,10 +16,10 @@ double eval_profile(const Profile& profile, double r);
 /// int_a^inf R_d 2 pi r dr, a >= 0.
 double profile_tail(const Profile& profile, double a);
 double profile_total(const Profile& profile);
-/// The length over which the profile falls from its centre: mean free path or d. 0: black.
+/// Characteristic length: the reduced mean free path, or d of normalised diffusion. 0: black.
 double profile_length(const Profile& profile);
-/// How far apart samples may be whose plain sum is good to a per cent: the depth of a dipole's
-/// source (translucency.md 3.7). 0: the profile's centre is a spike, no spacing is.
+/// Sample spacing at which the plain sum errs by about 1 %: the depth of a dipole's source
+/// (multiple/README.md, "Sampling"). 0: the profile is too steep at its centre for any spacing.
 double profile_width(const Profile& profile);
 
 }  // namespace opaline::bake

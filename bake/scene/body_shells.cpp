@@ -13,16 +13,16 @@ namespace {
 using formats::Primitive;
 using formats::Scene;
 
-// One side of a triangle: from point `low` to `high` > `low`, or the other way.
+// One edge of a triangle, from point `low` to `high` > `low` or in the opposite direction.
 struct Side {
     std::uint32_t low, high, triangle;
     bool upward;
 };
 
-// Two triangles that share an edge with each other alone.
+// Two triangles that share an edge with no third.
 struct Neighbour {
     std::uint32_t triangle;
-    bool same_way;  // they face the same way as they are
+    bool same_way;  // they already face the same way
 };
 
 BodyShells collect_triangles(const Scene& scene, std::uint32_t material) {
@@ -49,8 +49,8 @@ BodyShells collect_triangles(const Scene& scene, std::uint32_t material) {
                 }
                 t.point[k] = it->second;
             }
-            // A triangle that is a line joins its neighbours' edges where they lie on it; one that
-            // is folded together does so by being left out.
+            // Skip triangles with two equal corners: their neighbours' edges coincide and join
+            // directly.
             if (t.point[0] != t.point[1] && t.point[1] != t.point[2] && t.point[2] != t.point[0]) {
                 body.triangle.push_back(t);
             }
@@ -88,8 +88,8 @@ std::vector<std::vector<Neighbour>> find_neighbours(BodyShells& body) {
     return neighbours;
 }
 
-// Sine of the angle by which `other` rises above the plane of `t`, with which it shares an edge;
-// negative if it falls, of size 1 beyond a right angle.
+// Sine of the angle by which `other` rises above the plane of `t` at their common edge; negative if
+// `other` falls below it, and +-1 beyond a right angle.
 double fold_sine(const BodyShells& body, const BodyTriangle& t, const BodyTriangle& other) {
     const std::array<glm::dvec3, 3> corner = corners(body, t);
     const std::array<std::uint32_t, 3>& p = t.point;
@@ -111,7 +111,7 @@ double fold_sine(const BodyShells& body, const BodyTriangle& t, const BodyTriang
             const glm::dvec3 rise = glm::dvec3(body.position[*apex]) - corner[k];
             const double out = glm::dot(glm::cross(edge, normal), rise);
             const double up = glm::dot(normal, rise);
-            // What lies lower than the coordinates are exact is flat.
+            // A height below the rounding error of the coordinates counts as flat.
             constexpr double kRoundings = 4 * 0x1p-23;
             const glm::dvec3 size = glm::abs(corner[k]);
             if (std::abs(up) <= kRoundings * std::max({size.x, size.y, size.z})) {
@@ -123,7 +123,7 @@ double fold_sine(const BodyShells& body, const BodyTriangle& t, const BodyTriang
     return 0;
 }
 
-// Cuts the body into shells and makes each face one way, that of its larger part.
+// Cuts the body into shells and turns each to the direction of its larger part.
 void cut_into_shells(BodyShells& body) {
     const auto neighbours = find_neighbours(body);
     std::vector<bool> seen(body.triangle.size(), false);

@@ -17,22 +17,22 @@ struct BodyTriangle {
     bool turned = false;                   ///< faces the other way than in the scene
 };
 
-/// Triangles that hang together.
+/// A connected set of triangles.
 struct BodyShell {
     std::uint32_t first = 0, count = 0;  ///< in BodyShells::order
     glm::dvec3 low{HUGE_VAL}, high{-HUGE_VAL};
-    double volume = 0;  ///< [m^3] enclosed, < 0 if it faces inward; of an open one about its centre
+    double volume = 0;  ///< [m^3] enclosed, < 0 if it faces inward; about its centre if it is open
     double area = 0;    ///< [m^2]
     /// Sine of the sharpest edge at which two neighbours fold toward the side that they face, and
     /// away from it; 1 beyond a right angle. In a closed convex shell that faces outward `valley`
-    /// is 0, but for the rounding of its coordinates, which is left out.
+    /// is 0: folds below the rounding error of the coordinates do not count.
     double valley = 0, ridge = 0;
     bool inside = false;  ///< of another shell
 };
 
 /// The surface of one material, shell by shell.
 struct BodyShells {
-    std::vector<glm::vec3> position;  ///< [m], each place once
+    std::vector<glm::vec3> position;  ///< [m], each distinct position once
     std::vector<BodyTriangle> triangle;
     std::vector<BodyShell> shell;
     std::vector<std::uint32_t> order;  ///< triangles, shell by shell
@@ -44,9 +44,9 @@ std::array<glm::dvec3, 3> corners(const BodyShells& body, const BodyTriangle& t)
 /// Normal times area [m^2].
 glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t);
 
-/// The shells of a material's surface: vertices in one place are one, triangles that share an edge
-/// with one other hang together, and the smaller part of each shell by area, if any, is turned so
-/// that all of it faces one way. Triangles folded to a line are left out.
+/// The shells of a material's surface. Vertices at one position are one point. Triangles are
+/// connected if they share an edge with exactly one other triangle. The smaller part of a shell by
+/// area is turned, so that the whole shell faces one way. Triangles folded to a line are left out.
 BodyShells make_body_shells(const formats::Scene& scene, std::uint32_t material);
 
 }  // namespace opaline::bake

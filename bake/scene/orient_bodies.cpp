@@ -15,7 +15,7 @@ namespace {
 using formats::Primitive;
 using formats::Scene;
 
-// Of a sphere volume / area^1.5 is .094, of a sheet about nothing.
+// volume / area^1.5 is 0.094 for a sphere and about 0 for a sheet.
 bool has_volume(const BodyShell& shell) {
     constexpr double kLeastVolume = 1e-3;
     return std::abs(shell.volume) > kLeastVolume * std::pow(shell.area, 1.5);
@@ -23,7 +23,7 @@ bool has_volume(const BodyShell& shell) {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-// The triangles of a shell side by side: each is asked for many times.
+// Stores the triangles of a shell contiguously, because each is read many times.
 std::vector<Corners> corners_of(const BodyShells& body, const BodyShell& shell) {
     std::vector<Corners> triangles;
     triangles.reserve(shell.count);
@@ -33,7 +33,7 @@ std::vector<Corners> corners_of(const BodyShells& body, const BodyShell& shell) 
     return triangles;
 }
 
-// Whether a shell encloses the point: its solid angle, seen from there, is the whole sphere.
+// True if a shell encloses the point: seen from there, its solid angle is the whole sphere.
 bool encloses(const std::vector<Corners>& shell, glm::dvec3 point) {
     double angle = 0;
     for (const Corners& corner : shell) {
@@ -46,9 +46,9 @@ bool encloses(const std::vector<Corners>& shell, glm::dvec3 point) {
     return std::abs(angle) > 2 * std::numbers::pi;
 }
 
-// Which shells lie in `outer`, of those to which it matters: one that faces outward by itself stays
-// as it is in an outer one that does so, too. Bounds the work that a hostile mesh can ask for: when
-// it is used up, being in the bounding box counts.
+// The shells inside `outer` whose direction can depend on it: if both face outward by themselves,
+// neither changes. `work_left` bounds the time for a hostile mesh; once it is used up, the bounding
+// box decides.
 std::vector<std::uint32_t> shells_within(const BodyShells& body, const BodyShell& outer,
                                          std::uint64_t& work_left) {
     std::vector<std::uint32_t> within;
@@ -84,7 +84,7 @@ void turn(BodyShells& body, const BodyShell& shell) {
     }
 }
 
-// Outermost shells must enclose a positive volume; those within turn with them.
+// Outermost shells must enclose a positive volume. Inner shells turn with them.
 void turn_shells_outward(BodyShells& body) {
     std::uint64_t work_left = 100'000'000;  // a second or two
     std::vector<std::uint32_t> by_size(body.shell.size());
@@ -99,7 +99,7 @@ void turn_shells_outward(BodyShells& body) {
         if (shell.inside || !has_volume(shell)) {
             continue;
         }
-        // Most bodies are one shell, or shells beside each other that face outward.
+        // Most bodies are one shell, or separate shells that face outward.
         if (body.shell.size() > 1) {
             for (const std::uint32_t inner : shells_within(body, shell, work_left)) {
                 body.shell[inner].inside = true;
@@ -114,7 +114,7 @@ void turn_shells_outward(BodyShells& body) {
     }
 }
 
-// The normals of turned triangles' vertices, if they point to the back of the triangles.
+// Flips vertex normals of turned triangles that now point to the back.
 void turn_normals(const BodyShells& body, Scene& scene) {
     std::vector<std::vector<glm::dvec3>> facing(scene.primitives.size());
     for (const BodyTriangle& t : body.triangle) {

@@ -24,17 +24,17 @@ struct OrientedBodies {
 };
 
 /// Turns the triangles of media that face inward, and the normals of their vertices with them
-/// (translucency.md 4, "orient by majority winding first"): what is behind a triangle is taken for
-/// medium, so that a body turned inside out would be black.
+/// (receivers/README.md, "Orientation"): the medium lies behind its triangles, so a body turned
+/// inside out would be black.
 ///
-/// Vertices in one place are one. Triangles that share an edge with one other belong to one shell,
-/// which is made to face one way, that of the larger area; then to enclose a positive volume. A
-/// shell that lies within another of the same material keeps its direction relative to it: it is a
-/// cavity if it faces the other way. Shells without volume, as sheets, are left as they are, and so
-/// are triangles without area. An edge is open if an odd number of triangles meet there.
+/// Vertices at one position are one point. Triangles that share an edge with exactly one other form
+/// a shell. A shell is turned to the direction of its larger area, then to a positive volume. A
+/// shell inside another of the same material keeps its direction relative to that one; facing the
+/// other way makes it a cavity. Shells without volume (sheets) and triangles without area stay as
+/// they are. An edge is open if an odd number of triangles meet there.
 OrientedBodies orient_bodies(const formats::Scene& scene);
 
-/// What the user should know of: surfaces that were turned or do not close.
+/// Warnings about surfaces that were turned or do not close.
 std::vector<formats::Diagnostic> describe_faults(const formats::Scene& scene,
                                                  const std::vector<BodySurface>& surfaces);
 

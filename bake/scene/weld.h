@@ -8,8 +8,8 @@
 
 namespace opaline::bake {
 
-/// Vertices in one place are one point of the surface, however often a file repeats them: the key
-/// of a place, in which -0 and +0 are the same, and its hash.
+/// Key and hash of a position. Vertices at one position are one point of the surface, however often
+/// a file repeats them; -0 and +0 have the same key.
 inline glm::vec3 weld_key(glm::vec3 position) {
     return position + 0.0f;
 }

@@ -41,8 +41,8 @@ void gather_openness(const RayScene& rays, const DirectionSet& directions,
             for (std::uint32_t i = 0; i < kLanes; ++i) {
                 cosine[i] =
                     normal_x[i] * moment.x + normal_y[i] * moment.y + normal_z[i] * moment.z;
-                // A cell above the horizon whose ray is not would count the surface itself as a
-                // blocker.
+                // Skip cells whose ray is below the horizon although the cell is above: the surface
+                // itself would count as a blocker.
                 const float ray = normal_x[i] * w.x + normal_y[i] * w.y + normal_z[i] * w.z;
                 lanes[i] = cosine[i] > 0.0f && ray > 0.0f ? -1 : 0;
                 any |= lanes[i];
@@ -57,7 +57,7 @@ void gather_openness(const RayScene& rays, const DirectionSet& directions,
             if (!rays.is_empty()) {
                 rays.occluded(lanes, packet);
             }
-            // The cell's centre rather than its ray, which may lie off it.
+            // Use the cell's centre, because its ray may lie elsewhere in the cell.
             const glm::dvec3 centre = glm::normalize(glm::dvec3(moment));
             for (std::size_t i = 0; i < receivers.size(); ++i) {
                 const double weight = lanes[i] != 0 ? static_cast<double>(cosine[i]) : 0.0;
@@ -80,8 +80,8 @@ void gather_openness(const RayScene& rays, const DirectionSet& directions,
 std::vector<formats::Openness> bake_openness(const RayScene& rays, const DirectionSet& directions,
                                              std::span<const Receiver> receivers,
                                              const Context& context, std::uint64_t& traced) {
-    // Rays of neighbours in one direction go the same way; those of one receiver in directions as
-    // far apart as these do not.
+    // Packets hold one direction for many neighbours, whose rays are coherent. The sparse
+    // directions of one receiver are not.
     std::vector<glm::vec3> positions;
     for (const Receiver& receiver : receivers) {
         positions.push_back(receiver.origin);

@@ -18,19 +18,20 @@ inline constexpr std::uint32_t kOpennessCubemap = 8;
 /// What a receiver sees of its hemisphere H: with V the visibility,
 ///     fraction = 1/pi int_H V (n.w) dw,    axis = direction of int_H V (n.w) w dw,
 /// both over the rays of `directions`, so that an unoccluded receiver has fraction 1 exactly. A
-/// receiver without a normal, or that sees nothing, has fraction 0 and its normal, or +Z, as axis.
+/// fully blocked receiver has fraction 0 and its normal as axis; a receiver without a normal has
+/// fraction 0 and +Z.
 struct OpenHemisphere {
     glm::vec3 axis{0, 0, 1};  ///< unit
     float fraction = 0;
     std::uint64_t rays = 0;  ///< traced
 };
-/// Of up to sixteen receivers, fast where they are neighbours; `seen`: one of each.
+/// For up to sixteen receivers, fast if they are neighbours. `seen`: one entry for each.
 void gather_openness(const RayScene& rays, const DirectionSet& directions,
                      std::span<const Receiver> receivers, std::span<OpenHemisphere> seen);
 
-/// Openness of each receiver, in order; not of all if the context is cancelled. A sparse direction
-/// set of 8 texels, 192 rays a hemisphere, is enough for four bytes and a cone. The same for any
-/// number of threads. Adds to `traced`.
+/// Openness of each receiver, in order; fewer if the context is cancelled. A sparse direction set
+/// of N = 8 (192 rays per hemisphere) matches the precision of the four stored bytes. The same for
+/// any number of threads. Adds to `traced`.
 std::vector<formats::Openness> bake_openness(const RayScene& rays, const DirectionSet& directions,
                                              std::span<const Receiver> receivers,
                                              const Context& context, std::uint64_t& traced);

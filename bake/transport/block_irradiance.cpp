@@ -79,7 +79,7 @@ void fill_block(const DirectionBlock& block, glm::vec3 normal, std::span<const f
     }
 }
 
-// The whole block is below the horizon if its axis is by more than its radius:
+// The whole block is below the horizon if its axis is below by more than the block's radius:
 // angle(n, axis) > 90 degrees + radius, i.e. dot(n, axis) < -sin(radius).
 bool is_below(const DirectionBlock& block, glm::vec3 normal) {
     return normal == glm::vec3(0) || glm::dot(normal, block.axis) < -block.sine_radius;

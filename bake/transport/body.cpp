@@ -47,8 +47,8 @@ InwardPath follow(const RayScene& rays, const BodyPoint& point, glm::vec3 direct
             path.steps.push_back({hits.distance[0], shells});
         }
     }
-    // Nothing around at infinity fixes the number at the start; a way that meets nothing at all
-    // goes through a hole, inside.
+    // No shell remains at infinity, which fixes the number at the start. A path without any hit
+    // starts inside and leaves through a hole.
     const std::int32_t start = path.steps.empty() ? 1 : std::max(0, -shells);
     for (InwardPath::Step& step : path.steps) {
         step.shells += start;
@@ -76,8 +76,8 @@ InwardPath trace_inward_path(const RayScene& rays, const BodyPoint& point, float
         return path;
     }
     path = follow(rays, point, -point.normal, limit);
-    // A ray that aims at a vertex on the far side, as those of symmetric meshes do, may slip
-    // between its triangles. One a little aside does not; a hole it finds again.
+    // A ray that aims exactly at a vertex on the far side, as in symmetric meshes, may slip between
+    // its triangles. A slightly tilted ray hits them, or confirms a hole.
     const glm::vec3 n = point.normal;
     const glm::vec3 aside =
         std::abs(n.x) < 0.5f ? glm::vec3(0, -n.z, n.y) : glm::vec3(-n.z, 0, n.x);

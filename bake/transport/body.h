@@ -15,8 +15,9 @@ namespace opaline::bake {
 struct InwardPath {
     float length = 0;   ///< d_m [m] to where the medium ends; 0: the normal points out of the body
     bool open = false;  ///< no exit was found and `length` is the limit given
-    bool nested = false;  ///< somewhere on the way more than one shell of the medium is around
-    /// Where the number of shells around changes [m], ascending, and what it is from there on.
+    bool nested = false;  ///< part of the path lies inside more than one shell of the medium
+    /// Depths [m] at which the number of enclosing shells changes, ascending, with the number
+    /// beyond.
     struct Step {
         float depth;
         std::int32_t shells;
@@ -24,20 +25,21 @@ struct InwardPath {
     std::vector<Step> steps;
 };
 
-/// Follows the inward normal by signed depth: leaving a triangle through its back ends one shell
-/// of the medium, entering one through its front begins one. How many shells are around at the
-/// start is what makes none remain at infinity. `limit`: where an open path is cut [m].
+/// Follows the inward normal by signed depth: a crossing from behind a triangle ends one shell of
+/// the medium, a crossing from the front begins one. The number of shells at the start is such that
+/// none remains at infinity. `limit`: length of an open path [m].
 InwardPath trace_inward_path(const RayScene& rays, const BodyPoint& point, float limit);
 
-/// How many shells of the medium are around the point at `depth` on the path.
+/// Number of shells of the medium around the point at `depth` on the path.
 std::int32_t shells_at(const InwardPath& path, float depth);
 
 /// Diagonal [m] of the bounding box of each material's triangles, by material.
 std::vector<float> body_diagonals(const formats::Scene& scene);
 
-/// Where light from sixteen directions enters the medium on its way to sixteen interior points.
+/// Entry points into the medium of light from sixteen directions on its way to sixteen interior
+/// points.
 struct PacketEntries {
-    LaneMask lit;              ///< -1: reached by light from that direction, 0: not
+    LaneMask lit;              ///< -1: light from that direction arrives, 0: it does not
     RayPacket::Lane distance;  ///< s_i [m], straight
     RayPacket::Lane cosine;    ///< n_i . w > 0
     RayPacket::Lane normal_x, normal_y, normal_z;  ///< n_i
@@ -46,7 +48,7 @@ struct PacketEntries {
 /// Counters of a gather.
 struct EntryCounts {
     std::uint64_t rays = 0;     ///< traced, of both kinds
-    std::uint64_t missing = 0;  ///< directions that left the body nowhere: holes in its boundary
+    std::uint64_t missing = 0;  ///< directions without an exit: holes in the boundary
 };
 
 /// The exit of each ray in `lanes` by signed depth (translucency.md 4, "Robust exit_hit"), then

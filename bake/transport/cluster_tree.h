@@ -11,16 +11,16 @@
 
 namespace opaline::bake {
 
-/// A node over a run of samples (translucency.md 3.10).
+/// A node over a run of samples (multiple/README.md, "Hierarchy").
 struct ClusterNode {
     glm::vec3 low, high;  ///< bounding box of its samples [m]
-    glm::vec3 centre;     ///< where its light seems to enter: weighted by area and mean of E
+    glm::vec3 centre;     ///< P of README.md: mean position, weighted by area and mean of E
     std::uint32_t first = 0, count = 0;  ///< samples
     std::uint32_t right = 0;  ///< second child; the first follows the node itself. 0: a leaf
     float norm = 0;           ///< ||sum of A_i E_i||, before truncation [m^2]
 };
 
-/// Samples in kd-order (kd_order.h) with the sums of what enters through each node.
+/// Samples in kd-order (kd_order.h), and for each node the sum of the light that enters through it.
 struct ClusterTree {
     std::vector<ClusterNode> nodes;  ///< depth-first; empty if there are no samples
     SparseVectors sums;              ///< of each node: sum over its samples of A_i E_i [m^2]
@@ -31,8 +31,8 @@ struct ClusterTree {
     double mean_norm = 0;  ///< RMS over the samples of ||E_i||, weighted by area
 };
 
-/// The tree of samples in kd-order, whose transport becomes part of it. Each node's sum is taken
-/// over its samples' vectors and then truncated to `kept` entries: nothing is truncated twice.
+/// The tree over samples in kd-order; it takes over their transport. Each node's sum adds its
+/// samples' vectors and is truncated once, to `kept` entries.
 ClusterTree build_cluster_tree(std::span<const SurfaceSample> samples, SampleTransport transport,
                                std::uint32_t cubemap_size, std::uint32_t kept,
                                const Context& context);

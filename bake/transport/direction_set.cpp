@@ -16,7 +16,7 @@ glm::vec3 to_glm(formats::Vec3 v) {
 
 namespace {
 
-// `fine`: cells along a face, n or 2 n; rays through quarter `quarter` of each texel if n.
+// `fine`: cells along a face, n or 2 n. With n, rays pass through quarter `quarter` of each texel.
 DirectionSet make_set(std::uint32_t n, std::uint32_t fine, std::uint32_t quarter) {
     DirectionSet set;
     set.cubemap_size = n;

@@ -26,8 +26,8 @@ struct DirectionSet {
 
 /// 2 x 2 rays a texel, through the centres of its quarters. `n`: power of two, at least 8.
 DirectionSet make_direction_set(std::uint32_t n);
-/// One ray a texel, through the centre of its quarter `quarter` in 0 ... 3: neighbouring samples
-/// take turns, so that no texel's edge is favoured.
+/// One ray per texel, through the centre of its quarter `quarter` in 0 ... 3. Neighbouring samples
+/// alternate quarters, so that the errors at texel edges average out.
 DirectionSet make_sparse_direction_set(std::uint32_t n, std::uint32_t quarter);
 
 }  // namespace opaline::bake

@@ -34,8 +34,8 @@ RayPacket probe_packet(const Receiver& receiver) {
 
 constexpr std::uint32_t kNobody = 0xffffffffu;
 
-// For each vertex, the nearest visible one that shares an edge with it; the first of equally near
-// ones. Looked up for hidden vertices only.
+// For each hidden vertex, the nearest visible vertex that shares an edge with it; ties go to the
+// first.
 std::vector<std::uint32_t> nearest_visible(const formats::Scene& scene,
                                            const std::vector<Receiver>& receivers,
                                            const std::vector<bool>& hidden) {

@@ -9,14 +9,13 @@
 
 namespace opaline::bake {
 
-/// Irradiance transport E(x, w) = V(x, w) max(0, n.w) (translucency.md 3.5 with Ft = 1, a diffuse
+/// Irradiance transport E(x, w) = V(x, w) max(0, n.w) ([Wang2005] eq. (8) with Ft = 1, a diffuse
 /// surface): `transport[j]` is its mean over texel j, 6 n n values, unit 1.
 ///
 /// 2 x 2 visibility rays per texel; the cosine under each ray is integrated over its subtexel
 /// exactly (texel_moments), so an unoccluded receiver has no quadrature error except along its
-/// horizon, where a subtexel counts as the positive part of its integral.
-/// `transmittance`, if not empty, tabulates a factor at evenly spaced cosines from 0 to 1 that each
-/// ray's irradiance is weighted with: Ft(eta, n.w) of a boundary.
+/// horizon, where a subtexel counts as the positive part of its integral. `transmittance`, if not
+/// empty, tabulates Ft(eta, n.w) at evenly spaced cosines from 0 to 1; each ray is weighted by it.
 /// Returns the number of rays traced. A receiver without a normal gathers nothing.
 std::uint64_t gather_irradiance(const RayScene& rays, const DirectionSet& directions,
                                 const Receiver& receiver, std::span<float> transport,

@@ -35,7 +35,7 @@ inline RayPacket rays_from(glm::vec3 origin) {
 /// Which lanes of a packet to trace: -1 yes, 0 no.
 using LaneMask = std::array<std::int32_t, RayPacket::kSize>;
 
-/// What each ray of a packet meets first. Meaningful only in lanes that hit something.
+/// The first hit of each ray of a packet. Only lanes with `hit` are defined.
 struct PacketHits {
     LaneMask hit;              ///< -1 yes, 0 no
     RayPacket::Lane distance;  ///< along the ray [m]

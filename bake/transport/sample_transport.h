@@ -11,8 +11,8 @@
 
 namespace opaline::bake {
 
-/// What enters a medium through its surface samples, E(x, w) = Ft(eta, n.w) V(x, w) max(0, n.w)
-/// (translucency.md 3.5): colour-free.
+/// Light that enters a medium through its surface samples, E(x, w) = Ft(eta, n.w) V(x, w) max(0,
+/// n.w) ([Wang2005] eq. (8)): the same for all bands.
 struct SampleTransport {
     SparseVectors rows;       ///< Haar vectors of A_i E_i, truncated [m^2]
     std::vector<float> mean;  ///< mean of E over the sphere, before truncation

@@ -31,9 +31,8 @@ struct Group {
         return !is_below(block(i, b), receivers[i].normal);
     }
 
-    // One ray through each cell of the block that any of the receivers has above its horizon: they
-    // take turns, from `shift` on; the next one in line where the cell is below the horizon of the
-    // one whose turn it is.
+    // One ray through each cell of the block that is above some receiver's horizon. Receivers take
+    // turns from `shift` on; a receiver with the cell below its horizon passes to the next.
     Seen probe(std::size_t b, std::size_t shift) {
         RayPacket packet{};
         packet.mask.fill(0xffffffffu);
@@ -81,7 +80,7 @@ struct Group {
         return seen;
     }
 
-    // Looks closer wherever a neighbour differs, and around what is found there.
+    // Probes again beside blocks that differ, and around blocks that are found to differ then.
     void probe_borders(std::vector<Seen>& seen) {
         std::vector<std::size_t> left;
         for (std::size_t b = seen.size(); b-- > 0;) {
@@ -122,8 +121,8 @@ SharedDirections make_shared_directions(std::uint32_t cubemap_size) {
     shared.beside.resize(blocks.size());
     for (std::uint32_t a = 0; a < blocks.size(); ++a) {
         for (std::uint32_t b = 0; b < blocks.size(); ++b) {
-            // Centres of squares with a common edge are 1.4 radii apart, across a corner 2, but
-            // cells are distorted: some of the latter count, too.
+            // Centres of squares are 1.4 radii apart across an edge and 2 across a corner. Cells
+            // are distorted, so some of the latter are included.
             const float radii = blocks[a].sine_radius + blocks[b].sine_radius;
             if (a != b && glm::distance(blocks[a].axis, blocks[b].axis) < 0.85f * radii) {
                 shared.beside[a].push_back(b);

@@ -11,22 +11,22 @@
 
 namespace opaline::bake {
 
-/// What receivers that share rays look through: one ray a texel, at four places that they take
-/// turns in.
+/// Directions of receivers that share rays: one ray per texel, in four sets, one for each quarter
+/// of a texel.
 struct SharedDirections {
     std::array<DirectionSet, 4> sets;
     std::vector<std::vector<std::uint32_t>>
-        beside;  ///< of each block: those across its edges, at least
+        beside;  ///< neighbours of each block: at least those across its edges
 };
 
 SharedDirections make_shared_directions(std::uint32_t cubemap_size);
 
-/// gather_irradiance for up to sixteen receivers next to each other, with fewer rays. Of each block
-/// of cells every cell is probed by one of them. Where all probes agree, all cells are taken to be
-/// like that for all receivers; elsewhere each receiver traces its own. Beside what differs, three
-/// more probes of every cell, each by another receiver through another quarter, must agree too.
-/// What they all miss is narrower than a quarter of a cell throughout, or seen by few of the
-/// receivers only.
+/// gather_irradiance for up to sixteen neighbouring receivers, with fewer rays. One of the
+/// receivers probes each cell of a block. Where all probes of the block agree, their result holds
+/// for all cells and receivers. Elsewhere each receiver traces its own rays. Blocks beside such a
+/// block must pass three more probes of every cell, each by another receiver through another
+/// quarter. An occluder is missed only if it is narrower than a quarter of a cell, or seen by few
+/// of the receivers.
 ///
 /// `transport`: one receiver after the other, 6 n n values each. Receiver i looks through set i
 /// % 4. Returns the number of rays.

@@ -12,7 +12,7 @@ namespace opaline::bake {
 
 namespace {
 
-// In eight partial sums, which do not wait for each other.
+// Eight independent partial sums.
 double sum_of_squares(std::span<const float> values) {
     std::array<double, 8> sum{};
     std::size_t k = 0;

@@ -6,14 +6,14 @@
 
 namespace opaline::bake {
 
-/// One unquantised Haar vector of few entries, which ascend by index.
+/// One unquantised Haar vector with few entries, in ascending order of index.
 struct SparseVector {
     std::span<const std::uint32_t> index;
     std::span<const float> value;
 };
 
-/// Many of them, in blocks of as many as are made together: hundreds of megabytes that are never
-/// copied, and never grown.
+/// Many sparse vectors. A block holds the vectors that are computed together, so that hundreds of
+/// megabytes are never copied and never grow.
 struct SparseVectors {
     struct Block {
         std::vector<std::uint32_t> offset{0};  ///< vectors + 1
@@ -37,15 +37,16 @@ struct SparseVectors {
     }
 };
 
-/// Appends, times `scale`, the `kept` entries of `dense` that are largest in magnitude, ties by
-/// index; the first entry of each of its six faces always. L2-best (translucency.md 3.9).
+/// Appends the `kept` entries of `dense` with the largest magnitude, times `scale`; ties go to the
+/// smaller index. The first entry of each face is always kept. L2-optimal, because the basis is
+/// orthonormal.
 void append_truncated(SparseVectors::Block& block, std::span<const float> dense, std::size_t kept,
                       float scale = 1);
 
-/// Makes room for a block of vectors of `entries` entries each, at most.
+/// Reserves memory for a block of vectors with at most `entries` entries each.
 void reserve(SparseVectors::Block& block, std::size_t entries);
 
-/// Gives back the room that was not needed.
+/// Frees reserved memory that was not used.
 void shrink(SparseVectors::Block& block);
 
 /// Euclidean.

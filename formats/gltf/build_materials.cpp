@@ -14,7 +14,7 @@ namespace opaline::formats::gltf {
 
 namespace {
 
-/// What is lost when an extension is not simulated.
+/// The meaning of an extension that is not simulated.
 std::string unsimulated_extension(const std::string& name) {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kKnown = {{
         {"KHR_materials_volume", "absorption inside the object"},

@@ -117,7 +117,7 @@ void place_colors(const PrimitiveData& data, Primitive& out, Report& report) {
     }
 }
 
-// Of the triangle whose corners begin at index `t`.
+// True if the triangle whose corners begin at index `t` has no area.
 bool is_flat(const Primitive& primitive, std::size_t t) {
     const glm::dvec3 a(primitive.position[primitive.index[t]]);
     const glm::dvec3 b(primitive.position[primitive.index[t + 1]]);

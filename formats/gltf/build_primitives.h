@@ -16,7 +16,7 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
                       const std::vector<Bytes>& buffers, double metres_per_unit, Scene& scene,
                       Report& report);
 
-/// Whether any of its triangles, in double precision, has an area above 0.
+/// True if any of its triangles has an area above 0, in double precision.
 bool has_area(const Primitive& primitive);
 
 }  // namespace opaline::formats::gltf

@@ -17,9 +17,9 @@ bool within_json_bounds(std::string_view text, Report& report);
 /// Returns the parsed text, or nothing and errors in `report`.
 std::optional<nlohmann::json> parse_checked_json(std::string_view text, Report& report);
 
-/// Types of the members that later stages rely on: top-level arrays of objects, whole
-/// non-negative numbers for every index, count and offset, number arrays of the right length in
-/// nodes. (The parser behind it takes a wrong type for an absent member, silently.)
+/// Types of the members that later stages rely on: top-level arrays of objects, whole non-negative
+/// numbers for every index, count and offset, number arrays of the right length in nodes. (The
+/// parser behind it silently treats a wrong type as an absent member.)
 void check_member_types(const nlohmann::json& root, Report& report);
 
 }  // namespace opaline::formats::gltf

@@ -140,7 +140,7 @@ std::uint32_t component_count(const Json& accessor) {
                             : 0u;
 }
 
-/// What must hold between the decoded mesh and the accessor that describes one attribute of it.
+/// Consistency of the decoded mesh with the accessor that describes one of its attributes.
 std::string add_attribute(Json& root, Resources& resources, const draco::Mesh& mesh,
                           const std::string& semantic, const Json& id, Json& primitive) {
     const auto accessor_index = whole(primitive["attributes"], semantic.c_str());

@@ -9,7 +9,7 @@
 
 namespace opaline::formats {
 
-/// How a glTF asset is brought into the baker's units.
+/// Options of the import.
 struct ImportOptions {
     double metres_per_unit = 1.0;  ///< length of one file unit [m]; finite and > 0
 };

@@ -5,8 +5,8 @@
 
 namespace opaline::formats::gltf {
 
-/// Bounds on what an untrusted file may ask for. Far above any asset that can be baked, low enough
-/// that a few hostile bytes cannot exhaust the machine.
+/// Limits for untrusted files: far above any asset that can be baked, and low enough that a few
+/// hostile bytes cannot exhaust the machine.
 inline constexpr std::uint64_t kMaxFileBytes = 8ull << 30;    ///< one file
 inline constexpr std::uint64_t kMaxTotalBytes = 16ull << 30;  ///< all buffers together
 inline constexpr std::size_t kMaxJsonBytes = 256u << 20;

@@ -98,7 +98,7 @@ double boundary_eta(const TranslucencySource& source, Remarks& remarks) {
     const double normal = (ior - 1.0) / (ior + 1.0);
     const glm::dvec3 reflected = factor * glm::min(normal * normal * color, glm::dvec3(1.0));
     const double root = std::sqrt(glm::dot(reflected, glm::dvec3(0.2126, 0.7152, 0.0722)));
-    // Where the reflectance passes what eta 3 reflects, so does the quotient.
+    // A reflectance above that of eta = 3 also gives a quotient above 3, which is clamped.
     const double eta = root < 1.0 ? (1.0 + root) / (1.0 - root) : kMaxEta;
     return std::clamp(eta, kMinEta, kMaxEta);
 }

@@ -270,7 +270,7 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     if (const auto scene = root.find("scene"); scene != root.end()) {
         document.default_scene = scene->get<std::uint32_t>();
     }
-    // What Opaline reads itself, or not at all, tinygltf shall not touch.
+    // Remove the parts that Opaline reads itself or ignores, so that tinygltf does not parse them.
     for (const char* key :
          {"buffers", "images", "animations", "skins", "cameras", "extensions", "extras", "scene"}) {
         root.erase(key);

@@ -11,7 +11,7 @@
 
 namespace opaline::formats::gltf {
 
-/// What one mesh primitive stores, in the mesh's frame and file units.
+/// The data of one mesh primitive, in the mesh's frame and file units.
 struct PrimitiveData {
     std::vector<float> position;  ///< 3 per vertex, finite
     std::vector<float> normal;    ///< 3 per vertex, as stored; empty if there is none

@@ -10,8 +10,8 @@
 
 namespace opaline::formats::gltf {
 
-/// Collects what is wrong with one file, so that the user hears of every fault at once. Past
-/// kMaxDiagnostics of either sort it only counts.
+/// Collects the faults of one file, so that the user sees all at once. Beyond kMaxDiagnostics of
+/// either kind it only counts.
 struct Report {
     std::string file;
     ErrorKind kind = ErrorKind::bad_input;

@@ -20,8 +20,8 @@ namespace opaline::formats::gltf {
 
 using Bytes = std::span<const std::byte>;
 
-/// Everything that was read, and the only way to read more: bytes stay where they are until the
-/// import ends, each file is read and hashed once, in reading order.
+/// All files of an asset. Each is read and hashed once, in reading order, and its bytes stay in
+/// place until the import ends. No other code reads files.
 struct Resources {
     std::filesystem::path folder;                  ///< of the asset; no file outside is opened
     std::deque<std::vector<std::byte>> storage;    ///< owns what `buffers` and callers point into

@@ -67,8 +67,8 @@ std::vector<glm::vec3> smooth_normals(std::span<const glm::vec3> position,
     const QuietOpenMesh quiet;
     const std::vector<std::uint32_t> first = weld(position);
 
-    // Faces that do not fit a manifold get vertices of their own: their geometry is right, and
-    // only sums over `first` matter below.
+    // Non-manifold faces get vertices of their own. Their geometry is unchanged, and below only
+    // sums over `first` matter.
     TriMesh mesh;
     std::vector<TriMesh::VertexHandle> shared(position.size());
     struct Corners {

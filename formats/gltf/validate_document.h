@@ -8,10 +8,10 @@
 
 namespace opaline::formats::gltf {
 
-/// Checks every link, range and the node forest, so that the stages behind can index without
-/// asking: views lie in their buffers, accessors and sparse blocks in their views (64-bit
-/// arithmetic that cannot wrap), every index names something, every node has at most one parent
-/// and no node is its own ancestor. Faults go to `report`, all of them.
+/// Checks every link, every range and the node forest, so that later stages can index without
+/// checks: views lie in their buffers, accessors and sparse blocks in their views (64-bit
+/// arithmetic that cannot wrap), every index names something, every node has at most one parent and
+/// no node is its own ancestor. Faults go to `report`, all of them.
 void validate_document(const Document& document, const std::vector<Bytes>& buffers, Report& report);
 
 }  // namespace opaline::formats::gltf

@@ -15,9 +15,9 @@ struct MeshInstance {
     glm::dmat4 world{1.0};  ///< from the mesh's frame to the scene's, file units
 };
 
-/// Mesh instances in running-number order: nodes depth-first, children in their listed order.
-/// Where the file names no scene, the first one; where it has none, all nodes without a parent.
-/// Reports instance counts past the limits, and what else the nodes carry that is not simulated.
+/// Mesh instances in running-number order: nodes depth-first, children in their listed order. Where
+/// the file names no scene, the first one; where it has none, all nodes without a parent. Reports
+/// instance counts past the limits, and node extensions that are not simulated.
 std::vector<MeshInstance> walk_scene(const Document& document, Report& report);
 
 }  // namespace opaline::formats::gltf

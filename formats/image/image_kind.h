@@ -6,7 +6,7 @@
 
 namespace opaline::formats {
 
-/// What a file is, by its first bytes; names and extensions do not count.
+/// The type of a file by its first bytes; names and extensions do not count.
 enum class ImageKind { unknown, exr, hdr, png };
 
 ImageKind image_kind(std::span<const std::byte> bytes);

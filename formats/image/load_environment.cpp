@@ -13,7 +13,7 @@
 namespace opaline::formats {
 namespace {
 
-/// Repairs what radiance cannot be, and says how much of it there was.
+/// Repairs impossible radiance values and counts them.
 void sanitise(std::vector<Rgb>& pixel, const std::string& name, std::vector<Diagnostic>& warnings) {
     float largest = 0;
     for (const Rgb& c : pixel) {

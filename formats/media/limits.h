@@ -4,7 +4,7 @@
 
 namespace opaline::formats::media {
 
-/// Bounds on what a media file may say, so that everything derived from it stays finite.
+/// Bounds on the values of a media file, so that all derived values stay finite.
 inline constexpr double kMaxCoefficientPerM = 1e12;  ///< far above any real scattering coefficient
 inline constexpr double kMaxMeanCosine = 0.99;       ///< beyond, a phase function is nearly a delta
 inline constexpr double kMinRmsAngle = 1e-3;         ///< [rad]

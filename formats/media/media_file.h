@@ -9,13 +9,13 @@
 
 namespace opaline::formats {
 
-/// What a media file says of one material.
+/// The entry of a media file for one material.
 struct MaterialMedium {
     std::string name;               ///< of the glTF material; "*": all that no other entry names
     std::optional<Medium> medium;   ///< none: opaque, whatever the glTF file says
     std::optional<Rgb> base_color;  ///< replaces the material's factor; linear, each in [0, 1]
-    std::optional<Image8> albedo;   ///< replaces the material's texture; multiplies what leaves
-    std::optional<Marble> marble;   ///< multiplies what leaves, by the place
+    std::optional<Image8> albedo;   ///< replaces the texture; multiplies the light that leaves
+    std::optional<Marble> marble;   ///< multiplies the light that leaves, by position
 };
 
 /// A media file, checked.

@@ -8,10 +8,9 @@
 
 namespace opaline::formats {
 
-/// A medium measured by [Jensen2001] (H. W. Jensen, S. R. Marschner, M. Levoy, P. Hanrahan,
-/// "A practical model for subsurface light transport", 2001): sigma_s' and sigma_a [1/m].
-/// Only reduced scattering was measured: the phase function is isotropic and sigma_s = sigma_s'.
-/// eta is 1.5 for marble and 1.3 for all others. Nothing where no preset has this name.
+/// A medium measured in [Jensen2001]: sigma_s' and sigma_a [1/m]. Only reduced scattering was
+/// measured: the phase function is isotropic and sigma_s = sigma_s'. eta is 1.5 for marble and 1.3
+/// for all others. Nothing where no preset has this name.
 std::optional<Medium> media_preset(std::string_view name);
 
 /// The names, sorted, for help and messages. Beside them `skimmilk` is understood.

@@ -1,6 +1,6 @@
 // What the hierarchy and the coefficients left out cost at production quality: rows of some
 // receivers as the bake makes them, against the sum over all its samples with all coefficients and
-// sixteen bits. Single scattering is gathered by rays in both. Prints a row of README.md's table:
+// sixteen bits. Single scattering is gathered by rays in both. Prints a row of RESULTS.md's table:
 // opaline_brute_force SCENE MEDIA.json; minutes.
 #include <array>
 #include <chrono>

@@ -1,4 +1,4 @@
-// How far the model is from the Monte Carlo reference, as the table of README.md states it: light
+// How far the model is from the Monte Carlo reference, as the table of RESULTS.md states it: light
 // that a file shows over light that there is, at one receiver. `opaline_model_table` prints it as
 // markdown; 5 minutes.
 #include <algorithm>

@@ -20,7 +20,7 @@
 //   costs as much as tens of rays.
 // Before the grid, a dense medium took 36 % of its time for rays, 13 % for logarithms, sines and
 // exponentials, half for random numbers and arithmetic. Packets of rays and wavefronts were tried
-// and lost: bake/reference/README.md.
+// and lost: RESULTS.md, "Monte Carlo reference".
 #include <benchmark/benchmark.h>
 
 #include <cstdint>

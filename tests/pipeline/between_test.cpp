@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/accuracy/stored_luminance.h"
-#include "bake/measure/surface_probes.h"
-#include "bake/plan/plan_rules.h"
+#include "bake/accuracy/surface_probes.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {

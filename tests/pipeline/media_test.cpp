@@ -246,7 +246,7 @@ TEST(TranslucentPipeline, ScalingSceneAndMediumTogetherChangesNothing) {
     }
 }
 
-// translucency.md 7.16: L_d -> R Ft-weighted E, for any spacing of vertices and samples.
+// Optically thick limit: L_d -> R Ft-weighted E, for any spacing of vertices and samples.
 TEST(TranslucentPipeline, OpticallyThickBodyReflectsTheLightThatEntersWhereItStands) {
     Medium medium = make_grey_medium(1e5f, 300);
     auto body = tests::make_sphere(3);

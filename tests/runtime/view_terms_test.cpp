@@ -18,7 +18,7 @@ using formats::Vec3;
 constexpr std::array<float, 8> kEtas{formats::kMinEta, 0.7f, 0.99999f, 1.0f,
                                      1.00001f,         1.3f, 1.5f,     formats::kMaxEta};
 
-// The formula of translucency.md 3.2 as it stands, in double precision.
+// The textbook Fresnel formula (formats/README.md), in double precision.
 double textbook_transmittance(double c, double eta) {
     const double s2 = (1 - c * c) / (eta * eta);
     if (s2 >= 1) return 0;
@@ -176,7 +176,7 @@ TEST(ViewTerms, OneTermIsOneAndSeveralAreHarmonics) {
     EXPECT_NEAR(four[3], 0.6f * y1, 1e-6f);
 }
 
-// Henyey-Greenstein is diagonal in spherical harmonics with eigenvalues g^l (translucency.md 3.8):
+// Henyey-Greenstein is diagonal in spherical harmonics with eigenvalues g^l (Funk-Hecke):
 // rows g^l Y_lm(-w_i') give back the phase function, up to the degrees left out.
 TEST(ViewTerms, SumToTheTruncatedPhaseFunctionOfTheRefractedDirection) {
     constexpr double g = 0.25, eta = 1.3;

@@ -183,7 +183,7 @@ TEST(Thin, MultipleScatteringOfABodyThinnerThanAMeanFreePathStaysBounded) {
     }
     const BakeResult result = bake_scene(
         tests::make_translucent_scene({sheet}, make_grey_medium(1, 0.01f)), small_bake());
-    // A half-space profile on both sides can return up to twice (translucency.md 5.27).
+    // A half-space profile on both sides can return up to twice (multiple/README.md, "Limits").
     expect_sound(result, 2, "thin");
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using Float4 = float __attribute__((vector_size(16)));
 
-// Keeps the mean defined where all samples around face another way.
+// Lower bound, so that the mean stays defined where all nearby samples face another way.
 constexpr float kLeastFacing = 1e-3f;
 
 float squared_distance(glm::vec3 a, glm::vec3 b) {
@@ -34,7 +34,7 @@ struct Gather {
     std::array<float, 3> allowed;  // tolerance R ||E|| per band
     float near_squared;            // radius of the near part, 0 if there is none
     std::vector<ClusterWeight>& weights;
-    std::vector<std::size_t> near;  // places in `weights`
+    std::vector<std::size_t> near;  // indices into `weights`
 
     bool may_take(const ClusterNode& node) const {
         const BoxDistance d = box_distance(node, position);
@@ -73,8 +73,8 @@ struct Gather {
         }
     }
 
-    // Adds the near part: E averaged over the samples around, as far as they face the same way.
-    // Weights fall smoothly to zero at the rim, so that no sample enters or leaves with a jump.
+    // Adds the near part: the mean of E over nearby samples that face the same way. Weights fall
+    // smoothly to zero at the radius, so that the result is continuous in the position.
     void add_near(glm::vec3 normal) {
         const std::size_t node_count = tree.nodes.size();
         std::vector<float> share(near.size());
@@ -94,13 +94,13 @@ struct Gather {
     }
 };
 
-// Of a node or a sample.
+// The vector of a node or a sample.
 SparseVector entries_of(const ClusterTree& tree, const ClusterWeight& w) {
     const std::size_t nodes = tree.nodes.size();
     return w.id < nodes ? tree.sums[w.id] : tree.samples[w.id - nodes];
 }
 
-// Adds them to sums as wide as the weight: of one band, or of several at once.
+// Adds weight * entries to sums that are as wide as the weight: one band, or several at once.
 template <class Weight>
 void add_entries(const SparseVector& entries, Weight weight, float* sums) {
     constexpr std::size_t kWidth = sizeof(Weight) / sizeof(float);
@@ -125,7 +125,7 @@ void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm:
     const float radius = profile.near_radius;
     Gather gather{tree, profile, position, {}, radius * radius, weights, {}};
     for (std::size_t band = 0; band < profile.bands; ++band) {
-        // A negative allowance for nothing: no node is taken whole, whatever its sum.
+        // -1 disables clustering: no node meets a negative bound.
         gather.allowed[band] =
             options.tolerance > 0
                 ? static_cast<float>(options.tolerance * profile.total[band] * tree.mean_norm)
@@ -133,7 +133,8 @@ void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm:
     }
     gather.visit();
     while (radius > 0 && gather.near.empty()) {
-        // A part of the surface too small to have a sample of its own takes the nearest ones.
+        // No sample lies within the radius, as on very small parts: widen it to the nearest
+        // samples.
         gather.near_squared *= 4;
         weights.clear();
         gather.visit();

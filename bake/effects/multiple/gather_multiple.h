@@ -11,31 +11,31 @@
 
 namespace opaline::bake {
 
-/// How much of one node or sample reaches a receiver, per band [1/m^2]; 0 where the profile has no
-/// such band.
+/// Weight of one node or sample in a receiver's sum, per band [1/m^2]; 0 in bands that the profile
+/// lacks.
 struct ClusterWeight {
     std::uint32_t id = 0;  ///< a node, or nodes + sample
     std::array<float, 3> weight{};
 };
 
 struct GatherOptions {
-    /// A node is taken whole if that errs by at most this share of R ||E||: its sum times how far
-    /// R_d varies over its box (translucency.md 3.10, bound criterion). 0: every sample by itself.
+    /// A node is used as a whole where the norm of its sum times the variation of R_far over its
+    /// box is at most `tolerance` R ||E|| (multiple/README.md, "Hierarchy"). 0: every sample.
     double tolerance = 1e-3;
 };
 
 /// The weights of T_d(x) = sum A_i R_far(|x_i - x|) E_i + near_mass mean E at a point with unit
-/// normal. The mean is over the samples around it that face the same way; so a thin part's two
-/// sides do not mix, and where the samples are dense it has no weight. Overwrites `weights`.
+/// normal. The mean is over nearby samples that face the same way, so the two sides of a thin part
+/// do not mix. With dense samples near_mass is 0. Overwrites `weights`.
 void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm::vec3 position,
                      glm::vec3 normal, const GatherOptions& options,
                      std::vector<ClusterWeight>& weights);
 
-/// sum of weight times vector: the Haar vector of T_d in three bands, interleaved as RGBx, 4 * 6 n
+/// Sum of weight times vector: the Haar vector of T_d in three bands, interleaved as RGBx, 4 * 6 n
 /// n values, overwritten.
 void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
                 std::span<float> rgbx);
-/// The same of the first band alone, 6 n n values.
+/// The same for the first band only, 6 n n values.
 void accumulate_grey(const ClusterTree& tree, std::span<const ClusterWeight> weights,
                      std::span<float> sums);
 

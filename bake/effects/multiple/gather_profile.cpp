@@ -11,8 +11,7 @@ namespace {
 // Within this radius lie about twenty samples: enough to average, few enough to stay local.
 constexpr double kNearSpacings = 2.5;
 
-// Steps of the table: 64 of each octave, evenly spaced in it, which are the leading bits of a
-// float.
+// The table has 64 evenly spaced steps per octave, so a step is the leading bits of a float.
 constexpr std::uint32_t kFractionBits = 23 - 6;
 constexpr auto kOne = std::bit_cast<std::uint32_t>(1.0f);
 
@@ -54,10 +53,11 @@ GatherProfile make_gather_profile(const MediumProfile& medium, double spacing,
             profile.near_radius = static_cast<float>(kNearSpacings * spacing);
         }
     }
-    constexpr double kLeast = 1e-37;  // [m^2] its inverse is a float, whatever the scale
+    constexpr double kLeast = 1e-37;  // [m^2] keeps the inverse in the range of a float
     const double z_squared = std::max(kLeast, std::pow(std::max(medium.smallest, wanted), 2));
     profile.inverse_z_squared = static_cast<float>(1 / z_squared);
-    constexpr float kMost = 1e30f;  // where nothing arrives, whatever the scale
+    constexpr float kMost =
+        1e30f;  // keeps the distance in the range of a float; nothing arrives from there
     const auto farthest = static_cast<float>(largest_distance * largest_distance);
     const std::uint32_t entries =
         place_of(std::min(kMost, 1 + farthest * profile.inverse_z_squared)).step + 2;

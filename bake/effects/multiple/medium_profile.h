@@ -13,29 +13,29 @@ namespace opaline::bake {
 struct MediumProfile {
     std::array<Profile, 3> band;
     std::array<double, 3> scale{1, 1, 1};  ///< multiplies each: `energy_match`
-    double exit = 1;      ///< c_exit = 1 - F_ext (translucency.md 3.1), 1 in `paper` mode
+    double exit = 1;      ///< c_exit = 1 - F_ext (scattering/README.md, "Exit"), 1 in `paper` mode
     double smallest = 0;  ///< profile_length of the densest band [m]; 0: nothing scatters
     double eta = 1;
 
-    /// R_d [1/m^2], total reflectance R, and what of it leaves beyond `a` [m].
+    /// R_d [1/m^2], total reflectance R, and the part of R beyond distance `a` [m].
     double eval(std::size_t b, double r) const { return scale[b] * eval_profile(band[b], r); }
     double total(std::size_t b) const { return scale[b] * profile_total(band[b]); }
     double tail(std::size_t b, double a) const { return scale[b] * profile_tail(band[b], a); }
 };
 
-/// Profiles `automatic`, `better` and `beams` are scaled per band, in physical fidelity, so that a
-/// half space returns what a random walk of it returns beyond single scattering (translucency.md
-/// 3.4, energy_match); `normalized` has the walk's whole reflectance, single scattering included;
-/// `classic` is left unscaled. `paper` fidelity: the classic dipole as printed, whatever `profile`.
+/// In physical fidelity, the profiles `automatic`, `better` and `beams` are scaled per band, so
+/// that a half space returns the multiple scattering of a random walk (scattering/README.md,
+/// "Energy match"). `normalized` gets the walk's whole reflectance, single scattering included.
+/// `classic` is not scaled. `paper` fidelity: the classic dipole as printed, whatever `profile`.
 MediumProfile make_medium_profile(const formats::Medium& medium, std::uint64_t seed,
                                   const Context& context);
 
 /// Times samples per path: enough for the shape of a body that light crosses.
 inline constexpr double kLeastSamplesPerPath = 2000;
 
-/// How many samples the surface of a medium needs: `per_path` per square of the depth of its
-/// source; with one their sum has nearly converged (translucency.md 3.7). At least 2000 times that,
-/// at most `most`. `area` [m^2].
+/// Number of samples on the surface of a medium: `per_path` per squared depth of its source. At
+/// `per_path` = 1 their sum errs by about 1 % (multiple/README.md, "Sampling"). At least 2000
+/// `per_path`, at most `most`. `area` [m^2].
 std::uint32_t count_samples(double area, const MediumProfile& profile, double per_path,
                             std::uint32_t most);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// So that what is near in space is near in memory; the body's triangles stay the first.
+// Spatial order for locality in memory; the body's triangles stay first.
 void sort_in_space(BodyMesh& mesh) {
     const std::vector<std::uint32_t> order = spatial_order(mesh.position);
     std::vector<glm::vec3> position;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kLanes = RayPacket::kSize;
 
-// Where light enters on its way to a node.
+// The point at which light enters on its way to a node.
 struct Arrival {
     float distance, cosine;
     Entry<float> entry;
@@ -31,8 +31,8 @@ Arrival arrival_of(const GatherJob& job, const LightView& view, std::uint32_t tr
             cosine * (frame.w - slope.x * frame.u - slope.y * frame.v)};
 }
 
-// Adds light that arrives to the terms of a receiver. Everything with a number of bands is compiled
-// for one and for three.
+// Adds light that arrives to the terms of a receiver. Templates over the number of bands are
+// compiled for 1 and 3.
 template <std::size_t kBands>
 void add(const GatherJob& job, glm::vec3 w, const Arrival& arrival, const BandValues<kBands>& light,
          float* value) {
@@ -52,7 +52,7 @@ void add(const GatherJob& job, glm::vec3 w, const Arrival& arrival, const BandVa
     }
 }
 
-// What of the light gets to a node, times a factor.
+// The light that reaches a node, per band, times a factor.
 template <std::size_t kBands>
 BandValues<kBands> attenuate(const GatherJob& job, const InteriorNode& node, const Arrival& arrival,
                              float factor) {
@@ -65,8 +65,8 @@ BandValues<kBands> attenuate(const GatherJob& job, const InteriorNode& node, con
     return light;
 }
 
-// Evenly distributed in [0, 1), a function of the node and the direction alone. Exponents are left
-// out: it does not change if the scene is scaled by a power of two.
+// A hash of the node and the direction, uniform in [0, 1). It ignores exponents, so that scaling
+// the scene by a power of two does not change it.
 float number_of(const InteriorNode& node, glm::vec3 w) {
     std::uint64_t hash = 0x9e3779b97f4a7c15u;
     for (const float x : {node.position.x, node.position.y, node.position.z, w.x, w.y, w.z}) {
@@ -76,21 +76,22 @@ float number_of(const InteriorNode& node, glm::vec3 w) {
     return static_cast<float>(hash >> 40) * 0x1p-24f;
 }
 
-// How likely an unsure look-up is traced: surely where it matters. Of those that may be dark or lit
-// a random part is, so that errors have mean zero: of the nodes in a thin sheet all may be. Where
-// only the distance is unsure, and little, the likely answer is as near as that on average.
+// Probability that an unsure look-up is traced: 1 where its light matters. Where the node may be
+// dark or lit, the probability is never 0, so that errors have mean zero; in a thin sheet this can
+// concern all nodes. Where only the distance is unsure and the expected error is below the
+// tolerance, no ray is traced.
 template <std::size_t kBands>
 float trace_probability(const GatherJob& job, const InteriorNode& node, const LightAnswer& answer,
                         float path_ratio, float scale) {
-    constexpr float kSlack = 4.0f;  // what planes disagree by is not all that may be wrong
+    constexpr float kSlack = 4.0f;  // the true error may exceed the difference between the planes
     float error = 0;
     for (std::size_t c = 0; c < kBands; ++c) {
         const float sigma = job.column.sigma_t[c] * path_ratio;
         const float change = std::min(1.0f, kSlack * sigma * answer.uncertainty);
         error = std::max(error, change * node.weight[c] * exp_of_negative(-sigma * answer.nearest));
     }
-    constexpr float kMatters = 0.07f;  // of all light that the receiver can have
-    constexpr float kLeast = 0.05f;    // bounds how much brighter a surprise can be than the truth
+    constexpr float kMatters = 0.07f;  // share of the receiver's largest possible light
+    constexpr float kLeast = 0.05f;    // bounds the weight 1 / probability of a traced look-up
     const float part = job.column.throughput * error / (kMatters * scale);
     if (answer.uncertainty < std::numeric_limits<float>::infinity()) {
         return part < 1.0f ? 0.0f : 1.0f;
@@ -137,7 +138,7 @@ void trace_open(const GatherJob& job, const GatherDirection& direction, GatherWo
     }
 }
 
-// Looks a node up at a silhouette, a crease or between thin layers.
+// Looks up a node at a silhouette, a crease or between thin layers.
 template <std::size_t kBands>
 void gather_unclear(const GatherJob& job, const GatherDirection& direction, std::uint32_t receiver,
                     const InteriorNode& node, float margin, GatherWorkspace& work) {
@@ -153,7 +154,7 @@ void gather_unclear(const GatherJob& job, const GatherDirection& direction, std:
         const float probability = trace_probability<kBands>(
             job, node, answer, arrival.entry.path_ratio, job.list.scale[receiver]);
         if (number_of(node, direction.w) < probability) {
-            // The likely answer plus what the rays find more than it: right on average.
+            // The expected answer plus the weighted difference that the rays find: unbiased.
             work.open.push_back({&node, receiver, direction.share / probability});
             factor -= direction.share / probability;
         }
@@ -180,7 +181,7 @@ void gather_block(const GatherJob& job, const GatherDirection& direction,
             const std::uint32_t k = i - begin;
             const std::int32_t state = answers.state[k];
             if (state == ColumnAnswers::unclear) {
-                // What it will need is far in memory: on its way while the block goes on.
+                // Prefetch, because the data of unclear nodes are far apart in memory.
                 __builtin_prefetch(&list.node[i]);
                 __builtin_prefetch(&job.mesh.triangle[answers.triangle[k]]);
                 work.unclear.push_back({i, r, answers.triangle[k]});

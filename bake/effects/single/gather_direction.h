@@ -17,7 +17,7 @@ struct GatherDirection {
     float share;  ///< of its texel's solid angle
 };
 
-/// What is the same for all directions; the references must outlive it.
+/// Data shared by all directions; the references must outlive the job.
 struct GatherJob {
     const RayScene& rays;
     const BodyMesh& mesh;
@@ -25,13 +25,13 @@ struct GatherJob {
     const SingleMedium& medium;
     const NodeList& list;
     std::uint32_t terms;
-    float isotropic;  ///< the only term where there is one
+    float isotropic;  ///< the value of the term if K = 1
     ColumnMedium column;
 };
 GatherJob make_gather_job(const RayScene& rays, const BodyMesh& mesh, std::uint32_t size,
                           const SingleMedium& medium, const NodeList& list);
 
-/// What a thread works with, and what it counts.
+/// A thread's buffers and counters.
 struct GatherWorkspace {
     LightView view;
     ColumnAnswers answers;
@@ -41,18 +41,18 @@ struct GatherWorkspace {
         std::uint32_t receiver;
         float factor;
     };
-    std::vector<Open> open;  ///< what rays must find out
+    std::vector<Open> open;  ///< look-ups to be decided by rays
     struct Unclear {
-        std::uint32_t node, receiver, triangle;  ///< the one seen nearest to it
+        std::uint32_t node, receiver, triangle;  ///< the triangle seen nearest to the node
     };
     std::vector<Unclear> unclear;  ///< of a block
     EntryCounts counts;
     std::uint64_t look_ups = 0, unsure = 0;
 };
 
-/// Adds what all receivers get from one direction to `work.value`: renders the boundary along it,
-/// looks every node up, and traces the nodes for which that tells too little. `jitter`: of the
-/// view's grid, in [0, 1)^2.
+/// Adds the light that all receivers get from one direction to `work.value`. Renders the boundary
+/// along the direction, looks up every node, and traces the nodes that the view cannot decide.
+/// `jitter`: of the view's grid, in [0, 1)^2.
 void gather_direction(const GatherJob& job, const GatherDirection& direction, glm::vec2 jitter,
                       GatherWorkspace& work);
 

@@ -29,12 +29,12 @@ std::vector<Triangle> triangles_of(const formats::Scene& scene, std::uint32_t ma
     return all;
 }
 
-// How many shells of the medium are around the start of each ray: what it leaves, less what it
-// enters, on the way to infinity.
+// Number of shells of the medium around the start of each ray: shells left minus shells entered on
+// the way to infinity.
 std::array<std::int32_t, kLanes> count_shells(const RayScene& rays, std::uint32_t material,
                                               LaneMask lanes, RayPacket packet) {
     std::array<std::int32_t, kLanes> shells{};
-    constexpr int kMostCrossings = 256;  // bounds what a hostile mesh can ask for
+    constexpr int kMostCrossings = 256;  // bounds the work for a hostile mesh
     for (int i = 0; i < kMostCrossings; ++i) {
         packet.tfar.fill(std::numeric_limits<float>::infinity());
         const PacketHits hits = rays.closest(lanes, packet);

@@ -10,11 +10,11 @@
 
 namespace opaline::bake {
 
-/// Which triangles of a material lie inside its medium, where another of its shells is around them,
-/// and so are no boundary (translucency.md 4, "nested/overlapping shells"); in the order of the
-/// scene's primitives. Judged in four points of each triangle, along three rays each: one that
-/// is only partly inside, or about which the rays disagree, as they do near holes, counts as
-/// boundary. 1: inside. All zero if the context is cancelled.
+/// Marks the triangles of a material that lie inside another shell of its medium and so are no
+/// boundary (README.md, "Signed depth"); in the order of the scene's primitives. Tested at four
+/// points of each triangle, along three rays each. A triangle that is only partly inside, or on
+/// which the rays disagree (near holes), counts as boundary. 1: inside. All zero if the context is
+/// cancelled.
 std::vector<std::uint8_t> find_inner_triangles(const formats::Scene& scene, const RayScene& rays,
                                                std::uint32_t material, const Context& context);
 

@@ -25,25 +25,26 @@ struct ColumnJob {
 
 namespace {
 
-// How far a layer bends away from the plane of its nearest pixel.
+// Deviation of a layer from the plane of the nearest pixel.
 struct Bend {
-    Float8 most;  // the sum over the three other pixels: bounds what it may be in between
-    Float8 here;  // what it is likely to be in the column, downward
+    Float8 most;  // sum over the three other pixels: a bound between them
+    Float8 here;  // expected deviation in the column, downward
 };
-// `x`, `y`: of the column from the nearest pixel, toward the others, in [0, 1/2]; `slope`: that
-// way.
+// `x`, `y`: distances of the column from the nearest pixel toward the others, in [0, 1/2]; `slope`:
+// along them.
 OPALINE_INLINE Bend bend8(Float8 z0, Float8 z1, Float8 z2, Float8 z3, Float8 slope_x,
                           Float8 slope_y, Float8 x, Float8 y) {
     const Float8 d1 = z0 + slope_x - z1, d2 = z0 + slope_y - z2, d3 = z0 + slope_x + slope_y - z3;
     const Float8 most = greater8(d1, -d1) + greater8(d2, -d2) + greater8(d3, -d3);
-    // Bilinear interpolation cuts a crease's corner, the plane overshoots it. With the crease
-    // anywhere between two pixels alike, the mean is x times the former from the latter.
+    // At a crease, bilinear interpolation cuts the corner and the plane overshoots it. For a crease
+    // at a uniformly random position between two pixels, the mean lies x of the way from the plane
+    // to the interpolation.
     const Float8 here =
         x * (x * (1.0f - y)) * d1 + y * (y * (1.0f - x)) * d2 + greater8(x, y) * (x * y) * d3;
     return {most, here};
 }
 
-// enter of each; cosines are positive.
+// enter (entry.h) in each lane; cosines are positive.
 OPALINE_INLINE void enter8(Float8 cosine, const Interface<float>& side, Float8& throughput,
                            Float8& path_ratio) {
     const float eta = side.eta, inverse = 1.0f / eta;
@@ -68,7 +69,7 @@ void attenuate(std::int32_t count, float sigma_t, const float* weight, const flo
                const float* path_ratio, const float* throughput, float* light);
 
 void find_columns(const ColumnJob& given) {
-    const ColumnJob job = given;  // stores through other pointers cannot change it
+    const ColumnJob job = given;  // a copy that stores through other pointers cannot change
     constexpr auto kColumns = static_cast<std::int32_t>(kStrip);
     const float scale = job.frame.pixels_per_metre;
     const glm::vec3 &u = job.frame.u, &v = job.frame.v, &w = job.frame.w;
@@ -103,7 +104,7 @@ void find_columns(const ColumnJob& given) {
         const Float8 high = greater8(greater8(b0, b1), greater8(b2, b3));
         const Float8 spread = low > nothing ? high - low : zero;
         const Int8 below = low > height + spread;
-        if (all_of8(below)) {  // as of all nodes of a receiver that the light comes from behind
+        if (all_of8(below)) {  // e.g. all nodes of a receiver that faces away from the light
             store8(dark, job.state + k);
             store8(zero, job.distance + k);
             store8(zero, job.throughput + k);
@@ -126,14 +127,14 @@ void find_columns(const ColumnJob& given) {
         const Float8 sx = scale * slope_x, sy = scale * slope_y;
         Float8 throughput, path_ratio;
         enter8(inverse_root8(1.0f + (sx * sx + sy * sy)), job.boundary, throughput, path_ratio);
-        // Nothing at a pixel makes bends infinite or NaN, which no comparison below accepts.
+        // An empty pixel makes the bends infinite or NaN, which fails every comparison below.
         const Float8 x_off = before_x ? -dx : dx, y_off = before_y ? -dy : dy;
         const Bend under = bend8(b0, b1, b2, b3, before_x ? -under_x : under_x,
                                  before_y ? -under_y : under_y, x_off, y_off);
         const Float8 floor = b0 + (dx * under_x + dy * under_y) - height;
         const Bend over = bend8(z0, z1, z2, z3, before_x ? -slope_x : slope_x,
                                 before_y ? -slope_y : slope_y, x_off, y_off);
-        // How bright the point can be, of the brightest that its receiver can be.
+        // Largest possible light of the point, as a share of its receiver's.
         const Float8 least = greater8(lesser8(lesser8(z0, z1), lesser8(z2, z3)) - height, zero);
         const Float8 bright =
             load8(job.importance + k) * exp_of_negative8(-job.least_sigma_t * (least * path_ratio));
@@ -190,7 +191,7 @@ void look_up_columns(const LightView& view, const ColumnPoints& points, std::siz
     job.frame = view.frame;
     job.last = static_cast<float>(view.size) - 2.0f;
     job.size = static_cast<std::int32_t>(view.size);
-    // Both of all light that a receiver can have.
+    // Both as shares of the receiver's largest possible light.
     constexpr float kFaint = 0.02f, kBend = 0.04f;
     job.faint = kFaint;
     job.bend = kBend / std::max(*largest, 1e-30f);

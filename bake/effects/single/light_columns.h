@@ -10,27 +10,27 @@
 
 namespace opaline::bake {
 
-/// What ColumnPoints need beyond their last.
+/// Padding after the last of ColumnPoints.
 constexpr std::size_t kColumnPadding = 8;
 
-/// Interior points and what their light weighs, structure of arrays: `kColumnPadding` more than
-/// there are, which may be anything finite.
+/// Interior points and the weights of their light, structure of arrays, with `kColumnPadding`
+/// further entries of any finite value.
 struct ColumnPoints {
     std::vector<float> x, y, z;                  ///< [m], relative to BodyMesh::centre
     std::array<std::vector<float>, 3> weight{};  ///< per channel; of ColumnMedium::channels
-    std::vector<float> importance;  ///< of all light that the receiver can have, in [0, 1]
+    std::vector<float> importance;  ///< share of the receiver's largest possible light, in [0, 1]
 };
 
-/// What look-ups need of a medium.
+/// The medium as look-ups need it.
 struct ColumnMedium {
     std::array<float, 3> sigma_t{};  ///< [1/m]
-    std::size_t channels = 3;        ///< that are looked up; or the first, which stands for all
-    float tolerance = 0;             ///< [m] that planes may be off
+    std::size_t channels = 3;        ///< 3, or 1 if the first stands for all
+    float tolerance = 0;             ///< [m] accepted error of a plane
     float throughput = 0;            ///< the largest Ft J at any angle
     Interface<float> boundary;
 };
 
-/// What a view says about a run of points.
+/// Answers of a view for a run of points.
 struct ColumnAnswers {
     enum State : std::int32_t { dark, lit, unclear };  ///< unclear: ask look_up
     std::vector<std::int32_t> state;
@@ -39,13 +39,12 @@ struct ColumnAnswers {
     std::array<std::vector<float>, 3> light;
     std::vector<float> distance, throughput, path_ratio;
 
-    void resize(std::size_t points, std::size_t channels);  ///< room for a run of as many
+    void resize(std::size_t points, std::size_t channels);  ///< for runs of up to `points` points
 };
 
-/// Looks points [begin, begin + count) up, eight at once. Clear is a point well above or below the
-/// obstacles at the four pixels around it, or beside their plane, above which the front layer lies
-/// in one plane to what matters of its light; and a point that cannot be bright whatever the
-/// answer: for it the nearest pixel decides.
+/// Looks up points [begin, begin + count), eight at a time. A point is clear in two cases. One: it
+/// lies well above or below the obstacles at the four nearest pixels, and the front layer above it
+/// is flat up to the tolerance. Two: its light cannot matter; then the nearest pixel decides.
 void look_up_columns(const LightView& view, const ColumnPoints& points, std::size_t begin,
                      std::size_t count, const ColumnMedium& medium, ColumnAnswers& answers);
 

@@ -37,7 +37,7 @@ glm::vec2 jitter_of(std::size_t index) {
 }
 
 std::vector<float> invert(std::vector<float> values) {
-    constexpr float kTooSmall = 1e-30f;  // as good as nothing; its inverse would overflow
+    constexpr float kTooSmall = 1e-30f;  // treated as 0: its inverse would overflow
     for (float& value : values) {
         value = value > kTooSmall ? 1.0f / value : 0.0f;
     }
@@ -111,7 +111,7 @@ SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::u
         for (std::size_t i = 0; i < texels[j].size(); ++i) {
             gather_direction(job, texels[j][i], jitter_of(j * texels[j].size() + i), work);
         }
-        // By the thread that fills it: making room for all at once takes one thread seconds.
+        // Allocated by the thread that fills it; one thread would take seconds to allocate all.
         std::vector<std::uint16_t>& packed = result.rows.packed[j];
         packed.resize(points.size() * terms * packed_words(medium.bands));
         (medium.bands == 1 ? pack_texel<1> : pack_texel<3>)(work.value, inverse_scale, inverse_term,

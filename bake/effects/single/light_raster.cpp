@@ -10,13 +10,13 @@ namespace {
 static_assert(kStrip == kVector);
 constexpr Float8 kLanes{0, 1, 2, 3, 4, 5, 6, 7};
 
-// Pixels whose centres lie in (low, high], clipped to the map: of two triangles that share an edge
-// through a centre, one has it.
+// Pixels whose centres lie in (low, high], clipped to the map. The half-open interval gives a
+// centre on a shared edge to exactly one triangle.
 struct Span {
     std::uint32_t begin, end;
 };
 OPALINE_INLINE Span pixel_span(float low, float high, float size) {
-    // Clamped as floats: a blocker far outside would overflow the integer.
+    // Clamped before the conversion, because a blocker far outside would overflow the integer.
     return {static_cast<std::uint32_t>(lesser(greater(low, 0.0f), size) + 0.5f),
             static_cast<std::uint32_t>(lesser(greater(high, 0.0f), size) + 0.5f)};
 }
@@ -32,7 +32,7 @@ OPALINE_INLINE Planes planes_of(float abx, float aby, float abz, float acx, floa
     return {bx, by, cx, cy, abz * bx + acz * cx, abz * by + acz * cy};
 }
 
-// Draws the triangle where it is on top. `from`: of its first corner, of the pixel (0, 0).
+// Draws the triangle where it is on top. `from`: first corner, relative to pixel (0, 0).
 OPALINE_INLINE void draw(const Planes& planes, const glm::vec3& corner, Span rows, Span columns,
                          std::uint32_t id, std::size_t size, float* layer_z,
                          std::uint32_t* layer_id) {

@@ -43,7 +43,7 @@ Corner nearest_pixels(const LightView& view, glm::vec3 p) {
             pixel_index(size, i + di, j + 1 - dj), pixel_index(size, i + 1 - di, j + 1 - dj)};
 }
 
-// Whether an obstacle passes above the point.
+// True if an obstacle lies above the point.
 struct Above {
     bool yes = false, sure = true;
 };
@@ -59,7 +59,8 @@ Above passes_above(const BodyMesh& mesh, const LightView& view, const Corner& pi
     if (high == -kInfinity) {
         return {false, true};
     }
-    // Clear by more than the layer varies between the pixels: no need for its triangles.
+    // The layer is farther from the point than it varies between the pixels, so its triangles are
+    // not needed.
     const bool all = low > -kInfinity;
     const float spread = (all ? high - low : 0.0f) + margin;
     if (all && low > p.z + spread) {
@@ -92,7 +93,7 @@ LightFrame make_light_frame(glm::vec3 toward_light, float radius, std::uint32_t 
         std::abs(toward_light.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
     frame.u = glm::normalize(glm::cross(helper, toward_light));
     frame.v = glm::cross(frame.w, frame.u);
-    // A border of two pixels, and one that the jitter moves through.
+    // A border of two pixels, and one for the jitter.
     const float inner = static_cast<float>(size) - 5.0f;
     frame.pixels_per_metre = radius > 0 ? inner / (2.0f * radius) : 1.0f;
     frame.offset = glm::vec2(0.5f * inner + 2.0f) + jitter;

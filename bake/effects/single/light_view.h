@@ -22,10 +22,10 @@ LightFrame make_light_frame(glm::vec3 toward_light, float radius, std::uint32_t 
 
 glm::vec3 project(const LightFrame& frame, glm::vec3 position);
 
-/// What is on top of each pixel, seen from the light, where pixel_index says.
+/// The topmost surface at each pixel, seen from the light; indexed by pixel_index.
 struct LightLayer {
     std::vector<float> z;                 ///< [m] at the pixel's centre; -infinity: nothing
-    std::vector<std::uint32_t> triangle;  ///< index into BodyMesh::triangle, where there is one
+    std::vector<std::uint32_t> triangle;  ///< index into BodyMesh::triangle where z is finite
 };
 
 /// Views of a body along one direction.
@@ -35,10 +35,10 @@ struct LightView {
     std::vector<glm::vec3> projected;  ///< vertices
     std::vector<glm::vec2> slope;      ///< of triangles in some pixel: dz/dx, dz/dy [m/pixel]
     LightLayer front;                  ///< of the body, facing the light: light enters
-    LightLayer obstacle;  ///< of the body, facing away, where it would leave; and everything else
+    LightLayer obstacle;               ///< back faces of the body, and all other surfaces
 };
 
-/// Strips of eight columns lie one after the other, so that what is near in a view is in few pages.
+/// Pixels are stored in strips of eight columns, so that neighbours lie in few memory pages.
 constexpr std::uint32_t kStrip = 8;
 
 inline std::size_t pixel_index(std::uint32_t size, std::size_t column, std::size_t row) {
@@ -50,21 +50,21 @@ inline std::size_t pixel_index(std::uint32_t size, std::size_t column, std::size
 void render_light_view(const BodyMesh& mesh, const LightFrame& frame, std::uint32_t size,
                        LightView& view);
 
-/// The light's way from a point inside the body.
+/// The path of light to a point inside the body.
 struct LightAnswer {
     bool lit = false;
-    bool sure = true;    ///< otherwise all of this is only likely
-    float distance = 0;  ///< s_i [m], of what may be lit
-    float nearest = 0;   ///< [m] what the distance may come down to, where that is not sure
-    /// [m] how far the distance may be off; infinity where the point may be dark or lit instead.
+    bool sure = true;    ///< false: the other members are expected values
+    float distance = 0;  ///< s_i [m], of a point that may be lit
+    float nearest = 0;   ///< [m] lower bound of the distance, where not sure
+    /// [m] error of the distance; infinity where the point may be dark or lit.
     float uncertainty = 0;
-    std::uint32_t triangle = formats::kNone;  ///< where light enters, of what may be lit
+    std::uint32_t triangle = formats::kNone;  ///< entered by the light, of a point that may be lit
 };
 
-/// Looks a projected point up. Lit: the column through it meets a known triangle of the front layer
-/// above it, and no obstacle in between. Not sure: no triangle seen at the four nearest pixels
-/// holds the column, and their planes differ there by more than `tolerance` [m]; or some layer is
-/// not farther than `margin` [m] from the point.
+/// Looks up a projected point. Lit: the column above it meets a known triangle of the front layer,
+/// and no obstacle before it. Not sure: no triangle seen at the four nearest pixels contains the
+/// column and their planes differ there by more than `tolerance` [m], or some layer lies within
+/// `margin` [m] of the point.
 LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 projected,
                     float tolerance, float margin);
 

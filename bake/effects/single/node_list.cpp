@@ -16,11 +16,11 @@ float largest_throughput(const Interface<float>& boundary) {
         const float cosine = static_cast<float>(i) / kSteps;
         largest = std::max(largest, enter(cosine, boundary).throughput);
     }
-    constexpr float kBetweenSteps = 1.02f;  // an index below 1 peaks sharply at the critical angle
+    constexpr float kBetweenSteps = 1.02f;  // sharp peak at the critical angle
     return kBetweenSteps * largest;
 }
 
-// On a crease the path runs along a side of the body, nearer than pixels can tell.
+// On a crease the path runs along a face of the body, closer than a pixel.
 bool on_crease(const BodyPoint& point) {
     constexpr float kAlong = 0.9f;
     const glm::vec3 outward = point.position - point.inner;
@@ -38,7 +38,7 @@ void add_node(const InteriorNode& node, glm::vec3 centre, std::uint32_t bands, N
 }
 
 void cut_into_blocks(NodeList& list) {
-    constexpr std::uint32_t kNodes = 512;  // what a look-up leaves behind stays in the first cache
+    constexpr std::uint32_t kNodes = 512;  // results of a look-up fit the first-level cache
     const auto receivers = static_cast<std::uint32_t>(list.scale.size());
     for (std::uint32_t begin = 0; begin < receivers;) {
         std::uint32_t end = begin + 1;

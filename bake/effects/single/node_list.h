@@ -9,10 +9,10 @@
 
 namespace opaline::bake {
 
-/// Interior nodes of many receivers, in two lists: those that views are asked about, and those that
-/// they know nothing of and rays must find out: on creases, and where shells overlap.
+/// Interior nodes of many receivers, in two lists: nodes to look up in views, and nodes that need
+/// rays (on creases and where shells overlap).
 struct NodeList {
-    /// A run of receivers whose nodes are looked up together.
+    /// A run of receivers with nodes that are looked up together.
     struct Block {
         std::uint32_t receiver, receivers;  ///< first of them, how many
     };
@@ -21,14 +21,15 @@ struct NodeList {
     ColumnPoints points;               ///< the same nodes
     std::vector<Block> blocks;         ///< all receivers
     std::size_t largest_block = 0;     ///< [nodes]
-    /// Views know nothing of it, or little: rays must find out.
+    /// A node that a view cannot decide alone.
     struct Hard {
         InteriorNode node;
         std::uint32_t receiver;
-        bool crease;  ///< views can tell what is pixels away
+        bool crease;  ///< on a crease: a view decides if all layers are pixels away; else rays
+                      ///< decide
     };
     std::vector<Hard> hard;    ///< by receiver, ascending
-    std::vector<float> scale;  ///< per receiver: no value of T / g_k can be larger
+    std::vector<float> scale;  ///< per receiver: upper bound of T / g_k
     float throughput = 0;      ///< the largest Ft J at any angle
 };
 

@@ -16,8 +16,9 @@ template <std::size_t kBands>
 using BandValues = std::array<float, kBands>;
 
 /// Values in [-1, 1], three in four bytes or one in two: mantissas of 8 bits and a sign, and one
-/// exponent of 5 bits for all. Error at most 2^-8 of the largest magnitude of them, down
-/// to 2^-31. Not negative (`has_sign` false): mantissas of 9 bits, 2^-9. NaN is not allowed.
+/// exponent of 5 bits for all. The error is at most 2^-8 of the largest magnitude among them, down
+/// to 2^-31. Without sign (`has_sign` false), mantissas have 9 bits and the error is 2^-9. NaN is
+/// not allowed.
 template <std::size_t kBands>
 std::uint32_t pack_values(const BandValues<kBands>& value, bool has_sign) {
     constexpr int kSmallest = 31;
@@ -27,8 +28,8 @@ std::uint32_t pack_values(const BandValues<kBands>& value, bool has_sign) {
     for (const float v : value) {
         largest = std::max(largest, std::abs(v));
     }
-    // largest = f 2^exponent, f in [1/2, 1); anything small for 0. No call of frexp or ldexp: there
-    // are as many values to pack as there are results.
+    // largest = f 2^exponent, f in [1/2, 1); a small exponent for 0. frexp and ldexp would be too
+    // slow: every result is packed.
     const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(largest) >> 23) - 126;
     const int e = std::clamp(-exponent, 0, kSmallest);
     const float scale = std::bit_cast<float>(static_cast<std::uint32_t>(127 + e + bits) << 23);
@@ -60,10 +61,10 @@ BandValues<kBands> unpack_values(std::uint32_t packed, bool has_sign) {
 struct PackedRows {
     std::uint32_t texels = 0;
     std::uint32_t bands = 3;           ///< or 1
-    std::vector<float> largest_term;   ///< [term]: what a value of 1 stands for, times scale
-    std::vector<std::uint32_t> place;  ///< [receiver]: where it stands below, neighbours together
+    std::vector<float> largest_term;   ///< [term]: the value that 1 stands for, before scale
+    std::vector<std::uint32_t> place;  ///< [receiver]: index into scale and packed, spatial order
     std::vector<float> scale;          ///< [place]
-    /// [texel][place][term]: one word for a value of one band, two, the lower first, for three.
+    /// [texel][place][term]: one word for one band; two words, the lower first, for three bands.
     std::vector<std::vector<std::uint16_t>> packed;
 };
 
@@ -72,7 +73,7 @@ constexpr std::size_t packed_words(std::uint32_t bands) {
     return bands == 1 ? 1 : 2;
 }
 
-/// How many receivers of `terms` terms fit into `bytes` of memory; at least 1.
+/// Number of receivers with `terms` terms that fit into `bytes` of memory; at least 1.
 inline std::size_t packed_rows_in(std::size_t bytes, std::uint32_t texels, std::uint32_t terms,
                                   std::uint32_t bands) {
     return std::max<std::size_t>(

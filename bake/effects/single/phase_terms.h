@@ -9,7 +9,7 @@
 
 namespace opaline::bake {
 
-/// A phase function by its Legendre coefficients, translucency.md 3.8:
+/// A phase function by its Legendre coefficients (scattering/README.md, "Phase functions"):
 ///     p(cos Theta) = sum_l lambda_l (2 l + 1) / (4 pi) P_l(cos Theta),   lambda_0 = 1,
 /// lambda_l = g^l for Henyey-Greenstein. Every degree gives 2 l + 1 terms g_lm(w_i') h_lm(w_o'),
 /// g_lm = lambda_l Y_lm(-w_i') and h_lm = Y_lm(w_o') with the Y of eval_spherical_harmonics, and
@@ -22,7 +22,7 @@ struct PhaseTerms {
     }
 };
 
-/// No |g_k| is larger than this [1/sr].
+/// Upper bound of |g_k| for each term [1/sr].
 std::vector<float> largest_phase_terms(const PhaseTerms& phase);
 
 /// g_k(w_i') for light from `w` that enters through a boundary of the given outward normal (both

@@ -12,11 +12,11 @@ namespace {
 
 constexpr std::uint32_t kLanes = RayPacket::kSize;
 
-// Where light goes less far than coordinates resolve, distances to the boundary are noise. What a
-// half space scatters once depends on its albedo alone, and over so short a way every body is one:
-// so a thinner medium of the same albedo, band by band, is as good.
+// If the mean free path is shorter than the resolution of coordinates, distances to the boundary
+// are noise. At that scale every body is a half space, whose single scattering depends on the
+// albedo only. So a thinner medium of the same albedo, band by band, gives the same result.
 formats::Medium thin_to_resolution(formats::Medium medium, double diagonal) {
-    constexpr double kLeastPath = 1e-4;  // of the body's size: offsets of rays are 2e-6 of it
+    constexpr double kLeastPath = 1e-4;  // share of the body's size; ray offsets are 2e-6 of it
     const auto thin = [&](float& sigma_s, float& sigma_a) {
         const double paths = kLeastPath * diagonal * (double{sigma_s} + double{sigma_a});
         if (paths > 1) {
@@ -52,7 +52,7 @@ SingleMedium make_single_medium(const formats::Scene& scene, std::uint32_t mater
 std::vector<InteriorNode> place_interior_nodes(const SingleMedium& medium, const BodyPoint& point,
                                                const InwardPath& path) {
     std::vector<InteriorNode> nodes;
-    // On the edge of a box the normal runs along its other sides: keep clear of them.
+    // At the edge of a box the normal runs along its other faces; keep a distance to them.
     const glm::vec3 inward = point.inner - point.position;
     const glm::vec3 aside = inward - glm::dot(inward, point.normal) * point.normal;
     for (const PathNode& node : place_path_nodes(medium.rule, medium.path, double{path.length})) {
@@ -76,7 +76,7 @@ std::vector<RayPacket::Lane> texel_shares(const DirectionSet& directions) {
     for (const DirectionBlock& block : directions.blocks) {
         RayPacket::Lane& share = shares.emplace_back();
         for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-            // The first moment of so small a cell is its solid angle along its direction.
+            // The first moment of a small cell is its solid angle times its direction.
             share[lane] = std::sqrt(block.moment_x[lane] * block.moment_x[lane] +
                                     block.moment_y[lane] * block.moment_y[lane] +
                                     block.moment_z[lane] * block.moment_z[lane]);

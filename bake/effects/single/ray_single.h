@@ -14,7 +14,7 @@
 
 namespace opaline::bake {
 
-/// What single scattering needs of a material, derived once.
+/// The properties of a material that single scattering needs, derived once.
 struct SingleMedium {
     std::uint32_t material = 0;  ///< index into Scene::materials
     PathMedium path;
@@ -22,38 +22,38 @@ struct SingleMedium {
     Interface<float> boundary;
     PhaseTerms phase;
     float path_limit = 0;     ///< [m], where a path without an exit ends
-    std::uint32_t bands = 3;  ///< that are gathered; or the first, which stands for all
+    std::uint32_t bands = 3;  ///< to gather; 1: the first stands for all
 };
 
 /// `material` must have a medium. `depth_samples`: nodes along the inward normal; Gauss-Legendre,
-/// or midpoints in a medium of fidelity `paper`. 8 are good to .2-.5 % of a relit value.
-/// `phase`: its terms; the phase function in the scene is not looked at. `bands`: 3, or 1 where
-/// those of the medium coincide.
+/// or midpoints in a medium of fidelity `paper`. With 8, a relit value errs by 0.2 to 0.5 %.
+/// `phase`: terms to use instead of the scene's phase function. `bands`: 3, or 1 where those of the
+/// medium coincide.
 SingleMedium make_single_medium(const formats::Scene& scene, std::uint32_t material,
                                 std::uint32_t depth_samples, PhaseTerms phase = {},
                                 std::uint32_t bands = 3);
 
-/// Interior points below a body point, where light is looked for.
+/// An interior point below a body point, at which incoming light is evaluated.
 struct InteriorNode {
     glm::vec3 position;       ///< [m]
     float weight[3];          ///< of T_p, per channel
     std::int32_t shells = 1;  ///< of the medium around it
 };
 
-/// The nodes of the path from `point`; none where the path leaves the body at once. A node outside
-/// the medium, which the far side of an inconsistent mesh can have, is left out.
+/// The nodes of the path from `point`; none if the path leaves the body at once. Nodes outside the
+/// medium, as inconsistent meshes can have, are left out.
 std::vector<InteriorNode> place_interior_nodes(const SingleMedium& medium, const BodyPoint& point,
                                                const InwardPath& path);
 
-/// What part of its texel's solid angle each direction of the set stands for, block by block.
+/// The share of its texel's solid angle that each direction stands for, block by block.
 std::vector<RayPacket::Lane> texel_shares(const DirectionSet& directions);
 
-/// Single scattering transport of one receiver by rays (translucency.md 3.6, Eq 10-11 of [Wang2005]
-/// with the Jacobian of refraction):
+/// Single scattering transport of one receiver by rays ([Wang2005] eqs. (10)
+/// and (11) with the Jacobian of refraction; README.md, "Transport"):
 ///     T_k(w) = int_0^d_m sigma_s g_k(w_i') Ft J e^{-sigma_t s_i'} V e^{-sigma_t s} ds,
 /// so that L1 = Ft(w_o) sum_k h_k(w_o') <T_k, L>; g_k, h_k: phase_terms.h. `transport`: mean over
-/// each texel, term by term band by band, K * bands * 6 n n values, unit 1/sr: the solid angle is
-/// the light's. `shares`: of `directions`. `point` must be of the medium's material.
+/// each texel, term by term band by band, K * bands * 6 n n values, unit 1/sr; the light carries
+/// the solid angle. `shares`: of `directions`. `point` must be of the medium's material.
 EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
                           std::span<const RayPacket::Lane> shares, const SingleMedium& medium,
                           const BodyPoint& point, std::span<float> transport);

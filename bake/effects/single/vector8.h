@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <cstring>
 
-// Passing such vectors between functions depends on the instruction set; all that do are inlined.
+// The calling convention of these vectors depends on the instruction set, so all such functions are
+// inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace opaline::bake {
 
-/// Compiles a function three times, for AVX-512, for AVX2 and for any machine, and lets the loader
-/// choose. All give the same bits: nothing is contracted or reassociated (-ffp-contract=off). Not
+/// Compiles a function for AVX-512, for AVX2 and for any machine; the loader chooses. All versions
+/// give the same bits, because nothing is contracted or reassociated (-ffp-contract=off). Not used
 /// under sanitizers, which start after the loader.
 #if defined(__x86_64__) && defined(__ELF__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -18,7 +19,7 @@ namespace opaline::bake {
 #define OPALINE_VECTOR_CLONES
 #endif
 
-/// The compiler inlines nothing into clones unless it must, not even std::min.
+/// Forces inlining: the compiler inlines nothing into clones by itself, not even std::min.
 #define OPALINE_INLINE [[gnu::always_inline]] inline
 
 /// Eight numbers: one register, or two.
@@ -74,14 +75,14 @@ OPALINE_INLINE Float8 inverse_root8(Float8 x) {
     return y;
 }
 
-/// Whether no lane of a comparison is false.
+/// True if all lanes of a comparison are true.
 OPALINE_INLINE bool all_of8(Int8 mask) {
     std::int64_t half[4];
     __builtin_memcpy(half, &mask, sizeof half);
     return (half[0] & half[1] & half[2] & half[3]) == -1;
 }
 
-/// e^x for x <= 0: exp_of_negative of each.
+/// e^x for x <= 0: exp_of_negative in each lane.
 OPALINE_INLINE Float8 exp_of_negative8(Float8 x) {
     constexpr float kLog2E = 1.44269504f, kLn2High = 0.693359375f, kLn2Low = -2.12194440e-4f;
     const Float8 clamped = greater8(x, all8(-80.0f));

@@ -14,7 +14,7 @@ TEST(Calibration, EveryRateOfThisMachineIsATimeThatPasses) {
     const Rates rates = measure_rates(2);
     visit_rates(rates, [](const char* name, double rate) {
         EXPECT_TRUE(std::isfinite(rate)) << name;
-        EXPECT_GE(rate, 0) << name;  // differences of two times may vanish
+        EXPECT_GE(rate, 0) << name;  // a rate from a difference of two times may be 0
     });
     EXPECT_GT(rates.test_lights, 0);
     EXPECT_GT(rates.coherent_ray.at(1e5), 0);

@@ -22,7 +22,7 @@ std::vector<double> numbers(const Rates& rates) {
     return all;
 }
 
-// All different, and not short in decimals.
+// All different, with many decimals.
 Rates odd_rates() {
     Rates rates;
     double next = 1e-9 / 3;
@@ -72,7 +72,7 @@ TEST(RatesCache, DamagedFilesAreAsGoodAsNone) {
     const auto file = folder.path() / "calibration.json";
     ASSERT_TRUE(write_rates(file, kMachine, odd_rates()));
     const std::string whole = read_text(file);
-    // But for the last brace and line break, every part of it is needed.
+    // Every byte is needed, except the last brace and line break.
     for (std::size_t size = 0; size + 2 < whole.size(); size += 7) {
         std::ofstream(file, std::ios::binary) << whole.substr(0, size);
         EXPECT_FALSE(read_rates(file, kMachine)) << size;

@@ -47,8 +47,8 @@ TEST(Marble, ReachesFromWithinAVeinToTheStoneBetween) {
     EXPECT_GT(greatest, 0.99f);
 }
 
-// u grows by 1 for each `scale` along the way across the veins, but for 2 t, which lies between 0
-// and 4: it takes at most 4 veins away, and where it turns the way back adds some.
+// u grows by 1 per `scale` across the veins, plus 2 t, which lies in [0, 4]: it removes at most 4
+// veins, and adds some where it turns back.
 TEST(Marble, VeinsAreScaleApart) {
     const glm::dvec3 across = glm::normalize(glm::dvec3(0.8, 0.5, 0.6));
     constexpr int kVeins = 500, kSteps = 100;

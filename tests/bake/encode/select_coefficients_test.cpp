@@ -174,7 +174,7 @@ TEST(SelectCoefficients, EightBitsLoseHardlyMoreThanSixteenBesideWhatIsLeftOut) 
         EXPECT_GT(sixteen, 1e-7 * whole) << kept;
         EXPECT_LT(eight, 1.1 * sixteen) << kept;
     }
-    // With nothing left out they lose much less than equal steps would.
+    // With all coefficients, square-root codes lose much less than equal steps would.
     const auto all = select_coefficients(make_selector(n, kAllCoefficients), dense, 1);
     float largest = 0;
     for (const float value : all.value) {

@@ -1,4 +1,4 @@
-// What makes the example scenes fit for baking: closed forms, outward faces, round triangles.
+// Requirements of example scenes for baking: closed surfaces, outward faces, well-shaped triangles.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

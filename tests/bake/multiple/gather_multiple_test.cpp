@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// A set of samples whose "transport" is one number each, kept in the first of six entries: the tree
-// and the gather do not care what the entries mean.
+// Samples with one number each as "transport", in the first of six entries: tree and gather do not
+// interpret the entries.
 struct Samples {
     std::vector<SurfaceSample> samples;
     std::vector<float> irradiance;
@@ -96,8 +96,8 @@ double gather(const ClusterTree& tree, const MediumProfile& profile, glm::vec3 x
     return static_cast<double>(rgbx[0]);
 }
 
-// The same nodes are taken, with the same weights and sums, bit for bit: with a near part, which
-// samples far apart have, and without.
+// The same nodes are accepted, with the same weights and sums, bit for bit; with a near part
+// (samples far apart) and without.
 TEST(GatherMultiple, OneBandIsEachOfThreeEqualBands) {
     const auto profile = classic_profile(20, 1, 1.3);
     const Samples set = make_sphere(1, 5000, [](glm::dvec3 n) { return 1 + n.x; });
@@ -144,7 +144,7 @@ TEST(GatherMultiple, SphereUnderUniformLightIsThatOfTheTable) {
         const double radius = row.number("radius"), eta = row.number("eta");
         const auto profile =
             classic_profile(row.number("sigma_s_prime"), row.number("sigma_a"), eta);
-        // <E, 1> over the hemisphere: all that enters of white light.
+        // <E, 1> over the hemisphere: all entering white light.
         const double entering = kPi * (1 - fresnel_moments(eta).external);
         const Samples set = make_sphere(radius, 40000, [&](glm::dvec3) { return entering; });
         const double found =
@@ -212,7 +212,7 @@ TEST(GatherMultiple, PlaneSampledFinelyReturnsTheTotal) {
 }
 
 TEST(GatherMultiple, SamplesFartherApartThanTheSourceIsDeepStillConserveEnergy) {
-    // As plain sums these miss the peak or hit it: tens to thousands of per cent.
+    // Plain sums at these spacings err by tens to thousands of per cent.
     for (const double spacing : {1.5, 3.0, 10.0, 100.0}) {
         const auto profile = classic_profile(1, 0.05, 1.3);
         const double side = 40 * spacing * profile.smallest;
@@ -227,8 +227,8 @@ TEST(GatherMultiple, SamplesFartherApartThanTheSourceIsDeepStillConserveEnergy) 
 }
 
 TEST(GatherMultiple, OpticallyThickBodyOfAnyShapeReflectsWhatFallsOnIt) {
-    // The limit of a diffuse surface: T_d = R E (translucency.md 7.16). A sphere is no flat disc
-    // within the samples' reach, and at the poles of a needle the surface turns fastest.
+    // The limit of a diffuse surface: T_d = R E (multiple/README.md, "Sampling"). A sphere is no
+    // flat disc within the samples' reach, and at the poles of a needle the surface turns fastest.
     for (const double stretch : {1.0, 4.0}) {
         Samples set = make_sphere(1, 20000, [](glm::dvec3 n) { return 1 + n.x; });
         for (SurfaceSample& sample : set.samples) {

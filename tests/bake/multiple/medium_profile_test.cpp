@@ -86,7 +86,7 @@ TEST(MediumProfile, HalfSpaceReturnsWhatTheRandomWalkDoes) {
 }
 
 TEST(MediumProfile, WithoutAbsorptionNothingIsLost) {
-    // Multiple and single parts together are all that entered (translucency.md 7.6).
+    // Multiple and single parts sum to all entering light (scattering/README.md, "Energy match").
     for (const float eta : {1.0f, 1.3f, 1.5f}) {
         const MediumProfile p = make_medium_profile(make_medium({5, 5, 5}, {0, 0, 0}, eta), 0, {});
         const double escape = 1 - fresnel_moments(static_cast<double>(eta)).external;

@@ -18,8 +18,8 @@ double length(const SparseVector& vector) {
     return std::sqrt(squares);
 }
 
-// Half of the sky, weighted by the cosine: the mean over the sphere is 1/4. A row with all its
-// entries is as long as the whole vector, times the area of its sample, shared rays or not.
+// Half of the sky, weighted by the cosine: the mean over the sphere is 1/4. A row with all entries
+// has the norm of the whole vector times the area of its sample, with and without shared rays.
 TEST(SampleTransport, OfAConvexBodyIsTheCosineTimesTheAreaOfEachSample) {
     const formats::Scene scene = tests::make_scene({tests::make_sphere(2)});
     const auto rays = RayScene::build(scene, 1);

@@ -20,7 +20,7 @@ std::vector<SurfaceSample> scattered(std::size_t count) {
     return samples;
 }
 
-// Of every node: along its longest side, nothing of the second child lies before the first.
+// In every node, no sample of the second child lies before one of the first along the longest side.
 void expect_split(std::span<const SurfaceSample> samples, std::span<const std::uint32_t> order) {
     const auto count = static_cast<std::uint32_t>(order.size());
     if (count <= kSamplesPerLeaf) {

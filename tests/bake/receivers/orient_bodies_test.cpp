@@ -18,7 +18,7 @@ Scene wax(std::vector<Primitive> primitives) {
     return make_translucent_scene(std::move(primitives), make_grey_medium(1, 0.1f));
 }
 
-// Whether two surfaces have the same triangles, up to where each begins.
+// True if two surfaces have the same triangles, up to rotation of their corners.
 bool same_triangles(const Primitive& a, const Primitive& b) {
     if (a.index.size() != b.index.size()) {
         return false;

@@ -82,8 +82,8 @@ TEST(SurfaceSamples, BothSidesOfAThinSheetAreCoveredEqually) {
     EXPECT_NEAR(area_up / area_of(scene.primitives[0]), 1, 1e-5) << "cells end at their own side";
 }
 
-// What the dipole asks of the set: sums of a bell 1.2 spacings wide must not depend on where the
-// bell stands. Samples of equal weight at the same places scatter by 5 %.
+// The dipole requires that sums of a bell 1.2 spacings wide do not depend on the bell's position.
+// With equal weights at the same positions the sums vary by 5 %.
 TEST(SurfaceSamples, SumsOfABellAsWideAsTheSpacingAreEven) {
     const auto scene = tests::make_scene({tests::make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 8)});
     const auto samples = sample_surface(scene, {0}, 2500, 1, {});

@@ -11,7 +11,7 @@ TEST(VertexReceivers, DirectionLiesInTheMiddleOfTheNormals) {
     const glm::vec3 corner[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const Clearance c = clearest_direction(corner);
     EXPECT_NEAR(c.cosine, 1 / std::sqrt(3.0f), 1e-3f);
-    // One normal many times over must not pull the direction toward itself.
+    // A repeated normal must not attract the direction.
     const glm::vec3 uneven[] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}};
     EXPECT_GT(clearest_direction(uneven).cosine, 0.6f);
 }

@@ -8,7 +8,7 @@
 namespace opaline::tests {
 namespace {
 
-// What a walk relies on: no ray meets anything within the bound, however triangles lie to the grid.
+// The bound is valid: no ray hits anything within it, for any position of triangles in the grid.
 TEST(ReferenceClearance, NoRayMeetsASurfaceWithinIt) {
     const auto bodies =
         make_fixture(make_scene({make_sphere(2), make_sphere(1, 0.3f, {0.4f, 0, 0}),
@@ -33,7 +33,7 @@ TEST(ReferenceClearance, NoRayMeetsASurfaceWithinIt) {
             known += static_cast<double>(clearance(point));
             true_distance += static_cast<double>(nearest);
         }
-        // Nor is it so careful that it is of no use.
+        // The bound is not uselessly small.
         if (cell < 0.1f) {
             EXPECT_GT(known, 0.3 * true_distance) << cell;
         }
@@ -52,8 +52,8 @@ TEST(ReferenceClearance, CountsWholeCellsInAHollowCube) {
     EXPECT_EQ(bake::ClearanceGrid()({0, 0, 0}), 0);
 }
 
-// Each triangle spans the whole grid: marking the cells of all would take minutes, and a hundred
-// thousand of them hours.
+// Each triangle spans the whole grid. Marking the cells of all would take minutes, and hours for
+// 100 000 triangles.
 TEST(ReferenceClearance, NothingIsKnownOfASoupOfTrianglesAsLargeAsTheScene) {
     std::vector<Primitive> sheets;
     for (int i = 0; i < 100; ++i) {
@@ -69,7 +69,7 @@ TEST(ReferenceClearance, NothingIsKnownOfASoupOfTrianglesAsLargeAsTheScene) {
     EXPECT_GT(coarse({0.9f, 0, -0.9f}), 0);
 }
 
-// Skipped rays change no walk: the same scene with a grid that knows nothing has the same numbers.
+// Skipped rays change no walk: a trivial grid gives the same numbers.
 TEST(ReferenceClearance, WalksAreTheSameBitByBit) {
     Scene input = make_scene({make_sphere(3)});
     input.materials[0].medium = make_medium(30, 0.98f, 0.3f, 1.4f);

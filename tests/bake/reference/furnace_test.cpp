@@ -21,7 +21,7 @@ bake::Estimate estimate(const ReferenceFixture& fixture, std::uint32_t receivers
     return bake::estimate_receivers(fixture.space(), chosen, options, context).value();
 }
 
-// 1 to a thousandth, known well enough to say so, and within three of the stored standard errors,
+// 1 to 1e-3, with a standard error small enough to say so, and within three stored standard errors,
 // over all receivers. Exact where every path carries 1: then the stored variance is rounding.
 void expect_white(const bake::Estimate& estimate, const std::string& what) {
     bake::Moments all;
@@ -38,7 +38,7 @@ std::string describe(float eta, float g) {
     return "eta " + std::to_string(eta) + " g " + std::to_string(g);
 }
 
-// White light on a body that absorbs nothing: its radiance is 1 wherever light goes.
+// White light on a body without absorption: its radiance is 1 everywhere.
 TEST(ReferenceFurnace, RefractingBodyThatAbsorbsNothingIsAsBrightAsItsSurroundings) {
     for (const float eta : {1.5f, 0.8f}) {
         for (const float g : {0.0f, 0.7f, -0.4f}) {
@@ -70,7 +70,7 @@ TEST(ReferenceFurnace, HoldsForEachChannelOfAColouredMedium) {
     for (const bake::Moments& m : estimate(*body, 8, 20000).pixel) {
         all.merge(m);
     }
-    // A path's channels share what one of them flies: their sum never changes.
+    // All channels of a path share one flight, so their sum never changes.
     EXPECT_NEAR((all.mean.x + all.mean.y + all.mean.z) / 3, 1, 1e-3);
     const glm::dvec3 error = glm::sqrt(all.variance_of_mean());
     for (const int c : {0, 1, 2}) {

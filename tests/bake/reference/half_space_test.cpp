@@ -18,8 +18,9 @@ bake::Moments look(float albedo, float g, float eta, formats::TermSet terms, flo
     return look_down(half_space->space(options), 0.5f * kDepth, cosine, samples);
 }
 
-// Radiance after one scattering under uniform light, translucency.md 3.6 with its Jacobian and the
-// true refracted view path: the integral over depth is 1 / (sigma_t (1 + mu_o' / c')).
+// Radiance after one scattering under uniform light (single/README.md, "Transport") with its
+// Jacobian and the true refracted view path: the integral over depth is 1 / (sigma_t (1 + mu_o' /
+// c')).
 double single_radiance(double albedo, double g, double eta, double view) {
     const double mu = std::sqrt(1 - (1 - view * view) / (eta * eta));
     const int steps = 2000, turns = g == 0 || view == 1 ? 1 : 200;
@@ -66,7 +67,7 @@ TEST(ReferenceHalfSpace, SingleAndMultipleScatteringAgreeWithThePublishedWalk) {
         float eta, albedo;
         double single, multiple;
     };
-    // translucency.md 3.4, columns MC: noise about 0.001.
+    // scattering/README.md, "Half space", the columns of the walk: standard error about 0.001.
     for (const Row& row : {Row{1.0f, 0.80f, 0.164, 0.178},
                            {1.3f, 0.30f, 0.0235, 0.0072},
                            {1.3f, 0.80f, 0.0629, 0.1188},

@@ -126,9 +126,9 @@ formats::Environment make_distant_light(glm::vec3 direction) {
     const std::vector<SlabRow> rows = read_slab_rows(group);                         \
     ASSERT_FALSE(rows.empty())
 
-// How far the means of independent parts are from the truth, in their own standard errors. The
-// mean square is 1 where errors are as large as stated: it finds a bias that hides below each
-// limit, and variances that flatter or that are too large.
+// Differences of the means of independent parts from the truth, in their standard errors. The mean
+// square is 1 if the stated errors are right: it detects a bias below each limit, and variances
+// that are too small or too large.
 class ChiSquare {
   public:
     void add(const bake::Moments& part, double truth, double truth_error) {
@@ -142,8 +142,8 @@ class ChiSquare {
     double sum_ = 0, count_ = 0;
 };
 
-// One row in 370 is more than 3 standard errors off by chance: with n rows the limit is where one
-// table in 370 has any (Sidak).
+// By chance one row in 370 is more than 3 standard errors off. For n rows the limit is such that
+// one table in 370 exceeds it (Sidak).
 double limit_for(std::size_t rows) {
     const double one = 1 - std::pow(1 - 1 / 370.0, 1.0 / static_cast<double>(rows));
     double low = 3, high = 8;  // by bisection of erfc
@@ -259,7 +259,7 @@ TEST(ReferenceSlab, WithoutScatteringObeysBeersLaw) {
     medium.sigma_a = {0.1f, 0.7f, 2.0f};
     const auto slab = make_fixture(make_slab(medium, 1.5f), make_half_sky(false));
     const bake::Moments m = look_down(slab->space(), 0.75f, 0.6f, 160);
-    // Nothing is left to chance but the channel: any one flies through with the same weight sum.
+    // Only the channel is random, and every channel passes with the same sum of weights.
     const glm::dvec3 error = glm::sqrt(m.variance_of_mean());
     for (const int c : {0, 1, 2}) {
         const double sigma = glm::dvec3(0.1, 0.7, 2.0)[c];

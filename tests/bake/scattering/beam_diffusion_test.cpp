@@ -28,7 +28,8 @@ TEST(BeamDiffusion, TailIsTheIntegralOfTheProfile) {
 }
 
 TEST(BeamDiffusion, ReflectanceIsThatOfTheReferenceTable) {
-    // translucency.md 3.4, column "beams (kappa)": R (1 - F_ext), to its three or four digits.
+    // scattering/README.md, "Half space", column "beams": R (1 - F_ext), to its three or four
+    // digits.
     struct Row {
         double eta, albedo, expected;
     };

@@ -110,7 +110,7 @@ TEST(Dipole, WithoutAbsorptionEverythingComesBack) {
 }
 
 TEST(Dipole, NearlyNoAbsorptionFollowsTheExpansion) {
-    // R(1 - x) = 1 - (1 + 2 A / 3) sqrt(3 x) + ...  (translucency.md 6)
+    // R(1 - x) = 1 - (1 + 2 A / 3) sqrt(3 x) + ..., the expansion of the total in x = 1 - alpha'.
     const double x = 1e-12;
     const Dipole d = make_dipole(DipoleKind::classic, 1 - x, x, 1.3);
     const double a = 0.75 * (d.z_virtual / d.z_real - 1);
@@ -153,7 +153,7 @@ TEST(Dipole, MediumThatDoesNotScatterIsBlack) {
 }
 
 TEST(Dipole, MarbleHasThePublishedReflectance) {
-    // Jensen et al. 2001, table: .83 .79 .75.
+    // [Jensen2001], table of measured media: .83 .79 .75.
     const double sigma_s[3] = {2.19, 2.62, 3.00}, sigma_a[3] = {.0021, .0041, .0071};
     const double published[3] = {.83, .79, .75};
     for (int c = 0; c < 3; ++c) {

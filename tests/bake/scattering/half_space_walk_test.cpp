@@ -12,7 +12,7 @@ namespace opaline::bake {
 namespace {
 
 TEST(HalfSpaceWalk, AgreesWithIndependentlyMeasuredReflectances) {
-    // translucency.md 3.4, table "Which one": eta, albedo, single, multiple; noise about 0.001.
+    // scattering/README.md, "Half space": eta, albedo, single, multiple; standard error 0.001.
     const double rows[][4] = {{1.0, .80, .164, .178},
                               {1.3, .30, .0235, .0072},
                               {1.3, .80, .0629, .1188},
@@ -39,7 +39,7 @@ TEST(HalfSpaceWalk, SingleScatteringPerAlbedoIsThatOfTheTable) {
 TEST(HalfSpaceWalk, NothingIsLostWithoutAbsorption) {
     for (const double eta : {1.0, 1.3}) {
         const auto r = walk_half_space(1, 0, eta, 4000, 1, {});
-        // Paths that wander deep return late; all of them do within the event limit or nearly so.
+        // Paths that go deep return late; nearly all return within the event limit.
         EXPECT_NEAR(r.single + r.multiple, 1 - fresnel_moments(eta).external, 0.03) << eta;
     }
 }

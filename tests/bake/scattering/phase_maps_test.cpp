@@ -93,7 +93,7 @@ TEST(PhaseMaps, ViewMapsAreOrthonormalOnTheSphere) {
     }
 }
 
-// Per translucency.md 3.8 both directions point away: forward scattering sends the light of a
+// Both directions point away from the point: forward scattering sends the light of a
 // texel toward the opposite one.
 TEST(PhaseMaps, ForwardScatteringIsBrightestOppositeTheLight) {
     for (const double g : {0.5, -0.5}) {
@@ -123,7 +123,7 @@ TEST(PhaseMaps, SignOfGMirrorsTheLight) {
 TEST(PhaseMaps, FirstTermIsConstantAndFirstLargestValuesArePositive) {
     const PhaseMaps maps = factor_phase(hg(-0.6), kSize, 25);
     for (const double h : maps.h[0]) {
-        // 1 / sqrt(4 pi), about as exactly as the rows integrate to 1.
+        // 1 / sqrt(4 pi), about as exact as the rows' integrals of 1.
         EXPECT_NEAR(h, 0.28209479, maps.row_error);
     }
     for (const auto& h : maps.h) {
@@ -138,7 +138,7 @@ TEST(PhaseMaps, FirstTermIsConstantAndFirstLargestValuesArePositive) {
     }
 }
 
-// Rounding must not choose a basis within a multiplet: a relative change of 1e-7 of g, hardly more
+// Rounding must not choose a basis within a multiplet: a relative change of g by 1e-7, hardly more
 // than rounding, hardly changes any map.
 TEST(PhaseMaps, MapsOfAMultipletAreDetermined) {
     const PhaseMaps a = factor_phase(hg(0.4), kSize, 25),
@@ -162,7 +162,7 @@ TEST(PhaseMaps, TruncatedFunctionMayBeNegative) {
 
 TEST(PhaseMaps, RowErrorTellsOfPeaksThatTexelsMiss) {
     EXPECT_LT(factor_phase(hg(0.6), kSize, 0).row_error, 1e-3);
-    // translucency.md 6: row sums of 1.02 at 0.9, 1.46 at 0.95.
+    // Point samples miss the peak: row sums of 1.02 at g = 0.9 and 1.46 at 0.95.
     EXPECT_NEAR(factor_phase(hg(0.9), kSize, 0).row_error, 0.02, 0.005);
     EXPECT_NEAR(factor_phase(hg(0.95), kSize, 0).row_error, 0.46, 0.005);
 }

@@ -65,7 +65,8 @@ TEST(PhaseSeries, CoefficientsAreTheLegendreMomentsOfTheFunction) {
             }
         }
         for (unsigned l = 0; l < kDegrees; ++l) {
-            // The table's cosines are in single precision: its corners are 1e-8 off the panels'.
+            // The table's cosines are in single precision, so its corners are 1e-8 off the panels'
+            // ends.
             EXPECT_NEAR(series.lambda[l], moment[l], 1e-7) << int(phase.type) << " degree " << l;
         }
         EXPECT_NEAR(series.lambda[0], 1, 1e-12) << int(phase.type);
@@ -123,16 +124,16 @@ TEST(PhaseSeries, FewestTermsThatMeetTheToleranceAreWholeDegrees) {
     EXPECT_EQ(chosen({}, 0), 1u);
     EXPECT_EQ(chosen(rayleigh(), 0), 9u);
     EXPECT_EQ(chosen(rayleigh(), 0.3), 1u);  // sqrt(.05 / 1.05) = .218
-    EXPECT_EQ(chosen(hg(0.25), 0.42), 1u);   // the table of 3.8: .4157, .1330, .0392, .0111, .0031
+    EXPECT_EQ(chosen(hg(0.25), 0.42), 1u);   // scattering/README.md: .4157, .1330, .0392, ...
     EXPECT_EQ(chosen(hg(0.25), 0.41), 4u);
     EXPECT_EQ(chosen(hg(-0.25), 0.04), 9u);
     EXPECT_EQ(chosen(hg(0.25), 0.012), 16u);
     EXPECT_EQ(chosen(hg(0.25), 0.01), 25u);
-    EXPECT_EQ(chosen(hg(0.9), 0.01), 25u);  // no number of terms here does it
+    EXPECT_EQ(chosen(hg(0.9), 0.01), 25u);  // no K meets the tolerance
 }
 
-// w_i toward the light and w_o toward the eye point away from the scattering point: light that goes
-// straight on has w_o = -w_i, and g > 0 makes that the brightest direction.
+// w_i toward the light and w_o toward the eye point away from the scattering point: unscattered
+// light has w_o = -w_i, and g > 0 makes that the brightest direction.
 TEST(PhaseSeries, HarmonicsOfForwardScatteringAreBrightestOppositeTheLight) {
     const formats::Vec3 w_i{0.48f, -0.6f, 0.64f};
     for (const double g : {0.5, -0.5}) {

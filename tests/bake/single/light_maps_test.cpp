@@ -34,7 +34,7 @@ std::vector<std::vector<double>> smooth_lights(const DirectionSet& directions) {
     return lights;
 }
 
-// About `count` points of the medium, evenly from the list.
+// About `count` points of the medium, evenly spaced in the list.
 std::vector<BodyPoint> some_points(const SingleSetup& setup, std::size_t count) {
     std::vector<BodyPoint> all, some;
     for (const BodyPoint& point : setup.points) {
@@ -57,7 +57,7 @@ SingleRows gather_all(const SingleSetup& setup, const DirectionSet& directions,
                               points, context);
 }
 
-// How far maps are from rays along the same directions.
+// Difference of light maps from rays along the same directions.
 struct Comparison {
     double rms = 0;   // worst light: RMS of the difference over RMS of the reference
     double bias = 0;  // mean of the difference over mean of the reference, constant light
@@ -76,7 +76,7 @@ Comparison compare(const SingleSetup& setup, std::size_t count) {
     for (std::size_t p = 0; p < points.size(); ++p) {
         gather_single(setup.rays, directions, shares, setup.medium, points[p], exact);
         read_packed_row(maps.rows, p, fast);
-        // From straight above, where it is seen brightest.
+        // From straight above, the brightest view.
         const std::vector<float> seen = tests::seen_from(exact, terms, points[p].normal);
         const std::vector<float> seen_fast = tests::seen_from(fast, terms, points[p].normal);
         for (std::size_t l = 0; l < lights.size(); ++l) {
@@ -180,7 +180,7 @@ TEST(LightMaps, RowsDependNeitherOnThreadsNorOnHowPointsAreCut) {
     }
 }
 
-// Look-ups by eights leave to the careful one what they cannot tell; the rest is the same.
+// Eight-wide look-ups leave unclear points to look_up and agree with it elsewhere.
 TEST(LightColumns, ClearAnswersAgreeWithCarefulOnes) {
     const auto setup =
         set_up(make_translucent_scene({tests::make_bumpy_body(4)}, make_grey_medium(8, 0.2f)));
@@ -214,7 +214,7 @@ TEST(LightColumns, ClearAnswersAgreeWithCarefulOnes) {
                        std::exp(-8.2f * careful.distance * entry.path_ratio);
         }
         lit += is_lit ? 1 : 0;
-        // Beside an edge the other triangle may answer, of another slope.
+        // Beside an edge the other triangle may answer, with another slope.
         const float scale = 0.01f * job.column.throughput * list.points.weight[0][i] /
                             std::max(list.points.importance[i], 1e-6f);
         differ += std::abs(answers.light[0][i] - expected) > scale ? 1 : 0;
@@ -300,8 +300,8 @@ TEST(PackedRows, OneBandTakesTwoBytesAndOnlyItsOwnBits) {
     EXPECT_EQ(packed_rows_in(kBytes, 384, 4, 1), 200u);
 }
 
-// One band is gathered with the arithmetic of each of three: the bits are the same. With creases
-// and shells, so that views, rays and what lies between them all have a part.
+// One band uses the arithmetic of each of three, so the bits are the same. Creases and shells make
+// views, rays and undecided look-ups all take part.
 TEST(LightMaps, OneBandIsEachOfThreeEqualBands) {
     auto scene = make_translucent_scene({tests::make_bumpy_body(4)}, make_grey_medium(8, 0.8f));
     for (const unsigned degrees : {0u, 1u}) {

@@ -114,12 +114,12 @@ TEST(Entry, ProductIsFresnelTimesJacobian) {
 }
 
 TEST(Entry, StaysFiniteJustInsideTheCriticalAngle) {
-    // 6.41 at 0.8 and 9.64 at 0.67 (translucency.md 6), although J is unbounded.
+    // 6.41 at 0.8 and 9.64 at 0.67, although J is unbounded.
     for (const auto& [eta, expected] : {std::pair{0.8, 6.41}, {0.67, 9.64}}) {
         const double critical = std::sqrt(1 - eta * eta);
         const Entry<double> inside = enter(critical * (1 + 1e-12), Interface<double>{eta, true});
         EXPECT_NEAR(inside.throughput, expected, 0.01) << eta;
-        EXPECT_GT(inside.path_ratio, 1e4);  // no light from there, however short the way
+        EXPECT_GT(inside.path_ratio, 1e4);  // no light from there, even along a short path
         EXPECT_EQ(enter(critical * (1 - 1e-12), Interface<double>{eta, true}).throughput, 0);
     }
 }

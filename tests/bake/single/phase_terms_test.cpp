@@ -87,7 +87,7 @@ TEST(PhaseTerms, HalfSpaceAgreesWithTheTruncatedPhaseFunction) {
     setup.medium.rule = make_gauss_rule(64);
     const std::size_t top = vertex_at(setup, {0, 1, 0});
     for (const double cosine : {0.95, 0.6, 0.2}) {
-        // Around a slanted axis every lane has an angle of its own.
+        // Around a slanted axis every lane has a different angle.
         const DirectionSet cone =
             tests::make_cone(glm::normalize(glm::vec3(0.2f, 1, 0.1f)), cosine);
         const glm::dvec3 view = glm::normalize(glm::dvec3(0.5, 1, -0.2));

@@ -17,7 +17,7 @@ using tests::set_up;
 
 constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
 
-// Smooth in s, so that the reference's own quadrature is not what is tested.
+// Smooth in s, so that the reference's own quadrature error does not matter.
 void use_fine_quadrature(SingleMedium& medium, bool jacobian) {
     medium.rule = make_gauss_rule(300);
     medium.path.sigma_m = 0;
@@ -46,7 +46,7 @@ TEST(RaySingle, TessellatedSphereAgreesWithTheAnalyticOneWithin1Percent) {
 TEST(RaySingle, WideSlabIsAHalfSpace) {
     OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "ss_plane_T1");
     for (const auto& row : rows) {
-        // A cube 60 mean free paths wide: its sides are as good as infinitely far.
+        // A cube 60 mean free paths wide: its faces are effectively at infinity.
         const double sigma_t = row.number("sigma_t"), sigma_s = row.number("sigma_s");
         auto setup = set_up(make_translucent_scene(
             {tests::transformed(tests::make_cube(2, false), glm::mat3(1),
@@ -110,7 +110,7 @@ TEST(RaySingle, ScalingBodyAndCoefficientsTogetherChangesNothing) {
     for (const std::size_t p : {0u, 100u, 500u}) {
         const auto a = tests::dot_one(gather(small, directions, p), directions);
         const auto b = tests::dot_one(gather(large, directions, p), directions);
-        EXPECT_NEAR(a.x, b.x, 1e-3 * a.x) << p;  // moved: other roundings at silhouettes
+        EXPECT_NEAR(a.x, b.x, 1e-3 * a.x) << p;  // moved, so rounding differs at silhouettes
         EXPECT_GT(a.x, 0.01) << p;
     }
 }
@@ -141,7 +141,8 @@ TEST(RaySingle, OpaqueThingsBlockLightBothOutsideAndInside) {
 }
 
 TEST(RaySingle, AnotherLimbOfTheBodyBlocksLight) {
-    // Two cubes one above the other, of one medium: the lower one gets nothing from straight above.
+    // Two cubes of one medium, one above the other: the lower one gets no light from straight
+    // above.
     const auto lower = tests::make_cube(2, false);
     const auto upper = tests::transformed(lower, glm::mat3(1), 3, {0, 6, 0});
     const auto setup = set_up(make_translucent_scene({lower, upper}, make_grey_medium(1, 0.1f)));

@@ -15,7 +15,7 @@
 
 namespace opaline::tests {
 
-/// A scene with everything that gathers need.
+/// A scene with all inputs of a gather.
 struct SingleSetup {
     Scene scene;
     bake::RayScene rays;

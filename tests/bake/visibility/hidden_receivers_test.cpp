@@ -44,9 +44,9 @@ TEST(HiddenReceivers, FloorVerticesUnderABoxTakeOverFromTheirNearestVisibleNeigh
     const double outside = brightness(*rays, set[floor_vertex(scene, 10, 13)]);
     EXPECT_GT(outside, 0);
     EXPECT_EQ(inside, outside);
-    // Farther in, nothing visible depends on a vertex: it is as dark as it is.
+    // Farther inside, no visible point depends on a vertex, so it stays dark.
     EXPECT_EQ(brightness(*rays, set[floor_vertex(scene, 10, 10)]), 0);
-    // What can be seen is left alone.
+    // Visible vertices stay unchanged.
     const std::size_t open = floor_vertex(scene, 3, 3);
     EXPECT_EQ(set[open].origin, make_vertex_receivers(scene)[open].origin);
 }

@@ -26,8 +26,8 @@ double distance_to(glm::dvec3 origin, glm::dvec3 d, double near, glm::dvec3 a, g
     return u >= 0 && v >= 0 && u + v <= 1 && t > near ? t : miss;
 }
 
-// Rays of one direction from places in a small part of a body, some of them from behind the first
-// surface on: what a light map's doubtful columns ask for.
+// Rays of one direction from points in a small part of a body, some of them from behind the first
+// surface, as for undecided look-ups of a light map.
 TEST(RayPackets, MeetTheNearestTriangleBeyondTheirStart) {
     const auto scene = tests::make_scene({tests::make_sphere(2, 1), tests::make_sphere(2, 0.9f)});
     const auto rays = RayScene::build(scene, 1);

@@ -105,7 +105,7 @@ TEST(SelfIntersection, SamplesOfACoarseSmoothSphereSeeTheTerminatorOfTheSphere) 
             irradiance({sample.position + 1e-5f * sample.geometric_normal, sample.normal}) / 200;
     }
     EXPECT_GT(lifted, 0.999);
-    EXPECT_LT(on_facet, 0.998);  // what the lift is for
+    EXPECT_LT(on_facet, 0.998);  // the lift prevents this
 }
 
 }  // namespace
