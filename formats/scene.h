@@ -76,9 +76,9 @@ struct Primitive {
     std::string name;                                 ///< "node 'Vase' > mesh 3 > primitive 0"
     std::uint32_t material = 0;                       ///< index into Scene::materials, always valid
     std::vector<glm::vec3> position;                  ///< [m], finite
-    std::vector<glm::vec3> normal;    ///< unit; one per vertex; {0,0,0} where none can be defined
-    std::vector<glm::vec2> texcoord;  ///< of the base colour, set 0 without a texture; transform
-                                      ///< applied; empty or one per vertex
+    std::vector<glm::vec3> normal;     ///< unit; one per vertex; {0,0,0} where none can be defined
+    std::vector<glm::vec2> texcoord;   ///< of the base colour, set 0 without a texture; transform
+                                       ///< applied; empty or one per vertex
     std::vector<Rgb> color;            ///< COLOR_0, linear; empty or one per vertex
     std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();
                                        ///< counter-clockwise seen from outside
@@ -95,6 +95,11 @@ inline double surface_area(const Primitive& primitive) {
     }
     return sum;
 }
+
+/// How large a scene is, all instances told apart: known before any of it is built.
+struct SceneCounts {
+    std::uint64_t primitives = 0, vertices = 0, indices = 0;
+};
 
 /// Everything the baker knows about its input. Plain values; links are indices.
 struct Scene {
