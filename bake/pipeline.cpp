@@ -238,9 +238,12 @@ formats::Result<BakeResult> run_bake(const formats::Scene& given, const Knobs& w
         return take_over_hidden(rays, scene, std::move(all), context);
     });
     const std::vector<Receiver> receivers = leave_out_skipped(scene, layouts, vertices);
-    formats::Result<std::vector<TestLight>> lights = run_stage(
-        result, "test lights",
-        [&](std::uint64_t&) { return make_test_lights(knobs.cubemap_size, context.threads); });
+    formats::Result<std::vector<TestLight>> lights =
+        run_stage(result, "test lights", [&](std::uint64_t&) {
+            return make_test_lights(
+                knobs.cubemap_size, context.threads,
+                context.cache.empty() ? context.cache : context.cache / "test-lights");
+        });
     if (!lights) {
         return std::move(lights).error();
     }

@@ -19,8 +19,11 @@ struct MachineKey {
 /// The machine that the program runs on.
 MachineKey this_machine();
 
-/// Where rates are kept: $XDG_CACHE_HOME/opaline/calibration.json, or $HOME/.cache/opaline/ where
-/// the first is not set or not absolute. Empty where there is neither.
+/// The user's cache: $XDG_CACHE_HOME/opaline, or $HOME/.cache/opaline where the first is not set or
+/// not absolute. Empty where there is neither.
+std::filesystem::path cache_folder();
+
+/// Where rates are kept: calibration.json in cache_folder(); empty where that is.
 std::filesystem::path rates_path();
 
 /// The rates in a file; nothing if it is not there, not readable, damaged, or not of this machine.
