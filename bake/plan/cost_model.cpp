@@ -6,6 +6,7 @@
 
 #include "bake/plan/accuracy_costs.h"
 #include "bake/plan/bill.h"
+#include "bake/plan/predict_memory.h"
 #include "bake/plan/row_layout.h"
 #include "bake/plan/stage_costs.h"
 #include "formats/opal/cubemap.h"
@@ -23,16 +24,6 @@ double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
         bytes += static_cast<double>(image.rgba.size()) * 3 / 4;
     }
     return kCompressed * bytes;
-}
-
-std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t bands) {
-    const std::uint64_t all = formats::cubemap_texels(knobs.cubemap_size);
-    // Of an opaque surface half of all coefficients vanish, below the horizon.
-    const std::uint64_t details = knobs.coefficients == kAllCoefficients
-                                      ? (translucent ? all : all / 2)
-                                      : std::min<std::uint64_t>(knobs.coefficients, all) - 6;
-    const std::uint64_t index_bytes = all <= 65536 ? 2 : 4;
-    return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
 }
 
 // What the stages cost that make the file.
@@ -170,6 +161,16 @@ struct Making {
 
 }  // namespace
 
+std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t bands) {
+    const std::uint64_t all = formats::cubemap_texels(knobs.cubemap_size);
+    // Of an opaque surface half of all coefficients vanish, below the horizon.
+    const std::uint64_t details = knobs.coefficients == kAllCoefficients
+                                      ? (translucent ? all : all / 2)
+                                      : std::min<std::uint64_t>(knobs.coefficients, all) - 6;
+    const std::uint64_t index_bytes = all <= 65536 ? 2 : 4;
+    return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
+}
+
 CostPrediction predict_costs(const formats::Scene& scene, const SceneFacts& facts,
                              const Knobs& knobs, const Rates& rates, unsigned threads,
                              std::vector<PlanEntry>& plan) {
@@ -193,6 +194,8 @@ CostPrediction predict_costs(const formats::Scene& scene, const SceneFacts& fact
     making.make_openness();
     bill_self_check(bake, bill);
     bill.add_bytes(mesh_bytes(scene, facts));
+    bill.cost.memory_bytes = static_cast<std::uint64_t>(
+        predict_memory(count_memory(scene, knobs), knobs, threads).bytes());
     bill.cost.receivers = static_cast<std::uint64_t>(facts.receivers);
     return std::move(bill.cost);
 }
