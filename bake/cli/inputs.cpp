@@ -44,13 +44,13 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
 }
 
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
-                                                   double metres_per_unit,
+                                                   const formats::ImportOptions& options,
                                                    const std::filesystem::path& media) {
     if (path.extension() == ".vdb") {
         return make_error(ErrorKind::bad_input, path.string(), "", "volumes are not supported yet",
                           "give a .gltf or .glb file");
     }
-    auto imported = formats::import_gltf(path, {metres_per_unit});
+    auto imported = formats::import_gltf(path, options);
     if (!imported) {
         return imported;
     }
@@ -73,7 +73,9 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
             return std::move(status).error();
         }
     }
-    print_warnings(imported->warnings);
+    if (auto status = report_warnings(imported->warnings); !status) {
+        return std::move(status).error();
+    }
     return imported;
 }
 
@@ -82,7 +84,9 @@ formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_d
     if (!opened) {
         return std::move(opened).error();
     }
-    print_warnings(opened->warnings);
+    if (auto status = report_warnings(opened->warnings); !status) {
+        return std::move(status).error();
+    }
     return OpenedLight{
         std::move(opened->environment),
         runtime::rotation_about_y(static_cast<float>(rotate_degrees * std::numbers::pi / 180))};
@@ -102,35 +106,13 @@ formats::Result<formats::Vec3> parse_vec3(const std::string& option, const std::
         const bool last = i == 2;
         if (error != std::errc{} || !std::isfinite(value[i]) ||
             (last ? next != end : next == end || *next != ',')) {
-            return make_error(ErrorKind::usage, "", option, "'" + text + "' is not a point",
+            return make_error(ErrorKind::usage, "", option,
+                              "'" + shorten(text) + "' is not a point",
                               "give three numbers: x,y,z");
         }
         at = next + 1;
     }
     return formats::Vec3{value[0], value[1], value[2]};
-}
-
-formats::Status check_output(const std::filesystem::path& output,
-                             const std::vector<std::filesystem::path>& inputs,
-                             const std::vector<std::string>& endings) {
-    const std::string ending = output.extension().string();
-    if (!endings.empty() && std::find(endings.begin(), endings.end(), ending) == endings.end()) {
-        std::string list;
-        for (const std::string& e : endings) {
-            list += (list.empty() ? "" : " or ") + e;
-        }
-        return make_error(ErrorKind::usage, output.string(), "",
-                          "cannot tell the format from the ending '" + ending + "'",
-                          "end the name in " + list);
-    }
-    std::error_code ignored;
-    for (const std::filesystem::path& input : inputs) {
-        if (std::filesystem::equivalent(output, input, ignored)) {
-            return make_error(ErrorKind::usage, output.string(), "",
-                              "is an input and would be overwritten", "choose another output");
-        }
-    }
-    return formats::ok_status();
 }
 
 namespace {
@@ -144,7 +126,7 @@ constexpr std::pair<std::string_view, std::uint32_t> kTermNames[] = {
 }  // namespace
 
 formats::Result<std::uint32_t> parse_terms(const std::string& text) {
-    if (text.empty()) {
+    if (text.empty() || text == "all") {
         return runtime::kAllTerms;
     }
     std::uint32_t terms = 0;
@@ -155,8 +137,8 @@ formats::Result<std::uint32_t> parse_terms(const std::string& text) {
             std::ranges::find(kTermNames, name, [](const auto& t) { return t.first; });
         if (known == std::end(kTermNames)) {
             return make_error(ErrorKind::usage, "", "--terms",
-                              "'" + name + "' is not a component of a picture",
-                              "give some of multiple,single,specular,diffuse");
+                              "'" + shorten(name) + "' is not a component of a picture",
+                              "give all, or some of multiple,single,specular,diffuse");
         }
         terms |= known->second;
         begin = end + 1;

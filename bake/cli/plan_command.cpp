@@ -43,8 +43,7 @@ int run(const Options& options) {
     if (!knobs) {
         return report_error(knobs.error());
     }
-    const auto imported =
-        open_scene(options.scene.scene, options.scene.metres_per_unit, options.scene.media);
+    const auto imported = open_scene(options.scene, *knobs);
     if (!imported) {
         return report_error(imported.error());
     }
@@ -56,8 +55,14 @@ int run(const Options& options) {
     const unsigned threads = bake::thread_count(context);
     const bake::SceneFacts facts = bake::inspect_scene(imported->scene);
     auto plan = bake::plan_bake(imported->scene, facts, *knobs);
-    print_warnings(describe_open_media(imported->scene, facts));
-    print_warnings(bake::describe_unmet(imported->scene, *wanted, *knobs, plan));
+    std::vector<formats::Diagnostic> warnings = describe_open_media(imported->scene, facts);
+    for (formats::Diagnostic& unmet :
+         bake::describe_unmet(imported->scene, *wanted, *knobs, plan)) {
+        warnings.push_back(std::move(unmet));
+    }
+    if (auto status = report_warnings(warnings); !status) {
+        return report_error(status.error());
+    }
     const bake::Rates rates = find_machine_rates().rates;
     const bake::CostPrediction cost =
         bake::predict_costs(imported->scene, facts, *knobs, rates, threads, plan);
