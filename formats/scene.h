@@ -121,6 +121,11 @@ inline double surface_area(const Primitive& primitive) {
     return sum;
 }
 
+/// How large a scene is, all instances told apart: known before any of it is built.
+struct SceneCounts {
+    std::uint64_t primitives = 0, vertices = 0, indices = 0;
+};
+
 /// Everything the baker knows about its input. Plain values; links are indices.
 struct Scene {
     std::vector<Primitive> primitives;  ///< scene nodes depth-first, then the mesh's primitives:

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string_view>
 
@@ -18,6 +19,7 @@ struct Context {
     unsigned threads = 0;                              ///< 0: one per core
     std::function<void(const Progress&)> on_progress;  ///< may be empty
     const std::atomic<bool>* cancel = nullptr;         ///< set by SIGINT; may be null
+    std::filesystem::path cache;                       ///< folder of the user's; empty: none
 
     bool cancelled() const { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }
 };

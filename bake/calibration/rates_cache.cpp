@@ -47,13 +47,18 @@ MachineKey this_machine() {
     return {processor_name(), std::max(1u, std::thread::hardware_concurrency()), OPALINE_VERSION};
 }
 
-std::filesystem::path rates_path() {
+std::filesystem::path cache_folder() {
     std::filesystem::path folder = absolute_folder("XDG_CACHE_HOME");
     if (folder.empty()) {
         folder = absolute_folder("HOME");
         folder = folder.empty() ? folder : folder / ".cache";
     }
-    return folder.empty() ? folder : folder / "opaline" / "calibration.json";
+    return folder.empty() ? folder : folder / "opaline";
+}
+
+std::filesystem::path rates_path() {
+    const std::filesystem::path folder = cache_folder();
+    return folder.empty() ? folder : folder / "calibration.json";
 }
 
 std::optional<Rates> read_rates(const std::filesystem::path& path, const MachineKey& machine) {

@@ -19,8 +19,11 @@ struct MachineKey {
 /// The machine that the program runs on.
 MachineKey this_machine();
 
-/// $XDG_CACHE_HOME/opaline/calibration.json, or $HOME/.cache/opaline/calibration.json where the
-/// variable is not set or not absolute. Empty where neither variable is set.
+/// The user's cache: $XDG_CACHE_HOME/opaline, or $HOME/.cache/opaline where the first is not set or
+/// not absolute. Empty where there is neither.
+std::filesystem::path cache_folder();
+
+/// Where rates are kept: calibration.json in cache_folder(); empty where that is.
 std::filesystem::path rates_path();
 
 /// The rates in a file. Nothing if the file is missing, unreadable, damaged, or of another machine.

@@ -1,17 +1,17 @@
 #include <fmt/core.h>
 
-#include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <utility>
 
+#include "bake/calibration/rates_cache.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
 #include "bake/cli/machine_rates.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
+#include "bake/cli/outputs.h"
 #include "bake/cli/progress.h"
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
@@ -28,52 +28,72 @@ namespace {
 struct Options {
     SceneOptions scene;
     std::string output, report, depfile;
+    bool verbose = false;
     ProgressStyle progress = ProgressStyle::automatic;
 };
 
 void print_summary(const Options& options, const bake::BakeResult& result, std::uint64_t bytes,
                    std::size_t warnings) {
-    fmt::print(stderr,
-               "{}: {} receivers, {}, {}; measured error {:.2f} % (95 %: {:.2f} to {:.2f}; "
-               "{:.2f} % at vertices, {:.2f} % between)",
-               options.output, result.asset.position.size(), format_seconds(result.seconds_total),
-               format_bytes(static_cast<double>(bytes)), 100 * result.error.rms_relative,
-               100 * result.error.ci95[0], 100 * result.error.ci95[1],
-               100 * result.error.at_receivers.rms_relative,
-               100 * result.error.between.rms_relative);
+    std::string line = fmt::format(
+        "{}: {} receivers, {}, {}; measured error {:.2f} % (95 %: {:.2f} to {:.2f}; {:.2f} % at "
+        "vertices, {:.2f} % between)",
+        printable(options.output), result.asset.position.size(),
+        format_seconds(result.seconds_total), format_bytes(static_cast<double>(bytes)),
+        100 * result.error.rms_relative, 100 * result.error.ci95[0], 100 * result.error.ci95[1],
+        100 * result.error.at_receivers.rms_relative, 100 * result.error.between.rms_relative);
     if (result.accuracy) {
-        fmt::print(stderr, "; asked for {:g} %, expected {:.2f} %", 100 * result.accuracy->target,
-                   100 * result.accuracy->predicted);
+        line += fmt::format("; asked for {:g} %, expected {:.2f} %", 100 * result.accuracy->target,
+                            100 * result.accuracy->predicted);
     }
     if (const auto& model = result.model_error) {
-        fmt::print(stderr, "; model error {:.1f} % (95 %: {:.1f} to {:.1f}), mean {:+.1f} %",
-                   100 * model->rms_relative, 100 * model->ci95[0], 100 * model->ci95[1],
-                   100 * model->bias);
+        line += fmt::format("; model error {:.1f} % (95 %: {:.1f} to {:.1f}), mean {:+.1f} %",
+                            100 * model->rms_relative, 100 * model->ci95[0], 100 * model->ci95[1],
+                            100 * model->bias);
     }
-    fmt::print(stderr, "{}\n",
-               warnings == 0   ? ""
-               : warnings == 1 ? "; 1 warning"
-                               : "; " + std::to_string(warnings) + " warnings");
+    line += warnings == 0   ? ""
+            : warnings == 1 ? "; 1 warning"
+                            : "; " + std::to_string(warnings) + " warnings";
+    print_note(line);
 }
 
-// Nothing where no path was given.
-formats::Result<std::optional<formats::AtomicFile>> create_output(const std::string& path) {
-    if (path.empty()) {
-        return std::optional<formats::AtomicFile>();
+void print_stages(const bake::BakeResult& result) {
+    for (const bake::PlanEntry& entry : result.plan) {
+        print_note(fmt::format("{} {} for {}: {}", entry.effect, entry.on ? "on" : "off",
+                               printable(entry.subject), printable(entry.reason)));
     }
-    auto file = formats::AtomicFile::create(path);
-    if (!file) {
-        return std::move(file).error();
+    for (const bake::StageReport& stage : result.stages) {
+        print_note(fmt::format("{:<32} {:>10}  {:>12} rays  peak {}", printable(stage.name),
+                               format_seconds(stage.seconds), stage.rays,
+                               format_bytes(static_cast<double>(stage.peak_rss_bytes))));
     }
-    return std::optional(std::move(*file));
 }
 
-formats::Status write_output(std::optional<formats::AtomicFile>& file, std::string_view text) {
-    if (!file) {
-        return formats::ok_status();
+// Those that were asked for; the .opal file is the last.
+std::vector<OutputFile> name_outputs(const Options& options) {
+    std::vector<OutputFile> outputs;
+    for (const OutputFile& output : {OutputFile{"--report", options.report, {}},
+                                     {"--depfile", options.depfile, {}},
+                                     {"--output", options.output, {}}}) {
+        if (!output.path.empty()) {
+            outputs.push_back(output);
+        }
     }
-    const formats::Status status = file->write(text);
-    return status ? file->commit() : status;
+    return outputs;
+}
+
+// All of them or none, as far as the disk allows: what may fail comes before the first name.
+formats::Status commit_all(std::vector<formats::AtomicFile>& files) {
+    for (formats::AtomicFile& file : files) {
+        if (auto status = file.sync(); !status) {
+            return status;
+        }
+    }
+    for (formats::AtomicFile& file : files) {
+        if (auto status = file.commit(); !status) {
+            return status;
+        }
+    }
+    return formats::ok_status();
 }
 
 // What the stages were expected to take, before a pilot changed any knob; and the plan's entries,
@@ -101,46 +121,38 @@ int run(const Options& options) {
     if (!knobs) {
         return report_error(knobs.error());
     }
-    auto imported =
-        open_scene(options.scene.scene, options.scene.metres_per_unit, options.scene.media);
+    auto imported = open_scene(options.scene, *knobs);
     if (!imported) {
         return report_error(imported.error());
     }
     if (auto status = bake::check_effects(bake::all_effects(), imported->scene, *knobs); !status) {
         return report_error(status.error());
     }
-    for (const std::string* path : {&options.output, &options.report, &options.depfile}) {
-        if (auto status = check_output(*path, imported->scene.inputs, {}); !status) {
-            return report_error(status.error());
-        }
+    const std::vector<OutputFile> outputs = name_outputs(options);
+    if (auto status = check_outputs(outputs, imported->scene.inputs); !status) {
+        return report_error(status.error());
     }
     // Before the work, so that an unwritable folder is found out at once.
-    auto file = create_output(options.output);
-    auto report_file = create_output(options.report);
-    auto depfile = create_output(options.depfile);
-    for (const auto* output : {&file, &report_file, &depfile}) {
-        if (!*output) {
-            return report_error(output->error());
+    std::vector<formats::AtomicFile> files;
+    for (const OutputFile& output : outputs) {
+        auto file = formats::AtomicFile::create(output.path);
+        if (!file) {
+            return report_error(file.error());
         }
+        files.push_back(std::move(*file));
     }
     // Predictions stand in the report alone: without one this machine need not be measured.
     const std::optional<MachineRates> machine =
-        *report_file ? std::optional(find_machine_rates()) : std::nullopt;
+        options.report.empty() ? std::nullopt : std::optional(find_machine_rates());
     bake::Context context;
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
+    context.cache = bake::cache_folder();
     context.on_progress = make_progress_printer(options.progress);
     auto result = bake::run_bake(bake::all_effects(), imported->scene, *knobs, context);
     if (!result) {
         return report_error(result.error());
     }
-    if (auto status = formats::write_opal(result->asset.view(), std::move(**file)); !status) {
-        return report_error(status.error());
-    }
-    std::error_code ignored;
-    const std::uint64_t bytes = std::filesystem::is_regular_file(options.output, ignored)
-                                    ? std::filesystem::file_size(options.output, ignored)
-                                    : 0;
     for (formats::Diagnostic& unmet :
          bake::describe_unmet({bake::all_effects(), imported->scene, result->facts, result->knobs,
                                result->plan},
@@ -149,17 +161,34 @@ int run(const Options& options) {
     }
     std::vector<formats::Diagnostic> warnings = imported->warnings;
     warnings.insert(warnings.end(), result->warnings.begin(), result->warnings.end());
-    print_warnings(result->warnings);
-    std::string report;
+    if (auto status = report_warnings(result->warnings); !status) {
+        return report_error(status.error());
+    }
+    formats::AtomicFile& file = files.back();
+    if (auto status = formats::write_opal_bytes(result->asset.view(), file); !status) {
+        return report_error(status.error());
+    }
+    const std::uint64_t bytes = file.bytes_written();
+    std::size_t next = 0;
     if (machine) {
         const Expectation expected = expect(imported->scene, *knobs, *machine, *result);
-        report = make_report(imported->scene, *result, expected, warnings, bytes);
-    }
-    std::string rule = make_depfile(options.output, imported->scene.inputs);
-    for (const auto& [output, text] : {std::pair{&*report_file, &report}, {&*depfile, &rule}}) {
-        if (auto status = write_output(*output, *text); !status) {
+        if (auto status = files[next++].write(
+                make_report(imported->scene, *result, expected, warnings, bytes));
+            !status) {
             return report_error(status.error());
         }
+    }
+    if (!options.depfile.empty()) {
+        if (auto status = files[next].write(make_depfile(options.output, imported->scene.inputs));
+            !status) {
+            return report_error(status.error());
+        }
+    }
+    if (auto status = commit_all(files); !status) {
+        return report_error(status.error());
+    }
+    if (options.verbose) {
+        print_stages(*result);
     }
     print_summary(options, *result, bytes, warnings.size());
     return kExitSuccess;
@@ -175,18 +204,18 @@ void add_bake_command(CLI::App& app, Job& job) {
     command->add_flag("--check-model", options->scene.bake.check_model,
                       "also measure how far the physical model is from a Monte Carlo reference "
                       "(seconds to a minute); the report gets `model_error`");
-    command->add_option("-o,--output", options->output, "the .opal file to write")->required();
-    command->add_option("--report", options->report, "write a JSON report: plan, stages, error");
-    command->add_option("--depfile", options->depfile,
-                        "write the files read as a rule for make and ninja");
+    command->add_option("-o,--output", options->output, "the .opal file to write")
+        ->required()
+        ->check(file_name());
+    command->add_option("--report", options->report, "write a JSON report: plan, stages, error")
+        ->check(file_name());
     command
-        ->add_option("--progress", options->progress,
-                     "auto: a bar on a terminal; json: a line of JSON a step on stderr; none")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
-                                                 {"json", ProgressStyle::json},
-                                                 {"none", ProgressStyle::none}}))
-        ->option_text("auto|json|none [auto]");
+        ->add_option("--depfile", options->depfile,
+                     "write the files read as a rule for make and ninja")
+        ->check(file_name());
+    command->add_flag("--verbose", options->verbose,
+                      "also print what is simulated and why, and what each stage took");
+    add_progress_option(*command, options->progress);
     command->footer("Example:\n  opaline bake scene.glb -o scene.opal --quality production");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }

@@ -5,6 +5,9 @@
 #include <numbers>
 
 #include "bake/cli/inputs.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
+#include "runtime/picture/picture.h"
 #include "runtime/picture/software_renderer.h"
 
 namespace opaline::cli {
@@ -16,13 +19,20 @@ using formats::Status;
 
 namespace {
 
+constexpr std::uint32_t kMostPixels = runtime::kMaxPictureSize;  // along one side
+
 Status parse_size(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
-    int used = 0;
-    if (std::sscanf(text.c_str(), "%5ux%5u%n", &width, &height, &used) != 2 ||
-        static_cast<std::size_t>(used) != text.size() || width == 0 || height == 0) {
-        return make_error(ErrorKind::usage, "", "--size", "'" + text + "' is not a size",
-                          "give WIDTHxHEIGHT in pixels, such as 960x720");
+    const std::size_t cross = std::min(text.find('x'), text.size());
+    std::string w = text.substr(0, cross), h = text.substr(std::min(cross + 1, text.size()));
+    const CLI::Validator pixels = whole_number(1, kMostPixels);
+    if (!pixels(w).empty() || !pixels(h).empty()) {
+        return make_error(ErrorKind::usage, "", "--size",
+                          "'" + shorten(text) + "' is not WIDTHxHEIGHT in pixels, each from 1 to " +
+                              std::to_string(kMostPixels),
+                          "give for example 960x720");
     }
+    width = static_cast<std::uint32_t>(std::stoul(w));
+    height = static_cast<std::uint32_t>(std::stoul(h));
     return formats::ok_status();
 }
 
@@ -70,6 +80,7 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
     command.add_option("--target", options.target, "point looked at [m]; default: the middle")
         ->option_text("X,Y,Z");
     command.add_option("--fov", options.fov, "vertical angle of view [degrees]")
+        ->check(number_above(0, 179.9))
         ->option_text("DEG [32]");
 }
 

@@ -6,7 +6,9 @@
 #include <string>
 
 #include "bake/cli/command.h"
+#include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
 
 namespace opaline::cli {
 namespace {
@@ -14,6 +16,7 @@ namespace {
 struct Options {
     std::string a, b;
     double max_relative = -1;
+    bool json = false;
 };
 
 int run(const Options& options) {
@@ -21,14 +24,25 @@ int run(const Options& options) {
     if (!comparison) {
         return report_error(comparison.error());
     }
+    const bool is_within =
+        options.max_relative < 0 || comparison->relative_rmse <= options.max_relative;
+    if (options.json) {
+        fmt::print("{}", json_text({{"elements", comparison->count},
+                                    {"rmse", comparison->rmse},
+                                    {"relative_rmse", comparison->relative_rmse},
+                                    {"p95", comparison->p95},
+                                    {"maximum", comparison->maximum},
+                                    {"within", is_within}}));
+        return is_within ? kExitSuccess : kExitNo;
+    }
     fmt::print("elements        {}\n", comparison->count);
     fmt::print("rmse            {:.6g}\n", comparison->rmse);
     fmt::print("relative rmse   {:.6g}\n", comparison->relative_rmse);
     fmt::print("95th percentile {:.6g}\n", comparison->p95);
     fmt::print("maximum         {:.6g}\n", comparison->maximum);
-    if (options.max_relative >= 0 && !(comparison->relative_rmse <= options.max_relative)) {
-        fmt::print(stderr, "opaline: {} differs from {} by more than {:g}\n", options.a, options.b,
-                   options.max_relative);
+    if (!is_within) {
+        fmt::print(stderr, "opaline: {} differs from {} by more than {:g}\n", printable(options.a),
+                   printable(options.b), options.max_relative);
         return kExitNo;
     }
     return kExitSuccess;
@@ -51,8 +65,9 @@ void add_compare_command(CLI::App& app, Job& job) {
     command
         ->add_option("--max-rel", options->max_relative,
                      "exit with code 1 if the relative RMSE is larger")
-        ->check(CLI::NonNegativeNumber)
+        ->check(real_number(0, 1e30))
         ->option_text("E");
+    command->add_flag("--json", options->json, "print JSON");
     command->footer("Example:\n  opaline compare draft.exr production.exr --max-rel 0.05");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }

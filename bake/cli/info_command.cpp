@@ -7,6 +7,7 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
+#include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
 
 namespace opaline::cli {
@@ -70,7 +71,9 @@ std::string text_of(const Json& json, const char* key) {
     if (!json.is_object() || !json.contains(key)) {
         return "unknown";
     }
-    return json[key].is_string() ? json[key].get<std::string>() : json[key].dump();
+    return printable(json[key].is_string()
+                         ? json[key].get<std::string>()
+                         : json[key].dump(-1, ' ', true, Json::error_handler_t::replace));
 }
 
 void print_provenance(const Json& provenance) {
@@ -128,11 +131,11 @@ int run(const Options& options) {
     }
     const Json info = describe(*asset);
     if (options.json) {
-        fmt::print("{}\n", info.dump(2, ' ', false, Json::error_handler_t::replace));
+        fmt::print("{}", json_text(info));
         return kExitSuccess;
     }
     const formats::AssetView& view = asset->loaded.view;
-    fmt::print("{}: {}, .opal version {}\n", options.path,
+    fmt::print("{}: {}, .opal version {}\n", printable(options.path),
                format_bytes(static_cast<double>(asset->file.bytes().size())),
                formats::kOpalVersion);
     fmt::print("basis         Haar, cube map 6 x {0} x {0}\n", view.cubemap_size);

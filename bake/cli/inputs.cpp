@@ -43,13 +43,13 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
 }
 
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
-                                                   double metres_per_unit,
+                                                   const formats::ImportOptions& options,
                                                    const std::filesystem::path& media) {
     if (path.extension() == ".vdb") {
         return make_error(ErrorKind::bad_input, path.string(), "", "volumes are not supported yet",
                           "give a .gltf or .glb file");
     }
-    auto imported = formats::import_gltf(path, {metres_per_unit});
+    auto imported = formats::import_gltf(path, options);
     if (!imported) {
         return imported;
     }
@@ -72,7 +72,9 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
             return std::move(status).error();
         }
     }
-    print_warnings(imported->warnings);
+    if (auto status = report_warnings(imported->warnings); !status) {
+        return std::move(status).error();
+    }
     return imported;
 }
 
@@ -81,7 +83,9 @@ formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_d
     if (!opened) {
         return std::move(opened).error();
     }
-    print_warnings(opened->warnings);
+    if (auto status = report_warnings(opened->warnings); !status) {
+        return std::move(status).error();
+    }
     return OpenedLight{
         std::move(opened->environment),
         runtime::rotation_about_y(static_cast<float>(rotate_degrees * std::numbers::pi / 180))};
@@ -101,7 +105,8 @@ formats::Result<formats::Vec3> parse_vec3(const std::string& option, const std::
         const bool last = i == 2;
         if (error != std::errc{} || !std::isfinite(value[i]) ||
             (last ? next != end : next == end || *next != ',')) {
-            return make_error(ErrorKind::usage, "", option, "'" + text + "' is not a point",
+            return make_error(ErrorKind::usage, "", option,
+                              "'" + shorten(text) + "' is not a point",
                               "give three numbers: x,y,z");
         }
         at = next + 1;
@@ -109,27 +114,6 @@ formats::Result<formats::Vec3> parse_vec3(const std::string& option, const std::
     return formats::Vec3{value[0], value[1], value[2]};
 }
 
-formats::Status check_output(const std::filesystem::path& output,
-                             const std::vector<std::filesystem::path>& inputs,
-                             const std::vector<std::string>& endings) {
-    const std::string ending = output.extension().string();
-    if (!endings.empty() && std::find(endings.begin(), endings.end(), ending) == endings.end()) {
-        std::string list;
-        for (const std::string& e : endings) {
-            list += (list.empty() ? "" : " or ") + e;
-        }
-        return make_error(ErrorKind::usage, output.string(), "",
-                          "cannot tell the format from the ending '" + ending + "'",
-                          "end the name in " + list);
-    }
-    std::error_code ignored;
-    for (const std::filesystem::path& input : inputs) {
-        if (std::filesystem::equivalent(output, input, ignored)) {
-            return make_error(ErrorKind::usage, output.string(), "",
-                              "is an input and would be overwritten", "choose another output");
-        }
-    }
-    return formats::ok_status();
 }
 
 }  // namespace opaline::cli

@@ -22,10 +22,10 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path,
                                         formats::Checks checks = formats::Checks::structure);
 
 /// Reads a scene, fills its materials with the media of its extension OPALINE_media, then of a
-/// media file (none if the path is empty), and prints the warnings. `.vdb` is refused: volumes are
-/// not supported yet.
+/// media file (none if the path is empty), and reports the warnings (messages.h). `.vdb` is
+/// refused: volumes are not supported yet.
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
-                                                   double metres_per_unit,
+                                                   const formats::ImportOptions& options,
                                                    const std::filesystem::path& media);
 
 /// A light as `--light` names it, turned by `--rotate-light` degrees about +Y.
@@ -33,7 +33,7 @@ struct OpenedLight {
     formats::Environment environment;
     runtime::Rotation rotation;
 };
-/// Prints warnings about repaired pixels.
+/// Reports warnings about repaired pixels.
 formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees);
 
 /// Help text of `--light`.
@@ -41,11 +41,5 @@ std::string light_help();
 
 /// "x,y,z"; three finite numbers. Errors: usage, naming the option.
 formats::Result<formats::Vec3> parse_vec3(const std::string& option, const std::string& text);
-
-/// Refuses an output that would overwrite one of the inputs, and an ending that is not among
-/// `endings` (empty: any). Errors: usage.
-formats::Status check_output(const std::filesystem::path& output,
-                             const std::vector<std::filesystem::path>& inputs,
-                             const std::vector<std::string>& endings);
 
 }  // namespace opaline::cli

@@ -17,8 +17,11 @@ void on_signal(int number) {
 }  // namespace
 
 const std::atomic<bool>& catch_interrupts() {
-    std::signal(SIGINT, on_signal);
-    std::signal(SIGTERM, on_signal);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        if (std::signal(number, on_signal) == SIG_IGN) {
+            std::signal(number, SIG_IGN);
+        }
+    }
     return interrupted;
 }
 

@@ -1,9 +1,8 @@
 #include "bake/cli/machine_rates.h"
 
-#include <fmt/core.h>
-
 #include "bake/calibration/calibration.h"
 #include "bake/calibration/rates_cache.h"
+#include "bake/cli/messages.h"
 
 namespace opaline::cli {
 
@@ -13,7 +12,7 @@ MachineRates find_machine_rates() {
     if (const auto known = bake::read_rates(path, machine)) {
         return {*known, "read from " + path.string()};
     }
-    fmt::print(stderr, "opaline: measuring this machine once, takes about 4 s\n");
+    print_note("opaline: measuring this machine once, takes about 4 s");
     const bake::Rates rates = bake::measure_rates(machine.threads);
     if (path.empty()) {
         return {rates, "measured; neither XDG_CACHE_HOME nor HOME says where to keep it"};

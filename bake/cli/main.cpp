@@ -8,16 +8,44 @@
 #include <system_error>
 
 #include "bake/cli/command.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/usage_errors.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/opal/asset.h"
 
 namespace opaline::cli {
 namespace {
+
+#ifdef OPALINE_HAS_GL
+constexpr bool kHasGl = true;
+#else
+constexpr bool kHasGl = false;
+#endif
+#ifdef __clang__
+constexpr const char* kCompiler = "clang " __clang_version__;
+#else
+constexpr const char* kCompiler = "g++ " __VERSION__;
+#endif
+
+std::string describe_version() {
+    return fmt::format(
+        "opaline {}\n.opal files   version {}\nray tracer    {}\nbuild         {}, {}\n"
+        "OpenGL        {}",
+        OPALINE_VERSION, formats::kOpalVersion, bake::RayScene::description(), OPALINE_BUILD_TYPE,
+        kCompiler, kHasGl ? "yes" : "no: render draws on the CPU");
+}
 
 int run_program(int argc, char** argv) {
     CLI::App app(
         "Opaline bakes how light travels through a scene, so that it can be relit in real time.");
     app.name("opaline");
     app.require_subcommand(1);
-    app.set_version_flag("--version", std::string("opaline ") + OPALINE_VERSION);
+    app.set_version_flag("--version", describe_version);
+    MessageOptions messages;
+    app.fallthrough();  // the program's options stand before or after the command
+    app.add_flag("--strict", messages.strict,
+                 "warnings are errors: nothing is written, exit code 3");
+    app.add_flag("--quiet", messages.quiet, "print errors only: no warnings, summary or progress");
     app.get_formatter()->column_width(38);
     Job job;
     add_bake_command(app, job);
@@ -40,16 +68,19 @@ int run_program(int argc, char** argv) {
         "  opaline bake scenes/statue.gltf -o statue.opal\n"
         "  opaline render statue.opal --light studio -o statue.png\n"
         "`opaline COMMAND --help` explains a command.");
+    for (CLI::App* command : app.get_subcommands({})) {
+        command->footer(command->get_footer() +
+                        "\nEvery command also takes --strict and --quiet (see `opaline --help`).");
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {
         return app.exit(help);  // prints what --help or --version asked for
     } catch (const CLI::ParseError& error) {
-        const auto chosen = app.get_subcommands();
-        fmt::print(stderr, "opaline: error: {} (see `opaline{} --help`)\n", error.what(),
-                   chosen.empty() ? "" : " " + chosen.front()->get_name());
+        fmt::print(stderr, "opaline: error: {}\n", describe_usage_error(app, error));
         return kExitUsage;
     }
+    set_message_options(messages);
     const int code = job();
     // Buffered data may still not fit where it goes.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
@@ -69,10 +100,10 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "opaline: error: out of memory (free some, or lower the knobs)\n");
     } catch (const std::system_error& error) {
-        fmt::print(stderr, "opaline: error: {}\n", error.what());
+        fmt::print(stderr, "opaline: error: {}\n", opaline::cli::printable(error.what()));
     } catch (const std::exception& error) {
         fmt::print(stderr, "opaline: error: {} (this is a fault of Opaline: please report it)\n",
-                   error.what());
+                   opaline::cli::printable(error.what()));
     }
     return opaline::cli::kExitResource;
 }

@@ -11,25 +11,36 @@ namespace opaline::cli {
 using formats::Diagnostic;
 using formats::ErrorKind;
 
+namespace {
+
+MessageOptions chosen;
+
+}  // namespace
+
+void set_message_options(const MessageOptions& options) {
+    chosen = options;
+}
+
+const MessageOptions& message_options() {
+    return chosen;
+}
+
 std::string format_diagnostic(const Diagnostic& diagnostic) {
     std::string text = diagnostic.severity == Diagnostic::Severity::error ? "opaline: error: "
                                                                           : "opaline: warning: ";
     for (const std::string* part : {&diagnostic.file, &diagnostic.where}) {
         if (!part->empty()) {
-            text += *part + ": ";
+            text += printable(*part) + ": ";
         }
     }
-    text += diagnostic.fault;
+    text += printable(diagnostic.fault);
     if (!diagnostic.remedy.empty()) {
-        text += " (" + diagnostic.remedy + ")";
+        text += " (" + printable(diagnostic.remedy) + ")";
     }
     return text;
 }
 
-int report_error(const formats::Error& error) {
-    for (const Diagnostic& diagnostic : error.diagnostics) {
-        fmt::print(stderr, "{}\n", format_diagnostic(diagnostic));
-    }
+int exit_code_of(const formats::Error& error) {
     switch (error.kind) {
         case ErrorKind::usage:
             return kExitUsage;
@@ -42,9 +53,30 @@ int report_error(const formats::Error& error) {
     }
 }
 
-void print_warnings(const std::vector<Diagnostic>& warnings) {
+int report_error(const formats::Error& error) {
+    for (const Diagnostic& diagnostic : error.diagnostics) {
+        fmt::print(stderr, "{}\n", format_diagnostic(diagnostic));
+    }
+    return exit_code_of(error);
+}
+
+formats::Status report_warnings(const std::vector<Diagnostic>& warnings) {
+    if (chosen.strict && !warnings.empty()) {
+        formats::Error error{ErrorKind::bad_input, warnings};
+        for (Diagnostic& diagnostic : error.diagnostics) {
+            diagnostic.severity = Diagnostic::Severity::error;
+        }
+        return error;
+    }
     for (const Diagnostic& warning : warnings) {
-        fmt::print(stderr, "{}\n", format_diagnostic(warning));
+        print_note(format_diagnostic(warning));
+    }
+    return formats::ok_status();
+}
+
+void print_note(const std::string& line) {
+    if (!chosen.quiet) {
+        fmt::print(stderr, "{}\n", line);
     }
 }
 

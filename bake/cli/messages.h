@@ -3,18 +3,35 @@
 #include <string>
 #include <vector>
 
+#include "bake/cli/printable.h"
 #include "formats/opal/result.h"
 
 namespace opaline::cli {
 
-/// "opaline: error: FILE: WHERE: FAULT (REMEDY)"; empty parts are left out.
+/// What the program says on stderr; set once, before the command runs.
+struct MessageOptions {
+    bool strict = false;  ///< warnings are errors
+    bool quiet = false;   ///< errors only
+};
+void set_message_options(const MessageOptions& options);
+const MessageOptions& message_options();
+
+/// "opaline: error: FILE: WHERE: FAULT (REMEDY)"; empty parts are left out. Fit for a terminal,
+/// whatever the parts hold.
 std::string format_diagnostic(const formats::Diagnostic& diagnostic);
+
+/// The exit code that an error of this kind ends the program with.
+int exit_code_of(const formats::Error& error);
 
 /// Prints everything an error says to stderr; returns its exit code.
 int report_error(const formats::Error& error);
 
-/// Prints warnings to stderr.
-void print_warnings(const std::vector<formats::Diagnostic>& warnings);
+/// Prints warnings to stderr, unless quiet. Where warnings are errors: prints nothing and returns
+/// them as an error (bad_input); the caller must then write no output.
+formats::Status report_warnings(const std::vector<formats::Diagnostic>& warnings);
+
+/// Prints a line to stderr that is neither a warning nor an error, unless quiet.
+void print_note(const std::string& line);
 
 /// "3 minutes", "12.4 s", "0.3 ms"; "1.2 GB", "640 bytes".
 std::string format_seconds(double seconds);

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <functional>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -10,7 +9,9 @@
 #include <vector>
 
 #include "bake/cli/command.h"
+#include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
 #include "bake/scattering/phase.h"
 #include "bake/scattering/phase_maps.h"
 #include "bake/scattering/phase_series.h"
@@ -67,16 +68,6 @@ formats::Status check_options(const Options& options) {
             return refuse(rule.name, given ? "this type has no such value" : "it is missing",
                           rule.remedy);
         }
-    }
-    if (options.type == Type::henyey_greenstein &&
-        !(std::abs(options.g) <= formats::media::kMaxMeanCosine)) {
-        return refuse("--g", fmt::format("{} is not a mean cosine", options.g),
-                      "give one from -0.99 to 0.99");
-    }
-    if (options.type == Type::gaussian &&
-        !(options.rms_angle >= formats::media::kMinRmsAngle && options.rms_angle <= 1)) {
-        return refuse("--rms-angle", fmt::format("{} is out of range", options.rms_angle),
-                      "give radians from 0.001 to 1");
     }
     return formats::ok_status();
 }
@@ -165,19 +156,21 @@ int run(const Options& options) {
     const bake::PhaseMaps maps = bake::factor_phase(subject->p, kCubemapSize, 0);
     constexpr double kMostRowError = 0.01;
     if (maps.row_error > kMostRowError) {
-        print_warnings({formats::make_warning(
+        const formats::Status status = report_warnings({formats::make_warning(
             options.table, "",
             fmt::format("the lobe is too narrow for a cube map of {} x {} texels, whose rows "
                         "integrate to 1 within {:.2g} only",
                         kCubemapSize, kCubemapSize, maps.row_error),
             "use the harmonics' errors, not those of the svd")});
+        if (!status) {
+            return report_error(status.error());
+        }
     }
     const Json all = describe(*subject, maps, options.samples);
     if (options.format == Format::csv) {
         print_csv(all);
     } else {
-        // A file name need not be UTF-8.
-        fmt::print("{}\n", all.dump(2, ' ', false, Json::error_handler_t::replace));
+        fmt::print("{}", json_text(all));
     }
     return kExitSuccess;
 }
@@ -190,20 +183,21 @@ void add_phase_command(CLI::App& app, Job& job) {
     CLI::App* command = app.add_subcommand(
         "phase", "Tabulate a phase function and say how many terms its factors need");
     command->add_option("--type", options->type, "as in media files: formats/media/README.md")
-        ->transform(
-            CLI::CheckedTransformer(std::map<std::string, Type>{{"hg", Type::henyey_greenstein},
-                                                                {"isotropic", Type::isotropic},
-                                                                {"rayleigh", Type::rayleigh},
-                                                                {"gaussian", Type::gaussian},
-                                                                {"table", Type::tabulated}}))
+        ->transform(one_of<Type>({{"hg", Type::henyey_greenstein},
+                                  {"isotropic", Type::isotropic},
+                                  {"rayleigh", Type::rayleigh},
+                                  {"gaussian", Type::gaussian},
+                                  {"table", Type::tabulated}}))
         ->option_text("hg|isotropic|rayleigh|gaussian|table [hg]");
     options->g_option =
         command->add_option("--g", options->g, "mean cosine of hg, -0.99 to 0.99; above 0: forward")
+            ->check(real_number(-formats::media::kMaxMeanCosine, formats::media::kMaxMeanCosine))
             ->option_text("G");
     options->rms_angle_option =
         command
             ->add_option("--rms-angle", options->rms_angle,
                          "root mean square angle of the gaussian, in radians, 0.001 to 1")
+            ->check(real_number(formats::media::kMinRmsAngle, 1))
             ->option_text("A");
     options->table_option =
         command
@@ -214,11 +208,10 @@ void add_phase_command(CLI::App& app, Job& job) {
     command
         ->add_option("--samples", options->samples,
                      "angles at which the function is printed, equally spaced")
-        ->check(CLI::Range(2u, 100001u))
+        ->transform(whole_number(2, 100001))
         ->option_text("N [181]");
     command->add_option("--format", options->format, "csv: lines of quantity,at,value")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Format>{{"json", Format::json}, {"csv", Format::csv}}))
+        ->transform(one_of<Format>({{"json", Format::json}, {"csv", Format::csv}}))
         ->option_text("json|csv [json]");
     command->footer(
         "Prints p(cosine) per steradian, the cosine between propagation directions; lambda_l, its\n"

@@ -45,8 +45,7 @@ int run(const Options& options) {
     if (!knobs) {
         return report_error(knobs.error());
     }
-    const auto imported =
-        open_scene(options.scene.scene, options.scene.metres_per_unit, options.scene.media);
+    const auto imported = open_scene(options.scene, *knobs);
     if (!imported) {
         return report_error(imported.error());
     }
@@ -58,8 +57,14 @@ int run(const Options& options) {
     const unsigned threads = bake::thread_count(context);
     const bake::SceneFacts facts = bake::inspect_scene(imported->scene);
     auto plan = bake::plan_bake(effects, imported->scene, facts, *knobs);
-    print_warnings(describe_open_media(imported->scene, facts));
-    print_warnings(bake::describe_unmet({effects, imported->scene, facts, *knobs, plan}, *wanted));
+    std::vector<formats::Diagnostic> warnings = describe_open_media(imported->scene, facts);
+    for (formats::Diagnostic& unmet :
+         bake::describe_unmet({effects, imported->scene, facts, *knobs, plan}, *wanted)) {
+        warnings.push_back(std::move(unmet));
+    }
+    if (auto status = report_warnings(warnings); !status) {
+        return report_error(status.error());
+    }
     const bake::Rates rates = find_machine_rates().rates;
     const bake::CostRequest request{effects, imported->scene, facts, *knobs, rates, threads};
     const bake::CostPrediction cost = bake::predict_costs(request, plan);

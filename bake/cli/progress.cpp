@@ -6,8 +6,10 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
 
 namespace opaline::cli {
 namespace {
@@ -39,18 +41,36 @@ void print_bar(const Bar& bar, const bake::Progress& progress) {
     const int filled = static_cast<int>(share * kWidth);
     const std::string left =
         share > 0 && share < 1 ? format_seconds(seconds * (1 - share) / share) + " left" : "";
-    fmt::print(stderr, "\r{:<10} [{}{}] {:3.0f} % {:<16}", bar.stage, std::string(filled, '#'),
-               std::string(kWidth - filled, '.'), share * 100, left);
+    fmt::print(stderr, "\r{:<10} [{}{}] {:3.0f} % {:<16}", printable(bar.stage),
+               std::string(filled, '#'), std::string(kWidth - filled, '.'), share * 100, left);
     if (progress.done == progress.total) {
         fmt::print(stderr, "\n");
     }
     std::fflush(stderr);
 }
 
+void print_json(const bake::Progress& progress) {
+    const nlohmann::ordered_json line{
+        {"stage", progress.stage}, {"done", progress.done}, {"total", progress.total}};
+    fmt::print(stderr, "{}\n",
+               line.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace));
+}
+
 }  // namespace
 
+void add_progress_option(CLI::App& command, ProgressStyle& style) {
+    command
+        .add_option("--progress", style,
+                    "auto: a bar on a terminal; json: a line of JSON a step on stderr; none")
+        ->transform(one_of<ProgressStyle>({{"auto", ProgressStyle::automatic},
+                                           {"json", ProgressStyle::json},
+                                           {"none", ProgressStyle::none}}))
+        ->option_text("auto|json|none [auto]");
+}
+
 std::function<void(const bake::Progress&)> make_progress_printer(ProgressStyle style) {
-    if (style == ProgressStyle::none || (style == ProgressStyle::automatic && isatty(2) == 0)) {
+    if (style == ProgressStyle::none ||
+        (style == ProgressStyle::automatic && (message_options().quiet || isatty(2) == 0))) {
         return {};
     }
     return [style, bar = std::make_shared<Bar>()](const bake::Progress& progress) {
@@ -58,8 +78,7 @@ std::function<void(const bake::Progress&)> make_progress_printer(ProgressStyle s
             return;
         }
         if (style == ProgressStyle::json) {
-            fmt::print(stderr, "{{\"stage\":\"{}\",\"done\":{},\"total\":{}}}\n", progress.stage,
-                       progress.done, progress.total);
+            print_json(progress);
         } else {
             print_bar(*bar, progress);
         }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 
@@ -13,7 +14,10 @@ enum class ProgressStyle {
     none
 };
 
-/// What a Context calls; may be empty.
+/// `--progress`.
+void add_progress_option(CLI::App& command, ProgressStyle& style);
+
+/// What a Context calls; may be empty. No bar where messages are quiet.
 std::function<void(const bake::Progress&)> make_progress_printer(ProgressStyle style);
 
 }  // namespace opaline::cli

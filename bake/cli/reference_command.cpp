@@ -9,8 +9,13 @@
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
+#include "bake/cli/memory_limit.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
+#include "bake/cli/outputs.h"
 #include "bake/cli/progress.h"
+#include "bake/cli/scene_options.h"
+#include "bake/cli/write_picture.h"
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "bake/reference/write_receivers.h"
@@ -31,6 +36,7 @@ struct Options {
     double metres_per_unit = 1, rotate_light = 0, seconds = 0;
     std::uint32_t receivers = 0, samples = 0, max_depth = 0;
     std::uint64_t seed = 0;
+    float exposure = 0;
     unsigned threads = 0;
     ProgressStyle progress = ProgressStyle::automatic;
 };
@@ -40,24 +46,24 @@ std::string variance_path(const std::string& output) {
     return std::filesystem::path(output).replace_extension(".var.exr").string();
 }
 
-Status check_outputs(const Options& options) {
-    const bool table = std::filesystem::path(options.output).extension() == ".csv";
-    if (auto status = check_output(options.output, {options.scene, options.media, options.light},
-                                   {".exr", ".csv"});
-        !status) {
+Status check_paths(const Options& options, std::vector<std::filesystem::path> inputs) {
+    const bool table = ending_of(options.output) == ".csv";
+    std::vector<OutputFile> outputs{{"--output", options.output, {".exr", ".png", ".csv"}}};
+    if (!table) {
+        outputs.push_back({"the variance beside it", variance_path(options.output), {}});
+    }
+    inputs.insert(inputs.end(), {options.scene, options.media, options.light});
+    if (auto status = check_outputs(outputs, inputs); !status) {
         return status;
     }
     if (table != (options.receivers > 0)) {
         return make_error(ErrorKind::usage, options.output, "",
                           table ? "a table needs receivers" : "receivers go into a table",
-                          table ? "give --receivers N, or end the name in .exr for a picture"
-                                : "end the name in .csv, or leave out --receivers");
+                          table
+                              ? "give --receivers N, or end the name in .exr or .png for a picture"
+                              : "end the name in .csv, or leave out --receivers");
     }
-    if (table) {
-        return formats::ok_status();
-    }
-    return check_output(variance_path(options.output),
-                        {options.scene, options.media, options.light}, {});
+    return formats::ok_status();
 }
 
 // So that an unwritable folder is found out before the work.
@@ -94,22 +100,27 @@ void print_summary(const Options& options, const bake::Estimate& estimate) {
     }
     const double paths =
         static_cast<double>(estimate.pixel.size()) * static_cast<double>(estimate.samples);
-    fmt::print(stderr,
-               "{}: {} samples for each of {} {}, {}, {:.3g} paths/s; relative standard error "
-               "{:.2g} %\n",
-               options.output, estimate.samples, estimate.pixel.size(),
-               options.receivers > 0 ? "receivers" : "pixels", format_seconds(estimate.seconds),
-               estimate.seconds > 0 ? paths / estimate.seconds : 0.0,
-               sum > 0 ? 100 * std::sqrt(error / sum) : 0.0);
+    print_note(fmt::format(
+        "{}: {} samples for each of {} {}, {}, {:.3g} paths/s; relative standard error {:.2g} %",
+        printable(options.output), estimate.samples, estimate.pixel.size(),
+        options.receivers > 0 ? "receivers" : "pixels", format_seconds(estimate.seconds),
+        estimate.seconds > 0 ? paths / estimate.seconds : 0.0,
+        sum > 0 ? 100 * std::sqrt(error / sum) : 0.0));
+}
+
+Status report_lost_paths(const Options& options, const bake::Estimate& estimate) {
     constexpr double kNoticed = 1e-4;
-    if (const double lost = static_cast<double>(estimate.lost) / std::max(paths, 1.0);
-        lost > kNoticed) {
-        print_warnings({formats::make_warning(
-            options.scene, "",
-            fmt::format("{:.2g} % of the paths left a body that is not closed, and count as black",
-                        100 * lost),
-            "close the holes of its mesh")});
+    const double paths =
+        static_cast<double>(estimate.pixel.size()) * static_cast<double>(estimate.samples);
+    const double lost = static_cast<double>(estimate.lost) / std::max(paths, 1.0);
+    if (lost <= kNoticed) {
+        return formats::ok_status();
     }
+    return report_warnings({formats::make_warning(
+        options.scene, "",
+        fmt::format("{:.2g} % of the paths left a body that is not closed, and count as black",
+                    100 * lost),
+        "close the holes of its mesh")});
 }
 
 Status make_table(const Options& options, const bake::PathSpace& space,
@@ -127,6 +138,9 @@ Status make_table(const Options& options, const bake::PathSpace& space,
     const auto estimate = bake::estimate_receivers(space, receivers, wanted, context);
     if (!estimate) {
         return estimate.error();
+    }
+    if (auto status = report_lost_paths(options, *estimate); !status) {
+        return status;
     }
     if (auto status = bake::write_receiver_csv(options.output, receivers, *estimate); !status) {
         return status;
@@ -146,10 +160,14 @@ Status make_picture(const Options& options, const bake::PathSpace& space,
     if (!image) {
         return image.error();
     }
+    if (auto status = report_lost_paths(options, image->estimate); !status) {
+        return status;
+    }
     if (auto status = formats::write_exr(variance_path(options.output), image->variance); !status) {
         return status;
     }
-    if (auto status = formats::write_exr(options.output, image->mean); !status) {
+    const runtime::Picture picture{image->mean.width, image->mean.height, image->mean.pixel};
+    if (auto status = write_picture(options.output, picture, options.exposure); !status) {
         return status;
     }
     print_summary(options, image->estimate);
@@ -179,18 +197,24 @@ int run(const Options& options) {
         return report_error(terms.error());
     }
     paths.terms = *terms;
-    if (auto status = check_outputs(options); !status) {
+    if (auto status = check_paths(options, {}); !status) {
         return report_error(status.error());
     }
-    const auto imported = open_scene(options.scene, options.metres_per_unit, options.media);
+    const auto imported = open_scene(options.scene, {options.metres_per_unit, {}}, options.media);
     if (!imported) {
         return report_error(imported.error());
+    }
+    if (auto status = check_paths(options, imported->scene.inputs); !status) {
+        return report_error(status.error());
     }
     const auto light = open_light(options.light, options.rotate_light);
     if (!light) {
         return report_error(light.error());
     }
     if (auto status = try_to_create(options.output); !status) {
+        return report_error(status.error());
+    }
+    if (auto status = check_threads(options.threads); !status) {
         return report_error(status.error());
     }
     const auto scene = bake::make_reference_scene(imported->scene, options.threads);
@@ -217,24 +241,24 @@ void add_estimate_options(CLI::App& command, Options& options) {
         .add_option("--receivers", options.receivers,
                     "a table instead of a picture: radiance and its standard error at N vertices, "
                     "seen as `opaline relight` sees them")
-        ->check(CLI::Range(1u, 100000000u))
+        ->transform(whole_number(1, 100000000))
         ->option_text("N");
     command
         .add_option("--spp", options.samples,
                     "paths for each pixel or receiver; default 64 for pictures, 1024 for tables, "
                     "no limit with --seconds")
-        ->check(CLI::Range(1u, 2000000000u))
+        ->transform(whole_number(1, 2000000000))
         ->option_text("N");
     command
         .add_option("--seconds", options.seconds,
                     "stop after about that time; how many samples fit differs from run to run")
-        ->check(CLI::Range(1e-3, 1e9))
+        ->check(real_number(1e-3, 1e9))
         ->option_text("S");
     command
         .add_option("--max-depth", options.max_depth,
                     "at most D scattering events along a path, refraction included; default: no "
                     "limit, Russian roulette ends paths that carry little")
-        ->check(CLI::Range(1u, 1000000000u))
+        ->transform(whole_number(1, 1000000000))
         ->option_text("D");
     command
         .add_option("--terms", options.terms,
@@ -243,12 +267,12 @@ void add_estimate_options(CLI::App& command, Options& options) {
                     "(paths that meet a second surface or body)")
         ->option_text("all|LIST [all]");
     command.add_option("--seed", options.seed, "another one gives other noise")
-        ->check(CLI::NonNegativeNumber)
+        ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
         ->option_text("S [0]");
     command
         .add_option("--threads", options.threads,
                     "0: one per core; the result is the same for any number")
-        ->check(CLI::Range(0u, 1024u))
+        ->transform(whole_number(0, 1024))
         ->option_text("T [0]");
 }
 
@@ -263,32 +287,31 @@ void add_reference_command(CLI::App& app, Job& job) {
         ->option_text("SCENE");
     command->add_option("--light", options->light, light_help())->required()->option_text("ENV");
     command
-        ->add_option("-o,--output", options->output,
-                     ".exr: linear radiance, and beside it .var.exr, the variance of each pixel's "
-                     "mean; .csv: primitive,vertex,r,g,b,se_r,se_g,se_b")
+        ->add_option(
+            "-o,--output", options->output,
+            ".exr: linear radiance; .png: tone-mapped as by `render`; beside both .var.exr, "
+            "the variance of each pixel's mean; .csv: primitive,vertex,r,g,b,se_r,se_g,se_b")
         ->required()
-        ->option_text("OUT.exr|.csv");
+        ->check(file_name())
+        ->option_text("OUT.exr|.png|.csv");
     command->add_option("--media", options->media, "what translucent materials are made of")
         ->option_text("FILE.json");
     command
         ->add_option("--metres-per-unit", options->metres_per_unit,
                      "length of one unit of the scene file")
+        ->check(real_number(kLeastUnit, kMostUnit))
         ->option_text("X [1]");
     add_estimate_options(*command, *options);
     add_camera_options(*command, options->camera);
+    command->add_option("--exposure", options->exposure, "brighter by a factor of 2^EV")
+        ->check(real_number(-64, 64))
+        ->option_text("EV [0]");
     command
         ->add_option("--rotate-light", options->rotate_light,
                      "turn the light about +Y, from +Z toward +X [degrees]")
-        ->check(CLI::Range(-1e6, 1e6))
+        ->check(real_number(-1e6, 1e6))
         ->option_text("DEG [0]");
-    command
-        ->add_option("--progress", options->progress,
-                     "auto: a bar on a terminal; json: a line of JSON a step on stderr; none")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
-                                                 {"json", ProgressStyle::json},
-                                                 {"none", ProgressStyle::none}}))
-        ->option_text("auto|json|none [auto]");
+    add_progress_option(*command, options->progress);
     command->footer(
         "Example:\n  opaline reference scene.glb --light studio --receivers 100 -o truth.csv");
     command->callback([options, &job] { job = [options] { return run(*options); }; });

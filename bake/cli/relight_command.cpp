@@ -1,8 +1,14 @@
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <memory>
 
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
+#include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
+#include "bake/cli/outputs.h"
 #include "bake/compare/relight_table.h"
 #include "formats/opal/terms.h"
 #include "runtime/shade.h"
@@ -14,7 +20,26 @@ struct Options {
     std::string path, light, output, eye, terms;
     double rotate_light = 0;
     unsigned threads = 0;
+    bool json = false;
 };
+
+// What a script wants to know without reading the table.
+void print_json(const Options& options, const formats::AssetView& view,
+                std::span<const formats::Rgb> radiance) {
+    double mean[3] = {}, most = 0;
+    for (const formats::Rgb& value : radiance) {
+        mean[0] += static_cast<double>(value.r) / static_cast<double>(radiance.size());
+        mean[1] += static_cast<double>(value.g) / static_cast<double>(radiance.size());
+        mean[2] += static_cast<double>(value.b) / static_cast<double>(radiance.size());
+        most = std::max({most, static_cast<double>(value.r), static_cast<double>(value.g),
+                         static_cast<double>(value.b)});
+    }
+    fmt::print("{}", json_text({{"output", options.output},
+                                {"primitives", view.primitives.size()},
+                                {"receivers", radiance.size()},
+                                {"mean", {mean[0], mean[1], mean[2]}},
+                                {"maximum", most}}));
+}
 
 // One row per receiver, in file order.
 std::vector<bake::RelightRow> make_rows(const formats::AssetView& view,
@@ -40,9 +65,9 @@ std::vector<formats::Vec3> row_positions(const formats::AssetView& view) {
 }
 
 int run(const Options& options) {
-    if (auto status =
-            check_output(options.output, {options.path, options.light}, {".csv", ".ply", ".exr"});
-        !status) {
+    const OutputFile output{"--output", options.output, {".csv", ".ply", ".exr"}};
+    const std::filesystem::path inputs[] = {options.path, options.light};
+    if (auto status = check_outputs({&output, 1}, inputs); !status) {
         return report_error(status.error());
     }
     runtime::ShadeOptions shading;
@@ -81,12 +106,18 @@ int run(const Options& options) {
                                                 light->rotation, options.threads),
                    radiance, shading);
     const std::vector<bake::RelightRow> rows = make_rows(view, radiance);
-    const std::string ending = std::filesystem::path(options.output).extension().string();
+    const std::string ending = ending_of(options.output);
     const formats::Status status =
         ending == ".csv"   ? bake::write_relight_csv(options.output, rows)
         : ending == ".ply" ? bake::write_relight_ply(options.output, row_positions(view), rows)
                            : bake::write_relight_exr(options.output, rows);
-    return status ? kExitSuccess : report_error(status.error());
+    if (!status) {
+        return report_error(status.error());
+    }
+    if (options.json) {
+        print_json(options, view, radiance);
+    }
+    return kExitSuccess;
 }
 
 }  // namespace
@@ -104,6 +135,7 @@ void add_relight_command(CLI::App& app, Job& job) {
                      ".csv: primitive,vertex,r,g,b; .ply: points with colours; .exr: one pixel per "
                      "receiver, 1024 a row")
         ->required()
+        ->check(file_name())
         ->option_text("OUT.csv|.ply|.exr");
     command
         ->add_option("--eye", options->eye,
@@ -115,15 +147,17 @@ void add_relight_command(CLI::App& app, Job& job) {
                      "components to add up: all, or some of " +
                          formats::term_names(formats::TermSet::baked) +
                          ". multiple and single apart need a bake with --separate-terms")
-        ->option_text("LIST [all]");
+        ->option_text("all|LIST [all]");
     command
         ->add_option("--rotate-light", options->rotate_light,
                      "turn the light about +Y, from +Z toward +X [degrees]")
-        ->check(CLI::Range(-1e6, 1e6))
+        ->check(real_number(-1e6, 1e6))
         ->option_text("DEG [0]");
     command->add_option("--threads", options->threads, "0: one per core")
-        ->check(CLI::Range(0u, 1024u))
+        ->transform(whole_number(0, 1024))
         ->option_text("T [0]");
+    command->add_flag("--json", options->json,
+                      "print JSON: receivers, mean and maximum of their radiance");
     command->footer("Example:\n  opaline relight scene.opal --light studio -o radiance.csv");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }

@@ -10,12 +10,12 @@
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
 #include "bake/cli/messages.h"
-#include "formats/image/exr.h"
-#include "formats/image/png.h"
+#include "bake/cli/option_values.h"
+#include "bake/cli/outputs.h"
+#include "bake/cli/write_picture.h"
 #include "formats/opal/terms.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/software_renderer.h"
-#include "runtime/picture/tone_map.h"
 #include "runtime/shade.h"
 #ifdef OPALINE_HAS_GL
 #include "runtime/gl/gl_renderer.h"
@@ -30,8 +30,12 @@ using formats::Result;
 using formats::Status;
 using Clock = std::chrono::steady_clock;
 
+/// `automatic`: OpenGL, and the processor where there is none.
+enum class Backend { automatic, gl, cpu };
+
 struct Options {
-    std::string path, light, output, terms, backend = "gl";
+    std::string path, light, output, terms;
+    Backend backend = Backend::automatic;
     CameraOptions camera;
     float exposure = 0;
     double rotate_light = 0;
@@ -48,19 +52,6 @@ struct Shown {
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-Status write_picture(const std::string& path, const runtime::Picture& picture, float exposure) {
-    if (std::filesystem::path(path).extension() == ".exr") {
-        const float gain = std::exp2(exposure);
-        formats::Image image{picture.width, picture.height, picture.pixel};
-        for (formats::Rgb& pixel : image.pixel) {
-            pixel = gain * pixel;
-        }
-        return formats::write_exr(path, image);
-    }
-    runtime::DisplayPicture display = runtime::tone_map(picture, exposure);
-    return formats::write_png(path, {display.width, display.height, std::move(display.rgba)});
 }
 
 // OUT.png, or OUT-0001.png and so on for a turntable.
@@ -150,8 +141,15 @@ int render_on_gpu([[maybe_unused]] const Options& options,
                   [[maybe_unused]] const runtime::Camera& camera, [[maybe_unused]] Shown shown) {
 #ifdef OPALINE_HAS_GL
     auto renderer = runtime::GlRenderer::create(view, light.environment);
+    if (!renderer && options.backend == Backend::automatic) {
+        print_note("opaline: drawing on the CPU, as OpenGL cannot be used: " +
+                   printable(renderer.error().diagnostics.front().fault));
+        return render_on_cpu(options, view, light, vector, camera, shown);
+    }
     if (!renderer) {
-        return report_error(renderer.error());
+        formats::Error error = renderer.error();
+        error.diagnostics.front().remedy = "use --backend cpu";
+        return report_error(error);
     }
     if (auto status = renderer->set_light(vector, light.rotation); !status) {
         return report_error(status.error());
@@ -169,14 +167,21 @@ int render_on_gpu([[maybe_unused]] const Options& options,
     return render_frames(options, camera,
                          [&](const runtime::Camera& at) { return renderer->render(at, drawing); });
 #else
+    if (options.backend == Backend::automatic) {
+        return render_on_cpu(options, view, light, vector, camera, shown);
+    }
     return report_error(make_error(ErrorKind::resource, "", "--backend",
                                    "this program was built without OpenGL", "use --backend cpu"));
 #endif
 }
 
 int run(const Options& options) {
-    if (auto status = check_output(options.output, {options.path, options.light}, {".png", ".exr"});
-        !status) {
+    std::vector<OutputFile> outputs;
+    for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
+        outputs.push_back({"--output", frame_path(options, frame), {".png", ".exr"}});
+    }
+    const std::filesystem::path inputs[] = {options.path, options.light};
+    if (auto status = check_outputs(outputs, inputs); !status) {
         return report_error(status.error());
     }
     const auto terms = formats::parse_terms(options.terms, formats::TermSet::baked, "--terms");
@@ -203,8 +208,8 @@ int run(const Options& options) {
     const runtime::LightVector vector = runtime::project_environment(
         light->environment, view.cubemap_size, light->rotation, options.threads);
     print_stat(options, "light vector", seconds_since(start));
-    return (options.backend == "cpu" ? render_on_cpu : render_on_gpu)(options, view, *light, vector,
-                                                                      *camera, Shown{*terms});
+    return (options.backend == Backend::cpu ? render_on_cpu : render_on_gpu)(
+        options, view, *light, vector, *camera, Shown{*terms});
 }
 
 }  // namespace
@@ -220,20 +225,21 @@ void add_render_command(CLI::App& app, Job& job) {
         ->add_option("-o,--output", options->output,
                      ".png: tone-mapped (Khronos PBR Neutral), sRGB; .exr: linear radiance")
         ->required()
+        ->check(file_name())
         ->option_text("OUT.png|.exr");
     add_camera_options(*command, options->camera);
     command->add_option("--backend", options->backend, "gl: OpenGL 4.5 through EGL; cpu: software")
-        ->check(CLI::IsMember({"gl", "cpu"}))
-        ->option_text("gl|cpu [gl]");
+        ->transform(one_of<Backend>({{"gl", Backend::gl}, {"cpu", Backend::cpu}}))
+        ->option_text("gl|cpu [gl, else cpu]");
     command
         ->add_option("--rotate-light", options->rotate_light,
                      "turn the light about +Y, from +Z toward +X [degrees]")
-        ->check(CLI::Range(-1e6, 1e6))
+        ->check(real_number(-1e6, 1e6))
         ->option_text("DEG [0]");
     command
         ->add_option("--frames", options->frames,
                      "a turntable: N pictures OUT-0001.png ... once around the target")
-        ->check(CLI::Range(1u, 9999u))
+        ->transform(whole_number(1, 9999))
         ->option_text("N [1]");
     command
         ->add_option("--terms", options->terms,
@@ -241,12 +247,12 @@ void add_render_command(CLI::App& app, Job& job) {
                          formats::term_names(formats::TermSet::baked) +
                          "; the background is black unless all are. multiple and single apart "
                          "need a bake with --separate-terms")
-        ->option_text("LIST [all]");
+        ->option_text("all|LIST [all]");
     command->add_option("--exposure", options->exposure, "brighter by a factor of 2^EV")
-        ->check(CLI::Range(-64.0f, 64.0f))
+        ->check(real_number(-64, 64))
         ->option_text("EV [0]");
     command->add_option("--threads", options->threads, "0: one per core")
-        ->check(CLI::Range(0u, 1024u))
+        ->transform(whole_number(0, 1024))
         ->option_text("T [0]");
     command->add_flag("--stats", options->stats, "print timings");
     command->footer(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
 #include "bake/pipeline/provenance.h"
 
@@ -12,11 +13,6 @@ namespace opaline::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Names come from user files: bytes that are not UTF-8 must not stop the report.
-std::string dump(const Json& json) {
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
 
 Json plan_array(const std::vector<bake::PlanEntry>& plan) {
     Json array = Json::array();
@@ -130,7 +126,7 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     for (const formats::Diagnostic& warning : warnings) {
         report["warnings"].push_back(format_diagnostic(warning));
     }
-    return dump(report);
+    return json_text(report);
 }
 
 std::string make_plan_json(const bake::Knobs& knobs, const std::vector<bake::PlanEntry>& plan,
@@ -139,14 +135,15 @@ std::string make_plan_json(const bake::Knobs& knobs, const std::vector<bake::Pla
     for (const bake::StageCost& stage : cost.stages) {
         stages.push_back({{"name", stage.name}, {"predicted_seconds", stage.seconds}});
     }
-    return dump(Json{{"plan", plan_array(plan)},
-                     {"knobs", bake::knobs_json(knobs)},
-                     {"stages", std::move(stages)},
-                     {"predicted_seconds_total", cost.seconds},
-                     {"predicted_seconds_shared", cost.shared_seconds},
-                     {"predicted_bytes_total", cost.bytes},
-                     {"predicted_bytes_shared", cost.shared_bytes},
-                     {"receivers", cost.receivers}});
+    return json_text(Json{{"plan", plan_array(plan)},
+                          {"knobs", bake::knobs_json(knobs)},
+                          {"stages", std::move(stages)},
+                          {"predicted_seconds_total", cost.seconds},
+                          {"predicted_seconds_shared", cost.shared_seconds},
+                          {"predicted_bytes_total", cost.bytes},
+                          {"predicted_bytes_shared", cost.shared_bytes},
+                          {"predicted_memory_bytes", cost.memory_bytes},
+                          {"receivers", cost.receivers}});
 }
 
 std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::PlanEntry>& plan,
@@ -154,7 +151,7 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
     const std::string everything = "whole scene", rest = "the rest";
     std::size_t widest = everything.size(), widest_effect = rest.size();
     for (const bake::PlanEntry& entry : plan) {
-        widest = std::max(widest, entry.subject.name.size());
+        widest = std::max(widest, printable(entry.subject.name).size());
         widest_effect = std::max(widest_effect, entry.name.size());
     }
     std::string table =
@@ -166,9 +163,10 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
         const std::string seconds =
             entry.predicted_seconds > 0 ? format_seconds(entry.predicted_seconds) : "-";
         const std::string size = entry.predicted_bytes > 0 ? bytes(entry.predicted_bytes) : "-";
-        table += fmt::format("{:<{}} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.name,
-                             widest_effect, entry.subject.name, widest, entry.on ? "on" : "off",
-                             entry.bound, seconds, size, entry.reason + savings_text(entry));
+        table +=
+            fmt::format("{:<{}} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.name,
+                        widest_effect, printable(entry.subject.name), widest, entry.on ? "on" : "off",
+                        entry.bound, seconds, size, printable(entry.reason) + savings_text(entry));
     }
     table += fmt::format("{:<{}} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", rest, widest_effect,
                          everything, widest, "always", "", format_seconds(cost.shared_seconds),
@@ -180,10 +178,10 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
             : fmt::format("--quality {}", bake::quality_name(knobs.quality));
     table += fmt::format("knobs ({}): {} texels along a face of the light's cube map, {}\n",
                          asked_for, knobs.cubemap_size, coefficients_text(knobs));
-    return table + fmt::format("predicted: {} on {}, {}, {} receivers\n",
+    return table + fmt::format("predicted: {} on {}, {}, {} receivers, {} of memory\n",
                                format_seconds(cost.seconds),
                                threads == 1 ? "1 thread" : fmt::format("{} threads", threads),
-                               bytes(cost.bytes), cost.receivers);
+                               bytes(cost.bytes), cost.receivers, bytes(cost.memory_bytes));
 }
 
 std::string make_depfile(const std::filesystem::path& output,

@@ -2,22 +2,29 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <limits>
 #include <sstream>
 
+#include "bake/base/ordered_parallel.h"
+#include "bake/cli/inputs.h"
+#include "bake/cli/memory_limit.h"
+#include "bake/cli/option_values.h"
 #include "bake/effects/effects.h"
+#include "bake/pipeline/predict_memory.h"
 
 namespace opaline::cli {
 namespace {
 
 using bake::Quality;
 
-// "all" or a number; CLI11 hands over the text.
+// "all" or a number; CLI11 hands over the text. All of the largest cube map are 6 x 128 x 128.
 std::string parse_coefficients(std::string& text) {
     if (text == "all") {
         text = std::to_string(bake::kAllCoefficients);
+        return {};
     }
-    return {};
+    const std::string fault = whole_number(7, 98304)(text);
+    return fault.empty() ? fault : fault + ", nor `all`";
 }
 
 std::string quality_help() {
@@ -53,14 +60,17 @@ void add_knob_option(CLI::App& command, const bake::KnobSpec& knob, bake::BakeOp
     CLI::Option* const option =
         command.add_option_function<double>(std::string(knob.option), take, std::string(knob.help));
     option->option_text(std::string(knob.placeholder));
-    option->check(CLI::Range(knob.lowest, knob.highest));
-    if (knob.whole) {
-        option->check(CLI::Validator(
-            [](const std::string& text) {
-                const bool is_whole = text.find_first_not_of("0123456789") == std::string::npos;
-                return is_whole ? std::string() : text + " is not a whole number";
-            },
-            ""));
+    if (!knob.allowed.empty()) {
+        std::vector<std::pair<std::string, int>> names;
+        for (const double value : knob.allowed) {
+            names.emplace_back(std::to_string(static_cast<int>(value)), static_cast<int>(value));
+        }
+        option->transform(one_of<int>(names));
+    } else if (knob.whole) {
+        option->transform(whole_number(static_cast<std::uint64_t>(knob.lowest),
+                                       static_cast<std::uint64_t>(knob.highest)));
+    } else {
+        option->check(real_number(knob.lowest, knob.highest));
     }
 }
 
@@ -86,32 +96,34 @@ void add_subject_options(CLI::App& command, SceneOptions& options) {
     command
         .add_option("--seed", options.bake.seed,
                     "of everything random: which receivers the error is measured at")
-        ->check(CLI::NonNegativeNumber)
+        ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
         ->option_text("S [0]");
     command
         .add_option("--threads", options.bake.threads,
                     "0: one per core; the result is the same for any number")
-        ->check(CLI::Range(0u, 1024u))
+        ->transform(whole_number(0, 1024))
         ->option_text("T [0]");
     command
         .add_option("--metres-per-unit", options.metres_per_unit,
                     "length of one unit of the scene file")
+        ->check(real_number(kLeastUnit, kMostUnit))
         ->option_text("X [1]");
+    add_memory_option(command, options.memory_limit);
 }
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {
     add_subject_options(command, options);
     command.add_option("--quality", options.bake.quality, quality_help())
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Quality>{{"draft", Quality::draft},
-                                           {"preview", Quality::preview},
-                                           {"production", Quality::production},
-                                           {"reference", Quality::reference}}))
+        ->transform(one_of<Quality>({{"draft", Quality::draft},
+                                     {"preview", Quality::preview},
+                                     {"production", Quality::production},
+                                     {"reference", Quality::reference}}))
         ->option_text("draft|preview|production|reference [preview]");
     command
         .add_option("--cubemap", options.bake.cubemap_size,
                     "texels along a face of the light's cube map: 8, 16, 32, 64 or 128; default as "
                     "the quality says")
+        ->transform(one_of<int>({{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}, {"128", 128}}))
         ->option_text("N");
     command
         .add_option("--coefficients", options.bake.coefficients,
@@ -136,9 +148,35 @@ void add_error_option(CLI::App& command, SceneOptions& options) {
         .add_option("--error", options.bake.error,
                     "relative RMS error that the file may have: a pilot measures what each knob "
                     "costs and picks the cheapest; those given stay")
-        ->check(CLI::Range(1e-4, 0.99))
+        ->check(real_number(1e-4, 0.99))
         ->excludes("--quality")
         ->option_text("E");
+}
+
+formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
+                                                   const bake::Knobs& knobs) {
+    bake::Context context;
+    context.threads = options.bake.threads;
+    const unsigned threads = bake::thread_count(context);
+    const std::uint64_t limit =
+        options.memory_limit != 0 ? options.memory_limit : available_memory(threads);
+    const auto check = [&](const bake::MemoryCounts& counts) {
+        return check_memory(options.scene, bake::predict_memory(bake::all_effects(), counts, knobs, threads), limit);
+    };
+    const auto check_size = [&](const formats::SceneCounts& counts) {
+        return check(bake::count_memory(counts));
+    };
+    auto imported = open_scene(options.scene, {options.metres_per_unit, check_size}, options.media);
+    if (!imported) {
+        return imported;
+    }
+    if (auto status = check(bake::count_memory(bake::all_effects(), imported->scene, knobs)); !status) {
+        return std::move(status).error();
+    }
+    if (auto status = check_threads(threads); !status) {
+        return std::move(status).error();
+    }
+    return imported;
 }
 
 formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {

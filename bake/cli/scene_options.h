@@ -4,15 +4,20 @@
 #include <string>
 
 #include "bake/plan/bake_plan.h"
+#include "formats/gltf/import_gltf.h"
 #include "formats/opal/result.h"
 
 namespace opaline::cli {
+
+/// `--metres-per-unit`: from a tenth of a nanometre to a light year.
+inline constexpr double kLeastUnit = 1e-10, kMostUnit = 1e16;
 
 /// What `bake`, `plan` and `sweep` have in common.
 struct SceneOptions {
     std::string scene, media;
     double metres_per_unit = 1.0;
     std::string effects = "auto";
+    std::uint64_t memory_limit = 0;  ///< [bytes]; 0: what the machine has
     bake::BakeOptions bake;
 };
 
@@ -24,6 +29,11 @@ void add_scene_options(CLI::App& command, SceneOptions& options);
 
 /// `--error`, in place of `--quality`.
 void add_error_option(CLI::App& command, SceneOptions& options);
+
+/// Opens the scene and its media (open_scene). What a bake with these knobs is predicted to need
+/// more memory for than there is, is refused before it is built. Errors: also resource.
+formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
+                                                   const bake::Knobs& knobs);
 
 /// The options of the bake with the effects to simulate: none named for `auto`, nor for `all`,
 /// which forces every one. Errors: usage, for those that are unknown or that this version does not

@@ -1,18 +1,20 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "bake/calibration/rates_cache.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
 #include "bake/cli/machine_rates.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
+#include "bake/cli/outputs.h"
 #include "bake/cli/progress.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
@@ -73,8 +75,12 @@ int run(const Options& options) {
     if (!options_of_bake) {
         return report_error(options_of_bake.error());
     }
-    const auto imported =
-        open_scene(options.scene.scene, options.scene.metres_per_unit, options.scene.media);
+    // Of the knobs it starts from: what does not fit there fits nowhere.
+    const auto knobs = bake::resolve_knobs(*options_of_bake);
+    if (!knobs) {
+        return report_error(knobs.error());
+    }
+    const auto imported = open_scene(options.scene, *knobs);
     if (!imported) {
         return report_error(imported.error());
     }
@@ -82,10 +88,17 @@ int run(const Options& options) {
     if (auto status = folder.create(); !status) {
         return report_error(status.error());
     }
+    std::vector<OutputFile> outputs;
+    for (const char* name : {"sweep.csv", "sweep.json", "report.html"}) {
+        outputs.push_back({name, std::filesystem::path(options.folder) / name, {}});
+    }
+    if (auto status = check_outputs(outputs, imported->scene.inputs); !status) {
+        return report_error(status.error());
+    }
     // Before the work, so that an unwritable folder is found out at once.
     std::vector<AtomicFile> files;
-    for (const char* name : {"sweep.csv", "sweep.json", "report.html"}) {
-        auto file = AtomicFile::create(std::filesystem::path(options.folder) / name);
+    for (const OutputFile& output : outputs) {
+        auto file = AtomicFile::create(output.path);
         if (!file) {
             return report_error(file.error());
         }
@@ -99,6 +112,7 @@ int run(const Options& options) {
     bake::Context context;
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
+    context.cache = bake::cache_folder();
     const auto show = make_progress_printer(options.progress);
     const auto result =
         bake::run_sweep(bake::all_effects(), imported->scene, wanted, context, [&](const bake::SweepStep& step) {
@@ -120,16 +134,22 @@ int run(const Options& options) {
         json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n", *page};
     for (std::size_t i = 0; i < files.size(); ++i) {
         Status status = files[i].write(texts[i]);
-        if (!status || !(status = files[i].commit())) {
+        if (!status || !(status = files[i].sync())) {
             return report_error(status.error());
         }
     }
-    fmt::print(stderr, "{}: {} bakes in {}{}; open {}\n", options.folder, result->points.size(),
-               format_seconds(result->seconds),
-               result->skipped.empty()
-                   ? ""
-                   : fmt::format(", {} left out (see the page)", result->skipped.size()),
-               (std::filesystem::path(options.folder) / "report.html").string());
+    for (AtomicFile& file : files) {
+        if (auto status = file.commit(); !status) {
+            return report_error(status.error());
+        }
+    }
+    print_note(
+        fmt::format("{}: {} bakes in {}{}; open {}", printable(options.folder),
+                    result->points.size(), format_seconds(result->seconds),
+                    result->skipped.empty()
+                        ? ""
+                        : fmt::format(", {} left out (see the page)", result->skipped.size()),
+                    printable((std::filesystem::path(options.folder) / "report.html").string())));
     return kExitSuccess;
 }
 
@@ -144,22 +164,16 @@ void add_sweep_command(CLI::App& app, Job& job) {
         ->add_option("-o,--output", options->folder,
                      "the folder for sweep.csv, sweep.json and report.html; made if missing")
         ->required()
+        ->check(file_name())
         ->option_text("DIR");
     command
         ->add_option("--seconds", options->seconds,
                      "time for all bakes together; those that do not fit are left out and named")
-        ->check(CLI::Range(1.0, 1e6))
+        ->check(real_number(1, 1e6))
         ->option_text("S [300]");
     command->add_option("--light", options->light, "of the page's pictures: " + light_help())
         ->option_text("ENV [sky:3,35]");
-    command
-        ->add_option("--progress", options->progress,
-                     "auto: a bar on a terminal; json: a line of JSON a bake on stderr; none")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
-                                                 {"json", ProgressStyle::json},
-                                                 {"none", ProgressStyle::none}}))
-        ->option_text("auto|json|none [auto]");
+    add_progress_option(*command, options->progress);
     command->footer("Example:\n  opaline sweep scene.glb -o sweep");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }

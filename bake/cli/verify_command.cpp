@@ -1,47 +1,89 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
+#include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
 
 namespace opaline::cli {
 namespace {
 
-int run(const std::string& path) {
+struct Options {
+    std::vector<std::string> paths;
+    bool json = false;
+};
+
+struct Verdict {
+    std::optional<formats::Error> fault;  ///< none: the file is sound
+    int exit_code = kExitSuccess;
+};
+
+Verdict verify(const std::string& path) {
     // A file that is not there is bad input; one that is there and damaged is the answer "no".
     auto file = formats::FileBytes::open(path);
     if (!file) {
-        return report_error(file.error());
+        return {file.error(), exit_code_of(file.error())};
     }
     const auto loaded = formats::read_opal(file->bytes(), path, formats::Checks::full);
     if (!loaded) {
-        const int code = report_error(loaded.error());
-        return loaded.error().kind == formats::ErrorKind::bad_input ? kExitNo : code;
+        const int code = exit_code_of(loaded.error());
+        return {loaded.error(), code == kExitBadInput ? kExitNo : code};
     }
     // A file without provenance is sound: nothing is computed from it.
     const std::string_view provenance = loaded->view.provenance;
     if (!provenance.empty() && !nlohmann::json::accept(provenance)) {
-        report_error(formats::make_error(formats::ErrorKind::bad_input, path, "section PROV",
-                                         "it is not JSON", "bake the file again"));
-        return kExitNo;
+        return {formats::make_error(formats::ErrorKind::bad_input, path, "section PROV",
+                                    "it is not JSON", "bake the file again"),
+                kExitNo};
     }
-    fmt::print("{}: sound\n", path);
-    return kExitSuccess;
+    return {};
+}
+
+int run(const Options& options) {
+    int code = kExitSuccess;
+    nlohmann::ordered_json results = nlohmann::ordered_json::array();
+    for (const std::string& path : options.paths) {
+        const Verdict verdict = verify(path);
+        code = std::max(code, verdict.exit_code);
+        nlohmann::ordered_json faults = nlohmann::ordered_json::array();
+        if (verdict.fault) {
+            report_error(*verdict.fault);
+            for (const formats::Diagnostic& diagnostic : verdict.fault->diagnostics) {
+                faults.push_back(format_diagnostic(diagnostic));
+            }
+        } else if (!options.json) {
+            fmt::print("{}: sound\n", printable(path));
+        }
+        results.push_back({{"file", path}, {"sound", !verdict.fault}, {"errors", faults}});
+    }
+    if (options.json) {
+        fmt::print("{}", json_text({{"files", results}}));
+    }
+    return code;
 }
 
 }  // namespace
 
 void add_verify_command(CLI::App& app, Job& job) {
-    auto path = std::make_shared<std::string>();
+    auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
-        "verify", "Check an .opal file: structure, checksums, ranges, finite numbers");
-    command->add_option("file", *path, "the .opal file")->required()->option_text("FILE.opal");
-    command->footer("Exit code 1: the file is damaged.\nExample:\n  opaline verify scene.opal");
-    command->callback([path, &job] { job = [path] { return run(*path); }; });
+        "verify", "Check .opal files: structure, checksums, ranges, finite numbers");
+    command->add_option("file", options->paths, "the .opal files")
+        ->required()
+        ->option_text("FILE.opal...");
+    command->add_flag("--json", options->json, "print JSON: files[]{file,sound,errors[]}");
+    command->footer(
+        "Exit code 1: a file is damaged; 3: one is missing.\n"
+        "Example:\n  opaline verify scene.opal");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 
 }  // namespace opaline::cli

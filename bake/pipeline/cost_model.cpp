@@ -7,7 +7,9 @@
 #include "bake/pipeline/accuracy_costs.h"
 #include "bake/pipeline/bill.h"
 #include "bake/pipeline/costed_bake.h"
+#include "bake/pipeline/predict_memory.h"
 #include "bake/rows/subject_states.h"
+#include "formats/opal/cubemap.h"
 #include "formats/opal/openness.h"
 
 namespace opaline::bake {
@@ -108,6 +110,16 @@ void bill_openness(const CostedBake& bake, Bill& bill) {
 
 }  // namespace
 
+std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t bands) {
+    const std::uint64_t all = formats::cubemap_texels(knobs.cubemap_size);
+    // Of an opaque surface half of all coefficients vanish, below the horizon.
+    const std::uint64_t details = knobs.coefficients == kAllCoefficients
+                                      ? (translucent ? all : all / 2)
+                                      : std::min<std::uint64_t>(knobs.coefficients, all) - 6;
+    const std::uint64_t index_bytes = all <= 65536 ? 2 : 4;
+    return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
+}
+
 CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan) {
     Bill bill(request.rates, request.threads, plan);
     const CostedBake bake = make_costed_bake(request, plan);
@@ -126,6 +138,11 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bill_openness(bake, bill);
     bill_self_check(bake, bill);
     bill.add_bytes(mesh_bytes(request.scene, request.facts));
+    bill.cost.memory_bytes = static_cast<std::uint64_t>(
+        predict_memory(request.effects,
+                       count_memory(request.effects, request.scene, request.knobs), request.knobs,
+                       request.threads)
+            .bytes());
     bill.cost.receivers = static_cast<std::uint64_t>(request.facts.receivers);
     return std::move(bill.cost);
 }

@@ -24,7 +24,11 @@ struct CostPrediction {
     std::uint64_t bytes = 0;         ///< of the file
     std::uint64_t shared_bytes = 0;  ///< of its mesh and images: part of `bytes`
     std::uint64_t receivers = 0;
+    std::uint64_t memory_bytes = 0;  ///< peak of the bake (predict_memory.h)
 };
+
+/// Bytes of one row of a receiver in the file, of `bands` bands.
+std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t bands);
 
 /// What a prediction is made from.
 struct CostRequest {

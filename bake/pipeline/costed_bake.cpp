@@ -2,25 +2,12 @@
 
 #include <algorithm>
 
-#include "formats/opal/cubemap.h"
-
 namespace opaline::bake {
 namespace {
 
 bool gathers(const EffectDescriptor& effect, const RowLayout& layout) {
     return effect.gather.work != nullptr &&
            (effect.gather.applies == nullptr || effect.gather.applies(layout));
-}
-
-std::uint64_t row_bytes(const Knobs& knobs, const RowLayout& layout) {
-    const std::uint64_t all = formats::cubemap_texels(knobs.cubemap_size);
-    // Of an opaque surface half of all coefficients vanish, below the horizon.
-    const std::uint64_t details = knobs.coefficients == kAllCoefficients
-                                      ? (layout.translucent ? all : all / 2)
-                                      : std::min<std::uint64_t>(knobs.coefficients, all) - 6;
-    const std::uint64_t index_bytes = all <= 65536 ? 2 : 4;
-    const std::uint64_t bands = layout.bands();
-    return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
 }
 
 // Calls visit(entry, layout before the decision, layout after it) for all decisions of an effect.
@@ -127,7 +114,7 @@ void bill_encoding(const CostedBake& bake, const CostedSubject& subject, double 
                    Bill& bill) {
     const std::uint32_t bands = subject.layout.bands();
     const double bytes =
-        receivers * static_cast<double>(row_bytes(bake.request.knobs, subject.layout));
+        receivers * static_cast<double>(row_bytes(bake.request.knobs, subject.layout.translucent, bands));
     const auto bill_some = [&](std::uint32_t rows, PlanEntry* payer) {
         // Local rows are gathered by texel and transformed band by band, as grey ones are; the
         // others are gathered as coefficients.

@@ -146,7 +146,9 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context,
     Knobs& knobs = result.knobs;
     StageLog& log = result.stages;
     auto lights = run_stage(log, "test lights", [&](std::uint64_t&) {
-        return make_test_lights(knobs.cubemap_size, context.threads);
+        return make_test_lights(
+            knobs.cubemap_size, context.threads,
+            context.cache.empty() ? context.cache : context.cache / "test-lights");
     });
     if (!lights) {
         return std::move(lights).error();

@@ -123,6 +123,10 @@ struct EffectDescriptor {
     TruthStep truth{};
     bool reads_openness = false;
 
+    /// Memory: of the samples of one subject at most [bytes]; rows of a receiver of a medium.
+    double (*sample_bytes)(const Knobs& knobs) = nullptr;
+    double (*typical_rows)(const formats::Medium& medium, const Knobs& knobs) = nullptr;
+
     /// The part of a local answer (effects/local) that is this effect's: adds to f(c), radiance per
     /// irradiance at kLocalSteps + 1 evenly spaced cosines from 0 to 1, band by band.
     void (*add_local)(const EffectInputs& inputs, std::span<std::vector<double>> factor) = nullptr;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bake/environment/builtin_environment.h"
+#include "bake/truth/test_light_cache.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/rgb.h"
 #include "runtime/integrate_discs.h"
@@ -77,8 +78,9 @@ double relit(std::span<const float> row, std::span<const float> light) {
     return sum;
 }
 
-formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_size,
-                                                         unsigned threads) {
+namespace {
+
+formats::Result<std::vector<TestLight>> integrate_test_lights(unsigned threads) {
     std::vector<TestLight> lights;
     for (const char* name : kPublishedLights) {
         formats::Result<formats::Environment> environment = make_environment(name);
@@ -92,6 +94,28 @@ formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_s
                                                    2 * kTruthCubemap, threads);
         }
         lights.push_back({name, {}, exact_discs(discs), integrate_smooth(*environment, threads)});
+    }
+    return lights;
+}
+
+}  // namespace
+
+formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_size,
+                                                         unsigned threads,
+                                                         const std::filesystem::path& cache) {
+    std::vector<TestLight> lights;
+    if (!cache.empty()) {
+        lights = read_test_lights(cache);
+    }
+    if (lights.empty()) {
+        auto integrated = integrate_test_lights(threads);
+        if (!integrated) {
+            return integrated;
+        }
+        lights = std::move(*integrated);
+        if (!cache.empty()) {
+            write_test_lights(cache, lights);
+        }
     }
     project_test_lights(lights, cubemap_size);
     return lights;

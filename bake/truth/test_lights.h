@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <span>
 #include <string>
@@ -34,9 +35,11 @@ std::span<const char* const> published_lights();
 /// <row, light>, summed in double precision; both of one length and basis.
 double relit(std::span<const float> row, std::span<const float> light);
 
-/// The published set: white, the sun at three angles, studio, sky.
+/// The published set: white, the sun at three angles, studio, sky. It is the same for every bake,
+/// and takes a second: `cache` is a file to keep it in (test_light_cache.h), empty for none.
 formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_size,
-                                                         unsigned threads);
+                                                         unsigned threads,
+                                                         const std::filesystem::path& cache = {});
 
 /// Gives them the cube map of another size.
 void project_test_lights(std::span<TestLight> lights, std::uint32_t cubemap_size);

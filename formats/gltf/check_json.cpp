@@ -205,9 +205,8 @@ std::optional<nlohmann::json> parse_checked_json(std::string_view text, Report& 
     try {
         root = Json::parse(text);
     } catch (const Json::exception& problem) {
-        // The library's text ends with what it found, which may hold bytes for a terminal.
-        const std::string detail = in_quotes(problem.what());
-        report.error("JSON", "it cannot be parsed: " + detail, "export the file again");
+        report.error("JSON", "it cannot be parsed " + json_fault(problem.what()),
+                     "export the file again");
         return std::nullopt;
     }
     if (!root.is_object()) {

@@ -77,6 +77,13 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
     if (report.failed()) {
         return scene;
     }
+    if (options.check_size) {
+        if (Status status = options.check_size(count_world(*document, instances)); !status) {
+            report.errors = std::move(status).error().diagnostics;
+            report.kind = ErrorKind::resource;
+            return scene;
+        }
+    }
     build_materials(*document, instances, options.metres_per_unit, resources, scene, report);
     build_primitives(*document, instances, resources.buffers, options.metres_per_unit, scene,
                      report);
@@ -120,7 +127,7 @@ Result<ImportedScene> import_gltf(const std::filesystem::path& path, const Impor
     } catch (const std::exception& problem) {
         // The libraries behind throw on some malformed input that no check of ours names.
         return make_error(ErrorKind::bad_input, report.file, "",
-                          "it cannot be read: " + in_quotes(problem.what()),
+                          "it cannot be read: " + json_fault(problem.what()),
                           "export the file again");
     }
 }

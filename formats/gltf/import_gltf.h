@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace opaline::formats {
 /// Options of the import.
 struct ImportOptions {
     double metres_per_unit = 1.0;  ///< length of one file unit [m]; finite and > 0
+    /// Asked before anything is built that grows with the number of instances; an error of it is
+    /// the import's. Empty: any size will do.
+    std::function<Status(const SceneCounts&)> check_size = {};
 };
 
 /// A scene and everything worth telling the user about it.

@@ -1,5 +1,6 @@
 #include "formats/gltf/report.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace opaline::formats::gltf {
@@ -52,6 +53,23 @@ std::string in_quotes(std::string_view name) {
         text += byte < 0x20 || byte == 0x7f ? '?' : c;
     }
     return text + (name.size() > kLongest ? "...'" : "'");
+}
+
+std::string json_fault(std::string_view what) {
+    if (what.starts_with("[json.exception.")) {
+        what.remove_prefix(std::min(what.find("] "), what.size() - 2) + 2);
+    }
+    constexpr std::string_view kParse = "parse error ";
+    if (what.starts_with(kParse)) {
+        what.remove_prefix(kParse.size());
+    }
+    constexpr std::size_t kLongest = 200;
+    std::string text;
+    for (const char c : what.substr(0, kLongest)) {
+        const auto byte = static_cast<unsigned char>(c);
+        text += byte < 0x20 || byte == 0x7f ? '?' : c;
+    }
+    return text + (what.size() > kLongest ? "..." : "");
 }
 
 std::string label(std::string_view kind, std::size_t index, std::string_view name) {

@@ -32,6 +32,10 @@ struct Report {
 /// A name from the file in quotes, made safe for a terminal: no control characters, bounded.
 std::string in_quotes(std::string_view name);
 
+/// What a JSON library's exception says, without the library's own numbering: "at line 3, column 7:
+/// ...". Bounded, and as safe as in_quotes.
+std::string json_fault(std::string_view what);
+
 /// "node 'Vase'", or "node 7" where it has no name.
 std::string label(std::string_view kind, std::size_t index, std::string_view name);
 

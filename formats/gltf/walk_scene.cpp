@@ -33,11 +33,17 @@ std::vector<std::uint32_t> scene_roots(const Document& document, Report& report)
     return roots;
 }
 
-void check_totals(const Document& document, const std::vector<MeshInstance>& instances,
-                  Report& report) {
-    std::uint64_t vertices = 0, indices = 0;
-    std::size_t primitives = 0;
+bool is_past_limits(const SceneCounts& counts) {
+    return counts.vertices > kMaxWorldVertices || counts.indices > kMaxWorldIndices ||
+           counts.primitives > kMaxWorldPrimitives;
+}
+
+// Past a limit it stops counting.
+SceneCounts count_instances(const Document& document, const std::vector<MeshInstance>& instances,
+                            std::uint32_t& last_node) {
+    SceneCounts counts;
     for (const MeshInstance& instance : instances) {
+        last_node = instance.node;
         for (const MeshPrimitive& primitive :
              document.meshes[document.nodes[instance.node].mesh].primitives) {
             const auto position = primitive.attributes.find("POSITION");
@@ -47,24 +53,36 @@ void check_totals(const Document& document, const std::vector<MeshInstance>& ins
             const std::uint64_t count = document.accessors[position->second].count;
             const std::uint64_t drawn =
                 primitive.indices == kNone ? count : document.accessors[primitive.indices].count;
-            vertices += count;
-            indices += primitive.mode == Mode::triangles ? drawn : 3 * drawn;
-            ++primitives;
-            if (vertices > kMaxWorldVertices || indices > kMaxWorldIndices ||
-                primitives > kMaxWorldPrimitives) {
-                report.over_limit(label("node", instance.node, document.nodes[instance.node].name),
-                                  "with all instances the scene passes " +
-                                      std::to_string(kMaxWorldVertices) + " vertices, " +
-                                      std::to_string(kMaxWorldIndices) + " indices or " +
-                                      std::to_string(kMaxWorldPrimitives) + " primitives",
-                                  "split or simplify the scene");
-                return;
+            counts.vertices += count;
+            counts.indices += primitive.mode == Mode::triangles ? drawn : 3 * drawn;
+            ++counts.primitives;
+            if (is_past_limits(counts)) {
+                return counts;
             }
         }
+    }
+    return counts;
+}
+
+void check_totals(const Document& document, const std::vector<MeshInstance>& instances,
+                  Report& report) {
+    std::uint32_t node = 0;
+    if (is_past_limits(count_instances(document, instances, node))) {
+        report.over_limit(label("node", node, document.nodes[node].name),
+                          "with all instances the scene passes " +
+                              std::to_string(kMaxWorldVertices) + " vertices, " +
+                              std::to_string(kMaxWorldIndices) + " indices or " +
+                              std::to_string(kMaxWorldPrimitives) + " primitives",
+                          "split or simplify the scene");
     }
 }
 
 }  // namespace
+
+SceneCounts count_world(const Document& document, const std::vector<MeshInstance>& instances) {
+    std::uint32_t node = 0;
+    return count_instances(document, instances, node);
+}
 
 std::vector<MeshInstance> walk_scene(const Document& document, Report& report) {
     std::vector<MeshInstance> instances, pending;

@@ -6,6 +6,7 @@
 
 #include "formats/gltf/document.h"
 #include "formats/gltf/report.h"
+#include "formats/scene.h"
 
 namespace opaline::formats::gltf {
 
@@ -14,6 +15,9 @@ struct MeshInstance {
     std::uint32_t node = 0;
     glm::dmat4 world{1.0};  ///< from the mesh's frame to the scene's, file units
 };
+
+/// What the primitives of all instances hold, as their accessors state it.
+SceneCounts count_world(const Document& document, const std::vector<MeshInstance>& instances);
 
 /// Mesh instances in running-number order: nodes depth-first, children in their listed order. Where
 /// the file names no scene, the first one; where it has none, all nodes without a parent. Reports

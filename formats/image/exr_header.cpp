@@ -184,7 +184,7 @@ std::optional<Fault> check_sizes(Parsed& parsed, bool is_tiled, std::uint64_t fi
                            file_bytes)) {
         return Fault{"claims " + std::to_string(width) + " x " + std::to_string(height) +
                          " pixels in " + std::to_string(file_bytes) + " bytes",
-                     "at most 16384 x 8192 pixels, and a file that is not cut off"};
+                     "at most 16384 x 8192 pixels; above 16 million, at most 16 of them a byte of the file"};
     }
     parsed.header.min_x = x0;
     parsed.header.min_y = y0;

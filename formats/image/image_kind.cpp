@@ -19,8 +19,9 @@ bool is_plausible_size(std::uint64_t width, std::uint64_t height, std::uint64_t 
         return false;
     }
     const std::uint64_t pixels = width * height;
-    constexpr std::uint64_t kHarmless = std::uint64_t{1} << 22;
-    return pixels <= kMaxImagePixels && (pixels <= kHarmless || pixels / 1024 <= file_bytes);
+    constexpr std::uint64_t kHarmless = std::uint64_t{1} << 24, kMostPerByte = 16;
+    return pixels <= kMaxImagePixels &&
+           (pixels <= kHarmless || pixels / kMostPerByte <= file_bytes);
 }
 
 }  // namespace opaline::formats

@@ -49,7 +49,7 @@ std::optional<Json> parse_strict(std::string_view text, Report& report) {
         Json root = Json::parse(text, refuse_twice(open, report));
         return report.failed() ? std::nullopt : std::optional(std::move(root));
     } catch (const Json::exception& problem) {
-        report.error("JSON", "it cannot be parsed: " + in_quotes(problem.what()),
+        report.error("JSON", "it cannot be parsed " + gltf::json_fault(problem.what()),
                      "correct it where the message says");
         return std::nullopt;
     }
@@ -102,7 +102,8 @@ Result<MediaFile> guarded(const std::filesystem::path& path, const Read& read) {
                           "make it smaller");
     } catch (const std::exception& problem) {
         return make_error(ErrorKind::bad_input, report.file, "",
-                          "it cannot be read: " + in_quotes(problem.what()), "correct the file");
+                          "it cannot be read: " + gltf::json_fault(problem.what()),
+                          "correct the file");
     }
 }
 

@@ -261,9 +261,12 @@ Status write_parts(const AssetView& asset, Write write) {
 
 }  // namespace
 
+Status write_opal_bytes(const AssetView& asset, AtomicFile& file) {
+    return write_parts(asset, [&](std::span<const std::byte> bytes) { return file.write(bytes); });
+}
+
 Status write_opal(const AssetView& asset, AtomicFile file) {
-    const Status status =
-        write_parts(asset, [&](std::span<const std::byte> bytes) { return file.write(bytes); });
+    const Status status = write_opal_bytes(asset, file);
     return status ? file.commit() : status;
 }
 

@@ -8,7 +8,10 @@
 
 namespace opaline::formats {
 
-/// Writes a whole asset and commits the file. The bytes depend on the asset alone.
+/// Writes a whole asset, and does not commit the file. The bytes depend on the asset alone.
+Status write_opal_bytes(const AssetView& asset, AtomicFile& file);
+
+/// The same, and commits the file.
 Status write_opal(const AssetView& asset, AtomicFile file);
 
 /// Size [bytes] of the file that write_opal makes.

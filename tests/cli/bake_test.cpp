@@ -140,6 +140,33 @@ TEST(Bake, TargetErrorIsReportedWithWhatThePilotTried) {
     EXPECT_EQ(info.at("provenance").at("error_requested"), 0.2);
 }
 
+double seconds_of(const Json& report, const std::string& name) {
+    for (const Json& stage : report.at("stages")) {
+        if (stage.at("name") == name) {
+            return stage.at("seconds");
+        }
+    }
+    ADD_FAILURE() << "no stage " << name;
+    return 0;
+}
+
+TEST(Bake, TestLightsAreComputedOnceForAllBakes) {
+    SmallScene small;
+    const TemporaryFolder cache;
+    double seconds[2] = {};
+    for (const int i : {0, 1}) {
+        const std::string report = small.path("r" + std::to_string(i) + ".json");
+        const Outcome bake = run_any({"env", "XDG_CACHE_HOME=" + cache.path().string(),
+                                      OPALINE_PROGRAM, "bake", small.scene(), "-o",
+                                      small.path("a" + std::to_string(i) + ".opal"), "--quality",
+                                      "draft", "--report", report});
+        ASSERT_EQ(bake.exit_code, 0) << bake.err;
+        seconds[i] = seconds_of(Json::parse(read_text(report)), "test lights");
+    }
+    EXPECT_LT(seconds[1], 0.3 * seconds[0]) << "about 1 % of it";
+    EXPECT_EQ(read_text(small.path("a0.opal")), read_text(small.path("a1.opal")));
+}
+
 TEST(Bake, AnyNumberOfThreadsWritesTheSameBytes) {
     const TemporaryFolder folder;
     write_file(folder / "sheet.glb", wavy_sheet(24).glb());

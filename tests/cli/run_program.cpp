@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -26,8 +27,20 @@ Outcome run_any(const Arguments& command, const std::function<void(int)>& when_s
     ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     ::posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
     ::posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT, 0600);
+    // Signals act as on a terminal, also where the tests run in the background.
+    posix_spawnattr_t attributes;
+    sigset_t defaults;
+    ::sigemptyset(&defaults);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        ::sigaddset(&defaults, number);
+    }
+    ::posix_spawnattr_init(&attributes);
+    ::posix_spawnattr_setsigdefault(&attributes, &defaults);
+    ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
     pid_t process = 0;
-    const int fault = ::posix_spawnp(&process, argv[0], &actions, nullptr, argv.data(), environ);
+    const int fault =
+        ::posix_spawnp(&process, argv[0], &actions, &attributes, argv.data(), environ);
+    ::posix_spawnattr_destroy(&attributes);
     ::posix_spawn_file_actions_destroy(&actions);
     if (fault != 0) {
         throw std::runtime_error("cannot run " + command[0]);

@@ -29,10 +29,13 @@ TEST(Usage, EveryCommandExplainsItselfWithAnExample) {
     }
 }
 
-TEST(Usage, VersionIsANumber) {
+TEST(Usage, VersionSaysWhatTheProgramIsMadeOf) {
     const Outcome version = run_opaline({"--version"});
     EXPECT_EQ(version.exit_code, 0);
-    EXPECT_THAT(version.out, ::testing::MatchesRegex("opaline [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+    EXPECT_THAT(version.out, ::testing::ContainsRegex("^opaline [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+    EXPECT_THAT(version.out, ::testing::ContainsRegex("\n.opal files   version [0-9]+\n"));
+    EXPECT_THAT(version.out, ::testing::ContainsRegex("Embree [0-9.]+, isa="));
+    EXPECT_THAT(version.out, ::testing::ContainsRegex("\nbuild         [A-Za-z]+, "));
 }
 
 TEST(Usage, BadCommandLinesExitWithTwoAndSayWhereHelpIs) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <fcntl.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <stdexcept>
@@ -32,5 +34,15 @@ class TemporaryFolder {
   private:
     std::filesystem::path path_;
 };
+
+/// Whether the file system of temporary folders has files without a name (O_TMPFILE).
+inline bool has_unnamed_files() {
+    const TemporaryFolder folder;
+    const int descriptor = ::open(folder.path().c_str(), O_TMPFILE | O_WRONLY, 0600);
+    if (descriptor >= 0) {
+        ::close(descriptor);
+    }
+    return descriptor >= 0;
+}
 
 }  // namespace opaline::tests

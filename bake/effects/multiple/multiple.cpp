@@ -191,6 +191,7 @@ EffectDescriptor describe_multiple(Effect id) {
                           [](const SubjectCost& cost, TruthEffort effort) {
                               return multiple_truth_work(cost, truth_points(effort));
                           }},
+            .sample_bytes = sample_bytes,
             .add_local = add_local,
             .warn_of_model = warn_of_model};
 }

@@ -148,4 +148,11 @@ Work multiple_truth_work(const SubjectCost& cost, double points) {
                                  2 * points * rates.surface_point.at(cost.input.triangles))};
 }
 
+double sample_bytes(const Knobs& knobs) {
+    constexpr double kSampleOverhead = 200;  // itself, its place in the tree
+    constexpr double kEntry = 8;             // of its vector: index and value
+    constexpr double kTree = 2;              // nodes hold as much as the samples
+    return knobs[kSamples] * (kSampleOverhead + kTree * kept_by_samples(knobs) * kEntry);
+}
+
 }  // namespace opaline::bake

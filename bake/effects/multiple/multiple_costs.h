@@ -18,5 +18,7 @@ Work profile_work(const SubjectCost& cost);
 Work samples_work(const SubjectCost& cost);
 Work multiple_rows_work(const SubjectCost& cost);
 Work multiple_truth_work(const SubjectCost& cost, double points);
+/// Of the samples and their tree, at most.
+double sample_bytes(const Knobs& knobs);
 
 }  // namespace opaline::bake

@@ -149,6 +149,14 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
     return {once, once};
 }
 
+// Before any phase function is expanded.
+double typical_rows(const formats::Medium& medium, const Knobs& knobs) {
+    constexpr double kTypicalTerms = 4;
+    return medium.phase.type == formats::PhaseFunction::Type::isotropic ? 1
+           : knobs[kPhaseTerms] > 0                                     ? knobs[kPhaseTerms]
+                                                                        : kTypicalTerms;
+}
+
 // The largest number of terms is too few for the tolerance asked for: their sum is negative in some
 // directions, and single scattering with it.
 void warn_of_short_series(const PlanInput& input, const PlanEntry& entry,
@@ -238,6 +246,7 @@ EffectDescriptor describe_single(Effect id) {
                               return single_truth_work(cost,
                                                        truth_depths(cost.input.knobs, effort));
                           }},
+            .typical_rows = typical_rows,
             .add_local = add_local,
             .warn_of_plan = warn_of_plan};
 }

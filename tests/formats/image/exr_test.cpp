@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "formats/image/image_kind.h"
 #include "tests/formats/image/image_files.h"
 
 namespace opaline::formats {
@@ -116,6 +117,24 @@ std::string with_attribute(std::string bytes, const std::string& name, const std
     EXPECT_NE(at, std::string::npos);
     std::memcpy(bytes.data() + at + key.size() + 4 + offset, value, size);
     return bytes;
+}
+
+// 134 million pixels, 1.6 GB, in a file of 1.6 MB: its chunk table would fit.
+TEST(Exr, SmallFileCannotCostGigabytes) {
+    std::string bytes = make_exr(ramp(16, 16), {});
+    const std::int32_t right = 16383, bottom = 8191;
+    bytes = with_attribute(bytes, "dataWindow", "box2i", 8, &right, 4);
+    bytes = with_attribute(bytes, "dataWindow", "box2i", 12, &bottom, 4);
+    bytes.resize(1600000);
+    const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");
+    ASSERT_FALSE(read);
+    EXPECT_THAT(message(read.error()), HasSubstr("claims 16384 x 8192 pixels in 1600000 bytes"));
+}
+
+TEST(Exr, LargeFlatMapsAndLargePhotographsArePlausible) {
+    EXPECT_TRUE(is_plausible_size(4096, 2048, 100000));     // a sun over black
+    EXPECT_TRUE(is_plausible_size(16384, 8192, 60000000));  // a photograph
+    EXPECT_FALSE(is_plausible_size(16384, 8192, 1600000));
 }
 
 TEST(Exr, HeadersThatClaimTooMuchAreRefusedBeforeAllocating) {

@@ -1,7 +1,10 @@
 #include "formats/opal/atomic_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -35,7 +38,6 @@ TEST(AtomicFile, LeavesTheOldFileAndNothingElseWithoutCommit) {
         ASSERT_TRUE(file);
         ASSERT_TRUE(file->write("new, but never finished"));
         EXPECT_EQ(contents(folder / "out"), "old");
-        EXPECT_EQ(files_in(folder.path()), 2u);
     }
     EXPECT_EQ(contents(folder / "out"), "old");
     EXPECT_EQ(files_in(folder.path()), 1u);
@@ -55,6 +57,79 @@ TEST(AtomicFile, SaysWhatIsWrongWithAnImpossibleTarget) {
 TEST(AtomicFile, WritesToDevicesDirectly) {
     EXPECT_TRUE(write_file_atomically("/dev/null", "gone"));
     EXPECT_FALSE(write_file_atomically("/dev/full", "no room"));
+}
+
+TEST(AtomicFile, NamedTemporaryIsReplacedByTheFile) {
+    const tests::TemporaryFolder folder;
+    for (const char* text : {"first", "second"}) {
+        auto file = AtomicFile::create(folder / "out", Temporary::named);
+        ASSERT_TRUE(file);
+        ASSERT_TRUE(file->write(text));
+        EXPECT_EQ(file->bytes_written(), std::string(text).size());
+        ASSERT_TRUE(file->commit());
+        EXPECT_EQ(contents(folder / "out"), text);
+        EXPECT_EQ(files_in(folder.path()), 1u);
+    }
+}
+
+// A process that ends without a word, as by SIGKILL.
+void leave_temporary_file(const std::filesystem::path& target, Temporary temporary) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const auto file = AtomicFile::create(target, temporary);
+        ::_exit(file ? 0 : 1);
+    }
+    int status = -1;
+    ::waitpid(child, &status, 0);
+    ASSERT_EQ(status, 0);
+}
+
+void make_old(const std::filesystem::path& folder) {
+    const auto past = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        std::filesystem::last_write_time(entry.path(), past);
+    }
+}
+
+TEST(AtomicFile, UnnamedTemporaryOfAKilledProcessIsGone) {
+    if (!tests::has_unnamed_files()) GTEST_SKIP() << "the file system has no O_TMPFILE";
+    const tests::TemporaryFolder folder;
+    leave_temporary_file(folder / "out", Temporary::unnamed);
+    EXPECT_EQ(files_in(folder.path()), 0u);
+}
+
+TEST(AtomicFile, NamedTemporaryOfAKilledProcessIsRemovedByTheNextAndOneInUseIsKept) {
+    const tests::TemporaryFolder folder;
+    std::ofstream(folder / ".opaline-backups") << "of somebody else";
+    leave_temporary_file(folder / "out", Temporary::named);
+    ASSERT_EQ(files_in(folder.path()), 2u);
+    auto in_use = AtomicFile::create(folder / "other", Temporary::named);
+    ASSERT_TRUE(in_use && in_use->write("kept"));
+    EXPECT_EQ(files_in(folder.path()), 3u) << "too young to be taken for abandoned";
+    make_old(folder.path());
+    ASSERT_TRUE(AtomicFile::create(folder / "out", Temporary::named));
+    EXPECT_EQ(files_in(folder.path()), 2u);
+    EXPECT_TRUE(in_use->commit());
+    EXPECT_EQ(contents(folder / "other"), "kept");
+    EXPECT_TRUE(std::filesystem::exists(folder / ".opaline-backups"));
+}
+
+TEST(AtomicFile, FollowsLinksAndKeepsPermissions) {
+    const tests::TemporaryFolder folder;
+    std::filesystem::create_symlink("real", folder / "link");
+    EXPECT_EQ(resolve_links(folder / "link"), resolve_links(folder / "real"));
+    ASSERT_TRUE(write_file_atomically(folder / "link", "one"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+    EXPECT_EQ(contents(folder / "real"), "one");
+    std::filesystem::permissions(folder / "real", std::filesystem::perms(0640));
+    ASSERT_TRUE(write_file_atomically(folder / "link", "two"));
+    EXPECT_EQ(contents(folder / "real"), "two");
+    EXPECT_EQ(std::filesystem::status(folder / "real").permissions(), std::filesystem::perms(0640));
+}
+
+TEST(AtomicFile, NameTooLongIsFoundOutBeforeTheWork) {
+    const tests::TemporaryFolder folder;
+    EXPECT_FALSE(AtomicFile::create(folder / std::string(300, 'x')));
 }
 
 }  // namespace

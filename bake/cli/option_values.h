@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace opaline::cli {
+
+/// Checks of option values whose messages say what is accepted. CLI11's own checks let NaN pass,
+/// clamp integers, accept numbers for names, and print C++ containers.
+
+/// A finite number from `least` to `most`.
+CLI::Validator real_number(double least, double most);
+
+/// The same without its lower bound: above `bound`.
+CLI::Validator number_above(double bound, double most);
+
+/// A whole number from `least` to `most`, decimal digits only.
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
+
+/// The path of a file; not empty.
+CLI::Validator file_name();
+
+namespace detail {
+/// Of a name and the text that CLI11 converts into the option's value.
+CLI::Validator one_of(std::vector<std::pair<std::string, std::string>> names);
+}  // namespace detail
+
+/// One of the names; the option's variable gets the value beside it (an integer or an enumerator).
+template <class T>
+CLI::Validator one_of(const std::vector<std::pair<std::string, T>>& names) {
+    std::vector<std::pair<std::string, std::string>> texts;
+    for (const auto& [name, value] : names) {
+        texts.emplace_back(name, std::to_string(static_cast<std::int64_t>(value)));
+    }
+    return detail::one_of(std::move(texts));
+}
+
+}  // namespace opaline::cli

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/opal/result.h"
+
+namespace opaline::cli {
+
+/// A file that a command is going to write.
+struct OutputFile {
+    std::string option;  ///< that names it, for messages
+    std::filesystem::path path;
+    std::vector<std::string> endings;  ///< that it may have, in lower case; empty: any
+};
+
+/// Refuses outputs that are the same file as an input or as each other, also through links, and
+/// endings that are not among those of the output. Devices and pipes may be named twice.
+/// Errors: usage.
+formats::Status check_outputs(std::span<const OutputFile> outputs,
+                              std::span<const std::filesystem::path> inputs);
+
+/// The ending of a path in lower case, its dot included: ".png" of "A.PNG".
+std::string ending_of(const std::filesystem::path& path);
+
+}  // namespace opaline::cli

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace opaline::cli {
+
+/// What is wrong with a command line that CLI11 refused, in plain words, with the nearest command
+/// or option where a name is unknown, and where help is: everything after "opaline: error: ".
+std::string describe_usage_error(const CLI::App& app, const CLI::ParseError& error);
+
+/// The name nearest to `wanted` by edits of one character; empty where none is near.
+std::string find_nearest(std::string_view wanted, const std::vector<std::string>& names);
+
+}  // namespace opaline::cli

@@ -1,0 +1,95 @@
+#include "bake/pipeline/predict_memory.h"
+
+#include <algorithm>
+
+#include "bake/pipeline/cost_model.h"
+
+namespace opaline::bake {
+namespace {
+
+// Bytes, from the structs and from peaks of bakes of 3 000 to 200 000 triangles.
+constexpr double kProgram = 40e6;           // code, libraries, test lights
+constexpr double kThread = 4e6;             // its block of receivers, its stack
+constexpr double kVertex = 12 + 12 + 8;     // of the scene: position, normal, texcoord
+constexpr double kIndex = 4;                // of the scene
+constexpr double kPrimitive = 32e3;         // names, a stage of the report, an Embree geometry
+constexpr double kPlanTriangle = 200;       // edges and hulls while the scene is inspected
+constexpr double kHierarchyTriangle = 200;  // Embree's, while it is built
+constexpr double kReceiver = 150;           // vertex: receivers, body points, cells that weld them
+constexpr double kGrowth = 2;               // rows are appended to vectors that double
+
+}  // namespace
+
+MemoryCounts count_memory(const formats::SceneCounts& scene) {
+    MemoryCounts counts;
+    counts.scene = scene;
+    counts.opaque_rows = static_cast<double>(scene.vertices);
+    return counts;
+}
+
+MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scene,
+                          const Knobs& knobs) {
+    MemoryCounts counts;
+    for (const formats::Material& material : scene.materials) {
+        counts.media += material.medium ? 1 : 0;
+    }
+    for (const formats::Image8& image : scene.images) {
+        counts.image_bytes += static_cast<double>(image.rgba.size());
+    }
+    for (const formats::Primitive& primitive : scene.primitives) {
+        const auto vertices = static_cast<double>(primitive.position.size());
+        ++counts.scene.primitives;
+        counts.scene.vertices += primitive.position.size();
+        counts.scene.indices += primitive.index.size();
+        const auto& medium = scene.materials[primitive.material].medium;
+        if (!medium) {
+            counts.opaque_rows += vertices;
+            continue;
+        }
+        double terms = 1;
+        for (const EffectDescriptor& effect : effects.effects) {
+            if (effect.typical_rows != nullptr) {
+                terms = std::max(terms, effect.typical_rows(*medium, knobs));
+            }
+        }
+        counts.translucent_rows += vertices * (terms + (knobs.separate_terms ? 1 : 0));
+    }
+    return counts;
+}
+
+double MemoryPrediction::bytes() const {
+    double sum = 0;
+    for (const Part& part : parts) {
+        sum += part.bytes;
+    }
+    return sum;
+}
+
+const MemoryPrediction::Part& MemoryPrediction::largest() const {
+    return *std::max_element(parts.begin(), parts.end(),
+                             [](const Part& a, const Part& b) { return a.bytes < b.bytes; });
+}
+
+MemoryPrediction predict_memory(const EffectTable& effects, const MemoryCounts& counts,
+                                const Knobs& knobs, unsigned threads) {
+    const auto vertices = static_cast<double>(counts.scene.vertices),
+               indices = static_cast<double>(counts.scene.indices),
+               primitives = static_cast<double>(counts.scene.primitives), triangles = indices / 3;
+    constexpr std::uint32_t kBands = 3;
+    const auto opaque_row = static_cast<double>(row_bytes(knobs, false, 1));
+    const auto translucent_row = static_cast<double>(row_bytes(knobs, true, kBands));
+    double samples = 0;  // of one medium
+    for (const EffectDescriptor& effect : effects.effects) {
+        samples += effect.sample_bytes != nullptr ? effect.sample_bytes(knobs) : 0;
+    }
+    return {{{"the program", kProgram + kThread * threads},
+             {"the scene", vertices * kVertex + indices * kIndex + counts.image_bytes},
+             {"its primitives and instances", primitives * kPrimitive},
+             {"the ray hierarchy", triangles * std::max(kPlanTriangle, kHierarchyTriangle)},
+             {"receivers", vertices * kReceiver},
+             {"surface samples", counts.media * samples},
+             {"transport rows", kGrowth * (counts.opaque_rows * opaque_row +
+                                           counts.translucent_rows * translucent_row)}}};
+}
+
+}  // namespace opaline::bake

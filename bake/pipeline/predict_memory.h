@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bake/plan/effect.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// What the memory of a bake depends on.
+struct MemoryCounts {
+    formats::SceneCounts scene;
+    double image_bytes = 0;       ///< of decoded textures
+    double translucent_rows = 0;  ///< of all vertices of media together
+    double opaque_rows = 0;       ///< of all others
+    double media = 0;             ///< materials that are translucent
+};
+
+/// Of a scene of which only the size is known: everything counts as opaque, so that the prediction
+/// is a lower bound.
+MemoryCounts count_memory(const formats::SceneCounts& scene);
+/// Of a scene that is there.
+MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scene,
+                          const Knobs& knobs);
+
+/// Peak of a whole bake, by what takes it [bytes].
+struct MemoryPrediction {
+    struct Part {
+        std::string name;
+        double bytes = 0;
+    };
+    std::vector<Part> parts;
+
+    double bytes() const;
+    const Part& largest() const;
+};
+
+/// Predicts the peak resident memory of a bake from counts alone: allocates nothing that grows with
+/// the scene. Good to a factor of two; meant to refuse what cannot fit before it is tried.
+/// `threads` >= 1.
+MemoryPrediction predict_memory(const EffectTable& effects, const MemoryCounts& counts,
+                                const Knobs& knobs, unsigned threads);
+
+}  // namespace opaline::bake

@@ -1,0 +1,155 @@
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <thread>
+
+#include "tests/cli/small_scene.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+Arguments draft(const SmallScene& small, const Arguments& more) {
+    Arguments arguments = {"bake", small.scene(), "--quality", "draft"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+TEST(Outputs, EmptyNameIsRefusedBeforeAnyWork) {
+    SmallScene small;
+    const std::string out = small.path("a.opal");
+    for (const Arguments& more :
+         {Arguments{"-o", ""}, {"-o", out, "--report", ""}, {"-o", out, "--depfile", ""}}) {
+        const Outcome bake = run_opaline(draft(small, more));
+        EXPECT_EQ(bake.exit_code, 2) << bake.err;
+        EXPECT_THAT(bake.err, HasSubstr("the name is empty"));
+    }
+    EXPECT_EQ(list_folder(small.folder()), Arguments{"scene.glb"});
+}
+
+TEST(Outputs, TwoOutputsInOneFileAreRefused) {
+    SmallScene small;
+    const std::string out = small.path("q.opal");
+    std::filesystem::create_symlink("q.opal", small.path("link"));  // to what does not exist yet
+    std::filesystem::create_directory_symlink(".", small.path("here"));
+    const std::vector<Arguments> same = {
+        {"-o", out, "--report", out},
+        {"-o", out, "--depfile", out},
+        {"-o", out, "--report", small.path("r"), "--depfile", small.path("r")},
+        {"-o", out, "--report", small.path("link")},
+        {"-o", out, "--report", small.path("here/q.opal")},
+        {"-o", out, "--report", small.path("./here/../q.opal")}};
+    for (const Arguments& more : same) {
+        const Outcome bake = run_opaline(draft(small, more));
+        EXPECT_EQ(bake.exit_code, 2) << bake.err;
+        EXPECT_THAT(bake.err, HasSubstr(" name the same file")) << ::testing::PrintToString(more);
+    }
+    EXPECT_EQ(list_folder(small.folder()), (Arguments{"here", "link", "scene.glb"}));
+    write_file(out, std::string("former"));
+    std::filesystem::create_hard_link(out, small.path("hard"));
+    EXPECT_EQ(run_opaline(draft(small, {"-o", out, "--report", small.path("hard")})).exit_code, 2);
+    EXPECT_EQ(read_text(out), "former");
+}
+
+TEST(Outputs, OutputsThatTakeEverythingMayBeNamedTwice) {
+    SmallScene small;
+    const Outcome bake = run_opaline(draft(
+        small, {"-o", small.path("a.opal"), "--report", "/dev/null", "--depfile", "/dev/null"}));
+    EXPECT_EQ(bake.exit_code, 0) << bake.err;
+}
+
+TEST(Outputs, InputsAreNotOverwrittenThroughLinks) {
+    SmallScene small;
+    const std::string before = read_text(small.scene());
+    std::filesystem::create_symlink("scene.glb", small.path("link.opal"));
+    for (const char* option : {"-o", "--report", "--depfile"}) {
+        Arguments more = {option, small.path("link.opal")};
+        if (option != std::string("-o")) {
+            more.insert(more.end(), {"-o", small.path("a.opal")});
+        }
+        const Outcome bake = run_opaline(draft(small, more));
+        EXPECT_EQ(bake.exit_code, 2) << bake.err;
+        EXPECT_THAT(bake.err, HasSubstr("is an input and would be overwritten"));
+    }
+    EXPECT_EQ(read_text(small.scene()), before);
+}
+
+TEST(Outputs, OneFrameOfATurntableMayNotBeTheLight) {
+    SmallScene small;
+    write_file(small.path("t-0002.exr"), std::string("a light"));
+    const Outcome render =
+        run_opaline({"render", small.baked(), "--light", small.path("t-0002.exr"), "-o",
+                     small.path("t.exr"), "--frames", "3", "--backend", "cpu"});
+    EXPECT_EQ(render.exit_code, 2) << render.err;
+    EXPECT_THAT(render.err, HasSubstr("t-0002.exr: is an input"));
+}
+
+TEST(Outputs, LinkIsFollowed) {
+    SmallScene small;
+    std::filesystem::create_symlink("real.opal", small.path("link.opal"));
+    const Outcome bake = run_opaline(draft(small, {"-o", small.path("link.opal")}));
+    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+    EXPECT_TRUE(std::filesystem::is_symlink(small.path("link.opal")));
+    EXPECT_TRUE(std::filesystem::is_regular_file(small.path("real.opal")));
+}
+
+TEST(Outputs, FailureOfAReportOrDepfileLeavesNoBake) {
+    SmallScene small;
+    for (const char* option : {"--report", "--depfile"}) {
+        const Outcome bake =
+            run_opaline(draft(small, {"-o", small.path("a.opal"), option, "/dev/full"}));
+        EXPECT_EQ(bake.exit_code, 4) << bake.err;
+        EXPECT_THAT(bake.err, HasSubstr("No space left on device"));
+        EXPECT_EQ(list_folder(small.folder()), Arguments{"scene.glb"});
+    }
+}
+
+TEST(Outputs, EndingsMayBeInCapitals) {
+    SmallScene small;
+    const std::string png = small.path("x.PNG"), csv = small.path("x.CSV");
+    const Outcome render = run_opaline({"render", small.baked(), "--light", "white", "--backend",
+                                        "cpu", "--size", "32x32", "-o", png});
+    EXPECT_EQ(render.exit_code, 0) << render.err;
+    EXPECT_THAT(read_text(png), StartsWith("\x89PNG"));
+    const Outcome relight = run_opaline({"relight", small.baked(), "--light", "white", "-o", csv});
+    EXPECT_EQ(relight.exit_code, 0) << relight.err;
+    EXPECT_THAT(read_text(csv), StartsWith("primitive,vertex,"));
+}
+
+/// Bakes for a while and gets a signal; what the folder holds afterwards.
+Arguments folder_after(int signal, int expected_code) {
+    SmallScene small;
+    write_file(small.path("sheet.glb"), wavy_sheet(400).glb());
+    const Outcome bake =
+        run_opaline({"bake", small.path("sheet.glb"), "-o", small.path("a.opal"), "--report",
+                     small.path("r.json"), "--depfile", small.path("d"), "--quality", "reference"},
+                    [=](int process) {
+                        std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+                        ::kill(process, signal);
+                    });
+    EXPECT_EQ(bake.exit_code, expected_code) << bake.err;
+    return list_folder(small.folder());
+}
+
+TEST(Outputs, LostTerminalEndsTheBakeInGoodOrder) {
+    EXPECT_EQ(folder_after(SIGHUP, 130), (Arguments{"scene.glb", "sheet.glb"}));
+}
+
+TEST(Outputs, KilledBakeLeavesNothing) {
+    if (!has_unnamed_files()) GTEST_SKIP() << "the file system has no O_TMPFILE";
+    EXPECT_EQ(folder_after(SIGKILL, 128 + SIGKILL), (Arguments{"scene.glb", "sheet.glb"}));
+}
+
+TEST(Outputs, SignalsIgnoredAsByNohupStayIgnored) {
+    SmallScene small;
+    const Outcome bake = run_any({"sh", "-c",
+                                  "trap '' HUP; " OPALINE_PROGRAM " bake '" + small.scene() +
+                                      "' --quality draft -o '" + small.path("a.opal") +
+                                      "' & sleep 0.3; kill -HUP $!; wait $!"});
+    EXPECT_EQ(bake.exit_code, 0) << bake.err;
+}
+
+}  // namespace
+}  // namespace opaline::tests
