@@ -90,7 +90,7 @@ void bill_self_check(const CostedBake& bake, Bill& bill) {
     constexpr double kMostChecked = 256;
     bill.open("self-check");
     const double receivers = bake.facts.receivers;
-    const double drawn = std::min(receivers, std::clamp(receivers / 40, 16.0, 1024.0));
+    const double drawn = std::min(receivers, std::clamp(receivers / 40, 32.0, 1024.0));
     add_truth(bake, drawn, drawn / std::max(1.0, std::ceil(drawn / kMostChecked)),
               {1024, 2.0 * bake.input.knobs.depth_samples}, bill);
 }

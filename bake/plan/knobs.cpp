@@ -40,6 +40,7 @@ Knobs preset(Quality quality) {
             knobs.coefficients = kAllCoefficients;
             knobs.code_bits = 16;
             knobs.samples = 300000;
+            knobs.samples_per_path = 8;
             knobs.tolerance = 1e-5;
             knobs.depth_samples = 16;
             knobs.phase_tolerance = 1e-3;
