@@ -10,8 +10,8 @@ import sys
 import xml.etree.ElementTree as ElementTree
 from collections import defaultdict
 
-# GoogleTest prints "FILE:LINE: Skipped", the reason, an empty line and the name of the test.
-GOOGLETEST_SKIP = re.compile(r": Skipped\n(.*?)\n\n\[  SKIPPED \] (\S+) \(", re.DOTALL)
+# GoogleTest prints "FILE:LINE: Skipped", the reason, and the name of the test.
+GOOGLETEST_SKIP = re.compile(r": Skipped\n(.*?)\n+\[  SKIPPED \] (\S+) \(", re.DOTALL)
 SCRIPT_SKIP = re.compile(r"^SKIPPED: (.*)", re.MULTILINE)
 
 
