@@ -33,12 +33,12 @@ bool is_due(Bar& bar, const bake::Progress& progress) {
 }
 
 void print_bar(const Bar& bar, const bake::Progress& progress) {
-    constexpr int kWidth = 32;
+    constexpr std::size_t kWidth = 32;
     const double share = progress.total > 0 ? static_cast<double>(progress.done) /
                                                   static_cast<double>(progress.total)
                                             : 1.0;
     const double seconds = std::chrono::duration<double>(bar.last - bar.start).count();
-    const int filled = static_cast<int>(share * kWidth);
+    const auto filled = static_cast<std::size_t>(share * kWidth);
     const std::string left =
         share > 0 && share < 1 ? format_seconds(seconds * (1 - share) / share) + " left" : "";
     fmt::print(stderr, "\r{:<10} [{}{}] {:3.0f} % {:<16}", printable(bar.stage),

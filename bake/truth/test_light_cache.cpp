@@ -11,7 +11,7 @@
 
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/cubemap.h"
-#include "formats/opal/mapped_file.h"
+#include "formats/opal/file_bytes.h"
 #include "formats/opal/section.h"
 
 namespace opaline::bake {
@@ -24,7 +24,7 @@ static_assert(std::is_trivially_copyable_v<TestDisc>);
 
 // 0: not known.
 std::uint64_t program_checksum() {
-    const auto program = formats::MappedFile::open("/proc/self/exe");
+    const auto program = formats::FileBytes::open("/proc/self/exe");
     return program ? formats::checksum(program->bytes()) : 0;
 }
 

@@ -7,9 +7,9 @@ struct Rgb {
     float r = 0, g = 0, b = 0;
 
     friend bool operator==(const Rgb&, const Rgb&) = default;
-    friend Rgb operator+(Rgb a, Rgb b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
-    friend Rgb operator*(Rgb a, Rgb b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
-    friend Rgb operator*(float s, Rgb a) { return {s * a.r, s * a.g, s * a.b}; }
+    friend Rgb operator+(Rgb x, Rgb y) { return {x.r + y.r, x.g + y.g, x.b + y.b}; }
+    friend Rgb operator*(Rgb x, Rgb y) { return {x.r * y.r, x.g * y.g, x.b * y.b}; }
+    friend Rgb operator*(float s, Rgb x) { return {s * x.r, s * x.g, s * x.b}; }
 };
 
 /// Luminance of linear Rec. 709.

@@ -64,8 +64,9 @@ tests::Primitive make_box(float thickness) {
 // Sheet, ball and block of one medium, 1, 10 and 10 mean free paths thick; the ball is lit from the
 // sides as well. Here the dipole errs most: it knows the distance to where light entered, but not
 // that the body ends. Of the light that crosses a sheet it gives 1.8 times as much as there is, of
-// that which crosses ten mean free paths 0.4 times.
-TEST(BackLit, SheetBallAndBlockAreAsBrightInOrderAsTheyAre) {
+// that which crosses ten mean free paths 0.4 times. A better model may come closer; none may be
+// farther off.
+TEST(BackLit, SheetBallAndBlockAreAsBrightInOrderAsTheyAreAndNoFartherOff) {
     const formats::Medium medium = tests::make_grey_medium(10, 0.1f);
     const BackLit sheet = measure_back_lit(make_box(0.1f), medium);
     const BackLit ball = measure_back_lit(tests::make_sphere(4, 0.5f), medium);
@@ -75,9 +76,14 @@ TEST(BackLit, SheetBallAndBlockAreAsBrightInOrderAsTheyAre) {
                     body.standard_error);
         EXPECT_LT(body.standard_error, 0.05 * body.truth) << name;
     }
-    EXPECT_NEAR(sheet.baked / sheet.truth, 1.8, 0.3);
-    EXPECT_NEAR(ball.baked / ball.truth, 0.46, 0.1);
-    EXPECT_NEAR(block.baked / block.truth, 0.43, 0.1);
+    const auto ratio_is_within = [](const BackLit& body, double low, double high) {
+        const double noise = 3 * body.standard_error / body.truth;
+        EXPECT_GT(body.baked / body.truth, low - noise);
+        EXPECT_LT(body.baked / body.truth, high + noise);
+    };
+    ratio_is_within(sheet, 0.8, 1.9);
+    ratio_is_within(ball, 0.42, 1.2);
+    ratio_is_within(block, 0.4, 1.2);
     EXPECT_GT(sheet.truth, ball.truth);
     EXPECT_GT(ball.truth, block.truth);
     EXPECT_GT(sheet.baked, ball.baked);

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 
 #include "formats/opal/write_opal.h"
 #include "tests/support/effects.h"
@@ -79,13 +81,15 @@ TEST(Pipeline, AConvexBodyAloneUnderWhiteIsWithinATenthOfAPercent) {
 }
 
 TEST(Pipeline, VertexOfAFloorLiesInTheShadowOfWhatStandsOnIt) {
-    const BakeResult result = tests::bake_scene(tests::make_dented_ball(), small_options());
+    BakeOptions options = small_options();
+    options.coefficients = kAllCoefficients;
+    const BakeResult result = tests::bake_scene(tests::make_dented_ball(), options);
     const auto radiance = tests::relight(result.asset.view(), "sun:0,89");
     const formats::PrimitiveRecord& floor = result.asset.primitives[1];
     const formats::Rgb below = radiance[floor.first_vertex + 10 * 21 + 10];
     const formats::Rgb corner = radiance[floor.first_vertex];
     EXPECT_LT(below.g, 0.02f);
-    EXPECT_NEAR(corner.g, 1, 0.12f);  // 64 coefficients blur the sun
+    EXPECT_NEAR(corner.g, std::sin(89 * std::numbers::pi / 180), 0.02f);
 }
 
 TEST(Pipeline, BlackSurfacesCostNoRays) {
@@ -133,7 +137,7 @@ TEST(Pipeline, ProgressEndsAtTheNumberOfReceivers) {
     EXPECT_EQ(total, scene.primitives[0].position.size() + scene.primitives[1].position.size());
 }
 
-TEST(Pipeline, MeasuredErrorHasAnIntervalAndFallsWithTheKnobs) {
+TEST(Pipeline, MeasuredErrorFallsWithTheKnobs) {
     const auto scene = tests::make_dented_ball();
     double previous = 1;
     for (const std::uint32_t kept : {16u, 64u, 384u}) {
@@ -142,10 +146,8 @@ TEST(Pipeline, MeasuredErrorHasAnIntervalAndFallsWithTheKnobs) {
         const ErrorReport error = tests::bake_scene(scene, options).error;
         EXPECT_GT(error.rms_relative, 0);
         EXPECT_LT(error.rms_relative, previous);
-        EXPECT_LT(error.ci95[0], error.rms_relative);
-        EXPECT_GT(error.ci95[1], error.rms_relative);
         EXPECT_GE(error.max_relative, error.p95_relative);
-        EXPECT_GE(error.receivers_checked, 16u);
+        EXPECT_GE(error.receivers_checked, 32u);
         previous = error.rms_relative;
     }
 }

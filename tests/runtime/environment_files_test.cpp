@@ -1,22 +1,17 @@
 #include <gmock/gmock.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "formats/image/load_environment.h"
 #include "runtime/integrate_map.h"
 #include "runtime/light_vector.h"
 #include "tests/runtime/light_test_support.h"
+#include "tests/support/assets.h"
 
 namespace opaline::runtime {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path assets_folder() {
-    const char* set = std::getenv("OPALINE_ASSETS_DIR");
-    return set != nullptr ? fs::path(set) : fs::path(OPALINE_SOURCE_DIR) / ".." / "shared/assets";
-}
 
 /// The mean radiance of each texel of an m x m cube map.
 formats::Environment as_cube(const formats::Environment& map, std::uint32_t m) {
@@ -39,10 +34,7 @@ formats::Environment as_cube(const formats::Environment& map, std::uint32_t m) {
 // Photographs with lamps and suns in them: the map as it is, and the same map as a finer cube, must
 // light alike.
 TEST(EnvironmentFiles, LatLongMapAndTheSameMapAsACubeAgree) {
-    const fs::path folder = assets_folder() / "env";
-    if (!fs::is_directory(folder)) {
-        GTEST_SKIP() << "no folder " << folder;
-    }
+    OPALINE_ASSET(folder, "env");
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
         const auto loaded = formats::load_environment(entry.path());
         ASSERT_TRUE(loaded) << entry.path();

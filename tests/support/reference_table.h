@@ -12,18 +12,11 @@
 
 namespace opaline::tests {
 
-/// The folder named by an environment variable, or the default beside the project.
-inline std::filesystem::path shared_folder(const char* variable, const char* fallback) {
-    const char* given = std::getenv(variable);
-    return given != nullptr
-               ? std::filesystem::path(given)
-               : std::filesystem::path(OPALINE_SOURCE_DIR) / ".." / "shared" / fallback;
-}
+/// Where the value tables lie: the folder that OPALINE_REFERENCE_DIR names, or the project's own.
 inline std::filesystem::path reference_folder() {
-    return shared_folder("OPALINE_REFERENCE_DIR", "reference");
-}
-inline std::filesystem::path assets_folder() {
-    return shared_folder("OPALINE_ASSETS_DIR", "assets");
+    const char* given = std::getenv("OPALINE_REFERENCE_DIR");
+    return given != nullptr ? std::filesystem::path(given)
+                            : std::filesystem::path(OPALINE_SOURCE_DIR) / "tests/data/reference";
 }
 
 /// One row of a reference table: check, inputs, expected, tolerances.
@@ -67,10 +60,17 @@ inline std::vector<ReferenceRow> read_reference(const std::string& table,
 
 }  // namespace opaline::tests
 
+/// Skips the test, by name, where OPALINE_REFERENCE_DIR names a folder without the table. The
+/// project's own folder always has it: there its absence is a failure.
+#define OPALINE_NEEDS_REFERENCE(table)                                                       \
+    if (const auto file = opaline::tests::reference_folder() / (table);                      \
+        std::getenv("OPALINE_REFERENCE_DIR") != nullptr && !std::filesystem::exists(file)) { \
+        GTEST_SKIP() << "no table " << file.string()                                         \
+                     << " (unset OPALINE_REFERENCE_DIR to read the project's own)";          \
+    }
+
 /// Reads the rows of a check into `rows`, or skips the test, by name, where the table is absent.
-#define OPALINE_REFERENCE_ROWS(rows, table, check)                                             \
-    if (!std::filesystem::exists(opaline::tests::reference_folder() / (table))) {              \
-        GTEST_SKIP() << "no reference table " << opaline::tests::reference_folder() / (table); \
-    }                                                                                          \
-    const auto rows = opaline::tests::read_reference(table, check);                            \
+#define OPALINE_REFERENCE_ROWS(rows, table, check)                  \
+    OPALINE_NEEDS_REFERENCE(table);                                 \
+    const auto rows = opaline::tests::read_reference(table, check); \
     ASSERT_FALSE(rows.empty()) << "the table has no rows of " << (check)

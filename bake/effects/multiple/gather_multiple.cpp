@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 namespace opaline::bake {
 namespace {
@@ -103,7 +104,7 @@ SparseVector entries_of(const ClusterTree& tree, const ClusterWeight& w) {
 // Adds weight * entries to sums that are as wide as the weight: one band, or several at once.
 template <class Weight>
 void add_entries(const SparseVector& entries, Weight weight, float* sums) {
-    constexpr std::size_t kWidth = sizeof(Weight) / sizeof(float);
+    constexpr std::size_t kWidth = std::is_same_v<Weight, Float4> ? 4 : 1;
     for (std::size_t i = 0; i < entries.index.size(); ++i) {
         float* const place = sums + kWidth * entries.index[i];
         Weight sum;

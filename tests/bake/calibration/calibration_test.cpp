@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <set>
+#include <string>
 
 #include "bake/calibration/dented_ball.h"
 #include "bake/scene/orient_bodies.h"
@@ -10,16 +11,26 @@
 namespace opaline::bake {
 namespace {
 
+// Differences of two measured times: on a busy machine the second may come out shorter.
+const std::set<std::string> kDifferences{
+    "shared_texel_few",  "shared_texel_many", "look_up_few",   "look_up_many",
+    "look_up_term",      "draw_pixel",        "draw_triangle", "sum_entry",
+    "surface_point_few", "surface_point_many"};
+
+// Seconds of one thread for one unit: more than a processor's cycle, less than the time in which a
+// whole scene of such units is measured. A rate that nobody measures stays 0 and is found here.
 TEST(Calibration, EveryRateOfThisMachineIsATimeThatPasses) {
     const Rates rates = measure_rates(2);
-    visit_rates(rates, [](const char* name, double rate) {
-        EXPECT_TRUE(std::isfinite(rate)) << name;
-        EXPECT_GE(rate, 0) << name;  // a rate from a difference of two times may be 0
+    visit_rates(rates, [](const std::string& name, double rate) {
+        if (name == "crowding" || name == "test_lights") return;
+        EXPECT_LT(rate, 1e-2) << name;
+        if (!kDifferences.contains(name)) {
+            EXPECT_GT(rate, 1e-11) << name;
+        }
     });
-    EXPECT_GT(rates.test_lights, 0);
-    EXPECT_GT(rates.coherent_ray.at(1e5), 0);
-    EXPECT_GT(rates.look_up.at(1e5), 0);
-    EXPECT_GE(rates.crowding, 1);
+    EXPECT_GT(rates.test_lights, 1e-3) << "all of them";
+    // A ray through sixteen times as many triangles takes about as long, not sixteen times.
+    EXPECT_LT(rates.coherent_ray.many, 8 * rates.coherent_ray.few);
 }
 
 TEST(DentedBall, IsClosedAndFacesOutward) {

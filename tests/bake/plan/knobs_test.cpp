@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
+#include <string>
+
 namespace opaline::bake {
 namespace {
 
@@ -19,6 +22,33 @@ TEST(SampleCoefficients, AreThoseOfARowUpTo512AndHalfOfThemFrom1024On) {
     EXPECT_EQ(kept_for(1024), 512u);
     EXPECT_EQ(kept_for(3000), 1500u);
     EXPECT_EQ(kept_for(kAllCoefficients), 4096u) << "memory has an end";
+}
+
+// "1" is coarser than "2" where the knob counts; where it is an error, the other way round.
+TEST(Presets, NoKnobOfABetterOneIsCoarser) {
+    const auto preset = [](Quality quality) {
+        BakeOptions options;
+        options.quality = quality;
+        return *resolve_knobs(options);
+    };
+    const Quality order[] = {Quality::draft, Quality::preview, Quality::production,
+                             Quality::reference};
+    for (std::size_t q = 1; q < std::size(order); ++q) {
+        const Knobs coarse = preset(order[q - 1]), fine = preset(order[q]);
+        SCOPED_TRACE(std::string(quality_name(order[q - 1])) + " and " +
+                     std::string(quality_name(order[q])));
+        EXPECT_LE(coarse.cubemap_size, fine.cubemap_size);
+        EXPECT_LE(coarse.coefficients, fine.coefficients);
+        EXPECT_LE(coarse.code_bits, fine.code_bits);
+        EXPECT_LE(coarse.samples, fine.samples);
+        EXPECT_LE(coarse.samples_per_path, fine.samples_per_path);
+        EXPECT_LE(coarse.depth_samples, fine.depth_samples);
+        EXPECT_LE(coarse.single_cubemap, fine.single_cubemap);
+        EXPECT_LE(coarse.exact_rays, fine.exact_rays);
+        EXPECT_LE(sample_coefficients(coarse), sample_coefficients(fine));
+        EXPECT_GE(coarse.tolerance, fine.tolerance);
+        EXPECT_GE(coarse.phase_tolerance, fine.phase_tolerance);
+    }
 }
 
 }  // namespace

@@ -119,11 +119,9 @@ formats::Environment make_distant_light(glm::vec3 direction) {
     return sky;
 }
 
-#define OPALINE_SLAB_ROWS(rows, group)                                               \
-    if (!std::filesystem::exists(reference_folder() / "volumes.csv")) {              \
-        GTEST_SKIP() << "no reference table " << reference_folder() / "volumes.csv"; \
-    }                                                                                \
-    const std::vector<SlabRow> rows = read_slab_rows(group);                         \
+#define OPALINE_SLAB_ROWS(rows, group)                       \
+    OPALINE_NEEDS_REFERENCE("volumes.csv");                  \
+    const std::vector<SlabRow> rows = read_slab_rows(group); \
     ASSERT_FALSE(rows.empty())
 
 // Differences of the means of independent parts from the truth, in their standard errors. The mean

@@ -1,22 +1,13 @@
-#include <cstdlib>
 #include <filesystem>
 
 #include "tests/formats/gltf/asset_builder.h"
+#include "tests/support/assets.h"
 
 namespace opaline::tests {
 namespace {
 
-std::filesystem::path assets_folder() {
-    const char* given = std::getenv("OPALINE_ASSETS_DIR");
-    return given ? std::filesystem::path(given)
-                 : std::filesystem::path(OPALINE_SOURCE_DIR) / "../shared/assets";
-}
-
 TEST(GltfAssets, EveryModelLoadsOrIsRefusedWithAMessage) {
-    const auto folder = assets_folder() / "gltf";
-    if (!std::filesystem::is_directory(folder)) {
-        GTEST_SKIP() << "no assets at " << folder << "; set OPALINE_ASSETS_DIR";
-    }
+    OPALINE_ASSET(folder, "gltf");
     std::size_t models = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         const auto result = formats::import_gltf(entry.path());
@@ -31,10 +22,7 @@ TEST(GltfAssets, EveryModelLoadsOrIsRefusedWithAMessage) {
 }
 
 TEST(GltfAssets, DragonHasItsVerticesAndUnitNormals) {
-    const auto path = assets_folder() / "gltf/dragon-100k.glb";
-    if (!std::filesystem::exists(path)) {
-        GTEST_SKIP() << "no asset at " << path << "; set OPALINE_ASSETS_DIR";
-    }
+    OPALINE_ASSET(path, "gltf/dragon-100k.glb");
     const auto result = formats::import_gltf(path);
     ASSERT_TRUE(result.has_value()) << errors_of(result);
     const auto& p = result->scene.primitives.at(0);

@@ -5,13 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <numbers>
 
 #include "formats/opal/cubemap.h"
 #include "tests/formats/image/image_files.h"
+#include "tests/support/assets.h"
 
 namespace opaline::formats {
 namespace {
@@ -203,12 +203,7 @@ TEST(LoadEnvironment, OtherFilesAreRefusedByContent) {
 }
 
 TEST(LoadEnvironment, AssetEnvironmentsLoadWithNothingWorseThanNegativeTexels) {
-    const char* const variable = std::getenv("OPALINE_ASSETS_DIR");
-    const std::filesystem::path folder =
-        std::filesystem::path(variable != nullptr ? variable
-                                                  : OPALINE_SOURCE_DIR "/../shared/assets") /
-        "env";
-    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no assets in " << folder;
+    OPALINE_ASSET(folder, "env");
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         const Result<LoadedEnvironment> loaded = load_environment(entry.path());
