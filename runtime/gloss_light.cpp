@@ -58,9 +58,9 @@ void append(GlossLight::Cells& cells, const LightCell& cell) {
     cells.y.push_back(at.y);
     cells.z.push_back(at.z);
     cells.solid_angle.push_back(cell.solid_angle);
-    // A disc of radius rho has a spread of rho^2 / 2 and adds rho^2 / 8 (half of what a sun does:
-    // cells are many, so that their lobes overlap; the least error of those tried).
-    cells.widening.push_back(0.25f * (has_light ? cell.flux_spread : cell.spread));
+    // A disc of radius rho has a spread of rho^2 / 2 and adds rho^2 / 16, a quarter of what a sun
+    // adds: the lobes of neighbouring cells overlap. The least error of those tried.
+    cells.widening.push_back(0.125f * (has_light ? cell.flux_spread : cell.spread));
     cells.r.push_back(storable(cell.flux[0]));
     cells.g.push_back(storable(cell.flux[1]));
     cells.b.push_back(storable(cell.flux[2]));

@@ -30,7 +30,7 @@ struct GlossLight {
     std::vector<formats::DistantDisc> suns;  ///< discs of at most kLargestSun
 };
 
-inline constexpr std::size_t kLightCells = 768, kCellBlock = 8;
+inline constexpr std::size_t kLightCells = 2048, kCellBlock = 8;
 
 /// Angular radius up to which a disc counts as a sun [rad]: a lobe widened by it is a good
 /// approximation of the lobe's integral over the disc. Larger discs go into maps and cells.

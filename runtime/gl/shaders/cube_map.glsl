@@ -25,8 +25,14 @@ int cube_point(vec3 d, out vec2 p) {
     return d.z > 0.0 ? 4 : 5;
 }
 
+// Texels a side of a level. Not textureSize(map, level): Mesa's software driver takes one level for
+// fragments that ask for several.
+int cube_size(sampler2DArray map, int level) {
+    return textureSize(map, 0).x >> level;
+}
+
 vec3 cube_texel(sampler2DArray map, int level, int face, vec2 at) {
-    int n = textureSize(map, level).x;
+    int n = cube_size(map, level);
     if (min(at.x, at.y) < 0.0 || max(at.x, at.y) > float(n - 1)) {
         // Over the edge: the texel of the neighbouring face that this direction falls into.
         vec2 p;
@@ -37,7 +43,7 @@ vec3 cube_texel(sampler2DArray map, int level, int face, vec2 at) {
 }
 
 vec3 sample_cube_level(sampler2DArray map, vec3 d, int level) {
-    int n = textureSize(map, level).x;
+    int n = cube_size(map, level);
     vec2 p;
     int face = cube_point(d, p);
     vec2 at = (p * 0.5 + 0.5) * float(n) - 0.5;

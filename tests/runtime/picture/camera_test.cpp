@@ -81,7 +81,7 @@ TEST(FrameAsset, FloorMayLeanOrBeASlab) {
 TEST(FrameAsset, EverythingIsFramedButAGroundThatDwarfsIt) {
     Asset asset = test::make_asset(8, 8);
     test::add_bare_primitive(asset, test::make_sphere({0, 1, 0}, 1.0f, 24, 12));
-    const test::TestMesh poster = test::make_sheet({5, 1, 0}, {2, 0, 0}, {0, 2, 0}, 2, 1);
+    const test::TestMesh poster = test::make_sheet({2.5f, 1, 0}, {1, 0, 0}, {0, 1.5f, 0}, 2, 1);
     test::add_bare_primitive(asset, poster);
     EXPECT_EQ(bound_object(asset.view()).radius, bound_asset(asset.view()).radius);
     const Extent seen = project(frame_asset(asset.view(), 40, 640, 480), poster.position);
