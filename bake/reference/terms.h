@@ -12,7 +12,8 @@ inline constexpr Terms kDiffuse = 1;       ///< one reflection from an opaque su
 inline constexpr Terms kSingle = 2;        ///< into a body, scattered once, out again
 inline constexpr Terms kMultiple = 4;      ///< into a body, scattered more often or reflected at
                                            ///< its boundary from inside, out again
-inline constexpr Terms kSpecular = 8;      ///< one mirror reflection at a body's boundary
+inline constexpr Terms kSpecular = 8;      ///< one mirror reflection, at a body's boundary or by
+                                           ///< the specular lobe of an opaque surface
 inline constexpr Terms kUnscattered = 16;  ///< through a body without being scattered
 inline constexpr Terms kInterreflection = 32;  ///< everything that met a second body or surface
 inline constexpr Terms kAll = 63;
@@ -23,7 +24,7 @@ struct PathState {
     enum class Stage : std::uint8_t {
         camera,    ///< nothing: what it sees is background
         diffuse,   ///< one opaque surface
-        mirrored,  ///< the outside of one body
+        mirrored,  ///< the outside of one body, or the specular lobe of one opaque surface
         inside,    ///< in the first body
         left,      ///< out of the first body
         other      ///< more
@@ -53,6 +54,12 @@ constexpr PathState after_reflection(PathState s) {
         s.stage = s.stage == PathState::Stage::camera ? PathState::Stage::mirrored
                                                       : PathState::Stage::other;
     }
+    return s;
+}
+/// By the specular lobe of an opaque surface.
+constexpr PathState after_gloss(PathState s) {
+    s.stage =
+        s.stage == PathState::Stage::camera ? PathState::Stage::mirrored : PathState::Stage::other;
     return s;
 }
 /// Through a boundary; `out`: no body is around it any more.
