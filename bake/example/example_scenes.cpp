@@ -63,7 +63,7 @@ GltfObject ball_object(const char* name, std::array<double, 3> base_color, doubl
 
 std::vector<GltfObject> make_glossy() {
     GltfObject floor = floor_object(
-        make_floor({.finest = 4.0, .fine_radius = 120.0, .growth = 0.15, .levels = 7}));
+        make_floor({.finest = 6.0, .fine_radius = 100.0, .growth = 0.15, .levels = 6}));
     floor.gloss = {.metallic = 0, .roughness = 0.4, .specular = 1};
     return {ball_object("Brass", {0.91, 0.78, 0.42}, -70,
                         {.metallic = 1, .roughness = 0.3, .specular = 1}),

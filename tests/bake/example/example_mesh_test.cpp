@@ -206,8 +206,8 @@ TEST_P(ExampleFigure, StandsInTheMiddleOfAFloorThatFacesUp) {
         ASSERT_EQ(n, glm::dvec3(0.0, 1.0, 0.0));
     }
     const bool is_small = GetParam() == std::string("glossy");
-    EXPECT_THAT(floor.position.size(), testing::AllOf(testing::Ge(is_small ? 3000u : 10000u),
-                                                      testing::Le(is_small ? 8000u : 17000u)));
+    EXPECT_THAT(floor.position.size(), testing::AllOf(testing::Ge(is_small ? 2000u : 10000u),
+                                                      testing::Le(is_small ? 5000u : 17000u)));
     EXPECT_EQ(coinciding_vertices(floor), 0u);
     // Right-angled, but for the few that are snapped to the statue's foot.
     EXPECT_GT(smallest_angles(floor).front(), 4.0);

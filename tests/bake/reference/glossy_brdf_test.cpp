@@ -190,7 +190,7 @@ TEST(ReferenceGloss, SamplesWeighWhatTheirResponseOverDensitySays) {
 // Chi-square test of sampled directions against the density, in cells even in height and azimuth,
 // and one cell for what is lost below the horizon.
 TEST(ReferenceGloss, DirectionsAreDistributedAsTheirDensitySays) {
-    constexpr int kRows = 12, kColumns = 24, kFine = 24;
+    constexpr int kRows = 12, kColumns = 24, kFine = 48;
     constexpr std::uint32_t kSamples = 200000;
     for (const float roughness : {0.3f, 0.6f, 1.0f}) {
         for (const float cosine : kCosines) {
