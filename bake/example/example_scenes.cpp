@@ -10,6 +10,7 @@
 #include "bake/example/knot.h"
 #include "bake/example/polygonize.h"
 #include "bake/example/remesh.h"
+#include "bake/example/sphere.h"
 #include "bake/example/swan_field.h"
 
 namespace opaline::bake {
@@ -51,11 +52,35 @@ std::vector<GltfObject> make_trefoil() {
                 make_floor({.finest = 3.2, .fine_radius = 110.0, .growth = 0.1, .levels = 9}))};
 }
 
+constexpr double kSink = 0.4;  // [mm] into the floor, so that no two faces coincide
+
+GltfObject ball_object(const char* name, std::array<double, 3> base_color, double x,
+                       const GltfGloss& gloss) {
+    constexpr double kRadius = 30;  // [mm]
+    TriangleMesh mesh = make_sphere(glm::dvec3(x, kRadius - kSink, 0), kRadius, 4);
+    return {name, name, base_color, in_metres(std::move(mesh)), gloss};
+}
+
+std::vector<GltfObject> make_glossy() {
+    GltfObject floor = floor_object(
+        make_floor({.finest = 6.0, .fine_radius = 100.0, .growth = 0.15, .levels = 6}));
+    floor.gloss = {.metallic = 0, .roughness = 0.4, .specular = 1};
+    return {ball_object("Brass", {0.91, 0.78, 0.42}, -70,
+                        {.metallic = 1, .roughness = 0.3, .specular = 1}),
+            ball_object("Lacquer", {0.60, 0.05, 0.04}, 0,
+                        {.metallic = 0, .roughness = 0.3, .specular = 1}),
+            ball_object("Steel", {0.56, 0.57, 0.58}, 70,
+                        {.metallic = 1, .roughness = 0.6, .specular = 1}),
+            std::move(floor)};
+}
+
 constexpr Example kExamples[] = {
     {{"statue", "a resting swan with thin lifted wings, the showpiece for translucent media"},
      make_statue},
     {{"knot", "a trefoil knot standing on a floor: self-shadowing and contact shadows"},
      make_trefoil},
+    {{"glossy", "two metal balls and a lacquered one on a glossy floor: metallic-roughness gloss"},
+     make_glossy},
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bake/base/frame.h"
+#include "bake/reference/glossy_brdf.h"
 
 namespace opaline::bake {
 namespace {
@@ -68,23 +69,28 @@ glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction, M
     return stack.empty() && has_any(term_of(state), space.options.terms) ? passing : glm::vec3(0);
 }
 
-/// Direct light at an event, sampled from the light. `density(d)`: density of the event's own
-/// sampling over solid angle, which equals its response for unit throughput.
-template <class Density>
+/// An event that is sampled in proportion to its response for unit throughput.
+LobeValue even_response(float density) {
+    return {glm::vec3(density), density};
+}
+
+/// Light that arrives straight from the sky at an event, sampled from the light. `eval(d)`: the
+/// event's response for unit throughput, and the density of its own sampling over solid angle.
+template <class Eval>
 void gather_light(const PathSpace& space, Path& path, const RayOrigin& from, RandomStream& random,
-                  Density&& density) {
+                  Eval&& eval) {
     const glm::vec3 d = sample_light(space.light, random);
     if (d == glm::vec3(0)) {
         return;
     }
-    const float response = density(d);
-    if (!(response > 0)) {
+    const LobeValue lobe = eval(d);
+    if (!(lobe.pdf > 0)) {
         return;
     }
     const glm::vec3 passing = see_sky(space, from, d, path.stack, path.state);
     if (passing != glm::vec3(0)) {
         path.radiance += path.beta * passing * eval_light(space.light, d) *
-                         (response / (pdf_light(space.light, d) + response));
+                         (lobe.response / (pdf_light(space.light, d) + lobe.pdf));
     }
 }
 
@@ -112,25 +118,75 @@ bool survives(Path& path, float little, RandomStream& random) {
     return true;
 }
 
-}  // namespace
+bool is_above(const OpaquePoint& point, glm::vec3 d) {
+    return point.flat == glm::vec3(0) || glm::dot(d, point.flat) > 0;
+}
 
-bool reflect_diffusely(const PathSpace& space, Path& path, const RayOrigin& from, glm::vec3 normal,
-                       glm::vec3 flat, glm::vec3 albedo, RandomStream& random) {
+bool reflect_diffusely(const PathSpace& space, Path& path, const OpaquePoint& point,
+                       glm::vec3 albedo, RandomStream& random) {
     path.state = after_diffuse(path.state);
     path.beta *= albedo;
     if (!count_event(space, path) || path.beta == glm::vec3(0) || !is_wanted(space, path.state)) {
         return false;
     }
-    const auto is_above = [&](glm::vec3 d) {
-        return flat == glm::vec3(0) || glm::dot(d, flat) > 0;
-    };
-    gather_light(space, path, from, random,
-                 [&](glm::vec3 d) { return is_above(d) ? glm::dot(d, normal) / kPi : 0.0f; });
+    gather_light(space, path, point.from, random, [&](glm::vec3 d) {
+        return even_response(is_above(point, d) ? glm::dot(d, point.normal) / kPi : 0.0f);
+    });
     const float cosine = std::sqrt(1 - random.next());
-    path.direction = direction_about(normal, cosine, random.next());
-    path.origin = from;
+    path.direction = direction_about(point.normal, cosine, random.next());
+    path.origin = point.from;
     path.pdf = cosine / kPi;
-    return is_above(path.direction) && survives(path, kAtSurfaces, random);
+    return is_above(point, path.direction) && survives(path, kAtSurfaces, random);
+}
+
+bool reflect_specularly(const PathSpace& space, Path& path, const OpaquePoint& point,
+                        const GlossyBrdf& brdf, RandomStream& random) {
+    path.state = after_gloss(path.state);
+    if (!count_event(space, path)) {
+        return false;
+    }
+    gather_light(space, path, point.from, random, [&](glm::vec3 d) {
+        return is_above(point, d) ? eval_specular(brdf, d) : LobeValue{};
+    });
+    const float u = random.next(), v = random.next();
+    const auto sample = sample_specular(brdf, u, v);
+    if (!sample || !is_above(point, sample->direction)) {
+        return false;
+    }
+    path.beta *= sample->weight;
+    path.direction = sample->direction;
+    path.origin = point.from;
+    path.pdf = sample->pdf;
+    return path.beta != glm::vec3(0) && survives(path, kAtSurfaces, random);
+}
+
+float mean(glm::vec3 v) {
+    return (v.x + v.y + v.z) / 3;
+}
+
+}  // namespace
+
+bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& point,
+                        RandomStream& random) {
+    if (point.surface.is_diffuse()) {
+        return reflect_diffusely(space, path, point, point.surface.base_color, random);
+    }
+    const GlossyBrdf brdf = make_glossy_brdf(point.surface, point.normal, -path.direction);
+    const bool may_mirror = !point.is_own_mirror && is_wanted(space, after_gloss(path.state));
+    const float mirrored = may_mirror ? mean(brdf.specular_albedo) : 0;
+    const float diffuse =
+        is_wanted(space, after_diffuse(path.state)) ? mean(brdf.diffuse_albedo) : 0;
+    if (!(mirrored + diffuse > 0)) {
+        return false;
+    }
+    bool mirrors = mirrored > 0;
+    if (mirrored > 0 && diffuse > 0) {
+        const float chance = mirrored / (mirrored + diffuse);
+        mirrors = random.next() < chance;
+        path.beta /= mirrors ? chance : 1 - chance;
+    }
+    return mirrors ? reflect_specularly(space, path, point, brdf, random)
+                   : reflect_diffusely(space, path, point, brdf.diffuse_albedo, random);
 }
 
 void pass_boundary(Path& path, const Crossing& crossing) {
@@ -179,8 +235,9 @@ bool scatter(const PathSpace& space, Path& path, glm::vec3 at, RandomStream& ran
     path.pdf = 0;
     const glm::vec3 before = path.direction;
     if (space.scene.has_matched_boundary) {
-        gather_light(space, path, path.origin, random,
-                     [&](glm::vec3 d) { return pdf_phase(phase, glm::dot(before, d)); });
+        gather_light(space, path, path.origin, random, [&](glm::vec3 d) {
+            return even_response(pdf_phase(phase, glm::dot(before, d)));
+        });
     }
     const float cosine = sample_phase_cosine(phase, [&] { return random.next(); });
     path.direction = direction_about(before, cosine, random.next());

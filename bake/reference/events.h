@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "bake/reference/boundary.h"
+#include "bake/reference/opaque_surface.h"
 #include "bake/reference/path.h"
 
 namespace opaline::bake {
@@ -37,10 +38,20 @@ inline bool is_wanted(const PathSpace& space, PathState state) {
     return has_any(reachable_terms(state), space.options.terms);
 }
 
-/// A diffuse surface. Normals face the path; `flat` may be {0,0,0} at a vertex, which lies on
-/// several triangles. False: the path ends.
-bool reflect_diffusely(const PathSpace& space, Path& path, const RayOrigin& from, glm::vec3 normal,
-                       glm::vec3 flat, glm::vec3 albedo, RandomStream& random);
+/// A point of an opaque surface that a path has arrived at. Normals face the path.
+struct OpaquePoint {
+    RayOrigin from;  ///< where rays start in front of it
+    glm::vec3 normal{0};
+    glm::vec3 flat{0};  ///< of the triangle; {0,0,0} at a vertex, which lies on several
+    OpaqueSurface surface;
+    bool is_own_mirror = false;  ///< its specular lobe is left out: see PathOptions::own_mirror
+};
+
+/// An opaque surface. Of a glossy one, either lobe is taken by chance in proportion to what it
+/// reflects (surely, where the other one leads to no wanted term), so that the path belongs to one
+/// term; light and path are then sampled for that lobe alone. False: the path ends.
+bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& point,
+                        RandomStream& random);
 
 /// The path continues beyond the boundary in the same direction.
 void pass_boundary(Path& path, const Crossing& crossing);

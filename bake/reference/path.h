@@ -16,7 +16,8 @@ struct PathOptions {
     /// Most scattering events along a path: on surfaces (refraction and mirror reflection count)
     /// or in media. Crossings between equal indices do not count.
     std::uint32_t max_depth = 0xffffffffu;
-    /// false: leaves out the receiver's own mirror reflection.
+    /// false: a receiver's own mirror reflection or specular lobe is left out, whatever is seen in
+    /// it.
     bool own_mirror = true;
 };
 

@@ -13,7 +13,7 @@ struct PathState {
     enum class Stage : std::uint8_t {
         camera,    ///< nothing: what it sees is background
         diffuse,   ///< one opaque surface
-        mirrored,  ///< the outside of one body
+        mirrored,  ///< the outside of one body, or the specular lobe of one opaque surface
         inside,    ///< in the first body
         left,      ///< out of the first body
         other      ///< more
@@ -43,6 +43,12 @@ constexpr PathState after_reflection(PathState s) {
         s.stage = s.stage == PathState::Stage::camera ? PathState::Stage::mirrored
                                                       : PathState::Stage::other;
     }
+    return s;
+}
+/// By the specular lobe of an opaque surface.
+constexpr PathState after_gloss(PathState s) {
+    s.stage =
+        s.stage == PathState::Stage::camera ? PathState::Stage::mirrored : PathState::Stage::other;
     return s;
 }
 /// Through a boundary; `out`: the path is now outside all bodies.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,13 +17,41 @@ namespace opaline::formats {
 
 namespace {
 
-std::string names_of(const std::vector<Material>& materials) {
-    constexpr std::size_t kShown = 6;
+constexpr std::size_t kShown = 6;
+
+std::string listed(const std::vector<std::string_view>& names) {
     std::string list;
-    for (std::size_t i = 0; i < std::min(materials.size(), kShown); ++i) {
-        list += (i == 0 ? "" : ", ") + gltf::in_quotes(materials[i].name);
+    for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
+        list += (i == 0 ? "" : ", ") + gltf::in_quotes(names[i]);
     }
-    return materials.size() > kShown ? list + ", ..." : list;
+    return names.size() > kShown ? list + ", ..." : list;
+}
+
+/// One warning for all entries that no material of the scene has the name of.
+void warn_of_unmatched(const MediaFile& media, const Scene& scene,
+                       std::vector<Diagnostic>& warnings) {
+    std::vector<std::string_view> own;
+    for (const Material& material : scene.materials) {
+        own.push_back(material.name);
+    }
+    const std::set<std::string_view> known(own.begin(), own.end());
+    std::vector<std::string_view> unmatched;
+    for (const MaterialMedium& entry : media.materials) {
+        if (entry.name != "*" && !known.contains(entry.name)) {
+            unmatched.push_back(entry.name);
+        }
+    }
+    const std::string remedy = "it has: " + listed(own);
+    if (unmatched.size() == 1) {
+        warnings.push_back(make_warning(media.file, media::place("materials", unmatched[0]),
+                                        "the scene has no material of this name", remedy));
+    } else if (!unmatched.empty()) {
+        warnings.push_back(make_warning(media.file, "materials",
+                                        "the scene has no materials of " +
+                                            std::to_string(unmatched.size()) +
+                                            " names: " + listed(unmatched),
+                                        remedy));
+    }
 }
 
 void add_to_hash(const std::string& sha256, Scene& scene) {
@@ -91,15 +120,7 @@ Result<std::vector<Diagnostic>> apply_media(const MediaFile& media, Scene& scene
         }
     }
     std::vector<Diagnostic> warnings;
-    for (const MaterialMedium& entry : media.materials) {
-        const auto is_named = [&](const Material& material) { return material.name == entry.name; };
-        if (entry.name != "*" &&
-            std::none_of(scene.materials.begin(), scene.materials.end(), is_named)) {
-            warnings.push_back(make_warning(media.file, media::place("materials", entry.name),
-                                            "the scene has no material of this name",
-                                            "it has: " + names_of(scene.materials)));
-        }
-    }
+    warn_of_unmatched(media, scene, warnings);
     if (!media.inputs.empty()) {
         scene.inputs.insert(scene.inputs.end(), media.inputs.begin(), media.inputs.end());
         add_to_hash(media.sha256, scene);

@@ -16,14 +16,18 @@ Json add_square(AssetBuilder& asset, float y, float half, unsigned material) {
 }  // namespace
 
 AssetBuilder two_squares() {
+    // Diffuse alone: what a dielectric reflects besides is not this scene's matter.
+    const Json no_specular = {{"KHR_materials_specular", {{"specularFactor", 0}}}};
     AssetBuilder asset;
     const Json low = add_square(asset, 0, 1, 0), high = add_square(asset, 0.5f, 0.5f, 1);
     asset.json["meshes"] = Json::array({{{"primitives", {low, high}}}});
     asset.json["materials"] = {
         {{"name", "Chalk"},
+         {"extensions", no_specular},
          {"pbrMetallicRoughness",
           {{"metallicFactor", 0}, {"baseColorFactor", {0.8, 0.8, 0.8, 1}}}}},
         {{"name", "Brick"},
+         {"extensions", no_specular},
          {"doubleSided", true},
          {"pbrMetallicRoughness",
           {{"metallicFactor", 0}, {"baseColorFactor", {0.7, 0.2, 0.1, 1}}}}}};

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -28,6 +30,10 @@ struct ReferenceRow {
     double number(const std::string& key) const { return std::stod(input.at(key)); }
     /// max(abs_tol, rel_tol |expected|)
     double tolerance() const { return std::max(abs_tol, rel_tol * std::abs(expected)); }
+    /// That, or what a stage's own discretisation may differ by, relative to the expected value.
+    double tolerance_or(double relative) const {
+        return std::max(tolerance(), relative * std::abs(expected));
+    }
     std::string name() const { return check + " [" + inputs + "]"; }
 };
 

@@ -110,6 +110,25 @@ TEST_F(ExampleFiles, HoldPositionsAsLittleEndianFloatsWithTheirBounds) {
     EXPECT_EQ(accessor["max"], nlohmann::json({1.0, 2.0, 0.25}));
 }
 
+TEST_F(ExampleFiles, SayOutrightWhatIsDiffuseAndWhatIsGlossy) {
+    ASSERT_TRUE(write_example("knot", folder_));
+    ASSERT_TRUE(write_example("glossy", folder_));
+    const auto knot = nlohmann::json::parse(contents(folder_ / "knot.gltf"));
+    for (const auto& material : knot["materials"]) {
+        EXPECT_EQ(material["pbrMetallicRoughness"]["metallicFactor"], 0.0);
+        EXPECT_EQ(material["extensions"]["KHR_materials_specular"]["specularFactor"], 0.0);
+    }
+    const auto glossy = nlohmann::json::parse(contents(folder_ / "glossy.gltf"));
+    EXPECT_THAT(glossy["extensionsUsed"], testing::ElementsAre("KHR_materials_specular"));
+    ASSERT_EQ(glossy["materials"].size(), 4u);
+    for (const auto& material : glossy["materials"]) {
+        const bool is_metal = material["name"] == "Brass" || material["name"] == "Steel";
+        EXPECT_EQ(material["pbrMetallicRoughness"]["metallicFactor"], is_metal ? 1.0 : 0.0);
+        EXPECT_LT(material["pbrMetallicRoughness"]["roughnessFactor"], 0.7);
+        EXPECT_EQ(material["extensions"]["KHR_materials_specular"]["specularFactor"], 1.0);
+    }
+}
+
 TEST_F(ExampleFiles, RefuseAnUnknownNameAndListTheKnownOnes) {
     const auto files = write_example("dragon", folder_ / "never");
     ASSERT_FALSE(files);

@@ -147,7 +147,7 @@ TriangleMesh make_ball(double radius) {
 
 class ExampleFigure : public testing::TestWithParam<const char*> {};
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ExampleFigure, testing::Values("statue", "knot"),
+INSTANTIATE_TEST_SUITE_P(Scenes, ExampleFigure, testing::Values("statue", "knot", "glossy"),
                          [](const auto& scene_name) { return std::string(scene_name.param); });
 
 TEST_P(ExampleFigure, IsAClosedTwoManifold) {
@@ -189,8 +189,9 @@ TEST_P(ExampleFigure, RestsOnTheFloor) {
     const auto [low, high] = height_range(figure(GetParam()));
     // Sunk by 0.4 mm: deep enough that no face lies in the floor, too little to be seen.
     EXPECT_NEAR(low, -0.0004, 0.0001);
-    const double height = GetParam() == std::string("statue") ? 0.12 : 0.24;
-    EXPECT_NEAR(high, height, 0.05 * height);
+    const std::map<std::string, double> height = {
+        {"statue", 0.12}, {"knot", 0.24}, {"glossy", 0.06}};
+    EXPECT_NEAR(high, height.at(GetParam()), 0.05 * height.at(GetParam()));
 }
 
 TEST_P(ExampleFigure, StandsInTheMiddleOfAFloorThatFacesUp) {
@@ -204,7 +205,9 @@ TEST_P(ExampleFigure, StandsInTheMiddleOfAFloorThatFacesUp) {
     for (const glm::dvec3& n : floor.normal) {
         ASSERT_EQ(n, glm::dvec3(0.0, 1.0, 0.0));
     }
-    EXPECT_THAT(floor.position.size(), testing::AllOf(testing::Ge(10000u), testing::Le(17000u)));
+    const bool is_small = GetParam() == std::string("glossy");
+    EXPECT_THAT(floor.position.size(), testing::AllOf(testing::Ge(is_small ? 2000u : 10000u),
+                                                      testing::Le(is_small ? 5000u : 17000u)));
     EXPECT_EQ(coinciding_vertices(floor), 0u);
     // Right-angled, but for the few that are snapped to the statue's foot.
     EXPECT_GT(smallest_angles(floor).front(), 4.0);
@@ -246,6 +249,22 @@ TEST(StatueExample, HasAThickBodyAndThinFeathers) {
 
 TEST(KnotExample, IsATorus) {
     EXPECT_EQ(euler_characteristic(figure("knot")), 0);
+}
+
+TEST(GlossyExample, HasThreeBallsOfTheirVolumeThatDoNotTouch) {
+    const auto& objects = scene("glossy");
+    ASSERT_EQ(objects.size(), 4u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const TriangleMesh& ball = objects[i].mesh;
+        EXPECT_EQ(ball.position.size(), 2562u);
+        EXPECT_EQ(euler_characteristic(ball), 2);
+        const double exact = 4.0 / 3.0 * std::numbers::pi * 0.03 * 0.03 * 0.03;
+        EXPECT_NEAR(volume(ball), exact, 0.01 * exact);
+        const double middle = 0.07 * (static_cast<double>(i) - 1);
+        for (const glm::dvec3& p : ball.position) {
+            ASSERT_LT(std::abs(p.x - middle), 0.0301);
+        }
+    }
 }
 
 TEST(Examples, AreTheSameForAnyNumberOfThreads) {

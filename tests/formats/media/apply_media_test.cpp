@@ -86,6 +86,21 @@ TEST(ApplyMedia, NameThatNoMaterialHasIsAWarningThatListsTheScenes) {
     EXPECT_THAT(warnings[0].remedy, HasSubstr("'Body'"));
 }
 
+TEST(ApplyMedia, ManyNamesThatNoMaterialHasAreOneWarningWithTheirNumber) {
+    Scene scene = scene_of({"Body"});
+    formats::MediaFile media;
+    media.materials.resize(100001);
+    media.materials[0].name = "Body";
+    for (std::size_t i = 1; i < media.materials.size(); ++i) {
+        media.materials[i].name = "M" + std::to_string(i);
+    }
+    const auto warnings = apply(media, scene);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].where, "materials");
+    EXPECT_THAT(warnings[0].fault, HasSubstr("100000 names: 'M1', 'M2'"));
+    EXPECT_LT(warnings[0].fault.size(), 200u);
+}
+
 TEST(ApplyMedia, SeveralMaterialsOfOneNameAllGetTheMedium) {
     Scene scene = scene_of({"Body", "Body"});
     EXPECT_TRUE(apply(media_of(R"("Body": {"preset": "cream"})"), scene).empty());

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "bake/base/frame.h"
+#include "bake/reference/opaque_surface.h"
+
+namespace opaline::bake {
+
+/// Metallic-roughness reflection at one point, as one direction (the eye, or back along the path)
+/// sees it. Two lobes:
+///     f_s = D V (F0 + (F90 - F0)(1 - o.h)^5) (1 + F0 (1/E1(o) - 1)),
+///     f_d = c (1 - m) (1 - max over channels of E_s(o)) / pi,
+/// with E1 the directional albedo of facets that reflect everything and E_s that of f_s. The factor
+/// of f_s gives back what facets reflect more than once [Turquin2019]. Neither lobe depends on the
+/// light's direction otherwise, so f_d is one transport row times a function of the eye. Both are
+/// not reciprocal in these factors; together they reflect at most all light.
+struct GlossyBrdf {
+    Frame frame;           ///< about the normal
+    glm::dvec3 to_eye{0};  ///< unit, local; at least kLeastCosine above the horizon
+    double alpha = 1;      ///< GGX width
+    glm::dvec3 f0{0};      ///< reflectance of a facet at normal incidence
+    glm::dvec3 f90{0};     ///< and at grazing
+    glm::dvec3 compensation{1};
+    glm::vec3 specular_albedo{0}, diffuse_albedo{0};
+};
+
+/// `normal` and `to_eye` are unit, in world space. An eye below the horizon, which an interpolated
+/// normal may have, counts as grazing.
+GlossyBrdf make_glossy_brdf(const OpaqueSurface& surface, glm::vec3 normal, glm::vec3 to_eye);
+
+/// A direction and what goes with it.
+struct LobeSample {
+    glm::vec3 direction{0};  ///< unit, world space
+    glm::vec3 weight{0};     ///< f_s * cosine / pdf, at most `compensation`
+    float pdf = 0;           ///< [1/sr]
+};
+
+/// The specular lobe, sampled by its visible normals; u, v in [0, 1). Nothing where the direction
+/// is below the horizon, so that the density integrates to less than 1 over the hemisphere.
+std::optional<LobeSample> sample_specular(const GlossyBrdf& brdf, float u, float v);
+
+/// The specular lobe toward a direction of the light.
+struct LobeValue {
+    glm::vec3 response{0};  ///< f_s * cosine [1/sr]
+    float pdf = 0;          ///< of sample_specular [1/sr]
+};
+LobeValue eval_specular(const GlossyBrdf& brdf, glm::vec3 to_light);
+
+}  // namespace opaline::bake
