@@ -143,9 +143,9 @@ TEST(ReferenceGlossPaths, LobesAreTermsOfTheirOwnAndAddUp) {
     const bake::GlossyBrdf brdf = bake::make_glossy_brdf(
         {glm::vec3(1), 0, 0.4f, glm::vec3(0.04f), 1}, glm::vec3(0, 1, 0), glm::vec3(0, 1, 0));
     bake::PathOptions diffuse, specular, across, no_mirror;
-    diffuse.terms = term::kDiffuse;
-    specular.terms = term::kSpecular;
-    across.terms = term::kInterreflection | term::kSingle | term::kMultiple | term::kUnscattered;
+    diffuse.terms = formats::TermSet::diffuse;
+    specular.terms = formats::TermSet::specular;
+    across.terms = formats::TermSet::interreflection | formats::TermSet::single | formats::TermSet::multiple | formats::TermSet::unscattered;
     no_mirror.own_mirror = false;
     EXPECT_NEAR(mean_over(*lit, diffuse, {}, 50000).mean.x, brdf.diffuse_albedo.x, 4e-3);
     EXPECT_NEAR(mean_over(*lit, specular, {}, 50000).mean.x, brdf.specular_albedo.x, 4e-3);
@@ -162,8 +162,8 @@ TEST(ReferenceGlossPaths, LightByWayOfTwoSurfacesIsInterreflection) {
     input.materials[0].gloss = metal(0.5f);
     const auto plates = make_fixture(std::move(input), make_white_sky());
     bake::PathOptions once, often;
-    once.terms = term::kSpecular;
-    often.terms = term::kInterreflection;
+    once.terms = formats::TermSet::specular;
+    often.terms = formats::TermSet::interreflection;
     const bake::Moments first = mean_over(*plates, once, {}, 20000);
     const bake::Moments second = mean_over(*plates, often, {}, 20000);
     EXPECT_GT(second.mean.x, 0.1);
