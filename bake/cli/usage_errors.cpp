@@ -115,19 +115,23 @@ std::string describe_usage_error(const CLI::App& app, const CLI::ParseError& err
     const auto chosen = app.get_subcommands();
     const CLI::App& command = chosen.empty() ? app : *chosen.front();
     const std::vector<std::string> unexpected = app.remaining(true);
-    const std::string kind = error.get_name();
+    // Not by get_name(): for unexpected arguments that is the command's.
+    const auto is = [&](CLI::ExitCodes kind) {
+        return error.get_exit_code() == static_cast<int>(kind);
+    };
+    using enum CLI::ExitCodes;
     std::string text = printable(error.what());
-    if (!unexpected.empty() && (kind == "ExtrasError" || kind == "RequiredError")) {
+    if (!unexpected.empty() && (is(ExtrasError) || is(RequiredError))) {
         // An unknown option takes its value along.
         const auto is_option = [](const std::string& a) { return a.size() > 1 && a[0] == '-'; };
         const auto option = std::ranges::find_if(unexpected, is_option);
         text =
             describe_unexpected(command, option == unexpected.end() ? unexpected.front() : *option);
-    } else if (kind == "RequiredError") {
+    } else if (is(RequiredError)) {
         text = describe_missing(command);
-    } else if (kind == "ArgumentMismatch") {
+    } else if (is(ArgumentMismatch)) {
         text = describe_mismatch(command, error);
-    } else if (kind == "ExcludesError") {
+    } else if (is(ExcludesError)) {
         text = std::string(error.what());
         const std::size_t at = text.find(" excludes ");
         text = at == std::string::npos ? text : text.replace(at, 10, " cannot be given with ");
