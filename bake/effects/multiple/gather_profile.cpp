@@ -78,7 +78,10 @@ std::array<float, 3> eval_far(const GatherProfile& profile, float r2) {
         return {};
     }
     const float* const here = &profile.table[at];
-    const auto between = [&](std::size_t b) { return here[b] + f * (here[bands + b] - here[b]); };
+    // C++20 allows it, but clang 14 does not capture f itself.
+    const auto between = [&, share = f](std::size_t b) {
+        return here[b] + share * (here[bands + b] - here[b]);
+    };
     return bands == 1 ? std::array{between(0), 0.0f, 0.0f}
                       : std::array{between(0), between(1), between(2)};
 }
