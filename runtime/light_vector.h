@@ -12,7 +12,7 @@ namespace opaline::runtime {
 
 /// Distant light in the asset's basis: coefficient k is rgba[4 k .. 4 k + 3] = (r, g, b, 0),
 /// ordered as in formats/opal/haar.h, 6 n n coefficients. Unit: radiance times solid angle [W
-/// m^-2], since the light carries the solid angle (pairing A, translucency.md 3.9): light =
+/// m^-2], since the light carries the solid angle (formats/README.md, "Pairing"): light =
 /// Haar(dOmega_j * mean radiance of texel j). Four floats a coefficient, so that one aligned load
 /// fetches the three bands and a GPU buffer takes the array as it is.
 struct LightVector {

@@ -12,7 +12,7 @@
 
 namespace opaline::runtime {
 
-/// How a translucent receiver depends on where it is seen from (translucency.md 3.2, 3.6, 3.8).
+/// View dependence of a translucent receiver (formats/README.md, "Translucent shading").
 
 /// Unpolarised transmittance 1 - F of a smooth boundary whose far side has `eta` times the index of
 /// refraction of the near one, under the cosine `c` on the near side. In [0, 1]. 0 for c <= 0, for

@@ -19,12 +19,12 @@
 namespace opaline::bake {
 namespace {
 
-/// One receiver under one light: luminance, and the variance of the truth's mean.
+/// One receiver under one light: luminance, and the variance of the true mean.
 struct ModelPair {
     double difference = 0, truth = 0, variance = 0;
 };
 
-/// Mean squares of which the variance has been subtracted: (t + noise)^2 is too large by it.
+/// Mean squares minus the variance, because the square of a noisy value is too large by it.
 struct MeanSquares {
     double difference = 0, truth = 0, variance = 0, mean_difference = 0, mean_truth = 0;
     double count = 0;
@@ -67,7 +67,7 @@ bool refracts(const formats::Scene& scene) {
     });
 }
 
-// The published lights as far as the reference converges under them.
+// The published lights under which the reference converges.
 formats::Result<std::vector<ModelLight>> make_model_lights(bool with_suns,
                                                            std::vector<std::string>& left_out) {
     std::vector<ModelLight> lights;
@@ -90,7 +90,7 @@ formats::Result<std::vector<ModelLight>> make_model_lights(bool with_suns,
     return lights;
 }
 
-// What the file says, seen along the normals.
+// The file's luminance along the normals.
 std::vector<double> relight_receivers(const formats::AssetView& asset,
                                       std::span<const ReferenceReceiver> receivers,
                                       const formats::Environment& environment, unsigned threads) {
@@ -112,7 +112,7 @@ struct LightCheck {
     std::uint32_t samples = 0;  ///< for each
 };
 
-// Samples double until the noise is low enough or the next round would be too much work.
+// Doubles the samples until the noise is low enough or the next round exceeds the limit of work.
 formats::Result<LightCheck> check_light(const PathSpace& space,
                                         std::span<const ReferenceReceiver> receivers,
                                         std::span<const double> baked,

@@ -12,9 +12,9 @@
 
 namespace opaline::bake {
 
-/// How far a finished file is from the Monte Carlo reference (reference/): luminance along the
-/// normals of held-back receivers, under the published test lights. Relative to the RMS of the
-/// truth (design 7). What the reference's own noise adds is subtracted.
+/// Difference of a finished file from the Monte Carlo reference (reference/): luminance along the
+/// normals of held-back receivers under the published test lights, relative to the RMS of the
+/// truth. The reference's own noise is subtracted.
 struct ModelErrorReport {
     double rms_relative = 0;
     double ci95[2] = {0, 0};  ///< of rms_relative: bootstrap over receivers, 2.5 and 97.5 percent
@@ -24,7 +24,7 @@ struct ModelErrorReport {
     std::uint32_t receivers_checked = 0;
     std::uint64_t samples = 0;  ///< paths traced, over all lights and receivers
     double seconds = 0;
-    std::string reference;  ///< what it was measured against, in words
+    std::string reference;  ///< the reference, in words
     struct Part {
         std::string name;
         double rms_relative = 0, bias = 0, missing = 0;
@@ -35,27 +35,27 @@ struct ModelErrorReport {
     std::vector<std::string> left_out;  ///< test lights under which the reference does not converge
 };
 
-/// How long the check goes on. It counts events, not seconds: the result is the same on every
+/// Effort of the check. It counts events, not seconds, so the result does not depend on the
 /// machine.
 struct ModelCheckOptions {
     std::uint32_t receivers = 48;  ///< to check; fewer if the scene has fewer
     std::uint64_t seed = 0;
-    /// What the file's effects stand for, and is compared with.
+    /// The terms that correspond to the file's effects.
     TermSet simulated = TermSet::diffuse | TermSet::single | TermSet::multiple;
     double noise = 0.01;                  ///< relative to the RMS of the truth: enough for any file
     double noise_share = 0.25;            ///< relative to the difference: enough for this file
     std::uint64_t max_events = 10000000;  ///< most scatterings and surfaces met, for each light
 };
 
-/// Compares `asset`, baked from `scene`, with path tracing of the same light: what diffusion and
-/// straight paths make of it. Light of other terms (interreflection, light that crosses a body
-/// unscattered) is not compared but weighed: `missing`. The receivers' own mirror reflection counts
-/// on neither side. Left out are receivers that lie inside a body or on a sharp edge of theirs, and
-/// those in whose own body another surface lies close behind them.
+/// Compares `asset`, baked from `scene`, with path tracing of the same terms; this measures the
+/// error of diffusion and straight paths. Other light (interreflection, light that crosses a body
+/// unscattered) is not compared but stated as `missing`. The receivers' mirror reflection is left
+/// out on both sides. Receivers inside a body, on a sharp edge, or with another surface close
+/// behind them in their own body are left out.
 ///
-/// No straight line connects the inside of a refracting body with the sky, and a path hits the
-/// sun's disc by luck alone: where there are such bodies suns are left out, of the sky too.
-/// The bits are the same for any number of threads. Errors: resource, interrupted.
+/// Behind a refracting boundary a path hits the sun's disc by chance only. Scenes with such bodies
+/// are therefore checked without suns, also without the sun of `sky`. The bits are the same for any
+/// number of threads. Errors: resource, interrupted.
 formats::Result<ModelErrorReport> check_model(const formats::Scene& scene,
                                               const formats::AssetView& asset,
                                               const ModelCheckOptions& options,

@@ -19,19 +19,18 @@ EffectCheck check_subject(const SubjectTruth& truth, const SubjectState& subject
     EffectCheck check;
     check.effect = truth.name();
     check.reference = truth.reference();
-    const std::size_t step = truth.is_expensive() ? (points.size() + kMostExpensiveChecks - 1) /
-                                                        kMostExpensiveChecks
-                                                  : 1;
+    const std::size_t step = truth.is_expensive()
+                                 ? (points.size() + kMostExpensiveChecks - 1) / kMostExpensiveChecks
+                                 : 1;
     for_each_block_in_order(
         points.size(), 1, truth.parts.front().inputs.context,
         [&](Range range) {
             const CheckPoint& point = points[range.begin];
             CheckedPoint found{point.primitive, {}, 0};
             if (point.material == subject.material && range.begin % step == 0) {
-                append_pairs(
-                    relight_point(asset, point, subject.layout, lights),
-                    eval_truth(truth, {point.receiver, point.body, point.key}, found.rays),
-                    found.pairs);
+                append_pairs(relight_point(asset, point, subject.layout, lights),
+                             eval_truth(truth, {point.receiver, point.body, point.key}, found.rays),
+                             found.pairs);
             }
             return found;
         },
@@ -56,19 +55,18 @@ ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset
                        const Context& context, std::uint64_t& traced) {
     const std::uint64_t seed = bake.knobs.seed;
     const std::size_t all = count_receivers(bake.inputs.receivers);
-    const std::vector<std::uint32_t> drawn =
-        draw_evenly(all, count_checked(all, bake.knobs.cubemap_size),
-                    RandomStage::held_back_receivers, seed);
+    const std::vector<std::uint32_t> drawn = draw_evenly(
+        all, count_checked(all, bake.knobs.cubemap_size), RandomStage::held_back_receivers, seed);
     const std::vector<CheckPoint> receivers = make_check_points(bake.inputs.receivers, drawn);
-    const std::vector<CheckPoint> between = draw_surface_probes(
-        bake.inputs.scene, bake.inputs.rays, find_lit_primitives(bake),
-        {drawn.size(), seed, static_cast<std::uint32_t>(all)}, context);
+    const std::vector<CheckPoint> between =
+        draw_surface_probes(bake.inputs.scene, bake.inputs.rays, find_lit_primitives(bake),
+                            {drawn.size(), seed, static_cast<std::uint32_t>(all)}, context);
     std::vector<EffectCheck> checks;
     for (const SubjectState& subject : bake.subjects) {
         const SubjectTruth truth =
             make_subject_truth(bake.inputs, subject, bake.knobs, {}, bake.lights, context);
         if (truth.parts.empty()) {
-            continue;  // black: nothing to be wrong
+            continue;  // black: no error
         }
         for (const auto* points : {&receivers, &between}) {
             EffectCheck check = check_subject(truth, subject, asset, *points, bake.lights);

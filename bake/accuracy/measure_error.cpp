@@ -103,7 +103,7 @@ double relative_rms(std::span<const CheckedPair> pairs) {
         error += p.error[0] * p.error[1];
         reference += p.reference * p.reference;
     }
-    // The noise of the estimates can outweigh an error that is nearly zero.
+    // For errors near zero the noise of the estimates can make the mean product negative.
     return reference > 0 ? std::sqrt(std::max(0.0, error / reference)) : 0.0;
 }
 
@@ -121,7 +121,7 @@ double ratio(const Sums& sums) {
     return sums.reference > 0 ? std::sqrt(std::max(0.0, sums.error / sums.reference)) : 0.0;
 }
 
-// Whole receivers are drawn, since one receiver's lights are not independent.
+// Resample whole receivers, because the lights of one receiver are not independent.
 std::vector<Sums> sum_receivers(std::span<const CheckedPair> pairs, std::size_t lights) {
     std::vector<Sums> of_receiver(pairs.size() / lights);
     for (std::size_t i = 0; i < pairs.size(); ++i) {

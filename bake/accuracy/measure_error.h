@@ -30,16 +30,16 @@ struct ErrorReport : MeasuredError {
     double p95_relative = 0, max_relative = 0;
     std::uint32_t receivers_checked = 0;
     std::uint32_t points_between_checked = 0;
-    std::string reference;  ///< what it was measured against, in words
+    std::string reference;  ///< the reference, in words
     MeasuredError at_receivers;
     MeasuredError between;  ///< at random points of the surface, mixed as the runtime does
     /// Primitive with the largest part of the squared error between receivers.
     std::uint32_t worst_between = 0;
 };
 
-/// One receiver under one light: luminance. Two errors, against two independent estimates of the
-/// truth: the mean of their products is that of the squared error, free of the estimates' noise.
-/// Both are the same where the truth is known exactly.
+/// One receiver under one light: luminance, and its errors against two independent estimates of the
+/// truth. The mean product of the two errors estimates the squared error without the noise of the
+/// estimates. The two are equal where the truth is exact.
 struct CheckedPair {
     std::array<double, 2> error{};
     double reference = 0;
@@ -69,8 +69,8 @@ void append_point(const CheckedPoint& point, EffectCheck& check);
 /// sqrt(mean of products of errors / mean square of the reference); 0 without a reference.
 double relative_rms(std::span<const CheckedPair> pairs);
 
-/// That, and the ends of its 95 % interval: bootstrap over receivers, the pairs of each standing
-/// together, `lights` >= 1 of them.
+/// The same with the ends of its 95 % interval by bootstrap over receivers; each receiver has
+/// `lights` >= 1 consecutive pairs.
 struct ErrorBounds {
     double rms = 0, lowest = 0, highest = 0;
 };

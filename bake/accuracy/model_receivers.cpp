@@ -7,8 +7,8 @@
 namespace opaline::bake {
 namespace {
 
-// In another body, or in the back of everything: nobody sees it, and the bake gives it the light of
-// its neighbours (visibility/hidden_receivers).
+// Inside another body or behind all surfaces: invisible, and the bake uses the light of its
+// neighbours (visibility/hidden_receivers).
 bool is_buried(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
     if (!receiver.around.empty()) {
         return true;
@@ -30,8 +30,8 @@ bool is_buried(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
     return true;
 }
 
-// Close behind it, in its own body, lies another surface: a floor that a body has sunk into. There
-// the bake's body, which has nothing in it, is not the reference's.
+// Another surface lies close behind it in its own body, such as a floor that the body has sunk
+// into. There the bake's empty body differs from the reference's.
 bool is_pierced(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
     if (receiver.medium == formats::kNone) {
         return false;
@@ -45,8 +45,8 @@ bool is_pierced(const ReferenceScene& scene, const ReferenceReceiver& receiver) 
     return hit && scene.medium_of[input.primitives[hit->primitive].material] != receiver.medium;
 }
 
-// At a sharp edge of its body, where radiance jumps: the way in along one face's normal lies in the
-// other face. Rays then start aside of the normal.
+// At a sharp edge of its body radiance is discontinuous, because the path along one face's normal
+// lies in the other face.
 bool is_on_edge(const ReferenceReceiver& receiver) {
     constexpr float kSharp = 0.9f;
     return receiver.medium != formats::kNone &&

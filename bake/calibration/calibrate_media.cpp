@@ -71,7 +71,7 @@ std::vector<BodyPoint> neighbours_together(std::span<const BodyPoint> points) {
     return ordered;
 }
 
-// Reading a receiver's terms out of the packed rows of many.
+// Reads one receiver's terms from the packed rows of many.
 double measure_unpacking() {
     constexpr std::uint32_t kCoarse = 16, kTerms = 4;
     SingleBatch batch;

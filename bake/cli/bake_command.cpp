@@ -96,8 +96,8 @@ formats::Status commit_all(std::vector<formats::AtomicFile>& files) {
     return formats::ok_status();
 }
 
-// What the stages were expected to take, before a pilot changed any knob; and the plan's entries,
-// of the knobs that were used.
+// Predicted seconds of the stages, before a pilot changed any knob, and the plan's entries for the
+// knobs used.
 Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
                    const MachineRates& machine, bake::BakeResult& result) {
     const bake::EffectTable& effects = bake::all_effects();
@@ -132,7 +132,7 @@ int run(const Options& options) {
     if (auto status = check_outputs(outputs, imported->scene.inputs); !status) {
         return report_error(status.error());
     }
-    // Before the work, so that an unwritable folder is found out at once.
+    // Create outputs before the work, so that an unwritable folder fails at once.
     std::vector<formats::AtomicFile> files;
     for (const OutputFile& output : outputs) {
         auto file = formats::AtomicFile::create(output.path);
@@ -141,7 +141,7 @@ int run(const Options& options) {
         }
         files.push_back(std::move(*file));
     }
-    // Predictions stand in the report alone: without one this machine need not be measured.
+    // Only the report has predictions; without a report the machine need not be measured.
     const std::optional<MachineRates> machine =
         options.report.empty() ? std::nullopt : std::optional(find_machine_rates());
     bake::Context context;
@@ -153,10 +153,9 @@ int run(const Options& options) {
     if (!result) {
         return report_error(result.error());
     }
-    for (formats::Diagnostic& unmet :
-         bake::describe_unmet({bake::all_effects(), imported->scene, result->facts, result->knobs,
-                               result->plan},
-                              *wanted)) {
+    for (formats::Diagnostic& unmet : bake::describe_unmet(
+             {bake::all_effects(), imported->scene, result->facts, result->knobs, result->plan},
+             *wanted)) {
         result->warnings.push_back(std::move(unmet));
     }
     std::vector<formats::Diagnostic> warnings = imported->warnings;

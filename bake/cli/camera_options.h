@@ -10,7 +10,7 @@
 
 namespace opaline::cli {
 
-/// What `render` and `reference` have in common.
+/// Options common to `render` and `reference`.
 struct CameraOptions {
     std::string size = "960x720", eye, target;
     std::optional<double> azimuth, elevation, distance;  ///< [degrees], [degrees], [m]
@@ -19,7 +19,7 @@ struct CameraOptions {
 
 void add_camera_options(CLI::App& command, CameraOptions& options);
 
-/// The camera asked for; what is not asked for frames the object. Errors: usage.
+/// The requested camera; missing parts are chosen to frame the object. Errors: usage.
 formats::Result<runtime::Camera> make_camera(const CameraOptions& options,
                                              const formats::AssetView& view);
 

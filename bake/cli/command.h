@@ -5,7 +5,7 @@
 
 namespace opaline::cli {
 
-/// What the chosen command does once the options are parsed; returns the exit code.
+/// The action of the chosen command, run after parsing; returns the exit code.
 using Job = std::function<int()>;
 
 /// Each adds one command, its options and its help to the program.
@@ -21,7 +21,7 @@ void add_phase_command(CLI::App& app, Job& job);
 void add_sweep_command(CLI::App& app, Job& job);
 void add_example_command(CLI::App& app, Job& job);
 
-/// Exit codes (design 3).
+/// Exit codes (README.md of the project).
 inline constexpr int kExitSuccess = 0;
 inline constexpr int kExitNo = 1;  ///< the job ran and the answer is no
 inline constexpr int kExitUsage = 2;

@@ -59,7 +59,7 @@ Json describe(const OpenedAsset& asset) {
                                     {"stored_size", section.stored_size},
                                     {"codec", section.codec == 0 ? "none" : "zstd"}});
     }
-    // Whatever stands there: a damaged provenance must not keep the rest from being shown.
+    // A damaged provenance must not hide the rest.
     info["provenance"] = Json::parse(view.provenance, nullptr, false);
     if (info["provenance"].is_discarded()) {
         info["provenance"] = nullptr;

@@ -53,7 +53,7 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
     if (!imported) {
         return imported;
     }
-    // The file on the command line comes last: it overrules what the scene says.
+    // The file on the command line comes last and overrides the scene's media.
     if (!imported->media.empty()) {
         const auto own = formats::parse_media(imported->media, path, "extensions > OPALINE_media");
         if (!own) {

@@ -6,14 +6,14 @@
 
 namespace opaline::cli {
 
-/// How fast this machine is, and how that is known.
+/// The rates of this machine, and their source.
 struct MachineRates {
     bake::Rates rates;
     std::string note;  ///< for the report
 };
 
-/// Read from the user's cache (rates_cache.h); where it has none for this machine, measured now,
-/// said so on stderr, and kept there. Not being able to keep them is no error: the next command
+/// Reads the rates from the user's cache (rates_cache.h). If it has none for this machine, measures
+/// them, reports that on stderr and stores them. A failure to store is no error: the next command
 /// measures again.
 MachineRates find_machine_rates();
 

@@ -44,7 +44,7 @@ struct Options {
     bool stats = false;
 };
 
-// What of the picture to show.
+// Parts of the picture to show.
 struct Shown {
     formats::TermSet terms = formats::TermSet::baked;
     bool background() const { return has_all(terms, formats::TermSet::baked); }

@@ -9,13 +9,13 @@
 
 namespace opaline::cli {
 
-/// What was expected of a bake, and how the machine's speed was known.
+/// The predicted cost of a bake, and the source of the rates.
 struct Expectation {
     bake::CostPrediction cost;
     std::string rates_note;
 };
 
-/// The `--report` JSON (design 3, contract). `bytes`: size of the written file.
+/// The `--report` JSON. Its keys are a contract. `bytes`: size of the written file.
 std::string make_report(const formats::Scene& scene, const bake::BakeResult& result,
                         const Expectation& expected,
                         const std::vector<formats::Diagnostic>& warnings, std::uint64_t bytes);

@@ -12,7 +12,7 @@ namespace opaline::cli {
 /// `--metres-per-unit`: from a tenth of a nanometre to a light year.
 inline constexpr double kLeastUnit = 1e-10, kMostUnit = 1e16;
 
-/// What `bake`, `plan` and `sweep` have in common.
+/// Options common to `bake`, `plan` and `sweep`.
 struct SceneOptions {
     std::string scene, media;
     double metres_per_unit = 1.0;
@@ -21,7 +21,7 @@ struct SceneOptions {
     bake::BakeOptions bake;
 };
 
-/// The scene, its media, and what does not decide about accuracy: effects, seed, threads, unit.
+/// The scene, its media, and options without influence on accuracy: effects, seed, threads, unit.
 void add_subject_options(CLI::App& command, SceneOptions& options);
 
 /// The same and every knob.

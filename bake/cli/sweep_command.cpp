@@ -95,7 +95,7 @@ int run(const Options& options) {
     if (auto status = check_outputs(outputs, imported->scene.inputs); !status) {
         return report_error(status.error());
     }
-    // Before the work, so that an unwritable folder is found out at once.
+    // Create outputs before the work, so that an unwritable folder fails at once.
     std::vector<AtomicFile> files;
     for (const OutputFile& output : outputs) {
         auto file = AtomicFile::create(output.path);
@@ -114,12 +114,12 @@ int run(const Options& options) {
     context.cancel = &interrupted;
     context.cache = bake::cache_folder();
     const auto show = make_progress_printer(options.progress);
-    const auto result =
-        bake::run_sweep(bake::all_effects(), imported->scene, wanted, context, [&](const bake::SweepStep& step) {
-            if (show) {
-                show({"sweep", step.done, step.total});
-            }
-        });
+    const auto result = bake::run_sweep(bake::all_effects(), imported->scene, wanted, context,
+                                        [&](const bake::SweepStep& step) {
+                                            if (show) {
+                                                show({"sweep", step.done, step.total});
+                                            }
+                                        });
     if (!result) {
         return report_error(result.error());
     }

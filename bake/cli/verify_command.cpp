@@ -27,7 +27,7 @@ struct Verdict {
 };
 
 Verdict verify(const std::string& path) {
-    // A file that is not there is bad input; one that is there and damaged is the answer "no".
+    // A missing file is bad input; a damaged file is the answer "no".
     auto file = formats::FileBytes::open(path);
     if (!file) {
         return {file.error(), exit_code_of(file.error())};

@@ -15,8 +15,8 @@ namespace opaline::bake {
 ///     colour = ramp of `colors` at |sin(pi u)|           0 within a vein, 1 halfway between two
 ///
 /// after the solid textures of [Perlin1985]; n is gtc/noise of GLM, in [-1, 1], s_o are fixed
-/// offsets that keep the zeros of the octaves apart. The stone is endless: n repeats after 289.
-/// Details finer than the distance of the vertices are lost, as everywhere in a vertex colour.
+/// offsets that keep the zeros of the octaves apart. n repeats after 289 units. Details finer than
+/// the spacing of the vertices are lost.
 formats::Rgb marble_color(const formats::Marble& marble, glm::dvec3 position);
 
 }  // namespace opaline::bake

@@ -24,7 +24,7 @@ Vec3 to_vec3(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
-// `mapped`: the primitive shows an image; `textured`: some primitive of the asset does.
+// `mapped`: this primitive has an image. `textured`: some primitive of the asset has one.
 void append_vertices(Asset& asset, const Scene& scene, const Primitive& p, Rgb tint, bool mapped,
                      bool textured) {
     const Material& material = scene.materials[p.material];

@@ -49,7 +49,7 @@ TriedRound try_round(const BakeInputs& bake, const Knobs& knobs, const Context& 
     return round;
 }
 
-// What the user gave: the pilot could not change it.
+// Names of the options that the user fixed.
 std::string name_given(const EffectTable& effects, const Knobs& knobs) {
     std::string given;
     const auto name = [&](bool is_given, std::string_view option) {
@@ -71,9 +71,9 @@ Knobs choose_knobs(const BakeInputs& bake, const Knobs& wanted, const Context& c
                    PilotState state) {
     state.report = {wanted.error_target, 0, 0, false, {}};
     const auto scene = [&] { return PilotScene{bake, state.subjects, state.lights, context}; };
-    const std::vector<PilotReceiver> receivers = run_stage(
-        state.log, "pilot truth",
-        [&](std::uint64_t&) { return find_pilot_truth(scene(), wanted); });
+    const std::vector<PilotReceiver> receivers =
+        run_stage(state.log, "pilot truth",
+                  [&](std::uint64_t&) { return find_pilot_truth(scene(), wanted); });
     Refinement fixed_alone, whole;
     TriedRound best;
     std::optional<Knobs> next = wanted;
@@ -91,7 +91,7 @@ Knobs choose_knobs(const BakeInputs& bake, const Knobs& wanted, const Context& c
             continue;
         }
         if (!whole.base) {
-            whole = fixed_alone;  // what texels do
+            whole = fixed_alone;  // keeps what was learned about texels
             whole.base.reset();
         }
         TriedRound round = try_round(bake, tried, context, receivers, fixed, state);
@@ -130,11 +130,11 @@ void warn_of_missed_target(const EffectTable& effects, const AccuracyReport& acc
                             "--cubemap, come closer"
                           : "leave " + given + " out"));
     } else if (measured > accuracy.target) {
-        warnings.push_back(formats::make_warning(
-            "", "--error",
-            "the self-check measured " + percent(measured) + " at vertices, more than the " +
-                percent(accuracy.target) + " asked for",
-            "ask for a little less"));
+        warnings.push_back(formats::make_warning("", "--error",
+                                                 "the self-check measured " + percent(measured) +
+                                                     " at vertices, more than the " +
+                                                     percent(accuracy.target) + " asked for",
+                                                 "ask for a little less"));
     }
 }
 

@@ -8,11 +8,11 @@
 
 namespace opaline::bake {
 
-/// What the pilot of a target error found out.
+/// Results of the pilot for a target error.
 struct AccuracyReport {
     double target = 0;     ///< relative RMS asked for
-    double predicted = 0;  ///< expected of the chosen knobs, before the bake
-    double likely = 0;     ///< one standard error of the pilot more
+    double predicted = 0;  ///< expected error of the chosen knobs, before the bake
+    double likely = 0;     ///< `predicted` plus one standard error of the pilot
     bool met = false;      ///< expected to, and measured at receivers and between them
     struct Trial {
         Knobs knobs;  ///< of the round: cube map and samples

@@ -15,7 +15,7 @@
 namespace opaline::bake {
 namespace {
 
-// Mesh and images, which are compressed to about a half.
+// Mesh and images, compressed to about half.
 double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
     constexpr double kCompressed = 0.5;
     const double vertex = scene.images.empty() ? 36 : 44;
@@ -112,7 +112,7 @@ void bill_openness(const CostedBake& bake, Bill& bill) {
 
 std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t bands) {
     const std::uint64_t all = formats::cubemap_texels(knobs.cubemap_size);
-    // Of an opaque surface half of all coefficients vanish, below the horizon.
+    // On an opaque surface half of the coefficients vanish, below the horizon.
     const std::uint64_t details = knobs.coefficients == kAllCoefficients
                                       ? (translucent ? all : all / 2)
                                       : std::min<std::uint64_t>(knobs.coefficients, all) - 6;
@@ -139,9 +139,8 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bill_self_check(bake, bill);
     bill.add_bytes(mesh_bytes(request.scene, request.facts));
     bill.cost.memory_bytes = static_cast<std::uint64_t>(
-        predict_memory(request.effects,
-                       count_memory(request.effects, request.scene, request.knobs), request.knobs,
-                       request.threads)
+        predict_memory(request.effects, count_memory(request.effects, request.scene, request.knobs),
+                       request.knobs, request.threads)
             .bytes());
     bill.cost.receivers = static_cast<std::uint64_t>(request.facts.receivers);
     return std::move(bill.cost);

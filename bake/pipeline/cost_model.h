@@ -16,11 +16,11 @@ struct StageCost {
     double seconds = 0;
 };
 
-/// What a bake is going to cost.
+/// The predicted cost of a bake.
 struct CostPrediction {
     std::vector<StageCost> stages;   ///< in the order that they run
     double seconds = 0;              ///< of all stages
-    double shared_seconds = 0;       ///< of what belongs to no effect: part of `seconds`
+    double shared_seconds = 0;       ///< part of `seconds` that belongs to no effect
     std::uint64_t bytes = 0;         ///< of the file
     std::uint64_t shared_bytes = 0;  ///< of its mesh and images: part of `bytes`
     std::uint64_t receivers = 0;
@@ -45,12 +45,12 @@ struct CostRequest {
 /// passes over the scene, no rays. The stages are those of run_bake; each effect counts the work of
 /// its own.
 ///
-/// With Knobs::error_target it is the first round: the pilot, and a bake with the knobs as they
-/// are. The pilot may choose others.
+/// With Knobs::error_target the prediction covers the first round: the pilot, and a bake with the
+/// present knobs. The pilot may choose others.
 ///
-/// Counts are derived from numbers of triangles, receivers, samples and texels, and from how wide a
-/// medium's profile is against its samples. How cluttered a scene is, is not known here: rates are
-/// those of a dented ball, and scenes differ from it by up to 1.4 either way.
+/// Counts follow from the numbers of triangles, receivers, samples and texels, and from the ratio
+/// of a medium's profile width to the sample spacing. The clutter of a scene is not known: rates
+/// are those of a dented ball, and scenes differ from it by a factor of up to 1.4.
 CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan);
 
 }  // namespace opaline::bake

@@ -17,7 +17,7 @@ struct CostedSubject {
     bool has_expensive_truth = false, depends_on_trials = false;
 };
 
-/// All that the costs of one bake follow from.
+/// The inputs of a bake's cost.
 struct CostedBake {
     const CostRequest& request;
     CostInput input;

@@ -25,8 +25,8 @@ struct BakeRecord {
     const ModelErrorReport* model_error = nullptr;  ///< null: not measured
 };
 
-/// The PROV section: how the file came about, as JSON. Nothing that differs between two runs of the
-/// same bake: no seconds, dates, paths or thread counts.
+/// The PROV section as JSON: scene, knobs, plan and measured error. It contains nothing that
+/// differs between two runs of the same bake: no seconds, dates, paths or thread counts.
 std::string make_provenance(const formats::Scene& scene, const BakeRecord& record);
 
 }  // namespace opaline::bake

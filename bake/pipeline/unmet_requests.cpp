@@ -11,7 +11,7 @@ using formats::make_warning;
 
 bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const Knobs& knobs,
                   std::string_view name) {
-    const MaterialFacts unknown;  // whom an effect concerns, its material says
+    const MaterialFacts unknown;  // placeholder: concerns() reads the material only
     return std::any_of(
         scene.primitives.begin(), scene.primitives.end(), [&](const formats::Primitive& p) {
             const PlanInput input{scene.materials[p.material], unknown, knobs};

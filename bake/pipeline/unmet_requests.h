@@ -8,8 +8,7 @@
 
 namespace opaline::bake {
 
-/// Refuses (usage) a list of effects of which none concerns any surface of the scene: nothing would
-/// be simulated.
+/// Refuses (usage) a list of effects that concerns no surface of the scene.
 formats::Status check_effects(const EffectTable& effects, const formats::Scene& scene,
                               const Knobs& knobs);
 
@@ -22,8 +21,7 @@ struct DecidedBake {
     std::span<const PlanEntry> plan;
 };
 
-/// Warnings for what was asked for and is not there in the end, or does nothing, with what was
-/// decided instead.
+/// Warnings about requests that were not met or have no effect, with the decision made instead.
 std::vector<formats::Diagnostic> describe_unmet(const DecidedBake& decided,
                                                 const BakeOptions& options);
 

@@ -32,18 +32,18 @@ struct KnobValues {
     void set(const KnobSpec& knob, double value);
 };
 
-/// What the user asked for. A zero means: as the quality says.
+/// The user's options. 0 means: as the quality preset.
 struct BakeOptions {
     Quality quality = Quality::preview;
-    double error = 0;  ///< relative RMS that the finished file may err by, in [1e-4, 1): picks the
-                       ///< knobs that are not given. 0: as the quality says
+    /// target relative RMS error in [1e-4, 1); selects the knobs that are not given. 0: none
+    double error = 0;
     std::uint32_t cubemap_size = 0;  ///< N: power of two in [8, 128]
     std::uint32_t coefficients = 0;  ///< M per row, the six face averages included; >= 7, or
                                      ///< kAllCoefficients
     KnobValues given;                ///< knobs of effects
     bool separate_terms = false;     ///< rows that all views share apart from the others
-    std::vector<std::string> effects;  ///< names of the only ones to simulate; empty: what the
-                                       ///< scene calls for
+    /// names of the only effects to simulate; empty: as the planner decides
+    std::vector<std::string> effects;
     bool simulate_all = false;  ///< every effect that concerns a subject, however little it
                                 ///< contributes, and no shortcut
     bool check_model = false;   ///< also measure the model's error against Monte Carlo
@@ -53,7 +53,7 @@ struct BakeOptions {
     void set(const KnobSpec& knob, double value) { given.set(knob, value); }
 };
 
-/// What is going to be done: every knob has its value.
+/// The resolved knobs: every knob has its value.
 struct Knobs {
     Quality quality = Quality::preview;  ///< the preset that the others started from
     std::uint32_t cubemap_size = 16;
@@ -68,7 +68,7 @@ struct Knobs {
     std::uint64_t seed = 0;
     double error_target = 0;  ///< 0: none; otherwise the pilot changes what the user did not give
     bool cubemap_given = false, coefficients_given = false;
-    KnobValues values;                    ///< of all effects
+    KnobValues values;                   ///< of all effects
     std::vector<const KnobSpec*> given;  ///< those that the user gave
 
     /// The preset's where it was not set.

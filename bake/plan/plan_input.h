@@ -27,7 +27,7 @@ struct PlanInput {
 /// Knobs::simulate_all asks for it. An unknown bound (NaN) is worth it.
 bool is_worth(double bound, const PlanInput& input, bool& forced);
 
-/// Whether the user named the effect; whether they did not rule it out.
+/// True if the user named the effect; true if the user did not exclude it.
 bool is_named(const Knobs& knobs, std::string_view effect);
 bool is_wanted(const Knobs& knobs, std::string_view effect);
 

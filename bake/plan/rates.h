@@ -5,13 +5,14 @@
 
 namespace opaline::bake {
 
-/// What a unit of some work costs, by how many triangles there are [s of one thread]: measured on
-/// two meshes; linear in the depth of the hierarchy, log2, between and beyond them.
+/// Seconds of one thread per unit of work as a function of the number of triangles: measured on two
+/// meshes, linear in log2 of the number (the depth of the hierarchy) between and beyond them.
 struct CostBySize {
     static constexpr double kFew = 3072, kMany = 49152;  ///< triangles of the two meshes
     double few = 0, many = 0;
 
-    /// `triangles` >= 0. Never less than a part of `few`: a mesh of one triangle is not free.
+    /// `triangles` >= 0. Never less than a fraction of `few`, because a mesh of one triangle has a
+    /// cost too.
     double at(double triangles) const {
         constexpr double kLeastShare = 0.25;
         const double place = std::log2(std::max(triangles, 1.0) / kFew) / std::log2(kMany / kFew);
@@ -19,7 +20,7 @@ struct CostBySize {
     }
 };
 
-/// What work costs on one machine, measured there (calibration.h): seconds of one thread per unit.
+/// Seconds of one thread per unit of work, measured on this machine (calibration.h).
 struct Rates {
     // Every bake.
     double plan_triangle = 0;    ///< the rules, per triangle of the scene
@@ -28,33 +29,33 @@ struct Rates {
     CostBySize place_receiver;   ///< a vertex's clearance, and whether it is hidden
     double test_lights = 0;      ///< all of them
     // Rows.
-    CostBySize coherent_ray;   ///< one of a receiver's packets over the cube map, its cosine too
-    double open_cell = 0;      ///< the cosine of such a ray's cell where nothing can be hit
+    CostBySize coherent_ray;   ///< a ray of a receiver's packets over the cube map, cosine included
+    double open_cell = 0;      ///< the cosine of such a ray's cell in an empty scene
     double encode_grey = 0;    ///< transform, selection and quantising, per texel of a row
     double encode_colour = 0;  ///< selection and quantising of three bands, transformed already
     CostBySize openness;       ///< of a receiver
     // Multiple scattering.
     double walk_event = 0;      ///< of a half space's random walk
     double place_sample = 0;    ///< blue noise, per sample
-    CostBySize shared_texel;    ///< what a sample sees, per texel: rays shared in a group
+    CostBySize shared_texel;    ///< irradiance of a sample, per texel, with shared rays
     double truncate_texel = 0;  ///< transform and truncation, per texel of a sample
     double sum_entry = 0;       ///< one entry of a sample into the sum of a node
-    double take_weight = 0;  ///< a node or sample found to be taken whole, with those that were not
-    double gather_entry = 0;  ///< one entry of a node or sample into a receiver's row
+    double take_weight = 0;     ///< per accepted node or sample, traversal included
+    double gather_entry = 0;    ///< one entry of a node or sample into a receiver's row
     // Single scattering.
     CostBySize body_triangle;  ///< of the mesh that light maps draw
     double draw_triangle = 0;  ///< into a light map
     double draw_pixel = 0;     ///< of a light map, to clear and fill
-    CostBySize place_nodes;    ///< the way inward of a receiver
-    CostBySize look_up;        ///< of a node in a light map, those included that rays must find out
+    CostBySize place_nodes;    ///< the inward path of a receiver
+    CostBySize look_up;        ///< of a node in a light map, rays for undecided nodes included
     double look_up_term = 0;   ///< each term beyond the first of a look-up
     double unpack_texel = 0;   ///< from packed rows into a receiver's, per term
-    CostBySize entry_packet;   ///< sixteen rays out of a body, and what enters along them
+    CostBySize entry_packet;   ///< sixteen rays out of a body, with their entries
     // The self-check.
     double split_triangle = 0;  ///< of the surface integral
     CostBySize surface_point;   ///< of the surface integral: its rays to all lights
 
-    /// How many times slower each thread is when all of the machine's are at work.
+    /// Slow-down of a thread when all threads of the machine work.
     double crowding = 1;
 };
 

@@ -13,20 +13,18 @@ namespace opaline::bake {
 /// means here (DecisionRule::lay_out); nothing else about a decision reaches the stages.
 struct RowLayout {
     bool translucent = false;  ///< seen through the boundary of a medium; otherwise diffuse, grey
-    bool occluded = false;     ///< rays find out what stands before the light
+    bool occluded = false;     ///< visibility is traced
     bool constant = false;     ///< some effect fills a row that is the same for all views
     std::uint32_t harmonics = 0;  ///< rows that are seen through spherical harmonics: 0, 1, 4 … 25
-    bool local = false;     ///< light leaves the medium where it entered
-    bool separate = false;  ///< the row for all views stands apart from the harmonics
-    bool grey = false;      ///< the three bands coincide: one stands for them
-    bool glossy = false;    ///< mirrors its surroundings: needs openness
-    formats::Rgb tint{1, 1, 1};  ///< times the base colour
+    bool local = false;           ///< light leaves the medium where it entered
+    bool separate = false;        ///< the row for all views stands apart from the harmonics
+    bool grey = false;            ///< the three bands coincide: one stands for them
+    bool glossy = false;          ///< mirrors its surroundings: needs openness
+    formats::Rgb tint{1, 1, 1};   ///< times the base colour
 
     bool has_rows() const { return constant || harmonics > 0; }
     /// Rows of a receiver, at least one: a receiver without any is black.
-    std::uint32_t terms() const {
-        return separate ? 1 + harmonics : harmonics > 1 ? harmonics : 1;
-    }
+    std::uint32_t terms() const { return separate ? 1 + harmonics : harmonics > 1 ? harmonics : 1; }
     std::uint32_t bands() const { return translucent && !grey ? 3 : 1; }
     /// Row of the first harmonic.
     std::uint32_t first_harmonic() const { return separate ? 1 : 0; }
@@ -34,7 +32,7 @@ struct RowLayout {
     double view_of_constant() const;
 };
 
-/// One layout per material of the scene, from what the plan decided.
+/// One layout per material of the scene, from the plan's decisions.
 std::vector<RowLayout> layout_rows(const EffectTable& effects, const formats::Scene& scene,
                                    std::span<const PlanEntry> plan, const Knobs& knobs);
 

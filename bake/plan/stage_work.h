@@ -8,7 +8,7 @@
 
 namespace opaline::bake {
 
-/// Work in seconds of one thread: what one thread alone must do, and what all share.
+/// Work in seconds of one thread: the serial part and the parallel part.
 struct Work {
     double alone = 0, shared = 0;
 
@@ -17,12 +17,10 @@ struct Work {
         shared += other.shared;
         return *this;
     }
-    Work operator-(const Work& other) const {
-        return {alone - other.alone, shared - other.shared};
-    }
+    Work operator-(const Work& other) const { return {alone - other.alone, shared - other.shared}; }
 };
 
-/// What all costs depend on.
+/// The inputs of all costs.
 struct CostInput {
     const Rates& rates;
     const Knobs& knobs;
@@ -36,8 +34,9 @@ struct SubjectCost {
     const formats::Material& material;
     const MaterialFacts& facts;
     const RowLayout& layout;
-    double receivers = 0;     ///< that the work is for
-    bool traces_rays = true;  ///< the scene has a ray hierarchy: truths trace even where rows do not
+    double receivers = 0;  ///< that the work is for
+    bool traces_rays =
+        true;  ///< the scene has a ray hierarchy: truths trace even where rows do not
 
     const formats::Medium& medium() const { return *material.medium; }
 };

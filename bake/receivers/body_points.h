@@ -8,9 +8,9 @@
 
 namespace opaline::bake {
 
-/// Body points of all vertices, in output order, from their receivers (make_vertex_receivers): a
-/// receiver starts in front of its triangles, its mirror image in the vertex behind them. Vertices
-/// of opaque materials get no normal.
+/// Body points of all vertices, in output order, from their receivers (make_vertex_receivers). The
+/// receiver's origin lies in front of its triangles; mirrored at the vertex, it lies behind them.
+/// Vertices of opaque materials get no normal.
 std::vector<BodyPoint> make_body_points(const formats::Scene& scene,
                                         std::span<const Receiver> receivers);
 

@@ -71,8 +71,8 @@ std::vector<SurfacePoint> scatter_points(const Scene& scene, const AreaTable& ta
                                                 {1.0f - root, root * (1.0f - u[2]), root * u[2]}));
             continue;
         }
-        // The additive recurrence of the plastic number fills a square evenly [Roberts2018]; its
-        // upper half is folded onto the lower. Each triangle starts at a place of its own.
+        // The additive recurrence of the plastic number fills a square evenly [Roberts2018]; the
+        // upper half is folded onto the lower. Each triangle has its own starting point.
         const auto shift = random_uniform(seed, stage, at, 2);
         const auto i = static_cast<double>(k - first_in_triangle);
         double v = fraction(static_cast<double>(shift[0]) + i * 0.7548776662466927);

@@ -36,9 +36,9 @@ AreaTable make_area_table(const formats::Scene& scene,
 SurfacePoint make_surface_point(const formats::Scene& scene, const AreaTable::Triangle& triangle,
                                 glm::vec3 barycentric);
 
-/// `count` points, uniform by area: one in each of `count` equal parts of the list of triangles, at
-/// random in its triangle. `even`: in large triangles a low-discrepancy set, for quadrature.
-/// (seed, stage): key the random numbers.
+/// `count` points, uniform by area: one in each of `count` equal parts of the cumulative area, at a
+/// random position in its triangle. `even`: a low-discrepancy set in large triangles, for
+/// quadrature. (seed, stage): key the random numbers.
 std::vector<SurfacePoint> scatter_points(const formats::Scene& scene, const AreaTable& table,
                                          std::size_t count, bool even, std::uint64_t seed,
                                          RandomStage stage = RandomStage::surface_samples);

@@ -47,7 +47,7 @@ HitScene::HitScene(const Scene& scene, EmbreeScene triangles)
     }
     centre_ = 0.5f * low + 0.5f * high;
     const glm::vec3 farthest = glm::max(glm::abs(low), glm::abs(high));
-    // A product, a sum, and the hit's own distance: a few halves of an ulp.
+    // A product, a sum, and the hit's distance: a few half ulps.
     rounding_ =
         4 * std::numeric_limits<float>::epsilon() * std::max({farthest.x, farthest.y, farthest.z});
     // Rounded outward.

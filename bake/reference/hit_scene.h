@@ -10,7 +10,7 @@
 
 namespace opaline::bake {
 
-/// Where a ray met a triangle.
+/// A hit of a ray on a triangle.
 struct SurfaceHit {
     float distance = 0;  ///< [m] along the ray
     glm::vec3 position{0};

@@ -13,8 +13,8 @@ namespace opaline::bake {
 /// The paths and light to count.
 struct PathOptions {
     TermSet terms = TermSet::all;
-    /// Most scattering events along a path: on surfaces (refraction and mirror reflection count)
-    /// or in media. Crossings between equal indices do not count.
+    /// Maximum number of scattering events along a path, on surfaces (refraction and mirror
+    /// reflection count) or in media. Crossings between equal indices do not count.
     std::uint32_t max_depth = 0xffffffffu;
     /// false: a receiver's own mirror reflection or specular lobe is left out, whatever is seen in
     /// it.

@@ -62,7 +62,7 @@ constexpr PathState after_crossing(PathState s, bool out) {
     return s;
 }
 
-/// The term of a path that now reaches the sky; the camera's own view of it counts as all.
+/// The term of a path that reaches the sky here; a direct view of the sky counts as all terms.
 constexpr TermSet term_of(PathState s) {
     switch (s.stage) {
         case PathState::Stage::camera:

@@ -26,7 +26,7 @@ std::vector<std::uint32_t> order_of(const ReceiverSet& set, const RowLayout& lay
     return spatial_order(positions);
 }
 
-// The `terms` rows of each receiver, which stand in the order of `order`, as receivers are given.
+// Reorders the `terms` rows of each receiver from the order of `order` to that of the receivers.
 formats::SparseRows as_given(const formats::SparseRows& rows, std::span<const std::uint32_t> order,
                              const RowLayout& layout) {
     const std::uint32_t terms = layout.terms();
@@ -134,8 +134,8 @@ formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gathere
                 }
             });
     }
-    // Rows are missing where the bake was cancelled, or where they are too many for one file: the
-    // caller counts them.
+    // Rows are missing if the bake was cancelled or if they are too many for one file; the caller
+    // checks.
     const bool is_whole = rows.row_offset.size() == set.size() * layout.terms() + 1;
     return is_whole && layout.translucent ? as_given(rows, order, layout) : std::move(rows);
 }

@@ -49,8 +49,8 @@ formats::Rgb half_space_albedo(const formats::Medium& medium, std::uint64_t seed
 }
 
 double count_walk_events(double albedo, double g, double eta) {
-    // Absorption ends a walk after a number of events that grows as the root of its inverse; the
-    // boundary turns walks back.
+    // The number of events grows as the inverse root of the absorption; internal reflection adds
+    // more.
     const double s = std::sqrt((1 - albedo) * (1 - albedo * g));
     const double back = std::max(0.0, eta - 1);
     return 1 + (4.9 + 16.6 * back) / (s + (0.4 + 3.8 * back) * s * s);

@@ -66,8 +66,8 @@ glm::vec3 unit_normal(const Triangle& t) {
     return glm::vec3(glm::normalize(area_vector(t)));
 }
 
-// How many of the triangles go into the first child; moves them there. Those that face other ways
-// are parted first, so that slabs get thin: no node holds both sides of an edge. Then by place.
+// Partitions the triangles and returns the size of the first child. Triangles with different facing
+// are separated first, which makes the slabs thin; then by position.
 std::uint32_t part(std::span<Triangle> triangles) {
     constexpr float kAlike = 0.5f;
     const auto middle_of = [](const Triangle& t) { return t[0] + t[1] + t[2]; };
@@ -105,7 +105,7 @@ void build(HorizonTree& tree, std::uint32_t first, std::uint32_t count) {
     build(tree, first + left, count - left);
 }
 
-// Whether all of the node lies lower over the horizon of the point than what was found.
+// True if the whole node lies below the elevation found so far.
 bool is_lower(const Node& node, glm::dvec3 point, glm::dvec3 normal, const HorizonSearch& found) {
     const glm::dvec3 to_centre = node.centre - point;
     const double along = glm::dot(normal, node.axis);
@@ -187,7 +187,7 @@ void look_over_horizon(const HorizonTree& tree, glm::vec3 point, glm::dvec3 norm
     if (tree.node.empty()) {
         return;
     }
-    // Facing parts at most twice along each axis, then the tree halves: no deeper than 6 + 32.
+    // At most two splits by facing along each axis, then halving: a depth of at most 6 + 32.
     std::array<std::uint32_t, 64> open;
     std::size_t count = 0;
     open[count++] = 0;

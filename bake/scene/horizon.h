@@ -7,11 +7,11 @@
 
 namespace opaline::bake {
 
-/// Triangles in a tree that tells how high a part of them rises above any plane.
+/// A tree over triangles that bounds how high they rise above a plane.
 struct HorizonTree {
     using Triangle = std::array<glm::vec3, 3>;  ///< corners [m]
-    /// All triangles of a node lie in a ball, and in a slab across `axis`, which is thin where the
-    /// surface is smooth.
+    /// All triangles of a node lie in a ball and in a slab across `axis`; the slab is thin where
+    /// the surface is smooth.
     struct Node {
         glm::dvec3 centre{0}, axis{0};       ///< [m]; unit
         double radius = 0;                   ///< [m]
@@ -26,16 +26,16 @@ struct HorizonTree {
 /// Triangles without area are left out: no ray can hit them.
 HorizonTree make_horizon_tree(std::vector<HorizonTree::Triangle> triangles);
 
-/// Coordinate along `direction` of the point of all triangles that is farthest that way [m].
+/// Largest coordinate along `direction` of any point of the triangles [m].
 double farthest_along(const HorizonTree& tree, glm::dvec3 direction);
 
-/// How a search for the highest triangle above many horizons stands.
+/// State of a search for the highest triangle above many horizons.
 struct HorizonSearch {
-    /// Bound on the sine of the elevation above a horizon of any point of any triangle, over all
-    /// that was looked at so far. Of what lies lower than at first nothing is said.
+    /// Bound on the sine of the elevation of any triangle above a horizon, over the horizons
+    /// searched so far; never below its initial value.
     double sine = 0;
-    double flat = 0;              ///< heights over a plane that count as none [m]
-    double stop_above = 1;        ///< with a higher one the search is over
+    double flat = 0;              ///< heights over a plane up to this count as 0 [m]
+    double stop_above = 1;        ///< a higher sine ends the search
     std::int64_t nodes_left = 1;  ///< work that may still be spent
     bool is_over() const { return sine > stop_above || nodes_left <= 0; }
 };

@@ -17,11 +17,11 @@ using formats::Primitive;
 using formats::Scene;
 using Triangles = std::vector<HorizonTree::Triangle>;
 
-// Nodes of the trees that may be looked at, for the whole scene: some tenths of a second.
+// Limit on visited nodes for the whole scene: some tenths of a second.
 constexpr std::int64_t kMostNodes = 40'000'000;
 
-// The trees' searches, and what they share: how much work is left, and which heights are less than
-// the coordinates are exact.
+// The searches of the trees, with their shared state: remaining work, and the rounding error of
+// heights.
 struct Searches {
     double flat = 0;
     std::int64_t nodes_left = kMostNodes;
@@ -29,15 +29,15 @@ struct Searches {
     HorizonSearch start() const { return {kLeastElevation, flat, kMostElevation, nodes_left}; }
 };
 
-// Whether the shell folds toward its inside, as most do that are not convex. What faces inward is
-// seen from its other side.
+// True if the shell folds inward, as most non-convex shells do; inverted for a shell that faces
+// inward.
 bool folds_inward(const BodyShell& shell) {
     return (shell.volume < 0 ? shell.ridge : shell.valley) > kMostElevation;
 }
 
-// Whether each point of the shell has all its others below its tangent plane. That is the plane
-// across the sum of its triangles' area vectors: of a convex body, each of their planes has all of
-// it on one side, and so has any plane between them.
+// True if, for each point of the shell, all other points lie below its tangent plane. The tangent
+// plane is normal to the sum of the adjacent area vectors: for a convex body each facet's plane
+// supports the body, and so does any plane between them.
 bool is_convex(const BodyShells& body, const BodyShell& shell, Searches& searches) {
     const double outward = shell.volume < 0 ? -1 : 1;
     Triangles triangles;
@@ -68,7 +68,7 @@ bool is_convex(const BodyShells& body, const BodyShell& shell, Searches& searche
     return !search.is_over();
 }
 
-// Size, colours and how far shading normals lean from their facets.
+// Size, colours and the tilt of shading normals against their facets.
 void inspect_primitive(const Primitive& primitive, MaterialFacts& facts) {
     facts.receivers += static_cast<double>(primitive.position.size());
     facts.triangles += static_cast<double>(primitive.index.size() / 3);
@@ -106,8 +106,8 @@ HorizonTree make_tree(const Scene& scene) {
 double find_elevation(const Scene& scene, const HorizonTree& tree, std::uint32_t material,
                       Searches& searches) {
     HorizonSearch search = searches.start();
-    // Neighbours on a flat face have one normal. That nothing lies beyond their plane is found out
-    // once for all of them; the work counts as of nodes.
+    // Neighbours on a flat face share a normal, so one search decides for all of them; it counts as
+    // work.
     glm::vec3 last(0);
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
     double farthest = kUnknown;
@@ -143,8 +143,8 @@ void inspect_colors(const Scene& scene, std::uint32_t material, MaterialFacts& f
     }
 }
 
-// Parts, which of them are convex, and what their receivers see of the scene. `tree` of the whole
-// scene is made when it is first needed.
+// Parts, their convexity, and the horizon of their receivers. The `tree` of the whole scene is
+// built on first use.
 void inspect_shape(const Scene& scene, std::uint32_t material, SceneFacts& facts, HorizonTree& tree,
                    Searches& searches) {
     MaterialFacts& own = facts.material[material];
@@ -152,14 +152,14 @@ void inspect_shape(const Scene& scene, std::uint32_t material, SceneFacts& facts
     own.open_edges = body.open_edges;
     own.parts = static_cast<std::uint32_t>(body.shell.size());
     const bool may_be_open = std::none_of(body.shell.begin(), body.shell.end(), folds_inward);
-    if (may_be_open) {  // in a part that is not convex, some receiver sees another place
+    if (may_be_open) {  // in a non-convex part some receiver sees another point of it
         if (tree.node.empty()) {
             tree = make_tree(scene);
         }
         own.horizon.elevation = find_elevation(scene, tree, material, searches);
     }
     if (body.shell.size() == 1 && own.horizon.elevation <= kMostElevation) {
-        own.convex_parts = 1;  // all of it lies below every one of its vertices' planes
+        own.convex_parts = 1;  // all points lie below every tangent plane
         return;
     }
     for (const BodyShell& shell : body.shell) {

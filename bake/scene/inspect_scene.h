@@ -5,13 +5,12 @@
 
 namespace opaline::bake {
 
-/// Looks at meshes, colours and coefficients; traces nothing. Bodies should face outward
-/// (orient_bodies). Work is bounded: where a huge mesh would need more, the answers are the
-/// cautious ones.
+/// Inspects meshes, colours and coefficients; traces no rays. Bodies should face outward
+/// (orient_bodies). Work is bounded: for a huge mesh the answers are conservative.
 ///
-/// Convexity is tested against the definition, with no assumption of how the mesh hangs together:
-/// a part is convex if every other point of it lies below the plane through each of its points
-/// across its normal there. A part with an edge that folds inward need not be looked at.
+/// Convexity is tested by its definition, without assumptions on connectivity: a part is convex if,
+/// for each of its points, all its other points lie below the tangent plane there. A part with an
+/// edge that folds inward is rejected at once.
 SceneFacts inspect_scene(const formats::Scene& scene);
 
 }  // namespace opaline::bake

@@ -6,26 +6,26 @@
 
 namespace opaline::bake {
 
-/// What rises above the horizons of a surface.
+/// Surfaces above the horizons of a material's receivers.
 struct Horizon {
     /// Bound on the sine of the elevation of any point of the scene above the horizon (the plane
-    /// across the shading normal) of any receiver of the material; 1: something stands there, or
-    /// may. Of a convex body alone it is kLeastElevation: lower ones are not looked for.
+    /// across the shading normal) of any receiver of the material; 1: something may occlude. For a
+    /// convex body alone it is kLeastElevation, the smallest value searched for.
     double elevation = 1;
-    /// Largest share of the irradiance above a shading normal that comes from behind the facet,
-    /// (1 - n.n_f) / 2: what the facets of a coarse body take away from points on them.
+    /// Largest share of the irradiance above a shading normal that comes from behind the facet, (1
+    /// - n.n_f) / 2: the light that facets of a coarse body block at their own points.
     double behind_facets = 0;
 };
 
-/// What the planner knows of the surfaces of one material, over all its primitives.
+/// Facts about the surfaces of one material, over all its primitives.
 struct MaterialFacts {
     double triangles = 0, receivers = 0;
     double area = 0;                     ///< [m^2]
-    double volume = 0;                   ///< [m^3], of what is closed; otherwise meaningless
+    double volume = 0;                   ///< [m^3] of closed parts; meaningless for open ones
     double mean_edge = 0;                ///< [m]
     glm::vec3 low{1e30f}, high{-1e30f};  ///< bounds [m]
 
-    /// Triangles hang together over edges that just two of them share.
+    /// Triangles are connected by edges that exactly two of them share.
     std::uint32_t parts = 0;
     std::uint32_t convex_parts = 0;  ///< whose points all lie on their hull, within kMostElevation
     std::uint64_t open_edges = 0;    ///< where an odd number of triangles meet
@@ -40,17 +40,18 @@ struct MaterialFacts {
     bool mirrors = false;  ///< a medium with a boundary: eta is not 1
 };
 
-/// What the planner knows of a scene without simulating anything.
+/// Facts about a scene, found without simulation.
 struct SceneFacts {
     std::vector<MaterialFacts> material;  ///< as Scene::materials
     double triangles = 0, receivers = 0;
 
-    /// Nothing stands before any light that comes from above the receivers' horizons: a convex body
-    /// alone, or surfaces that are all parts of one.
+    /// Nothing occludes light above the receivers' horizons: a single convex body, or surfaces that
+    /// are all parts of one.
     bool is_open() const;
 };
 
-/// Elevations at which less than 1/512 of a uniform light is lost: of it, sin^2 comes from lower.
+/// Elevations below which less than 1/512 of uniform light arrives: the fraction sin^2 theta of
+/// uniform irradiance arrives below elevation theta.
 inline constexpr double kMostElevation = 0.0442;
 /// A millionth.
 inline constexpr double kLeastElevation = 0.001;

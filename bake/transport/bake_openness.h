@@ -15,7 +15,7 @@ namespace opaline::bake {
 /// Cube map over which openness is measured for mirror reflection.
 inline constexpr std::uint32_t kOpennessCubemap = 8;
 
-/// What a receiver sees of its hemisphere H: with V the visibility,
+/// The open part of a receiver's hemisphere H, with V the visibility:
 ///     fraction = 1/pi int_H V (n.w) dw,    axis = direction of int_H V (n.w) w dw,
 /// both over the rays of `directions`, so that an unoccluded receiver has fraction 1 exactly. A
 /// fully blocked receiver has fraction 0 and its normal as axis; a receiver without a normal has

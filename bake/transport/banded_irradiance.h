@@ -10,10 +10,9 @@
 
 namespace opaline::bake {
 
-/// gather_irradiance with a factor for each band, traced once: `transport` holds
-/// V max(0, n.w) f_b(n.w) band by band, 6 n n values each, `factor[b]` tabulates f_b at evenly
-/// spaced cosines from 0 to 1, at least two of them. Returns the number of rays: none where there
-/// is nothing to hit.
+/// gather_irradiance with one factor per band and rays traced once. `transport`: V max(0, n.w)
+/// f_b(n.w) band by band, 6 n n values each. `factor[b]` tabulates f_b at two or more evenly spaced
+/// cosines from 0 to 1. Returns the number of rays: none where there is nothing to hit.
 std::uint64_t gather_banded_irradiance(const RayScene& rays, const DirectionSet& directions,
                                        const Receiver& receiver,
                                        std::span<const std::vector<float>> factor,

@@ -12,8 +12,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // More crossings than any body has; bounds the work that a hostile mesh can ask for.
 constexpr int kMostCrossings = 256;
 
-// How far behind a hit the next query starts: behind its twin in a neighbouring triangle, which
-// lies elsewhere by rounding only. Grazing hits are less certain along the ray.
+// Distance at which the next query starts: beyond the hit's duplicate in a neighbouring triangle,
+// which differs by rounding only. The position of a grazing hit along the ray is less certain.
 float step_behind(const PacketHits& hits, std::uint32_t lane) {
     constexpr float kGrazing = 0.02f;
     const float distance = hits.distance[lane];

@@ -103,7 +103,7 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
                                      intersection_error_bound(magnitude)});
         built.triangles_ += p.index.size() / 3;
     }
-    // In an arena of its own: Embree's `threads` setting would limit TBB in the whole process.
+    // An arena of its own, because Embree's `threads` setting limits TBB in the whole process.
     tbb::task_arena arena(threads != 0 ? static_cast<int>(threads) : tbb::task_arena::automatic);
     arena.execute([&built] { rtcCommitScene(built.scene_); });
     if (rtcGetDeviceError(built.device_) != RTC_ERROR_NONE) {

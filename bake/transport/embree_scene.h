@@ -43,8 +43,8 @@ class EmbreeScene {
     glm::vec3 low() const { return low_; }
     glm::vec3 high() const { return high_; }
 
-    /// Embree's version and the instruction set it is pinned to: hit distances differ between
-    /// instruction sets, so both belong into the provenance.
+    /// Embree's version and the instruction set it is pinned to, for the provenance: hit distances
+    /// differ between instruction sets.
     static std::string description();
 
   private:

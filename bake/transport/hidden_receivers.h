@@ -12,10 +12,10 @@ namespace opaline::bake {
 /// Every one of 16 probe rays over the hemisphere meets the back of a single-sided triangle first.
 bool is_hidden(const RayScene& rays, const Receiver& receiver);
 
-/// Vertices that lie inside a closed body, such as those of a floor under what stands on it, are
-/// black, and interpolation would smear their black over the visible rest of their triangles. A
-/// hidden vertex therefore gathers where its nearest visible neighbour does, with its own normal;
-/// if it has none, no visible point depends on it, and it stays as it is.
+/// Vertices inside a closed body are black, such as floor vertices under a statue. Interpolation
+/// would spread the black over the visible parts of their triangles. A hidden vertex therefore
+/// gathers at the origin of its nearest visible neighbour, with its own normal. A hidden vertex
+/// without a visible neighbour stays as it is, because no visible point depends on it.
 ///
 /// Neighbours are joined by an edge within the same primitive.
 /// `receivers`: one per vertex of the scene, in order.

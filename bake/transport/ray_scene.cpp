@@ -32,8 +32,8 @@ void RayScene::occluded(const LaneMask& lanes, RayPacket& packet) const {
 }
 
 PacketHits RayScene::closest(const LaneMask& lanes, const RayPacket& packet) const {
-    // Not flagged as coherent: that is no faster here, and scanned meshes then meet other triangles
-    // than rtcIntersect1 does. Without the flag packets and single rays agree.
+    // Embree's coherent flag is not set: it is no faster here, and on scanned meshes it reports
+    // other triangles than rtcIntersect1. Without it, packets and single rays agree.
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit16 ray;
@@ -50,7 +50,7 @@ PacketHits RayScene::closest(const LaneMask& lanes, const RayPacket& packet) con
         const float length = std::sqrt(x * x + y * y + z * z);
         hits.hit[i] = -1;
         hits.distance[i] = ray.ray.tfar[i];
-        // A normal too short for floats is that of a triangle without area: seen edge on.
+        // A normal that underflows belongs to a triangle without area, which counts as edge-on.
         const float inverse = length > 0 ? 1.0f / length : 0.0f;
         hits.cosine[i] = along * inverse;
         hits.normal_x[i] = x * inverse;

@@ -66,7 +66,7 @@ class RayScene {
 
     std::uint64_t triangles() const { return triangles_.triangles(); }
 
-    /// Nothing can be hit: those who gather light need not trace at all.
+    /// True if nothing can be hit, so that no ray need be traced.
     bool is_empty() const { return triangles() == 0; }
 
   private:

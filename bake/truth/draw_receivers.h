@@ -9,8 +9,8 @@
 
 namespace opaline::bake {
 
-/// `wanted` of `count` indices, ascending, one from each of as many equal runs: spread over all
-/// primitives, never twice the same. Drawn by (seed, stage).
+/// `wanted` of `count` distinct indices, ascending, one from each of `wanted` equal runs, so that
+/// they cover all primitives. Drawn by (seed, stage).
 std::vector<std::uint32_t> draw_evenly(std::size_t count, std::size_t wanted, RandomStage stage,
                                        std::uint64_t seed);
 

@@ -87,7 +87,7 @@ formats::Result<std::vector<TestLight>> integrate_test_lights(unsigned threads) 
         if (!environment) {
             return std::move(environment).error();
         }
-        // Two to three pixels a texel are plenty for these smooth maps, and quick to project.
+        // Two to three pixels per texel suffice for these smooth maps.
         std::vector<formats::DistantDisc> discs = std::move(environment->discs);
         if (!environment->pixel.empty()) {
             environment = runtime::reduce_lat_long(*environment, 4 * kTruthCubemap,

@@ -11,17 +11,17 @@
 
 namespace opaline::bake {
 
-/// Cube map on which the smooth part of the test lights is what it is, whatever the knobs.
+/// Cube map of the smooth part of the test lights; independent of the knobs.
 inline constexpr std::uint32_t kTruthCubemap = 64;
 
-/// A sun of a test light, as exact as it is.
+/// A sun of a test light, as a disc.
 struct TestDisc {
     glm::vec3 direction{0, 1, 0};  ///< unit, toward its centre
     float angular_radius = 0;      ///< [rad]
     double flux = 0;               ///< luminance times solid angle
 };
 
-/// A published light, in luminance: as the runtime would project it for the asset, and as it is.
+/// A published light, in luminance: projected as in the runtime, and exact.
 struct TestLight {
     std::string name;           ///< as for `--light`
     std::vector<float> coarse;  ///< Haar, pairing A, discs included; 6 n n, n the asset's
@@ -41,7 +41,7 @@ formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_s
                                                          unsigned threads,
                                                          const std::filesystem::path& cache = {});
 
-/// Gives them the cube map of another size.
+/// Projects them on a cube map of another size.
 void project_test_lights(std::span<TestLight> lights, std::uint32_t cubemap_size);
 
 }  // namespace opaline::bake

@@ -19,7 +19,7 @@ glm::vec3 direction_of(const RayPacket& packet, std::uint32_t lane) {
     return {packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]};
 }
 
-// Traces the lanes above the horizon; afterwards only those that see the sky are set.
+// Traces the lanes above the horizon and keeps those that see the sky.
 std::uint64_t keep_unoccluded(const RayScene& rays, RayPacket& packet, LaneMask& lanes) {
     if (rays.is_empty()) {
         return 0;

@@ -12,7 +12,7 @@
 
 namespace opaline::bake {
 
-/// Rays to all suns of the test lights, each standing for an equal part of its disc.
+/// Rays to all suns of the test lights; each represents an equal part of its disc.
 struct SunRays {
     struct Packet {
         RayPacket::Lane dir_x, dir_y, dir_z;  ///< unit
@@ -41,8 +41,8 @@ struct SmoothLights {
 };
 SmoothLights make_smooth_lights(std::span<const TestLight> lights);
 
-/// Adds an estimate of the irradiance by everything but suns, times Ft, from sixteen rays
-/// distributed as the cosine. `u`: random, in [0, 1)^2. Unbiased. Returns the number of rays.
+/// Adds an estimate of the irradiance without suns, times Ft, from sixteen cosine-distributed rays.
+/// `u`: random, in [0, 1)^2. Unbiased. Returns the number of rays.
 std::uint64_t add_smooth_irradiance(const RayScene& rays, const SmoothLights& lights,
                                     const Receiver& receiver, double eta, glm::vec2 u,
                                     std::span<double> irradiance);

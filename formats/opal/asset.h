@@ -21,11 +21,12 @@ namespace opaline::formats {
 
 inline constexpr std::uint32_t kOpalVersion = 1;
 
-/// Which side of <T, L> carries the solid angle (translucency.md 3.9). Only A is defined so far.
+/// The side of <T, L> that carries the solid angle (formats/README.md, "Pairing"). Only A is
+/// defined.
 enum class Pairing : std::uint32_t { light_carries_solid_angle = 1 };
 
 /// Relative indices of refraction of a translucent primitive; outside them the exact hemispherical
-/// moments and the fits that bakers use lose their digits (translucency.md 3.2).
+/// moments and the fits that bakers use lose their digits (bake/scattering/README.md, "Fresnel").
 inline constexpr float kMinEta = 1.0f / 3.0f, kMaxEta = 3.0f;
 
 /// What row values mean and how a receiver is shaded from them.
@@ -33,14 +34,13 @@ enum class Shading : std::uint32_t {
     /// L_o = base_color * <T_0, L>; T_0 = V max(0, n.w) / pi, one term, grey or RGB. With gloss
     /// (GlossRecord) the diffuse part shrinks and a specular part is added: gloss_model.h.
     diffuse = 1,
-    /// L_o = base_color * Ft(eta, n.w_o) * sum_k h_k(w_o') <T_k, L> (translucency.md 3.6, 3.8),
-    /// with
-    /// w_o' the direction to the eye refracted into the medium and h_k = Y_lm(w_o'), the real
-    /// orthonormal spherical harmonics, k = l (l + 1) + m; terms = 1, 4, 9, 16 or 25. With
-    /// one term h_0 = 1, so T_0 carries the factor. Grey or RGB.
-    /// Separate (PrimitiveRecord::kSeparate): row 0 is multiple scattering by itself, with h = 1;
-    /// the other terms - 1, none or any of the numbers above, are single scattering with the h_k
-    /// of that number.
+    /// L_o = base_color * Ft(eta, n.w_o) * sum_k h_k(w_o') <T_k, L> (formats/README.md,
+    /// "Translucent shading"), with w_o' the direction to the eye refracted into the medium and h_k
+    /// = Y_lm(w_o'), the real orthonormal spherical harmonics, k = l (l + 1) + m; terms = 1, 4, 9,
+    /// 16 or 25. With one term h_0 = 1, so T_0 carries the factor. Grey or RGB. Separate
+    /// (PrimitiveRecord::kSeparate): row 0 is multiple scattering by itself, with h = 1; the other
+    /// terms - 1, none or any of the numbers above, are single scattering with the h_k of that
+    /// number.
     translucent = 2,
 };
 

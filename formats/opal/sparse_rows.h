@@ -65,10 +65,10 @@ struct SparseRows {
 SparseRows make_sparse_rows(std::uint32_t cubemap_size, std::uint32_t code_bits);
 
 /// Quantises and appends one row: signed symmetric codes, one scale per band for the details and
-/// one for the six averages (16 bits), round to nearest (translucency.md 3.9).
-/// If an average or a detail of a band is NaN or infinite, its scale becomes NaN: the row decodes
-/// to NaN and find_faulty_row finds it. Fails (returns false, nothing appended) if details would
-/// exceed 2^32 - 1.
+/// one for the six averages (16 bits), round to nearest (formats/README.md, `TRAN`). If an average
+/// or a detail of a band is NaN or infinite, its scale becomes NaN: the row decodes to NaN and
+/// find_faulty_row finds it. Fails (returns false, nothing appended) if details would exceed 2^32 -
+/// 1.
 bool append_row(SparseRows& rows, const SparseRow& row);
 
 /// The first row appended with a NaN or infinite value, if any. Every row has `bands` bands.

@@ -11,7 +11,7 @@ namespace opaline::formats {
 inline constexpr std::uint32_t kMaxHarmonics = 25;
 
 /// True for 1, 4, 9, 16 and 25: all orders of every degree up to some l. Any other number would cut
-/// a multiplet, and the result would turn with the axes (translucency.md 3.8).
+/// a multiplet, and the result would depend on the orientation of the axes.
 constexpr bool is_harmonic_count(std::uint32_t count) {
     return count == 1 || count == 4 || count == 9 || count == 16 || count == 25;
 }

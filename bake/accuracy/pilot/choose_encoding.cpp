@@ -6,7 +6,7 @@
 namespace opaline::bake {
 namespace {
 
-// Coefficients that lower the error by less cost bytes in vain.
+// More coefficients must lower the error by this ratio to be worth their bytes.
 constexpr double kHardlyMore = 1.05;
 
 // A 95 % interval is four of them wide.

@@ -7,17 +7,17 @@
 
 namespace opaline::bake {
 
-/// An error to within one standard error of what a pilot found: what is likely.
+/// The pilot's error plus one standard error.
 double likely_error(const ErrorBounds& bounds);
 
-/// What a self-check, which looks at about as many other receivers, hardly ever finds more than:
-/// two standard errors of the difference above what the pilot found.
+/// An upper bound for the self-check, which uses other receivers: the pilot's error plus two
+/// standard errors of the difference.
 double sure_error(const ErrorBounds& bounds);
 
-/// Index of the cheapest encoding to take, given what each errs by, cheapest first. The first that
-/// is sure to meet the target; where none is, the first that is hardly less sure than the surest,
-/// or, if that is not even likely to meet it, the first that is likely. (More coefficients make
-/// sure at the price of bytes alone; all else that lowers an error costs time.)
+/// Index of the encoding to take, given the errors of all, cheapest first. Takes the first that
+/// meets the target with a margin of two standard errors. If none does, takes the first that is
+/// close to the most accurate; if that does not even meet the target with one standard error, the
+/// first that is likely to. (More coefficients cost bytes only; other knobs cost time.)
 /// Precondition: not empty.
 std::size_t choose_encoding(std::span<const ErrorBounds> errors, double target);
 

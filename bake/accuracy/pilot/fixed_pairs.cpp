@@ -20,7 +20,7 @@ std::vector<Encoding> list_encodings(const Knobs& knobs) {
     std::vector<Encoding> encodings;
     for (const std::uint32_t bits : {8u, 16u}) {
         for (const std::uint32_t m : kCoefficients) {
-            // With few coefficients more bits of each gain nothing.
+            // With few coefficients, 16-bit codes gain nothing.
             if (!knobs.coefficients_given && m < texels && (bits == 8 || m >= kLeastOf16Bits)) {
                 encodings.push_back({m, bits});
             }
@@ -28,7 +28,7 @@ std::vector<Encoding> list_encodings(const Knobs& knobs) {
         encodings.push_back(
             {knobs.coefficients_given ? knobs.coefficients : kAllCoefficients, bits});
     }
-    // By the bytes they take, about: an index of two and one or two for each of three bands.
+    // Approximate bytes: two for the index, and one or two for each of three bands.
     const auto bytes = [texels](const Encoding& e) {
         return std::min(e.coefficients, texels) * (e.code_bits == 8 ? 5 : 8);
     };
@@ -93,8 +93,7 @@ std::vector<CheckedPair> insert_fixed(const PilotScene& pilot,
     std::vector<CheckedPair> pairs;
     for (const PilotReceiver& r : receivers) {
         std::span<const CheckedPair>& from =
-            depends_on_trials(pilot.bake, state_of(pilot.subjects, r.material)) ? measured
-                                                                                : others;
+            depends_on_trials(pilot.bake, state_of(pilot.subjects, r.material)) ? measured : others;
         if (from.size() < lights) {
             break;  // cancelled
         }

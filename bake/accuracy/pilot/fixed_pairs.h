@@ -7,8 +7,8 @@
 
 namespace opaline::bake {
 
-/// All that a pilot may choose from, by the bytes that rows take; where the knobs fix the
-/// coefficients, those in 8 and in 16 bits.
+/// The encodings that a pilot may choose from, in order of bytes per row; with fixed coefficients,
+/// only 8 and 16 bits.
 std::vector<Encoding> list_encodings(const Knobs& knobs);
 
 /// The pairs of all receivers under one encoding, receiver by receiver again: those that were

@@ -28,7 +28,7 @@ std::vector<CheckedPair> without_suns(std::span<const CheckedPair> pairs,
     return smooth;
 }
 
-// All that trying a knob takes. The setting is `choice.knobs`, gathered receiver by receiver.
+// Everything needed to try a knob. The setting is `choice.knobs`, gathered receiver by receiver.
 struct Trials {
     const PilotScene& pilot;
     std::span<const PilotReceiver> receivers;  ///< all
@@ -56,9 +56,7 @@ struct Trials {
         return pairs;
     }
     // With all coefficients.
-    std::vector<CheckedPair> measure() const {
-        return measure(std::array{kUnencoded}).front();
-    }
+    std::vector<CheckedPair> measure() const { return measure(std::array{kUnencoded}).front(); }
 
     // Takes the coarsest level of a ladder whose square of the error stays below `allowed`.
     void climb(std::size_t effect, const PilotLadder& ladder, double allowed) {
@@ -71,8 +69,8 @@ struct Trials {
             choice.knobs = settle(choice.knobs);
             rows.prepare(effect);
             const double square = square_error(measure());
-            choice.trials.push_back(
-                {std::string(ladder.knob->name), choice.knobs[*ladder.knob], std::sqrt(square), 16});
+            choice.trials.push_back({std::string(ladder.knob->name), choice.knobs[*ladder.knob],
+                                     std::sqrt(square), 16});
             if (square <= allowed) {
                 return;
             }
@@ -109,11 +107,11 @@ struct Trials {
 // Whether some receiver of the pilot depends on the ladders of the effect.
 bool is_tried(const PilotScene& pilot, std::size_t effect) {
     const GatherStep& gather = pilot.bake.effects.effects[effect].gather;
-    return std::any_of(
-        pilot.subjects.begin(), pilot.subjects.end(), [&](const SubjectState& subject) {
-            return subject.effects[effect].acts &&
-                   (gather.applies == nullptr || gather.applies(subject.layout));
-        });
+    return std::any_of(pilot.subjects.begin(), pilot.subjects.end(),
+                       [&](const SubjectState& subject) {
+                           return subject.effects[effect].acts &&
+                                  (gather.applies == nullptr || gather.applies(subject.layout));
+                       });
 }
 
 // The finest of all ladders, where the user does not fix them.

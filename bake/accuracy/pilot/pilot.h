@@ -20,7 +20,7 @@ struct PilotScene {
     const Context& context;
 };
 
-/// A receiver and what it truly sends out under each test light, whatever the knobs.
+/// A receiver with its true luminance under each test light.
 struct PilotReceiver {
     std::uint32_t receiver = 0, material = 0;
     TwoEstimates truth;
@@ -68,7 +68,7 @@ FixedPairs measure_fixed(const PilotScene& pilot, std::span<const PilotReceiver>
 /// (relative RMS): only a finer cube map lowers it.
 double find_fixed_floor(const FixedPairs& fixed, std::span<const PilotReceiver> receivers);
 
-/// One value of one knob that was tried, the others at their finest or as already chosen.
+/// One tried value of one knob; the others at their finest or as already chosen.
 struct PilotTrial {
     std::string knob;  ///< as in knobs_json
     double value = 0;  ///< kAllCoefficients stands for all
@@ -82,7 +82,7 @@ struct PilotChoice {
                               ///< error is hardly above that of the finest
     double error = 0;         ///< expected, relative RMS
     double likely = 0;        ///< one standard error above that
-    bool met = false;         ///< it is likely that knobs.error_target is
+    bool met = false;         ///< knobs.error_target is likely met
     double finest_error = 0;  ///< with all coefficients and the finest knobs
     double smooth_error = 0;  ///< the same, of lights without suns
     std::vector<PilotTrial> trials{};

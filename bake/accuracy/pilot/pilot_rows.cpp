@@ -6,7 +6,7 @@
 namespace opaline::bake {
 namespace {
 
-// As the finished rows would say it.
+// Luminance as the finished rows would give it.
 Luminance relight_encoded(const DenseRow& row, std::span<const float> h, const RowEncoder& encoder,
                           std::span<const TestLight> lights) {
     formats::SparseRows rows = empty_rows(encoder);
@@ -84,8 +84,7 @@ PairsOfEncodings PilotRows::measure(std::span<const Encoding> encodings) const {
             const RowLayout& layout = own.subject->layout;
             std::vector<float> values;
             const DenseRow row = shape_row(layout, setting_.cubemap_size, values);
-            gather_receiver(own.gatherers, set.outside[i], set.inside[i], place_[range.begin],
-                            row);
+            gather_receiver(own.gatherers, set.outside[i], set.inside[i], place_[range.begin], row);
             const std::vector<float> h = view_of_rows(layout, set.inside[i].normal);
             PairsOfEncodings found(encodings.size());
             for (std::size_t e = 0; e < encodings.size(); ++e) {

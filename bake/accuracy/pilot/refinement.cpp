@@ -5,7 +5,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr double kWorthIts = 0.9;  // error over that before
+constexpr double kWorthIts = 0.9;  // ratio of errors after and before
 constexpr std::uint32_t kLargestCubemap = 128;
 
 // The knobs with finer samples of all effects that have some; nothing: none can be finer.
@@ -21,7 +21,7 @@ std::optional<Knobs> refine_samples(const EffectTable& effects, const Refinement
     return is_finer ? std::optional(std::move(knobs)) : std::nullopt;
 }
 
-// A shadow's edge is as wide as a texel: its error falls by the same factor each time.
+// A shadow edge is as wide as a texel, so its error falls by the same factor each time.
 double least_error_of_texels(const Refinement& refinement) {
     double error = refinement.base->error;
     for (std::uint32_t n = refinement.base->knobs.cubemap_size; n < kLargestCubemap; n *= 2) {

@@ -45,8 +45,8 @@ std::vector<Member> members_of(const SweepResult& result, const Ladder& ladder) 
     return members;
 }
 
-// Next to the finest, a rung shares most of its error and looks better than it is.
-// Of the coefficients of a surface half vanish: "all" is fewer than it says.
+// A rung next to the finest shares most of its error and looks too good. Half of a surface's
+// coefficients vanish, so "all" counts as half.
 bool is_near(const Ladder& ladder, double value, double finest) {
     const double near = ladder == Ladder::coefficients ? 4.01 : 2.01;
     const bool by_step = ladder.knob != nullptr && ladder.knob->theory.rate_by_cosine != nullptr;

@@ -9,15 +9,15 @@
 
 namespace opaline::bake {
 
-/// Where a point stands among all: on the front, and its cost over that of the cheapest point with
-/// no larger error.
+/// A point's relation to the front: whether it is on it, and its cost relative to the cheapest
+/// point with no larger error.
 struct Standing {
     bool on_front_time = false, on_front_bytes = false;
     double times_front_time = 1, times_front_bytes = 1;
 };
 
-/// How one knob converges. Each rung against the ladder's finest, all other knobs being equal: what
-/// errs for other reasons errs in both.
+/// Convergence of one knob. Each rung is compared with the ladder's finest at equal other knobs, so
+/// that other errors cancel.
 struct LadderFit {
     Ladder ladder;
     Theory theory;
@@ -26,7 +26,7 @@ struct LadderFit {
     std::optional<Slope> fit;        ///< nothing where fewer than two rungs can be fitted
 };
 
-/// What the front says of one error: the answer in a sentence.
+/// Time and bytes that the front needs for one error: the summary sentence.
 struct Answer {
     double error = 0;  ///< 1 %, or the nearest of 1, 2, 5 times a power of ten that is reached
     double seconds = 0, bytes = 0;
@@ -39,7 +39,8 @@ struct SweepAnalysis {
     std::vector<LadderFit> fits;
     /// Indices of points; nothing where no two differ enough.
     std::optional<CostPair> equal_time, equal_error;
-    /// Points the interval of whose own error meets that against the finest bake, and all but that.
+    /// Number of points whose error interval overlaps the one against the finest bake, and the
+    /// number of points compared.
     std::size_t checks_agreeing = 0, checks = 0;
 };
 

@@ -8,10 +8,9 @@
 
 namespace opaline::bake {
 
-/// Index of the point that all others are compared with: the one that found the least wrong with
-/// itself, against truths that no knob changes. What was meant to be the finest need not be it: on
-/// little time a preset may have more texels. Of equals the one that took longest.
-/// Precondition: there is one.
+/// Index of the point to compare all others with: the one with the smallest self-measured error. It
+/// need not be the one intended as finest; with little time a preset may have more texels. Ties go
+/// to the slowest. Precondition: there is one.
 std::size_t find_finest(std::span<const PointRecord> points);
 
 /// Chooses the truth and compares all points with it.

@@ -10,7 +10,7 @@ bool beats(const CostPoint& a, const CostPoint& b) {
     return a.cost <= b.cost && a.error <= b.error && (a.cost < b.cost || a.error < b.error);
 }
 
-// Where a picture shows a difference, and is still a picture.
+// Range of errors in which a picture shows a difference.
 bool is_visible(const CostPoint& p) {
     return p.error >= 2e-3 && p.error <= 0.5;
 }

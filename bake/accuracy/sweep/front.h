@@ -7,13 +7,13 @@
 
 namespace opaline::bake {
 
-/// What a setting costs (seconds or bytes, > 0) and how far off it is (relative error, >= 0).
+/// Cost of a setting (seconds or bytes, > 0) and its relative error (>= 0).
 struct CostPoint {
     double cost = 0, error = 0;
 };
 
-/// True for the points that no other beats: none has a smaller error at no more cost, or a smaller
-/// cost at no more error. Of equal points all are on the front.
+/// The Pareto front: true for points that no other dominates in cost and error. Equal points are
+/// all on the front.
 std::vector<bool> pareto_front(std::span<const CostPoint> points);
 
 /// A point's cost over that of the cheapest point whose error is no larger: 1 on the front, else

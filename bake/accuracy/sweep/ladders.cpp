@@ -111,7 +111,7 @@ void add_knob_ladders(Points& points, const Knobs& base) {
 void add_grid(Points& points, const Knobs& base) {
     for (const std::uint32_t n : {8u, 16u, 32u, 64u}) {
         for (const std::uint32_t m : {16u, 32u, 64u, 128u, 256u, 512u, 1024u}) {
-            // Many coefficients of a coarse map, or few of a fine one, are never a good buy.
+            // Many coefficients with a coarse map, or few with a fine one, are never efficient.
             if (m > 2 * n * n || 16 * m < n * n) {
                 continue;
             }
@@ -120,7 +120,7 @@ void add_grid(Points& points, const Knobs& base) {
             knobs.coefficients = m;
             const std::string label = "N = " + std::to_string(n) + ", M = " + std::to_string(m);
             points.add(label, Ladder::grid, n, knobs);
-            // What eight bits cost shows where little is truncated.
+            // The error of 8-bit codes shows where little is truncated.
             if (m >= 256) {
                 knobs.code_bits = 16;
                 points.add(label + ", 16 bits", Ladder::grid, n, knobs);

@@ -10,7 +10,7 @@
 
 namespace opaline::bake {
 
-/// A family of settings that differ in one thing, or together in several.
+/// A family of settings that differ in one knob, or in several together.
 struct Ladder {
     std::string_view name;           ///< as in tables and files; no two ladders share it
     const KnobSpec* knob = nullptr;  ///< of one effect's knob
@@ -23,9 +23,9 @@ struct Ladder {
     static const Ladder resolution;    ///< N with all coefficients in 16 bits: N alone
     static const Ladder coefficients;  ///< M
     static const Ladder code_bits;     ///< of the stored coefficients
-    static const Ladder exact_rays;  ///< 0: light maps and shared rays, 1: neither
-    static const Ladder grid;        ///< N and M together
-    static const Ladder diagonal;    ///< all knobs together, step by step
+    static const Ladder exact_rays;    ///< 0: light maps and shared rays, 1: neither
+    static const Ladder grid;          ///< N and M together
+    static const Ladder diagonal;      ///< all knobs together, step by step
     /// Of the Monte Carlo reference, which is no bake: no point stands on it.
     static const Ladder reference_samples;
 };
@@ -51,15 +51,15 @@ struct Rung {
     double value = 0;
 };
 
-/// One setting to bake with. No two points of a list make the same bake: what stands on several
-/// ladders has several rungs; the truth may stand on none.
+/// One setting to bake with. No two points of a list make the same bake: a setting on several
+/// ladders has several rungs, and the truth may be on none.
 struct SweepPoint {
     std::string label;  ///< "preview", "M = 256": as its first rung says
     std::vector<Rung> rungs;
     Knobs knobs;
 };
 
-/// Which knobs matter to a scene.
+/// The knobs that matter for a scene.
 struct SweepSubject {
     std::vector<const KnobSpec*> knobs;  ///< of effects: those that some subject has use for
     bool in_media = false;               ///< light is simulated inside media
@@ -69,8 +69,7 @@ struct SweepSubject {
 SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& scene,
                            std::span<const PlanEntry> plan, const Knobs& knobs);
 
-/// True if they make the same transport of a scene: knobs of effects that it does not call for do
-/// not count.
+/// True if both give the same transport; knobs of effects that are not simulated do not count.
 bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject);
 
 /// What a list of points is made for.
@@ -84,7 +83,7 @@ struct LadderRequest {
 /// effects that the scene does not call for.
 std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base);
 
-/// Candidates for what the others are measured against, the finest first.
+/// Candidates for the truth, the finest first.
 std::vector<SweepPoint> make_truths(const LadderRequest& request);
 
 }  // namespace opaline::bake

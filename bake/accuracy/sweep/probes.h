@@ -21,8 +21,8 @@ struct ProbeLights {
 /// The published ones (measure/test_lights.h) for a cube map of n x n texels.
 formats::Result<ProbeLights> make_probe_lights(std::uint32_t n, unsigned threads);
 
-/// Receivers that all points of a sweep are compared at: all, or `most` spread over the file, one
-/// in each of as many equal runs and at irregular places in them. Ascending.
+/// Receivers at which the points of a sweep are compared, ascending: all, or `most` of them, one at
+/// an irregular position in each of `most` equal runs.
 std::vector<std::uint32_t> choose_probes(std::size_t receivers, std::size_t most);
 
 /// Relit luminance at the probes: value[probe * lights + light]. Without base colour, and of media
@@ -37,9 +37,9 @@ ErrorReport compare_probes(std::span<const double> luminance, std::span<const do
                            std::span<const std::string> effect,
                            std::span<const std::string> lights);
 
-/// Adds to an error against a truth that truth's own error, as errors of different origins add: in
-/// squares; also to the upper end of the interval, to each effect and to each light that both know.
-/// The lower end stays: errors of one origin do not add.
+/// Adds the truth's own error in quadrature to an error against it, to the upper end of its
+/// interval, and to the common effects and lights. The lower end stays, because correlated errors
+/// may cancel.
 void add_error_of_truth(ErrorReport& error, const ErrorReport& truth);
 
 /// RMS of the difference over RMS of the truth; 0 where the truth is black.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kReceivers = 256, kFewestReceivers = 16;
 constexpr std::uint32_t kFewest = 4, kStep = 4, kTruth = 2;
-// Large lamps: a sun alone is hardly ever found from within a body that refracts.
+// Large lights: paths inside a refracting body hardly ever hit a sun.
 constexpr const char* kLight = "studio";
 
 // Of how many receivers there is time for the first two rungs and their truth, given what the first

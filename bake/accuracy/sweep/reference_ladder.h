@@ -12,12 +12,12 @@
 
 namespace opaline::bake {
 
-/// The Monte Carlo reference with so many samples.
+/// The Monte Carlo reference with a given number of samples.
 struct ReferenceRung {
     std::uint32_t samples = 0;  ///< for each receiver
     double seconds = 0;         ///< of all of them
     double error = 0;   ///< measured: RMS of the difference from the truth, over the truth's RMS
-    double stated = 0;  ///< what the stored variance makes of it
+    double stated = 0;  ///< predicted from the stored variance
 };
 
 struct ReferenceLadder {
@@ -34,10 +34,10 @@ struct ReferenceLadderOptions {
     std::uint64_t seed = 0;
 };
 
-/// Estimates the light that vertices send along their normals with 4, 16, 64, ... samples, each
-/// rung with those of the one before, and then by twice as many as the last, others. The truth's
-/// variance is subtracted. Nothing where no light
-/// reaches the receivers. Errors: resource, interrupted.
+/// Estimates the radiance of vertices along their normals with 4, 16, 64, ... samples; each rung
+/// contains the samples of the one before. The truth has twice as many, independent samples, and
+/// its variance is subtracted. Nothing if no light reaches the receivers. Errors: resource,
+/// interrupted.
 formats::Result<std::optional<ReferenceLadder>> climb_reference(
     const formats::Scene& scene, const ReferenceLadderOptions& options, const Context& context);
 

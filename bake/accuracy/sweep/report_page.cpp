@@ -29,7 +29,7 @@ formats::Result<std::string> photograph(const Picture& picture) {
     return data_uri({display.width, display.height, std::move(display.rgba)});
 }
 
-// The pictures of a pair and what is wrong with each.
+// The pictures of a pair with their difference images.
 formats::Result<Json> pair_pictures(const SweepResult& result, const CostPair& pair) {
     const Picture& truth = result.points[result.truth].picture;
     const Picture* const shown[] = {&result.points[pair.better].picture,
@@ -108,7 +108,7 @@ formats::Result<std::string> make_report_page(const SweepResult& result,
             pictures[name] = std::move(*own);
         }
     }
-    // Data last: nothing that it holds is taken for a mark.
+    // Insert the data last, so that nothing in it is taken for a placeholder.
     std::string page(kPageTemplate);
     replace_mark(page, "/*STYLE*/", kPageStyle);
     replace_mark(page, "/*LIBRARY*/", kChartLibrary);

@@ -9,8 +9,8 @@
 
 namespace opaline::bake {
 
-/// JSON text that may stand in a <script> element of a page: no tag can begin or end in it,
-/// whatever the names in the scene are.
+/// JSON text that is safe inside a <script> element: no tag can begin or end in it, whatever names
+/// the scene has.
 std::string json_for_html(const nlohmann::ordered_json& json);
 
 /// RFC 4648, with padding.

@@ -14,8 +14,8 @@
 namespace opaline::bake {
 namespace {
 
-// The kernel counts the peak anew, so that each bake of a process has its own. Where it does not,
-// peaks are those of the process so far.
+// Resets the kernel's peak counter, so that each bake has its own peak. Where that fails, peaks are
+// those of the process so far.
 void forget_peak_memory() {
     ::malloc_trim(0);
     std::ofstream("/proc/self/clear_refs") << "5";
@@ -58,9 +58,9 @@ StageGroups group_stages(const StageLog& stages, double seconds_total) {
         if (stage.group == kPreparationGroup) {
             continue;
         }
-        const auto same =
-            std::find_if(groups.begin(), groups.end(),
-                         [&](const GroupSeconds& g) { return g.name == stage.group; });
+        const auto same = std::find_if(groups.begin(), groups.end(), [&](const GroupSeconds& g) {
+            return g.name == stage.group;
+        });
         if (same == groups.end()) {
             groups.push_back({stage.group, stage.seconds});
         } else {

@@ -29,7 +29,7 @@ StageGroups group_stages(const StageLog& stages, double seconds_total);
 /// Of a group; 0 where there is none of that name.
 double seconds_of(const StageGroups& groups, const std::string& name);
 
-/// What came of one point.
+/// The result of one point.
 struct PointRecord {
     SweepPoint point;
     double seconds = 0;      ///< of the whole bake, its self-check included
@@ -46,7 +46,7 @@ struct PointRecord {
     runtime::Picture picture;       ///< empty where none was wanted
 };
 
-/// What all points are looked at with.
+/// Probes, lights and camera shared by all points.
 struct SweepView {
     std::vector<std::uint32_t> probes;
     formats::Environment picture_light;

@@ -58,7 +58,8 @@ struct Sweep {
     LadderRequest ladder_request() const { return {effects, result.subject, options.bake}; }
 
     double left() const { return options.seconds - seconds_since(start); }
-    // Predictions are good to a factor of two; one machine is wrong by the same factor each time.
+    // Predictions are right within a factor of two, and the factor is the same for all points on a
+    // machine.
     double scale() const { return predicted > 0 ? measured / predicted : 2.0; }
 
     // Why a point is not worth starting; empty: it is.
@@ -133,7 +134,7 @@ std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
     return std::nullopt;
 }
 
-// The cheapest points teach the most per second, but joint ladders can wait.
+// Cheap points first: they give the most information per second. Joint ladders come last.
 int urgency(const SweepPoint& point) {
     const auto stands_on = [&](Ladder ladder) {
         return std::any_of(point.rungs.begin(), point.rungs.end(),
@@ -174,8 +175,12 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         return std::move(picture_light).error();
     }
     const SceneFacts facts = inspect_scene(scene);
-    Sweep sweep{
-        .effects = effects, .scene = scene, .facts = facts, .options = options, .context = context, .on_step = on_step};
+    Sweep sweep{.effects = effects,
+                .scene = scene,
+                .facts = facts,
+                .options = options,
+                .context = context,
+                .on_step = on_step};
     SweepResult& result = sweep.result;
     result.source = std::filesystem::path(scene.source).filename().string();
     result.sha256 = scene.sha256;
@@ -203,7 +208,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     }
     result.plan = plan_bake(effects, scene, facts, *preview);
     result.subject = sweep_subject(effects, scene, result.plan, *preview);
-    // A quick one shows how fast this machine is.
+    // A quick point measures the speed of this machine.
     SweepPoint first{std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
     first.knobs.check_model = true;
     if (auto status = sweep.visit(first, sweep.left()); !status) {
@@ -223,8 +228,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         return std::move(reference).error();
     }
     result.reference = std::move(*reference);
-    if (sweep.predict_point(*preview).seconds * sweep.scale() >
-        kShare * options.seconds) {
+    if (sweep.predict_point(*preview).seconds * sweep.scale() > kShare * options.seconds) {
         result.base = Quality::draft;
         result.plan = plan_bake(effects, scene, facts, *draft);
     }
@@ -240,8 +244,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         if (urgency(a) != urgency(b)) {
             return urgency(a) < urgency(b);
         }
-        return sweep.predict_point(a.knobs).seconds <
-               sweep.predict_point(b.knobs).seconds;
+        return sweep.predict_point(a.knobs).seconds < sweep.predict_point(b.knobs).seconds;
     });
     for (const SweepPoint& point : points) {
         // One preset must not take the time of all ladders.

@@ -52,13 +52,12 @@ struct SweepStep {
     const std::string& label;
 };
 
-/// Bakes the ladders of a scene: `draft` first, then climbs that of the Monte Carlo reference for a
-/// twentieth of the time, then bakes the most accurate setting that half of the time allows, then
-/// the other presets, one-at-a-time and diagonal ladders, and grids, the cheap ones of each first.
-/// The ladders stand around `preview`, or `draft` where a twentieth of the time is less than
-/// `preview` takes. Predictions are predict_costs', scaled by how long the points so far took. A
-/// point that runs out of memory is skipped. Errors: as run_bake; usage, for a light that is none
-/// or too little time.
+/// Bakes the ladders of a scene. Order: `draft`; the ladder of the Monte Carlo reference, for a
+/// twentieth of the time; the most accurate setting that half of the time allows; the other
+/// presets; one-at-a-time and diagonal ladders and grids, cheap points first. The ladders stand
+/// around `preview`, or `draft` where a twentieth of the time is less than `preview` takes.
+/// Predictions are predict_costs', scaled by how long the points so far took. A point that runs out
+/// of memory is skipped. Errors: as run_bake; usage, for a light that is none or too little time.
 formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats::Scene& scene,
                                        const SweepOptions& options, const Context& context,
                                        const std::function<void(const SweepStep&)>& on_step);

@@ -9,7 +9,7 @@
 
 namespace opaline::bake {
 
-/// One rung of a ladder and how far its result is from that of the ladder's finest.
+/// One rung of a ladder, with its difference from the ladder's finest rung.
 struct Convergence {
     double value = 0;    ///< of the knob
     double error = 0;    ///< relative RMS
@@ -22,7 +22,7 @@ struct Slope {
     double slope = 0, intercept = 0;
     double standard_error = 0;      ///< of the slope; 0 where only two points are left to fit
     std::vector<double> used;       ///< values of the rungs fitted
-    std::vector<double> saturated;  ///< of those left out: finer, but hardly closer
+    std::vector<double> saturated;  ///< values left out: finer, but hardly closer
 };
 
 /// Least squares through the logarithms. Left out: errors of 0, and from the fine end the rungs
@@ -30,7 +30,7 @@ struct Slope {
 /// remain. `rungs`: from coarse to fine. `semi_log`: value itself instead of its logarithm.
 std::optional<Slope> fit_slope(std::span<const Convergence> rungs, bool semi_log);
 
-/// The rate at which theory lets an error fall with a knob.
+/// The theoretical rate at which the error falls with a knob.
 struct Theory {
     double rate = 0;        ///< exponent of the value, or of e per step if `semi_log`
     bool semi_log = false;  ///< the error falls by a factor per step of the value

@@ -7,7 +7,7 @@
 
 namespace opaline::bake {
 
-/// The knobs that a sweep changes, as they stand in its tables.
+/// The knobs that a sweep changes, as in its tables.
 nlohmann::ordered_json sweep_knobs_json(const Knobs& knobs);
 
 /// One row a point, in the order in which they were baked; RFC 4180. Columns: label, the ladders it

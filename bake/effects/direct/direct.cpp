@@ -18,7 +18,7 @@ namespace {
 // acts inside media is.
 PlanEntry decide(const PlanInput& input) {
     PlanEntry entry;
-    // Under `white` a diffuse surface sends back at most its albedo.
+    // Under `white` a diffuse surface reflects at most its albedo.
     const formats::Rgb c = input.material.base_color;
     entry.bound = static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex);
     entry.alternative = input.material.medium.has_value();
@@ -68,8 +68,7 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
 }
 
 // T = V max(0, n.w) / pi: albedo 1.
-std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver,
-                  const DenseRow& row) {
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const auto& directions = static_cast<const Directions&>(*inputs.own.prepared).set;
     std::vector<float> dense(row.size());
     const std::uint64_t rays =
@@ -125,8 +124,7 @@ EffectDescriptor describe_direct(Effect id) {
         .truth = {.reference = "rays to the suns, and to all else four a texel of 6 x 64 x 64",
                   .make = make_truth,
                   .eval = eval,
-                  .work = [](const SubjectCost& c,
-                             TruthEffort) { return direct_truth_work(c); }},
+                  .work = [](const SubjectCost& c, TruthEffort) { return direct_truth_work(c); }},
         .tint = [](const Prepared& albedo) { return static_cast<const Albedo&>(albedo).value; }};
 }
 

@@ -11,14 +11,14 @@
 
 namespace opaline::bake {
 
-/// What receivers of an opaque surface truly reflect, albedo 1: rays to the suns, dense quadrature
-/// of all else.
+/// True reflected luminance of opaque receivers with albedo 1: rays to the suns, dense quadrature
+/// of all other light.
 struct DirectTruth {
     DirectionSet directions;
     SunRays suns;
 };
 DirectTruth make_direct_truth(std::span<const TestLight> lights);
-/// Both estimates are the same: no chance is in it. `traced` adds up.
+/// Both estimates are equal, because the computation is deterministic. `traced` adds up.
 TwoEstimates eval_truth(const DirectTruth& truth, const RayScene& rays, const Receiver& receiver,
                         std::span<const TestLight> lights, std::uint64_t& traced);
 Work direct_truth_work(const SubjectCost& cost);

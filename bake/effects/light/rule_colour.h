@@ -4,11 +4,11 @@
 
 namespace opaline::bake {
 
-/// Whether a medium needs three bands. What is left out if it has one: the difference between its
-/// bands. Coefficients are all that they can differ by: base colour, texture and veins multiply the
-/// light that leaves, and stand in no row. So nothing is left out where the coefficients are
-/// exactly equal; otherwise two bands, neither negative, differ at most by the larger, whose bound
-/// is that of what is simulated of the medium.
+/// Decides whether a medium needs three bands. With one band, the difference between the bands is
+/// lost. Bands differ by their coefficients only, because base colour, texture and veins multiply
+/// the light that leaves and are in no row. So nothing is lost where the coefficients are equal.
+/// Otherwise two non-negative bands differ at most by the larger, which the medium's simulated
+/// effects bound.
 PlanEntry decide_colour(const PlanInput& input);
 
 }  // namespace opaline::bake

@@ -9,7 +9,7 @@ PlanEntry decide_visibility(const PlanInput& input) {
     const Horizon& horizon = input.subject.horizon;
     const double below = horizon.elevation * horizon.elevation;
     if (input.material.medium) {
-        // Light enters anywhere on the facets, not at the vertices alone.
+        // Light enters anywhere on the facets, not only at vertices.
         entry.bound = std::min(1.0, below + horizon.behind_facets);
     } else {
         const formats::Rgb c = input.material.base_color;

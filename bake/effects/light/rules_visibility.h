@@ -4,12 +4,12 @@
 
 namespace opaline::bake {
 
-/// Whether anything may stand between a material's receivers and the light. Where nothing does, all
-/// light above a receiver's horizon arrives and no ray need be traced to know it. Of a uniform
-/// light of radiance 1, what surfaces no higher than an elevation e can take away is at most
+/// Decides whether anything may occlude the light of a material's receivers. If nothing does, all
+/// light above the horizon arrives and no ray is traced. Surfaces up to an elevation e block at
+/// most this share of uniform light:
 ///     1/pi int_(elevation < e) (n.w) dw = sin^2 e;
-/// from points on a facet of a convex body, whose shading normal n leans away from the facet's n_f,
-/// the facet takes away
+/// At a point of a convex body whose shading normal n is tilted against the facet's normal n_f, the
+/// facet blocks
 ///     1/pi int_(n.w > 0, n_f.w < 0) (n.w) dw = (1 - n.n_f) / 2.
 PlanEntry decide_visibility(const PlanInput& input);
 

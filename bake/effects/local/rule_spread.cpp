@@ -12,15 +12,15 @@
 namespace opaline::bake {
 namespace {
 
-// How a body's shape differs from the half space that a local answer takes it for.
+// The deviation of a body's shape from the half space of the local approximation.
 struct Shape {
     double feature;    // [m] over which irradiance varies
     double thickness;  // [m]
     double angle;      // [rad] between facets and the smooth surface
 };
 
-// What multiple scattering of one band loses of irradiance that varies over a feature, what of it
-// gets through the body, and what facets receive less than the surface that they stand for.
+// Error of multiple scattering in one band: loss for irradiance that varies over a feature, light
+// that passes through the body, and the irradiance deficit of facets.
 double spread_of_multiple(const Band& band, double g, double eta, const Shape& shape) {
     const Dipole dipole =
         make_dipole(DipoleKind::classic, (1 - g) * band.sigma_s, band.sigma_a, eta);
@@ -30,9 +30,9 @@ double spread_of_multiple(const Band& band, double g, double eta, const Shape& s
                      0.5 * shape.angle * shape.angle * all);
 }
 
-// The same of single scattering. Light enters r = sin(theta') / (sigma_t (1 + cos(theta'))) beside
-// where it leaves, on average along the path: irradiance is seen shifted by that. A path so short
-// sees its own facets only, whose cosines differ in proportion to their angle.
+// The same for single scattering. On average light enters at a distance r = sin(theta') / (sigma_t
+// (1 + cos(theta'))) from its exit, so irradiance appears shifted by r. A short path sees only its
+// own facets, whose cosines differ in proportion to their angle.
 double spread_of_single(const Band& band, double eta, const Shape& shape) {
     const double sigma_t = band.sigma_s + band.sigma_a;
     if (!(band.sigma_s > 0)) {
@@ -51,8 +51,8 @@ PlanEntry decide_spread(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
     const auto eta = static_cast<double>(medium.eta), g = formats::mean_cosine(medium.phase);
     const MaterialFacts& subject = input.subject;
-    // Irradiance varies from vertex to vertex at most; a closed body of volume V and area A is 2V/A
-    // thick on average, and its thin parts are not much thinner than a quarter of that.
+    // Irradiance varies at most from vertex to vertex. The mean thickness of a closed body of
+    // volume V and area A is 2 V/A; thin parts are taken as a quarter of that.
     const Shape shape{4 * subject.mean_edge,
                       subject.is_closed() ? 0.5 * subject.volume / subject.area : 0,
                       std::acos(std::clamp(1 - 2 * subject.horizon.behind_facets, -1.0, 1.0))};

@@ -4,10 +4,10 @@
 
 namespace opaline::bake {
 
-/// Whether light is carried across the surface of a medium, or leaves where it entered
-/// (translucency.md 9, opaque limit). The bound is the sum of what a half space, lit as the vertex
-/// is, has wrong: irradiance that varies over four mean edges and is blurred by the profile, light
-/// that gets through the body, and facets that lean away from the smooth surface.
+/// Decides whether light spreads along the surface of a medium, or leaves where it entered
+/// (README.md, "Bounds"). The bound is the sum of three errors of a half space lit like the vertex:
+/// irradiance that varies over four mean edges and is blurred by the profile, light that passes
+/// through the body, and facets tilted against the smooth surface.
 PlanEntry decide_spread(const PlanInput& input);
 
 }  // namespace opaline::bake

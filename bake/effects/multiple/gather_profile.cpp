@@ -8,7 +8,7 @@
 namespace opaline::bake {
 namespace {
 
-// Within this radius lie about twenty samples: enough to average, few enough to stay local.
+// About twenty samples lie within this radius: enough for a mean, and still local.
 constexpr double kNearSpacings = 2.5;
 
 // The table has 64 evenly spaced steps per octave, so a step is the leading bits of a float.

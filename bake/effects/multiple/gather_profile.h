@@ -9,10 +9,10 @@
 namespace opaline::bake {
 
 /// A profile of this width, in spacings of a blue-noise set, is summed to better than 1 %
-/// (translucency.md 3.7).
+/// (multiple/README.md, "Sampling").
 inline constexpr double kWidthPerSpacing = 1.2;
 
-/// A medium's profile made fit for sums over samples `spacing` apart.
+/// A medium's profile, prepared for sums over samples `spacing` apart.
 ///
 /// Samples farther apart than the width of the profile sample its peak badly: the sum errs by tens
 /// to thousands of per cent. The profile is therefore split in two,

@@ -30,7 +30,7 @@ struct MediumProfile {
 MediumProfile make_medium_profile(const formats::Medium& medium, std::uint64_t seed,
                                   const Context& context);
 
-/// Times samples per path: enough for the shape of a body that light crosses.
+/// Times samples per path: resolves the shape of a body that light crosses.
 inline constexpr double kLeastSamplesPerPath = 2000;
 
 /// Number of samples on the surface of a medium: `per_path` per squared depth of its source. At

@@ -83,8 +83,7 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
 }
 
 // T_0 += T_d / (pi c_exit h_0).
-std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver,
-                  const DenseRow& row) {
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const MultipleStage& stage = static_cast<const Samples&>(*inputs.own.samples).stage;
     std::vector<ClusterWeight> weights;
     collect_weights(stage.tree, stage.profile, receiver.inside.position, receiver.inside.normal,
@@ -132,8 +131,7 @@ struct Truth : Prepared {
     std::uint32_t points = 0;
 };
 
-// Points of the surface for each of two estimates. The truth need be no finer than what is asked
-// for.
+// Points of the surface for each of two estimates. The truth need not be finer than the target.
 std::uint32_t truth_points(TruthEffort effort) {
     return effort.target >= 0.03 ? 256 : effort.target >= 0.015 ? 512 : 1024;
 }

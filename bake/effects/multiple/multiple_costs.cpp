@@ -25,7 +25,7 @@ double texels(std::uint32_t n) {
     return static_cast<double>(formats::cubemap_texels(n));
 }
 
-// Coefficients that a sample or node keeps: below its horizon they vanish.
+// Coefficients that a sample or node keeps; those below its horizon vanish.
 double kept_by_samples(const Knobs& knobs) {
     return std::min(static_cast<double>(sample_coefficients(knobs)), texels(knobs.cubemap_size));
 }
@@ -58,7 +58,7 @@ double expected_samples(const formats::Medium& medium, double area, const Knobs&
 
 double count_weights(const formats::Medium& medium, const MaterialFacts& facts, double samples,
                      double tolerance) {
-    constexpr double kRounding = 1.44;  // nodes have 1/2 to 1 of the area that would do
+    constexpr double kRounding = 1.44;  // accepted nodes have 1/2 to 1 of the allowed area
     const double sample_area = facts.area / samples;
     const double reach = std::sqrt(facts.area / pi);
     double count = 0;
@@ -121,9 +121,9 @@ Work samples_work(const SubjectCost& cost) {
     const double samples = expected_samples(cost.medium(), cost.facts.area, knobs);
     const double own = texels(knobs.cubemap_size);
     Work work{samples * rates.place_sample, 0};
-    const double seen = !cost.layout.occluded          ? 0.5 * rates.open_cell  // half are below the horizon
-                        : knobs.exact_rays ? 0.5 * rates.coherent_ray.at(input.triangles)
-                                           : rates.shared_texel.at(input.triangles);
+    const double seen = !cost.layout.occluded ? 0.5 * rates.open_cell  // half are below the horizon
+                        : knobs.exact_rays    ? 0.5 * rates.coherent_ray.at(input.triangles)
+                                              : rates.shared_texel.at(input.triangles);
     work.shared += samples * own * (seen + rates.truncate_texel);
     // build_cluster_tree: each level adds all samples up; each node is truncated.
     const double levels = std::max(1.0, std::ceil(std::log2(samples / kSamplesPerLeaf)) + 1);
@@ -137,7 +137,8 @@ Work multiple_rows_work(const SubjectCost& cost) {
     const Knobs& knobs = cost.input.knobs;
     const double samples = expected_samples(cost.medium(), cost.facts.area, knobs);
     const double weights = count_weights(cost.medium(), cost.facts, samples, knobs[kEpsilon]);
-    const double entry = cost.input.rates.gather_entry * (cost.layout.bands() == 1 ? kGreyEntry : 1);
+    const double entry =
+        cost.input.rates.gather_entry * (cost.layout.bands() == 1 ? kGreyEntry : 1);
     return {0, cost.receivers * weights *
                    (cost.input.rates.take_weight + kept_by_samples(knobs) * entry)};
 }

@@ -5,7 +5,7 @@
 
 namespace opaline::bake {
 
-/// Samples that the surface of a medium gets.
+/// Number of samples on the surface of a medium.
 double expected_samples(const formats::Medium& medium, double area, const Knobs& knobs);
 
 /// Nodes and samples that a gather on average takes for a receiver: where the profile changes over

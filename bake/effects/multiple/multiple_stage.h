@@ -13,7 +13,7 @@
 
 namespace opaline::bake {
 
-/// What all receivers of one medium share in multiple scattering.
+/// Data of multiple scattering that all receivers of one medium share.
 struct MultipleStage {
     MediumProfile medium;
     GatherProfile profile;  ///< of the medium, for these samples
@@ -32,9 +32,9 @@ struct MultipleOptions {
     std::uint32_t bands = 3;  ///< or 1, where those of the medium coincide
 };
 
-/// Samples the surface of the material's medium, whose profile is `medium`, traces what enters, and
-/// builds the tree. `rays`: what may stand before the samples; none is traced if it is empty.
-/// Incomplete if the context is cancelled.
+/// Samples the surface of the material's medium with profile `medium`, traces the entering light,
+/// and builds the tree. `rays`: the occluders; no ray is traced if it is empty. Incomplete if the
+/// context is cancelled.
 MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
                                std::uint32_t material, const MediumProfile& medium,
                                const MultipleOptions& options, const Context& context);

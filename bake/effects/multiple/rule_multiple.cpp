@@ -12,7 +12,7 @@ namespace {
 
 using formats::Medium;
 
-// Those whose centre is finite and known without a table.
+// Profiles with a finite centre in closed form.
 bool is_dipole(const Medium& medium) {
     return medium.fidelity == Medium::Fidelity::physical &&
            medium.profile != Medium::Profile::beams &&
@@ -21,8 +21,8 @@ bool is_dipole(const Medium& medium) {
 
 double half_space_bound(const Medium& medium, const Band& band) {
     const double g = formats::mean_cosine(medium.phase);
-    // Through a thin body light can come from both sides. Of a strongly forward phase function
-    // (g .98 and more, index 1) what is baked is up to 1.9 times the classic total: one side's.
+    // Light can enter a thin body from both sides. With a strongly forward phase function (g >=
+    // 0.98, index 1) one side of the baked result is up to 1.9 times the classic total.
     return 2 * dipole_total(make_dipole(DipoleKind::classic, (1 - g) * band.sigma_s, band.sigma_a,
                                         static_cast<double>(medium.eta)));
 }
@@ -42,8 +42,8 @@ double small_body_bound(const Medium& medium, const Band& band, double diagonal,
     const auto dipole_of = [&](DipoleKind kind) {
         return make_dipole(kind, reduced, band.sigma_a, 1);
     };
-    // The better one is scaled to a walk's energy beyond single scattering: of what enters a half
-    // space no more returns than what survives two scatterings.
+    // The better dipole is scaled to a walk's multiple scattering, which is at most the light that
+    // survives two scattering events.
     const Dipole better = dipole_of(DipoleKind::better);
     const double centre = medium.profile == Medium::Profile::classic
                               ? eval_dipole(dipole_of(DipoleKind::classic), 0)

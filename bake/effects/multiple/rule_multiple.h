@@ -4,22 +4,20 @@
 
 namespace opaline::bake {
 
-/// Light that scatters several times in a medium. The bound is what diffusion makes of a half space
-/// on both sides (translucency.md 9), or what a body so small can send out, see small_body_bound.
-/// The first is one of the model: what really crosses a thin body of a forward phase function may
-/// be more, whether diffusion is simulated or not.
+/// Light that scatters several times in a medium. The bound is the smaller of twice the reflectance
+/// of a half space by diffusion, and small_body_bound (README.md, "Bounds"). The first bounds the
+/// model: the light that truly crosses a thin body with a forward phase function may be more.
 PlanEntry decide_multiple(const PlanInput& input);
 
-/// Bound on the radiance that a body of one band sends out after two scatterings or more, where
-/// nothing outside of it is brighter than 1; and on what diffusion makes of it. `diagonal` [m] of
-/// the body's bounds, `area` [m^2] of its surface. Infinity where there is none: behind a boundary
-/// that reflects inside (eta is not 1), light may travel any distance in a body however small.
+/// Bound on the radiance of a body in one band after two or more scattering events, under radiance
+/// of at most 1; also a bound on the result of diffusion. `diagonal` [m] of the body's bounding
+/// box, `area` [m^2] of its surface. Infinity if eta is not 1: with internal reflection, light may
+/// travel any distance in a small body.
 ///
-/// Light that a line through the body, of length d at most, picks up by scattering is a share
-/// alpha (1 - e^(-sigma_t d)) of what arrives at its points; what of that has scattered before is
-/// such a share of another line's light, which is at most 1. Diffusion sums R_d, which is largest
-/// at its centre, over the surface: at most R_d(0) A; where R_d is scaled to the energy of a walk,
-/// as if that were alpha^2, what survives two scatterings.
+/// A line of length d through the body gains by scattering at most the share alpha (1 - e^(-sigma_t
+/// d)) of the light at its points. The part of that light that scattered before is at most such a
+/// share again. Diffusion sums R_d over the surface, so it is at most R_d(0) A, because R_d is
+/// largest at its centre. Where R_d is scaled to a walk's energy, the walk returns at most alpha^2.
 double small_body_bound(const formats::Medium& medium, const Band& band, double diagonal,
                         double area);
 

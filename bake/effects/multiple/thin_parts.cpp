@@ -63,7 +63,7 @@ double closed_body_error(const std::array<double, 3>& lengths, double mean_chord
 
 double open_body_error(const std::array<double, 3>& lengths, const RayScene& rays,
                        std::span<const BodyPoint> points) {
-    constexpr float kNoLimit = 1e30f;  // past a hole nothing is near
+    constexpr float kNoLimit = 1e30f;  // beyond a hole nothing is near
     const double longest = *std::max_element(lengths.begin(), lengths.end());
     double sum = 0;
     std::size_t count = 0;

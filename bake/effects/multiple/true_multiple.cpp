@@ -10,7 +10,7 @@
 namespace opaline::bake {
 namespace {
 
-// A piece of a triangle over which the profile hardly varies.
+// A piece of a triangle small enough for the profile to be nearly constant on it.
 struct Piece {
     std::uint32_t triangle;
     std::array<glm::vec3, 3> barycentric;
@@ -23,8 +23,8 @@ double luminance_far(const GatherProfile& profile, float r2) {
            0.0722 * static_cast<double>(r[2]);
 }
 
-// Pieces of all triangles with the running sum of R_d dA, split until each is small against its
-// distance or against what the profile falls over.
+// Pieces of all triangles with the cumulative sum of R_d dA, split until each is small against its
+// distance or the profile's length.
 struct PieceTable {
     std::vector<Piece> pieces;
     std::vector<double> cumulative;
@@ -86,7 +86,7 @@ glm::vec3 random_in(const Piece& piece, float u, float v) {
 
 SurfaceIntegral make_surface_integral(const formats::Scene& scene, std::uint32_t material,
                                       const MediumProfile& profile) {
-    // Samples so close that R_d is summed as it is, but for the spike of normalised diffusion.
+    // Samples so dense that R_d is not split, except for the spike of normalised diffusion.
     constexpr double kSpacing = 1e-3;
     SurfaceIntegral integral;
     std::vector<std::uint32_t> primitives;

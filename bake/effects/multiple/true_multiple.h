@@ -14,8 +14,8 @@
 
 namespace opaline::bake {
 
-/// The diffusion integral over a medium's surface as Monte Carlo takes it: at points of its own
-/// with rays of its own, without the bake's samples, tree, cube map or wavelets.
+/// Monte Carlo estimate of the diffusion integral over a medium's surface, with its own points and
+/// rays: no samples, tree, cube map or wavelets of the bake.
 struct SurfaceIntegral {
     struct Triangle {
         std::array<glm::vec3, 3> corner;  ///< [m]
@@ -23,7 +23,7 @@ struct SurfaceIntegral {
     };
     std::vector<Triangle> triangles;
     GatherProfile profile;  ///< of samples infinitely dense
-    float smallest = 0;     ///< [m] what the profile falls over in the densest band
+    float smallest = 0;     ///< [m] profile length of the densest band
     double scale = 0;       ///< 1 / (pi c_exit)
     double eta = 1;
 };

@@ -27,8 +27,8 @@ struct SingleMedium {
 
 /// `material` must have a medium. `depth_samples`: nodes along the inward normal; Gauss-Legendre,
 /// or midpoints in a medium of fidelity `paper`. With 8, a relit value errs by 0.2 to 0.5 %.
-/// `phase`: terms to use instead of the scene's phase function. `bands`: 3, or 1 where those of the
-/// medium coincide.
+/// `phase`: terms to use instead of the scene's phase function. `bands`: 3, or 1 where the three
+/// bands of the medium coincide.
 SingleMedium make_single_medium(const formats::Scene& scene, std::uint32_t material,
                                 std::uint32_t depth_samples, PhaseTerms phase = {},
                                 std::uint32_t bands = 3);

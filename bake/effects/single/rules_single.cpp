@@ -18,7 +18,7 @@ namespace {
 
 constexpr unsigned kDegrees = 5;
 
-// Of light along a line that crosses the whole body: alpha (1 - e^(-sigma_t d)), the largest band.
+// Light scattered on a line across the whole body: alpha (1 - e^(-sigma_t d)), largest band.
 double largest_scattered_share(const PlanInput& input) {
     const double diagonal =
         static_cast<double>(glm::length(input.subject.high - input.subject.low));

@@ -4,28 +4,28 @@
 
 namespace opaline::bake {
 
-/// Light that scatters once in a medium, and how many terms of its phase function that takes
-/// (translucency.md 9).
+/// Light that scatters once in a medium, and the number of terms of its phase function (README.md,
+/// "Bounds").
 PlanEntry decide_single(const PlanInput& input);
 
-/// Whether a medium scatters into some directions more than into others.
+/// True if the phase function is not isotropic.
 bool is_anisotropic(const PlanInput& input);
 
-/// The terms beyond the first, of a medium that is_anisotropic: with one alone the rows do not
-/// depend on the view. PlanEntry::terms is the number K of all; 0 where nothing scatters once.
-/// The bound: light that scatters within the body, times the mean difference of the phase function
-/// and its first term, which is at most the root of the mean square: 4 pi phase_rms(series, 1).
+/// The terms beyond the first, for a medium that is_anisotropic; with one term the rows do not
+/// depend on the view. PlanEntry::terms is the number K of all terms, or 0 without single
+/// scattering. The bound is the light scattered within the body times the RMS difference of the
+/// phase function from its first term, 4 pi phase_rms(series, 1).
 PlanEntry decide_terms(const PlanInput& input);
 
-/// The share of single scattering in what a half space returns of uniform light: the largest over
-/// the bands. In [0, 1].
+/// The share of single scattering in the reflectance of a half space under uniform light, largest
+/// over the bands; in [0, 1].
 double single_share(const formats::Medium& medium);
 
 /// The smallest K whose error, times the share of single scattering, is at most
-/// `knobs.phase_tolerance` (translucency.md 9).
+/// `knobs.phase_tolerance`.
 std::uint32_t needed_terms(const formats::Medium& medium, const Knobs& knobs);
 
-/// The same, unless the user gave one.
+/// The same, unless the user gave K.
 std::uint32_t choose_terms(const formats::Medium& medium, const Knobs& knobs);
 
 }  // namespace opaline::bake

@@ -26,8 +26,7 @@ constexpr std::array<DecisionRule, 2> kRules{
       [](const PlanEntry& entry, RowLayout& layout) {
           layout.harmonics = std::max(layout.harmonics, entry.on ? 1u : 0u);
       }},
-     {"single.terms", is_anisotropic, decide_terms,
-      [](const PlanEntry& entry, RowLayout& layout) {
+     {"single.terms", is_anisotropic, decide_terms, [](const PlanEntry& entry, RowLayout& layout) {
           layout.harmonics = entry.on && layout.harmonics > 0
                                  ? std::max(layout.harmonics, entry.terms)
                                  : layout.harmonics;
@@ -79,8 +78,8 @@ PreparedPtr gather_batch(const EffectInputs& inputs, std::span<const BodyPoint> 
     return batch;
 }
 
-// Adds the Haar transform of a cube map of size m to that of size n >= m: the same function has the
-// same coarse coefficients, n/m times as large, and none finer.
+// Adds the Haar transform of a cube map of size m to one of size n >= m. The same function has the
+// same coarse coefficients times n/m, and no finer ones.
 void add_coarse(std::span<const float> coarse, std::uint32_t m, std::span<float> fine,
                 std::uint32_t n) {
     const auto scale = static_cast<float>(n) / static_cast<float>(m);
@@ -95,8 +94,7 @@ void add_coarse(std::span<const float> coarse, std::uint32_t m, std::span<float>
     }
 }
 
-std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver,
-                  const DenseRow& row) {
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const SingleBatch& batch = static_cast<const Batch&>(*receiver.batch).batch;
     const std::uint32_t m = stage_of(*inputs.own.prepared).directions.cubemap_size;
     add_single(batch, receiver.place, m, inputs.layout.first_harmonic(), row);
@@ -180,7 +178,7 @@ void warn_of_short_series(const PlanInput& input, const PlanEntry& entry,
     }
 }
 
-// A phase function with too few terms errs by more than any other knob can make good.
+// No other knob can make up for too few terms of a phase function.
 void warn_of_plan(const PlanInput& input, const PlanEntry& entry,
                   std::vector<formats::Diagnostic>& warnings) {
     if (entry.terms == 0) {
@@ -208,10 +206,10 @@ void add_single(const SingleBatch& batch, std::size_t place, std::uint32_t m, st
     for (std::size_t plane = 0; plane < own.size() / coarse; ++plane) {
         const std::span<float> from = std::span(own).subspan(plane * coarse, coarse);
         formats::haar_forward_cube(from, m);
-        add_coarse(from, m,
-                   row.values.subspan((std::size_t{row.bands} * first + plane) * row.size(),
-                                      row.size()),
-                   row.cubemap_size);
+        add_coarse(
+            from, m,
+            row.values.subspan((std::size_t{row.bands} * first + plane) * row.size(), row.size()),
+            row.cubemap_size);
     }
 }
 

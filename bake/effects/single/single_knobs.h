@@ -46,8 +46,9 @@ inline constexpr KnobSpec kDepthSamples{
     .name = "depth_samples",
     .option = "--depth-samples",
     .placeholder = "D",
-    .help = "points along the inward normal at which light is looked for that scatters once; "
-            "default as the quality says",
+    .help =
+        "points along the inward normal at which light is looked for that scatters once; "
+        "default as the quality says",
     .lowest = 1,
     .highest = 256,
     .preset = {4, 6, 6, 16},
@@ -61,8 +62,8 @@ inline constexpr KnobSpec kDepthSamples{
     .matters = single_knobs::looks_inside,
     .why_idle = "no light is looked for that scatters once inside"};
 
-/// Cube map that single scattering is gathered on. It is smooth, and each texel costs a render: 16
-/// texels err by about .6 % of single scattering, which is a tenth of what a bright medium returns.
+/// Cube map for single scattering. Each texel costs one render of the body. At N = 16 single
+/// scattering errs by about 0.6 %, and it is a tenth of the light of a bright medium.
 inline constexpr KnobSpec kSingleCubemap{.name = "single_cubemap",
                                          .lowest = 8,
                                          .highest = 128,
@@ -83,8 +84,9 @@ inline constexpr KnobSpec kPhaseTerms{
     .name = "phase_terms",
     .option = "--phase-terms",
     .placeholder = "K",
-    .help = "terms of the phase function: 1, 4, 9, 16 or 25; default: as many as it and the "
-            "quality ask for",
+    .help =
+        "terms of the phase function: 1, 4, 9, 16 or 25; default: as many as it and the "
+        "quality ask for",
     .lowest = 1,
     .highest = 25,
     .zero_is_auto = true,
@@ -97,7 +99,8 @@ inline constexpr KnobSpec kPhaseTerms{
                .rate_by_cosine = single_knobs::rate_of_terms,
                .value = single_knobs::degree_of},
     .matters = single_knobs::is_expanded,
-    .why_idle = "nothing scatters once into some directions more than into others, one term is all"};
+    .why_idle =
+        "nothing scatters once into some directions more than into others, one term is all"};
 
 /// What the terms may leave wrong, as a share of what a half space returns (choose_terms).
 inline constexpr KnobSpec kPhaseTolerance{.name = "phase_tolerance",

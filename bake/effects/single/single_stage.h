@@ -12,7 +12,7 @@
 
 namespace opaline::bake {
 
-/// What all receivers of one medium share in single scattering.
+/// Data of single scattering that all receivers of one medium share.
 struct SingleStage {
     SingleMedium medium;
     DirectionSet directions;  ///< of a cube map as large as the asset's, or smaller

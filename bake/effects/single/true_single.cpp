@@ -26,7 +26,7 @@ std::vector<double> sum_over_cells(std::span<const float> smooth) {
     return cells;
 }
 
-// What reaches the eye from one node through each lane, per unit of radiance times solid angle.
+// Contribution of one node through each lane, per unit of radiance times solid angle.
 std::array<double, kLanes> trace_node(const SingleQuadrature& q, const RayScene& rays,
                                       const BodyPoint& point, const InteriorNode& node,
                                       const RayPacket& packet, const LaneMask& lanes,

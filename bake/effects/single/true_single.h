@@ -9,8 +9,8 @@
 
 namespace opaline::bake {
 
-/// Single scattering as dense quadrature takes it: by rays to suns and to the smooth part of the
-/// lights, with the phase function itself instead of its terms.
+/// Single scattering by dense quadrature: rays to suns and to the smooth part of the lights, with
+/// the phase function itself instead of its terms.
 struct SingleQuadrature {
     SingleMedium medium;
     PhaseDensity phase;
@@ -25,8 +25,8 @@ SingleQuadrature make_single_quadrature(const formats::Scene& scene, std::uint32
                                         std::uint32_t depth_samples,
                                         std::span<const TestLight> lights);
 
-/// Luminance that leaves along the normal at `point` by single scattering, but for the exit's Ft
-/// (translucency.md 3.6). `point` must be of the medium's material. `traced` adds up.
+/// Luminance that leaves along the normal at `point` by single scattering, without the exit's Ft
+/// (single/README.md, "Transport"). `point` must be of the medium's material. `traced` adds up.
 Luminance integrate_single(const SingleQuadrature& quadrature, const RayScene& rays,
                            const BodyPoint& point, std::uint64_t& traced);
 

@@ -61,8 +61,8 @@ TEST(VertexReceivers, OffsetsOfFineTrianglesAreNoMoreThanAFewRoundings) {
     }
 }
 
-// A scan's flap: two triangles folded onto each other rise above the surface they hang on. Rays
-// that started below it would make a black speck.
+// A flap as in scans: two triangles folded onto each other rise above the surface. Rays from below
+// the flap would give a black vertex.
 TEST(VertexReceivers, RaysOfAFoldedVertexStartAboveTheFold) {
     formats::Primitive flap;
     flap.position = {{0, 0, 0}, {1, 0.1f, 0}, {0, 0.1f, 1}, {1, 0, 1}};

@@ -223,7 +223,7 @@ TEST(ReferenceSlab, TransmitsByBeersLawAtAnyDepth) {
         const auto slab = make_slab_fixture(row, make_white_sky());
         bake::PathOptions options;
         options.terms = formats::TermSet::unscattered;
-        // The only chance is whether a path gets through.
+        // The only randomness is whether a path passes.
         const bake::Moments m = march(*slab, down, options, 160000);
         EXPECT_NEAR(m.mean.x, row.value, 3 * std::sqrt(row.value / 160000) + 2e-6 * row.value)
             << row.name() << " sigma_t " << row.sigma_t;
