@@ -1,4 +1,4 @@
-#include "bake/measure/error_warnings.h"
+#include "bake/accuracy/error_warnings.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -9,6 +9,7 @@
 #include "bake/accuracy/measure_error.h"
 #include "bake/truth/test_lights.h"
 #include "bake/plan/row_layout.h"
+#include "formats/opal/asset.h"
 #include "formats/opal/sparse_rows.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/measure/surface_probes.h"
+#include "bake/accuracy/surface_probes.h"
 
 #include <algorithm>
 

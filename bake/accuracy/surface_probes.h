@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/measure/check_point.h"
+#include "bake/accuracy/check_point.h"
 #include "bake/transport/ray_scene.h"
 #include "formats/scene.h"
 

@@ -17,7 +17,7 @@ CalibrationBench::CalibrationBench(std::uint32_t side)
     const Stopwatch watch;
     std::vector<Receiver> all = make_vertex_receivers(scene);
     points = make_body_points(scene, all);
-    receivers = take_over_hidden(rays, scene, std::move(all), one_thread());
+    receivers = replace_hidden_receivers(rays, scene, std::move(all), one_thread());
     place_receivers = watch.seconds();
 }
 

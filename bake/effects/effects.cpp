@@ -3,7 +3,8 @@
 #include <array>
 
 #include "bake/effects/direct/direct.h"
-#include "bake/effects/light/light.h"
+#include "bake/effects/gloss/gloss.h"
+#include "bake/effects/incident/incident.h"
 #include "bake/effects/local/local.h"
 #include "bake/effects/multiple/multiple.h"
 #include "bake/effects/single/single.h"
@@ -15,7 +16,8 @@ const EffectTable& all_effects() {
     static const std::array kDescriptors{
         describe_direct(Effect::direct),     describe_multiple(Effect::multiple),
         describe_single(Effect::single),     describe_local(Effect::local),
-        describe_specular(Effect::specular), describe_light(Effect::light)};
+        describe_specular(Effect::specular), describe_gloss(Effect::gloss),
+        describe_incident(Effect::incident)};
     static const EffectTable kTable{kDescriptors};
     return kTable;
 }

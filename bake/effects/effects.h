@@ -11,7 +11,8 @@ enum class Effect : std::uint8_t {
     single,    ///< light scattered once inside media
     local,     ///< both of these in media so dense that light leaves where it entered
     specular,  ///< light mirrored at the boundary of media
-    light      ///< what all share: what stands before the light, and its colour
+    gloss,     ///< light mirrored by opaque surfaces
+    incident   ///< what all share: what stands before the light, and its colour
 };
 
 const EffectTable& all_effects();

@@ -1,24 +1,15 @@
 #include "bake/encode/pack_asset.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "bake/encode/marble.h"
+#include "bake/scene/gloss_record.h"
 
 namespace opaline::bake {
 namespace {
 
 using namespace formats;
-
-Wrap to_wrap(Material::Wrap wrap) {
-    switch (wrap) {
-        case Material::Wrap::clamp:
-            return Wrap::clamp;
-        case Material::Wrap::mirror:
-            return Wrap::mirror;
-        default:
-            return Wrap::repeat;
-    }
-}
 
 Vec3 to_vec3(glm::vec3 v) {
     return {v.x, v.y, v.z};
@@ -86,8 +77,10 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         codes += std::uint64_t{transport.row_offset[record.first_row + count] -
                                transport.row_offset[record.first_row]} *
                  record.bands;
-        const bool mapped = material.base_color_image != kNone && !p.texcoord.empty();
-        if (mapped) {
+        const bool has_image =
+            material.base_color_image != kNone || material.gloss.image != kNone;
+        const bool mapped = has_image && !p.texcoord.empty();
+        if (mapped && material.base_color_image != kNone) {
             record.base_color_image = material.base_color_image;
             record.wrap_u = to_wrap(material.wrap_u);
             record.wrap_v = to_wrap(material.wrap_v);
@@ -99,7 +92,11 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
                  ? PrimitiveRecord::kSingleOnly
                  : 0);
         if (!openness.empty()) {
-            asset.roughness.push_back(layout.glossy ? material.medium->roughness : kNotGlossy);
+            const bool in_medium = layout.glossy && layout.translucent;
+            asset.roughness.push_back(in_medium ? material.medium->roughness : kNotGlossy);
+            asset.gloss.push_back(layout.glossy && !layout.translucent
+                                      ? make_gloss_record(material.gloss)
+                                      : GlossRecord{});
         }
         asset.primitives.push_back(record);
         append_vertices(asset, scene, p, layout.tint, mapped, textured);
@@ -107,6 +104,10 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
     }
     for (const Image8& image : scene.images) {
         asset.images.push_back(to_preview(image));
+    }
+    if (std::none_of(asset.gloss.begin(), asset.gloss.end(),
+                     [](const GlossRecord& g) { return g.is_glossy(); })) {
+        asset.gloss.clear();
     }
     asset.openness = std::move(openness);
     asset.transport = std::move(transport);

@@ -33,7 +33,7 @@ std::vector<ReceiverSet> place_receivers(const formats::Scene& scene, const RayS
                                          const Context& context) {
     std::vector<Receiver> vertices = make_vertex_receivers(scene);
     const std::vector<BodyPoint> inside = make_body_points(scene, vertices);
-    return make_vertex_sets(scene, take_over_hidden(rays, scene, std::move(vertices), context),
+    return make_vertex_sets(scene, replace_hidden_receivers(rays, scene, std::move(vertices), context),
                             inside);
 }
 

@@ -111,7 +111,7 @@ std::vector<formats::Openness> bake_openness(const RayScene& rays, const Directi
                 traced += seen.rays;
             }
             if (context.on_progress) {
-                context.on_progress({"specular", range.end, receivers.size()});
+                context.on_progress({"openness", range.end, receivers.size()});
             }
         });
     return openness;

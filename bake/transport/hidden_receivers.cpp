@@ -73,7 +73,7 @@ bool is_hidden(const RayScene& rays, const Receiver& receiver) {
     return std::all_of(back.begin(), back.end(), [](std::int32_t lane) { return lane != 0; });
 }
 
-std::vector<Receiver> take_over_hidden(const RayScene& rays, const formats::Scene& scene,
+std::vector<Receiver> replace_hidden_receivers(const RayScene& rays, const formats::Scene& scene,
                                        std::vector<Receiver> receivers, const Context& context) {
     if (rays.is_empty()) {
         return receivers;

@@ -3,7 +3,6 @@
 // sixteen bits. Single scattering is gathered by rays in both. Prints a row of RESULTS.md's table:
 // opaline_brute_force SCENE MEDIA.json; minutes.
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <span>
 #include <string>
@@ -11,13 +10,11 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/accuracy/measure_error.h"
 #include "bake/accuracy/pilot/pilot_rows.h"
-#include "bake/scene/inspect_scene.h"
-#include "bake/plan/plan_rules.h"
-#include "bake/pipeline/prepare_media.h"
-#include "bake/scene/orient_bodies.h"
+#include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/scene/inspect_scene.h"
+#include "bake/scene/orient_bodies.h"
 #include "formats/gltf/import_gltf.h"
 #include "formats/media/apply_media.h"
 #include "formats/media/read_media.h"
@@ -28,8 +25,6 @@ namespace {
 
 constexpr std::size_t kReceivers = 400;
 
-using Clock = std::chrono::steady_clock;
-
 // Luminance of the receivers under each light, and the seconds that their rows took.
 struct Rows {
     std::vector<CheckedPair> pairs;
@@ -37,16 +32,13 @@ struct Rows {
 };
 
 Rows make_rows(const PilotScene& pilot, std::span<const PilotReceiver> receivers,
-               const Knobs& knobs, const Encoding& encoding, std::span<const TestLight> lights,
-               const Context& context) {
-    BakeResult unused;
-    const MediaStages media = prepare_media(pilot, knobs, context, unused);
-    const RowSetting setting{knobs.tolerance, knobs[kDepthSamples], knobs[kSingleCubemap]};
-    const PilotSingles single = gather_pilot_single(pilot, receivers, setting, context);
+               const Knobs& knobs, const Encoding& encoding) {
+    Knobs setting = knobs;
+    setting.exact_rays = true;
+    const PilotRows rows(pilot, receivers, setting);
     const Clock::time_point start = Clock::now();
-    auto pairs = measure_rows(pilot, receivers, media, single, setting, knobs.cubemap_size,
-                              std::array{encoding}, lights, context);
-    return {std::move(pairs.front()), std::chrono::duration<double>(Clock::now() - start).count()};
+    auto pairs = rows.measure(std::array{encoding});
+    return {std::move(pairs.front()), seconds_since(start)};
 }
 
 int compare(const std::string& file, const std::string& media_file) {
@@ -63,27 +55,34 @@ int compare(const std::string& file, const std::string& media_file) {
     Knobs knobs = *resolve_knobs(options);
     Context context;
     context.threads = thread_count(context);
-    const std::vector<PlanEntry> plan = plan_bake(scene, inspect_scene(scene), knobs);
-    const std::vector<RowLayout> layouts = layout_rows(scene, plan, knobs);
+    const SceneFacts facts = inspect_scene(scene);
+    const std::vector<PlanEntry> plan = plan_bake(scene, facts, knobs);
     const auto rays = RayScene::build(scene, context.threads);
     const auto sky = RayScene::build({}, context.threads);
     const std::vector<Receiver> vertices = make_vertex_receivers(scene);
-    const std::vector<BodyPoint> points = make_body_points(scene, vertices);
-    const MediaProfiles profiles = make_profiles(scene, layouts, knobs.seed, context);
+    const std::vector<ReceiverSet> sets =
+        make_vertex_sets(scene, vertices, make_body_points(scene, vertices));
+    const BakeInputs bake{all_effects(), scene, facts, *rays, *sky, sets};
     const auto lights = make_test_lights(knobs.cubemap_size, context.threads);
-    const PilotScene pilot{scene, *rays, *sky, vertices, vertices, points, layouts, profiles};
+    std::vector<SubjectState> subjects = begin_subjects(bake, plan, knobs);
+    StageLog log;
+    run_step(Step::study, bake, knobs, context, subjects, log);
+    run_step(Step::samples, bake, knobs, context, subjects, log);
+    const PilotScene pilot{bake, subjects, *lights, context};
 
     std::vector<PilotReceiver> receivers;
-    for (std::size_t v = 0; v < points.size(); v += 1 + points.size() / kReceivers) {
-        if (layouts[points[v].material].translucent) {
+    for (std::uint32_t v = 0; v < vertices.size();
+         v += static_cast<std::uint32_t>(1 + vertices.size() / kReceivers)) {
+        const std::uint32_t material = set_of(sets, v).material;
+        if (state_of(subjects, material).layout.translucent) {
             const Luminance none(lights->size());
-            receivers.push_back({static_cast<std::uint32_t>(v), points[v].material, {none, none}});
+            receivers.push_back({v, material, {none, none}});
         }
     }
     Knobs all = knobs;
     all.coefficients = kAllCoefficients;
-    all.tolerance = 0;
-    const Rows brute = make_rows(pilot, receivers, all, kUnencoded, *lights, context);
+    all.set(kEpsilon, 0);
+    const Rows brute = make_rows(pilot, receivers, all, kUnencoded);
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         for (std::size_t l = 0; l < lights->size(); ++l) {
             const double luminance = brute.pairs[i * lights->size() + l].error[0];
@@ -91,7 +90,7 @@ int compare(const std::string& file, const std::string& media_file) {
         }
     }
     const Rows own =
-        make_rows(pilot, receivers, knobs, {knobs.coefficients, knobs.code_bits}, *lights, context);
+        make_rows(pilot, receivers, knobs, {knobs.coefficients, knobs.code_bits});
 
     std::printf("| %s | %zu | %.0f |", file.c_str(), receivers.size(), brute.seconds / own.seconds);
     for (std::size_t l = 0; l < lights->size(); ++l) {

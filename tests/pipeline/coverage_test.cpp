@@ -24,7 +24,7 @@ std::vector<CheckedPair> check_every_receiver(const formats::Scene& scene,
     constexpr std::array<float, 1> kDiffuse{1.0f};
     const auto rays = RayScene::build(scene, 2);
     EXPECT_TRUE(rays);
-    const auto receivers = take_over_hidden(*rays, scene, make_vertex_receivers(scene), {});
+    const auto receivers = replace_hidden_receivers(*rays, scene, make_vertex_receivers(scene), {});
     const DirectTruth truth = make_direct_truth(lights);
     std::vector<CheckedPair> pairs;
     std::uint64_t traced = 0;

@@ -20,7 +20,8 @@ PlanEntry decide(const PlanInput& input) {
     PlanEntry entry;
     // Under `white` a diffuse surface reflects at most its albedo.
     const formats::Rgb c = input.material.base_color;
-    entry.bound = static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex);
+    entry.bound = static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex *
+                                      formats::diffuse_share(input.material));
     entry.alternative = input.material.medium.has_value();
     if (entry.alternative && (!is_named(input.knobs, "direct") || input.knobs.looks_inside_media)) {
         entry.bound = 0;
@@ -28,7 +29,9 @@ PlanEntry decide(const PlanInput& input) {
     } else if (!is_wanted(input.knobs, "direct")) {
         entry.reason = "left out by --effects";
     } else if (!(entry.on = is_worth(entry.bound, input, entry.forced))) {
-        entry.reason = "the base colour is black, or nearly: nothing is reflected";
+        entry.reason = formats::diffuse_share(input.material) > 0
+                           ? "the base colour is black, or nearly: nothing is reflected"
+                           : "a metal reflects nothing diffusely";
     } else {
         entry.reason = entry.alternative
                            ? "the medium is shown as a diffuse surface of the same reflectance"

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "bake/effects/local/rule_spread.h"
+#include "bake/effects/multiple/rule_spread.h"
 #include "bake/transport/banded_irradiance.h"
 #include "formats/opal/haar.h"
 
@@ -11,7 +11,7 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::array<DecisionRule, 1> kRules{
-    {{"multiple.spread", has_medium, decide_spread,
+    {{kSpreadName, has_medium, decide_spread,
       [](const PlanEntry& entry, RowLayout& layout) { layout.local = !entry.on; }}}};
 
 /// What a half space sends back of the irradiance at the receiver itself: no samples, no tree, no

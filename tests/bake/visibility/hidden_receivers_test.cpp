@@ -38,7 +38,7 @@ TEST(HiddenReceivers, FloorVerticesUnderABoxTakeOverFromTheirNearestVisibleNeigh
     const auto rays = RayScene::build(scene, 1);
     ASSERT_TRUE(rays);
     const std::vector<Receiver> set =
-        take_over_hidden(*rays, scene, make_vertex_receivers(scene), {});
+        replace_hidden_receivers(*rays, scene, make_vertex_receivers(scene), {});
     // Half a metre a cell: x = 1.0 (column 12) is inside, x = 1.5 (column 13) outside.
     const double inside = brightness(*rays, set[floor_vertex(scene, 10, 12)]);
     const double outside = brightness(*rays, set[floor_vertex(scene, 10, 13)]);
@@ -56,7 +56,7 @@ TEST(HiddenReceivers, InteriorsOfDoubleSidedBodiesStayDark) {
     const auto rays = RayScene::build(scene, 1);
     ASSERT_TRUE(rays);
     const std::vector<Receiver> set =
-        take_over_hidden(*rays, scene, make_vertex_receivers(scene), {});
+        replace_hidden_receivers(*rays, scene, make_vertex_receivers(scene), {});
     EXPECT_EQ(brightness(*rays, set[floor_vertex(scene, 10, 12)]), 0);
 }
 
@@ -65,7 +65,7 @@ TEST(HiddenReceivers, ClosedRoomsSeenFromInsideStayDark) {
     const auto rays = RayScene::build(scene, 1);
     ASSERT_TRUE(rays);
     const std::vector<Receiver> set =
-        take_over_hidden(*rays, scene, make_vertex_receivers(scene), {});
+        replace_hidden_receivers(*rays, scene, make_vertex_receivers(scene), {});
     for (std::size_t i = 0; i < set.size(); ++i) {
         ASSERT_EQ(brightness(*rays, set[i]), 0);
     }

@@ -1,4 +1,4 @@
-#include "bake/effects/light/rules_visibility.h"
+#include "bake/effects/incident/rules_visibility.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "bake/effects/local/rule_spread.h"
+#include "bake/effects/multiple/rule_spread.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "bake/effects/light/rule_colour.h"
+#include "bake/effects/incident/rule_colour.h"
 
 namespace opaline::bake {
 

@@ -1,9 +1,9 @@
-#include "bake/effects/light/light.h"
+#include "bake/effects/incident/incident.h"
 
 #include <array>
 
-#include "bake/effects/light/rule_colour.h"
-#include "bake/effects/light/rules_visibility.h"
+#include "bake/effects/incident/rule_colour.h"
+#include "bake/effects/incident/rules_visibility.h"
 
 namespace opaline::bake {
 namespace {
@@ -16,9 +16,9 @@ constexpr std::array<DecisionRule, 2> kRules{
 
 }  // namespace
 
-EffectDescriptor describe_light(Effect id) {
+EffectDescriptor describe_incident(Effect id) {
     return {.id = id,
-            .name = "light",
+            .name = "incident",
             .rules = kRules,
             .acts = [](const RowLayout&) { return false; }};
 }

@@ -4,6 +4,8 @@
 
 namespace opaline::bake {
 
+inline constexpr std::string_view kSpreadName = "multiple.spread";
+
 /// Decides whether light spreads along the surface of a medium, or leaves where it entered
 /// (README.md, "Bounds"). The bound is the sum of three errors of a half space lit like the vertex:
 /// irradiance that varies over four mean edges and is blurred by the profile, light that passes

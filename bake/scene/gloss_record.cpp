@@ -1,0 +1,36 @@
+#include "bake/scene/gloss_record.h"
+
+#include <algorithm>
+
+namespace opaline::bake {
+
+formats::Wrap to_wrap(formats::TextureWrap wrap) {
+    switch (wrap) {
+        case formats::TextureWrap::clamp:
+            return formats::Wrap::clamp;
+        case formats::TextureWrap::mirror:
+            return formats::Wrap::mirror;
+        default:
+            return formats::Wrap::repeat;
+    }
+}
+
+formats::GlossRecord make_gloss_record(const formats::Gloss& gloss) {
+    formats::GlossRecord record;
+    record.metallic = gloss.metallic;
+    record.roughness = gloss.roughness;
+    const float root = (gloss.ior - 1) / (gloss.ior + 1);
+    const float normal = root * root;  // ior 0 stands for an infinite one: 1
+    const auto f0 = [&](float color) { return std::min(normal * color, 1.0f) * gloss.specular; };
+    record.f0 = {f0(gloss.specular_color.r), f0(gloss.specular_color.g),
+                 f0(gloss.specular_color.b)};
+    record.f90 = gloss.specular;
+    if (gloss.image != formats::kNone) {
+        record.image = gloss.image;
+        record.wrap_u = to_wrap(gloss.wrap_u);
+        record.wrap_v = to_wrap(gloss.wrap_v);
+    }
+    return record;
+}
+
+}  // namespace opaline::bake
