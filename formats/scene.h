@@ -94,8 +94,8 @@ struct Material {
     std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
 };
 
-/// The largest share of light that an opaque material may reflect diffusely besides its base colour:
-/// 1 - metallic; an image may make parts of a metal dielectric.
+/// The largest share of light that an opaque material may reflect diffusely besides its base
+/// colour: 1 - metallic; an image may make parts of a metal dielectric.
 inline float diffuse_share(const Material& material) {
     return material.gloss.image == kNone ? 1 - material.gloss.metallic : 1.0f;
 }

@@ -100,8 +100,9 @@ OPALINE_API opaline_status opaline_asset_primitive_shading(const opaline_asset* 
 /* A light starts black: no map, no suns, no rotation. Functions that change a light project it on
    the basis at once, which takes time in proportion to map and basis: set the rotation before the
    map to pay once. For assets with glossy surfaces it is also blurred to their roughnesses, which
-   takes some tenths of a second more (seconds for mirrors), whenever map or suns change. One thread at a time may change
-   a light, and none may read it meanwhile; different lights are independent. */
+   takes some tenths of a second more (seconds for mirrors), whenever map or suns change. One thread
+   at a time may change a light, and none may read it meanwhile; different lights are independent.
+ */
 OPALINE_API opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** out);
 
 /* NULL is fine. No other thread may be using the light. */
@@ -161,7 +162,8 @@ typedef enum opaline_shade_flags {
    `out_count` floats, at least 3 * receiver_count. The light must have been made for an asset of
    the same cube map size and, where it is glossy, the same roughnesses. `flags` is a sum of
    opaline_shade_flags. Runs on the calling thread, never allocates, costs in proportion to the
-   stored coefficients, with gloss some microseconds a glossy opaque receiver more. Any thread, concurrently; the light must not change meanwhile. */
+   stored coefficients, with gloss some microseconds a glossy opaque receiver more. Any thread,
+   concurrently; the light must not change meanwhile. */
 OPALINE_API opaline_status opaline_shade(const opaline_asset* asset, const opaline_light* light,
                                          uint32_t flags, float* out_rgb, size_t out_count);
 
@@ -174,8 +176,8 @@ OPALINE_API opaline_status opaline_shade_range(const opaline_asset* asset,
 
 /* The same as opaline_shade_range, seen from the point `eye`: three finite floats [m], in world
    space as the mesh is. NULL: each receiver along its own normal. Only translucent and glossy
-   receivers look different; those that face away are black unless their primitive is double-sided, but for a rim
-   of specular reflection that fades just behind the silhouette. */
+   receivers look different; those that face away are black unless their primitive is double-sided,
+   but for a rim of specular reflection that fades just behind the silhouette. */
 OPALINE_API opaline_status opaline_shade_from(const opaline_asset* asset,
                                               const opaline_light* light, uint32_t flags,
                                               const float eye[3], uint32_t first, uint32_t count,

@@ -6,12 +6,12 @@
 #include <span>
 #include <utility>
 
-#include "bake/environment/builtin_environment.h"
 #include "bake/accuracy/bootstrap.h"
 #include "bake/accuracy/model_receivers.h"
-#include "bake/truth/test_lights.h"
-#include "bake/scene/orient_bodies.h"
+#include "bake/environment/builtin_environment.h"
 #include "bake/reference/reference_image.h"
+#include "bake/scene/orient_bodies.h"
+#include "bake/truth/test_lights.h"
 #include "formats/opal/rgb.h"
 #include "runtime/light_vector.h"
 #include "runtime/shade.h"

@@ -23,7 +23,8 @@ std::string remedy_at_receivers(const MeasuredError& error) {
     const auto worst = std::max_element(
         error.by_effect.begin(), error.by_effect.end(),
         [](const auto& a, const auto& b) { return a.rms_relative < b.rms_relative; });
-    return "choose a finer --quality, or more --coefficients and a finer --cubemap; of the effects, '" +
+    return "choose a finer --quality, or more --coefficients and a finer --cubemap; of the "
+           "effects, '" +
            worst->name + "' errs most";
 }
 

@@ -84,9 +84,8 @@ Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point
             layout.translucent
                 ? view_from_far(layout, primitive.eta, asset.normal[v], point.body.normal)
                 : std::vector<float>{1.0f};
-        add_luminance(
-            {asset.transport, range, (v - primitive.first_vertex) * primitive.terms}, h,
-            point.weight[k], {band, sum});
+        add_luminance({asset.transport, range, (v - primitive.first_vertex) * primitive.terms}, h,
+                      point.weight[k], {band, sum});
     }
     return relit_by_each(sum, lights);
 }

@@ -7,8 +7,8 @@
 
 #include "bake/accuracy/check_point.h"
 #include "bake/accuracy/measure_error.h"
-#include "bake/truth/test_lights.h"
 #include "bake/plan/row_layout.h"
+#include "bake/truth/test_lights.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/sparse_rows.h"
 

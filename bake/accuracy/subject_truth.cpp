@@ -56,8 +56,7 @@ bool has_truth(const BakeInputs& bake, const SubjectState& subject) {
 }
 
 bool has_expensive_truth(const BakeInputs& bake, const SubjectState& subject) {
-    return any_part(bake, subject,
-                    [](const EffectDescriptor& e) { return e.truth.is_expensive; });
+    return any_part(bake, subject, [](const EffectDescriptor& e) { return e.truth.is_expensive; });
 }
 
 SubjectTruth make_subject_truth(const BakeInputs& bake, const SubjectState& subject,
@@ -79,8 +78,7 @@ TwoEstimates eval_truth(const SubjectTruth& truth, const TruthReceiver& receiver
     assert(!truth.parts.empty());
     TwoEstimates sum;
     for (const SubjectTruth::Part& part : truth.parts) {
-        const TwoEstimates own =
-            part.effect->truth.eval(part.inputs, *part.truth, receiver, rays);
+        const TwoEstimates own = part.effect->truth.eval(part.inputs, *part.truth, receiver, rays);
         if (sum.first.empty()) {
             sum = own;
         } else {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/base/context.h"
 #include "bake/accuracy/check_point.h"
+#include "bake/base/context.h"
 #include "bake/transport/ray_scene.h"
 #include "formats/scene.h"
 

@@ -9,13 +9,13 @@
 #include "bake/calibration/stopwatch.h"
 #include "bake/effects/multiple/gather_multiple.h"
 #include "bake/effects/multiple/true_multiple.h"
-#include "bake/receivers/spatial_order.h"
-#include "bake/receivers/surface_samples.h"
 #include "bake/effects/single/gather_direction.h"
 #include "bake/effects/single/light_maps.h"
 #include "bake/effects/single/single.h"
 #include "bake/effects/single/texel_directions.h"
 #include "bake/effects/single/true_single.h"
+#include "bake/receivers/spatial_order.h"
+#include "bake/receivers/surface_samples.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "bake/truth/test_lights.h"
 #include "bake/calibration/calibration_bench.h"
+#include "bake/truth/test_lights.h"
 
 namespace opaline::bake {
 

@@ -10,9 +10,9 @@
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
-#include "bake/scene/inspect_scene.h"
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"
+#include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"
 
 namespace opaline::cli {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bake/pipeline/pipeline.h"
 #include "bake/pipeline/cost_model.h"
+#include "bake/pipeline/pipeline.h"
 
 namespace opaline::cli {
 

@@ -88,10 +88,10 @@ void add_subject_options(CLI::App& command, SceneOptions& options) {
     command
         .add_option(
             "--effects", options.effects,
-            std::string("what to simulate: auto, what the scene calls for; all, everything that concerns "
-            "it, however little it adds, and without shortcuts; or a list of effects, of ") +
-            "which this version has: " +
-                list_effects(", "))
+            std::string(
+                "what to simulate: auto, what the scene calls for; all, everything that concerns "
+                "it, however little it adds, and without shortcuts; or a list of effects, of ") +
+                "which this version has: " + list_effects(", "))
         ->option_text("auto|all|LIST [auto]");
     command
         .add_option("--seed", options.bake.seed,
@@ -161,7 +161,9 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
     const std::uint64_t limit =
         options.memory_limit != 0 ? options.memory_limit : available_memory(threads);
     const auto check = [&](const bake::MemoryCounts& counts) {
-        return check_memory(options.scene, bake::predict_memory(bake::all_effects(), counts, knobs, threads), limit);
+        return check_memory(options.scene,
+                            bake::predict_memory(bake::all_effects(), counts, knobs, threads),
+                            limit);
     };
     const auto check_size = [&](const formats::SceneCounts& counts) {
         return check(bake::count_memory(counts));
@@ -170,7 +172,8 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
     if (!imported) {
         return imported;
     }
-    if (auto status = check(bake::count_memory(bake::all_effects(), imported->scene, knobs)); !status) {
+    if (auto status = check(bake::count_memory(bake::all_effects(), imported->scene, knobs));
+        !status) {
         return std::move(status).error();
     }
     if (auto status = check_threads(threads); !status) {
@@ -182,8 +185,8 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
 formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
     // Of later versions; whoever names one should not take it for a slip of the pen.
     constexpr std::array<std::string_view, 7> kLater{
-        "interreflection", "emitters", "filtering", "volume-single", "volume-multiple",
-        "cloud",           "radiosity"};
+        "interreflection", "emitters", "filtering", "volume-single",
+        "volume-multiple", "cloud",    "radiosity"};
     bake::BakeOptions wanted = options.bake;
     if (options.effects == "auto") {
         return wanted;

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "bake/accuracy/sweep/report_page.h"
+#include "bake/accuracy/sweep/tables.h"
 #include "bake/calibration/rates_cache.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
@@ -18,8 +20,6 @@
 #include "bake/cli/progress.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
-#include "bake/accuracy/sweep/report_page.h"
-#include "bake/accuracy/sweep/tables.h"
 #include "formats/opal/atomic_file.h"
 
 namespace opaline::cli {

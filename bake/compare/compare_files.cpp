@@ -21,9 +21,9 @@ namespace {
 
 using formats::Error;
 using formats::ErrorKind;
+using formats::FileBytes;
 using formats::Image;
 using formats::ImageKind;
-using formats::FileBytes;
 using formats::Result;
 using formats::Rgb;
 

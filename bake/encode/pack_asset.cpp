@@ -77,8 +77,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         codes += std::uint64_t{transport.row_offset[record.first_row + count] -
                                transport.row_offset[record.first_row]} *
                  record.bands;
-        const bool has_image =
-            material.base_color_image != kNone || material.gloss.image != kNone;
+        const bool has_image = material.base_color_image != kNone || material.gloss.image != kNone;
         const bool mapped = has_image && !p.texcoord.empty();
         if (mapped && material.base_color_image != kNone) {
             record.base_color_image = material.base_color_image;

@@ -35,9 +35,9 @@ void add_truth(const CostedBake& bake, double cheap, double expensive, TruthEffo
 
 double pilot_receivers(const CostedBake& bake) {
     const double receivers = bake.request.facts.receivers;
-    return std::min(receivers, std::clamp(receivers / kReceiversPerPilotReceiver,
-                                          double{kLeastPilotReceivers},
-                                          double{kMostPilotReceivers}));
+    return std::min(receivers,
+                    std::clamp(receivers / kReceiversPerPilotReceiver, double{kLeastPilotReceivers},
+                               double{kMostPilotReceivers}));
 }
 
 }  // namespace
@@ -93,11 +93,9 @@ void bill_other_trials(const CostedBake& bake, Bill& bill) {
 
 void bill_self_check(const CostedBake& bake, Bill& bill) {
     bill.open("self-check");
-    const auto drawn = static_cast<double>(
-        count_checked(static_cast<std::size_t>(bake.request.facts.receivers),
-                      bake.request.knobs.cubemap_size));
-    const double expensive =
-        drawn / std::max(1.0, std::ceil(drawn / double{kMostExpensiveChecks}));
+    const auto drawn = static_cast<double>(count_checked(
+        static_cast<std::size_t>(bake.request.facts.receivers), bake.request.knobs.cubemap_size));
+    const double expensive = drawn / std::max(1.0, std::ceil(drawn / double{kMostExpensiveChecks}));
     constexpr double kPlaces = 2;  // at receivers, and between them
     add_truth(bake, kPlaces * drawn, kPlaces * expensive, {}, bill);
 }

@@ -49,8 +49,8 @@ PlanEntry* CostedBake::payer(const CostedSubject& subject, std::size_t effect) c
         if (entry.on && entry.rule == 0 && entry.effect == id) {
             return &entry;
         }
-        const bool fills = entry.on && entry.rule == 0 &&
-                           request.effects[entry.effect].gather.work != nullptr;
+        const bool fills =
+            entry.on && entry.rule == 0 && request.effects[entry.effect].gather.work != nullptr;
         first = first == nullptr && fills ? &entry : first;
     }
     return first;
@@ -58,8 +58,10 @@ PlanEntry* CostedBake::payer(const CostedSubject& subject, std::size_t effect) c
 
 CostedBake make_costed_bake(const CostRequest& request, std::vector<PlanEntry>& plan) {
     CostedBake bake{
-        request, {request.rates, request.knobs, request.facts.triangles, request.facts.receivers},
-        {},      false};
+        request,
+        {request.rates, request.knobs, request.facts.triangles, request.facts.receivers},
+        {},
+        false};
     std::vector<RowLayout> layouts;
     for (const Subject& subject : list_subjects(request.scene, request.facts)) {
         CostedSubject own;
@@ -93,19 +95,19 @@ void bill_rows(const CostedBake& bake, const CostedSubject& subject, double rece
         SubjectCost cost = bake.cost_of(subject, receivers);
         const Work all = effect.gather.work(cost);
         Work of_parts;
-        for_each_growth(bake, subject, [&](PlanEntry& entry, const RowLayout& before,
-                                           const RowLayout& after) {
-            if (entry.effect == effect.id && entry.rule > 0 && entry.on &&
-                rows_of(after) > rows_of(before)) {
-                const SubjectCost less{cost.input,    cost.material,  cost.facts,
-                                       before,        cost.receivers, cost.traces_rays};
-                const SubjectCost more{cost.input,    cost.material,  cost.facts,
-                                       after,         cost.receivers, cost.traces_rays};
-                const Work growth = effect.gather.work(more) - effect.gather.work(less);
-                bill.add(growth, &entry);
-                of_parts += growth;
-            }
-        });
+        for_each_growth(
+            bake, subject, [&](PlanEntry& entry, const RowLayout& before, const RowLayout& after) {
+                if (entry.effect == effect.id && entry.rule > 0 && entry.on &&
+                    rows_of(after) > rows_of(before)) {
+                    const SubjectCost less{cost.input, cost.material,  cost.facts,
+                                           before,     cost.receivers, cost.traces_rays};
+                    const SubjectCost more{cost.input, cost.material,  cost.facts,
+                                           after,      cost.receivers, cost.traces_rays};
+                    const Work growth = effect.gather.work(more) - effect.gather.work(less);
+                    bill.add(growth, &entry);
+                    of_parts += growth;
+                }
+            });
         bill.add(all - of_parts, bake.payer(subject, e));
     }
 }
@@ -113,8 +115,8 @@ void bill_rows(const CostedBake& bake, const CostedSubject& subject, double rece
 void bill_encoding(const CostedBake& bake, const CostedSubject& subject, double receivers,
                    Bill& bill) {
     const std::uint32_t bands = subject.layout.bands();
-    const double bytes =
-        receivers * static_cast<double>(row_bytes(bake.request.knobs, subject.layout.translucent, bands));
+    const double bytes = receivers * static_cast<double>(row_bytes(
+                                         bake.request.knobs, subject.layout.translucent, bands));
     const auto bill_some = [&](std::uint32_t rows, PlanEntry* payer) {
         // Local rows are gathered by texel and transformed band by band, as grey ones are; the
         // others are gathered as coefficients.

@@ -33,8 +33,8 @@ std::vector<ReceiverSet> place_receivers(const formats::Scene& scene, const RayS
                                          const Context& context) {
     std::vector<Receiver> vertices = make_vertex_receivers(scene);
     const std::vector<BodyPoint> inside = make_body_points(scene, vertices);
-    return make_vertex_sets(scene, replace_hidden_receivers(rays, scene, std::move(vertices), context),
-                            inside);
+    return make_vertex_sets(
+        scene, replace_hidden_receivers(rays, scene, std::move(vertices), context), inside);
 }
 
 // What the rows of a set are for, in the words of comparisons: "multiple+single: rows".
@@ -51,8 +51,8 @@ formats::Result<formats::SparseRows> bake_rows(const BakeInputs& bake,
                                                std::span<const SubjectState> subjects,
                                                const Knobs& knobs, const Context& context,
                                                StageLog& log) {
-    RowSink sink = make_row_sink(
-        make_row_encoder(knobs.cubemap_size, knobs.coefficients, knobs.code_bits));
+    RowSink sink =
+        make_row_sink(make_row_encoder(knobs.cubemap_size, knobs.coefficients, knobs.code_bits));
     const std::uint32_t total = count_receivers(bake.receivers);
     for (const ReceiverSet& set : bake.receivers) {
         const SubjectState* const subject =
@@ -62,12 +62,12 @@ formats::Result<formats::SparseRows> bake_rows(const BakeInputs& bake,
         }
         std::vector<Gatherer> gatherers = make_gatherers(bake, *subject, knobs, context);
         std::string group = group_of(gatherers);
-        const formats::SparseRows part = run_stage(
-            log, "rows of '" + bake.scene.primitives[set.primitive].name + "'", std::move(group),
-            [&](std::uint64_t& rays) {
-                return gather_rows({set, subject->layout, sink.encoder, total},
-                                   std::move(gatherers), context, rays);
-            });
+        const formats::SparseRows part =
+            run_stage(log, "rows of '" + bake.scene.primitives[set.primitive].name + "'",
+                      std::move(group), [&](std::uint64_t& rays) {
+                          return gather_rows({set, subject->layout, sink.encoder, total},
+                                             std::move(gatherers), context, rays);
+                      });
         if (context.cancelled()) {
             break;
         }
@@ -76,8 +76,7 @@ formats::Result<formats::SparseRows> bake_rows(const BakeInputs& bake,
             !status) {
             return std::move(status).error();
         }
-        if (part.row_offset.size() != layout.terms() * set.size() + 1 ||
-            !take_rows(sink, part)) {
+        if (part.row_offset.size() != layout.terms() * set.size() + 1 || !take_rows(sink, part)) {
             return make_error(ErrorKind::resource, "", "transport",
                               "more than 2^32 coefficients do not fit into one file",
                               "lower --coefficients, or split the scene");
@@ -141,8 +140,7 @@ void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjec
 }
 
 // What an inspected scene becomes: all stages from the receivers on.
-formats::Status bake_inspected(const BakeInputs& bake, const Context& context,
-                               BakeResult& result) {
+formats::Status bake_inspected(const BakeInputs& bake, const Context& context, BakeResult& result) {
     Knobs& knobs = result.knobs;
     StageLog& log = result.stages;
     auto lights = run_stage(log, "test lights", [&](std::uint64_t&) {

@@ -10,9 +10,8 @@ using Json = nlohmann::ordered_json;
 
 Json knobs_json(const Knobs& knobs) {
     Json json = {{"cubemap", knobs.cubemap_size},
-                 {"coefficients", knobs.coefficients == kAllCoefficients
-                                      ? Json("all")
-                                      : Json(knobs.coefficients)},
+                 {"coefficients",
+                  knobs.coefficients == kAllCoefficients ? Json("all") : Json(knobs.coefficients)},
                  {"code_bits", knobs.code_bits}};
     for (const auto& [knob, value] : knobs.values.values) {
         Json& own = json[std::string(knob->name)];

@@ -23,12 +23,12 @@ struct PlanEntry {
     std::string_view name;  ///< the rule's: "single", "single.terms" (design: effect names)
     Subject subject;
     bool on = false;
-    bool forced = false;  ///< below the bound, but forced on by Knobs::simulate_all
+    bool forced = false;       ///< below the bound, but forced on by Knobs::simulate_all
     bool has_bands = false;    ///< its light differs between red, green and blue
     bool alternative = false;  ///< it would replace other effects: turning it on is no addition
     std::string reason;        ///< the rule in words
     double bound = 0;          ///< largest radiance it can contribute under `white`
-    std::uint32_t terms = 0;  ///< of rules that choose a number of rows: that number; otherwise 0
+    std::uint32_t terms = 0;   ///< of rules that choose a number of rows: that number; otherwise 0
     std::uint32_t least_terms = 1;      ///< that number if the rule were on
     double predicted_seconds = 0;       ///< filled in by predict_costs (cost_model.h)
     std::uint64_t predicted_bytes = 0;  ///< the same; of the rows in the file

@@ -92,7 +92,7 @@ struct TruthEffort {
 /// the effect fills no rows.
 struct TruthStep {
     std::string_view reference{};  ///< in words, for the report
-    bool is_expensive = false;   ///< a check costs as much as the rows of dozens of receivers
+    bool is_expensive = false;     ///< a check costs as much as the rows of dozens of receivers
     PreparedPtr (*make)(const EffectInputs& inputs, TruthEffort effort,
                         std::span<const TestLight> lights) = nullptr;
     TwoEstimates (*eval)(const EffectInputs& inputs, const Prepared& truth,
@@ -105,8 +105,8 @@ struct TruthStep {
 /// report and command line iterate the table of these and name no effect.
 struct EffectDescriptor {
     Effect id{};
-    std::string_view name{};  ///< for --effects and reports; that of its folder
-    std::string_view help{};  ///< what it simulates, in a line; empty: not for --effects
+    std::string_view name{};    ///< for --effects and reports; that of its folder
+    std::string_view help{};    ///< what it simulates, in a line; empty: not for --effects
     bool inside_media = false;  ///< it needs what is inside a medium: the medium is no surface then
     std::span<const DecisionRule> rules{};  ///< the first one decides the effect itself
     /// Whether it acts on a subject, where that is not what its first rule says.

@@ -23,14 +23,14 @@ struct KnobTheory {
 /// of its effect's folder; its address identifies it.
 struct KnobSpec {
     std::string_view name{};         ///< in reports, "epsilon"
-    std::string_view option{};      ///< on the command line, "--epsilon"; empty: not there
+    std::string_view option{};       ///< on the command line, "--epsilon"; empty: not there
     std::string_view placeholder{};  ///< of its value in --help
     std::string_view help{};
-    double lowest = 0, highest = 0;  ///< that the command line accepts
-    bool whole = true;               ///< an integer
-    bool zero_is_auto = false;       ///< 0 stands for a choice by subject; reported as "auto"
-    bool at_most_cubemap = false;    ///< a cube map size: not above Knobs::cubemap_size
-    bool exact_if_given = false;    ///< otherwise an upper limit
+    double lowest = 0, highest = 0;     ///< that the command line accepts
+    bool whole = true;                  ///< an integer
+    bool zero_is_auto = false;          ///< 0 stands for a choice by subject; reported as "auto"
+    bool at_most_cubemap = false;       ///< a cube map size: not above Knobs::cubemap_size
+    bool exact_if_given = false;        ///< otherwise an upper limit
     std::span<const double> allowed{};  ///< not empty: the only values, besides 0 for `auto`
 
     /// Values of the presets draft, preview, production, reference: each at least as accurate as
@@ -40,7 +40,7 @@ struct KnobSpec {
     double (*for_target)(double error) = nullptr;
 
     // The sweep (accuracy/sweep).
-    std::string_view label{};           ///< of a point, with %g for the value
+    std::string_view label{};          ///< of a point, with %g for the value
     std::span<const double> ladder{};  ///< values to try one by one
     /// Values where all knobs change together, -2 to 2 steps from the middle; and of the settings
     /// that serve as truth, finest first. Empty: as in the base.

@@ -137,10 +137,9 @@ Knobs settle(Knobs knobs) {
 formats::Result<Knobs> resolve_knobs(const EffectTable& effects, const BakeOptions& options) {
     Knobs knobs = preset(effects, options.quality);
     knobs.effects = options.effects;
-    knobs.looks_inside_media =
-        std::any_of(effects.effects.begin(), effects.effects.end(), [&](const auto& effect) {
-            return effect.inside_media && is_wanted(knobs, effect.name);
-        });
+    knobs.looks_inside_media = std::any_of(
+        effects.effects.begin(), effects.effects.end(),
+        [&](const auto& effect) { return effect.inside_media && is_wanted(knobs, effect.name); });
     knobs.simulate_all = options.simulate_all;
     knobs.check_model = options.check_model;
     knobs.seed = options.seed;

@@ -30,8 +30,7 @@ std::vector<RowLayout> layout_rows(const EffectTable& effects, const formats::Sc
                                    std::span<const PlanEntry> plan, const Knobs& knobs) {
     std::vector<RowLayout> layouts;
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
-        layouts.push_back(
-            layout_material(effects, scene.materials[m], entries_of(plan, m), knobs));
+        layouts.push_back(layout_material(effects, scene.materials[m], entries_of(plan, m), knobs));
     }
     return layouts;
 }

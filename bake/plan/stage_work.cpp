@@ -17,7 +17,8 @@ double count_rays(std::uint32_t cubemap_size) {
 }
 
 Work irradiance_work(const CostInput& input, double receivers, bool occluded) {
-    // Scenes took 1 to 2.2 times what the calibration's ball does: rays of some pass closer by more.
+    // Scenes took 1 to 2.2 times what the calibration's ball does: rays of some pass closer by
+    // more.
     constexpr double kClutter = 1.5;
     const double ray =
         occluded ? kClutter * input.rates.coherent_ray.at(input.triangles) : input.rates.open_cell;

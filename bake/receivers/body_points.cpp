@@ -55,8 +55,7 @@ const ReceiverSet& set_of(std::span<const ReceiverSet> sets, std::uint32_t recei
 }
 
 std::uint32_t count_receivers(std::span<const ReceiverSet> sets) {
-    return sets.empty() ? 0
-                        : sets.back().first + static_cast<std::uint32_t>(sets.back().size());
+    return sets.empty() ? 0 : sets.back().first + static_cast<std::uint32_t>(sets.back().size());
 }
 
 }  // namespace opaline::bake

@@ -34,9 +34,9 @@ struct BodyPoint {
 /// The receivers of one part of a scene, as they stand in the file.
 struct ReceiverSet {
     enum class Kind : std::uint8_t { vertex, texel, voxel } kind = Kind::vertex;
-    std::uint32_t material = 0;   ///< its subject: index into Scene::materials
-    std::uint32_t primitive = 0;  ///< vertex: whose vertices, index into Scene::primitives
-    std::uint32_t first = 0;      ///< running number of its first receiver
+    std::uint32_t material = 0;     ///< its subject: index into Scene::materials
+    std::uint32_t primitive = 0;    ///< vertex: whose vertices, index into Scene::primitives
+    std::uint32_t first = 0;        ///< running number of its first receiver
     std::vector<Receiver> outside;  ///< where rays to the light start
     std::vector<BodyPoint> inside;  ///< the same points, seen from inside; no normal where opaque
 

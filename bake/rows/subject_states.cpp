@@ -23,8 +23,8 @@ std::vector<SubjectState> begin_subjects(const BakeInputs& bake, std::span<const
         const auto decisions = entries_of(plan, subject.index);
         SubjectState state;
         state.material = subject.index;
-        state.layout = layout_material(bake.effects, bake.scene.materials[subject.index],
-                                       decisions, knobs);
+        state.layout =
+            layout_material(bake.effects, bake.scene.materials[subject.index], decisions, knobs);
         for (const EffectDescriptor& effect : bake.effects.effects) {
             state.effects.emplace_back();
             state.effects.back().acts = acts_on(effect, decisions, state.layout);

@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "bake/scene/body_shells.h"
 #include "bake/scene/color_contrast.h"
 #include "bake/scene/horizon.h"
-#include "bake/scene/body_shells.h"
 
 namespace opaline::bake {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/transport/sample_transport.h"
 #include "bake/receivers/receiver.h"
+#include "bake/transport/sample_transport.h"
 
 namespace opaline::bake {
 

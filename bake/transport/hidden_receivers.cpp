@@ -74,7 +74,8 @@ bool is_hidden(const RayScene& rays, const Receiver& receiver) {
 }
 
 std::vector<Receiver> replace_hidden_receivers(const RayScene& rays, const formats::Scene& scene,
-                                       std::vector<Receiver> receivers, const Context& context) {
+                                               std::vector<Receiver> receivers,
+                                               const Context& context) {
     if (rays.is_empty()) {
         return receivers;
     }

@@ -20,6 +20,7 @@ bool is_hidden(const RayScene& rays, const Receiver& receiver);
 /// Neighbours are joined by an edge within the same primitive.
 /// `receivers`: one per vertex of the scene, in order.
 std::vector<Receiver> replace_hidden_receivers(const RayScene& rays, const formats::Scene& scene,
-                                       std::vector<Receiver> receivers, const Context& context);
+                                               std::vector<Receiver> receivers,
+                                               const Context& context);
 
 }  // namespace opaline::bake

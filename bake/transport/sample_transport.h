@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/transport/sparse_vectors.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/transport/sparse_vectors.h"
 
 namespace opaline::bake {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "bake/truth/test_lights.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/truth/test_lights.h"
 
 namespace opaline::bake {
 

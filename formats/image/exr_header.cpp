@@ -182,9 +182,10 @@ std::optional<Fault> check_sizes(Parsed& parsed, bool is_tiled, std::uint64_t fi
     if (!is_near || width < 1 || height < 1 ||
         !is_plausible_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
                            file_bytes)) {
-        return Fault{"claims " + std::to_string(width) + " x " + std::to_string(height) +
-                         " pixels in " + std::to_string(file_bytes) + " bytes",
-                     "at most 16384 x 8192 pixels; above 16 million, at most 16 of them a byte of the file"};
+        return Fault{
+            "claims " + std::to_string(width) + " x " + std::to_string(height) + " pixels in " +
+                std::to_string(file_bytes) + " bytes",
+            "at most 16384 x 8192 pixels; above 16 million, at most 16 of them a byte of the file"};
     }
     parsed.header.min_x = x0;
     parsed.header.min_y = y0;

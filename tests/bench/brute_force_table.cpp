@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/base/ordered_parallel.h"
 #include "bake/accuracy/pilot/pilot_rows.h"
+#include "bake/base/ordered_parallel.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/inspect_scene.h"
@@ -89,8 +89,7 @@ int compare(const std::string& file, const std::string& media_file) {
             receivers[i].truth.first[l] = receivers[i].truth.second[l] = luminance;
         }
     }
-    const Rows own =
-        make_rows(pilot, receivers, knobs, {knobs.coefficients, knobs.code_bits});
+    const Rows own = make_rows(pilot, receivers, knobs, {knobs.coefficients, knobs.code_bits});
 
     std::printf("| %s | %zu | %.0f |", file.c_str(), receivers.size(), brute.seconds / own.seconds);
     for (std::size_t l = 0; l < lights->size(); ++l) {

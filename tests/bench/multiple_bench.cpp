@@ -43,7 +43,8 @@ struct Body {
 void tree_against_all_samples(benchmark::State& state) {
     const Body body(static_cast<std::uint32_t>(state.range(0)));
     SampleTransport transport = body.trace(body.samples.size(), true);
-    const ClusterTree tree = build_cluster_tree(body.samples, std::move(transport), kCubemap, kKept, {});
+    const ClusterTree tree =
+        build_cluster_tree(body.samples, std::move(transport), kCubemap, kKept, {});
     const MediumProfile medium = make_medium_profile(*body.scene.materials[0].medium, 0, {});
     const double spacing = std::sqrt(tree.total_area / static_cast<double>(body.samples.size()));
     const GatherProfile profile = make_gather_profile(medium, spacing, 4);

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "bake/receivers/vertex_receivers.h"
 #include "bake/effects/single/light_maps.h"
 #include "bake/effects/single/ray_single.h"
 #include "bake/effects/single/texel_directions.h"
+#include "bake/receivers/vertex_receivers.h"
 #include "tests/bench/dented_ball.h"
 
 namespace opaline::bake {

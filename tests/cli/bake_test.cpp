@@ -174,10 +174,10 @@ TEST(Bake, TestLightsAreComputedOnceForAllBakes) {
     double seconds[2] = {};
     for (const int i : {0, 1}) {
         const std::string report = small.path("r" + std::to_string(i) + ".json");
-        const Outcome bake = run_any({"env", "XDG_CACHE_HOME=" + cache.path().string(),
-                                      OPALINE_PROGRAM, "bake", small.scene(), "-o",
-                                      small.path("a" + std::to_string(i) + ".opal"), "--quality",
-                                      "draft", "--report", report});
+        const Outcome bake =
+            run_any({"env", "XDG_CACHE_HOME=" + cache.path().string(), OPALINE_PROGRAM, "bake",
+                     small.scene(), "-o", small.path("a" + std::to_string(i) + ".opal"),
+                     "--quality", "draft", "--report", report});
         ASSERT_EQ(bake.exit_code, 0) << bake.err;
         seconds[i] = seconds_of(Json::parse(read_text(report)), "test lights");
     }

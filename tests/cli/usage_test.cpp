@@ -8,7 +8,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const Arguments kCommands = {"bake",   "plan",    "info",  "verify", "relight",
+const Arguments kCommands = {"bake",   "plan",    "info",  "verify",  "relight",
                              "render", "compare", "phase", "example", "reference"};
 
 TEST(Usage, HelpListsEveryCommandAndTheExitCodes) {

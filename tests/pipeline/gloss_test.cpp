@@ -59,7 +59,8 @@ std::vector<formats::Rgb> shade_under(const formats::Asset& asset,
 
 TEST(Gloss, WhiteBallsReturnWhiteLightWhole) {
     const auto white = make_environment("white").value();
-    for (const formats::Gloss& gloss : {metal(0.3f), metal(1), dielectric(0.3f), dielectric(0.8f)}) {
+    for (const formats::Gloss& gloss :
+         {metal(0.3f), metal(1), dielectric(0.3f), dielectric(0.8f)}) {
         const BakeResult baked = tests::bake_scene(ball_of(gloss), small());
         for (const formats::Rgb& color : shade_under(baked.asset, white, std::nullopt)) {
             EXPECT_NEAR(color.g, 1, 0.01) << gloss.metallic << " " << gloss.roughness;

@@ -5,18 +5,18 @@
 #include <numbers>
 
 #include "bake/effects/multiple/medium_profile.h"
-#include "bake/scene/inspect_scene.h"
-#include "bake/plan/plan_rules.h"
 #include "bake/effects/single/rules_single.h"
+#include "bake/plan/plan_rules.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scattering/fresnel.h"
+#include "bake/scene/inspect_scene.h"
 #include "bake/transport/irradiance_transport.h"
 #include "formats/media/presets.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "formats/opal/write_opal.h"
-#include "tests/support/effects.h"
 #include "runtime/terms.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/temporary_folder.h"
 

@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "formats/opal/write_opal.h"
-#include "tests/support/effects.h"
 #include "tests/support/bake.h"
+#include "tests/support/effects.h"
 #include "tests/support/temporary_folder.h"
 
 namespace opaline::bake {

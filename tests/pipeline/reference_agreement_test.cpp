@@ -4,8 +4,8 @@
 
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
-#include "tests/support/effects.h"
 #include "tests/bake/reference/reference_support.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/sheets.h"
 

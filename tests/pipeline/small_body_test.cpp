@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "bake/effects/multiple/medium_profile.h"
-#include "bake/scene/inspect_scene.h"
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
-#include "tests/support/effects.h"
+#include "bake/scene/inspect_scene.h"
 #include "tests/bake/reference/reference_support.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/sheets.h"
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/effects.h"
 #include "tests/support/bake.h"
+#include "tests/support/effects.h"
 #include "tests/support/media.h"
 
 namespace opaline::tests {

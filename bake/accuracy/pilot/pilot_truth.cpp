@@ -35,8 +35,8 @@ void thin_out(const PilotScene& pilot, std::vector<PilotReceiver>& receivers) {
 std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs& knobs) {
     const auto& sets = pilot.bake.receivers;
     const std::size_t all = count_receivers(sets);
-    const std::size_t wanted = std::clamp(all / kReceiversPerPilotReceiver, kLeastPilotReceivers,
-                                          kMostPilotReceivers);
+    const std::size_t wanted =
+        std::clamp(all / kReceiversPerPilotReceiver, kLeastPilotReceivers, kMostPilotReceivers);
     std::vector<PilotReceiver> receivers;
     std::map<std::uint32_t, SubjectTruth> truths;
     for (const std::uint32_t r :
@@ -62,8 +62,8 @@ std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs
             const ReceiverSet& set = set_of(sets, r.receiver);
             const std::size_t i = r.receiver - set.first;
             std::uint64_t traced = 0;
-            return eval_truth(truths.at(r.material),
-                              {set.outside[i], set.inside[i], r.receiver}, traced);
+            return eval_truth(truths.at(r.material), {set.outside[i], set.inside[i], r.receiver},
+                              traced);
         },
         [&](Range range, TwoEstimates&& truth) {
             receivers[range.begin].truth = std::move(truth);

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "bake/base/context.h"
 #include "bake/accuracy/measure_error.h"
-#include "bake/pipeline/pipeline.h"
 #include "bake/accuracy/sweep/ladders.h"
 #include "bake/accuracy/sweep/probes.h"
+#include "bake/base/context.h"
+#include "bake/pipeline/pipeline.h"
 #include "formats/opal/environment.h"
 #include "formats/scene.h"
 #include "runtime/picture/picture.h"

@@ -10,11 +10,11 @@
 #include <optional>
 #include <utility>
 
+#include "bake/accuracy/sweep/finest.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/environment/builtin_environment.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/scene/inspect_scene.h"
-#include "bake/accuracy/sweep/finest.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {

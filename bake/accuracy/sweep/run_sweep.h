@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bake/plan/rates.h"
 #include "bake/accuracy/sweep/reference_ladder.h"
 #include "bake/accuracy/sweep/run_point.h"
+#include "bake/plan/rates.h"
 
 namespace opaline::bake {
 

@@ -48,9 +48,8 @@ PlanEntry decide(const PlanInput& input) {
 }
 
 constexpr std::array<DecisionRule, 1> kRules{
-    {{"gloss", is_glossy, decide, [](const PlanEntry& entry, RowLayout& layout) {
-          layout.glossy = entry.on;
-      }}}};
+    {{"gloss", is_glossy, decide,
+      [](const PlanEntry& entry, RowLayout& layout) { layout.glossy = entry.on; }}}};
 
 }  // namespace
 

@@ -17,10 +17,9 @@ constexpr std::array<DecisionRule, 2> kRules{
 }  // namespace
 
 EffectDescriptor describe_incident(Effect id) {
-    return {.id = id,
-            .name = "incident",
-            .rules = kRules,
-            .acts = [](const RowLayout&) { return false; }};
+    return {.id = id, .name = "incident", .rules = kRules, .acts = [](const RowLayout&) {
+                return false;
+            }};
 }
 
 }  // namespace opaline::bake

@@ -41,12 +41,11 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     return answer;
 }
 
-std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver,
-                  const DenseRow& row) {
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const auto& answer = static_cast<const Answer&>(*inputs.own.prepared);
     std::vector<float> dense(row.bands * row.size());
-    const std::uint64_t rays = gather_banded_irradiance(
-        inputs.outside(), answer.directions, receiver.outside, answer.factor, dense);
+    const std::uint64_t rays = gather_banded_irradiance(inputs.outside(), answer.directions,
+                                                        receiver.outside, answer.factor, dense);
     for (std::uint32_t band = 0; band < row.bands; ++band) {
         const std::span<float> own = std::span(dense).subspan(band * row.size(), row.size());
         formats::haar_forward_cube(own, row.cubemap_size);

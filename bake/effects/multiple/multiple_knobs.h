@@ -21,8 +21,7 @@ inline double samples_for(double error) {
 inline double per_path_for(double error) {
     return error < 0.03 ? 4 : 1;
 }
-inline constexpr std::array<double, 7> kSampleLadder{1000,  2000,  4000, 8000,
-                                                     16000, 32000, 64000};
+inline constexpr std::array<double, 7> kSampleLadder{1000, 2000, 4000, 8000, 16000, 32000, 64000};
 inline constexpr std::array<double, 5> kSampleDiagonal{4000, 8000, 16000, 32000, 64000};
 inline constexpr std::array<double, 6> kSampleTruths{300000, 150000, 150000, 60000, 20000, 20000};
 inline constexpr std::array<double, 8> kEpsilonLadder{1e-1, 3e-2, 1e-2, 3e-3,
@@ -36,8 +35,9 @@ inline constexpr KnobSpec kSamples{
     .name = "samples",
     .option = "--samples",
     .placeholder = "S",
-    .help = "points on the surface of each translucent material; default: as many as its mean free "
-            "path asks for",
+    .help =
+        "points on the surface of each translucent material; default: as many as its mean free "
+        "path asks for",
     .lowest = 16,
     .highest = 10000000,
     .exact_if_given = true,
@@ -65,8 +65,9 @@ inline constexpr KnobSpec kEpsilon{
     .name = "epsilon",
     .option = "--epsilon",
     .placeholder = "E",
-    .help = "how far the hierarchical gather may err for one node, as a share of what a half space "
-            "returns; 0: none; default as the quality says",
+    .help =
+        "how far the hierarchical gather may err for one node, as a share of what a half space "
+        "returns; 0: none; default as the quality says",
     .lowest = 0,
     .highest = 1,
     .whole = false,

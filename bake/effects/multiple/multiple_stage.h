@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/transport/cluster_tree.h"
 #include "bake/effects/multiple/gather_profile.h"
-#include "bake/transport/sample_transport.h"
+#include "bake/transport/cluster_tree.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/transport/sample_transport.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

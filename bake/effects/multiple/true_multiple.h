@@ -5,11 +5,11 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "bake/truth/luminance.h"
-#include "bake/truth/true_irradiance.h"
 #include "bake/effects/multiple/gather_profile.h"
 #include "bake/receivers/surface_points.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/truth/luminance.h"
+#include "bake/truth/true_irradiance.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "bake/receivers/spatial_order.h"
 #include "bake/effects/single/inner_triangles.h"
+#include "bake/receivers/spatial_order.h"
 
 namespace opaline::bake {
 namespace {

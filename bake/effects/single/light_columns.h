@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/scattering/entry.h"
 #include "bake/effects/single/light_view.h"
+#include "bake/scattering/entry.h"
 
 namespace opaline::bake {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/receivers/spatial_order.h"
 #include "bake/effects/single/gather_direction.h"
+#include "bake/receivers/spatial_order.h"
 
 namespace opaline::bake {
 namespace {

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "bake/transport/body.h"
+#include "bake/effects/single/phase_terms.h"
 #include "bake/scattering/entry.h"
 #include "bake/scattering/path_quadrature.h"
-#include "bake/effects/single/phase_terms.h"
+#include "bake/transport/body.h"
 #include "bake/transport/direction_set.h"
 #include "bake/transport/ray_scene.h"
 #include "formats/scene.h"

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "bake/plan/knob.h"
 #include "bake/plan/bake_plan.h"
+#include "bake/plan/knob.h"
 #include "bake/plan/row_layout.h"
 
 namespace opaline::bake {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/scattering/phase_series.h"
 #include "bake/effects/single/texel_directions.h"
+#include "bake/scattering/phase_series.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "bake/effects/multiple/true_multiple.h"
-#include "bake/scattering/phase.h"
 #include "bake/effects/single/ray_single.h"
+#include "bake/scattering/phase.h"
 
 namespace opaline::bake {
 

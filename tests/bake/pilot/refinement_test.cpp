@@ -37,7 +37,8 @@ Search search(const Knobs& first, const ErrorModel& model) {
         search.tried.push_back(tried);
         const Errors errors = model(tried);
         learn(refinement, {tried, true, errors.all, errors.smooth});
-        next = errors.all <= tried.error_target ? std::nullopt : next_knobs(all_effects(), refinement);
+        next =
+            errors.all <= tried.error_target ? std::nullopt : next_knobs(all_effects(), refinement);
     }
     search.base = *refinement.base;
     return search;

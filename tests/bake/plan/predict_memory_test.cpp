@@ -27,8 +27,9 @@ TEST(PredictMemory, GrowsWithEverythingItDependsOn) {
 }
 
 TEST(PredictMemory, PartsAddUpAndTheLargestIsNamed) {
-    const MemoryPrediction prediction = predict_memory(
-        all_effects(), count_memory(formats::SceneCounts{200000, 800000, 1200000}), knobs_of(Quality::draft), 2);
+    const MemoryPrediction prediction =
+        predict_memory(all_effects(), count_memory(formats::SceneCounts{200000, 800000, 1200000}),
+                       knobs_of(Quality::draft), 2);
     double sum = 0;
     for (const auto& part : prediction.parts) {
         EXPECT_GE(part.bytes, 0);
@@ -50,12 +51,16 @@ TEST(PredictMemory, MediaTakeSamplesAndWiderRows) {
     scene.primitives[0].position.resize(1000);
     scene.primitives[0].index.resize(6000);
     const Knobs knobs = knobs_of(Quality::preview);
-    const double opaque = predict_memory(all_effects(), count_memory(all_effects(), scene, knobs), knobs, 1).bytes();
+    const double opaque =
+        predict_memory(all_effects(), count_memory(all_effects(), scene, knobs), knobs, 1).bytes();
     EXPECT_DOUBLE_EQ(
-        opaque, predict_memory(all_effects(), count_memory(formats::SceneCounts{1, 1000, 6000}), knobs, 1).bytes())
+        opaque,
+        predict_memory(all_effects(), count_memory(formats::SceneCounts{1, 1000, 6000}), knobs, 1)
+            .bytes())
         << "known by size alone: as if opaque";
     scene.materials[0].medium = formats::Medium{};
-    const MemoryPrediction wax = predict_memory(all_effects(), count_memory(all_effects(), scene, knobs), knobs, 1);
+    const MemoryPrediction wax =
+        predict_memory(all_effects(), count_memory(all_effects(), scene, knobs), knobs, 1);
     EXPECT_GT(wax.bytes(), opaque);
     EXPECT_EQ(wax.largest().name, "surface samples");
 }

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "bake/scene/inspect_scene.h"
 #include "bake/plan/row_layout.h"
+#include "bake/scene/inspect_scene.h"
 #include "tests/support/effects.h"
 #include "tests/support/media.h"
 

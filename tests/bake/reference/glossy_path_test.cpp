@@ -145,7 +145,8 @@ TEST(ReferenceGlossPaths, LobesAreTermsOfTheirOwnAndAddUp) {
     bake::PathOptions diffuse, specular, across, no_mirror;
     diffuse.terms = formats::TermSet::diffuse;
     specular.terms = formats::TermSet::specular;
-    across.terms = formats::TermSet::interreflection | formats::TermSet::single | formats::TermSet::multiple | formats::TermSet::unscattered;
+    across.terms = formats::TermSet::interreflection | formats::TermSet::single |
+                   formats::TermSet::multiple | formats::TermSet::unscattered;
     no_mirror.own_mirror = false;
     EXPECT_NEAR(mean_over(*lit, diffuse, {}, 50000).mean.x, brdf.diffuse_albedo.x, 4e-3);
     EXPECT_NEAR(mean_over(*lit, specular, {}, 50000).mean.x, brdf.specular_albedo.x, 4e-3);

@@ -63,7 +63,8 @@ TEST(Ladders, KnobsOfEffectsThatAreOffAreLeftOut) {
     EXPECT_TRUE(marble.contains(ladder_of(kSamples)));
     EXPECT_TRUE(marble.contains(ladder_of(kDepthSamples)));
     EXPECT_FALSE(marble.contains(ladder_of(kPhaseTerms)));
-    EXPECT_TRUE(ladders_in(make_ladders(kFog, {}, Quality::preview)).contains(ladder_of(kPhaseTerms)));
+    EXPECT_TRUE(
+        ladders_in(make_ladders(kFog, {}, Quality::preview)).contains(ladder_of(kPhaseTerms)));
 }
 
 // How many of the knobs that ladders climb differ.

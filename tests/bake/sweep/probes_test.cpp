@@ -66,9 +66,8 @@ TEST(Probes, ErrorIsRelativeToTheTruth) {
         half.push_back(t / 2);
     }
     const std::vector<std::string> lights{"a", "b"};
-    const auto report =
-        bake::compare_probes(half, truth, std::vector<std::string>{"single", "direct", "single"},
-                             lights);
+    const auto report = bake::compare_probes(
+        half, truth, std::vector<std::string>{"single", "direct", "single"}, lights);
     EXPECT_NEAR(report.rms_relative, 0.5, 1e-12);
     EXPECT_NEAR(report.ci95[0], 0.5, 1e-12);
     EXPECT_NEAR(report.ci95[1], 0.5, 1e-12);
