@@ -58,8 +58,8 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
 
 void print_stages(const bake::BakeResult& result) {
     for (const bake::PlanEntry& entry : result.plan) {
-        print_note(fmt::format("{} {} for {}: {}", entry.effect, entry.on ? "on" : "off",
-                               printable(entry.subject), printable(entry.reason)));
+        print_note(fmt::format("{} {} for {}: {}", entry.name, entry.on ? "on" : "off",
+                               printable(entry.subject.name), printable(entry.reason)));
     }
     for (const bake::StageReport& stage : result.stages) {
         print_note(fmt::format("{:<32} {:>10}  {:>12} rays  peak {}", printable(stage.name),

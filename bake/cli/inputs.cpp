@@ -114,6 +114,4 @@ formats::Result<formats::Vec3> parse_vec3(const std::string& option, const std::
     return formats::Vec3{value[0], value[1], value[2]};
 }
 
-}
-
 }  // namespace opaline::cli

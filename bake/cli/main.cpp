@@ -10,7 +10,7 @@
 #include "bake/cli/command.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/usage_errors.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/transport/embree_scene.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::cli {
@@ -31,8 +31,8 @@ std::string describe_version() {
     return fmt::format(
         "opaline {}\n.opal files   version {}\nray tracer    {}\nbuild         {}, {}\n"
         "OpenGL        {}",
-        OPALINE_VERSION, formats::kOpalVersion, bake::RayScene::description(), OPALINE_BUILD_TYPE,
-        kCompiler, kHasGl ? "yes" : "no: render draws on the CPU");
+        OPALINE_VERSION, formats::kOpalVersion, bake::EmbreeScene::description(),
+        OPALINE_BUILD_TYPE, kCompiler, kHasGl ? "yes" : "no: render draws on the CPU");
 }
 
 int run_program(int argc, char** argv) {

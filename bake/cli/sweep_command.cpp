@@ -76,7 +76,7 @@ int run(const Options& options) {
         return report_error(options_of_bake.error());
     }
     // Of the knobs it starts from: what does not fit there fits nowhere.
-    const auto knobs = bake::resolve_knobs(*options_of_bake);
+    const auto knobs = bake::resolve_knobs(bake::all_effects(), *options_of_bake);
     if (!knobs) {
         return report_error(knobs.error());
     }

@@ -4,6 +4,7 @@
 
 #include "bake/accuracy/stored_luminance.h"
 #include "bake/accuracy/surface_probes.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {
@@ -87,7 +88,7 @@ TEST(Between, MixOfVerticesIsTheRuntimes) {
     medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.5f, 0, {}, {}};
     const auto scene = tests::make_ball_on_floor(medium);
     BakeOptions options = tests::small_bake();
-    options.phase_terms = 9;
+    options.set(kPhaseTerms, 9);
     const BakeResult result = tests::bake_scene(scene, options);
     const formats::AssetView asset = result.asset.view();
     ASSERT_EQ(asset.primitives[0].terms, 9u);
@@ -97,8 +98,7 @@ TEST(Between, MixOfVerticesIsTheRuntimes) {
     for (const CheckPoint& probe :
          draw_surface_probes(scene, *rays, {0, 1}, {12, 0, 0}, Context{})) {
         const RowLayout& layout = layouts[probe.material];
-        const Luminance found =
-            relight_point(asset, probe, layout.translucent ? &layout : nullptr, lights);
+        const Luminance found = relight_point(asset, probe, layout, lights);
         const glm::vec3 eye = probe.body.position + 1e4f * probe.receiver.normal;
         for (std::size_t l = 0; l < lights.size(); ++l) {
             if (!lights[l].discs.empty()) {
@@ -110,7 +110,7 @@ TEST(Between, MixOfVerticesIsTheRuntimes) {
                             lights[l].coarse[k]);
             }
             const auto vertices = runtime::shade_for_picture(asset, light, {eye.x, eye.y, eye.z},
-                                                             runtime::kAllTerms, 1);
+                                                             formats::TermSet::baked, 1);
             double mixed = 0;
             for (std::size_t k = 0; k < 3; ++k) {
                 mixed += static_cast<double>(probe.weight[k] *

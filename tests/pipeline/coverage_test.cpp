@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/accuracy/stored_luminance.h"
-#include "bake/accuracy/truth.h"
+#include "bake/effects/direct/true_direct.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/transport/hidden_receivers.h"
 #include "tests/support/media_bake.h"
@@ -30,7 +30,7 @@ std::vector<CheckedPair> check_every_receiver(const formats::Scene& scene,
     std::uint64_t traced = 0;
     for (std::uint32_t v = 0; v < receivers.size(); ++v) {
         const formats::PrimitiveRecord& primitive = formats::primitive_of(asset, v);
-        append_pairs(relight_rows(asset.transport, primitive.rows(), v - primitive.first_vertex,
+        append_pairs(relight_rows({asset.transport, primitive.rows(), v - primitive.first_vertex},
                                   kDiffuse, lights),
                      eval_truth(truth, *rays, receivers[v], lights, traced), pairs);
     }

@@ -126,7 +126,7 @@ SingleOfBall single_of_ball(float x) {
                                       tests::make_grey_medium(0.8f / kFreePath, 0.2f / kFreePath)),
         tests::make_white_sky());
     PathOptions paths;
-    paths.terms = term::kSingle;
+    paths.terms = formats::TermSet::single;
     EstimateOptions wanted;
     wanted.samples = 8192;
     const auto receivers = choose_receivers(fixture->scene, 100, 0, std::nullopt);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <optional>
 
+#include "bake/reference/estimate.h"
+#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "formats/opal/write_opal.h"
 #include "runtime/specular.h"

@@ -6,9 +6,9 @@
 
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/single/rules_single.h"
-#include "bake/plan/plan_rules.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scattering/fresnel.h"
+#include "bake/scattering/half_space_medium.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/transport/irradiance_transport.h"
 #include "formats/media/presets.h"
@@ -66,7 +66,7 @@ std::vector<std::string> effects_of_ball(const std::vector<PlanEntry>& plan) {
     for (const PlanEntry& entry : plan) {
         const bool is_part = entry.name.find('.') != std::string::npos;
         if (entry.on && entry.subject.index == 0 && !is_part) {
-            on.push_back(entry.name);
+            on.emplace_back(entry.name);
         }
     }
     return on;
@@ -133,16 +133,17 @@ TEST(TranslucentPipeline, MultipleAndSingleBakedApartAddUpToBoth) {
         const auto scene = make_ball_on_floor(forward(g));
         BakeOptions options = small_bake();
         options.quality = Quality::reference;
-        options.set(kPhaseTerms, g > 0 ? 4 : 1);
+        const std::uint32_t terms = g > 0 ? 4 : 1;
+        options.set(kPhaseTerms, terms);
         const BakeResult merged = bake_scene(scene, options);
         options.separate_terms = true;
         const BakeResult separate = bake_scene(scene, options);
-        EXPECT_EQ(merged.asset.primitives[0].terms, options.phase_terms);
-        EXPECT_EQ(separate.asset.primitives[0].terms, options.phase_terms + 1);
+        EXPECT_EQ(merged.asset.primitives[0].terms, terms);
+        EXPECT_EQ(separate.asset.primitives[0].terms, terms + 1);
         for (const char* light : kLights) {
-            const auto part = [&](formats::TermSet terms) {
+            const auto part = [&](formats::TermSet shown_terms) {
                 runtime::ShadeOptions shown;
-                shown.terms = terms;
+                shown.terms = shown_terms;
                 return relight_primitive(separate.asset, light, 0, shown);
             };
             std::vector<Rgb> sum = part(formats::TermSet::multiple);

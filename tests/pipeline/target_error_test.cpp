@@ -52,7 +52,7 @@ TEST(TargetError, GivenKnobsStay) {
     const BakeResult result = tests::bake_scene(soft_ball(), options);
     EXPECT_EQ(result.knobs.cubemap_size, 8u);
     EXPECT_EQ(result.knobs.coefficients, 40u);
-    EXPECT_EQ(result.knobs.tolerance, 2e-3);
+    EXPECT_EQ(result.knobs[kEpsilon], 2e-3);
     EXPECT_EQ(result.knobs[kDepthSamples], 5u);
 }
 
@@ -65,7 +65,7 @@ TEST(TargetError, SingleScatteringIsNeverGatheredOnMoreTexelsThanTheFileHas) {
     const BakeResult result = tests::bake_scene(dense, options);
     EXPECT_LE(result.knobs[kSingleCubemap], 8u);
     std::uint32_t levels = 0;
-    for (const auto& [cubemap_size, samples_per_path, trial] : result.accuracy->trials) {
+    for (const auto& [knobs, trial] : result.accuracy->trials) {
         levels += trial.knob == "depth_samples" ? 1 : 0;
     }
     EXPECT_GT(levels, 1u) << "the finer levels were not reached";
@@ -87,7 +87,7 @@ TEST(TargetError, OutOfReachIsSaidAndBytesThatLowerNothingAreNotSpent) {
     EXPECT_EQ(result.knobs.cubemap_size, 8u);
     EXPECT_LT(result.knobs.coefficients, 6u * 8 * 8);
     double least = 1;
-    for (const auto& [cubemap_size, samples_per_path, trial] : result.accuracy->trials) {
+    for (const auto& [knobs, trial] : result.accuracy->trials) {
         least = std::min(least, trial.knob == "coefficients" ? trial.error : 1.0);
     }
     EXPECT_LT(result.accuracy->predicted, 1.1 * least);
@@ -106,8 +106,8 @@ TEST(TargetError, TooFewPhaseTermsEndThePilotAndAreNamed) {
         tests::bake_scene(tests::make_translucent_scene({tests::make_sphere(2)}, medium), options);
     EXPECT_FALSE(result.accuracy->met);
     std::set<std::pair<std::uint32_t, double>> rounds;
-    for (const auto& [cubemap_size, samples_per_path, trial] : result.accuracy->trials) {
-        rounds.insert({cubemap_size, samples_per_path});
+    for (const auto& [knobs, trial] : result.accuracy->trials) {
+        rounds.insert({knobs.cubemap_size, knobs[kSamplesPerPath]});
     }
     EXPECT_LE(rounds.size(), 3u);
     EXPECT_LE(result.knobs.cubemap_size, 16u);

@@ -51,7 +51,7 @@ formats::Medium clear_medium(float tau, float thickness) {
 BakeOptions single_scattering(bool by_rays) {
     BakeOptions options = tests::only({"single"});
     options.cubemap_size = 16;
-    options.depth_samples = 8;
+    options.set(kDepthSamples, 8);
     options.quality = by_rays ? Quality::reference : Quality::preview;
     return options;
 }

@@ -105,7 +105,7 @@ TEST_F(Api, DescribesTheAsset) {
 
 TEST_F(Api, ShadesAsTheLibraryDoes) {
     const formats::Environment map = tests::lat_long_map(64, 32, tests::smooth_sky);
-    ASSERT_EQ(opaline_incident_set_lat_long(light.get(), &map.pixel[0].r, 64, 32), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_lat_long(light.get(), &map.pixel[0].r, 64, 32), OPALINE_OK);
     const formats::Asset same = make_asset(8);
     std::vector<Rgb> expected(receivers);
     shade(same.view(), project_environment(map, 8), expected);
@@ -122,26 +122,26 @@ TEST_F(Api, OrderOfRotationMapAndSunDoesNotMatter) {
     const Rotation r = rotation_about_y(0.8f);
     const float turn[9] = {r.x.x, r.x.y, r.x.z, r.y.x, r.y.y, r.y.z, r.z.x, r.z.y, r.z.z};
     const float direction[3] = {0, 3, 4}, radiance[3] = {1e4f, 1e4f, 9e3f};
-    ASSERT_EQ(opaline_incident_set_rotation(light.get(), turn), OPALINE_OK);
-    ASSERT_EQ(opaline_incident_set_cubemap(light.get(), &map.pixel[0].r, 8), OPALINE_OK);
-    ASSERT_EQ(opaline_incident_add_sun(light.get(), direction, 0.005f, radiance), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_rotation(light.get(), turn), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_cubemap(light.get(), &map.pixel[0].r, 8), OPALINE_OK);
+    ASSERT_EQ(opaline_light_add_sun(light.get(), direction, 0.005f, radiance), OPALINE_OK);
     const std::vector<float> first = shaded();
 
-    ASSERT_EQ(opaline_incident_clear(light.get()), OPALINE_OK);
+    ASSERT_EQ(opaline_light_clear(light.get()), OPALINE_OK);
     EXPECT_THAT(shaded(), testing::Each(0.0f));
     const float identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    ASSERT_EQ(opaline_incident_set_rotation(light.get(), identity), OPALINE_OK);
-    ASSERT_EQ(opaline_incident_set_threads(light.get(), 2), OPALINE_OK);
-    ASSERT_EQ(opaline_incident_add_sun(light.get(), direction, 0.005f, radiance), OPALINE_OK);
-    ASSERT_EQ(opaline_incident_set_cubemap(light.get(), &map.pixel[0].r, 8), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_rotation(light.get(), identity), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_threads(light.get(), 2), OPALINE_OK);
+    ASSERT_EQ(opaline_light_add_sun(light.get(), direction, 0.005f, radiance), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_cubemap(light.get(), &map.pixel[0].r, 8), OPALINE_OK);
     EXPECT_NE(shaded(), first);
-    ASSERT_EQ(opaline_incident_set_rotation(light.get(), turn), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_rotation(light.get(), turn), OPALINE_OK);
     EXPECT_EQ(shaded(), first);
 }
 
 TEST_F(Api, RangesOnSeveralThreadsMakeTheWhole) {
     const float up[3] = {0, 1, 0}, radiance[3] = {10, 10, 10};
-    ASSERT_EQ(opaline_incident_add_sun(light.get(), up, 0.1f, radiance), OPALINE_OK);
+    ASSERT_EQ(opaline_light_add_sun(light.get(), up, 0.1f, radiance), OPALINE_OK);
     const std::vector<float> whole = shaded();
     std::vector<float> parts(whole.size());
     std::vector<std::thread> threads;
@@ -162,24 +162,24 @@ TEST_F(Api, RangesOnSeveralThreadsMakeTheWhole) {
 TEST_F(Api, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
     const float up[3] = {0, 1, 0}, white[3] = {1, 1, 1}, none[3] = {0, 0, 0};
     const float bad[3] = {1, NAN, 1};
-    opaline_incident* const l = light.get();
-    ASSERT_EQ(opaline_incident_add_sun(l, up, 0.1f, white), OPALINE_OK);
+    opaline_light* const l = light.get();
+    ASSERT_EQ(opaline_light_add_sun(l, up, 0.1f, white), OPALINE_OK);
     const std::vector<float> before = shaded();
-    EXPECT_EQ(opaline_incident_add_sun(l, none, 0.1f, white), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_incident_add_sun(l, bad, 0.1f, white), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_incident_add_sun(l, up, 0.1f, bad), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_incident_add_sun(l, up, 0.0f, white), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_incident_add_sun(l, up, NAN, white), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_incident_add_sun(l, up, 1.6f, white), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_incident_add_sun(nullptr, up, 0.1f, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, none, 0.1f, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, bad, 0.1f, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, up, 0.1f, bad), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, up, 0.0f, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, up, NAN, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(l, up, 1.6f, white), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_add_sun(nullptr, up, 0.1f, white), OPALINE_INVALID_ARGUMENT);
     const float shear[9] = {1, 0, 0, 0.1f, 1, 0, 0, 0, 1};
-    EXPECT_EQ(opaline_incident_set_rotation(l, shear), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_rotation(l, shear), OPALINE_INVALID_ARGUMENT);
     EXPECT_THAT(opaline_last_error(), HasSubstr("rotation"));
-    EXPECT_EQ(opaline_incident_set_lat_long(l, bad, 1, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_incident_set_lat_long(l, white, 0, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_incident_set_lat_long(l, white, 40000, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_incident_set_cubemap(l, white, 0), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_incident_set_threads(l, 257), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_lat_long(l, bad, 1, 1), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_lat_long(l, white, 0, 1), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_lat_long(l, white, 40000, 1), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_cubemap(l, white, 0), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_threads(l, 257), OPALINE_INVALID_ARGUMENT);
     std::vector<float> out(3 * receivers);
     EXPECT_EQ(opaline_shade(asset.get(), l, 64, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_shade(asset.get(), l, 0, out.data(), out.size() - 1),
@@ -192,7 +192,7 @@ TEST_F(Api, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
     EXPECT_EQ(opaline_shade_range(asset.get(), l, 0, 41, 0, out.data(), 0), OPALINE_OK);
     EXPECT_EQ(shaded(), before);
     opaline_asset_release(nullptr);
-    opaline_incident_release(nullptr);
+    opaline_light_release(nullptr);
     EXPECT_EQ(opaline_asset_receiver_count(nullptr), 0u);
 }
 
@@ -254,7 +254,7 @@ TEST_F(Api, TranslucentPrimitivesAreShadedFromTheEyeThatIsGiven) {
     EXPECT_EQ(shading.eta, 0.0f);
 
     const formats::Environment map = tests::lat_long_map(64, 32, tests::smooth_sky);
-    ASSERT_EQ(opaline_incident_set_lat_long(light.get(), &map.pixel[0].r, 64, 32), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_lat_long(light.get(), &map.pixel[0].r, 64, 32), OPALINE_OK);
     const LightVector vector = project_environment(map, 8);
     const auto count = p.vertex_count;
     const float eye[3] = {1, 2, -1};
@@ -299,15 +299,15 @@ TEST_F(Api, ComponentsAndGlossAreThoseOfTheLibrary) {
     auto created = create_light(glossy.handle);
     ASSERT_TRUE(created);
     const opaline_asset* const a = glossy.handle.get();
-    opaline_incident* const l = created.handle.get();
+    opaline_light* const l = created.handle.get();
     // Map, sun, rotation: all three reach the mirrored light.
     formats::Environment map = tests::lat_long_map(64, 32, tests::smooth_sky);
     map.discs = {{{0, 0.6f, 0.8f}, 0.01f, {900, 800, 700}}};
-    ASSERT_EQ(opaline_incident_set_lat_long(l, &map.pixel[0].r, 64, 32), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_lat_long(l, &map.pixel[0].r, 64, 32), OPALINE_OK);
     const float direction[3] = {0, 0.6f, 0.8f}, radiance[3] = {900, 800, 700};
-    ASSERT_EQ(opaline_incident_add_sun(l, direction, 0.01f, radiance), OPALINE_OK);
+    ASSERT_EQ(opaline_light_add_sun(l, direction, 0.01f, radiance), OPALINE_OK);
     const float turn[9] = {0, 0, -1, 0, 1, 0, 1, 0, 0};
-    ASSERT_EQ(opaline_incident_set_rotation(l, turn), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_rotation(l, turn), OPALINE_OK);
     const Rotation rotation{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}};
     const LightVector vector = project_environment(map, 8, rotation);
     const std::uint32_t level = roughness_level(0.5f);

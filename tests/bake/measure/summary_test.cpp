@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/accuracy/measure_error.h"
@@ -17,19 +18,23 @@ CheckedPair exact_pair(double error, double reference) {
     return {{error, error}, reference};
 }
 
+EffectCheck make_check(const char* effect, const char* reference, std::vector<CheckedPair> pairs) {
+    EffectCheck check;
+    check.effect = effect;
+    check.reference = reference;
+    check.pairs = std::move(pairs);
+    return check;
+}
+
 const std::vector<std::string> kTwoLights{"white", "sun"};
 
-TEST(SummariseChecks, RelatesRmsErrorsToTheRmsOfTheirOwnReference) {
+TEST(SummaryOfChecks, RelatesRmsErrorsToTheRmsOfTheirOwnReference) {
     // Two receivers under two lights, of each of two effects.
     const std::vector<EffectCheck> checks{
-        {"direct",
-         "rays",
-         {exact_pair(3, 10), exact_pair(0, 20), exact_pair(4, 10), exact_pair(0, 20)},
-         5},
-        {"single",
-         "depths",
-         {exact_pair(0, 2), exact_pair(-1, 1), exact_pair(0, 2), exact_pair(1, 1)},
-         7}};
+        make_check("direct", "rays",
+                   {exact_pair(3, 10), exact_pair(0, 20), exact_pair(4, 10), exact_pair(0, 20)}),
+        make_check("single", "depths",
+                   {exact_pair(0, 2), exact_pair(-1, 1), exact_pair(0, 2), exact_pair(1, 1)})};
     const ErrorReport report = summarise_checks(checks, kTwoLights, 0);
     EXPECT_DOUBLE_EQ(report.rms_relative, std::sqrt(27.0 / 1010));
     EXPECT_EQ(report.receivers_checked, 4u);
@@ -50,11 +55,11 @@ TEST(SummariseChecks, RelatesRmsErrorsToTheRmsOfTheirOwnReference) {
     EXPECT_THAT(report.reference, HasSubstr("luminance under white, sun"));
 }
 
-TEST(SummariseChecks, CountsAnEffectInSeveralMaterialsAsOne) {
+TEST(SummaryOfChecks, CountsAnEffectInSeveralMaterialsAsOne) {
     const std::vector<EffectCheck> checks{
-        {"single", "depths", {exact_pair(1, 2), exact_pair(0, 2)}, 0},
-        {"direct", "rays", {}, 0},  // nothing was drawn of it
-        {"single", "depths", {exact_pair(0, 2), exact_pair(2, 2)}, 0}};
+        make_check("single", "depths", {exact_pair(1, 2), exact_pair(0, 2)}),
+        make_check("direct", "rays", {}),  // nothing was drawn of it
+        make_check("single", "depths", {exact_pair(0, 2), exact_pair(2, 2)})};
     const ErrorReport report = summarise_checks(checks, kTwoLights, 0);
     ASSERT_EQ(report.by_effect.size(), 1u);
     EXPECT_EQ(report.by_effect[0].name, "single");
@@ -62,11 +67,11 @@ TEST(SummariseChecks, CountsAnEffectInSeveralMaterialsAsOne) {
     EXPECT_EQ(report.receivers_checked, 2u);
 }
 
-TEST(SummariseChecks, NothingCheckedOrNothingToErrByIsZero) {
+TEST(SummaryOfChecks, NothingCheckedOrNothingToErrByIsZero) {
     EXPECT_EQ(summarise_checks({}, kTwoLights, 0).receivers_checked, 0u);
     EXPECT_EQ(summarise_checks({}, kTwoLights, 0).rms_relative, 0);
     const std::vector<EffectCheck> black{
-        {"direct", "rays", {exact_pair(0, 0), exact_pair(0, 0)}, 0}};
+        make_check("direct", "rays", {exact_pair(0, 0), exact_pair(0, 0)})};
     const ErrorReport report = summarise_checks(black, kTwoLights, 0);
     EXPECT_EQ(report.rms_relative, 0);
     EXPECT_EQ(report.max_relative, 0);
@@ -76,8 +81,8 @@ TEST(SummariseChecks, NothingCheckedOrNothingToErrByIsZero) {
 
 // The truth's own noise, of independent estimates: it cancels in the mean of products, and would
 // count in a mean of squares (0.1 here, against an error of 0.01).
-TEST(SummariseChecks, NoiseOfTheTruthIsNotCountedAsError) {
-    EffectCheck check{"multiple", "points", {}, 0};
+TEST(SummaryOfChecks, NoiseOfTheTruthIsNotCountedAsError) {
+    EffectCheck check = make_check("multiple", "points", {});
     for (std::uint64_t i = 0; i < 4096; ++i) {
         const auto u = random_uniform(7, RandomStage::bootstrap, i);
         const auto noise = [&](std::size_t k) { return u[k] < 0.5f ? 0.1 : -0.1; };
@@ -133,17 +138,6 @@ TEST(DrawEvenly, TakesOneFromEachOfAsManyEqualRuns) {
     }
     EXPECT_EQ(draw_evenly(5, 16, RandomStage::held_back_receivers, 3).size(), 5u)
         << "all there are";
-}
-
-TEST(DrawReceivers, TakesOneInFortyAtLeast32AtMost1024) {
-    for (const auto& [count, expected] : {std::pair<std::size_t, std::size_t>{0, 0},
-                                          {5, 5},
-                                          {100, 32},
-                                          {4000, 100},
-                                          {40960, 1024},
-                                          {1000000, 1024}}) {
-        EXPECT_EQ(draw_receivers(count, 3).size(), expected) << count;
-    }
 }
 
 TEST(DrawEvenly, EveryOneIsAsLikely) {

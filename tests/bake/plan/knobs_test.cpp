@@ -5,6 +5,8 @@
 #include <iterator>
 #include <string>
 
+#include "tests/support/effects.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -40,14 +42,15 @@ TEST(Presets, NoKnobOfABetterOneIsCoarser) {
         EXPECT_LE(coarse.cubemap_size, fine.cubemap_size);
         EXPECT_LE(coarse.coefficients, fine.coefficients);
         EXPECT_LE(coarse.code_bits, fine.code_bits);
-        EXPECT_LE(coarse.samples, fine.samples);
-        EXPECT_LE(coarse.samples_per_path, fine.samples_per_path);
-        EXPECT_LE(coarse.depth_samples, fine.depth_samples);
-        EXPECT_LE(coarse.single_cubemap, fine.single_cubemap);
         EXPECT_LE(coarse.exact_rays, fine.exact_rays);
         EXPECT_LE(sample_coefficients(coarse), sample_coefficients(fine));
-        EXPECT_GE(coarse.tolerance, fine.tolerance);
-        EXPECT_GE(coarse.phase_tolerance, fine.phase_tolerance);
+        for (const KnobSpec* knob :
+             {&kSamples, &kSamplesPerPath, &kDepthSamples, &kSingleCubemap}) {
+            EXPECT_LE(coarse[*knob], fine[*knob]) << knob->name;
+        }
+        for (const KnobSpec* knob : {&kEpsilon, &kPhaseTolerance}) {
+            EXPECT_GE(coarse[*knob], fine[*knob]) << knob->name;
+        }
     }
 }
 

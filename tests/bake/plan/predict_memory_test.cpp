@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/effects.h"
+
 namespace opaline::bake {
 namespace {
 

@@ -22,11 +22,11 @@ const SweepSubject kFog{{&kSamples, &kSamplesPerPath, &kEpsilon, &kDepthSamples,
 
 std::vector<SweepPoint> make_ladders(const SweepSubject& subject, const BakeOptions& options,
                                      Quality base) {
-    return make_ladders({all_effects(), subject, options}, base);
+    return make_ladders(LadderRequest{all_effects(), subject, options}, base);
 }
 
 std::vector<SweepPoint> make_truths(const SweepSubject& subject, const BakeOptions& options) {
-    return make_truths({all_effects(), subject, options});
+    return make_truths(LadderRequest{all_effects(), subject, options});
 }
 
 std::set<Ladder> ladders_in(const std::vector<SweepPoint>& points) {

@@ -26,7 +26,7 @@ SweepResult small_sweep(const std::string& name) {
     result.lights = {"white", "sun:30,60"};
     PlanEntry entry;
     entry.name = "direct";
-    entry.subject = "material '" + name + "'";
+    entry.subject.name = "material '" + name + "'";
     entry.on = true;
     result.plan = {entry};
     const double seconds[] = {8, 2, 4}, errors[] = {1e-3, 0.02, 0.2};
