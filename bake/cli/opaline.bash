@@ -4,7 +4,7 @@ _opaline() {
     if [ "$COMP_CWORD" -eq 1 ]; then
         words=$("$program" --help | sed -n 's/^  \([a-z][a-z-]*\)  .*/\1/p')
     elif [[ $word == -* ]]; then
-        words=$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | grep -oE -e '--[a-z][a-z-]*')
+        words=$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | grep -oE -e '--[a-z][a-z-]*' | sort -u)
     fi
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
     if [ -z "$words" ]; then

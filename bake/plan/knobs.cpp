@@ -54,6 +54,9 @@ formats::Status start_from_target(Knobs& knobs, const EffectTable& effects,
 
 formats::Status take_given(Knobs& knobs, const KnobValues& given) {
     for (const auto& [knob, value] : given.values) {
+        if (knob->zero_is_auto && value == 0) {
+            continue;
+        }
         const auto& allowed = knob->allowed;
         if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
             std::string list;

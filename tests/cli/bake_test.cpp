@@ -149,11 +149,15 @@ TEST(Bake, TargetErrorIsReportedWithWhatThePilotTried) {
     const Json json = Json::parse(read_text(report));
     const Json& accuracy = json.at("accuracy");
     EXPECT_EQ(accuracy.at("error_requested"), 0.2);
-    EXPECT_TRUE(accuracy.at("met").get<bool>());
     EXPECT_LE(accuracy.at("error_predicted").get<double>(), 0.2);
+    // Two squares of four vertices each: what the pilot found at vertices says little of the rest.
+    const Json& error = json.at("error");
+    const double at_receivers = error.at("at_receivers").at("rms_relative").get<double>();
+    const double between = error.at("between").at("rms_relative").get<double>();
+    EXPECT_LE(at_receivers, 0.2);
+    EXPECT_EQ(accuracy.at("met").get<bool>(), between <= 0.2);
     ASSERT_FALSE(accuracy.at("trials").empty());
     EXPECT_EQ(accuracy.at("trials").at(0).at("knob"), "coefficients");
-    EXPECT_LE(json.at("error").at("rms_relative").get<double>(), 0.2);
     const Json info = Json::parse(run_opaline({"info", out, "--json"}).out);
     EXPECT_EQ(info.at("provenance").at("error_requested"), 0.2);
 }
@@ -256,11 +260,8 @@ TEST(Bake, InterruptedBakeLeavesNothing) {
             run_opaline({"bake", folder / "sheet.glb", "-o", folder / "out.opal", "--report",
                          folder / "r.json", "--quality", "reference"},
                         [&](int process) {
-                            // Once its temporary files are there, work has begun.
-                            while (list_folder(folder.path()).size() < 3) {
-                                std::this_thread::sleep_for(std::chrono::milliseconds(5));
-                            }
-                            std::this_thread::sleep_for(std::chrono::milliseconds(200));
+                            // Its files have no names before it ends: some time after its start.
+                            std::this_thread::sleep_for(std::chrono::milliseconds(1500));
                             ::kill(process, signal);
                         });
         EXPECT_EQ(bake.exit_code, 130) << bake.err;

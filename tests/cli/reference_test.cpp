@@ -239,7 +239,7 @@ TEST(Reference, BadArgumentsAreRefusedBeforeAnyWork) {
         {scene, "--light", "white"},                                   // no output
         {scene, "--light", "white", "-o", csv},                        // no receivers
         {scene, "--light", "white", "-o", exr, "--receivers", "5"},    // not a table
-        {scene, "--light", "white", "-o", small.path("out.png")},      // no such format
+        {scene, "--light", "white", "-o", small.path("out.jpg")},      // no such format
         {scene, "--light", "white", "-o", csv, "--receivers", "0"},    //
         {scene, "--light", "white", "-o", csv, "--receivers", "-3"},   //
         {scene, "--light", "white", "-o", exr, "--spp", "0"},          //

@@ -25,8 +25,8 @@ TEST(ReferenceAgreement, DirectLightOnConvexAndConcaveOpaqueBodies) {
         EXPECT_TRUE(report.left_out.empty());
         ASSERT_EQ(report.by_light.size(), 6u) << "nothing refracts: every test light";
         // Both measure one error, at receivers of their own.
-        EXPECT_LE(report.ci95[0], baked.error.ci95[1]);
-        EXPECT_LE(baked.error.ci95[0], report.ci95[1]);
+        EXPECT_LE(report.ci95[0], baked.error.at_receivers.ci95[1]);
+        EXPECT_LE(baked.error.at_receivers.ci95[0], report.ci95[1]);
         for (std::size_t l = 0; l < 6; ++l) {
             const ModelErrorReport::Part& model = report.by_light[l];
             const ErrorReport::Part& numerical = baked.error.at_receivers.by_light[l];

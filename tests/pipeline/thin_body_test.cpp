@@ -66,7 +66,7 @@ double mean_blue(const std::vector<formats::Rgb>& radiance) {
 
 // Error of the bake's self-check under the white light.
 double error_under_white(const BakeResult& baked) {
-    const auto& lights = baked.error.by_light;
+    const auto& lights = baked.error.at_receivers.by_light;
     const auto white = std::find_if(lights.begin(), lights.end(),
                                     [](const auto& light) { return light.name == "white"; });
     return white != lights.end() ? white->rms_relative : 1;

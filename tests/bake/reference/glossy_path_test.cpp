@@ -29,9 +29,10 @@ bake::Moments mean_over(const ReferenceFixture& fixture, bake::PathOptions optio
     const auto chosen = bake::choose_receivers(fixture.scene, 8, 3, eye);
     bake::EstimateOptions estimate;
     estimate.samples = samples;
+    const auto estimated = bake::estimate_receivers(fixture.space(options), chosen, estimate, {});
+    EXPECT_TRUE(estimated);
     bake::Moments all;
-    for (const bake::Moments& m :
-         bake::estimate_receivers(fixture.space(options), chosen, estimate, {}).value().pixel) {
+    for (const bake::Moments& m : estimated->pixel) {
         all.merge(m);
     }
     return all;
@@ -123,9 +124,10 @@ TEST(ReferenceGlossPaths, SunOnAPlateMatchesTheBrdf) {
                 }
                 bake::EstimateOptions options;
                 options.samples = 40000;
+                const auto estimate = bake::estimate_receivers(lit->space(), chosen, options, {});
+                ASSERT_TRUE(estimate);
                 bake::Moments all;
-                for (const bake::Moments& m :
-                     bake::estimate_receivers(lit->space(), chosen, options, {}).value().pixel) {
+                for (const bake::Moments& m : estimate->pixel) {
                     all.merge(m);
                 }
                 const double expected = lit_by_sun(gloss, to_eye).y;
