@@ -23,7 +23,7 @@ def faults(root, names):
             line = re.sub(r"//.*", "", line)
             for name in names:
                 spelling = re.escape(name).replace("_", "[_-]")
-                if EFFECTS / name not in file.parents and re.search(rf'"{spelling}("|\\.[a-z])', line):
+                if EFFECTS / name not in file.parents and re.search(rf'"{spelling}("|\.[a-z])', line):
                     yield f'{file}:{number}: names the effect "{name}": {line.strip()}'
 
 
