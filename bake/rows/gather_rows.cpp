@@ -95,14 +95,17 @@ DenseRow shape_row(const RowLayout& layout, std::uint32_t cubemap_size,
 
 formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers,
                                 const Context& context, std::uint64_t& rays) {
-    const auto& [set, layout, encoder, total, batch_bytes] = job;
+    // References, because C++20 lets no lambda of clang 14 capture a structured binding.
+    const ReceiverSet& set = job.set;
+    const RowLayout& layout = job.layout;
+    const RowEncoder& encoder = job.encoder;
     constexpr std::size_t kReceiversPerBlock = 64;
     struct Block {
         formats::SparseRows rows;
         std::uint64_t rays = 0;
     };
     const std::vector<std::uint32_t> order = order_of(set, layout);
-    const std::size_t step = batch_size(gatherers, set.size(), batch_bytes);
+    const std::size_t step = batch_size(gatherers, set.size(), job.batch_bytes);
     formats::SparseRows rows = empty_rows(encoder);
     std::vector<BodyPoint> points;
     for (std::size_t begin = 0; begin < set.size() && !context.cancelled(); begin += step) {
@@ -130,7 +133,7 @@ formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gathere
                 formats::append_rows(rows, block.rows);
                 rays += block.rays;
                 if (context.on_progress) {
-                    context.on_progress({"rows", set.first + begin + range.end, total});
+                    context.on_progress({"rows", set.first + begin + range.end, job.total});
                 }
             });
     }
