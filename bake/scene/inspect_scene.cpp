@@ -71,7 +71,7 @@ bool is_convex(const BodyShells& body, const BodyShell& shell, Searches& searche
 // Size, colours and the tilt of shading normals against their facets.
 void inspect_primitive(const Primitive& primitive, MaterialFacts& facts) {
     facts.receivers += static_cast<double>(primitive.position.size());
-    facts.triangles += static_cast<double>(primitive.index.size() / 3);
+    facts.triangles += static_cast<double>(primitive.index.size()) / 3;
     for (const glm::vec3 x : primitive.position) {
         facts.low = glm::min(facts.low, x);
         facts.high = glm::max(facts.high, x);

@@ -161,10 +161,12 @@ void draw_triangles(const formats::PrimitiveRecord& primitive) {
     constexpr std::uint32_t kPiece = 3u << 28;
     for (std::uint32_t at = 0; at < primitive.index_count; at += kPiece) {
         const std::size_t first = std::size_t{primitive.first_index} + at;
+        // NOLINTBEGIN(performance-no-int-to-ptr): an offset into the buffer, which GL takes so.
         glDrawElementsBaseVertex(
             GL_TRIANGLES, static_cast<GLsizei>(std::min(kPiece, primitive.index_count - at)),
             GL_UNSIGNED_INT, reinterpret_cast<const void*>(first * sizeof(std::uint32_t)),
             static_cast<GLint>(primitive.first_vertex));
+        // NOLINTEND(performance-no-int-to-ptr)
     }
 }
 

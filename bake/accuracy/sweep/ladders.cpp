@@ -137,7 +137,7 @@ void add_diagonal(Points& points, const Knobs& base) {
         knobs.coefficients = static_cast<std::uint32_t>(std::ldexp(128, step));
         for (const KnobSpec* knob : points.subject.knobs) {
             if (!knob->diagonal.empty()) {
-                knobs.set(*knob, knob->diagonal[static_cast<std::size_t>(step + 2)]);
+                knobs.set(*knob, *(knob->diagonal.begin() + (step + 2)));
             }
         }
         points.add("all knobs " + std::string(step < 0 ? "" : "+") + std::to_string(step),
