@@ -66,4 +66,17 @@ std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& s
     return warnings;
 }
 
+std::vector<std::string_view> unmeasured_effects(const EffectTable& effects,
+                                                 std::span<const PlanEntry> plan) {
+    std::vector<std::string_view> names;
+    for (const PlanEntry& entry : plan) {
+        const EffectDescriptor& effect = effects[entry.effect];
+        if (entry.on && !effect.help.empty() && effect.gather.add == nullptr &&
+            std::find(names.begin(), names.end(), effect.name) == names.end()) {
+            names.push_back(effect.name);
+        }
+    }
+    return names;
+}
+
 }  // namespace opaline::bake

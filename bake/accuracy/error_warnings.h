@@ -1,8 +1,12 @@
 #pragma once
 
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "bake/accuracy/measure_error.h"
+#include "bake/plan/bake_plan.h"
+#include "bake/plan/effect.h"
 #include "bake/plan/knobs.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
@@ -22,5 +26,10 @@ bool meets_target(const ErrorReport& error, const Knobs& knobs);
 std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& scene,
                                                          const Knobs& knobs,
                                                          const ErrorReport& error);
+
+/// Names of the effects that the bake simulates and the self-check does not see, each once, in the
+/// order of the plan: those that add nothing to rows, because the runtime computes them for an eye.
+std::vector<std::string_view> unmeasured_effects(const EffectTable& effects,
+                                                 std::span<const PlanEntry> plan);
 
 }  // namespace opaline::bake

@@ -2,7 +2,11 @@
 
 #include <cmath>
 #include <optional>
+#include <string_view>
+#include <vector>
 
+#include "bake/accuracy/error_warnings.h"
+#include "bake/effects/effects.h"
 #include "bake/reference/estimate.h"
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
@@ -76,6 +80,8 @@ TEST(Gloss, MetalIsMirroredLightAloneAndKeepsItsColour) {
     const BakeResult baked = tests::bake_scene(ball_of(metal(0.4f), gold), small());
     EXPECT_FALSE(find_entry(baked.plan, "direct", 0)->on);
     EXPECT_TRUE(find_entry(baked.plan, "gloss", 0)->on);
+    EXPECT_EQ(unmeasured_effects(all_effects(), baked.plan),
+              std::vector<std::string_view>{"gloss"});
     ASSERT_EQ(baked.asset.gloss.size(), 1u);
     EXPECT_EQ(baked.asset.gloss[0].metallic, 1);
     EXPECT_EQ(baked.asset.openness.size(), baked.asset.position.size());
@@ -89,6 +95,7 @@ TEST(Gloss, MetalIsMirroredLightAloneAndKeepsItsColour) {
 TEST(Gloss, DiffuseSurfacesHaveNoneAndItIsLeftOutOnRequest) {
     const BakeResult plain = tests::bake_scene(ball_of({}), small());
     EXPECT_EQ(find_entry(plain.plan, "gloss", 0), nullptr);
+    EXPECT_TRUE(unmeasured_effects(all_effects(), plain.plan).empty());
     EXPECT_TRUE(plain.asset.gloss.empty());
     EXPECT_TRUE(plain.asset.openness.empty());
     BakeOptions options = small();
