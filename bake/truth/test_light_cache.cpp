@@ -30,7 +30,9 @@ std::uint64_t program_checksum() {
 
 template <class T>
 void append(std::string& bytes, const T* values, std::size_t count) {
-    bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+    if (count > 0) {
+        bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+    }
 }
 
 // False at the end.
@@ -39,7 +41,9 @@ bool take(std::string_view& bytes, T* values, std::size_t count) {
     if (bytes.size() / sizeof(T) < count) {
         return false;
     }
-    std::memcpy(static_cast<void*>(values), bytes.data(), count * sizeof(T));
+    if (count > 0) {  // of no values, the pointer may be null
+        std::memcpy(static_cast<void*>(values), bytes.data(), count * sizeof(T));
+    }
     bytes.remove_prefix(count * sizeof(T));
     return true;
 }
