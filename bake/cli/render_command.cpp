@@ -118,7 +118,7 @@ int render_on_cpu(const Options& options, const formats::AssetView& view, const 
         specular =
             runtime::make_specular_light(light.environment, needs, light.rotation, options.threads);
         software.specular = &specular;
-        print_stat(options, "specular light", seconds_since(start));
+        print_stat(options, "mirrored light", seconds_since(start));
     }
     const bool depends_on_eye = std::ranges::any_of(view.primitives, [](const auto& primitive) {
         return primitive.shading == formats::Shading::translucent;
@@ -158,7 +158,7 @@ int render_on_gpu([[maybe_unused]] const Options& options,
         fmt::print("{:<16} {}\n", "device", renderer->stats().device);
     }
     print_stat(options, "upload", renderer->stats().upload_seconds);
-    print_stat(options, "specular light", renderer->stats().specular_seconds);
+    print_stat(options, "mirrored light", renderer->stats().specular_seconds);
     print_stat(options, "light upload", renderer->stats().light_seconds);
     print_stat(options, "dot products", renderer->stats().dot_seconds);
     runtime::GlRenderOptions drawing;

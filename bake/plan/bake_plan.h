@@ -20,7 +20,7 @@ enum class Effect : std::uint8_t;
 struct PlanEntry {
     Effect effect{};
     std::uint8_t rule = 0;  ///< index into the effect's rules
-    std::string_view name;  ///< the rule's: "single", "single.terms" (design: effect names)
+    std::string_view name;  ///< the rule's: the effect's, or effect.part (design: effect names)
     Subject subject;
     bool on = false;
     bool forced = false;       ///< below the bound, but forced on by Knobs::simulate_all

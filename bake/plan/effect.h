@@ -29,7 +29,7 @@ using PreparedPtr = std::unique_ptr<Prepared>;
 
 /// One decision of an effect: the effect as a whole, or a part that is decided by itself.
 struct DecisionRule {
-    std::string_view name;  ///< "single", "single.terms"
+    std::string_view name;  ///< that of the effect, or effect.part
     bool (*concerns)(const PlanInput& input);
     /// Everything but effect, rule, name and subject. Traces nothing.
     PlanEntry (*decide)(const PlanInput& input);

@@ -83,8 +83,8 @@ TEST(ThinBodies, ASheetThatStandsAloneScattersOnceWhatTheIntegralSays) {
         const auto radiance = tests::relight(baked.asset.view(), "white");
         EXPECT_NEAR(static_cast<double>(radiance[kMiddle].b) / sheet_truth(0.2), 1, 0.02)
             << by_rays;
-        // The rim, where the sheet is as thick as it is wide, is the coarsest part of its clearance.
-        EXPECT_LT(error_under_white(baked), 0.04) << by_rays;
+        // Light maps measure 0.029 here and rays 0.0012; why the maps do is not known.
+        EXPECT_LT(error_under_white(baked), by_rays ? 0.005 : 0.04) << by_rays;
     }
 }
 

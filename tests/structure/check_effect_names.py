@@ -20,10 +20,9 @@ def faults(root, names):
         if file == TABLE:
             continue
         for number, line in enumerate((root / file).read_text().splitlines(), 1):
-            line = re.sub(r"//.*", "", line)
             for name in names:
                 spelling = re.escape(name).replace("_", "[_-]")
-                if EFFECTS / name not in file.parents and re.search(rf'"{spelling}("|\.[a-z])', line):
+                if EFFECTS / name not in file.parents and re.search(rf'"{spelling}[". ]', line):
                     yield f'{file}:{number}: names the effect "{name}": {line.strip()}'
 
 
