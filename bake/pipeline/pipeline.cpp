@@ -18,6 +18,7 @@
 #include "bake/scene/orient_bodies.h"
 #include "bake/transport/bake_openness.h"
 #include "bake/transport/hidden_receivers.h"
+#include "bake/transport/touching_triangles.h"
 
 namespace opaline::bake {
 namespace {
@@ -31,7 +32,8 @@ formats::Error interrupted() {
 
 std::vector<ReceiverSet> place_receivers(const formats::Scene& scene, const RayScene& rays,
                                          const Context& context) {
-    std::vector<Receiver> vertices = make_vertex_receivers(scene);
+    std::vector<Receiver> vertices =
+        leave_touching_triangles(rays.hierarchy(), scene, make_vertex_receivers(scene), context);
     const std::vector<BodyPoint> inside = make_body_points(scene, vertices);
     return make_vertex_sets(
         scene, replace_hidden_receivers(rays, scene, std::move(vertices), context), inside);

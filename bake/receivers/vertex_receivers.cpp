@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "bake/scene/triangle.h"
 #include "bake/scene/weld.h"
 
 namespace opaline::bake {
@@ -22,16 +23,6 @@ struct Fans {
     std::vector<glm::vec3> corner;  // the two other corners of each triangle
     std::vector<float> extent;      // largest coordinate difference from the point to a corner
 };
-
-// Normal of a triangle in double precision, so that slivers keep their direction; {0,0,0} if flat.
-glm::vec3 triangle_normal(const Primitive& p, std::size_t triangle) {
-    const glm::dvec3 a = p.position[p.index[3 * triangle]];
-    const glm::dvec3 b = p.position[p.index[3 * triangle + 1]];
-    const glm::dvec3 c = p.position[p.index[3 * triangle + 2]];
-    const glm::dvec3 n = glm::cross(b - a, c - a);
-    const double length = glm::length(n);
-    return length > 0 ? glm::vec3(n / length) : glm::vec3(0);
-}
 
 float largest_coordinate(glm::vec3 p) {
     return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -150,8 +141,6 @@ std::vector<Receiver> make_vertex_receivers(const Scene& scene) {
         clearance[i] = clearest_direction(
             std::span(fans.normal).subspan(fans.offset[i], fans.offset[i + 1] - fans.offset[i]));
     }
-    constexpr float kSmallestClearance =
-        0.02f;  // beyond this, a crease is closed for every purpose
     std::vector<Receiver> receivers;
     for (const Primitive& primitive : scene.primitives) {
         for (std::size_t v = 0; v < primitive.position.size(); ++v) {
@@ -162,7 +151,7 @@ std::vector<Receiver> make_vertex_receivers(const Scene& scene) {
                 const Clearance c = clearance[it->second];
                 const float bound = clearance_bound(position, fans.extent[it->second]);
                 receiver.origin +=
-                    c.cosine > kSmallestClearance
+                    c.cosine > kLeastClearance
                         ? (bound / c.cosine) * c.direction
                         : (bound + fold_height(fans, it->second, position, normal)) * normal;
             }

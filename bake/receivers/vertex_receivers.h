@@ -39,5 +39,7 @@ struct Clearance {
     float cosine = -1;
 };
 Clearance clearest_direction(std::span<const glm::vec3> normals);
+/// Where the cosine is no larger, a crease is closed for every purpose.
+inline constexpr float kLeastClearance = 0.02f;
 
 }  // namespace opaline::bake

@@ -42,6 +42,7 @@ class HitScene {
     bool is_blocked(const RayOrigin& origin, glm::vec3 direction) const;
 
     const formats::Scene& scene() const { return *scene_; }
+    const EmbreeScene& hierarchy() const { return triangles_; }
     /// Bound [m] on the position error of a point computed along a ray.
     float rounding() const { return rounding_; }
     /// Of the box around everything [m]: its middle, and a little more than half of it each way.

@@ -4,6 +4,7 @@
 
 #include "bake/base/rng.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/transport/touching_triangles.h"
 
 namespace opaline::bake {
 namespace {
@@ -48,8 +49,10 @@ std::vector<ReferenceReceiver> choose_receivers(const ReferenceScene& scene, std
         receiver.vertex = static_cast<std::uint32_t>(number - first);
         const glm::vec3 position = p.position[receiver.vertex];
         receiver.position = position;
-        receiver.outside = origins[number].origin;
-        receiver.inside = position - (origins[number].origin - position);
+        receiver.outside =
+            leave_touching_triangles(scene.surfaces.hierarchy(), input, position, origins[number])
+                .origin;
+        receiver.inside = position - (receiver.outside - position);
         receiver.normal = p.normal[receiver.vertex];
         receiver.to_eye =
             eye ? direction_to(input.to_world(position), *eye, receiver.normal) : receiver.normal;

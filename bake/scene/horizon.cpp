@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "bake/scene/triangle.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -113,25 +115,6 @@ bool is_lower(const Node& node, glm::dvec3 point, glm::dvec3 normal, const Horiz
     const double above = std::max(along * node.low, along * node.high) + across * node.radius;
     const double height = glm::dot(normal, to_centre) + std::min(above, node.radius);
     return height <= std::max(found.flat, found.sine * (glm::length(to_centre) - node.radius));
-}
-
-double distance_to_segment(glm::dvec3 a, glm::dvec3 b) {
-    const glm::dvec3 ab = b - a;
-    const double t = std::clamp(-glm::dot(a, ab) / glm::dot(ab, ab), 0.0, 1.0);
-    return glm::length(a + t * ab);
-}
-
-// Of the triangle a, b, c from the origin.
-double distance_to_triangle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
-    const glm::dvec3 n = glm::cross(b - a, c - a);
-    const bool is_over = glm::dot(glm::cross(b - a, n), a) >= 0 &&
-                         glm::dot(glm::cross(c - b, n), b) >= 0 &&
-                         glm::dot(glm::cross(a - c, n), c) >= 0;
-    if (is_over) {
-        return std::abs(glm::dot(n, a)) / glm::length(n);
-    }
-    return std::min(
-        {distance_to_segment(a, b), distance_to_segment(b, c), distance_to_segment(c, a)});
 }
 
 double sine_of(const Triangle& triangle, glm::vec3 point, glm::dvec3 normal, double flat) {

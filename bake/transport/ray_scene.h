@@ -65,6 +65,7 @@ class RayScene {
     LaneMask meets_back_face(const LaneMask& lanes, const RayPacket& packet) const;
 
     std::uint64_t triangles() const { return triangles_.triangles(); }
+    const EmbreeScene& hierarchy() const { return triangles_; }
 
     /// True if nothing can be hit, so that no ray need be traced.
     bool is_empty() const { return triangles() == 0; }
