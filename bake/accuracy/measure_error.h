@@ -35,6 +35,7 @@ struct ErrorReport : MeasuredError {
     MeasuredError between;  ///< at random points of the surface, mixed as the runtime does
     /// Primitive with the largest part of the squared error between receivers.
     std::uint32_t worst_between = 0;
+    std::vector<std::string> not_measured;  ///< effects of the file that the check does not see
 };
 
 /// One receiver under one light: luminance, and its errors against two independent estimates of the

@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "bake/accuracy/error_warnings.h"
 #include "bake/calibration/rates_cache.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
@@ -42,9 +41,8 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
         format_seconds(result.seconds_total), format_bytes(static_cast<double>(bytes)),
         100 * result.error.rms_relative, 100 * result.error.ci95[0], 100 * result.error.ci95[1],
         100 * result.error.at_receivers.rms_relative, 100 * result.error.between.rms_relative);
-    const auto unmeasured = bake::unmeasured_effects(bake::all_effects(), result.plan);
-    if (!unmeasured.empty()) {
-        line += fmt::format("; not measured: {}", fmt::join(unmeasured, ", "));
+    if (const auto& names = result.error.not_measured; !names.empty()) {
+        line += fmt::format("; not measured: {}", fmt::join(names, ", "));
     }
     if (result.accuracy) {
         line += fmt::format("; asked for {:g} %, expected {:.2f} %", 100 * result.accuracy->target,

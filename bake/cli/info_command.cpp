@@ -104,7 +104,14 @@ void print_provenance(const Json& provenance) {
                 fmt::print(", {:.2f} % {}", 100 * error[key]["rms_relative"].get<double>(), place);
             }
         }
-        fmt::print(" ({} receivers checked)\n", text_of(error, "receivers_checked"));
+        fmt::print(" ({} receivers checked)", text_of(error, "receivers_checked"));
+        if (error.contains("not_measured") && error["not_measured"].is_array()) {
+            for (const Json& name : error["not_measured"]) {
+                fmt::print(", without {}",
+                           name.is_string() ? printable(name.get<std::string>()) : "?");
+            }
+        }
+        fmt::print("\n");
     }
     if (provenance.contains("model_error") && provenance["model_error"].is_object()) {
         const Json& model = provenance["model_error"];

@@ -183,6 +183,9 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context, B
     if (context.cancelled()) {
         return interrupted();
     }
+    for (const std::string_view name : unmeasured_effects(bake.effects, result.plan)) {
+        result.error.not_measured.emplace_back(name);
+    }
     for (formats::Diagnostic& warning : describe_measured_error(bake.scene, knobs, result.error)) {
         result.warnings.push_back(std::move(warning));
     }

@@ -45,6 +45,7 @@ Json error_json(const ErrorReport& error) {
                  {"reference", error.reference},
                  {"at_receivers", bounds_json(error.at_receivers)},
                  {"between", bounds_json(error.between)},
+                 {"not_measured", error.not_measured},
                  {"by_effect", Json::object()},
                  {"by_light", Json::object()}};
     for (const ErrorReport::Part& effect : error.by_effect) {

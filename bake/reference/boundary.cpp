@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace opaline::bake {
 
@@ -27,15 +28,32 @@ BoundarySplit split_at_boundary(glm::vec3 direction, glm::vec3 normal, float rat
 
 BoundarySplit split_at_smooth_boundary(glm::vec3 direction, glm::vec3 smooth, glm::vec3 flat,
                                        float ratio) {
-    if (glm::dot(direction, smooth) < 0) {
-        const BoundarySplit split = split_at_boundary(direction, smooth, ratio);
-        const bool total = split.reflectance >= 1;
-        if (glm::dot(split.reflected, flat) > 0 &&
-            (total || glm::dot(split.transmitted, flat) < 0)) {
-            return split;
+    // Nothing if the normal faces away, or sends a ray to the wrong side.
+    const auto split_at = [&](glm::vec3 normal) -> std::optional<BoundarySplit> {
+        if (!(glm::dot(direction, normal) < 0)) {
+            return std::nullopt;
+        }
+        const BoundarySplit split = split_at_boundary(direction, normal, ratio);
+        const bool fits = glm::dot(split.reflected, flat) > 0 &&
+                          (split.reflectance >= 1 || glm::dot(split.transmitted, flat) < 0);
+        return fits ? std::optional(split) : std::nullopt;
+    };
+    if (const auto split = split_at(smooth)) {
+        return *split;
+    }
+    BoundarySplit nearest = split_at_boundary(direction, flat, ratio);
+    float wrong = 0, right = 1;  // share of the triangle's normal
+    constexpr int kHalvings = 20;
+    for (int i = 0; i < kHalvings; ++i) {
+        const float middle = 0.5f * (wrong + right);
+        if (const auto split = split_at(glm::normalize(glm::mix(smooth, flat, middle)))) {
+            nearest = *split;
+            right = middle;
+        } else {
+            wrong = middle;
         }
     }
-    return split_at_boundary(direction, flat, ratio);
+    return nearest;
 }
 
 }  // namespace opaline::bake

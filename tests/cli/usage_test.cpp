@@ -29,6 +29,17 @@ TEST(Usage, EveryCommandExplainsItselfWithAnExample) {
     }
 }
 
+TEST(Usage, TheManualPageHoldsTheHelpOfEveryCommand) {
+    std::string page = read_text(OPALINE_MAN_PAGE);
+    EXPECT_THAT(page, StartsWith(".TH OPALINE 1\n.SH NAME\nopaline \\- "));
+    for (std::size_t at = 0; (at = page.find("\\-", at)) != std::string::npos; ++at) {
+        page.erase(at, 1);  // a minus sign of troff
+    }
+    for (const std::string& command : kCommands) {
+        EXPECT_THAT(page, HasSubstr(run_opaline({command, "--help"}).out)) << command;
+    }
+}
+
 TEST(Usage, VersionSaysWhatTheProgramIsMadeOf) {
     const Outcome version = run_opaline({"--version"});
     EXPECT_EQ(version.exit_code, 0);

@@ -80,8 +80,7 @@ TEST(Gloss, MetalIsMirroredLightAloneAndKeepsItsColour) {
     const BakeResult baked = tests::bake_scene(ball_of(metal(0.4f), gold), small());
     EXPECT_FALSE(find_entry(baked.plan, "direct", 0)->on);
     EXPECT_TRUE(find_entry(baked.plan, "gloss", 0)->on);
-    EXPECT_EQ(unmeasured_effects(all_effects(), baked.plan),
-              std::vector<std::string_view>{"gloss"});
+    EXPECT_EQ(baked.error.not_measured, std::vector<std::string>{"gloss"});
     ASSERT_EQ(baked.asset.gloss.size(), 1u);
     EXPECT_EQ(baked.asset.gloss[0].metallic, 1);
     EXPECT_EQ(baked.asset.openness.size(), baked.asset.position.size());
@@ -95,7 +94,7 @@ TEST(Gloss, MetalIsMirroredLightAloneAndKeepsItsColour) {
 TEST(Gloss, DiffuseSurfacesHaveNoneAndItIsLeftOutOnRequest) {
     const BakeResult plain = tests::bake_scene(ball_of({}), small());
     EXPECT_EQ(find_entry(plain.plan, "gloss", 0), nullptr);
-    EXPECT_TRUE(unmeasured_effects(all_effects(), plain.plan).empty());
+    EXPECT_TRUE(plain.error.not_measured.empty());
     EXPECT_TRUE(plain.asset.gloss.empty());
     EXPECT_TRUE(plain.asset.openness.empty());
     BakeOptions options = small();

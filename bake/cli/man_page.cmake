@@ -1,0 +1,35 @@
+# cmake -DPROGRAM=... -DPAGE=... -P man_page.cmake: writes the manual page, section 1, from the help texts of the
+# program and of each of its commands, which stand in it word by word.
+
+function(help_of result)
+    execute_process(COMMAND ${PROGRAM} ${ARGN} --help OUTPUT_VARIABLE text RESULT_VARIABLE failed)
+    if(failed)
+        message(FATAL_ERROR "${PROGRAM} ${ARGN} --help: ${failed}")
+    endif()
+    set(${result} "${text}" PARENT_SCOPE)
+endfunction()
+
+# Text that troff prints as it is: no escapes, no requests.
+function(append_literally text)
+    string(REPLACE "\\" "\\e" text "${text}")
+    string(REPLACE "-" "\\-" text "${text}")
+    string(REGEX REPLACE "(^|\n)([.'])" "\\1\\\\&\\2" text "${text}")
+    string(STRIP "${text}" text)
+    string(APPEND page ".nf\n${text}\n.fi\n")
+    set(page "${page}" PARENT_SCOPE)
+endfunction()
+
+help_of(overview)
+set(page ".TH OPALINE 1\n.SH NAME\nopaline \\- bake translucent scenes, and relight them\n.SH DESCRIPTION\n")
+append_literally("${overview}")
+string(REGEX REPLACE ".*\nSubcommands:\n" "" listed "${overview}")
+string(REGEX REPLACE "\n\n.*" "" listed "${listed}")
+string(REGEX MATCHALL "(^|\n)  [a-z][a-z-]*" commands "${listed}")
+foreach(command IN LISTS commands)
+    string(STRIP "${command}" command)
+    help_of(text ${command})
+    string(TOUPPER ${command} title)
+    string(APPEND page ".SH ${title}\n")
+    append_literally("${text}")
+endforeach()
+file(WRITE "${PAGE}" "${page}")
