@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace opaline::bake {
 
@@ -28,32 +27,28 @@ BoundarySplit split_at_boundary(glm::vec3 direction, glm::vec3 normal, float rat
 
 BoundarySplit split_at_smooth_boundary(glm::vec3 direction, glm::vec3 smooth, glm::vec3 flat,
                                        float ratio) {
-    // Nothing if the normal faces away, or sends a ray to the wrong side.
-    const auto split_at = [&](glm::vec3 normal) -> std::optional<BoundarySplit> {
-        if (!(glm::dot(direction, normal) < 0)) {
-            return std::nullopt;
-        }
-        const BoundarySplit split = split_at_boundary(direction, normal, ratio);
-        const bool fits = glm::dot(split.reflected, flat) > 0 &&
-                          (split.reflectance >= 1 || glm::dot(split.transmitted, flat) < 0);
-        return fits ? std::optional(split) : std::nullopt;
+    const auto reflects_in_front = [&](glm::vec3 normal) {
+        const float along = glm::dot(direction, normal);
+        return along < 0 && glm::dot(direction - 2 * along * normal, flat) > 0;
     };
-    if (const auto split = split_at(smooth)) {
-        return *split;
-    }
-    BoundarySplit nearest = split_at_boundary(direction, flat, ratio);
-    float wrong = 0, right = 1;  // share of the triangle's normal
-    constexpr int kHalvings = 20;
-    for (int i = 0; i < kHalvings; ++i) {
-        const float middle = 0.5f * (wrong + right);
-        if (const auto split = split_at(glm::normalize(glm::mix(smooth, flat, middle)))) {
-            nearest = *split;
-            right = middle;
-        } else {
-            wrong = middle;
+    glm::vec3 normal = smooth;
+    if (!reflects_in_front(smooth)) {
+        normal = flat;
+        float wrong = 0, right = 1;  // share of the triangle's normal
+        constexpr int kHalvings = 20;
+        for (int i = 0; i < kHalvings; ++i) {
+            const float middle = 0.5f * (wrong + right);
+            const glm::vec3 turned = glm::normalize(glm::mix(smooth, flat, middle));
+            const bool fits = reflects_in_front(turned);
+            normal = fits ? turned : normal;
+            (fits ? right : wrong) = middle;
         }
     }
-    return nearest;
+    BoundarySplit split = split_at_boundary(direction, normal, ratio);
+    if (split.reflectance < 1 && !(glm::dot(split.transmitted, flat) < 0)) {
+        split.reflectance = 1;  // beyond the angle of the triangle's own total reflection
+    }
+    return split;
 }
 
 }  // namespace opaline::bake
