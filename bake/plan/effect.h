@@ -21,6 +21,8 @@
 
 namespace opaline::bake {
 
+struct CalibrationBench;  // calibration/bench
+
 /// What an effect keeps between its functions: only the effect knows what it is.
 struct Prepared {
     virtual ~Prepared() = default;
@@ -122,6 +124,10 @@ struct EffectDescriptor {
     GatherStep gather{};
     TruthStep truth{};
     bool reads_openness = false;
+
+    /// Measures the seconds of its units of work on one thread, of few or of many triangles
+    /// (`bench`). Null: other rooms measure them.
+    void (*calibrate)(const CalibrationBench& bench, Rates& rates) = nullptr;
 
     /// Memory: of the samples of one subject at most [bytes]; rows of a receiver of a medium.
     double (*sample_bytes)(const Knobs& knobs) = nullptr;

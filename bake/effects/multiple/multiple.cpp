@@ -8,6 +8,7 @@
 #include "bake/effects/multiple/gather_multiple.h"
 #include "bake/effects/multiple/multiple_costs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/multiple_rates.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
@@ -189,6 +190,7 @@ EffectDescriptor describe_multiple(Effect id) {
                           [](const SubjectCost& cost, TruthEffort effort) {
                               return multiple_truth_work(cost, truth_points(effort));
                           }},
+            .calibrate = calibrate_multiple,
             .sample_bytes = sample_bytes,
             .add_local = add_local,
             .warn_of_model = warn_of_model};

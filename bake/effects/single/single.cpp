@@ -10,13 +10,12 @@
 #include "bake/effects/single/rules_single.h"
 #include "bake/effects/single/single_costs.h"
 #include "bake/effects/single/single_knobs.h"
+#include "bake/effects/single/single_rates.h"
 #include "bake/effects/single/single_stage.h"
 #include "bake/effects/single/true_single.h"
 #include "bake/scattering/entry.h"
 #include "bake/scattering/path_quadrature.h"
 #include "bake/scattering/phase_series.h"
-#include "formats/opal/cubemap.h"
-#include "formats/opal/haar.h"
 
 namespace opaline::bake {
 namespace {
@@ -76,22 +75,6 @@ PreparedPtr gather_batch(const EffectInputs& inputs, std::span<const BodyPoint> 
                                        inputs.context);
     rays += batch->batch.rows.counts.rays;
     return batch;
-}
-
-// Adds the Haar transform of a cube map of size m to one of size n >= m. The same function has the
-// same coarse coefficients times n/m, and no finer ones.
-void add_coarse(std::span<const float> coarse, std::uint32_t m, std::span<float> fine,
-                std::uint32_t n) {
-    const auto scale = static_cast<float>(n) / static_cast<float>(m);
-    for (std::size_t face = 0; face < 6; ++face) {
-        for (std::size_t row = 0; row < m; ++row) {
-            const float* const from = &coarse[(face * m + row) * m];
-            float* const to = &fine[(face * n + row) * n];
-            for (std::size_t column = 0; column < m; ++column) {
-                to[column] += scale * from[column];
-            }
-        }
-    }
 }
 
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
@@ -198,21 +181,6 @@ void warn_of_plan(const PlanInput& input, const PlanEntry& entry,
 
 }  // namespace
 
-void add_single(const SingleBatch& batch, std::size_t place, std::uint32_t m, std::uint32_t first,
-                const DenseRow& row) {
-    const std::size_t coarse = formats::cubemap_texels(m);
-    std::vector<float> own(batch.row_size);
-    read_single(batch, place, own);
-    for (std::size_t plane = 0; plane < own.size() / coarse; ++plane) {
-        const std::span<float> from = std::span(own).subspan(plane * coarse, coarse);
-        formats::haar_forward_cube(from, m);
-        add_coarse(
-            from, m,
-            row.values.subspan((std::size_t{row.bands} * first + plane) * row.size(), row.size()),
-            row.cubemap_size);
-    }
-}
-
 EffectDescriptor describe_single(Effect id) {
     return {.id = id,
             .name = "single",
@@ -244,6 +212,7 @@ EffectDescriptor describe_single(Effect id) {
                               return single_truth_work(cost,
                                                        truth_depths(cost.input.knobs, effort));
                           }},
+            .calibrate = calibrate_single,
             .typical_rows = typical_rows,
             .add_local = add_local,
             .warn_of_plan = warn_of_plan};
