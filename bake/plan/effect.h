@@ -133,9 +133,11 @@ struct EffectDescriptor {
     double (*sample_bytes)(const Knobs& knobs) = nullptr;
     double (*typical_rows)(const formats::Medium& medium, const Knobs& knobs) = nullptr;
 
-    /// The part of a local answer (effects/local) that is this effect's: adds to f(c), radiance per
-    /// irradiance at kLocalSteps + 1 evenly spaced cosines from 0 to 1, band by band.
-    void (*add_local)(const EffectInputs& inputs, std::span<std::vector<double>> factor) = nullptr;
+    /// This effect's part of the answer where light leaves at its entry (RowLayout::at_entry): adds
+    /// to f(c), radiance per irradiance at kCosineSteps + 1 evenly spaced cosines from 0 to 1, band
+    /// by band.
+    void (*add_at_entry)(const EffectInputs& inputs,
+                         std::span<std::vector<double>> factor) = nullptr;
     /// Colour that replaces the base colour's own, of a medium shown as a surface.
     formats::Rgb (*tint)(const Prepared& study) = nullptr;
     /// Warnings about a decision that knobs contradict; and about what the model leaves out.
@@ -145,7 +147,7 @@ struct EffectDescriptor {
                           std::vector<formats::Diagnostic>& warnings) = nullptr;
 };
 
-inline constexpr std::uint32_t kLocalSteps = 1024;
+inline constexpr std::uint32_t kCosineSteps = 1024;
 
 /// The effects there are, in the order of plans and reports.
 struct EffectTable {

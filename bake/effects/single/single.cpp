@@ -52,8 +52,8 @@ const SingleStage& stage_of(const Prepared& prepared) {
     return static_cast<const Stage&>(prepared).stage;
 }
 
-bool is_not_local(const RowLayout& layout) {
-    return !layout.local;
+bool leaves_elsewhere(const RowLayout& layout) {
+    return !layout.at_entry;
 }
 
 // Rays inside the body need all triangles, also where nothing stands before the light.
@@ -85,7 +85,7 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
 }
 
 // alpha / (4 pi) (Ft J / c) c' / (1 + c'): the integral along a path without end, isotropic.
-void add_local(const EffectInputs& inputs, std::span<std::vector<double>> factor) {
+void add_at_entry(const EffectInputs& inputs, std::span<std::vector<double>> factor) {
     constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
     const formats::Medium& medium = inputs.medium();
     const PathMedium path = make_path_medium(medium);
@@ -93,8 +93,8 @@ void add_local(const EffectInputs& inputs, std::span<std::vector<double>> factor
                                      medium.fidelity != formats::Medium::Fidelity::paper};
     for (std::size_t b = 0; b < factor.size(); ++b) {
         const double albedo = path.sigma_t[b] > 0 ? path.sigma_s[b] / path.sigma_t[b] : 0;
-        for (std::uint32_t i = 1; i <= kLocalSteps; ++i) {
-            const double cosine = static_cast<double>(i) / kLocalSteps;
+        for (std::uint32_t i = 1; i <= kCosineSteps; ++i) {
+            const double cosine = static_cast<double>(i) / kCosineSteps;
             const Entry<double> entry = enter(cosine, boundary);
             factor[b][i] += kIsotropic * albedo * entry.throughput / cosine *
                             entry.refracted_cosine / (1 + entry.refracted_cosine);
@@ -192,10 +192,10 @@ EffectDescriptor describe_single(Effect id) {
             .prepare = {.stage = "light maps of",
                         .by_subject = true,
                         .applies = [](const formats::Material&,
-                                      const RowLayout& layout) { return is_not_local(layout); },
+                                      const RowLayout& layout) { return leaves_elsewhere(layout); },
                         .run = prepare,
                         .work = light_maps_work},
-            .gather = {.applies = is_not_local,
+            .gather = {.applies = leaves_elsewhere,
                        .batch_size =
                            [](const Prepared& prepared, std::size_t bytes) {
                                return receivers_per_batch(stage_of(prepared), bytes);
@@ -214,7 +214,7 @@ EffectDescriptor describe_single(Effect id) {
                           }},
             .calibrate = calibrate_single,
             .typical_rows = typical_rows,
-            .add_local = add_local,
+            .add_at_entry = add_at_entry,
             .warn_of_plan = warn_of_plan};
 }
 
