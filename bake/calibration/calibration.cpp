@@ -6,9 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "bake/calibration/calibrate_media.h"
-#include "bake/calibration/calibration_bench.h"
-#include "bake/calibration/stopwatch.h"
+#include "bake/calibration/bench/calibration_bench.h"
+#include "bake/calibration/bench/stopwatch.h"
 #include "bake/encode/select_coefficients.h"
 #include "bake/plan/stage_work.h"
 #include "bake/scattering/half_space_medium.h"
@@ -102,27 +101,25 @@ double measure_crowding(const CalibrationBench& bench, unsigned threads) {
     return std::max(1.0, mean / alone);
 }
 
-// Everything but the self-check, which needs the test lights.
-Rates measure_all(std::span<const TestLight> lights, unsigned threads) {
+Rates measure_all(const EffectTable& effects, std::span<const TestLight> lights, unsigned threads) {
     Rates rates;
     Stopwatch watch;
     rates.encode_grey = measure_encoding(1);
     rates.encode_colour = measure_encoding(3);
     rates.walk_event = measure_walk_event();
     for (const bool is_many : {false, true}) {
-        const CalibrationBench bench(is_many ? kManySide : kFewSide);
-        const auto pick = [is_many](CostBySize& cost) -> double& {
-            return is_many ? cost.many : cost.few;
-        };
-        pick(rates.build_triangle) = bench.build / bench.triangles;
-        pick(rates.place_receiver) =
+        const CalibrationBench bench(is_many, lights);
+        bench.side_of(rates.build_triangle) = bench.build / bench.triangles;
+        bench.side_of(rates.place_receiver) =
             bench.place_receivers / static_cast<double>(bench.receivers.size());
-        pick(rates.coherent_ray) = measure_coherent_ray(bench, 48);
+        bench.side_of(rates.coherent_ray) = measure_coherent_ray(bench, 48);
         rates.open_cell = measure_open_cell(bench);
-        pick(rates.openness) = measure_openness(bench);
-        calibrate_multiple(bench, is_many, rates);
-        calibrate_single(bench, is_many, rates);
-        calibrate_check(bench, is_many, lights, rates);
+        bench.side_of(rates.openness) = measure_openness(bench);
+        for (const EffectDescriptor& effect : effects.effects) {
+            if (effect.calibrate != nullptr) {
+                effect.calibrate(bench, rates);
+            }
+        }
         if (is_many) {
             watch.restart();
             orient_bodies(bench.scene);
@@ -138,7 +135,7 @@ Rates measure_all(std::span<const TestLight> lights, unsigned threads) {
 
 }  // namespace
 
-Rates measure_rates(unsigned threads) {
+Rates measure_rates(const EffectTable& effects, unsigned threads) {
     auto lights = make_test_lights(kCalibrationCubemap, 1);
     // What is left of them once they are in the user's cache.
     const Stopwatch watch;
@@ -146,9 +143,9 @@ Rates measure_rates(unsigned threads) {
     const double seconds = watch.seconds();
     // A disturbance can only lengthen a measurement: the shorter of two is right.
     std::vector<double> first;
-    visit_rates(measure_all(*lights, threads),
+    visit_rates(measure_all(effects, *lights, threads),
                 [&](const char*, double rate) { first.push_back(rate); });
-    Rates rates = measure_all(*lights, threads);
+    Rates rates = measure_all(effects, *lights, threads);
     auto other = first.begin();
     visit_rates(rates, [&](const char*, double& rate) { rate = std::min(rate, *other++); });
     rates.test_lights = seconds;

@@ -9,6 +9,7 @@
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
+#include "formats/opal/terms.h"
 
 namespace opaline::cli {
 namespace {
@@ -155,11 +156,14 @@ int run(const Options& options) {
     fmt::print("primitives\n");
     for (std::size_t i = 0; i < view.primitives.size(); ++i) {
         const formats::PrimitiveRecord& p = view.primitives[i];
-        fmt::print("  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}{}{}\n", i,
-                   p.vertex_count, p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
-                   p.is_separate() ? ", multiple and single separate" : "",
-                   is_glossy(view, i) ? fmt::format(", roughness {:.2g}", view.roughness[i]) : "",
-                   p.base_color_image == formats::kNoImage ? "" : ", textured");
+        fmt::print(
+            "  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}{}{}\n", i, p.vertex_count,
+            p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
+            p.is_separate()
+                ? ", " + formats::term_names(formats::TermSet::separable, " and ") + " separate"
+                : "",
+            is_glossy(view, i) ? fmt::format(", roughness {:.2g}", view.roughness[i]) : "",
+            p.base_color_image == formats::kNoImage ? "" : ", textured");
     }
     fmt::print("sections\n");
     for (const formats::SectionEntry& section : asset->loaded.sections) {

@@ -3,6 +3,7 @@
 #include "bake/calibration/calibration.h"
 #include "bake/calibration/rates_cache.h"
 #include "bake/cli/messages.h"
+#include "bake/effects/effects.h"
 
 namespace opaline::cli {
 
@@ -13,7 +14,7 @@ MachineRates find_machine_rates() {
         return {*known, "read from " + path.string()};
     }
     print_note("opaline: measuring this machine once, takes about 4 s");
-    const bake::Rates rates = bake::measure_rates(machine.threads);
+    const bake::Rates rates = bake::measure_rates(bake::all_effects(), machine.threads);
     if (path.empty()) {
         return {rates, "measured; neither XDG_CACHE_HOME nor HOME says where to keep it"};
     }

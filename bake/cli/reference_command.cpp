@@ -261,10 +261,11 @@ void add_estimate_options(CLI::App& command, Options& options) {
         ->transform(whole_number(1, 1000000000))
         ->option_text("D");
     command
-        .add_option("--terms", options.terms,
-                    "count only some of the light: diffuse, single, multiple and specular as in "
-                    "`opaline relight`, unscattered (straight through a body), interreflection "
-                    "(paths that meet a second surface or body)")
+        .add_option(
+            "--terms", options.terms,
+            "count only some of the light: " + formats::term_names(formats::TermSet::baked, ", ") +
+                " as in `opaline relight`, unscattered (straight through a body), interreflection "
+                "(paths that meet a second surface or body)")
         ->option_text("all|LIST [all]");
     command.add_option("--seed", options.seed, "another one gives other noise")
         ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))

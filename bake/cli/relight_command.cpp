@@ -145,8 +145,9 @@ void add_relight_command(CLI::App& app, Job& job) {
     command
         ->add_option("--terms", options->terms,
                      "components to add up: all, or some of " +
-                         formats::term_names(formats::TermSet::baked) +
-                         ". multiple and single apart need a bake with --separate-terms")
+                         formats::term_names(formats::TermSet::baked) + ". " +
+                         formats::term_names(formats::TermSet::separable, " and ") +
+                         " apart need a bake with --separate-terms")
         ->option_text("all|LIST [all]");
     command
         ->add_option("--rotate-light", options->rotate_light,

@@ -245,8 +245,9 @@ void add_render_command(CLI::App& app, Job& job) {
         ->add_option("--terms", options->terms,
                      "components to show: all, or some of " +
                          formats::term_names(formats::TermSet::baked) +
-                         "; the background is black unless all are. multiple and single apart "
-                         "need a bake with --separate-terms")
+                         "; the background is black unless all are. " +
+                         formats::term_names(formats::TermSet::separable, " and ") +
+                         " apart need a bake with --separate-terms")
         ->option_text("all|LIST [all]");
     command->add_option("--exposure", options->exposure, "brighter by a factor of 2^EV")
         ->check(real_number(-64, 64))

@@ -11,6 +11,7 @@
 #include "bake/cli/option_values.h"
 #include "bake/effects/effects.h"
 #include "bake/pipeline/predict_memory.h"
+#include "formats/opal/terms.h"
 
 namespace opaline::cli {
 namespace {
@@ -139,8 +140,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         }
     }
     command.add_flag("--separate-terms", options.bake.separate_terms,
-                     "keep multiple scattering apart from single, so that `render --terms` can "
-                     "show each");
+                     "keep " + formats::term_names(formats::TermSet::separable, " and ") +
+                         " scattering apart, so that `render --terms` can show each");
 }
 
 void add_error_option(CLI::App& command, SceneOptions& options) {

@@ -7,6 +7,7 @@
 #include "bake/effects/incident/incident.h"
 #include "bake/effects/local/local.h"
 #include "bake/effects/multiple/multiple.h"
+#include "bake/effects/multiple/rule_spread.h"
 #include "bake/effects/single/single.h"
 #include "bake/effects/specular/specular.h"
 
@@ -15,7 +16,7 @@ namespace opaline::bake {
 const EffectTable& all_effects() {
     static const std::array kDescriptors{
         describe_direct(Effect::direct),     describe_multiple(Effect::multiple),
-        describe_single(Effect::single),     describe_local(Effect::local),
+        describe_single(Effect::single),     describe_local(Effect::local, spread_rules()),
         describe_specular(Effect::specular), describe_gloss(Effect::gloss),
         describe_incident(Effect::incident)};
     static const EffectTable kTable{kDescriptors};

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bake/encode/marble.h"
-#include "bake/scene/gloss_record.h"
+#include "bake/scene/lobe_record.h"
 
 namespace opaline::bake {
 namespace {
@@ -91,10 +91,10 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
                  ? PrimitiveRecord::kSingleOnly
                  : 0);
         if (!openness.empty()) {
-            const bool in_medium = layout.glossy && layout.translucent;
+            const bool in_medium = layout.mirrors && layout.translucent;
             asset.roughness.push_back(in_medium ? material.medium->roughness : kNotGlossy);
-            asset.gloss.push_back(layout.glossy && !layout.translucent
-                                      ? make_gloss_record(material.gloss)
+            asset.gloss.push_back(layout.mirrors && !layout.translucent
+                                      ? make_lobe_record(material.gloss)
                                       : GlossRecord{});
         }
         asset.primitives.push_back(record);

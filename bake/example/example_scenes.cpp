@@ -55,22 +55,22 @@ std::vector<GltfObject> make_trefoil() {
 constexpr double kSink = 0.4;  // [mm] into the floor, so that no two faces coincide
 
 GltfObject ball_object(const char* name, std::array<double, 3> base_color, double x,
-                       const GltfGloss& gloss) {
+                       const GltfReflection& reflection) {
     constexpr double kRadius = 30;  // [mm]
     TriangleMesh mesh = make_sphere(glm::dvec3(x, kRadius - kSink, 0), kRadius, 4);
-    return {name, name, base_color, in_metres(std::move(mesh)), gloss};
+    return {name, name, base_color, in_metres(std::move(mesh)), reflection};
 }
 
 std::vector<GltfObject> make_glossy() {
     GltfObject floor = floor_object(
         make_floor({.finest = 6.0, .fine_radius = 100.0, .growth = 0.15, .levels = 6}));
-    floor.gloss = {.metallic = 0, .roughness = 0.4, .specular = 1};
+    floor.reflection = {.metallic = 0, .roughness = 0.4, .strength = 1};
     return {ball_object("Brass", {0.91, 0.78, 0.42}, -70,
-                        {.metallic = 1, .roughness = 0.3, .specular = 1}),
+                        {.metallic = 1, .roughness = 0.3, .strength = 1}),
             ball_object("Lacquer", {0.60, 0.05, 0.04}, 0,
-                        {.metallic = 0, .roughness = 0.3, .specular = 1}),
+                        {.metallic = 0, .roughness = 0.3, .strength = 1}),
             ball_object("Steel", {0.56, 0.57, 0.58}, 70,
-                        {.metallic = 1, .roughness = 0.6, .specular = 1}),
+                        {.metallic = 1, .roughness = 0.6, .strength = 1}),
             std::move(floor)};
 }
 

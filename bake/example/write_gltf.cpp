@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 // Values fixed by the glTF 2.0 specification.
 constexpr int kFloat = 5126, kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
-constexpr const char* kSpecular = "KHR_materials_specular";
+constexpr const char* kReflectionExtension = "KHR_materials_specular";
 
 void append(std::string& bytes, std::uint32_t word) {
     for (int shift = 0; shift < 32; shift += 8) {
@@ -108,13 +108,14 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
             {{"name", object.material},
              {"pbrMetallicRoughness",
               {{"baseColorFactor", {color[0], color[1], color[2], 1.0}},
-               {"metallicFactor", object.gloss.metallic},
-               {"roughnessFactor", object.gloss.roughness}}},
-             {"extensions", {{kSpecular, {{"specularFactor", object.gloss.specular}}}}}});
+               {"metallicFactor", object.reflection.metallic},
+               {"roughnessFactor", object.reflection.roughness}}},
+             {"extensions",
+              {{kReflectionExtension, {{"specularFactor", object.reflection.strength}}}}}});
     }
     const Json document = {
         {"asset", {{"version", "2.0"}, {"generator", "Opaline"}}},
-        {"extensionsUsed", Json::array({kSpecular})},
+        {"extensionsUsed", Json::array({kReflectionExtension})},
         {"scene", 0},
         {"scenes", Json::array({{{"name", name}, {"nodes", roots}}})},
         {"nodes", nodes},

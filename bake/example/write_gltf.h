@@ -12,9 +12,9 @@ namespace opaline::bake {
 
 /// glTF's metallic-roughness model. The default is a surface that reflects diffusely alone, which
 /// the file says outright: glTF's own default is a rough metal.
-struct GltfGloss {
+struct GltfReflection {
     double metallic = 0, roughness = 1;
-    double specular = 0;  ///< specularFactor of KHR_materials_specular
+    double strength = 0;  ///< specularFactor of KHR_materials_specular
 };
 
 /// A mesh in a node of its own. Names are free; several objects may not share a material name.
@@ -23,7 +23,7 @@ struct GltfObject {
     std::string material;                       ///< media files match it by this name
     std::array<double, 3> base_color{1, 1, 1};  ///< linear Rec. 709, each in [0, 1]
     TriangleMesh mesh;                          ///< positions in metres, one unit normal each
-    GltfGloss gloss = {};
+    GltfReflection reflection = {};
 };
 
 /// Writes FOLDER/NAME.gltf and its buffer FOLDER/NAME.bin as glTF 2.0 and returns both paths; the

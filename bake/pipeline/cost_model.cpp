@@ -89,7 +89,7 @@ void bill_openness(const CostedBake& bake, Bill& bill) {
     const auto& effects = bake.request.effects.effects;
     bool is_open = false;
     for (const CostedSubject& subject : bake.subjects) {
-        if (!subject.layout.glossy) {
+        if (!subject.layout.mirrors) {
             continue;
         }
         if (!is_open) {

@@ -120,8 +120,8 @@ void bill_encoding(const CostedBake& bake, const CostedSubject& subject, double 
     const auto bill_some = [&](std::uint32_t rows, PlanEntry* payer) {
         // Local rows are gathered by texel and transformed band by band, as grey ones are; the
         // others are gathered as coefficients.
-        bill.add(subject.layout.local ? encode_work(bake.input, rows * bands, 1, receivers)
-                                      : encode_work(bake.input, rows, bands, receivers),
+        bill.add(subject.layout.at_entry ? encode_work(bake.input, rows * bands, 1, receivers)
+                                         : encode_work(bake.input, rows, bands, receivers),
                  payer);
         bill.add_bytes(rows * bytes, payer);
     };

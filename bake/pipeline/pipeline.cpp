@@ -93,13 +93,13 @@ std::vector<formats::Openness> bake_all_openness(const BakeInputs& bake,
                                                  const Context& context, StageLog& log) {
     std::vector<formats::Openness> openness;
     if (std::none_of(subjects.begin(), subjects.end(),
-                     [](const SubjectState& s) { return s.layout.glossy; })) {
+                     [](const SubjectState& s) { return s.layout.mirrors; })) {
         return openness;
     }
     return run_stage(log, "openness", "openness", [&](std::uint64_t& traced) {
         const DirectionSet directions = make_sparse_direction_set(kOpennessCubemap, 0);
         for (const ReceiverSet& set : bake.receivers) {
-            if (set.size() > 0 && state_of(subjects, set.material).layout.glossy) {
+            if (set.size() > 0 && state_of(subjects, set.material).layout.mirrors) {
                 const bool occluded = state_of(subjects, set.material).layout.occluded;
                 const auto part = bake_openness(occluded ? bake.rays : bake.sky, directions,
                                                 set.outside, context, traced);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "formats/opal/terms.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -83,7 +85,9 @@ void describe_options(const DecidedBake& decided, const BakeOptions& options,
         return l.translucent && l.constant && l.harmonics > 0;
     };
     if (options.separate_terms && std::none_of(layouts.begin(), layouts.end(), has_both)) {
-        warn_of_idle("--separate-terms", "no material has both multiple and single scattering",
+        warn_of_idle("--separate-terms",
+                     "no material has both " +
+                         formats::term_names(formats::TermSet::separable, " and ") + " scattering",
                      warnings);
     }
 }

@@ -21,6 +21,8 @@
 
 namespace opaline::bake {
 
+struct CalibrationBench;  // calibration/bench
+
 /// What an effect keeps between its functions: only the effect knows what it is.
 struct Prepared {
     virtual ~Prepared() = default;
@@ -123,13 +125,19 @@ struct EffectDescriptor {
     TruthStep truth{};
     bool reads_openness = false;
 
+    /// Measures the seconds of its units of work on one thread, of few or of many triangles
+    /// (`bench`). Null: other rooms measure them.
+    void (*calibrate)(const CalibrationBench& bench, Rates& rates) = nullptr;
+
     /// Memory: of the samples of one subject at most [bytes]; rows of a receiver of a medium.
     double (*sample_bytes)(const Knobs& knobs) = nullptr;
     double (*typical_rows)(const formats::Medium& medium, const Knobs& knobs) = nullptr;
 
-    /// The part of a local answer (effects/local) that is this effect's: adds to f(c), radiance per
-    /// irradiance at kLocalSteps + 1 evenly spaced cosines from 0 to 1, band by band.
-    void (*add_local)(const EffectInputs& inputs, std::span<std::vector<double>> factor) = nullptr;
+    /// This effect's part of the answer where light leaves at its entry (RowLayout::at_entry): adds
+    /// to f(c), radiance per irradiance at kCosineSteps + 1 evenly spaced cosines from 0 to 1, band
+    /// by band.
+    void (*add_at_entry)(const EffectInputs& inputs,
+                         std::span<std::vector<double>> factor) = nullptr;
     /// Colour that replaces the base colour's own, of a medium shown as a surface.
     formats::Rgb (*tint)(const Prepared& study) = nullptr;
     /// Warnings about a decision that knobs contradict; and about what the model leaves out.
@@ -139,7 +147,7 @@ struct EffectDescriptor {
                           std::vector<formats::Diagnostic>& warnings) = nullptr;
 };
 
-inline constexpr std::uint32_t kLocalSteps = 1024;
+inline constexpr std::uint32_t kCosineSteps = 1024;
 
 /// The effects there are, in the order of plans and reports.
 struct EffectTable {

@@ -21,7 +21,7 @@ RowLayout layout_material(const EffectTable& effects, const formats::Material& m
     }
     // A row for all views that stands alone is marked as such in the file.
     layout.separate = layout.translucent && (knobs.separate_terms || layout.harmonics == 0);
-    layout.local = layout.local && layout.translucent && layout.has_rows();
+    layout.at_entry = layout.at_entry && layout.translucent && layout.has_rows();
     layout.grey = layout.grey && layout.translucent;
     return layout;
 }
@@ -37,7 +37,7 @@ std::vector<RowLayout> layout_rows(const EffectTable& effects, const formats::Sc
 
 bool needs_hierarchy(std::span<const RowLayout> layouts) {
     return std::any_of(layouts.begin(), layouts.end(), [](const RowLayout& l) {
-        return (l.translucent && l.has_rows()) || (l.occluded && (l.constant || l.glossy));
+        return (l.translucent && l.has_rows()) || (l.occluded && (l.constant || l.mirrors));
     });
 }
 

@@ -16,10 +16,10 @@ struct RowLayout {
     bool occluded = false;     ///< visibility is traced
     bool constant = false;     ///< some effect fills a row that is the same for all views
     std::uint32_t harmonics = 0;  ///< rows that are seen through spherical harmonics: 0, 1, 4 … 25
-    bool local = false;           ///< light leaves the medium where it entered
+    bool at_entry = false;        ///< light leaves the medium where it entered
     bool separate = false;        ///< the row for all views stands apart from the harmonics
     bool grey = false;            ///< the three bands coincide: one stands for them
-    bool glossy = false;          ///< mirrors its surroundings: needs openness
+    bool mirrors = false;         ///< its surface does so: needs openness
     formats::Rgb tint{1, 1, 1};   ///< times the base colour
 
     bool has_rows() const { return constant || harmonics > 0; }

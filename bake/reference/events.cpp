@@ -139,17 +139,17 @@ bool reflect_diffusely(const PathSpace& space, Path& path, const OpaquePoint& po
     return is_above(point, path.direction) && survives(path, kAtSurfaces, random);
 }
 
-bool reflect_specularly(const PathSpace& space, Path& path, const OpaquePoint& point,
-                        const GlossyBrdf& brdf, RandomStream& random) {
-    path.state = after_gloss(path.state);
+bool reflect_as_mirror(const PathSpace& space, Path& path, const OpaquePoint& point,
+                       const GlossyBrdf& brdf, RandomStream& random) {
+    path.state = after_mirror(path.state);
     if (!count_event(space, path)) {
         return false;
     }
     gather_light(space, path, point.from, random, [&](glm::vec3 d) {
-        return is_above(point, d) ? eval_specular(brdf, d) : LobeValue{};
+        return is_above(point, d) ? eval_mirrored(brdf, d) : LobeValue{};
     });
     const float u = random.next(), v = random.next();
-    const auto sample = sample_specular(brdf, u, v);
+    const auto sample = sample_mirrored(brdf, u, v);
     if (!sample || !is_above(point, sample->direction)) {
         return false;
     }
@@ -172,8 +172,8 @@ bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& p
         return reflect_diffusely(space, path, point, point.surface.base_color, random);
     }
     const GlossyBrdf brdf = make_glossy_brdf(point.surface, point.normal, -path.direction);
-    const bool may_mirror = !point.is_own_mirror && is_wanted(space, after_gloss(path.state));
-    const float mirrored = may_mirror ? mean(brdf.specular_albedo) : 0;
+    const bool may_mirror = !point.is_own_mirror && is_wanted(space, after_mirror(path.state));
+    const float mirrored = may_mirror ? mean(brdf.mirrored_albedo) : 0;
     const float diffuse =
         is_wanted(space, after_diffuse(path.state)) ? mean(brdf.diffuse_albedo) : 0;
     if (!(mirrored + diffuse > 0)) {
@@ -185,7 +185,7 @@ bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& p
         mirrors = random.next() < chance;
         path.beta /= mirrors ? chance : 1 - chance;
     }
-    return mirrors ? reflect_specularly(space, path, point, brdf, random)
+    return mirrors ? reflect_as_mirror(space, path, point, brdf, random)
                    : reflect_diffusely(space, path, point, brdf.diffuse_albedo, random);
 }
 

@@ -8,7 +8,7 @@
 namespace opaline::bake {
 namespace {
 
-glm::dvec3 to_local(const Frame& frame, glm::vec3 d) {
+glm::dvec3 to_frame(const Frame& frame, glm::vec3 d) {
     const glm::dvec3 world(d);
     return {glm::dot(glm::dvec3(frame.u), world), glm::dot(glm::dvec3(frame.v), world),
             glm::dot(glm::dvec3(frame.normal), world)};
@@ -24,7 +24,7 @@ glm::dvec3 facet_reflectance(const GlossyBrdf& brdf, double o_h) {
 GlossyBrdf make_glossy_brdf(const OpaqueSurface& surface, glm::vec3 normal, glm::vec3 to_eye) {
     GlossyBrdf brdf;
     brdf.frame = make_frame(normal);
-    brdf.to_eye = to_local(brdf.frame, to_eye);
+    brdf.to_eye = to_frame(brdf.frame, to_eye);
     brdf.to_eye.z = std::max(brdf.to_eye.z, kLeastCosine);
     brdf.to_eye = glm::normalize(brdf.to_eye);
     const double roughness{surface.roughness}, metallic{surface.metallic};
@@ -34,15 +34,15 @@ GlossyBrdf make_glossy_brdf(const OpaqueSurface& surface, glm::vec3 normal, glm:
     brdf.f90 = glm::mix(glm::dvec3(surface.f90), glm::dvec3(1), metallic);
     const DirectionalAlbedo albedo = directional_albedo(brdf.to_eye.z, roughness);
     brdf.compensation = 1.0 + brdf.f0 * (1 / albedo.unit() - 1);
-    const glm::dvec3 specular =
+    const glm::dvec3 mirrored =
         (brdf.f0 * albedo.normal + brdf.f90 * albedo.grazing) * brdf.compensation;
-    const double most = std::max({specular.x, specular.y, specular.z});
-    brdf.specular_albedo = glm::vec3(specular);
+    const double most = std::max({mirrored.x, mirrored.y, mirrored.z});
+    brdf.mirrored_albedo = glm::vec3(mirrored);
     brdf.diffuse_albedo = glm::vec3(base_color * (1 - metallic) * std::max(0.0, 1 - most));
     return brdf;
 }
 
-std::optional<LobeSample> sample_specular(const GlossyBrdf& brdf, float u, float v) {
+std::optional<LobeSample> sample_mirrored(const GlossyBrdf& brdf, float u, float v) {
     const glm::dvec3& o = brdf.to_eye;
     const glm::dvec3 h = sample_visible_normal(o, brdf.alpha, double{u}, double{v});
     const double o_h = glm::dot(o, h);
@@ -58,8 +58,8 @@ std::optional<LobeSample> sample_specular(const GlossyBrdf& brdf, float u, float
     return sample;
 }
 
-LobeValue eval_specular(const GlossyBrdf& brdf, glm::vec3 to_light) {
-    const glm::dvec3 l = to_local(brdf.frame, to_light), &o = brdf.to_eye;
+LobeValue eval_mirrored(const GlossyBrdf& brdf, glm::vec3 to_light) {
+    const glm::dvec3 l = to_frame(brdf.frame, to_light), &o = brdf.to_eye;
     if (!(l.z > 0)) {
         return {};
     }

@@ -23,7 +23,7 @@ struct GlossyBrdf {
     glm::dvec3 f0{0};      ///< reflectance of a facet at normal incidence
     glm::dvec3 f90{0};     ///< and at grazing
     glm::dvec3 compensation{1};
-    glm::vec3 specular_albedo{0}, diffuse_albedo{0};
+    glm::vec3 mirrored_albedo{0}, diffuse_albedo{0};
 };
 
 /// `normal` and `to_eye` are unit, in world space. An eye below the horizon, which an interpolated
@@ -39,13 +39,13 @@ struct LobeSample {
 
 /// The specular lobe, sampled by its visible normals; u, v in [0, 1). Nothing where the direction
 /// is below the horizon, so that the density integrates to less than 1 over the hemisphere.
-std::optional<LobeSample> sample_specular(const GlossyBrdf& brdf, float u, float v);
+std::optional<LobeSample> sample_mirrored(const GlossyBrdf& brdf, float u, float v);
 
 /// The specular lobe toward a direction of the light.
 struct LobeValue {
     glm::vec3 response{0};  ///< f_s * cosine [1/sr]
-    float pdf = 0;          ///< of sample_specular [1/sr]
+    float pdf = 0;          ///< of sample_mirrored [1/sr]
 };
-LobeValue eval_specular(const GlossyBrdf& brdf, glm::vec3 to_light);
+LobeValue eval_mirrored(const GlossyBrdf& brdf, glm::vec3 to_light);
 
 }  // namespace opaline::bake

@@ -46,7 +46,7 @@ constexpr PathState after_reflection(PathState s) {
     return s;
 }
 /// By the specular lobe of an opaque surface.
-constexpr PathState after_gloss(PathState s) {
+constexpr PathState after_mirror(PathState s) {
     s.stage =
         s.stage == PathState::Stage::camera ? PathState::Stage::mirrored : PathState::Stage::other;
     return s;

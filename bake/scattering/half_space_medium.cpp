@@ -30,9 +30,8 @@ HalfSpaceReflectance half_space_reflectance(double sigma_s, double sigma_a,
     // Near albedo 1 the loss grows as the root of what is absorbed per event.
     const HalfSpaceReflectance walked =
         walk_half_space(1 - kLeastAbsorbed, g, eta, kPaths, seed, context);
-    const double limit = 1 - fresnel_moments(eta).external - walked.single;
-    return {walked.single,
-            limit - (limit - walked.multiple) * std::sqrt(absorbed / kLeastAbsorbed)};
+    const double limit = 1 - fresnel_moments(eta).external - walked.once;
+    return {walked.once, limit - (limit - walked.rest) * std::sqrt(absorbed / kLeastAbsorbed)};
 }
 
 formats::Rgb half_space_albedo(const formats::Medium& medium, std::uint64_t seed,
@@ -42,7 +41,7 @@ formats::Rgb half_space_albedo(const formats::Medium& medium, std::uint64_t seed
         const double sigma_s = band_of(medium.sigma_s, b), sigma_a = band_of(medium.sigma_a, b);
         if (sigma_s > 0) {
             const auto walked = half_space_reflectance(sigma_s, sigma_a, medium, seed, context);
-            albedo[b] = static_cast<float>(walked.single + walked.multiple);
+            albedo[b] = static_cast<float>(walked.once + walked.rest);
         }
     }
     return {albedo[0], albedo[1], albedo[2]};

@@ -47,7 +47,7 @@ HalfSpaceReflectance walk(double albedo, double g, double eta, std::uint32_t pat
                 return found;  // horizontal within rounding
             }
             const double leaves = fresnel_transmittance(-mu, 1 / eta);
-            (scatterings == 1 && !reflected ? found.single : found.multiple) += weight * leaves;
+            (scatterings == 1 && !reflected ? found.once : found.rest) += weight * leaves;
             weight *= 1 - leaves;
             depth = 0;
             mu = -mu;
@@ -80,16 +80,16 @@ HalfSpaceReflectance walk_half_space(double albedo, double g, double eta, std::u
             for (std::size_t path = range.begin; path < range.end; ++path) {
                 const HalfSpaceReflectance one =
                     walk(albedo, g, eta, static_cast<std::uint32_t>(path), seed);
-                part.single += one.single;
-                part.multiple += one.multiple;
+                part.once += one.once;
+                part.rest += one.rest;
             }
             return part;
         },
         [&](Range, const HalfSpaceReflectance& part) {
-            sum.single += part.single;
-            sum.multiple += part.multiple;
+            sum.once += part.once;
+            sum.rest += part.rest;
         });
-    return {sum.single / paths, sum.multiple / paths};
+    return {sum.once / paths, sum.rest / paths};
 }
 
 }  // namespace opaline::bake

@@ -8,8 +8,8 @@ namespace opaline::bake {
 
 /// Reflectance of a half space under uniform light, as shares of the incident flux.
 struct HalfSpaceReflectance {
-    double single = 0;    ///< scattered once, without an internal reflection
-    double multiple = 0;  ///< all other light that leaves again
+    double once = 0;  ///< scattered once, without an internal reflection
+    double rest = 0;  ///< all other light that leaves again
 };
 
 /// By a random walk of `paths` paths with the actual albedo, phase function (Henyey-Greenstein) and

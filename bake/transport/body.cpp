@@ -21,7 +21,7 @@ float step_behind(const PacketHits& hits, std::uint32_t lane) {
     return distance + std::max(bound, 1e-6f * distance);
 }
 
-RayPacket single_ray(glm::vec3 origin, glm::vec3 direction) {
+RayPacket one_ray(glm::vec3 origin, glm::vec3 direction) {
     RayPacket packet{};
     packet.org_x[0] = origin.x, packet.org_y[0] = origin.y, packet.org_z[0] = origin.z;
     packet.dir_x[0] = direction.x, packet.dir_y[0] = direction.y, packet.dir_z[0] = direction.z;
@@ -34,7 +34,7 @@ InwardPath follow(const RayScene& rays, const BodyPoint& point, glm::vec3 direct
     InwardPath path;
     LaneMask first{};
     first[0] = -1;
-    RayPacket packet = single_ray(point.inner, direction);
+    RayPacket packet = one_ray(point.inner, direction);
     std::int32_t shells = 0;
     for (int i = 0; i < kMostCrossings; ++i) {
         const PacketHits hits = rays.closest(first, packet);

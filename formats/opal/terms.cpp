@@ -21,11 +21,11 @@ constexpr std::array kNamedTerms{NamedTerm{TermSet::multiple, "multiple"},
 
 }  // namespace
 
-std::string term_names(TermSet terms) {
+std::string term_names(TermSet terms, std::string_view separator) {
     std::string names;
     for (const NamedTerm& t : kNamedTerms) {
         if (!has_any(terms, t.term)) continue;
-        if (!names.empty()) names += ",";
+        if (!names.empty()) names += separator;
         names += t.name;
     }
     return names;

@@ -21,6 +21,7 @@ enum class TermSet : std::uint32_t {
     unscattered = 16,      ///< through a body without being scattered
     interreflection = 32,  ///< everything that met a second body or surface
     baked = 15,            ///< what `.opal` files hold: multiple, single, specular, diffuse
+    separable = 3,         ///< what a body's rows hold as one or, if asked for, apart
     all = 63
 };
 
@@ -46,8 +47,8 @@ constexpr bool has_all(TermSet set, TermSet part) {
     return (set & part) == part;
 }
 
-/// Names of the members in the order of their bits, separated by commas: "multiple,single".
-std::string term_names(TermSet terms);
+/// Names of the members in the order of their bits: "multiple,single".
+std::string term_names(TermSet terms, std::string_view separator = ",");
 
 /// The set that `text` names: "all" or nothing for the whole of `allowed`, otherwise names of its
 /// members, separated by commas. `option` is for messages. Errors: usage, listing the names.

@@ -79,7 +79,7 @@ TEST(Prediction, PilotHasTheStagesOfItsFirstRound) {
 // No assertion on time: on a machine that does other work as well it says nothing. The ratio stands
 // in the test's results (--gtest_output=xml) and on its output.
 TEST(Prediction, RatioOfPredictedToMeasuredSecondsIsReported) {
-    const bake::Rates rates = bake::measure_rates(2);
+    const bake::Rates rates = bake::measure_rates(bake::all_effects(), 2);
     struct Case {
         const char* name;
         Scene scene;

@@ -1,29 +1,110 @@
 #!/usr/bin/env python3
-"""Checks that bake/ names an effect in its own folder and in the table alone: check_effect_names.py ROOT.
+"""Checks that bake/ knows of an effect in its own folder and in the table alone: check_effect_names.py ROOT.
 
-The effects are the folders of bake/effects/. The name of one, and of its parts ("single.terms"), is written in
-quotes nowhere else in bake/. What stands outside bake/ (the format, the runtime, tests) may name effects.
+The effects are the folders of bake/effects/. Elsewhere in bake/, comments and prose (a string of several words) aside:
+  - no file and no identifier is called NAME or has NAME as a word of its own (kSingle, SingleBatch, add_single), except
+    identifiers of a header of formats/ or runtime/ that the file includes (TermSet::single, material.gloss);
+  - no string is NAME, a part of it ("single.terms") or a list with it ("multiple,single");
+  - no header of the effect's folder is included.
+What stands outside bake/ (the format, the runtime, tests) may name effects.
 """
 
 import re
 import sys
+from functools import cache
 from pathlib import Path
 
+from check_rooms import INCLUDE, included_file
 from source_files import source_files
 
 EFFECTS = Path("bake/effects")
-TABLE = EFFECTS / "effects.cpp"
+TABLE = EFFECTS / "effects.h", EFFECTS / "effects.cpp"
+SHARED = {"formats", "runtime"}  # their words are theirs, whoever uses them
+COMMENT_OR_STRING = re.compile(r"""//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\\n])'|R"(\w*)\((.*?)\)\1"|"((?:\\.|[^"\\\n])*)\"""", re.DOTALL)
+FOREIGN = re.compile(r"\bthread_local\b|\.local\(\)")  # words of C++ and of oneTBB (enumerable_thread_specific)
+IDENTIFIER = re.compile(r"(?:\bEffect\s*::\s*)?\b[A-Za-z_]\w*")
+WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+
+
+def words_of(identifier):
+    """kSingleBatch -> {k, single, batch}."""
+    return {word.lower() for word in WORD.findall(identifier)}
+
+
+def has_word(identifier, name):
+    return all(part in words_of(identifier) for part in name.split("_"))
+
+
+def split(text):
+    """The code without comments and strings, and pairs of offset and string. Offsets stay."""
+    strings = []
+
+    def blank(match):
+        if match.re is COMMENT_OR_STRING and match.lastindex:
+            strings.append((match.start(), match[match.lastindex]))
+        return re.sub(r"[^\n]", " ", match[0])
+    return FOREIGN.sub(blank, COMMENT_OR_STRING.sub(blank, text)), strings
+
+
+def names_effect(string, name):
+    """Whether a string that is no prose is the name, a part of it or a list with it."""
+    spelling = re.escape(name).replace("_", "[_-]")
+    return " " not in string and any(re.fullmatch(rf"{spelling}(\..*)?", word) for word in re.split("[,|]", string))
+
+
+class Tree:
+    def __init__(self, root):
+        self.root = root
+        self.text = cache(lambda file: (root / file).read_text())
+        self.headers = cache(self._headers)
+        self.identifiers = cache(lambda file: {m.split("::")[-1].strip() for m in IDENTIFIER.findall(split(self.text(file))[0])})
+
+    def _headers(self, file):
+        """What a file includes, directly."""
+        found = (included_file(self.root, file, name) for name in INCLUDE.findall(self.text(file)))
+        return {header for header in found if header}
+
+    def shared_identifiers(self, file):
+        """Those of the headers of formats/ and runtime/ that a file includes, directly or not."""
+        seen, todo = set(), [file]
+        while todo:
+            new = self.headers(todo.pop()) - seen
+            seen |= new
+            todo += new
+        return set().union(*(self.identifiers(header) for header in seen if header.parts[0] in SHARED))
+
+
+def faults_of(tree, file, names):
+    text = tree.text(file)
+    code, strings = split(text)
+    for name in names:
+        if has_word(file.stem, name):
+            yield 1, name, "is called so"
+    for match in INCLUDE.finditer(text):
+        header = included_file(tree.root, file, match[1])
+        for name in names:
+            if header and EFFECTS / name in header.parents:
+                yield text.count("\n", 0, match.start(1)) + 1, name, f"includes {header}"
+    for offset, string in strings:
+        for name in names:
+            if names_effect(string, name):
+                yield text.count("\n", 0, offset) + 1, name, f'"{string}"'
+    shared = None
+    for match in IDENTIFIER.finditer(code):
+        for name in names:
+            if has_word(match[0].split("::")[-1], name):
+                shared = tree.shared_identifiers(file) if shared is None else shared
+                if match[0] not in shared:
+                    yield code.count("\n", 0, match.start()) + 1, name, match[0]
 
 
 def faults(root, names):
+    tree = Tree(root)
     for file in source_files(root, ["bake"]):
-        if file == TABLE:
-            continue
-        for number, line in enumerate((root / file).read_text().splitlines(), 1):
-            for name in names:
-                spelling = re.escape(name).replace("_", "[_-]")
-                if EFFECTS / name not in file.parents and re.search(rf'"{spelling}[". ]', line):
-                    yield f'{file}:{number}: names the effect "{name}": {line.strip()}'
+        if file not in TABLE:
+            others = [name for name in names if EFFECTS / name not in file.parents]
+            for number, name, what in sorted(set(faults_of(tree, file, others))):
+                yield f'{file}:{number}: knows of the effect "{name}": {what}'
 
 
 def main():
@@ -33,7 +114,7 @@ def main():
         print("SKIPPED: there is no folder in bake/effects")
         return
     found = list(faults(root, names))
-    print("\n".join(found) or f"{len(names)} effects, each named in its folder and in the table alone")
+    print("\n".join(found) or f"{len(names)} effects, each known to its folder and to the table alone")
     sys.exit(1 if found else 0)
 
 

@@ -63,15 +63,46 @@ class EffectNames(unittest.TestCase):
         self.assertEqual(run("check_effect_names.py", self.TABLE)[0], 0)
         self.assertEqual(run("check_effect_names.py", {**self.TABLE, "formats/a.cpp": '"single"'})[0], 0)
 
-    def test_name_elsewhere_is_found(self):
-        for line in ['if (effect == "single")', 'plan("single.terms")']:
-            code, output = run("check_effect_names.py", {**self.TABLE, "bake/plan/rules.cpp": line})
-            self.assertEqual(code, 1)
-            self.assertIn("bake/plan/rules.cpp:1", output)
+    def check(self, text, others=None):
+        return run("check_effect_names.py", {**self.TABLE, **(others or {}), "bake/plan/rules.cpp": text})
 
-    def test_dash_and_underscore_are_one_name(self):
-        tree = {"bake/effects/volume_single/a.cpp": "", "bake/plan/rules.cpp": '"volume-single"'}
-        self.assertEqual(run("check_effect_names.py", tree)[0], 1)
+    def test_name_in_quotes_is_found(self):
+        for line in ['if (effect == "single")', 'plan("single.terms")', '"multiple,single"', 'R"(single)"', 'R"x(single)x"', "c == '\"' || single"]:
+            code, output = self.check("\n" + line)
+            self.assertEqual(code, 1, line)
+            self.assertIn('bake/plan/rules.cpp:2: knows of the effect "single"', output)
+
+    def test_identifier_is_found(self):
+        for line in ["double single = 0;", "a.single", "kSingle", "calibrate_single(b);", "SingleBatch b;", "SINGLE_RATE", "case Effect::single:"]:
+            self.assertEqual(self.check(line)[0], 1, line)
+
+    def test_include_is_found(self):
+        code, output = self.check('#include "bake/effects/single/rates.h"', {"bake/effects/single/rates.h": ""})
+        self.assertEqual(code, 1)
+        self.assertIn("includes bake/effects/single/rates.h", output)
+        relative = {"bake/effects/single/rates.h": "", "bake/effects/other/a.cpp": '#include "../single/rates.h"'}
+        self.assertEqual(run("check_effect_names.py", {**self.TABLE, **relative})[0], 1)
+
+    def test_file_name_is_found(self):
+        self.assertEqual(run("check_effect_names.py", {**self.TABLE, "bake/plan/rule_single.h": ""})[0], 1)
+
+    def test_other_words_comments_and_prose_are_accepted(self):
+        for line in ["redirectsingles(singled);", "// single", "/* a\n single */ int x;", 'help("scattered a single time")', "thread_local int x;",
+                     '"singles" "single-sided"']:
+            tree = {"bake/effects/local/a.cpp": "", "bake/effects/direct/a.cpp": ""}
+            self.assertEqual(self.check(line, tree), (0, "3 effects, each known to its folder and to the table alone\n"), line)
+
+    def test_words_of_the_format_are_accepted_where_it_is_included(self):
+        format = {"formats/terms.h": "enum class TermSet { single };", "bake/low/a.h": '#include "formats/terms.h"'}
+        self.assertEqual(self.check('#include "bake/low/a.h"\nTermSet::single', format)[0], 0)
+        self.assertEqual(self.check('#include "bake/low/a.h"\nEffect::single', format)[0], 1)
+        self.assertEqual(self.check('#include "bake/low/a.h"\nkSingle', format)[0], 1)
+        self.assertEqual(self.check("TermSet::single", format)[0], 1)
+
+    def test_a_name_of_several_words_is_found_in_any_spelling(self):
+        for line in ['"volume-single"', '"volume_single"', "kVolumeSingle"]:
+            tree = {"bake/effects/volume_single/a.cpp": "", "bake/plan/rules.cpp": line}
+            self.assertEqual(run("check_effect_names.py", tree)[0], 1, line)
 
 
 class Duplicates(unittest.TestCase):

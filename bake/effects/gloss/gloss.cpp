@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "bake/scene/gloss_record.h"
+#include "bake/scene/lobe_record.h"
 #include "formats/opal/gloss_model.h"
 
 namespace opaline::bake {
@@ -17,7 +17,7 @@ bool is_glossy(const PlanInput& input) {
 // smoothest and at grazing views; an image scales roughness down to 0 at most.
 double largest_albedo(const formats::Material& material) {
     constexpr float kGrazing = 1e-3f;
-    const formats::GlossRecord record = make_gloss_record(material.gloss);
+    const formats::GlossRecord record = make_lobe_record(material.gloss);
     const float roughness =
         material.gloss.image == formats::kNone ? material.gloss.roughness : 0.0f;
     const formats::Rgb white{1, 1, 1};
@@ -49,7 +49,7 @@ PlanEntry decide(const PlanInput& input) {
 
 constexpr std::array<DecisionRule, 1> kRules{
     {{"gloss", is_glossy, decide,
-      [](const PlanEntry& entry, RowLayout& layout) { layout.glossy = entry.on; }}}};
+      [](const PlanEntry& entry, RowLayout& layout) { layout.mirrors = entry.on; }}}};
 
 }  // namespace
 

@@ -1,18 +1,12 @@
 #include "bake/effects/local/local.h"
 
-#include <array>
 #include <vector>
 
-#include "bake/effects/multiple/rule_spread.h"
 #include "bake/transport/banded_irradiance.h"
 #include "formats/opal/haar.h"
 
 namespace opaline::bake {
 namespace {
-
-constexpr std::array<DecisionRule, 1> kRules{
-    {{kSpreadName, has_medium, decide_spread,
-      [](const PlanEntry& entry, RowLayout& layout) { layout.local = !entry.on; }}}};
 
 /// What a half space sends back of the irradiance at the receiver itself: no samples, no tree, no
 /// light maps. factor[band][step]: radiance toward the viewer before its own transmittance, per
@@ -26,13 +20,13 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     auto answer = std::make_unique<Answer>();
     answer->directions = make_direction_set(inputs.knobs.cubemap_size);
     std::vector<std::vector<double>> factor(inputs.layout.bands(),
-                                            std::vector<double>(kLocalSteps + 1));
+                                            std::vector<double>(kCosineSteps + 1));
     const auto& effects = inputs.bake.effects.effects;
     for (std::size_t e = 0; e < effects.size(); ++e) {
-        if (inputs.states[e].acts && effects[e].add_local != nullptr) {
-            effects[e].add_local({inputs.bake, inputs.material, inputs.layout, inputs.knobs,
-                                  inputs.context, inputs.states, inputs.states[e]},
-                                 factor);
+        if (inputs.states[e].acts && effects[e].add_at_entry != nullptr) {
+            effects[e].add_at_entry({inputs.bake, inputs.material, inputs.layout, inputs.knobs,
+                                     inputs.context, inputs.states, inputs.states[e]},
+                                    factor);
         }
     }
     for (const std::vector<double>& band : factor) {
@@ -59,11 +53,11 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
 
 }  // namespace
 
-EffectDescriptor describe_local(Effect id) {
+EffectDescriptor describe_local(Effect id, std::span<const DecisionRule> rules) {
     return {.id = id,
             .name = "local",
-            .rules = kRules,
-            .acts = [](const RowLayout& layout) { return layout.local; },
+            .rules = rules,
+            .acts = [](const RowLayout& layout) { return layout.at_entry; },
             .prepare = {.run = prepare},
             .gather = {.add = add, .work = [](const SubjectCost& c) {
                            return irradiance_work(c.input, c.receivers, c.layout.occluded);

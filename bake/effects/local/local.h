@@ -5,6 +5,7 @@
 namespace opaline::bake {
 
 /// Media so dense that light leaves where it entered: one row stands for all effects inside.
-EffectDescriptor describe_local(Effect id);
+/// `rules`: what decides that.
+EffectDescriptor describe_local(Effect id, std::span<const DecisionRule> rules);
 
 }  // namespace opaline::bake

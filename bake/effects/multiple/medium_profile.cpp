@@ -59,10 +59,10 @@ MediumProfile make_medium_profile(const Medium& medium, std::uint64_t seed,
                 half_space_reflectance(sigma_s, sigma_a, medium, seed, context);
             if (normalized) {
                 profile.band[b] = make_normalized_diffusion(
-                    (walked.single + walked.multiple) / escape, profile_length(profile.band[b]),
+                    (walked.once + walked.rest) / escape, profile_length(profile.band[b]),
                     DiffusionLength::mean_free_path_diffuse);
             } else {
-                profile.scale[b] = walked.multiple / (total * escape);
+                profile.scale[b] = walked.rest / (total * escape);
             }
         }
         if (total > 0) {

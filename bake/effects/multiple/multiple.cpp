@@ -8,6 +8,7 @@
 #include "bake/effects/multiple/gather_multiple.h"
 #include "bake/effects/multiple/multiple_costs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/multiple_rates.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
@@ -66,7 +67,7 @@ PreparedPtr study(const EffectInputs& inputs, std::uint64_t&) {
 }
 
 bool needs_samples(const formats::Material&, const RowLayout& layout) {
-    return !layout.local;
+    return !layout.at_entry;
 }
 
 PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
@@ -112,12 +113,12 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
 }
 
 // R Ft(c) / (pi c_exit): T_d = R E where light leaves where it entered.
-void add_local(const EffectInputs& inputs, std::span<std::vector<double>> factor) {
+void add_at_entry(const EffectInputs& inputs, std::span<std::vector<double>> factor) {
     const MediumProfile& profile = profile_of(inputs.own);
     const auto eta = static_cast<double>(inputs.medium().eta);
     for (std::size_t band = 0; band < factor.size(); ++band) {
-        for (std::uint32_t i = 0; i <= kLocalSteps; ++i) {
-            const double cosine = static_cast<double>(i) / kLocalSteps;
+        for (std::uint32_t i = 0; i <= kCosineSteps; ++i) {
+            const double cosine = static_cast<double>(i) / kCosineSteps;
             factor[band][i] += profile.total(band) * fresnel_transmittance(cosine, eta) /
                                (std::numbers::pi * profile.exit);
         }
@@ -178,7 +179,7 @@ EffectDescriptor describe_multiple(Effect id) {
                         .applies = needs_samples,
                         .run = take_samples,
                         .work = samples_work},
-            .gather = {.applies = [](const RowLayout& layout) { return !layout.local; },
+            .gather = {.applies = [](const RowLayout& layout) { return !layout.at_entry; },
                        .add = add,
                        .work = multiple_rows_work},
             .truth = {.reference = "the surface integral by Monte Carlo",
@@ -189,8 +190,9 @@ EffectDescriptor describe_multiple(Effect id) {
                           [](const SubjectCost& cost, TruthEffort effort) {
                               return multiple_truth_work(cost, truth_points(effort));
                           }},
+            .calibrate = calibrate_multiple,
             .sample_bytes = sample_bytes,
-            .add_local = add_local,
+            .add_at_entry = add_at_entry,
             .warn_of_model = warn_of_model};
 }
 

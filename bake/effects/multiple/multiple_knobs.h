@@ -10,7 +10,7 @@ namespace opaline::bake {
 
 namespace multiple_knobs {
 inline bool carries_light(const RowLayout& layout, std::span<const PlanEntry>) {
-    return layout.translucent && layout.constant && !layout.local;
+    return layout.translucent && layout.constant && !layout.at_entry;
 }
 inline constexpr const char* kWhyIdle = "no medium carries light across itself";
 

@@ -1,12 +1,13 @@
 #include "bake/effects/multiple/rule_spread.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "bake/scattering/dipole.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_single.h"
+#include "bake/scattering/half_space_once.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {
@@ -33,7 +34,7 @@ double spread_of_multiple(const Band& band, double g, double eta, const Shape& s
 // The same for single scattering. On average light enters at a distance r = sin(theta') / (sigma_t
 // (1 + cos(theta'))) from its exit, so irradiance appears shifted by r. A short path sees only its
 // own facets, whose cosines differ in proportion to their angle.
-double spread_of_single(const Band& band, double eta, const Shape& shape) {
+double spread_of_one_event(const Band& band, double eta, const Shape& shape) {
     const double sigma_t = band.sigma_s + band.sigma_a;
     if (!(band.sigma_s > 0)) {
         return 0;
@@ -41,11 +42,9 @@ double spread_of_single(const Band& band, double eta, const Shape& shape) {
     const double sine = std::min(1.0, 1 / eta), cosine = std::sqrt(1 - sine * sine);
     const double shift = sine / (sigma_t * (1 + cosine));
     const double lost = std::min(1.0, 2 * std::numbers::pi * shift / shape.feature);
-    return half_space_single(eta) * band.sigma_s / sigma_t *
+    return half_space_once(eta) * band.sigma_s / sigma_t *
            (lost + std::exp(-sigma_t * shape.thickness) + shape.angle);
 }
-
-}  // namespace
 
 PlanEntry decide_spread(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
@@ -65,7 +64,7 @@ PlanEntry decide_spread(const PlanInput& input) {
     }
     for (const Band& band : bands_of(medium)) {
         entry.bound = std::max(entry.bound, spread_of_multiple(band, g, eta, shape) +
-                                                spread_of_single(band, eta, shape));
+                                                spread_of_one_event(band, eta, shape));
     }
     entry.bound = std::min(entry.bound, 1.0);
     if (input.knobs.separate_terms) {
@@ -80,6 +79,16 @@ PlanEntry decide_spread(const PlanInput& input) {
         entry.reason = "light comes out elsewhere than where it entered";
     }
     return entry;
+}
+
+constexpr std::array<DecisionRule, 1> kRules{
+    {{"multiple.spread", has_medium, decide_spread,
+      [](const PlanEntry& entry, RowLayout& layout) { layout.at_entry = !entry.on; }}}};
+
+}  // namespace
+
+std::span<const DecisionRule> spread_rules() {
+    return kRules;
 }
 
 }  // namespace opaline::bake

@@ -83,7 +83,7 @@ double open_body_error(const std::array<double, 3>& lengths, const RayScene& ray
 
 void warn_of_thin_parts(const EffectInputs& inputs, const MediumProfile& profile,
                         std::vector<formats::Diagnostic>& warnings) {
-    if (inputs.layout.local) {
+    if (inputs.layout.at_entry) {
         return;
     }
     constexpr double kWorthSaying = 0.1;

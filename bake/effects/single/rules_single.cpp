@@ -8,7 +8,7 @@
 #include "bake/effects/single/single_knobs.h"
 #include "bake/scattering/dipole.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_single.h"
+#include "bake/scattering/half_space_once.h"
 #include "bake/scattering/phase.h"
 #include "bake/scattering/phase_series.h"
 #include "formats/media/mean_cosine.h"
@@ -111,15 +111,14 @@ PlanEntry decide_terms(const PlanInput& input) {
 double single_share(const formats::Medium& medium) {
     const double g = formats::mean_cosine(medium.phase);
     const auto eta = static_cast<double>(medium.eta);
-    const double once = half_space_single(eta), escape = 1 - fresnel_moments(eta).external;
+    const double once = half_space_once(eta), escape = 1 - fresnel_moments(eta).external;
     double share = 0;
     for (const auto& [sigma_s, sigma_a] : bands_of(medium)) {
         if (sigma_s > 0) {
             const double single = once * sigma_s / (sigma_s + sigma_a);
-            const double multiple =
-                escape *
-                dipole_total(make_dipole(DipoleKind::better, (1 - g) * sigma_s, sigma_a, eta));
-            share = std::max(share, single / (single + multiple));
+            const double rest = escape * dipole_total(make_dipole(DipoleKind::better,
+                                                                  (1 - g) * sigma_s, sigma_a, eta));
+            share = std::max(share, single / (single + rest));
         }
     }
     return share;

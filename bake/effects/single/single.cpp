@@ -10,13 +10,12 @@
 #include "bake/effects/single/rules_single.h"
 #include "bake/effects/single/single_costs.h"
 #include "bake/effects/single/single_knobs.h"
+#include "bake/effects/single/single_rates.h"
 #include "bake/effects/single/single_stage.h"
 #include "bake/effects/single/true_single.h"
 #include "bake/scattering/entry.h"
 #include "bake/scattering/path_quadrature.h"
 #include "bake/scattering/phase_series.h"
-#include "formats/opal/cubemap.h"
-#include "formats/opal/haar.h"
 
 namespace opaline::bake {
 namespace {
@@ -53,8 +52,8 @@ const SingleStage& stage_of(const Prepared& prepared) {
     return static_cast<const Stage&>(prepared).stage;
 }
 
-bool is_not_local(const RowLayout& layout) {
-    return !layout.local;
+bool leaves_elsewhere(const RowLayout& layout) {
+    return !layout.at_entry;
 }
 
 // Rays inside the body need all triangles, also where nothing stands before the light.
@@ -78,22 +77,6 @@ PreparedPtr gather_batch(const EffectInputs& inputs, std::span<const BodyPoint> 
     return batch;
 }
 
-// Adds the Haar transform of a cube map of size m to one of size n >= m. The same function has the
-// same coarse coefficients times n/m, and no finer ones.
-void add_coarse(std::span<const float> coarse, std::uint32_t m, std::span<float> fine,
-                std::uint32_t n) {
-    const auto scale = static_cast<float>(n) / static_cast<float>(m);
-    for (std::size_t face = 0; face < 6; ++face) {
-        for (std::size_t row = 0; row < m; ++row) {
-            const float* const from = &coarse[(face * m + row) * m];
-            float* const to = &fine[(face * n + row) * n];
-            for (std::size_t column = 0; column < m; ++column) {
-                to[column] += scale * from[column];
-            }
-        }
-    }
-}
-
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const SingleBatch& batch = static_cast<const Batch&>(*receiver.batch).batch;
     const std::uint32_t m = stage_of(*inputs.own.prepared).directions.cubemap_size;
@@ -102,7 +85,7 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
 }
 
 // alpha / (4 pi) (Ft J / c) c' / (1 + c'): the integral along a path without end, isotropic.
-void add_local(const EffectInputs& inputs, std::span<std::vector<double>> factor) {
+void add_at_entry(const EffectInputs& inputs, std::span<std::vector<double>> factor) {
     constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
     const formats::Medium& medium = inputs.medium();
     const PathMedium path = make_path_medium(medium);
@@ -110,8 +93,8 @@ void add_local(const EffectInputs& inputs, std::span<std::vector<double>> factor
                                      medium.fidelity != formats::Medium::Fidelity::paper};
     for (std::size_t b = 0; b < factor.size(); ++b) {
         const double albedo = path.sigma_t[b] > 0 ? path.sigma_s[b] / path.sigma_t[b] : 0;
-        for (std::uint32_t i = 1; i <= kLocalSteps; ++i) {
-            const double cosine = static_cast<double>(i) / kLocalSteps;
+        for (std::uint32_t i = 1; i <= kCosineSteps; ++i) {
+            const double cosine = static_cast<double>(i) / kCosineSteps;
             const Entry<double> entry = enter(cosine, boundary);
             factor[b][i] += kIsotropic * albedo * entry.throughput / cosine *
                             entry.refracted_cosine / (1 + entry.refracted_cosine);
@@ -198,21 +181,6 @@ void warn_of_plan(const PlanInput& input, const PlanEntry& entry,
 
 }  // namespace
 
-void add_single(const SingleBatch& batch, std::size_t place, std::uint32_t m, std::uint32_t first,
-                const DenseRow& row) {
-    const std::size_t coarse = formats::cubemap_texels(m);
-    std::vector<float> own(batch.row_size);
-    read_single(batch, place, own);
-    for (std::size_t plane = 0; plane < own.size() / coarse; ++plane) {
-        const std::span<float> from = std::span(own).subspan(plane * coarse, coarse);
-        formats::haar_forward_cube(from, m);
-        add_coarse(
-            from, m,
-            row.values.subspan((std::size_t{row.bands} * first + plane) * row.size(), row.size()),
-            row.cubemap_size);
-    }
-}
-
 EffectDescriptor describe_single(Effect id) {
     return {.id = id,
             .name = "single",
@@ -224,10 +192,10 @@ EffectDescriptor describe_single(Effect id) {
             .prepare = {.stage = "light maps of",
                         .by_subject = true,
                         .applies = [](const formats::Material&,
-                                      const RowLayout& layout) { return is_not_local(layout); },
+                                      const RowLayout& layout) { return leaves_elsewhere(layout); },
                         .run = prepare,
                         .work = light_maps_work},
-            .gather = {.applies = is_not_local,
+            .gather = {.applies = leaves_elsewhere,
                        .batch_size =
                            [](const Prepared& prepared, std::size_t bytes) {
                                return receivers_per_batch(stage_of(prepared), bytes);
@@ -244,8 +212,9 @@ EffectDescriptor describe_single(Effect id) {
                               return single_truth_work(cost,
                                                        truth_depths(cost.input.knobs, effort));
                           }},
+            .calibrate = calibrate_single,
             .typical_rows = typical_rows,
-            .add_local = add_local,
+            .add_at_entry = add_at_entry,
             .warn_of_plan = warn_of_plan};
 }
 

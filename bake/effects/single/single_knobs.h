@@ -11,7 +11,7 @@ namespace opaline::bake {
 
 namespace single_knobs {
 inline bool looks_inside(const RowLayout& layout, std::span<const PlanEntry>) {
-    return layout.harmonics > 0 && !layout.local;
+    return layout.harmonics > 0 && !layout.at_entry;
 }
 inline bool is_expanded(const RowLayout&, std::span<const PlanEntry> decisions) {
     for (const PlanEntry& entry : decisions) {

@@ -6,6 +6,7 @@
 #include "bake/effects/single/texel_directions.h"
 #include "bake/scattering/phase_series.h"
 #include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
 
 namespace opaline::bake {
 namespace {
@@ -24,6 +25,22 @@ PhaseTerms make_phase_terms(const formats::PhaseFunction& phase, std::uint32_t t
 std::size_t row_size_of(const SingleStage& stage) {
     return std::size_t{stage.medium.bands} * stage.medium.phase.count() *
            formats::cubemap_texels(stage.directions.cubemap_size);
+}
+
+// Adds the Haar transform of a cube map of size m to one of size n >= m. The same function has the
+// same coarse coefficients times n/m, and no finer ones.
+void add_coarse(std::span<const float> coarse, std::uint32_t m, std::span<float> fine,
+                std::uint32_t n) {
+    const auto scale = static_cast<float>(n) / static_cast<float>(m);
+    for (std::size_t face = 0; face < 6; ++face) {
+        for (std::size_t row = 0; row < m; ++row) {
+            const float* const from = &coarse[(face * m + row) * m];
+            float* const to = &fine[(face * n + row) * n];
+            for (std::size_t column = 0; column < m; ++column) {
+                to[column] += scale * from[column];
+            }
+        }
+    }
 }
 
 }  // namespace
@@ -94,6 +111,21 @@ void read_single(const SingleBatch& batch, std::size_t receiver, std::span<float
     }
     const auto first = batch.dense.begin() + static_cast<std::ptrdiff_t>(receiver * row.size());
     std::copy(first, first + static_cast<std::ptrdiff_t>(row.size()), row.begin());
+}
+
+void add_single(const SingleBatch& batch, std::size_t receiver, std::uint32_t m,
+                std::uint32_t first, const DenseRow& row) {
+    const std::size_t coarse = formats::cubemap_texels(m);
+    std::vector<float> own(batch.row_size);
+    read_single(batch, receiver, own);
+    for (std::size_t plane = 0; plane < own.size() / coarse; ++plane) {
+        const std::span<float> from = std::span(own).subspan(plane * coarse, coarse);
+        formats::haar_forward_cube(from, m);
+        add_coarse(
+            from, m,
+            row.values.subspan((std::size_t{row.bands} * first + plane) * row.size(), row.size()),
+            row.cubemap_size);
+    }
 }
 
 }  // namespace opaline::bake

@@ -3,9 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/effects/multiple/true_multiple.h"
 #include "bake/effects/single/ray_single.h"
 #include "bake/scattering/phase.h"
+#include "bake/truth/luminance.h"
+#include "bake/truth/true_irradiance.h"
 
 namespace opaline::bake {
 

@@ -27,7 +27,7 @@ PlanEntry decide(const PlanInput& input) {
 
 constexpr std::array<DecisionRule, 1> kRules{
     {{"specular", has_medium, decide,
-      [](const PlanEntry& entry, RowLayout& layout) { layout.glossy = entry.on; }}}};
+      [](const PlanEntry& entry, RowLayout& layout) { layout.mirrors = entry.on; }}}};
 
 }  // namespace
 

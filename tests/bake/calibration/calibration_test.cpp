@@ -5,7 +5,8 @@
 #include <set>
 #include <string>
 
-#include "bake/calibration/dented_ball.h"
+#include "bake/calibration/bench/dented_ball.h"
+#include "bake/effects/effects.h"
 #include "bake/scene/orient_bodies.h"
 
 namespace opaline::bake {
@@ -20,7 +21,7 @@ const std::set<std::string> kDifferences{
 // Seconds of one thread for one unit: more than a processor's cycle, less than the time in which a
 // whole scene of such units is measured. A rate that nobody measures stays 0 and is found here.
 TEST(Calibration, EveryRateOfThisMachineIsATimeThatPasses) {
-    const Rates rates = measure_rates(2);
+    const Rates rates = measure_rates(all_effects(), 2);
     visit_rates(rates, [](const std::string& name, double rate) {
         if (name == "crowding" || name == "test_lights") return;
         EXPECT_LT(rate, 1e-2) << name;

@@ -73,15 +73,15 @@ TEST(MediumProfile, NormalizedDiffusionHasTheWholeResponse) {
     const MediumProfile p = make_medium_profile(medium, 0, {});
     const double escape = 1 - fresnel_moments(1.3f).external;
     const auto walked = walk_half_space(0.8, 0, 1.3, 200000, 9, {});
-    EXPECT_NEAR(p.total(0) * escape, walked.single + walked.multiple, 4e-3);
+    EXPECT_NEAR(p.total(0) * escape, walked.once + walked.rest, 4e-3);
 }
 
 TEST(MediumProfile, HalfSpaceReturnsWhatTheRandomWalkDoes) {
     const MediumProfile p =
         make_medium_profile(make_medium({800, 500, 0}, {200, 500, 10}, 1.3f), 0, {});
     const double escape = 1 - fresnel_moments(1.3f).external;
-    EXPECT_NEAR(p.total(0) * escape, walk_half_space(0.8, 0, 1.3, 200000, 9, {}).multiple, 3e-3);
-    EXPECT_NEAR(p.total(1) * escape, walk_half_space(0.5, 0, 1.3, 200000, 9, {}).multiple, 3e-3);
+    EXPECT_NEAR(p.total(0) * escape, walk_half_space(0.8, 0, 1.3, 200000, 9, {}).rest, 3e-3);
+    EXPECT_NEAR(p.total(1) * escape, walk_half_space(0.5, 0, 1.3, 200000, 9, {}).rest, 3e-3);
     EXPECT_EQ(p.total(2), 0) << "what does not scatter returns nothing";
 }
 
@@ -91,7 +91,7 @@ TEST(MediumProfile, WithoutAbsorptionNothingIsLost) {
         const MediumProfile p = make_medium_profile(make_medium({5, 5, 5}, {0, 0, 0}, eta), 0, {});
         const double escape = 1 - fresnel_moments(static_cast<double>(eta)).external;
         const double single =
-            walk_half_space(1e-3, 0, static_cast<double>(eta), 200000, 4, {}).single / 1e-3;
+            walk_half_space(1e-3, 0, static_cast<double>(eta), 200000, 4, {}).once / 1e-3;
         EXPECT_NEAR(p.total(0) * escape + single, escape, 8e-3) << eta;
     }
 }

@@ -90,7 +90,7 @@ TEST(CostModel, LocalRowsInColourPayForTheTransform) {
     Knobs knobs;
     const Predicted p = predict(scene, knobs, 1, rates);
     const auto layouts = layout_rows(scene, p.plan, knobs);
-    ASSERT_TRUE(layouts[0].local);
+    ASSERT_TRUE(layouts[0].at_entry);
     ASSERT_EQ(layouts[0].bands(), 3u);
     const auto vertices = static_cast<double>(scene.primitives[0].position.size());
     double rows = 0;

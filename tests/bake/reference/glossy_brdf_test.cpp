@@ -116,12 +116,12 @@ TEST(ReferenceGloss, WhiteFurnaceReturnsAllLight) {
                 for (std::uint32_t i = 0; i < kSamples; ++i) {
                     bake::RandomStream random(11, 0, i);
                     const float u = random.next(), v = random.next();
-                    if (const auto sample = bake::sample_specular(brdf, u, v)) {
+                    if (const auto sample = bake::sample_mirrored(brdf, u, v)) {
                         sum += glm::dvec3(sample->weight);
                     }
                 }
                 const glm::dvec3 specular = sum / double{kSamples};
-                EXPECT_NEAR(specular.y, brdf.specular_albedo.y, 0.004)
+                EXPECT_NEAR(specular.y, brdf.mirrored_albedo.y, 0.004)
                     << describe(roughness, cosine);
                 EXPECT_NEAR(specular.y + brdf.diffuse_albedo.y, 1, 0.005)
                     << describe(roughness, cosine) << " metallic " << surface.metallic;
@@ -135,7 +135,7 @@ TEST(ReferenceGloss, NeverReflectsMoreThanArrives) {
         for (float cosine = 0.01f; cosine <= 1; cosine += 0.03f) {
             for (const float metallic : {0.0f, 0.3f, 1.0f}) {
                 const GlossyBrdf brdf = seen(coloured(metallic, roughness), cosine);
-                const glm::vec3 all = brdf.specular_albedo + brdf.diffuse_albedo;
+                const glm::vec3 all = brdf.mirrored_albedo + brdf.diffuse_albedo;
                 EXPECT_LE(std::max({all.x, all.y, all.z}), 1 + 1e-6f)
                     << describe(roughness, cosine);
                 EXPECT_GE(std::min({all.x, all.y, all.z}), 0) << describe(roughness, cosine);
@@ -152,9 +152,9 @@ TEST(ReferenceGloss, WithoutCompensationTheLobeIsReciprocal) {
                 const glm::vec3 one = direction(a, 0.2f), other = direction(b, 2.4f);
                 const GlossyBrdf from_one = bake::make_glossy_brdf(surface, kNormal, one);
                 const GlossyBrdf from_other = bake::make_glossy_brdf(surface, kNormal, other);
-                const glm::dvec3 f = glm::dvec3(bake::eval_specular(from_one, other).response) /
+                const glm::dvec3 f = glm::dvec3(bake::eval_mirrored(from_one, other).response) /
                                      (from_one.compensation * static_cast<double>(b));
-                const glm::dvec3 g = glm::dvec3(bake::eval_specular(from_other, one).response) /
+                const glm::dvec3 g = glm::dvec3(bake::eval_mirrored(from_other, one).response) /
                                      (from_other.compensation * static_cast<double>(a));
                 for (const int c : {0, 1, 2}) {
                     EXPECT_NEAR(f[c], g[c], 1e-4 * f[c]) << describe(roughness, a);
@@ -171,11 +171,11 @@ TEST(ReferenceGloss, SamplesWeighWhatTheirResponseOverDensitySays) {
             for (std::uint32_t i = 0; i < 200; ++i) {
                 bake::RandomStream random(5, 1, i);
                 const float u = random.next(), v = random.next();
-                const auto sample = bake::sample_specular(brdf, u, v);
+                const auto sample = bake::sample_mirrored(brdf, u, v);
                 if (!sample || glm::dot(sample->direction, kNormal) < 1e-3f) {
                     continue;  // rounding of the cosine matters there
                 }
-                const bake::LobeValue value = bake::eval_specular(brdf, sample->direction);
+                const bake::LobeValue value = bake::eval_mirrored(brdf, sample->direction);
                 // Directions are floats: at alpha 0.01 the lobe turns 6e-8 into 1e-4.
                 EXPECT_NEAR(value.pdf, sample->pdf, 2e-3f * sample->pdf);
                 for (const int c : {0, 1, 2}) {
@@ -203,7 +203,7 @@ TEST(ReferenceGloss, DirectionsAreDistributedAsTheirDensitySays) {
                     const double phi = 2 * std::numbers::pi * (c + 0.5) / (kColumns * kFine);
                     const glm::vec3 d =
                         brdf.frame.to_world(glm::vec3(s * std::cos(phi), s * std::sin(phi), z));
-                    const double share = bake::eval_specular(brdf, d).pdf * 2 * std::numbers::pi /
+                    const double share = bake::eval_mirrored(brdf, d).pdf * 2 * std::numbers::pi /
                                          (kRows * kFine * kColumns * kFine);
                     expected[(r / kFine) * kColumns + c / kFine] += share * kSamples;
                     above += share;
@@ -214,7 +214,7 @@ TEST(ReferenceGloss, DirectionsAreDistributedAsTheirDensitySays) {
             for (std::uint32_t i = 0; i < kSamples; ++i) {
                 bake::RandomStream random(23, 4, i);
                 const float u = random.next(), v = random.next();
-                const auto sample = bake::sample_specular(brdf, u, v);
+                const auto sample = bake::sample_mirrored(brdf, u, v);
                 if (!sample) {
                     ++lost;
                     continue;
@@ -258,7 +258,7 @@ TEST(ReferenceGloss, EyesBelowTheHorizonCountAsGrazing) {
     const GlossyBrdf brdf = bake::make_glossy_brdf(white_metal(0.5f), kNormal, -kNormal);
     EXPECT_GT(brdf.to_eye.z, 0);
     EXPECT_NEAR(glm::length(brdf.to_eye), 1, 1e-12);
-    EXPECT_TRUE(std::isfinite(brdf.specular_albedo.x));
+    EXPECT_TRUE(std::isfinite(brdf.mirrored_albedo.x));
 }
 
 }  // namespace

@@ -91,8 +91,8 @@ TEST(ReferenceHalfSpace, AgreesWithTheBakesOwnWalkForForwardScattering) {
     const bake::HalfSpaceReflectance walk = bake::walk_half_space(0.95, 0.6, 1.4, 200000, 1, {});
     const bake::Moments single = look(0.95f, 0.6f, 1.4f, formats::TermSet::single, 0, 80000);
     const bake::Moments multiple = look(0.95f, 0.6f, 1.4f, formats::TermSet::multiple, 0, 40000);
-    EXPECT_NEAR(single.mean.x, walk.single, 3 * standard_error(single) + 0.001);
-    EXPECT_NEAR(multiple.mean.x, walk.multiple, 3 * std::hypot(standard_error(multiple), 0.0007));
+    EXPECT_NEAR(single.mean.x, walk.once, 3 * standard_error(single) + 0.001);
+    EXPECT_NEAR(multiple.mean.x, walk.rest, 3 * std::hypot(standard_error(multiple), 0.0007));
 }
 
 TEST(ReferenceHalfSpace, TermsAddUpToEverything) {

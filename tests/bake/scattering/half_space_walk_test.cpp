@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_single.h"
+#include "bake/scattering/half_space_once.h"
 #include "tests/support/reference_table.h"
 
 namespace opaline::bake {
@@ -20,8 +20,8 @@ TEST(HalfSpaceWalk, AgreesWithIndependentlyMeasuredReflectances) {
                               {1.5, .80, .0411, .0893}};
     for (const auto& [eta, albedo, single, multiple] : rows) {
         const HalfSpaceReflectance r = walk_half_space(albedo, 0, eta, 100000, 1, {});
-        EXPECT_NEAR(r.single, single, 0.003) << eta << " " << albedo;
-        EXPECT_NEAR(r.multiple, multiple, 0.004) << eta << " " << albedo;
+        EXPECT_NEAR(r.once, single, 0.003) << eta << " " << albedo;
+        EXPECT_NEAR(r.rest, multiple, 0.004) << eta << " " << albedo;
     }
 }
 
@@ -30,9 +30,9 @@ TEST(HalfSpaceWalk, SingleScatteringPerAlbedoIsThatOfTheTable) {
     for (const auto& row : rows) {
         if (row.input.at("jac") != "exact") continue;
         const auto r = walk_half_space(1e-2, 0, row.number("eta"), 200000, 3, {});
-        EXPECT_NEAR(r.single / 1e-2, row.expected, 0.005) << row.name();
+        EXPECT_NEAR(r.once / 1e-2, row.expected, 0.005) << row.name();
         // 32 nodes across the square root at the critical angle.
-        EXPECT_NEAR(half_space_single(row.number("eta")), row.expected, 1e-4) << row.name();
+        EXPECT_NEAR(half_space_once(row.number("eta")), row.expected, 1e-4) << row.name();
     }
 }
 
@@ -40,14 +40,14 @@ TEST(HalfSpaceWalk, NothingIsLostWithoutAbsorption) {
     for (const double eta : {1.0, 1.3}) {
         const auto r = walk_half_space(1, 0, eta, 4000, 1, {});
         // Paths that go deep return late; nearly all return within the event limit.
-        EXPECT_NEAR(r.single + r.multiple, 1 - fresnel_moments(eta).external, 0.03) << eta;
+        EXPECT_NEAR(r.once + r.rest, 1 - fresnel_moments(eta).external, 0.03) << eta;
     }
 }
 
 TEST(HalfSpaceWalk, ForwardScatteringReturnsLess) {
     const auto forward = walk_half_space(0.9, 0.8, 1.3, 20000, 1, {});
     const auto backward = walk_half_space(0.9, -0.8, 1.3, 20000, 1, {});
-    EXPECT_LT(forward.single + forward.multiple, 0.5 * (backward.single + backward.multiple));
+    EXPECT_LT(forward.once + forward.rest, 0.5 * (backward.once + backward.rest));
 }
 
 TEST(HalfSpaceWalk, SameForAnyNumberOfThreads) {
@@ -56,8 +56,8 @@ TEST(HalfSpaceWalk, SameForAnyNumberOfThreads) {
     three.threads = 3;
     const auto a = walk_half_space(0.9, 0.3, 1.3, 10000, 5, one);
     const auto b = walk_half_space(0.9, 0.3, 1.3, 10000, 5, three);
-    EXPECT_EQ(a.single, b.single);
-    EXPECT_EQ(a.multiple, b.multiple);
+    EXPECT_EQ(a.once, b.once);
+    EXPECT_EQ(a.rest, b.rest);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ Gloss gloss_of(const AssetBuilder& asset) {
     return must_import(asset).scene.materials.at(0).gloss;
 }
 
-TEST(GltfGloss, AbsentMembersHaveTheSpecificationsDefaults) {
+TEST(GltfReflection, AbsentMembersHaveTheSpecificationsDefaults) {
     // glTF 2.0, 5.22: metallicFactor 1, roughnessFactor 1; KHR_materials_ior: 1.5;
     // KHR_materials_specular: 1 and white.
     for (const Json& material : {Json::object(), Json{{"pbrMetallicRoughness", Json::object()}},
@@ -60,7 +60,7 @@ TEST(GltfGloss, AbsentMembersHaveTheSpecificationsDefaults) {
     }
 }
 
-TEST(GltfGloss, FactorsAreRead) {
+TEST(GltfReflection, FactorsAreRead) {
     const auto imported = must_import(
         asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}},
                     {"extensions",
@@ -77,7 +77,7 @@ TEST(GltfGloss, FactorsAreRead) {
     EXPECT_EQ(lines(imported.warnings), "");
 }
 
-TEST(GltfGloss, NeitherMetalNorSpecularIsDiffuse) {
+TEST(GltfReflection, NeitherMetalNorSpecularIsDiffuse) {
     EXPECT_TRUE(gloss_of(asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
                                      {"extensions",
                                       {{"KHR_materials_specular", {{"specularFactor", 0}}}}}}))
@@ -86,7 +86,7 @@ TEST(GltfGloss, NeitherMetalNorSpecularIsDiffuse) {
         gloss_of(asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 0}}}})).is_diffuse());
 }
 
-TEST(GltfGloss, UnlitAndSpecularGlossinessAreDiffuseAndNamed) {
+TEST(GltfReflection, UnlitAndSpecularGlossinessAreDiffuseAndNamed) {
     for (const char* extension : {"KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"}) {
         const auto imported =
             must_import(asset_with({{"extensions", {{extension, Json::object()}}}}));
@@ -101,7 +101,7 @@ TEST(GltfGloss, UnlitAndSpecularGlossinessAreDiffuseAndNamed) {
     EXPECT_EQ(fallback.roughness, 0.5f);
 }
 
-TEST(GltfGloss, ValuesOutOfRangeAreClampedWithAWarning) {
+TEST(GltfReflection, ValuesOutOfRangeAreClampedWithAWarning) {
     const auto imported = must_import(
         asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 2}, {"roughnessFactor", -1}}},
                     {"extensions",
@@ -120,14 +120,14 @@ TEST(GltfGloss, ValuesOutOfRangeAreClampedWithAWarning) {
     }
 }
 
-TEST(GltfGloss, InfiniteIndexOfRefractionIsKeptAsZero) {
+TEST(GltfReflection, InfiniteIndexOfRefractionIsKeptAsZero) {
     const auto imported =
         must_import(asset_with({{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}));
     EXPECT_EQ(imported.scene.materials.at(0).gloss.ior, 0.0f);
     EXPECT_EQ(lines(imported.warnings), "");
 }
 
-TEST(GltfGloss, WrongTypesAreErrorsThatNameTheMember) {
+TEST(GltfReflection, WrongTypesAreErrorsThatNameTheMember) {
     for (const char* name : {"metallicFactor", "roughnessFactor"}) {
         EXPECT_THAT(errors_of(import_asset(asset_with({{"pbrMetallicRoughness", {{name, "x"}}}}))),
                     HasSubstr(std::string("material 'Shell' > pbrMetallicRoughness: ") + name +
@@ -135,7 +135,7 @@ TEST(GltfGloss, WrongTypesAreErrorsThatNameTheMember) {
     }
 }
 
-TEST(GltfGloss, TextureKeepsItsCodesAndWrapModes) {
+TEST(GltfReflection, TextureKeepsItsCodesAndWrapModes) {
     const auto imported = must_import(textured(false));
     const Gloss& gloss = imported.scene.materials.at(0).gloss;
     ASSERT_EQ(gloss.image, 0u);
@@ -146,7 +146,7 @@ TEST(GltfGloss, TextureKeepsItsCodesAndWrapModes) {
     EXPECT_EQ(imported.scene.materials[0].base_color_image, kNone);
 }
 
-TEST(GltfGloss, WithoutABaseColourTextureItsOwnCoordinatesAreUsed) {
+TEST(GltfReflection, WithoutABaseColourTextureItsOwnCoordinatesAreUsed) {
     AssetBuilder asset = textured(false);
     Json& use = asset.json["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"];
     use["texCoord"] = 1u;
@@ -157,7 +157,7 @@ TEST(GltfGloss, WithoutABaseColourTextureItsOwnCoordinatesAreUsed) {
     EXPECT_EQ(lines(imported.warnings), "");
 }
 
-TEST(GltfGloss, BothTexturesShareCoordinates) {
+TEST(GltfReflection, BothTexturesShareCoordinates) {
     AssetBuilder asset = textured(true);
     const auto same = must_import(asset);
     EXPECT_EQ(same.scene.materials.at(0).base_color_image, 0u);
@@ -182,14 +182,14 @@ TEST(GltfGloss, BothTexturesShareCoordinates) {
     expect_mean();
 }
 
-TEST(GltfGloss, TextureOfADiffuseMaterialIsNotRead) {
+TEST(GltfReflection, TextureOfADiffuseMaterialIsNotRead) {
     AssetBuilder asset = textured(false);
     asset.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 0;
     asset.json["materials"][0]["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
     EXPECT_TRUE(must_import(asset).scene.images.empty());
 }
 
-TEST(GltfGloss, TexturesOfSpecularAreNamed) {
+TEST(GltfReflection, TexturesOfSpecularAreNamed) {
     for (const char* name : {"specularTexture", "specularColorTexture"}) {
         const std::string warnings = lines(
             must_import(asset_with({{"extensions",
@@ -200,7 +200,7 @@ TEST(GltfGloss, TexturesOfSpecularAreNamed) {
     }
 }
 
-TEST(GltfGloss, DamagedTextureLinksAreErrors) {
+TEST(GltfReflection, DamagedTextureLinksAreErrors) {
     EXPECT_THAT(errors_of(import_asset(asset_with(
                     {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 9u}}}}}}))),
                 HasSubstr("texture"));

@@ -1,4 +1,4 @@
-#include "bake/scattering/half_space_single.h"
+#include "bake/scattering/half_space_once.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace opaline::bake {
 
-double half_space_single(double eta) {
+double half_space_once(double eta) {
     // On a plane the integral over depth is 1 / (sigma_t (1 + mu_o' / mu_i')); the factors of the
     // isotropic phase function, of both azimuths and of the incident flux multiply to 1.
     const GaussLegendre rule = make_gauss_legendre(32);

@@ -1,4 +1,4 @@
-#include "bake/calibration/dented_ball.h"
+#include "bake/calibration/bench/dented_ball.h"
 
 #include <cmath>
 #include <utility>

@@ -11,16 +11,13 @@
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/transport/body.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/truth/test_lights.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
 /// Parameters that all measurements of a calibration share.
 inline constexpr std::uint32_t kCalibrationCubemap = 32, kCalibrationKept = 128;
-/// Cells along a side of the dented ball, of few triangles and of many.
-inline constexpr std::uint32_t kFewSide = 16, kManySide = 64;
-static_assert(12 * kFewSide * kFewSide == CostBySize::kFew);
-static_assert(12 * kManySide * kManySide == CostBySize::kMany);
 
 /// One thread, so that its CPU time is the time of the work.
 inline Context one_thread() {
@@ -40,8 +37,11 @@ std::vector<T> thinned(std::span<const T> all, std::size_t wanted) {
     return some;
 }
 
-/// The ball at one size, with the time to build it.
+/// The ball at one of two sizes, with the time to build it. What does not depend on the size is
+/// measured on the large one.
 struct CalibrationBench {
+    bool is_many;                       ///< CostBySize::kMany triangles, else kFew
+    std::span<const TestLight> lights;  ///< on a cube map of size kCalibrationCubemap
     formats::Scene scene;
     double triangles;
     double build;  ///< [s]
@@ -50,7 +50,13 @@ struct CalibrationBench {
     std::vector<BodyPoint> points;
     double place_receivers;  ///< [s]
 
-    explicit CalibrationBench(std::uint32_t side);
+    /// `test_lights` must outlive it.
+    CalibrationBench(bool has_many, std::span<const TestLight> test_lights);
+
+    /// The side of `cost` that is measured on this ball.
+    double& side_of(CostBySize& cost) const { return is_many ? cost.many : cost.few; }
+    /// The points in the order of the stages, where neighbours read the same cache lines.
+    std::vector<BodyPoint> neighbours_together() const;
 
   private:
     RayScene make_rays();

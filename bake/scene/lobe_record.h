@@ -9,6 +9,6 @@ namespace opaline::bake {
 formats::Wrap to_wrap(formats::TextureWrap wrap);
 
 /// The gloss of an opaque material as files hold it; its image is that of the scene.
-formats::GlossRecord make_gloss_record(const formats::Gloss& gloss);
+formats::GlossRecord make_lobe_record(const formats::Gloss& gloss);
 
 }  // namespace opaline::bake

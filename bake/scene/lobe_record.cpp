@@ -1,4 +1,4 @@
-#include "bake/scene/gloss_record.h"
+#include "bake/scene/lobe_record.h"
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ formats::Wrap to_wrap(formats::TextureWrap wrap) {
     }
 }
 
-formats::GlossRecord make_gloss_record(const formats::Gloss& gloss) {
+formats::GlossRecord make_lobe_record(const formats::Gloss& gloss) {
     formats::GlossRecord record;
     record.metallic = gloss.metallic;
     record.roughness = gloss.roughness;
