@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # tidy.sh [BASE]: clang-tidy on the sources that changed since the commit BASE. By default that is where the branch
 # left origin/main or, on main itself, 20 commits ago. At most 15 files, those with most changed lines first.
-# Needs build-clang/compile_commands.json.
+# Needs build-asan/compile_commands.json.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
@@ -16,7 +16,7 @@ fi
 # "added removed path" -> paths, most changed first. Files that are gone, or that nothing builds, are left out.
 changed=()
 while read -r path; do
-    grep -qF "\"$root/$path\"" build-clang/compile_commands.json && changed+=("$path")
+    grep -qF "\"$root/$path\"" build-asan/compile_commands.json && changed+=("$path")
 done < <(git diff --numstat --no-renames --diff-filter=d "$base" HEAD -- 'bake/*.cpp' 'formats/*.cpp' 'runtime/*.cpp' |
     awk '{ print $1 + $2, $3 }' | sort -rn | cut -d' ' -f2)
 
@@ -24,4 +24,4 @@ chosen=("${changed[@]:0:$most_files}")
 echo "clang-tidy: ${#chosen[@]} of ${#changed[@]} sources changed since ${base:0:10}: ${chosen[*]}"
 [ ${#chosen[@]} -eq 0 ] && exit 0
 printf '%s\0' "${chosen[@]}" |
-    xargs -0 -n 1 -P "$(nproc)" timeout "$seconds_per_file" clang-tidy --quiet -p build-clang
+    xargs -0 -n 1 -P "$(nproc)" timeout "$seconds_per_file" clang-tidy --quiet -p build-asan
