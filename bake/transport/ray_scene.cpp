@@ -15,6 +15,22 @@ static_assert(offsetof(RayPacket, dir_x) == offsetof(RTCRay16, dir_x) &&
               offsetof(RayPacket, tfar) == offsetof(RTCRay16, tfar) &&
               offsetof(RayPacket, flags) == offsetof(RTCRay16, flags));
 
+namespace {
+
+// Embree's coherent flag is not set: it is no faster here, and on scanned meshes it reports other
+// triangles than rtcIntersect1. Without it, packets and single rays agree.
+RTCRayHit16 intersect(RTCScene triangles, const LaneMask& lanes, const RayPacket& packet) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit16 ray;
+    std::memcpy(&ray.ray, &packet, sizeof packet);
+    std::fill(std::begin(ray.hit.geomID), std::end(ray.hit.geomID), RTC_INVALID_GEOMETRY_ID);
+    rtcIntersect16(lanes.data(), triangles, &context, &ray);
+    return ray;
+}
+
+}  // namespace
+
 formats::Result<RayScene> RayScene::build(const formats::Scene& scene, unsigned threads) {
     auto triangles = EmbreeScene::build(scene, threads);
     if (!triangles) {
@@ -32,14 +48,7 @@ void RayScene::occluded(const LaneMask& lanes, RayPacket& packet) const {
 }
 
 PacketHits RayScene::closest(const LaneMask& lanes, const RayPacket& packet) const {
-    // Embree's coherent flag is not set: it is no faster here, and on scanned meshes it reports
-    // other triangles than rtcIntersect1. Without it, packets and single rays agree.
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit16 ray;
-    std::memcpy(&ray.ray, &packet, sizeof packet);
-    std::fill(std::begin(ray.hit.geomID), std::end(ray.hit.geomID), RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect16(lanes.data(), triangles_.handle(), &context, &ray);
+    const RTCRayHit16 ray = intersect(triangles_.handle(), lanes, packet);
     PacketHits hits{};
     for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
         if (lanes[i] == 0 || ray.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
@@ -64,12 +73,7 @@ PacketHits RayScene::closest(const LaneMask& lanes, const RayPacket& packet) con
 }
 
 LaneMask RayScene::meets_back_face(const LaneMask& lanes, const RayPacket& packet) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit16 ray;
-    std::memcpy(&ray.ray, &packet, sizeof packet);
-    std::fill(std::begin(ray.hit.geomID), std::end(ray.hit.geomID), RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect16(lanes.data(), triangles_.handle(), &context, &ray);
+    const RTCRayHit16 ray = intersect(triangles_.handle(), lanes, packet);
     LaneMask back{};
     for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
         if (lanes[i] != 0 && ray.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID &&
