@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
+#include "bake/cli/exit_codes.h"
+
 namespace opaline::cli {
 
 /// The action of the chosen command, run after parsing; returns the exit code.
@@ -20,13 +22,5 @@ void add_compare_command(CLI::App& app, Job& job);
 void add_phase_command(CLI::App& app, Job& job);
 void add_sweep_command(CLI::App& app, Job& job);
 void add_example_command(CLI::App& app, Job& job);
-
-/// Exit codes (README.md of the project).
-inline constexpr int kExitSuccess = 0;
-inline constexpr int kExitNo = 1;  ///< the job ran and the answer is no
-inline constexpr int kExitUsage = 2;
-inline constexpr int kExitBadInput = 3;
-inline constexpr int kExitResource = 4;
-inline constexpr int kExitInterrupted = 130;
 
 }  // namespace opaline::cli

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "bake/cli/command.h"
+#include "bake/cli/exit_codes.h"
 
 namespace opaline::cli {
 
