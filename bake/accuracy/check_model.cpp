@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <span>
 #include <utility>
 
-#include "bake/accuracy/bootstrap.h"
+#include "bake/accuracy/model_pairs.h"
 #include "bake/accuracy/model_receivers.h"
 #include "bake/environment/builtin_environment.h"
 #include "bake/reference/reference_image.h"
@@ -15,45 +14,10 @@
 #include "formats/opal/rgb.h"
 #include "runtime/light_vector.h"
 #include "runtime/shade.h"
+#include "runtime/specular.h"
 
 namespace opaline::bake {
 namespace {
-
-/// One receiver under one light: luminance, and the variance of the true mean.
-struct ModelPair {
-    double difference = 0, truth = 0, variance = 0;
-};
-
-/// Mean squares minus the variance, because the square of a noisy value is too large by it.
-struct MeanSquares {
-    double difference = 0, truth = 0, variance = 0, mean_difference = 0, mean_truth = 0;
-    double count = 0;
-
-    void add(const ModelPair& p) {
-        difference += p.difference * p.difference - p.variance;
-        truth += p.truth * p.truth - p.variance;
-        variance += p.variance;
-        mean_difference += p.difference;
-        mean_truth += p.truth;
-        count += 1;
-    }
-    double rms_relative() const { return share_of_truth(difference); }
-    double noise() const { return share_of_truth(variance); }
-    double bias() const { return mean_truth > 0 ? mean_difference / mean_truth : 0; }
-
-  private:
-    double share_of_truth(double square) const {
-        return truth > 0 ? std::sqrt(std::max(0.0, square) / truth) : 0;
-    }
-};
-
-MeanSquares sum_up(std::span<const ModelPair> pairs) {
-    MeanSquares sum;
-    for (const ModelPair& p : pairs) {
-        sum.add(p);
-    }
-    return sum;
-}
 
 struct ModelLight {
     std::string name;
@@ -90,65 +54,68 @@ formats::Result<std::vector<ModelLight>> make_model_lights(bool with_suns,
     return lights;
 }
 
-// The file's luminance along the normals.
+// The file's luminance along the normals; `mirrored`: of mirrored light alone, else without any.
 std::vector<double> relight_receivers(const formats::AssetView& asset,
                                       std::span<const ReferenceReceiver> receivers,
-                                      const formats::Environment& environment, unsigned threads) {
+                                      const formats::Environment& environment, bool mirrored,
+                                      unsigned threads) {
     const runtime::LightVector light =
         runtime::project_environment(environment, asset.cubemap_size, {}, threads);
+    runtime::ShadeOptions shading;
+    runtime::SpecularLight lobes;
+    if (mirrored) {
+        lobes =
+            runtime::make_specular_light(environment, runtime::specular_needs(asset), {}, threads);
+        shading.terms = TermSet::specular;
+        shading.specular = &lobes;
+    }
     std::vector<double> luminance;
     for (const ReferenceReceiver& r : receivers) {
         formats::Rgb radiance;
         runtime::shade_range(asset, light, asset.primitives[r.primitive].first_vertex + r.vertex,
-                             {&radiance, 1});
+                             {&radiance, 1}, shading);
         luminance.push_back(static_cast<double>(formats::luminance(radiance)));
     }
     return luminance;
 }
 
-/// The pairs of one light, one per receiver.
-struct LightCheck {
-    std::vector<ModelPair> pairs;
-    std::uint32_t samples = 0;  ///< for each
-};
-
-// Doubles the samples until the noise is low enough or the next round exceeds the limit of work.
-formats::Result<LightCheck> check_light(const PathSpace& space,
-                                        std::span<const ReferenceReceiver> receivers,
-                                        std::span<const double> baked,
-                                        const ModelCheckOptions& options, const Context& context) {
-    LightCheck check;
-    check.pairs.resize(receivers.size());
-    std::vector<Moments> moments(receivers.size());
-    std::uint64_t events = 0;
-    EstimateOptions wanted;
-    wanted.seed = options.seed;
-    wanted.samples = 64;
-    while (true) {
-        wanted.first = check.samples;
-        const auto estimate = estimate_luminance(space, receivers, wanted, context);
-        if (!estimate) {
-            return estimate.error();
-        }
-        check.samples += wanted.samples;
-        events += estimate->events;
-        for (std::size_t i = 0; i < receivers.size(); ++i) {
-            moments[i].merge(estimate->pixel[i]);
-            const double truth = moments[i].mean.x;
-            check.pairs[i] = {baked[i] - truth, truth, moments[i].variance_of_mean().x};
-        }
-        const MeanSquares sum = sum_up(check.pairs);
-        if (sum.noise() <= std::max(options.noise, options.noise_share * sum.rms_relative())) {
-            return check;
-        }
-        const double done = check.samples;
-        const double affordable = done * static_cast<double>(options.max_events) /
-                                  static_cast<double>(std::max<std::uint64_t>(events, 1));
-        wanted.samples = static_cast<std::uint32_t>(std::clamp(affordable - done, 0.0, done));
-        if (wanted.samples < check.samples / 8 + 1) {
-            return check;
+// Those of opaque surfaces that mirror. A medium's boundary is perfectly smooth in the reference.
+std::vector<ReferenceReceiver> find_mirrors(const formats::AssetView& asset,
+                                            std::span<const ReferenceReceiver> receivers) {
+    std::vector<ReferenceReceiver> mirrors;
+    for (const ReferenceReceiver& r : receivers) {
+        if (!asset.gloss.empty() && asset.gloss[r.primitive].is_glossy()) {
+            mirrors.push_back(r);
         }
     }
+    return mirrors;
+}
+
+formats::Result<ModelErrorReport::Mirrored> check_mirrors(
+    const ReferenceScene& scene, const formats::AssetView& asset,
+    std::span<const ReferenceReceiver> mirrors, std::span<const ModelLight> lights,
+    const ModelCheckOptions& options, const Context& context) {
+    PathOptions paths;
+    paths.terms = TermSet::specular;
+    std::vector<ModelPair> pairs;  // light by light
+    for (const ModelLight& light : lights) {
+        const LightSampler sampler = make_light_sampler(light.environment, glm::mat3(1.0f));
+        const auto check =
+            check_light({scene, sampler, paths}, mirrors,
+                        relight_receivers(asset, mirrors, light.environment, true, context.threads),
+                        options, context);
+        if (!check) {
+            return check.error();
+        }
+        pairs.insert(pairs.end(), check->pairs.begin(), check->pairs.end());
+    }
+    ModelErrorReport::Mirrored report;
+    const MeanSquares all = sum_up(pairs);
+    report.rms_relative = all.rms_relative();
+    report.bias = all.bias();
+    report.receivers_checked = static_cast<std::uint32_t>(mirrors.size());
+    std::ranges::copy(model_interval(pairs, mirrors.size(), options.seed), report.ci95);
+    return report;
 }
 
 // Mean luminance of what is not compared.
@@ -204,10 +171,10 @@ formats::Result<ModelErrorReport> check_model(const formats::Scene& given,
     for (const ModelLight& light : *lights) {
         const LightSampler sampler = make_light_sampler(light.environment, glm::mat3(1.0f));
         const PathSpace space{*scene, sampler, paths};
-        const auto check =
-            check_light(space, receivers,
-                        relight_receivers(asset, receivers, light.environment, context.threads),
-                        options, context);
+        const auto check = check_light(
+            space, receivers,
+            relight_receivers(asset, receivers, light.environment, false, context.threads), options,
+            context);
         if (!check) {
             return check.error();
         }
@@ -226,17 +193,14 @@ formats::Result<ModelErrorReport> check_model(const formats::Scene& given,
     const MeanSquares all = sum_up(pairs);
     report.rms_relative = all.rms_relative();
     report.bias = all.bias();
-    const auto interval =
-        bootstrap_interval(receivers.size(), options.seed, [&](std::span<const std::size_t> drawn) {
-            MeanSquares sum;
-            for (const std::size_t r : drawn) {
-                for (std::size_t l = 0; l < lights->size(); ++l) {
-                    sum.add(pairs[l * receivers.size() + r]);
-                }
-            }
-            return sum.rms_relative();
-        });
-    std::copy(interval.begin(), interval.end(), report.ci95);
+    std::ranges::copy(model_interval(pairs, receivers.size(), options.seed), report.ci95);
+    if (const auto mirrors = find_mirrors(asset, receivers); !mirrors.empty()) {
+        auto mirrored = check_mirrors(*scene, asset, mirrors, *lights, options, context);
+        if (!mirrored) {
+            return std::move(mirrored).error();
+        }
+        report.mirrored = *mirrored;
+    }
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,14 @@ struct ModelErrorReport {
     };
     std::vector<Part> by_light;
     std::vector<std::string> left_out;  ///< test lights under which the reference does not converge
+    /// Light that opaque receivers mirror, relative to the RMS of its truth.
+    struct Mirrored {
+        double rms_relative = 0;
+        double ci95[2] = {0, 0};
+        double bias = 0;
+        std::uint32_t receivers_checked = 0;
+    };
+    std::optional<Mirrored> mirrored;  ///< nothing: no receiver checked is opaque and glossy
 };
 
 /// Effort of the check. It counts events, not seconds, so the result does not depend on the
@@ -49,9 +58,9 @@ struct ModelCheckOptions {
 
 /// Compares `asset`, baked from `scene`, with path tracing of the same terms; this measures the
 /// error of diffusion and straight paths. Other light (interreflection, light that crosses a body
-/// unscattered) is not compared but stated as `missing`. The receivers' mirror reflection is left
-/// out on both sides. Receivers inside a body, on a sharp edge, or with another surface close
-/// behind them in their own body are left out.
+/// unscattered) is not compared but stated as `missing`. Light that receivers mirror is left out on
+/// both sides; that of opaque ones is compared by itself (`mirrored`). Receivers inside a body, on
+/// a sharp edge, or with another surface close behind them in their own body are left out.
 ///
 /// Behind a refracting boundary a path hits the sun's disc by chance only. Scenes with such bodies
 /// are therefore checked without suns, also without the sun of `sky`. The bits are the same for any

@@ -52,6 +52,11 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
         line += fmt::format("; model error {:.1f} % (95 %: {:.1f} to {:.1f}), mean {:+.1f} %",
                             100 * model->rms_relative, 100 * model->ci95[0], 100 * model->ci95[1],
                             100 * model->bias);
+        if (const auto& mirrored = model->mirrored) {
+            line += fmt::format("; mirrored light {:.1f} % (95 %: {:.1f} to {:.1f})",
+                                100 * mirrored->rms_relative, 100 * mirrored->ci95[0],
+                                100 * mirrored->ci95[1]);
+        }
     }
     line += warnings == 0   ? ""
             : warnings == 1 ? "; 1 warning"

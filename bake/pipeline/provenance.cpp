@@ -67,6 +67,12 @@ Json model_error_json(const ModelErrorReport& error) {
                  {"reference", error.reference},
                  {"by_light", Json::object()},
                  {"left_out", error.left_out}};
+    if (const auto& mirrored = error.mirrored) {
+        json["mirrored"] = {{"rms_relative", mirrored->rms_relative},
+                            {"ci95", {mirrored->ci95[0], mirrored->ci95[1]}},
+                            {"bias", mirrored->bias},
+                            {"receivers_checked", mirrored->receivers_checked}};
+    }
     for (const ModelErrorReport::Part& light : error.by_light) {
         json["by_light"][light.name] = {{"rms_relative", light.rms_relative},
                                         {"bias", light.bias},

@@ -19,7 +19,7 @@ struct RowLayout {
     bool at_entry = false;        ///< light leaves the medium where it entered
     bool separate = false;        ///< the row for all views stands apart from the harmonics
     bool grey = false;            ///< the three bands coincide: one stands for them
-    bool mirrors = false;         ///< its surface does so: needs openness
+    bool mirrors = false;         ///< its surface mirrors light: needs openness
     formats::Rgb tint{1, 1, 1};   ///< times the base colour
 
     bool has_rows() const { return constant || harmonics > 0; }

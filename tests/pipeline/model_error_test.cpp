@@ -57,6 +57,28 @@ TEST(ModelError, WeighsInterreflectionButDoesNotCountIt) {
         << "nothing to be reflected from";
 }
 
+TEST(ModelError, OfMirroredLightIsStatedForGlossyOpaqueSurfacesAlone) {
+    tests::Scene scene = tests::make_scene({tests::make_sphere(3)});
+    EXPECT_FALSE(check(scene, tests::bake_scene(scene, tests::small_bake())).mirrored);
+    scene.materials[0].gloss.metallic = 1;
+    scene.materials[0].gloss.roughness = 0.5f;
+    BakeResult baked = tests::bake_scene(scene, tests::small_bake());
+    const ModelErrorReport report = check(scene, baked);
+    ASSERT_TRUE(report.mirrored);
+    EXPECT_EQ(report.mirrored->receivers_checked, report.receivers_checked);
+    EXPECT_LT(report.mirrored->rms_relative, 0.03) << "convex: nothing to shadow or to mirror";
+    EXPECT_LT(std::abs(report.mirrored->bias), 0.02);
+    std::printf("metal ball: mirrored %.4f [%.4f, %.4f], mean %+.4f\n",
+                report.mirrored->rms_relative, report.mirrored->ci95[0], report.mirrored->ci95[1],
+                report.mirrored->bias);
+    // A file that mirrors half as much is half wrong.
+    baked.asset.gloss[0].f0 = {0, 0, 0};
+    for (formats::Rgb& color : baked.asset.base_color) {
+        color = {0.5f * color.r, 0.5f * color.g, 0.5f * color.b};
+    }
+    EXPECT_NEAR(check(scene, baked).mirrored->rms_relative, 0.5, 0.05);
+}
+
 // One mean free path thick, lit from both sides: the dipole gives it the light of a half space.
 TEST(ModelError, OfAThinSheetIsThatItIsTooBright) {
     const tests::Scene scene =

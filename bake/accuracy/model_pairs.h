@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/accuracy/check_model.h"
+#include "bake/base/context.h"
+#include "bake/reference/path.h"
+#include "formats/opal/result.h"
+
+namespace opaline::bake {
+
+/// One receiver under one light: luminance, and the variance of the true mean.
+struct ModelPair {
+    double difference = 0, truth = 0, variance = 0;
+};
+
+/// Mean squares minus the variance, because the square of a noisy value is too large by it.
+struct MeanSquares {
+    double difference = 0, truth = 0, variance = 0, mean_difference = 0, mean_truth = 0;
+    double count = 0;
+
+    void add(const ModelPair& p);
+    double rms_relative() const { return share_of_truth(difference); }
+    double noise() const { return share_of_truth(variance); }
+    double bias() const { return mean_truth > 0 ? mean_difference / mean_truth : 0; }
+
+  private:
+    double share_of_truth(double square) const;
+};
+MeanSquares sum_up(std::span<const ModelPair> pairs);
+
+/// 95 % interval of rms_relative over `receivers` receivers, > 0. `pairs`: light by light.
+std::array<double, 2> model_interval(std::span<const ModelPair> pairs, std::size_t receivers,
+                                     std::uint64_t seed);
+
+/// The pairs of one light, one per receiver.
+struct LightCheck {
+    std::vector<ModelPair> pairs;
+    std::uint32_t samples = 0;  ///< for each
+};
+
+/// Compares `baked`, luminance by receiver, with path tracing of the terms of `space`. Doubles the
+/// samples until the noise is low enough or the next round exceeds the limit of work. Errors:
+/// interrupted.
+formats::Result<LightCheck> check_light(const PathSpace& space,
+                                        std::span<const ReferenceReceiver> receivers,
+                                        std::span<const double> baked,
+                                        const ModelCheckOptions& options, const Context& context);
+
+}  // namespace opaline::bake
