@@ -27,9 +27,11 @@ BoundarySplit split_at_boundary(glm::vec3 direction, glm::vec3 normal, float rat
 
 BoundarySplit split_at_smooth_boundary(glm::vec3 direction, glm::vec3 smooth, glm::vec3 flat,
                                        float ratio) {
+    // A ray in the triangle's plane meets the triangles beside it by rounding.
+    constexpr float kLeastSine = 1e-3f;
     const auto reflects_in_front = [&](glm::vec3 normal) {
         const float along = glm::dot(direction, normal);
-        return along < 0 && glm::dot(direction - 2 * along * normal, flat) > 0;
+        return along < 0 && glm::dot(direction - 2 * along * normal, flat) > kLeastSine;
     };
     glm::vec3 normal = smooth;
     if (!reflects_in_front(smooth)) {
