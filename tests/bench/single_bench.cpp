@@ -10,6 +10,7 @@
 #include "bake/effects/single/light_maps.h"
 #include "bake/effects/single/ray_single.h"
 #include "bake/effects/single/texel_directions.h"
+#include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "tests/bench/dented_ball.h"
 
