@@ -91,6 +91,7 @@ double measure_crowding(const CalibrationBench& bench, unsigned threads) {
     const double alone = measure_coherent_ray(bench, 32);
     std::vector<double> together(threads);
     std::vector<std::thread> workers;
+    workers.reserve(threads);
     for (double& own : together) {
         workers.emplace_back([&bench, &own] { own = measure_coherent_ray(bench, 32); });
     }

@@ -22,7 +22,7 @@ CalibrationBench::CalibrationBench(bool has_many, std::span<const TestLight> tes
     : is_many(has_many),
       lights(test_lights),
       scene(make_dented_ball(has_many ? kManySide : kFewSide)),
-      triangles(static_cast<double>(scene.primitives[0].index.size() / 3)),
+      triangles(static_cast<double>(scene.primitives[0].index.size()) / 3),
       build(0),
       rays(make_rays()) {
     const Stopwatch watch;
