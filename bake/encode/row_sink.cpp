@@ -27,7 +27,12 @@ RowSink make_row_sink(RowEncoder encoder) {
     return {std::move(encoder), std::move(rows)};
 }
 
-bool take_rows(RowSink& sink, const formats::SparseRows& part) {
+bool take_rows(RowSink& sink, formats::SparseRows part) {
+    const bool is_empty = sink.rows.row_offset.size() == 1;
+    if (is_empty) {
+        sink.rows = std::move(part);
+        return true;
+    }
     return formats::append_rows(sink.rows, part);
 }
 

@@ -31,6 +31,6 @@ struct RowSink {
 };
 RowSink make_row_sink(RowEncoder encoder);
 /// False: the file would hold more than 2^32 - 1 coefficients; nothing was taken.
-bool take_rows(RowSink& sink, const formats::SparseRows& part);
+bool take_rows(RowSink& sink, formats::SparseRows part);
 
 }  // namespace opaline::bake

@@ -64,7 +64,7 @@ formats::Result<formats::SparseRows> bake_rows(const BakeInputs& bake,
         }
         std::vector<Gatherer> gatherers = make_gatherers(bake, *subject, knobs, context);
         std::string group = group_of(gatherers);
-        const formats::SparseRows part =
+        formats::SparseRows part =
             run_stage(log, "rows of '" + bake.scene.primitives[set.primitive].name + "'",
                       std::move(group), [&](std::uint64_t& rays) {
                           return gather_rows({set, subject->layout, sink.encoder, total},
@@ -78,7 +78,8 @@ formats::Result<formats::SparseRows> bake_rows(const BakeInputs& bake,
             !status) {
             return std::move(status).error();
         }
-        if (part.row_offset.size() != layout.terms() * set.size() + 1 || !take_rows(sink, part)) {
+        if (part.row_offset.size() != layout.terms() * set.size() + 1 ||
+            !take_rows(sink, std::move(part))) {
             return make_error(ErrorKind::resource, "", "transport",
                               "more than 2^32 coefficients do not fit into one file",
                               "lower --coefficients, or split the scene");

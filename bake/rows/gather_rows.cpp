@@ -137,6 +137,7 @@ formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gathere
                 }
             });
     }
+    gatherers.clear();  // the last batch takes more memory than the rows
     // Rows are missing if the bake was cancelled or if they are too many for one file; the caller
     // checks.
     const bool is_whole = rows.row_offset.size() == set.size() * layout.terms() + 1;
