@@ -7,6 +7,7 @@
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/spatial_order.h"
 #include "bake/transport/hidden_receivers.h"
+#include "bake/transport/touching_triangles.h"
 
 namespace opaline::bake {
 namespace {
@@ -26,7 +27,8 @@ CalibrationBench::CalibrationBench(bool has_many, std::span<const TestLight> tes
       build(0),
       rays(make_rays()) {
     const Stopwatch watch;
-    std::vector<Receiver> all = make_vertex_receivers(scene);
+    std::vector<Receiver> all = leave_touching_triangles(
+        rays.hierarchy(), scene, make_vertex_receivers(scene), one_thread());
     points = make_body_points(scene, all);
     receivers = replace_hidden_receivers(rays, scene, std::move(all), one_thread());
     place_receivers = watch.seconds();

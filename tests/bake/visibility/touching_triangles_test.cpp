@@ -87,33 +87,30 @@ TEST(TouchingTriangles, AWallInTheMiddleOfAFloorStartsItsRaysAboveTheFloor) {
     EXPECT_EQ(moved, 5u);
 }
 
+void expect_unmoved(const formats::Scene& scene) {
+    const auto rays = RayScene::build(scene, 1);
+    ASSERT_TRUE(rays);
+    const auto before = make_vertex_receivers(scene);
+    const auto after = placed(scene, *rays);
+    ASSERT_EQ(before.size(), after.size());
+    for (std::size_t v = 0; v < after.size(); ++v) {
+        EXPECT_EQ(before[v].origin, after[v].origin) << v;
+    }
+}
+
 TEST(TouchingTriangles, ReceiversThatNothingTouchesStayBitByBit) {
     for (const auto& body : {tests::make_sphere(3), tests::make_cube(5, false)}) {
-        const auto scene =
-            tests::make_scene({tests::transformed(body, tests::some_rotation(), 0.3f, {1, 2, 3})});
-        const auto rays = RayScene::build(scene, 1);
-        ASSERT_TRUE(rays);
-        const auto before = make_vertex_receivers(scene);
-        const auto after = placed(scene, *rays);
-        ASSERT_EQ(before.size(), after.size());
-        for (std::size_t v = 0; v < after.size(); ++v) {
-            EXPECT_EQ(before[v].origin, after[v].origin) << body.name << ' ' << v;
-        }
+        SCOPED_TRACE(body.name);
+        expect_unmoved(
+            tests::make_scene({tests::transformed(body, tests::some_rotation(), 0.3f, {1, 2, 3})}));
     }
 }
 
 // Up and down at once: nothing is in front of both.
 TEST(TouchingTriangles, UnderABoxThatStandsOnAFloorNothingMoves) {
-    const auto scene = tests::make_scene(
+    expect_unmoved(tests::make_scene(
         {tests::transformed(tests::make_cube(2, false), glm::mat3(1), 1, {0.1f, 1, 0.2f}),
-         tests::make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0})});
-    const auto rays = RayScene::build(scene, 1);
-    ASSERT_TRUE(rays);
-    const auto before = make_vertex_receivers(scene);
-    const auto after = placed(scene, *rays);
-    for (std::size_t v = 0; v < after.size(); ++v) {
-        EXPECT_EQ(before[v].origin, after[v].origin) << v;
-    }
+         tests::make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0})}));
 }
 
 TEST(TouchingTriangles, ThousandsOfTrianglesThroughOnePointAreGivenUp) {
@@ -122,15 +119,8 @@ TEST(TouchingTriangles, ThousandsOfTrianglesThroughOnePointAreGivenUp) {
     for (int i = 0; i < 5000; ++i) {
         pile.index.insert(pile.index.end(), once.begin(), once.end());
     }
-    const auto scene =
-        tests::make_scene({pile, tests::make_quad({0, 0, -0.5f}, {0, 1, 0}, {0, 0, 1}, 2)});
-    const auto rays = RayScene::build(scene, 1);
-    ASSERT_TRUE(rays);
-    const auto before = make_vertex_receivers(scene);
-    const auto after = placed(scene, *rays);
-    for (std::size_t v = 0; v < after.size(); ++v) {
-        EXPECT_EQ(before[v].origin, after[v].origin) << v;
-    }
+    expect_unmoved(
+        tests::make_scene({pile, tests::make_quad({0, 0, -0.5f}, {0, 1, 0}, {0, 0, 1}, 2)}));
 }
 
 }  // namespace
