@@ -10,6 +10,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
+// A sanitizer reserves more address space than these tests leave.
+constexpr bool kSanitized = OPALINE_SANITIZED;
+
 /// A sheet of n x n vertices, `count` times.
 void write_instances(const std::string& path, unsigned n, unsigned count) {
     AssetBuilder asset = wavy_sheet(n);
@@ -40,6 +43,9 @@ TEST(Memory, BakesThatDoNotFitAreRefusedAtOnce) {
 
 // 10 000 instances of 2916 vertices took 8.7 GB in `plan`. Here the refusal must fit into 600 MB.
 TEST(Memory, InstancesAreCountedBeforeTheyAreMade) {
+    if (kSanitized) {
+        GTEST_SKIP() << "a sanitizer's memory is not the program's";
+    }
     SmallScene small;
     for (const auto& [side, count] : {std::pair{54u, 10000u}, {2u, 200000u}}) {
         write_instances(small.path("many.glb"), side, count);
@@ -55,6 +61,9 @@ TEST(Memory, InstancesAreCountedBeforeTheyAreMade) {
 }
 
 TEST(Memory, PredictionIsNearWhatABakeTakes) {
+    if (kSanitized) {
+        GTEST_SKIP() << "a sanitizer's memory is not the program's";
+    }
     SmallScene small;
     write_file(small.path("sheet.glb"), wavy_sheet(200).glb());
     const Outcome plan = run_opaline({"plan", small.path("sheet.glb"), "--json"});
@@ -70,6 +79,9 @@ TEST(Memory, PredictionIsNearWhatABakeTakes) {
 
 // Little address space: TBB slept for ever where it could not start a thread.
 TEST(Memory, LittleAddressSpaceIsRefusedAndNotWaitedFor) {
+    if (kSanitized) {
+        GTEST_SKIP() << "a sanitizer's memory is not the program's";
+    }
     SmallScene small;
     for (unsigned kilobytes = 190000; kilobytes <= 260000; kilobytes += 10000) {
         const Outcome bake =
@@ -82,6 +94,9 @@ TEST(Memory, LittleAddressSpaceIsRefusedAndNotWaitedFor) {
 }
 
 TEST(Memory, ThreadsThatCannotBeStartedAreAnError) {
+    if (kSanitized) {
+        GTEST_SKIP() << "a sanitizer's memory is not the program's";
+    }
     SmallScene small;
     const Outcome bake =
         run_any({"sh", "-c",

@@ -1,0 +1,32 @@
+#include <gtest/gtest.h>
+
+#include "bake/accuracy/stored_luminance.h"
+
+namespace opaline::bake {
+namespace {
+
+RowLayout make_layout(std::uint32_t harmonics, bool separate) {
+    RowLayout layout;
+    layout.translucent = true;
+    layout.constant = true;
+    layout.harmonics = harmonics;
+    layout.separate = separate;
+    return layout;
+}
+
+// Separate rows without harmonics were written one past their end: found by the address sanitizer.
+TEST(ViewOfRows, HasOneFactorForEachRowWhateverTheLayout) {
+    constexpr float kY0 = 0.2820948f, kY1 = 0.4886025f;
+    const glm::vec3 up(0, 1, 0);
+    EXPECT_EQ(view_of_rows(make_layout(0, false), up), std::vector<float>({1}));
+    EXPECT_EQ(view_of_rows(make_layout(0, true), up), std::vector<float>({1}));
+    EXPECT_EQ(view_of_rows(make_layout(1, true), up).size(), 2u);
+    const std::vector<float> apart = view_of_rows(make_layout(4, true), up);
+    ASSERT_EQ(apart.size(), 5u);
+    EXPECT_EQ(apart[0], 1);
+    EXPECT_NEAR(apart[1], kY0, 1e-6);
+    EXPECT_NEAR(apart[2], kY1, 1e-6);
+}
+
+}  // namespace
+}  // namespace opaline::bake
