@@ -4,7 +4,10 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -37,23 +40,42 @@ void for_each_block_in_order(std::size_t count, std::size_t block, const Context
         Range range;
         Item item;
     };
+    // TBB hands work over inside its library, where the thread sanitizer sees nothing. Jobs are
+    // handed over by pointer, and every step begins and ends with this, so that it sees the order
+    // of steps that follow each other, and still a race of steps that do not.
+    std::atomic<std::uint64_t> steps{0};
+    const auto in_order = [&](auto&& step) {
+        steps.fetch_add(1, std::memory_order_acq_rel);
+        auto* const result = step();
+        steps.fetch_add(1, std::memory_order_acq_rel);
+        return result;
+    };
     std::size_t next = 0;
     arena.execute([&] {
         tbb::parallel_pipeline(
             std::size_t{threads} * 4,
-            tbb::make_filter<void, Range>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control&
-                                                                                     control) {
-                if (next >= count || context.cancelled()) {
-                    control.stop();
-                    return Range{};
-                }
-                const Range range{next, std::min(count, next + block)};
-                next = range.end;
-                return range;
-            }) & tbb::make_filter<Range, Job>(tbb::filter_mode::parallel, [&](Range range) {
-                return Job{range, compute(range)};
-            }) & tbb::make_filter<Job, void>(tbb::filter_mode::serial_in_order, [&](Job job) {
-                consume(job.range, std::move(job.item));
+            tbb::make_filter<void, Range*>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control&
+                                                                                      control) {
+                return in_order([&]() -> Range* {
+                    if (next >= count || context.cancelled()) {
+                        control.stop();
+                        return nullptr;
+                    }
+                    auto range = std::make_unique<Range>(next, std::min(count, next + block));
+                    next = range->end;
+                    return range.release();
+                });
+            }) & tbb::make_filter<Range*, Job*>(tbb::filter_mode::parallel, [&](Range* given) {
+                return in_order([&] {
+                    const std::unique_ptr<Range> range(given);
+                    return new Job{*range, compute(*range)};
+                });
+            }) & tbb::make_filter<Job*, void>(tbb::filter_mode::serial_in_order, [&](Job* given) {
+                in_order([&]() -> Job* {
+                    const std::unique_ptr<Job> job(given);
+                    consume(job->range, std::move(job->item));
+                    return nullptr;
+                });
             }));
     });
 }

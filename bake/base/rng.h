@@ -18,7 +18,9 @@ enum class RandomStage : std::uint32_t {
     reference_receivers = 6,
     check_points = 7,
     pilot_receivers = 8,
-    surface_probes = 9
+    surface_probes = 9,
+    body_walk = 10,
+    true_body_walk = 11
 };
 
 /// Four uniform numbers in [0, 1), a pure function of the arguments. There is no state, so results

@@ -61,7 +61,13 @@ void add_knob_option(CLI::App& command, const bake::KnobSpec& knob, bake::BakeOp
     CLI::Option* const option =
         command.add_option_function<double>(std::string(knob.option), take, std::string(knob.help));
     option->option_text(std::string(knob.placeholder));
-    if (!knob.allowed.empty()) {
+    if (!knob.words.empty()) {
+        std::vector<std::pair<std::string, int>> words;
+        for (const std::string_view word : knob.words) {
+            words.emplace_back(word, static_cast<int>(words.size()));
+        }
+        option->transform(one_of<int>(words));
+    } else if (!knob.allowed.empty()) {
         std::vector<std::pair<std::string, int>> names;
         for (const double value : knob.allowed) {
             names.emplace_back(std::to_string(static_cast<int>(value)), static_cast<int>(value));

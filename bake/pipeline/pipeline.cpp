@@ -129,6 +129,19 @@ std::vector<RowLayout> final_layouts(const BakeInputs& bake,
     return layouts;
 }
 
+// Lets effects say what their studies found.
+void amend_plan(const BakeInputs& bake, std::span<const SubjectState> subjects, const Knobs& knobs,
+                const Context& context, std::vector<PlanEntry>& plan) {
+    for (PlanEntry& entry : plan) {
+        const EffectDescriptor& effect = bake.effects[entry.effect];
+        const auto e = static_cast<std::size_t>(&effect - bake.effects.effects.data());
+        const SubjectState& subject = state_of(subjects, entry.subject.index);
+        if (effect.amend != nullptr && subject.effects[e].study != nullptr) {
+            effect.amend(inputs_of(bake, subject, e, knobs, context), entry);
+        }
+    }
+}
+
 void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjects,
                     const Knobs& knobs, const Context& context,
                     std::vector<formats::Diagnostic>& warnings) {
@@ -163,6 +176,7 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context, B
     } else {
         run_step(Step::samples, bake, knobs, context, subjects, log);
     }
+    amend_plan(bake, subjects, knobs, context, result.plan);
     run_step(Step::prepare, bake, knobs, context, subjects, log);
     if (context.cancelled()) {
         return interrupted();

@@ -15,7 +15,9 @@ Json knobs_json(const Knobs& knobs) {
                  {"code_bits", knobs.code_bits}};
     for (const auto& [knob, value] : knobs.values.values) {
         Json& own = json[std::string(knob->name)];
-        if (knob->zero_is_auto && value == 0) {
+        if (!knob->words.empty()) {
+            own = std::string(knob->words[static_cast<std::size_t>(value)]);
+        } else if (knob->zero_is_auto && value == 0) {
             own = "auto";
         } else if (knob->whole) {
             own = static_cast<std::uint64_t>(value);

@@ -26,11 +26,13 @@ struct KnobSpec {
     std::string_view option{};       ///< on the command line, "--epsilon"; empty: not there
     std::string_view placeholder{};  ///< of its value in --help
     std::string_view help{};
-    double lowest = 0, highest = 0;     ///< that the command line accepts
-    bool whole = true;                  ///< an integer
-    bool zero_is_auto = false;          ///< 0 stands for a choice by subject; reported as "auto"
-    bool at_most_cubemap = false;       ///< a cube map size: not above Knobs::cubemap_size
-    bool exact_if_given = false;        ///< otherwise an upper limit
+    double lowest = 0, highest = 0;  ///< that the command line accepts
+    bool whole = true;               ///< an integer
+    bool zero_is_auto = false;       ///< 0 stands for a choice by subject; reported as "auto"
+    bool at_most_cubemap = false;    ///< a cube map size: not above Knobs::cubemap_size
+    bool exact_if_given = false;     ///< otherwise an upper limit
+    /// Not empty: it is a choice; its values are places in this list, and people read the words.
+    std::span<const std::string_view> words{};
     std::span<const double> allowed{};  ///< not empty: the only values, besides 0 for `auto`
 
     /// Values of the presets draft, preview, production, reference: each at least as accurate as

@@ -42,6 +42,9 @@ struct Rates {
     double sum_entry = 0;       ///< one entry of a sample into the sum of a node
     double take_weight = 0;     ///< per accepted node or sample, traversal included
     double gather_entry = 0;    ///< one entry of a node or sample into a receiver's row
+    CostBySize body_event;      ///< of a random walk through a body: a flight and what ends it
+    double walk_exit = 0;       ///< the sample at a walk's exit
+    double site_weight = 0;     ///< of a site around a receiver, the fit included
     // Single scattering.
     CostBySize body_triangle;  ///< of the mesh that light maps draw
     double draw_triangle = 0;  ///< into a light map
@@ -83,6 +86,9 @@ void visit_rates(AnyRates&& rates, Visit&& visit) {
     visit("sum_entry", rates.sum_entry);
     visit("take_weight", rates.take_weight);
     visit("gather_entry", rates.gather_entry);
+    by_size("body_event_few", "body_event_many", rates.body_event);
+    visit("walk_exit", rates.walk_exit);
+    visit("site_weight", rates.site_weight);
     by_size("body_triangle_few", "body_triangle_many", rates.body_triangle);
     visit("draw_triangle", rates.draw_triangle);
     visit("draw_pixel", rates.draw_pixel);

@@ -34,7 +34,8 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
     if (densest > 0) {
         // cell size in mean free paths: fine enough to save most rays
         constexpr float kFreePaths = 0.5f;
-        result.clearance = ClearanceGrid(result.surfaces, kFreePaths / densest);
+        result.clearance = ClearanceGrid(scene, result.surfaces.centre(),
+                                         result.surfaces.half_size(), kFreePaths / densest);
     }
     return result;
 }

@@ -11,7 +11,16 @@ namespace opaline::bake {
 double half_space_once(double eta) {
     // On a plane the integral over depth is 1 / (sigma_t (1 + mu_o' / mu_i')); the factors of the
     // isotropic phase function, of both azimuths and of the incident flux multiply to 1.
-    const GaussLegendre rule = make_gauss_legendre(32);
+    GaussLegendre rule = make_gauss_legendre(32);
+    if (eta < 1) {
+        // Nothing enters below the critical cosine, where the transmittance begins as a root.
+        const double least = std::sqrt(1 - eta * eta);
+        for (std::size_t i = 0; i < rule.node.size(); ++i) {
+            const double x = rule.node[i];
+            rule.node[i] = least + (1 - least) * x * x;
+            rule.weight[i] *= 2 * (1 - least) * x;
+        }
+    }
     double sum = 0;
     for (std::size_t o = 0; o < rule.node.size(); ++o) {
         for (std::size_t i = 0; i < rule.node.size(); ++i) {

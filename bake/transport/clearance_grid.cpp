@@ -1,4 +1,4 @@
-#include "bake/reference/clearance_grid.h"
+#include "bake/transport/clearance_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,20 +10,20 @@ constexpr std::uint32_t kMostCells = 128;  // along a side: steps fit into a byt
 
 }  // namespace
 
-ClearanceGrid::ClearanceGrid(const HitScene& surfaces, float cell) {
-    const glm::vec3 half = surfaces.half_size();
-    const float longest = 2 * std::max({half.x, half.y, half.z});
+ClearanceGrid::ClearanceGrid(const formats::Scene& scene, glm::vec3 centre, glm::vec3 half_size,
+                             float cell) {
+    const float longest = 2 * std::max({half_size.x, half_size.y, half_size.z});
     cell_ = std::max(cell, longest / (kMostCells - 2));
     if (!(cell_ > 0) || longest < 8 * cell_) {
         return;
     }
     per_cell_ = 1 / cell_;
     // A margin of half a cell keeps rounded positions inside.
-    size_ = glm::uvec3(glm::ceil(2.0f * half * per_cell_)) + 1u;
+    size_ = glm::uvec3(glm::ceil(2.0f * half_size * per_cell_)) + 1u;
     count_ = glm::vec3(size_);
-    low_ = surfaces.centre() - 0.5f * cell_ * count_;
+    low_ = centre - 0.5f * cell_ * count_;
     clear_.assign(std::size_t{size_.x} * size_.y * size_.z, std::uint8_t{kMostCells});
-    if (!mark_triangles(surfaces)) {
+    if (!mark_triangles(scene)) {
         *this = {};
         return;
     }
@@ -32,21 +32,26 @@ ClearanceGrid::ClearanceGrid(const HitScene& surfaces, float cell) {
 
 // Sets 0 in all cells that a triangle touches, and in some cells near it. Returns false, with the
 // grid incomplete, if large triangles visit more than kMostVisits cells.
-bool ClearanceGrid::mark_triangles(const HitScene& surfaces) {
+bool ClearanceGrid::mark_triangles(const formats::Scene& scene) {
     constexpr float kRounding = 1e-3f;                             // of a cell
     constexpr std::uint64_t kMostVisits = std::uint64_t{1} << 28;  // a second or so
     std::uint64_t visits = 0;
-    const formats::Scene& scene = surfaces.scene();
     for (const formats::Primitive& p : scene.primitives) {
         for (std::size_t i = 0; i + 2 < p.index.size(); i += 3) {
             const auto place = [&](std::size_t k) {
                 return (p.position[p.index[i + k]] - low_) * per_cell_;
             };
             const glm::vec3 a = place(0), b = place(1), c = place(2);
+            const glm::vec3 low = glm::min(glm::min(a, b), c), high = glm::max(glm::max(a, b), c);
+            if (glm::any(glm::greaterThan(low - kRounding, count_)) ||
+                glm::any(glm::lessThan(high + kRounding, glm::vec3(0)))) {
+                continue;  // outside the box
+            }
             const glm::vec3 n = glm::cross(b - a, c - a);
-            const glm::uvec3 first(glm::max(glm::min(glm::min(a, b), c) - kRounding, 0.0f));
+            const glm::uvec3 first =
+                glm::min(glm::uvec3(glm::max(low - kRounding, 0.0f)), size_ - 1u);
             const glm::uvec3 last =
-                glm::min(glm::uvec3(glm::max(glm::max(a, b), c) + kRounding), size_ - 1u);
+                glm::uvec3(glm::clamp(high + kRounding, glm::vec3(0), count_ - 1.0f));
             // The plane cuts the cell if the centre's distance to it is at most the projected half
             // diagonal.
             const glm::vec3 across = glm::abs(n);

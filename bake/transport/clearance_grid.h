@@ -4,21 +4,23 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "bake/reference/hit_scene.h"
+#include "formats/scene.h"
 
 namespace opaline::bake {
 
-/// Lower bounds on the distance to the nearest surface, per cell of a grid. A shorter flight needs
+/// Lower bounds on the distance to the nearest surface inside a box, per cell of a grid; surfaces
+/// outside the box do not count. A shorter flight needs
 /// no ray, which holds for nearly all flights deep in a dense medium. The results keep the same
 /// bits.
 class ClearanceGrid {
   public:
     /// The trivial bound: 0 everywhere.
     ClearanceGrid() = default;
-    /// Around all triangles, in cells of `cell` [m] > 0 or, if those would be too many, of a 128th
-    /// of the longest side. The bound is 0 for scenes of fewer than 8 cells, and where triangles
-    /// lie in so many cells that the grid would cost more than the rays that it saves.
-    ClearanceGrid(const HitScene& surfaces, float cell);
+    /// Of all triangles, inside a box given by its middle and half its size [m], in cells of `cell`
+    /// [m] > 0 or, if those would be too many, of a 128th of the longest side. The bound is 0 for
+    /// boxes of fewer than 8 cells, and where triangles lie in so many cells that the grid would
+    /// cost more than the rays that it saves.
+    ClearanceGrid(const formats::Scene& scene, glm::vec3 centre, glm::vec3 half_size, float cell);
 
     /// Lower bound [m] of the distance from a position to the nearest triangle; 0 outside of the
     /// grid.
@@ -35,7 +37,7 @@ class ClearanceGrid {
     std::size_t index(glm::uvec3 c) const {
         return (std::size_t{c.z} * size_.y + c.y) * size_.x + c.x;
     }
-    bool mark_triangles(const HitScene& surfaces);
+    bool mark_triangles(const formats::Scene& scene);
     void measure_distances();
 
     glm::vec3 low_{0}, count_{0};  ///< cells along each axis: size_ as floats

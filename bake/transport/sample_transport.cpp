@@ -1,6 +1,7 @@
 #include "bake/transport/sample_transport.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <utility>
 
@@ -28,6 +29,26 @@ std::vector<float> tabulate_transmittance(double eta) {
     return table;
 }
 
+// Coordinates of the texels' directions, axis by axis.
+std::array<std::vector<float>, 3> texel_axes(std::uint32_t n) {
+    std::array<std::vector<float>, 3> axes;
+    for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
+        for (std::uint32_t i = 0; i < n * n; ++i) {
+            const formats::Vec3 w = formats::texel_direction(n, face, i / n, i % n);
+            axes[0].push_back(w.x);
+            axes[1].push_back(w.y);
+            axes[2].push_back(w.z);
+        }
+    }
+    return axes;
+}
+
+void multiply(std::span<float> values, std::span<const float> factors) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        values[k] *= factors[k];
+    }
+}
+
 float mean_over_sphere(std::span<const float> radiance, std::span<const double> solid_angle) {
     double sum = 0;
     for (std::size_t first = 0; first < radiance.size(); first += solid_angle.size()) {
@@ -47,10 +68,13 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
     const std::vector<float> transmittance = tabulate_transmittance(options.eta);
     const std::vector<double> solid_angle = formats::texel_solid_angles(n);
     const std::size_t texels = formats::cubemap_texels(n);
+    const std::array<std::vector<float>, 3> direction = texel_axes(n);
+    const std::size_t axes = options.moments > 0 ? 3 : 0;
     const std::size_t together = options.share_rays ? kSamplesPerGroup : 1;
     SampleTransport result;
     struct Part {
         SparseVectors::Block rows;
+        std::array<SparseVectors::Block, 3> moments;
         std::vector<float> mean, norm;
         std::uint64_t rays = 0;
     };
@@ -61,7 +85,7 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
             Part part;
             reserve(part.rows, std::min<std::size_t>(options.kept, texels));
             std::vector<Receiver> group;
-            std::vector<float> dense;
+            std::vector<float> dense, moment;
             for (std::size_t s = range.begin; s < range.end; s += group.size()) {
                 group.clear();
                 while (group.size() < together && s + group.size() < range.end) {
@@ -76,16 +100,27 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
                 for (std::size_t i = 0; i < group.size(); ++i) {
                     const std::span<float> own = std::span(dense).subspan(i * texels, texels);
                     part.mean.push_back(mean_over_sphere(own, solid_angle));
+                    for (std::size_t axis = 0; axis < axes; ++axis) {
+                        moment.assign(own.begin(), own.end());
+                        multiply(moment, direction[axis]);
+                        formats::haar_forward_cube(moment, n);
+                        append_truncated(part.moments[axis], moment, options.moments,
+                                         samples[s + i].area);
+                    }
                     formats::haar_forward_cube(own, n);
                     part.norm.push_back(norm(own));
                     append_truncated(part.rows, own, options.kept, samples[s + i].area);
                 }
             }
             shrink(part.rows);
+            std::ranges::for_each(part.moments, shrink);
             return part;
         },
         [&](Range range, Part&& part) {
             result.rows.blocks.push_back(std::move(part.rows));
+            for (std::size_t axis = 0; axis < axes; ++axis) {
+                result.moments[axis].blocks.push_back(std::move(part.moments[axis]));
+            }
             result.mean.insert(result.mean.end(), part.mean.begin(), part.mean.end());
             result.norm.insert(result.norm.end(), part.norm.begin(), part.norm.end());
             result.rays += part.rays;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,6 +18,9 @@ struct SampleTransport {
     SparseVectors rows;       ///< Haar vectors of A_i E_i, truncated [m^2]
     std::vector<float> mean;  ///< mean of E over the sphere, before truncation
     std::vector<float> norm;  ///< ||E||, before truncation
+    /// Of A_i E_i(w) w, for each axis: with `rows`, E_i times any linear function of the direction.
+    /// Empty unless asked for.
+    std::array<SparseVectors, 3> moments;
     std::uint64_t rays = 0;
 };
 
@@ -24,7 +28,8 @@ struct SampleOptions {
     std::uint32_t cubemap_size = 32;
     std::uint32_t kept = 128;  ///< entries per vector
     double eta = 1;
-    bool share_rays = true;  ///< between the samples of a group (kd_order.h)
+    bool share_rays = true;     ///< between the samples of a group (kd_order.h)
+    std::uint32_t moments = 0;  ///< entries of each vector of SampleTransport::moments; 0: none
 };
 
 /// Stops early, with fewer samples, if the context is cancelled.

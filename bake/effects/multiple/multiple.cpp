@@ -3,9 +3,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
-#include "bake/effects/multiple/gather_multiple.h"
+#include "bake/effects/multiple/choose_model.h"
 #include "bake/effects/multiple/multiple_costs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_rates.h"
@@ -13,6 +14,7 @@
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/true_multiple.h"
+#include "bake/effects/multiple/walks/true_walks.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/truth/true_irradiance.h"
 
@@ -23,8 +25,14 @@ void lay_out(const PlanEntry& entry, RowLayout& layout) {
     layout.constant = layout.constant || entry.on;
 }
 
-constexpr std::array<DecisionRule, 1> kRules{{{"multiple", has_medium, decide_multiple, lay_out}}};
-constexpr std::array<const KnobSpec*, 3> kKnobs{&kSamples, &kSamplesPerPath, &kEpsilon};
+// Another model fills the same rows.
+void lay_out_model(const PlanEntry&, RowLayout&) {}
+
+constexpr std::array<DecisionRule, 2> kRules{
+    {{"multiple", has_medium, decide_multiple, lay_out},
+     {"multiple.model", has_medium, decide_model, lay_out_model}}};
+constexpr std::array<const KnobSpec*, 6> kKnobs{&kMultipleModel, &kSamples, &kSamplesPerPath,
+                                                &kWalks,         &kSites,   &kEpsilon};
 
 // A pilot tries the tolerance; samples are refined round by round.
 constexpr std::array<PilotLadder::Setting, 1> kFinest{{{&kEpsilon, 3e-5}}};
@@ -46,11 +54,13 @@ bool refine_samples(Knobs& knobs) {
     }
     knobs.set(kSamplesPerPath, 4 * knobs[kSamplesPerPath]);
     knobs.set(kSamples, std::min(4 * knobs[kSamples], kMostSamples));
+    knobs.set(kWalks, 4 * knobs[kWalks]);
     return true;
 }
 
 struct Studied : Prepared {
     MediumProfile profile;
+    ModelChoice choice;
 };
 struct Samples : Prepared {
     MultipleStage stage;
@@ -60,9 +70,14 @@ const MediumProfile& profile_of(const EffectState& state) {
     return static_cast<const Studied&>(*state.study).profile;
 }
 
-PreparedPtr study(const EffectInputs& inputs, std::uint64_t&) {
+MultipleModel model_of(const EffectState& state) {
+    return static_cast<const Studied&>(*state.study).choice.model;
+}
+
+PreparedPtr study(const EffectInputs& inputs, std::uint64_t& rays) {
     auto studied = std::make_unique<Studied>();
     studied->profile = make_medium_profile(inputs.medium(), inputs.knobs.seed, inputs.context);
+    studied->choice = choose_model(inputs, studied->profile, rays);
     return studied;
 }
 
@@ -73,12 +88,14 @@ bool needs_samples(const formats::Material&, const RowLayout& layout) {
 PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
     const Knobs& knobs = inputs.knobs;
     auto samples = std::make_unique<Samples>();
-    samples->stage = prepare_multiple(
-        inputs.bake.scene, inputs.outside(), inputs.material, profile_of(inputs.own),
-        {knobs.cubemap_size, whole(knobs, kSamples), knobs.is_given(kSamples),
-         knobs[kSamplesPerPath], sample_coefficients(knobs), knobs.seed, !knobs.exact_rays,
-         inputs.layout.bands()},
-        inputs.context);
+    samples->stage =
+        prepare_multiple(inputs.bake.scene, inputs.outside(), inputs.bake.rays, inputs.material,
+                         profile_of(inputs.own),
+                         {knobs.cubemap_size, whole(knobs, kSamples), knobs.is_given(kSamples),
+                          knobs[kSamplesPerPath], sample_coefficients(knobs), knobs.seed,
+                          !knobs.exact_rays, inputs.layout.bands(), model_of(inputs.own),
+                          knobs[kWalks], whole(knobs, kSites), knobs[kEpsilon]},
+                         inputs.context);
     rays += samples->stage.rays;
     return samples;
 }
@@ -86,15 +103,16 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
 // T_0 += T_d / (pi c_exit h_0).
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const MultipleStage& stage = static_cast<const Samples&>(*inputs.own.samples).stage;
-    std::vector<ClusterWeight> weights;
-    collect_weights(stage.tree, stage.profile, receiver.inside.position, receiver.inside.normal,
-                    {inputs.knobs[kEpsilon]}, weights);
     const auto scale = static_cast<float>(
         1 / (std::numbers::pi * stage.medium.exit * inputs.layout.view_of_constant()));
     const std::size_t size = row.size();
+    const auto gather = [&](std::span<float> sums) {
+        gather_multiple_row(stage, receiver.inside.position, receiver.inside.normal,
+                            inputs.knobs[kEpsilon], row.bands, sums);
+    };
     if (row.bands == 1) {
         std::vector<float> sums(size);
-        accumulate_grey(stage.tree, weights, sums);
+        gather(sums);
         const std::span<float> to = row.plane(0, 0);
         for (std::size_t k = 0; k < size; ++k) {
             to[k] += scale * sums[k];
@@ -102,7 +120,7 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
         return 0;
     }
     std::vector<float> rgbx(4 * size);
-    accumulate(stage.tree, weights, rgbx);
+    gather(rgbx);
     const std::array<std::span<float>, 3> to{row.plane(0, 0), row.plane(0, 1), row.plane(0, 2)};
     for (std::size_t k = 0; k < size; ++k) {
         for (std::size_t band = 0; band < to.size(); ++band) {
@@ -126,7 +144,9 @@ void add_at_entry(const EffectInputs& inputs, std::span<std::vector<double>> fac
 }
 
 struct Truth : Prepared {
-    SurfaceIntegral integral;
+    SurfaceIntegral integral;  // of the dipole
+    WalkSpace space;           // of walks
+    ExitLobe lobe;
     SunRays suns;
     SmoothLights smooth;
     std::uint32_t points = 0;
@@ -137,12 +157,33 @@ std::uint32_t truth_points(TruthEffort effort) {
     return effort.target >= 0.03 ? 256 : effort.target >= 0.015 ? 512 : 1024;
 }
 
+// The dipole times what walks find over what it has under the first light, which is white.
+TwoEstimates scale_to(const TwoEstimates& walked, TwoEstimates dipole) {
+    const auto scale = [](const Luminance& to, Luminance& from) {
+        const double ratio = from[0] > 0 ? to[0] / from[0] : 1;
+        for (double& value : from) {
+            value *= ratio;
+        }
+    };
+    scale(walked.first, dipole.first);
+    scale(walked.second, dipole.second);
+    return dipole;
+}
+
 PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
                        std::span<const TestLight> lights) {
     constexpr std::uint32_t kRaysPerSun = 4;  // at a random point of many
     auto truth = std::make_unique<Truth>();
-    truth->integral =
-        make_surface_integral(inputs.bake.scene, inputs.material, profile_of(inputs.own));
+    const MultipleModel model = model_of(inputs.own);
+    if (model != MultipleModel::walks) {
+        truth->integral =
+            make_surface_integral(inputs.bake.scene, inputs.material, profile_of(inputs.own));
+    }
+    if (model != MultipleModel::dipole) {
+        truth->space = make_walk_space(inputs.bake.scene, inputs.bake.rays.hierarchy(),
+                                       inputs.material, inputs.layout.bands() == 1);
+        truth->lobe = make_exit_lobe(profile_of(inputs.own).eta);
+    }
     truth->suns = make_sun_rays(lights, kRaysPerSun);
     truth->smooth = make_smooth_lights(lights);
     truth->points = truth_points(effort);
@@ -152,14 +193,35 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& truth = static_cast<const Truth&>(prepared);
-    return integrate_multiple(
-        truth.integral,
-        {inputs.bake.scene, inputs.bake.rays, truth.suns, truth.smooth, truth.points},
-        receiver.inside.position, {inputs.knobs.seed, receiver.key}, rays);
+    const MultipleModel model = model_of(inputs.own);
+    TwoEstimates walked, dipole;
+    if (model != MultipleModel::dipole) {
+        walked = walk_to_lights(truth.space,
+                                {inputs.bake.rays, truth.suns, truth.smooth, truth.lobe,
+                                 profile_of(inputs.own).exit, truth.points},
+                                receiver.inside, {}, inputs.knobs.seed, receiver.key, rays);
+    }
+    if (model != MultipleModel::walks) {
+        dipole = integrate_multiple(
+            truth.integral,
+            {inputs.bake.scene, inputs.bake.rays, truth.suns, truth.smooth, truth.points},
+            receiver.inside.position, {inputs.knobs.seed, receiver.key}, rays);
+    }
+    return model == MultipleModel::walks    ? walked
+           : model == MultipleModel::dipole ? dipole
+                                            : scale_to(walked, std::move(dipole));
 }
 
 void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>& warnings) {
-    warn_of_thin_parts(inputs, profile_of(inputs.own), warnings);
+    if (model_of(inputs.own) == MultipleModel::dipole) {
+        warn_of_thin_parts(inputs, profile_of(inputs.own), warnings);
+    }
+}
+
+void amend(const EffectInputs& inputs, PlanEntry& entry) {
+    if (entry.name == kRules[1].name) {
+        describe_choice(static_cast<const Studied&>(*inputs.own.study).choice, entry);
+    }
 }
 
 }  // namespace
@@ -182,7 +244,7 @@ EffectDescriptor describe_multiple(Effect id) {
             .gather = {.applies = [](const RowLayout& layout) { return !layout.at_entry; },
                        .add = add,
                        .work = multiple_rows_work},
-            .truth = {.reference = "the surface integral by Monte Carlo",
+            .truth = {.reference = "the same model by Monte Carlo",
                       .is_expensive = true,
                       .make = make_truth,
                       .eval = eval,
@@ -193,6 +255,7 @@ EffectDescriptor describe_multiple(Effect id) {
             .calibrate = calibrate_multiple,
             .sample_bytes = sample_bytes,
             .add_at_entry = add_at_entry,
+            .amend = amend,
             .warn_of_model = warn_of_model};
 }
 

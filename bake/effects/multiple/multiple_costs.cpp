@@ -5,9 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/effects/multiple/choose_model.h"
 #include "bake/effects/multiple/gather_profile.h"
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/walk_costs.h"
 #include "bake/plan/walk_work.h"
 #include "bake/receivers/kd_order.h"
 #include "bake/scattering/dipole.h"
@@ -130,6 +132,9 @@ Work samples_work(const SubjectCost& cost) {
     const double nodes = 2 * samples / kSamplesPerLeaf;
     work.shared += samples * levels * kept_by_samples(knobs) * rates.sum_entry +
                    nodes * own * rates.truncate_texel;
+    if (expects_walks(cost.medium(), cost.facts, knobs)) {
+        work += walks_work(cost);
+    }
     return work;
 }
 
@@ -137,6 +142,9 @@ Work multiple_rows_work(const SubjectCost& cost) {
     const Knobs& knobs = cost.input.knobs;
     const double samples = expected_samples(cost.medium(), cost.facts.area, knobs);
     const double weights = count_weights(cost.medium(), cost.facts, samples, knobs[kEpsilon]);
+    if (expects_walks(cost.medium(), cost.facts, knobs)) {
+        return walked_rows_work(cost);
+    }
     const double entry =
         cost.input.rates.gather_entry * (cost.layout.bands() == 1 ? kGreyEntry : 1);
     return {0, cost.receivers * weights *
@@ -153,7 +161,15 @@ double sample_bytes(const Knobs& knobs) {
     constexpr double kSampleOverhead = 200;  // itself, its place in the tree
     constexpr double kEntry = 8;             // of its vector: index and value
     constexpr double kTree = 2;              // nodes hold as much as the samples
-    return knobs[kSamples] * (kSampleOverhead + kTree * kept_by_samples(knobs) * kEntry);
+    constexpr double kMoments = 0.75;        // of a sample's entries
+    constexpr double kSiteEntry = 16;        // of a site's row: index and three values
+    const bool may_walk = whole(knobs, kMultipleModel) == 0
+                              ? std::isfinite(allowed_model_error(knobs.quality))
+                              : kMultipleModel.words[whole(knobs, kMultipleModel)] == "walks";
+    const double walked = may_walk ? kMoments * knobs[kSamples] * kept_by_samples(knobs) * kEntry +
+                                         knobs[kSites] * kept_by_samples(knobs) * kSiteEntry
+                                   : 0;
+    return walked + knobs[kSamples] * (kSampleOverhead + kTree * kept_by_samples(knobs) * kEntry);
 }
 
 }  // namespace opaline::bake

@@ -21,6 +21,11 @@ inline double samples_for(double error) {
 inline double per_path_for(double error) {
     return error < 0.03 ? 4 : 1;
 }
+// The walks' error falls with the root of their number.
+inline double walks_for(double error) {
+    return std::clamp(2.4e3 / (error * error), 250000.0, 24000000.0);
+}
+inline constexpr std::array<std::string_view, 4> kModels{"auto", "scaled", "dipole", "walks"};
 inline constexpr std::array<double, 7> kSampleLadder{1000, 2000, 4000, 8000, 16000, 32000, 64000};
 inline constexpr std::array<double, 5> kSampleDiagonal{4000, 8000, 16000, 32000, 64000};
 inline constexpr std::array<double, 6> kSampleTruths{300000, 150000, 150000, 60000, 20000, 20000};
@@ -52,6 +57,33 @@ inline constexpr KnobSpec kSamples{
                .rate = -1},
     .matters = multiple_knobs::carries_light,
     .why_idle = multiple_knobs::kWhyIdle};
+
+/// MultipleModel.
+inline constexpr KnobSpec kMultipleModel{
+    .name = "multiple_model",
+    .option = "--multiple-model",
+    .placeholder = "auto|scaled|dipole|walks [auto]",
+    .help =
+        "how light scattered many times is computed: by random walks in the true shape, by the "
+        "dipole of a half space, by the dipole scaled to walks; auto: the cheapest whose error "
+        "fits",
+    .lowest = 0,
+    .highest = 3,
+    .words = multiple_knobs::kModels,
+    .preset = {0, 0, 0, 0},
+    .matters = multiple_knobs::carries_light,
+    .why_idle = multiple_knobs::kWhyIdle};
+
+/// Random walks through each medium, in all.
+inline constexpr KnobSpec kWalks{.name = "walks",
+                                 .lowest = 1000,
+                                 .highest = 1e10,
+                                 .preset = {250000, 1000000, 6000000, 24000000},
+                                 .for_target = multiple_knobs::walks_for};
+
+/// Places on the surface of each medium where they start, at most.
+inline constexpr KnobSpec kSites{
+    .name = "sites", .lowest = 500, .highest = 1000000, .preset = {8000, 20000, 40000, 80000}};
 
 /// Surface samples per square of the depth of a medium's source.
 inline constexpr KnobSpec kSamplesPerPath{.name = "samples_per_path",

@@ -8,6 +8,7 @@
 #include "bake/calibration/bench/stopwatch.h"
 #include "bake/effects/multiple/gather_multiple.h"
 #include "bake/effects/multiple/true_multiple.h"
+#include "bake/effects/multiple/walk_rates.h"
 #include "bake/receivers/surface_samples.h"
 #include "formats/opal/cubemap.h"
 
@@ -109,6 +110,7 @@ void measure_samples(const CalibrationBench& bench, const MediumProfile& medium,
                               {kCalibrationCubemap, kCalibrationKept, 1.3, true}, context);
     const double sample = watch.seconds() / kTraced;
 
+    calibrate_walks(bench, samples, rates);
     rates.truncate_texel = measure_truncation();
     const auto texels = static_cast<double>(formats::cubemap_texels(kCalibrationCubemap));
     bench.side_of(rates.shared_texel) = std::max(0.0, sample / texels - rates.truncate_texel);

@@ -1,18 +1,23 @@
 #include "bake/effects/multiple/multiple_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <utility>
 
+#include "bake/effects/multiple/gather_multiple.h"
 #include "bake/receivers/surface_samples.h"
+#include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
 namespace {
 
-double scene_diagonal(const formats::Scene& scene) {
+double scene_diagonal(const formats::Scene& scene, std::span<const std::uint32_t> primitives) {
     glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
-    for (const formats::Primitive& p : scene.primitives) {
-        for (const glm::vec3 x : p.position) {
+    for (const std::uint32_t p : primitives) {
+        for (const glm::vec3 x : scene.primitives[p].position) {
             low = glm::min(low, glm::dvec3(x));
             high = glm::max(high, glm::dvec3(x));
         }
@@ -20,11 +25,113 @@ double scene_diagonal(const formats::Scene& scene) {
     return glm::length(high - low);
 }
 
+std::vector<std::uint32_t> all_primitives(const formats::Scene& scene) {
+    std::vector<std::uint32_t> all(scene.primitives.size());
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
+}
+
+// T_d as the dipole has it, times a factor per band; overwritten.
+void gather_dipole_row(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
+                       double tolerance, glm::vec3 factor, std::uint32_t bands,
+                       std::span<float> rgbx) {
+    std::vector<ClusterWeight> weights;
+    collect_weights(stage.tree, stage.profile, position, normal, {tolerance}, weights);
+    if (factor != glm::vec3(1)) {
+        for (ClusterWeight& w : weights) {
+            for (std::size_t b = 0; b < 3; ++b) {
+                w.weight[b] *= factor[static_cast<int>(b)];
+            }
+        }
+    }
+    if (bands == 1) {
+        accumulate_grey(stage.tree, weights, rgbx);
+    } else {
+        accumulate(stage.tree, weights, rgbx);
+    }
+}
+
+// Sum of a row's six face averages per band: light under a sky that is even over the cube. `step`:
+// floats per texel.
+glm::vec3 sum_of_faces(std::span<const float> row, std::size_t step) {
+    const std::size_t face = row.size() / (6 * step);
+    glm::vec3 sum(0);
+    for (std::size_t f = 0; f < 6; ++f) {
+        const float* v = &row[step * f * face];
+        sum += glm::vec3(v[0], step == 1 ? 0 : v[1], step == 1 ? 0 : v[2]);
+    }
+    return sum;
+}
+
+// What walks find around a point over what the dipole has there, per band.
+glm::vec3 ratio_at(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal) {
+    if (stage.walked.empty()) {
+        return glm::vec3(1);
+    }
+    constexpr float kMost = 4;  // noise, where hardly any light comes out
+    std::vector<SiteWeight> weights;
+    stage.walks.field.weigh(position, normal, weights);
+    glm::vec3 walked(0), dipole(0);
+    for (const SiteWeight& w : weights) {
+        walked += w.weight * stage.walked[w.site];
+        dipole += w.weight * stage.dipole[w.site];
+    }
+    glm::vec3 ratio(1);
+    for (int b = 0; b < 3; ++b) {
+        ratio[b] = dipole[b] > 0 ? std::clamp(walked[b] / dipole[b], 0.0f, kMost) : 1;
+    }
+    return ratio;
+}
+
+// Light that enters through the samples.
+struct EnteringLight {
+    std::span<const SurfaceSample> samples;
+    const SparseVectors& rows;
+    const std::array<SparseVectors, 3>& moments;
+};
+
+void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& entering,
+          const MultipleOptions& options, const Context& context, MultipleStage& stage) {
+    const bool scales = options.model == MultipleModel::scaled;
+    const ExitLight light(entering.samples, entering.rows, scales ? nullptr : &entering.moments,
+                          stage.medium.eta, stage.medium.exit);
+    const WalkStageOptions wanted{plan.radius,
+                                  options.walks,
+                                  {.cubemap_size = options.cubemap_size,
+                                   .kept = scales ? 6 : options.kept,
+                                   .bands = options.bands,
+                                   .seed = options.seed,
+                                   .orders = {}}};
+    const std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
+    const std::size_t step = options.bands == 1 ? 1 : 4;
+    const glm::vec3 scale(static_cast<float>(1 / (std::numbers::pi * stage.medium.exit)));
+    std::function<void(std::size_t, std::span<float>)> subtract;
+    if (!stage.tree.nodes.empty()) {
+        stage.walked.resize(scales ? sites.size() : 0);
+        stage.dipole.resize(scales ? sites.size() : 0);
+        subtract = [&](std::size_t s, std::span<float> rgbx) {
+            std::vector<float> dipole(rgbx.size() / 4 * step);
+            gather_dipole_row(stage, sites[s].position, sites[s].normal, options.tolerance, scale,
+                              options.bands, dipole);
+            if (scales) {
+                stage.walked[s] = sum_of_faces(rgbx, 4);
+                stage.dipole[s] = sum_of_faces(dipole, step);
+            }
+            for (std::size_t k = 0; k < dipole.size(); ++k) {
+                rgbx[4 / step * k] -= dipole[k];
+            }
+        };
+    }
+    stage.walks = take_walks(space, light, sites, wanted, subtract, context);
+    stage.rays += stage.walks.counts.rays;
+}
+
 }  // namespace
 
 MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
-                               std::uint32_t material, const MediumProfile& medium,
-                               const MultipleOptions& options, const Context& context) {
+                               const RayScene& bodies, std::uint32_t material,
+                               const MediumProfile& medium, const MultipleOptions& options,
+                               const Context& context) {
     std::vector<std::uint32_t> primitives;
     double area = 0;
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
@@ -42,17 +149,54 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     const std::vector<SurfaceSample> samples =
         sample_surface(scene, primitives, count, options.seed, context);
     const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
-    stage.profile = make_gather_profile(stage.medium, std::sqrt(per_sample), scene_diagonal(scene),
-                                        options.bands);
+    stage.profile =
+        make_gather_profile(stage.medium, std::sqrt(per_sample),
+                            scene_diagonal(scene, all_primitives(scene)), options.bands);
+    const bool walks = options.model != MultipleModel::dipole;
+    stage.model = options.model;
     SampleTransport transport = bake_sample_transport(
-        rays, samples, {options.cubemap_size, options.kept, stage.medium.eta, options.share_rays},
+        rays, samples,
+        {options.cubemap_size, options.kept, stage.medium.eta, options.share_rays,
+         options.model == MultipleModel::walks ? options.kept / 4 : 0},
         context);
     stage.rays = transport.rays;
-    if (!context.cancelled()) {
+    SitePlan plan;
+    if (walks) {
+        plan =
+            plan_sites(area, scene_diagonal(scene, primitives),
+                       transport_mean_free_path(*scene.materials[material].medium), options.sites);
+    }
+    const std::array<SparseVectors, 3> moments = std::move(transport.moments);
+    SparseVectors light;
+    if (options.model == MultipleModel::walks && !plan.is_residual) {
+        light = std::move(transport.rows);
+    } else if (!context.cancelled()) {
         stage.tree = build_cluster_tree(samples, std::move(transport), options.cubemap_size,
                                         options.kept, context);
     }
+    if (walks && !context.cancelled()) {
+        const WalkSpace space =
+            make_walk_space(scene, bodies.hierarchy(), material, options.bands == 1);
+        const bool has_tree = !stage.tree.nodes.empty();
+        walk(space, plan, {samples, has_tree ? stage.tree.samples : light, moments}, options,
+             context, stage);
+    }
     return stage;
+}
+
+void gather_multiple_row(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
+                         double tolerance, std::uint32_t bands, std::span<float> rgbx) {
+    if (stage.tree.nodes.empty()) {
+        std::ranges::fill(rgbx, 0.0f);
+    } else {
+        gather_dipole_row(stage, position, normal, tolerance, ratio_at(stage, position, normal),
+                          bands, rgbx);
+    }
+    if (stage.model == MultipleModel::walks) {
+        // A walked row is T_d / (pi c_exit).
+        add_walked_row(stage.walks, position, normal,
+                       static_cast<float>(std::numbers::pi * stage.medium.exit), rgbx);
+    }
 }
 
 }  // namespace opaline::bake

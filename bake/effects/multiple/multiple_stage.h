@@ -6,6 +6,7 @@
 
 #include "bake/base/context.h"
 #include "bake/effects/multiple/gather_profile.h"
+#include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/transport/cluster_tree.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/transport/sample_transport.h"
@@ -13,12 +14,23 @@
 
 namespace opaline::bake {
 
+/// How light scattered many times is computed.
+enum class MultipleModel : std::uint8_t {
+    automatic,  ///< the cheapest whose error fits
+    scaled,     ///< the dipole, each row scaled to what walks find under even light
+    dipole,     ///< every surface is a half space
+    walks       ///< random walks in the true shape
+};
+
 /// Data of multiple scattering that all receivers of one medium share.
 struct MultipleStage {
     MediumProfile medium;
-    GatherProfile profile;  ///< of the medium, for these samples
-    ClusterTree tree;
-    std::uint64_t rays = 0;  ///< traced
+    MultipleModel model = MultipleModel::dipole;  ///< not automatic
+    GatherProfile profile;                        ///< of the medium, for these samples
+    ClusterTree tree;                             ///< empty where walks need no dipole
+    WalkStage walks;  ///< rows, or where there is a tree what the dipole's rows lack
+    std::vector<glm::vec3> walked, dipole;  ///< `scaled`: light at sites under an even sky
+    std::uint64_t rays = 0;                 ///< traced
 };
 
 struct MultipleOptions {
@@ -30,13 +42,24 @@ struct MultipleOptions {
     std::uint64_t seed = 0;
     bool share_rays = true;   ///< between neighbouring samples
     std::uint32_t bands = 3;  ///< or 1, where those of the medium coincide
+    MultipleModel model = MultipleModel::dipole;
+    double walks = 0;         ///< in all
+    std::uint32_t sites = 0;  ///< from which they start, at most
+    double tolerance = 1e-3;  ///< GatherOptions, of the dipole at sites
 };
 
 /// Samples the surface of the material's medium with profile `medium`, traces the entering light,
 /// and builds the tree. `rays`: the occluders; no ray is traced if it is empty. Incomplete if the
 /// context is cancelled.
+/// `bodies`: all triangles, for walks inside.
 MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
-                               std::uint32_t material, const MediumProfile& medium,
-                               const MultipleOptions& options, const Context& context);
+                               const RayScene& bodies, std::uint32_t material,
+                               const MediumProfile& medium, const MultipleOptions& options,
+                               const Context& context);
+
+/// T_d, the row of multiple scattering at a point with unit normal: four floats per texel (one with
+/// one band), overwritten.
+void gather_multiple_row(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
+                         double tolerance, std::uint32_t bands, std::span<float> rgbx);
 
 }  // namespace opaline::bake

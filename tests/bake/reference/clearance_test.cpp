@@ -2,11 +2,16 @@
 
 #include <algorithm>
 
-#include "bake/reference/clearance_grid.h"
+#include "bake/transport/clearance_grid.h"
 #include "tests/bake/reference/reference_support.h"
 
 namespace opaline::tests {
 namespace {
+
+// Of the whole scene.
+bake::ClearanceGrid around(const bake::HitScene& surfaces, float cell) {
+    return {surfaces.scene(), surfaces.centre(), surfaces.half_size(), cell};
+}
 
 // The bound is valid: no ray hits anything within it, for any position of triangles in the grid.
 TEST(ReferenceClearance, NoRayMeetsASurfaceWithinIt) {
@@ -18,7 +23,7 @@ TEST(ReferenceClearance, NoRayMeetsASurfaceWithinIt) {
     bake::RandomStream random(0, 0, 0);
     const auto next = [&] { return 2 * random.next() - 1; };
     for (const float cell : {0.013f, 0.05f, 0.2f}) {
-        const bake::ClearanceGrid clearance(surfaces, cell);
+        const bake::ClearanceGrid clearance = around(surfaces, cell);
         double known = 0, true_distance = 0;
         for (int i = 0; i < 300; ++i) {
             const glm::vec3 point(next(), next(), next());
@@ -43,7 +48,7 @@ TEST(ReferenceClearance, NoRayMeetsASurfaceWithinIt) {
 TEST(ReferenceClearance, CountsWholeCellsInAHollowCube) {
     // 2 m in cells of 0.1 m: the middle is 8 whole cells from every face or more.
     const auto cube = make_fixture(make_scene({make_cube(1, false)}), make_white_sky());
-    const bake::ClearanceGrid clearance(cube->scene.surfaces, 0.1f);
+    const bake::ClearanceGrid clearance = around(cube->scene.surfaces, 0.1f);
     EXPECT_GE(clearance({0, 0, 0}), 0.79f);
     EXPECT_LE(clearance({0, 0, 0}), 1);
     EXPECT_NEAR(clearance({0.5f, 0, 0}), 0.35f, 0.11f);
@@ -61,11 +66,11 @@ TEST(ReferenceClearance, NothingIsKnownOfASoupOfTrianglesAsLargeAsTheScene) {
         sheets.push_back(make_quad({-1, -1, -1}, {2, 0, 2 - lean}, {0, 2, lean}, 1));
     }
     const auto soup = make_fixture(make_scene(sheets), make_white_sky());
-    const bake::ClearanceGrid clearance(soup->scene.surfaces, 0.016f);
+    const bake::ClearanceGrid clearance = around(soup->scene.surfaces, 0.016f);
     for (const float x : {-0.9f, -0.5f, 0.0f, 0.5f, 0.9f}) {
         EXPECT_EQ(clearance({x, 0, -x}), 0);
     }
-    const bake::ClearanceGrid coarse(soup->scene.surfaces, 0.2f);
+    const bake::ClearanceGrid coarse = around(soup->scene.surfaces, 0.2f);
     EXPECT_GT(coarse({0.9f, 0, -0.9f}), 0);
 }
 

@@ -1,0 +1,81 @@
+#include "bake/effects/multiple/walk_costs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/walks/walk_stage.h"
+#include "bake/plan/plan_input.h"
+#include "bake/scattering/fresnel.h"
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr double kExitsPerWalk = 1.5;    // measured at indices from 1.3 to 1.5
+constexpr double kMomentEntries = 1.75;  // of a sample's row and its three moments, in rows
+constexpr double kOwnSample = 0.6;       // exits that share their sample with none of the site's
+
+double kept(const Knobs& knobs) {
+    return std::min(static_cast<double>(sample_coefficients(knobs)),
+                    static_cast<double>(formats::cubemap_texels(knobs.cubemap_size)));
+}
+
+SitePlan plan_of(const SubjectCost& cost) {
+    const double length = transport_mean_free_path(cost.medium());
+    const auto diagonal = static_cast<double>(glm::length(cost.facts.high - cost.facts.low));
+    return plan_sites(cost.facts.area, diagonal, length, whole(cost.input.knobs, kSites));
+}
+
+}  // namespace
+
+double count_body_events(const formats::Medium& medium, const MaterialFacts& body) {
+    const auto eta = static_cast<double>(medium.eta);
+    const double chord = std::abs(body.volume) > 0 && body.is_closed()
+                             ? 4 * std::abs(body.volume) / body.area
+                             : 2.0 / 3 * std::sqrt(body.area / std::numbers::pi);
+    const double escape = std::max(1e-3, 1 - fresnel_moments(eta).external);
+    double most = 0;
+    for (const Band& band : bands_of(medium)) {
+        const double sigma_t = band.sigma_s + band.sigma_a;
+        if (band.sigma_s > 0) {
+            const double conservative =
+                std::max(1.0, std::max(1.0, eta * eta) * chord * sigma_t / escape);
+            most = std::max(most, 1 / (band.sigma_a / sigma_t + 1 / conservative));
+        }
+    }
+    return 1 + most;
+}
+
+Work walks_work(const SubjectCost& cost) {
+    const Rates& rates = cost.input.rates;
+    const Knobs& knobs = cost.input.knobs;
+    if (!(transport_mean_free_path(cost.medium()) > 0)) {
+        return {};
+    }
+    const SitePlan plan = plan_of(cost);
+    const double walks = std::max(knobs[kWalks], static_cast<double>(plan.sites));
+    const double entries = kOwnSample * kMomentEntries * kept(knobs) * rates.gather_entry;
+    const double dense = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
+    return {plan.sites * rates.place_sample,
+            walks * (count_body_events(cost.medium(), cost.facts) *
+                         rates.body_event.at(cost.input.triangles) +
+                     kExitsPerWalk * (rates.walk_exit + entries)) +
+                plan.sites * dense * rates.truncate_texel};
+}
+
+Work walked_rows_work(const SubjectCost& cost) {
+    if (!(transport_mean_free_path(cost.medium()) > 0)) {
+        return {};
+    }
+    const SitePlan plan = plan_of(cost);
+    const double sites = std::min(std::numbers::pi * plan.radius * plan.radius * plan.sites /
+                                      std::max(cost.facts.area, 1e-300),
+                                  static_cast<double>(plan.sites));
+    const Rates& rates = cost.input.rates;
+    return {0, cost.receivers * sites *
+                   (rates.site_weight + kept(cost.input.knobs) * rates.gather_entry)};
+}
+
+}  // namespace opaline::bake

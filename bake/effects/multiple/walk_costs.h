@@ -1,0 +1,16 @@
+#pragma once
+
+#include "bake/plan/stage_work.h"
+
+namespace opaline::bake {
+
+/// Scatterings and reflections of a walk through a body, on average: at albedo 1 eta^2 4 V / (S
+/// mean_free_path escape) (walks.md 3), fewer where walks end by absorption. A body without a
+/// volume is taken for a ball of its area.
+double count_body_events(const formats::Medium& medium, const MaterialFacts& body);
+
+/// Work of walks from sites, and of the rows of receivers between them.
+Work walks_work(const SubjectCost& cost);
+Work walked_rows_work(const SubjectCost& cost);
+
+}  // namespace opaline::bake

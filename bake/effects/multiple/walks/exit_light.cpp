@@ -1,0 +1,129 @@
+#include "bake/effects/multiple/walks/exit_light.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+
+#include "bake/scattering/fresnel.h"
+#include "bake/scattering/gauss_legendre.h"
+
+namespace opaline::bake {
+namespace {
+
+using Float4 = float __attribute__((vector_size(16)));
+
+std::vector<SurfacePoint> points_of(std::span<const SurfaceSample> samples) {
+    std::vector<SurfacePoint> points;
+    points.reserve(samples.size());
+    for (const SurfaceSample& s : samples) {
+        points.push_back({.position = s.position, .normal = s.geometric_normal});
+    }
+    return points;
+}
+
+// Cells twice as wide as samples are apart: the nearest sample lies in one of the 27 around.
+float cell_size(std::span<const SurfaceSample> samples) {
+    double area = 0;
+    for (const SurfaceSample& s : samples) {
+        area += static_cast<double>(s.area);
+    }
+    const double each = samples.empty() ? 0 : area / static_cast<double>(samples.size());
+    return each > 0 ? static_cast<float>(1.5 * std::sqrt(each)) : 1.0f;
+}
+
+}  // namespace
+
+ExitLobe make_exit_lobe(double eta) {
+    const GaussLegendre rule = make_gauss_legendre(64);
+    double sum = 0, first = 0, second = 0;
+    // Below eta = 1 nothing enters beyond the critical angle; the rule covers the rest.
+    const double least = eta < 1 ? std::sqrt(1 - eta * eta) : 0;
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+        const double c = least + (1 - least) * rule.node[i];
+        const double p = rule.weight[i] * c * fresnel_transmittance(c, eta);
+        sum += p;
+        first += p * c;
+        second += p * c * c;
+    }
+    ExitLobe lobe;
+    lobe.mean = first / sum;
+    lobe.variance = second / sum - lobe.mean * lobe.mean;
+    lobe.across = 0.5 * (1 - second / sum);
+    return lobe;
+}
+
+glm::vec4 ExitLobe::eval(glm::vec3 normal, glm::vec3 exit) const {
+    const float cosine = glm::dot(normal, exit);
+    if (!(cosine > 0)) {
+        return {1, 0, 0, 0};  // of another facet
+    }
+    const auto along = static_cast<float>((static_cast<double>(cosine) - mean) / variance);
+    const auto sideways = static_cast<float>(1 / across);
+    const glm::vec3 a = along * normal + sideways * (exit - cosine * normal);
+    return {1 - static_cast<float>(mean) * along, a};
+}
+
+ExitLight::ExitLight(std::span<const SurfaceSample> samples, const SparseVectors& light,
+                     const std::array<SparseVectors, 3>* moments, double eta, double escape)
+    : samples_(samples),
+      light_(light),
+      moments_(moments),
+      lobe_(make_exit_lobe(eta)),
+      scale_(static_cast<float>(1 / (std::numbers::pi * escape))),
+      grid_(points_of(samples), cell_size(samples)) {}
+
+std::uint32_t ExitLight::nearest(const WalkExit& exit, std::vector<std::uint32_t>& around) const {
+    constexpr float kFacing = 0.3f;
+    const auto search = [&](auto&& candidates) {
+        std::uint32_t best = formats::kNone, any = formats::kNone;
+        float best_distance = std::numeric_limits<float>::max(), any_distance = best_distance;
+        for (const std::uint32_t j : candidates) {
+            const glm::vec3 d = samples_[j].position - exit.position;
+            const float distance = glm::dot(d, d);
+            if (distance < any_distance) {
+                any = j, any_distance = distance;
+            }
+            if (distance < best_distance && glm::dot(samples_[j].normal, exit.normal) > kFacing) {
+                best = j, best_distance = distance;
+            }
+        }
+        return best != formats::kNone ? best : any;
+    };
+    grid_.collect_around(grid_.cell_of(exit.position), around);
+    const std::uint32_t near = search(around);
+    if (near != formats::kNone) {
+        return near;
+    }
+    around.resize(samples_.size());
+    for (std::uint32_t j = 0; j < samples_.size(); ++j) {
+        around[j] = j;
+    }
+    return search(around);
+}
+
+glm::vec4 ExitLight::factors(std::uint32_t sample, const WalkExit& exit) const {
+    const SurfaceSample& s = samples_[sample];
+    const float scale = s.area > 0 ? scale_ / s.area : 0;
+    return moments_ == nullptr ? glm::vec4(scale, 0, 0, 0)
+                               : scale * lobe_.eval(s.normal, exit.direction);
+}
+
+void ExitLight::add(std::uint32_t sample, const std::array<glm::vec4, 3>& factors,
+                    std::span<float> rgbx) const {
+    for (int vector = 0; vector < (moments_ == nullptr ? 1 : 4); ++vector) {
+        const SparseVector entries =
+            vector == 0 ? light_[sample]
+                        : (*moments_)[static_cast<std::size_t>(vector - 1)][sample];
+        const Float4 factor{factors[0][vector], factors[1][vector], factors[2][vector], 0};
+        for (std::size_t i = 0; i < entries.index.size(); ++i) {
+            float* const to = &rgbx[4 * std::size_t{entries.index[i]}];
+            Float4 sum;
+            std::memcpy(&sum, to, sizeof sum);
+            sum += factor * entries.value[i];
+            std::memcpy(to, &sum, sizeof sum);
+        }
+    }
+}
+
+}  // namespace opaline::bake

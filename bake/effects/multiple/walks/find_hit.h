@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "bake/effects/multiple/walks/walk_space.h"
+
+namespace opaline::bake {
+
+/// Where a straight flight meets a triangle.
+struct WalkHit {
+    glm::vec3 position{0};  ///< [m]
+    glm::vec3 flat{0};      ///< unit normal of the triangle, outward by its winding
+    float error = 0;        ///< bound [m] on the distance of `position` from the triangle
+    bool is_own = false;    ///< of the space's material
+    std::uint32_t primitive = 0, first_index = 0;  ///< of its triangle: Primitive::index
+    float u = 0, v = 0;                            ///< weights of its second and third corner
+};
+
+/// The first triangle within `reach` [m]. False: there is none, and `hit` is not defined.
+bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, float reach,
+              WalkHit& hit);
+
+/// The interpolated normal, unit; the triangle's own where that faces away from it.
+glm::vec3 smooth_normal(const WalkSpace& space, const WalkHit& hit);
+
+}  // namespace opaline::bake

@@ -1,0 +1,183 @@
+#include "bake/effects/multiple/walks/site_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bake/base/largest.h"
+#include "bake/base/ordered_parallel.h"
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+// An exit as light of a sample.
+struct SampleExit {
+    std::uint32_t sample = 0;
+    std::array<glm::vec4, 3> factors{};  // per band
+};
+
+class SiteWalker {
+  public:
+    SiteWalker(const WalkSpace& space, const ExitLight& light, const SiteRowOptions& options)
+        : space_(space),
+          light_(light),
+          options_(options),
+          dense_(4 * std::size_t{formats::cubemap_texels(options.cubemap_size)}) {}
+
+    // The dense row of one site.
+    std::span<float> walk(const WalkStart& start, std::uint32_t site, WalkCounts& counts) {
+        std::fill(dense_.begin(), dense_.end(), 0.0f);
+        std::uint32_t number = 0;
+        for (const WalkBands& bands : space_.bands) {
+            exits_.clear();
+            WalkCounts own;
+            for (std::uint32_t w = 0; w < options_.walks_per_site; ++w) {
+                WalkRandom random({options_.seed, RandomStage::body_walk, site, number++});
+                follow_walk(space_, bands, start, options_.orders, random, exits_, own);
+            }
+            add_exits(static_cast<float>(own.correction() / options_.walks_per_site));
+            counts += own;
+        }
+        return dense_;
+    }
+
+  private:
+    // Exits of one sample are added up before its vectors are read.
+    void add_exits(float scale) {
+        by_sample_.clear();
+        for (const WalkExit& exit : exits_) {
+            SampleExit to{light_.nearest(exit, around_), {}};
+            const glm::vec4 factors = scale * light_.factors(to.sample, exit);
+            for (std::size_t b = 0; b < 3; ++b) {
+                to.factors[b] = exit.weight[b] * factors;
+            }
+            by_sample_.push_back(to);
+        }
+        std::stable_sort(
+            by_sample_.begin(), by_sample_.end(),
+            [](const SampleExit& a, const SampleExit& b) { return a.sample < b.sample; });
+        for (std::size_t i = 0; i < by_sample_.size();) {
+            SampleExit sum = by_sample_[i++];
+            for (; i < by_sample_.size() && by_sample_[i].sample == sum.sample; ++i) {
+                for (std::size_t b = 0; b < 3; ++b) {
+                    sum.factors[b] += by_sample_[i].factors[b];
+                }
+            }
+            light_.add(sum.sample, sum.factors, dense_);
+        }
+    }
+
+    const WalkSpace& space_;
+    const ExitLight& light_;
+    const SiteRowOptions& options_;
+    std::vector<float> dense_;
+    std::vector<WalkExit> exits_;
+    std::vector<SampleExit> by_sample_;
+    std::vector<std::uint32_t> around_;
+};
+
+// The entries that matter most to the eye, whatever their band; always the six face averages.
+void append_row(SiteRows::Block& block, std::span<const float> rgbx, std::uint32_t bands,
+                std::size_t kept) {
+    const std::size_t size = rgbx.size() / 4, face = size / 6;
+    std::vector<float> score(size);
+    for (std::size_t k = 0; k < size; ++k) {
+        const float* v = &rgbx[4 * k];
+        score[k] = k % face == 0
+                       ? std::numeric_limits<float>::max()
+                       : 0.2f * std::abs(v[0]) + 0.7f * std::abs(v[1]) + 0.1f * std::abs(v[2]);
+    }
+    for (const std::uint32_t k : find_largest(score, std::max<std::size_t>(kept, 6))) {
+        block.index.push_back(k);
+        for (std::size_t b = 0; b < bands; ++b) {
+            block.value.push_back(rgbx[4 * std::size_t{k} + b]);
+        }
+    }
+    block.offset.push_back(static_cast<std::uint32_t>(block.index.size()));
+}
+
+}  // namespace
+
+std::vector<WalkStart> make_walk_starts(const WalkSpace& space,
+                                        std::span<const SurfaceSample> sites,
+                                        const Context& context) {
+    std::vector<WalkStart> starts;
+    starts.reserve(sites.size());
+    for_each_block_in_order(
+        sites.size(), 256, context,
+        [&](Range range) {
+            std::vector<WalkStart> part;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                const SurfaceSample& s = sites[i];
+                constexpr float kRoundings = 64 * std::numeric_limits<float>::epsilon();
+                const glm::vec3 a = glm::abs(s.position);
+                const float error = kRoundings * std::max({a.x, a.y, a.z});
+                WalkStart start{s.position - error * s.geometric_normal, s.normal,
+                                s.geometric_normal, 1};
+                start.shells =
+                    std::max(1, count_shells(space, start.position, -s.geometric_normal));
+                part.push_back(start);
+            }
+            return part;
+        },
+        [&](Range, std::vector<WalkStart>&& part) {
+            starts.insert(starts.end(), part.begin(), part.end());
+        });
+    return starts;
+}
+
+SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> starts,
+                         const ExitLight& light, const SiteRowOptions& options,
+                         const std::function<void(std::size_t, std::span<float>)>& subtract,
+                         const Context& context, WalkCounts& counts) {
+    SiteRows rows;
+    rows.bands = options.bands;
+    struct Part {
+        SiteRows::Block block;
+        WalkCounts counts;
+    };
+    for_each_block_in_order(
+        starts.size(), SiteRows::kPerBlock, context,
+        [&](Range range) {
+            Part part;
+            SiteWalker walker(space, light, options);
+            for (std::size_t site = range.begin; site < range.end; ++site) {
+                const std::span<float> row =
+                    walker.walk(starts[site], static_cast<std::uint32_t>(site), part.counts);
+                if (subtract) {
+                    subtract(site, row);
+                }
+                append_row(part.block, row, options.bands, options.kept);
+            }
+            part.block.index.shrink_to_fit();
+            part.block.value.shrink_to_fit();
+            return part;
+        },
+        [&](Range range, Part&& part) {
+            rows.blocks.push_back(std::move(part.block));
+            counts += part.counts;
+            if (context.on_progress) {
+                context.on_progress({"walks", range.end, starts.size()});
+            }
+        });
+    return rows;
+}
+
+void add_site_row(const SiteRows& rows, std::size_t site, float weight, std::span<float> rgbx) {
+    const SiteRows::Block& block = rows.blocks[site / SiteRows::kPerBlock];
+    const std::size_t i = site % SiteRows::kPerBlock;
+    for (std::size_t k = block.offset[i]; k < block.offset[i + 1]; ++k) {
+        if (rows.bands == 1) {
+            rgbx[block.index[k]] += weight * block.value[k];
+            continue;
+        }
+        float* const to = &rgbx[4 * std::size_t{block.index[k]}];
+        const float* const from = &block.value[3 * k];
+        to[0] += weight * from[0];
+        to[1] += weight * from[1];
+        to[2] += weight * from[2];
+    }
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/effects/multiple/walks/exit_light.h"
+#include "bake/effects/multiple/walks/walk.h"
+
+namespace opaline::bake {
+
+/// Rows of sites: Haar vectors with few entries, each with a value per band.
+struct SiteRows {
+    struct Block {
+        std::vector<std::uint32_t> offset{0};  ///< sites + 1
+        std::vector<std::uint32_t> index;      ///< ascending within a row
+        std::vector<float> value;              ///< `bands` for each index
+    };
+    static constexpr std::size_t kPerBlock = 16;
+    std::vector<Block> blocks;  ///< each of kPerBlock sites, the last of as many or fewer
+    std::uint32_t bands = 3;    ///< or 1
+};
+
+struct SiteRowOptions {
+    std::uint32_t cubemap_size = 32;
+    std::uint32_t kept = 128;           ///< entries of a row
+    std::uint32_t bands = 3;            ///< or 1, where those of the medium coincide
+    std::uint32_t walks_per_site = 64;  ///< for each group of bands, >= 1
+    std::uint64_t seed = 0;
+    WalkOrders orders;
+};
+
+/// Where walks start from a site.
+std::vector<WalkStart> make_walk_starts(const WalkSpace& space,
+                                        std::span<const SurfaceSample> sites,
+                                        const Context& context);
+
+/// For each site the mean of its walks' exits, each as the light of a sample nearby: T_0 (walks.md
+/// 1). `subtract(site, rgbx)`, if there is one, subtracts what is known of a row before it is
+/// truncated. No walk is stored. The same bits for any number of threads; incomplete if the context
+/// is cancelled.
+SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> starts,
+                         const ExitLight& light, const SiteRowOptions& options,
+                         const std::function<void(std::size_t, std::span<float>)>& subtract,
+                         const Context& context, WalkCounts& counts);
+
+/// Adds weight * row of a site to `rgbx`, four floats per texel (one with bands = 1).
+void add_site_row(const SiteRows& rows, std::size_t site, float weight, std::span<float> rgbx);
+
+}  // namespace opaline::bake

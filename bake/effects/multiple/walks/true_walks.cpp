@@ -1,0 +1,109 @@
+#include "bake/effects/multiple/walks/true_walks.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <vector>
+
+#include "bake/effects/multiple/walks/walk.h"
+#include "bake/receivers/surface_samples.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
+
+// Of the bands that a walk serves; all of it where one band stands for all.
+double share_of(const WalkBands& bands, bool is_grey) {
+    double share = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+        share += bands.member[b] ? kLuminance[b] : 0;
+    }
+    return is_grey ? 1 : share;
+}
+
+// Luminance of an exit's weight per luminance of the light.
+double luminance_of(const WalkExit& exit, bool is_grey) {
+    double sum = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+        sum += kLuminance[b] * static_cast<double>(exit.weight[b]);
+    }
+    return is_grey ? static_cast<double>(exit.weight[0]) : sum;
+}
+
+}  // namespace
+
+TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, const BodyPoint& point,
+                            WalkOrders orders, std::uint64_t seed, std::uint32_t key,
+                            std::uint64_t& traced) {
+    const std::size_t lights = light.smooth.lights;
+    TwoEstimates estimates{Luminance(lights), Luminance(lights)};
+    if (point.normal == glm::vec3(0) || space.bands.empty()) {
+        return estimates;
+    }
+    const bool is_grey = space.is_grey;
+    double shares = 0;
+    for (const WalkBands& bands : space.bands) {
+        shares += share_of(bands, is_grey);
+    }
+    const WalkStart start{point.inner, point.normal, point.normal,
+                          std::max(1, count_shells(space, point.inner, -point.normal))};
+    std::vector<WalkExit> exits;
+    Luminance irradiance(lights);
+    std::uint32_t walk = 0;
+    for (Luminance* estimate : {&estimates.first, &estimates.second}) {
+        WalkCounts counts;
+        for (std::uint32_t i = 0; i < light.walks; ++i, ++walk) {
+            WalkRandom random({seed, RandomStage::true_body_walk, key, walk});
+            // Bands in proportion to what the eye sees of them.
+            double place = static_cast<double>(random.next()) * shares;
+            const WalkBands* bands = &space.bands.back();
+            for (const WalkBands& b : space.bands) {
+                if (place < share_of(b, is_grey)) {
+                    bands = &b;
+                    break;
+                }
+                place -= share_of(b, is_grey);
+            }
+            exits.clear();
+            follow_walk(space, *bands, start, orders, random, exits, counts);
+            // One exit stands for all of the walk, drawn in proportion to its weight.
+            double sum = 0;
+            const WalkExit* exit = nullptr;
+            for (const WalkExit& e : exits) {
+                const double weight = luminance_of(e, is_grey);
+                sum += weight;
+                if (static_cast<double>(random.next()) * sum < weight) {
+                    exit = &e;
+                }
+            }
+            if (exit == nullptr) {
+                continue;
+            }
+            const SurfaceSample at = make_surface_sample(
+                *space.scene,
+                make_surface_point(*space.scene, {exit->primitive, exit->first_index},
+                                   {1 - exit->u - exit->v, exit->u, exit->v}),
+                0);
+            std::ranges::fill(irradiance, 0.0);
+            const glm::vec4 lobe = light.lobe.eval(at.normal, exit->direction);
+            const auto eta = static_cast<double>(space.eta);
+            traced +=
+                add_sun_irradiance(light.rays, light.suns, at.receiver, eta, irradiance, lobe);
+            traced += add_smooth_irradiance(light.rays, light.smooth, at.receiver, eta,
+                                            {random.next(), random.next()}, irradiance, lobe);
+            const double weight = sum * shares / share_of(*bands, is_grey) /
+                                  (std::numbers::pi * light.escape * light.walks);
+            for (std::size_t l = 0; l < lights; ++l) {
+                (*estimate)[l] += weight * irradiance[l];
+            }
+        }
+        for (double& value : *estimate) {
+            value *= counts.correction();
+        }
+        traced += counts.rays;
+    }
+    return estimates;
+}
+
+}  // namespace opaline::bake

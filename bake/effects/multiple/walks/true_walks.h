@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+#include "bake/effects/multiple/walks/exit_light.h"
+#include "bake/effects/multiple/walks/walk_space.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/ray_scene.h"
+#include "bake/truth/luminance.h"
+#include "bake/truth/true_irradiance.h"
+
+namespace opaline::bake {
+
+/// What the walks of a receiver see of their surroundings.
+struct WalkLight {
+    const RayScene& rays;
+    const SunRays& suns;
+    const SmoothLights& smooth;
+    ExitLobe lobe;            ///< of the medium's boundary
+    double escape = 1;        ///< c_exit
+    std::uint32_t walks = 0;  ///< for each of the two estimates
+};
+
+/// Luminance that leaves the surface at a receiver toward its normal, less the factor F_t, by light
+/// that scattered more than once: walks from the receiver itself, whose exits look at the lights by
+/// rays of their own. No sites, samples, cube map or wavelets of the bake. `key`: of the random
+/// numbers. `traced` adds up.
+TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, const BodyPoint& point,
+                            WalkOrders orders, std::uint64_t seed, std::uint32_t key,
+                            std::uint64_t& traced);
+
+}  // namespace opaline::bake

@@ -1,0 +1,240 @@
+#include "bake/effects/multiple/walks/walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "bake/base/frame.h"
+#include "bake/effects/multiple/walks/find_hit.h"
+#include "bake/scattering/fresnel.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+float transmittance(float cosine, float eta) {
+    return static_cast<float>(
+        fresnel_transmittance(static_cast<double>(cosine), static_cast<double>(eta)));
+}
+
+// Into the half space below both normals. Refracted by the smooth one; where that leads above the
+// facet, by the facet's.
+glm::vec3 start_direction(const WalkSpace& space, const WalkStart& start, WalkRandom& random) {
+    float cosine = 1, azimuth = 0;
+    constexpr int kMostTries = 1000;  // one in a hundred is accepted at the most extreme index
+    for (int i = 0; i < kMostTries; ++i) {
+        cosine = std::sqrt(1 - random.next());
+        azimuth = 2 * kPi * random.next();
+        if (random.next() < transmittance(cosine, space.eta)) {
+            break;
+        }
+        cosine = 1;
+    }
+    const auto inside = static_cast<float>(
+        refracted_cosine(static_cast<double>(cosine), static_cast<double>(space.eta)));
+    const float sine = std::sqrt(std::max(0.0f, 1 - inside * inside));
+    const glm::vec3 tilted(sine * std::cos(azimuth), sine * std::sin(azimuth), -inside);
+    const glm::vec3 direction = make_frame(start.normal).to_world(tilted);
+    return glm::dot(direction, start.flat) < 0 ? direction
+                                               : make_frame(start.flat).to_world(tilted);
+}
+
+glm::vec3 scatter(const WalkSpace& space, glm::vec3 direction, WalkRandom& random) {
+    const float cosine = sample_cosine(space.phase, random.next());
+    const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+    const float azimuth = 2 * kPi * random.next();
+    const glm::vec3 turned = make_frame(direction).to_world(
+        {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine});
+    return glm::normalize(turned);  // thousands of turns would add up their rounding
+}
+
+class Walk {
+  public:
+    Walk(const WalkSpace& space, const WalkBands& bands, const WalkOrders& orders,
+         WalkRandom& random, std::vector<WalkExit>& exits, WalkCounts& counts)
+        : space_(space),
+          bands_(bands),
+          orders_(orders),
+          random_(random),
+          exits_(exits),
+          counts_(counts) {}
+
+    void follow(const WalkStart& start) {
+        ++counts_.walks;
+        position_ = start.position;
+        shells_ = start.shells;
+        direction_ = start_direction(space_, start, random_);
+        for (std::size_t b = 0; b < 3; ++b) {
+            weight_[b] = bands_.member[b] ? 1.0f : 0.0f;
+        }
+        for (std::uint32_t i = 0; i < space_.most_events; ++i) {
+            ++counts_.events;
+            if (!(i == 0 ? fly_first() : fly(flight_length()))) {
+                return;
+            }
+        }
+        ++counts_.endless;
+        counts_.unfinished += static_cast<double>(largest_weight());
+    }
+
+  private:
+    float flight_length() { return -std::log(1 - random_.next()) / bands_.sigma_t; }
+
+    // A flight from the start. Where a body is thin, nearly all light crosses it unscattered and is
+    // not counted: half of the walks scatter before the first surface.
+    bool fly_first() {
+        constexpr float kThin = 0.6931472f;  // optical depth where half scatters by itself
+        const float length = flight_length(), reach = kThin / bands_.sigma_t;
+        if (space_.clearance(position_) >= reach) {
+            return fly(length);
+        }
+        WalkHit hit;
+        ++counts_.rays;
+        if (!find_hit(space_, position_, direction_, reach, hit)) {
+            return fly(length);
+        }
+        const float distance = glm::length(hit.position - position_);
+        const float scattered = -std::expm1(-bands_.sigma_t * distance);
+        const bool scatters = random_.next() < 0.5f;
+        full_weight_ = 2 * (scatters ? scattered : 1 - scattered);
+        if (!scale(full_weight_)) {
+            return false;
+        }
+        if (!scatters) {
+            return arrive(hit);
+        }
+        const float inside = -std::log1p(-scattered * random_.next()) / bands_.sigma_t;
+        return collide(std::min(inside, distance));
+    }
+
+    bool fly(float length) {
+        WalkHit hit;
+        if (space_.clearance(position_) < length) {
+            ++counts_.rays;
+            if (find_hit(space_, position_, direction_, length, hit)) {
+                return arrive(hit);
+            }
+        }
+        return collide(length);
+    }
+
+    bool collide(float length) {
+        position_ += length * direction_;
+        if (glm::any(glm::lessThan(position_, space_.low)) ||
+            glm::any(glm::greaterThan(position_, space_.high))) {
+            ++counts_.lost;
+            counts_.unfinished += static_cast<double>(largest_weight());
+            return false;
+        }
+        for (std::size_t b = 0; b < 3; ++b) {
+            weight_[b] *= bands_.albedo[b];
+        }
+        ++scatterings_;
+        direction_ = scatter(space_, direction_, random_);
+        return survives();
+    }
+
+    bool arrive(const WalkHit& hit) {
+        if (!hit.is_own) {
+            return false;
+        }
+        const bool leaves = glm::dot(direction_, hit.flat) > 0;
+        if (!leaves || shells_ > 1) {
+            shells_ += leaves ? -1 : 1;
+            position_ = hit.position + (leaves ? 2 : -2) * hit.error * hit.flat;
+            return true;
+        }
+        // The smooth normal, unless it faces away or reflects to behind the triangle.
+        glm::vec3 normal = smooth_normal(space_, hit);
+        const auto reflect_at = [&](glm::vec3 n) {
+            return direction_ - 2 * glm::dot(direction_, n) * n;
+        };
+        if (glm::dot(direction_, normal) <= 0 || glm::dot(reflect_at(normal), hit.flat) >= 0) {
+            normal = hit.flat;
+        }
+        const float cosine = std::min(1.0f, glm::dot(direction_, normal));
+        const float passed = transmittance(cosine, 1 / space_.eta);
+        const bool counts = scatterings_ >= orders_.least || (scatterings_ > 0 && is_reflected_);
+        if (passed > 0 && counts) {
+            leave(hit, normal, cosine, passed);
+        }
+        is_reflected_ = true;
+        position_ = hit.position - 2 * hit.error * hit.flat;
+        direction_ = glm::normalize(reflect_at(normal));
+        return scale(1 - passed) && survives();
+    }
+
+    void leave(const WalkHit& hit, glm::vec3 normal, float cosine, float passed) {
+        const auto outside = static_cast<float>(
+            refracted_cosine(static_cast<double>(cosine), 1 / static_cast<double>(space_.eta)));
+        const glm::vec3 along = space_.eta * (direction_ - cosine * normal);
+        WalkExit exit;
+        exit.position = hit.position;
+        exit.normal = normal;
+        exit.direction = glm::normalize(along + outside * normal);
+        for (std::size_t b = 0; b < 3; ++b) {
+            exit.weight[b] = passed * weight_[b];
+        }
+        exit.primitive = hit.primitive;
+        exit.first_index = hit.first_index;
+        exit.u = hit.u;
+        exit.v = hit.v;
+        exits_.push_back(exit);
+    }
+
+    bool scale(float factor) {
+        for (float& w : weight_) {
+            w *= factor;
+        }
+        return largest_weight() > 0;
+    }
+
+    float largest_weight() const { return std::max({weight_[0], weight_[1], weight_[2]}); }
+
+    // Russian roulette.
+    bool survives() {
+        constexpr float kSmall = 0.4f, kAfter = 0.8f;
+        const float largest = largest_weight();
+        if (largest >= kSmall * full_weight_) {
+            return true;
+        }
+        const float after = kAfter * full_weight_;
+        return random_.next() * after < largest && scale(after / largest);
+    }
+
+    const WalkSpace& space_;
+    const WalkBands& bands_;
+    const WalkOrders& orders_;
+    WalkRandom& random_;
+    std::vector<WalkExit>& exits_;
+    WalkCounts& counts_;
+
+    glm::vec3 position_{0}, direction_{0};
+    std::array<float, 3> weight_{};
+    float full_weight_ = 1;  // of a walk that has lost nothing
+    std::uint32_t scatterings_ = 0;
+    bool is_reflected_ = false;
+    int shells_ = 1;
+};
+
+}  // namespace
+
+WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
+    walks += other.walks;
+    events += other.events;
+    rays += other.rays;
+    lost += other.lost;
+    endless += other.endless;
+    unfinished += other.unfinished;
+    return *this;
+}
+
+void follow_walk(const WalkSpace& space, const WalkBands& bands, const WalkStart& start,
+                 const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
+                 WalkCounts& counts) {
+    Walk(space, bands, orders, random, exits, counts).follow(start);
+}
+
+}  // namespace opaline::bake

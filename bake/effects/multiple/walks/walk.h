@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "bake/base/rng.h"
+#include "bake/effects/multiple/walks/walk_space.h"
+
+namespace opaline::bake {
+
+/// The random numbers of one walk: a function of its keys alone, whatever thread follows it.
+class WalkRandom {
+  public:
+    struct Key {
+        std::uint64_t seed = 0;
+        RandomStage stage = RandomStage::body_walk;
+        std::uint32_t start = 0, walk = 0;
+    };
+    explicit WalkRandom(Key key) : key_(key) {}
+
+    /// Uniform in [0, 1), 24 bits.
+    float next() {
+        if (used_ == 4) {
+            block_ = random_uniform(key_.seed, key_.stage,
+                                    key_.start | std::uint64_t{blocks_++} << 32, key_.walk);
+            used_ = 0;
+        }
+        return block_[used_++];
+    }
+
+  private:
+    Key key_;
+    std::uint32_t blocks_ = 0, used_ = 4;
+    std::array<float, 4> block_{};
+};
+
+/// A point just inside a body from which walks start, and the surface through which they are seen.
+struct WalkStart {
+    glm::vec3 position{0};  ///< [m], inside
+    glm::vec3 normal{0};    ///< unit, outward, of the smooth surface: it refracts
+    glm::vec3 flat{0};      ///< unit, outward, of the facet: walks start below it
+    int shells = 1;         ///< of the medium, around the point
+};
+
+/// Light that a walk finds: what arrives at `position` from outside along `direction` is seen at
+/// the start with `weight`.
+struct WalkExit {
+    glm::vec3 position{0};          ///< [m], on the boundary
+    glm::vec3 normal{0};            ///< unit, outward, smooth
+    glm::vec3 direction{0};         ///< unit, outside, away from the body
+    std::array<float, 3> weight{};  ///< per band; 0 in bands that the walk does not serve
+    std::uint32_t primitive = 0, first_index = 0;  ///< of the triangle
+    float u = 0, v = 0;                            ///< weights of its second and third corner
+};
+
+/// What became of walks.
+struct WalkCounts {
+    std::uint64_t walks = 0;
+    std::uint64_t events = 0;  ///< flights, in all
+    std::uint64_t rays = 0;
+    std::uint64_t lost = 0;     ///< left the body's box: through a hole, or past an edge
+    std::uint64_t endless = 0;  ///< given up after WalkSpace::most_events
+    double unfinished = 0;      ///< weight that lost and endless walks still had
+
+    /// The factor by which the walks that ended stand for those that did not (walks.md 4).
+    double correction() const {
+        const auto all = static_cast<double>(walks);
+        return unfinished < 0.5 * all ? all / (all - unfinished) : 1;
+    }
+
+    WalkCounts& operator+=(const WalkCounts& other);
+};
+
+/// Which light counts.
+struct WalkOrders {
+    /// Light scattered this often at least; less often, if it was also reflected at the boundary
+    /// inside, but not without any scattering. 2: what is not single scattering; 1: all.
+    std::uint32_t least = 2;
+};
+
+/// Follows one walk backwards from the eye (walks.md 1). The start's direction is that of uniform
+/// light in reverse, with density F_t(c) c over the outer hemisphere, refracted; the sum of the
+/// exits' weights then has the mean of one term for all views,
+///     T_0 = E[sum of weight V L],    L_o = F_t <T_0, L>,
+/// without energy added or lost: albedo 1 gives 1, less what never scatters. The walk passes
+/// through inner shells of its own medium; where it meets another material it ends, because such
+/// light has met a second surface. At every arrival at the boundary the transmitted part is an exit
+/// and the reflected part goes on. `exits` are appended.
+void follow_walk(const WalkSpace& space, const WalkBands& bands, const WalkStart& start,
+                 const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
+                 WalkCounts& counts);
+
+}  // namespace opaline::bake

@@ -1,0 +1,69 @@
+#include "bake/effects/multiple/walks/walk_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bake/receivers/surface_samples.h"
+
+namespace opaline::bake {
+
+SitePlan plan_sites(double area, double diagonal, double mean_free_path, std::uint32_t most_sites) {
+    // In mean free paths, but never wider than the body's own features (RESULTS.md, "Walks").
+    constexpr double kRadius = 1.5, kWidest = 0.05, kSpacing = 0.3, kFewestSites = 500;
+    constexpr double kLeastRadius = 1.8;  // spacings: ten sites
+    const double wanted = std::min(kRadius * mean_free_path, kWidest * diagonal);
+    const double spacing = kSpacing * wanted;
+    const double count = std::clamp(area / (spacing * spacing), kFewestSites,
+                                    std::max(kFewestSites, static_cast<double>(most_sites)));
+    const double apart = std::sqrt(area / count);
+    SitePlan plan;
+    plan.sites = static_cast<std::uint32_t>(count);
+    plan.radius = std::max(wanted, kLeastRadius * apart);
+    plan.is_residual = plan.radius > 1.5 * wanted;
+    return plan;
+}
+
+std::vector<SurfaceSample> place_sites(const WalkSpace& space, const SitePlan& plan,
+                                       std::uint64_t seed, const Context& context) {
+    std::vector<std::uint32_t> primitives;
+    for (std::uint32_t p = 0; p < space.scene->primitives.size(); ++p) {
+        if (space.scene->primitives[p].material == space.material) {
+            primitives.push_back(p);
+        }
+    }
+    // Of another seed than the samples.
+    return sample_surface(*space.scene, primitives, plan.sites, ~seed, context);
+}
+
+WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
+                     std::span<const SurfaceSample> sites, const WalkStageOptions& options,
+                     const std::function<void(std::size_t, std::span<float>)>& subtract,
+                     const Context& context) {
+    WalkStage stage;
+    if (space.bands.empty() || sites.empty()) {
+        return stage;
+    }
+    const std::vector<WalkStart> starts = make_walk_starts(space, sites, context);
+    SiteRowOptions rows = options.rows;
+    const double runs = static_cast<double>(sites.size()) * static_cast<double>(space.bands.size());
+    rows.walks_per_site =
+        static_cast<std::uint32_t>(std::clamp(std::round(options.walks / runs), 1.0, 1e6));
+    stage.rows = walk_from_sites(space, starts, light, rows, subtract, context, stage.counts);
+    stage.field = SiteField(sites, static_cast<float>(options.radius));
+    return stage;
+}
+
+void add_walked_row(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
+                    std::span<float> rgbx) {
+    if (stage.rows.blocks.empty()) {
+        return;
+    }
+    std::vector<SiteWeight> weights;
+    stage.field.weigh(position, normal, weights);
+    for (const SiteWeight& w : weights) {
+        add_site_row(stage.rows, w.site, scale * w.weight, rgbx);
+    }
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/effects/multiple/walks/exit_light.h"
+#include "bake/effects/multiple/walks/site_field.h"
+#include "bake/effects/multiple/walks/site_rows.h"
+#include "bake/effects/multiple/walks/walk_space.h"
+
+namespace opaline::bake {
+
+/// How many sites stand how far apart, and how far around a receiver they count.
+struct SitePlan {
+    std::uint32_t sites = 0;
+    double radius = 0;  ///< [m]
+    /// Sites are too far apart for the transport itself; they say how far another model is off.
+    bool is_residual = false;
+};
+
+/// `area` [m^2] and `diagonal` [m] of the body; `mean_free_path` [m] > 0 (walk_space.h).
+SitePlan plan_sites(double area, double diagonal, double mean_free_path, std::uint32_t most_sites);
+
+/// Rows at sites, from which those of receivers follow.
+struct WalkStage {
+    SiteField field;
+    SiteRows rows;
+    WalkCounts counts;
+};
+
+struct WalkStageOptions {
+    double radius = 0;    ///< [m] around a receiver
+    double walks = 1e6;   ///< in all; at least one from each site for each group of bands
+    SiteRowOptions rows;  ///< but for the number of walks
+};
+
+/// Sites on the surface of the space's material, between its samples.
+std::vector<SurfaceSample> place_sites(const WalkSpace& space, const SitePlan& plan,
+                                       std::uint64_t seed, const Context& context);
+
+/// Walks from sites. `subtract`: as for walk_from_sites. Incomplete if the context is cancelled.
+WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
+                     std::span<const SurfaceSample> sites, const WalkStageOptions& options,
+                     const std::function<void(std::size_t, std::span<float>)>& subtract,
+                     const Context& context);
+
+/// Adds the row of a receiver, T_0, times `scale`, to four floats per texel (one with one band).
+void add_walked_row(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
+                    std::span<float> rgbx);
+
+}  // namespace opaline::bake

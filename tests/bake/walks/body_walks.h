@@ -1,0 +1,80 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bake/effects/multiple/walks/walk.h"
+#include "tests/support/media.h"
+
+namespace opaline::tests {
+
+/// A body and what walks need to know of it.
+struct WalkedBody {
+    Scene scene;
+    std::optional<bake::EmbreeScene> triangles;
+    bake::WalkSpace space;
+};
+
+inline std::unique_ptr<WalkedBody> make_walked_body(Primitive body, const formats::Medium& medium) {
+    auto walked = std::make_unique<WalkedBody>();
+    walked->scene = make_translucent_scene({std::move(body)}, medium);
+    walked->triangles.emplace(bake::EmbreeScene::build(walked->scene, 1).value());
+    walked->space = bake::make_walk_space(walked->scene, *walked->triangles, 0, true);
+    return walked;
+}
+
+inline formats::Medium make_forward_medium(float sigma_t, float albedo, float g, float eta) {
+    formats::Medium medium = make_grey_medium(albedo * sigma_t, (1 - albedo) * sigma_t, eta);
+    medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
+    medium.phase.g = g;
+    return medium;
+}
+
+/// A slab between y = 0 and y = -thickness, practically without an end, and a start in its middle.
+inline Primitive make_wide_slab(float thickness) {
+    Primitive slab = make_cube(1, false);
+    for (glm::vec3& p : slab.position) {
+        p = (p + glm::vec3(0, -1, 0)) * glm::vec3(400, 0.5f, 400) * thickness;
+    }
+    return slab;
+}
+
+inline bake::WalkStart start_below(glm::vec3 point, glm::vec3 normal) {
+    return {point - 1e-5f * normal, normal, normal, 1};
+}
+
+/// What leaves per walk: means over walks, with the standard error of the first.
+struct Leaving {
+    double all = 0, error = 0;
+    double below = 0;  ///< through surfaces that face down
+    bake::WalkCounts counts;
+};
+
+inline Leaving walk_from(const bake::WalkSpace& space, const bake::WalkStart& start,
+                         std::uint32_t least, std::uint32_t walks) {
+    Leaving leaving;
+    double squares = 0;
+    std::vector<bake::WalkExit> exits;
+    for (std::uint32_t w = 0; w < walks; ++w) {
+        bake::WalkRandom random({1, bake::RandomStage::body_walk, 7, w});
+        exits.clear();
+        bake::follow_walk(space, space.bands.front(), start, {least}, random, exits,
+                          leaving.counts);
+        double sum = 0;
+        for (const bake::WalkExit& exit : exits) {
+            sum += static_cast<double>(exit.weight[0]);
+            leaving.below += exit.normal.y < 0 ? static_cast<double>(exit.weight[0]) / walks : 0;
+        }
+        leaving.all += sum / walks;
+        squares += sum * sum / walks;
+    }
+    leaving.error = std::sqrt(std::max(0.0, squares - leaving.all * leaving.all) / walks);
+    return leaving;
+}
+
+}  // namespace opaline::tests

@@ -1,0 +1,89 @@
+#include "bake/effects/multiple/walks/site_field.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace opaline::bake {
+namespace {
+
+SurfaceSample make_site(glm::vec3 position, glm::vec3 normal) {
+    SurfaceSample site{};
+    site.position = position;
+    site.normal = site.geometric_normal = normal;
+    return site;
+}
+
+// Both sides of a sheet of thickness `gap`, 0.1 apart.
+std::vector<SurfaceSample> make_sheet(float gap) {
+    std::vector<SurfaceSample> sites;
+    for (int i = -20; i <= 20; ++i) {
+        for (int k = -20; k <= 20; ++k) {
+            const auto x = 0.1f * static_cast<float>(i), z = 0.1f * static_cast<float>(k);
+            sites.push_back(make_site({x, 0, z}, {0, 1, 0}));
+            sites.push_back(make_site({x, -gap, z}, {0, -1, 0}));
+        }
+    }
+    return sites;
+}
+
+double weighted(const SiteField& field, std::span<const SurfaceSample> sites, glm::vec3 position,
+                glm::vec3 normal, const std::function<double(const SurfaceSample&)>& value) {
+    std::vector<SiteWeight> weights;
+    field.weigh(position, normal, weights);
+    double sum = 0;
+    for (const SiteWeight& w : weights) {
+        sum += static_cast<double>(w.weight) * value(sites[w.site]);
+    }
+    return sum;
+}
+
+TEST(SiteField, ReproducesLinearFunctionsOfThePlaceAndIgnoresTheOtherSide) {
+    const auto sites = make_sheet(0.02f);
+    const SiteField field(sites, 0.35f);
+    for (const glm::vec3 at : {glm::vec3(0, 0, 0), glm::vec3(0.33f, 0, -0.51f),
+                               glm::vec3(1.95f, 0, 2)}) {  // the last one in a corner
+        const glm::vec3 up(0, 1, 0);
+        EXPECT_NEAR(weighted(field, sites, at, up, [](const SurfaceSample&) { return 1.0; }), 1,
+                    1e-5);
+        const auto top = [](const SurfaceSample& s) { return s.normal.y > 0 ? 1.0 : 100.0; };
+        EXPECT_NEAR(weighted(field, sites, at, up, top), 1, 1e-5);
+        const auto slope = [](const SurfaceSample& s) {
+            return static_cast<double>(s.position.x - 2 * s.position.z);
+        };
+        // The ridge leaves a little of the slope out where the sites stand to one side.
+        EXPECT_NEAR(weighted(field, sites, at, up, slope), static_cast<double>(at.x - 2 * at.z),
+                    at.z > 1 ? 0.02 : 2e-3);
+    }
+}
+
+TEST(SiteField, FollowsTheNormalOnABall) {
+    std::vector<SurfaceSample> sites;
+    for (int i = 0; i < 3000; ++i) {
+        const double z = 1 - (2 * i + 1) / 3000.0, phi = 2.399963 * i, s = std::sqrt(1 - z * z);
+        const glm::vec3 n(s * std::cos(phi), s * std::sin(phi), z);
+        sites.push_back(make_site(n, n));
+    }
+    const SiteField field(sites, 0.3f);
+    const glm::vec3 at = glm::normalize(glm::vec3(1, 2, -0.5f));
+    const auto cosine = [](const SurfaceSample& s) {
+        return static_cast<double>(glm::dot(s.normal, glm::vec3(0.6f, 0, 0.8f)));
+    };
+    EXPECT_NEAR(weighted(field, sites, at, at, cosine),
+                static_cast<double>(glm::dot(at, glm::vec3(0.6f, 0, 0.8f))), 0.01);
+}
+
+TEST(SiteField, FarAwayOrFacingNoSiteTheNearestStandIn) {
+    const std::vector<SurfaceSample> one{make_site({0, 0, 0}, {0, 1, 0})};
+    const SiteField field(one, 0.1f);
+    const auto value = [](const SurfaceSample&) { return 3.0; };
+    EXPECT_NEAR(weighted(field, one, {5, 0, 0}, {0, 1, 0}, value), 3, 1e-5);
+    EXPECT_NEAR(weighted(field, one, {5, 0, 0}, {0, -1, 0}, value), 3, 1e-5);
+    std::vector<SiteWeight> weights;
+    SiteField().weigh({0, 0, 0}, {0, 1, 0}, weights);
+    EXPECT_TRUE(weights.empty());
+}
+
+}  // namespace
+}  // namespace opaline::bake

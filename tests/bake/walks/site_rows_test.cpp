@@ -1,0 +1,145 @@
+#include "bake/effects/multiple/walks/site_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bake/effects/multiple/walks/walk_stage.h"
+#include "bake/receivers/surface_samples.h"
+#include "bake/scattering/fresnel.h"
+#include "bake/transport/sample_transport.h"
+#include "formats/opal/cubemap.h"
+#include "tests/bake/walks/body_walks.h"
+
+namespace opaline::tests {
+namespace {
+
+using bake::SurfaceSample;
+
+constexpr std::uint32_t kCubemap = 8;
+
+struct WalkedBall {
+    std::unique_ptr<WalkedBody> body;
+    std::vector<SurfaceSample> samples;
+    bake::SampleTransport transport;
+    double eta = 1.3, escape = 1;
+};
+
+WalkedBall make_ball(float sigma_t, float albedo, bool moments) {
+    WalkedBall ball;
+    ball.body = make_walked_body(make_sphere(3), make_forward_medium(sigma_t, albedo, 0, 1.3f));
+    ball.samples = bake::sample_surface(ball.body->scene, {0}, 1500, 0, {});
+    const auto sky = bake::RayScene::build({}, 1).value();
+    ball.transport =
+        bake::bake_sample_transport(sky, ball.samples,
+                                    {kCubemap, formats::cubemap_texels(kCubemap), 1.3, true,
+                                     moments ? formats::cubemap_texels(kCubemap) : 0},
+                                    {});
+    ball.escape = 1 - bake::fresnel_moments(ball.eta).external;
+    return ball;
+}
+
+// Mean over the cube's texels, weighted by their solid angles: the row under white light, over 4
+// pi.
+double white(std::span<const float> haar_row) {
+    // The six face averages hold all that an even sky needs: the first coefficient of a face of
+    // n x n texels is n times its mean.
+    const std::size_t face = haar_row.size() / 6;
+    double sum = 0;
+    for (std::size_t f = 0; f < 6; ++f) {
+        sum += static_cast<double>(haar_row[f * face]) / kCubemap / 6;
+    }
+    return sum;
+}
+
+bake::WalkStage walk(const WalkedBall& ball, unsigned threads) {
+    const bake::ExitLight light(ball.samples, ball.transport.rows, &ball.transport.moments,
+                                ball.eta, ball.escape);
+    bake::Context context;
+    context.threads = threads;
+    const auto sites = bake::place_sites(ball.body->space, {300, 0.4, false}, 0, context);
+    return bake::take_walks(ball.body->space, light, sites,
+                            {0.4,
+                             30000,
+                             {.cubemap_size = kCubemap,
+                              .kept = 200,
+                              .bands = 1,
+                              .walks_per_site = 1,
+                              .seed = 0,
+                              .orders = {1}}},
+                            {}, context);
+}
+
+// A ball of albedo 1 in an even sky shows the sky's radiance, whatever row it is.
+TEST(SiteRows, BallOfAlbedoOneInAnEvenSkyShowsTheSky) {
+    const WalkedBall ball = make_ball(20, 1, true);
+    const bake::WalkStage stage = walk(ball, 2);
+    double sum = 0;
+    constexpr int kPoints = 50;
+    for (int i = 0; i < kPoints; ++i) {
+        const SurfaceSample& at = ball.samples[static_cast<std::size_t>(i * 29)];
+        std::vector<float> row(formats::cubemap_texels(kCubemap));
+        bake::add_walked_row(stage, at.position, at.normal, 1, row);
+        sum += 4 * std::numbers::pi * white(row) / kPoints;
+    }
+    // An even cube is no even sky, and light-free rows err by the truncated entries: a few per
+    // cent.
+    EXPECT_NEAR(sum, 1, 0.03);
+    EXPECT_EQ(stage.counts.walks, 30000u);
+    EXPECT_LT(stage.counts.lost, 3u);
+}
+
+TEST(SiteRows, HaveTheSameBitsForAnyNumberOfThreads) {
+    const WalkedBall ball = make_ball(5, 0.9f, true);
+    const bake::WalkStage one = walk(ball, 1), three = walk(ball, 3);
+    ASSERT_EQ(one.rows.blocks.size(), three.rows.blocks.size());
+    for (std::size_t b = 0; b < one.rows.blocks.size(); ++b) {
+        EXPECT_EQ(one.rows.blocks[b].index, three.rows.blocks[b].index);
+        EXPECT_EQ(one.rows.blocks[b].value, three.rows.blocks[b].value);
+    }
+    EXPECT_EQ(one.counts.events, three.counts.events);
+}
+
+// What is subtracted before truncation is missing from the rows.
+TEST(SiteRows, SubtractedRowsAreLeftOut) {
+    const WalkedBall ball = make_ball(5, 0.9f, false);
+    const bake::ExitLight light(ball.samples, ball.transport.rows, nullptr, ball.eta, ball.escape);
+    const auto sites = bake::place_sites(ball.body->space, {50, 0.4, false}, 0, {});
+    const auto take = [&](float share) {
+        return bake::take_walks(ball.body->space, light, sites,
+                                {0.4,
+                                 500,
+                                 {.cubemap_size = kCubemap,
+                                  .kept = 400,
+                                  .bands = 1,
+                                  .walks_per_site = 1,
+                                  .seed = 0,
+                                  .orders = {}}},
+                                [share](std::size_t, std::span<float> rgbx) {
+                                    for (float& value : rgbx) {
+                                        value *= share;
+                                    }
+                                },
+                                {});
+    };
+    const bake::WalkStage whole = take(1), half = take(0.5f);
+    ASSERT_FALSE(whole.rows.blocks.empty());
+    std::vector<float> a(formats::cubemap_texels(kCubemap)), b(a.size());
+    bake::add_site_row(whole.rows, 7, 0.5f, a);
+    bake::add_site_row(half.rows, 7, 1, b);
+    EXPECT_EQ(a, b);
+}
+
+TEST(SitePlan, SitesStandAsTheMeanFreePathAsksUpToTheirNumber) {
+    const bake::SitePlan wide = bake::plan_sites(4, 2, 0.05, 100000);
+    EXPECT_FALSE(wide.is_residual);
+    EXPECT_GT(wide.radius, 0.05);
+    const bake::SitePlan dense = bake::plan_sites(4, 2, 0.001, 20000);
+    EXPECT_TRUE(dense.is_residual);
+    EXPECT_EQ(dense.sites, 20000u);
+    EXPECT_NEAR(dense.radius, 1.8 * std::sqrt(4.0 / 20000), 1e-6);
+    EXPECT_LE(bake::plan_sites(4, 2, 100, 20000).radius, 0.1 + 1e-9) << "no wider than features";
+}
+
+}  // namespace
+}  // namespace opaline::tests

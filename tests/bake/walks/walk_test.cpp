@@ -1,0 +1,163 @@
+#include "bake/effects/multiple/walks/walk.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bake/scattering/fresnel.h"
+#include "bake/scattering/gauss_legendre.h"
+#include "bake/scattering/half_space_once.h"
+#include "tests/bake/walks/body_walks.h"
+
+namespace opaline::tests {
+namespace {
+
+// Reflectance of uniform light by a half space of isotropic scatterers, index 1: 1 - 2 sqrt(1 - a)
+// int H mu dmu, H by Chandrasekhar's integral equation.
+double half_space_of(double albedo) {
+    const bake::GaussLegendre rule = bake::make_gauss_legendre(64);
+    const double root = std::sqrt(1 - albedo);
+    std::vector<double> h(rule.node.size(), 1.0);
+    for (int pass = 0; pass < 2000; ++pass) {
+        for (std::size_t i = 0; i < h.size(); ++i) {
+            double sum = 0;
+            for (std::size_t j = 0; j < h.size(); ++j) {
+                sum += rule.weight[j] * rule.node[j] * h[j] / (rule.node[i] + rule.node[j]);
+            }
+            h[i] = 1 / (root + 0.5 * albedo * sum);
+        }
+    }
+    double moment = 0;
+    for (std::size_t i = 0; i < h.size(); ++i) {
+        moment += rule.weight[i] * rule.node[i] * h[i];
+    }
+    return 1 - 2 * root * moment;
+}
+
+TEST(Walk, HalfSpaceOfIsotropicScatterersReturnsWhatChandrasekharsFunctionSays) {
+    EXPECT_NEAR(half_space_of(1e-6), 0, 1e-5);
+    for (const float albedo : {0.5f, 0.9f, 0.99f}) {
+        const auto slab =
+            make_walked_body(make_wide_slab(60), make_forward_medium(1, albedo, 0, 1));
+        const Leaving leaving =
+            walk_from(slab->space, start_below({0, 0, 0}, {0, 1, 0}), 1, 100000);
+        EXPECT_NEAR(leaving.all, half_space_of(static_cast<double>(albedo)), 4 * leaving.error)
+            << albedo;
+        EXPECT_LT(leaving.error, 0.003);
+    }
+}
+
+// Light enters a share 1 - F_ext of what arrives; half_space_once counts what arrives.
+TEST(Walk, LightScatteredOnceIsThatOfAHalfSpaceByQuadrature) {
+    for (const float eta : {1.0f, 1.3f, 1.5f, 0.8f}) {
+        const auto slab =
+            make_walked_body(make_wide_slab(60), make_forward_medium(1, 0.8f, 0, eta));
+        const bake::WalkStart start = start_below({0, 0, 0}, {0, 1, 0});
+        // The same walks: what the second leaves out is scattered once.
+        const Leaving all = walk_from(slab->space, start, 1, 200000);
+        const Leaving more = walk_from(slab->space, start, 2, 200000);
+        const auto index = static_cast<double>(eta);
+        const double once =
+            bake::half_space_once(index) * 0.8 / (1 - bake::fresnel_moments(index).external);
+        EXPECT_NEAR(all.all - more.all, once, 0.01 * once + 0.0015) << eta;
+    }
+}
+
+// What enters a conservative slab leaves on one of both sides. Of uniform light, the share 4/3 /
+// (tau' + 2 * 0.7104) crosses, 0.7104 being the extrapolation length of Milne's problem (asymptotic
+// in tau').
+TEST(Walk, ConservativeSlabTransmitsByItsTransportThicknessWhateverTheMeanCosine) {
+    for (const float g : {-0.5f, 0.0f, 0.5f, 0.9f}) {
+        const float thickness = 8;  // transport mean free paths of 1 m
+        const auto slab =
+            make_walked_body(make_wide_slab(thickness), make_forward_medium(1 / (1 - g), 1, g, 1));
+        const Leaving leaving = walk_from(slab->space, start_below({0, 0, 0}, {0, 1, 0}), 1, 20000);
+        EXPECT_NEAR(leaving.all, 1, 4 * leaving.error + 0.001) << g;
+        EXPECT_NEAR(leaving.below, 4.0 / 3 / (static_cast<double>(thickness) + 1.4208), 0.008) << g;
+    }
+}
+
+TEST(Walk, FurnaceOfAlbedoOneLosesNothingAtAnyIndexAndMeanCosine) {
+    for (const float eta : {0.5f, 0.8f, 1.0f, 1.3f, 1.5f, 2.5f}) {
+        for (const float g : {-0.9f, 0.0f, 0.9f}) {
+            // So dense that what leaves unscattered, 1/2 (sigma_t R)^-2 of the light, does not
+            // show.
+            const float sigma_t = g > 0 ? 200 : 30;
+            const auto ball =
+                make_walked_body(make_sphere(3), make_forward_medium(sigma_t, 1, g, eta));
+            const Leaving leaving =
+                walk_from(ball->space, start_below({0, 0.995f, 0}, {0, 1, 0}), 1, 1500);
+            EXPECT_NEAR(leaving.all, 1, 4 * leaving.error + 0.002) << eta << " " << g;
+            EXPECT_LT(leaving.counts.lost + leaving.counts.endless, 8u) << eta << " " << g;
+        }
+    }
+}
+
+// In a body much thinner than a mean free path, light that is counted is in proportion to its size.
+TEST(Walk, ThinBodiesScatterInProportionToTheirOpticalDepth) {
+    const auto of = [](float sigma_t) {
+        const auto ball = make_walked_body(make_sphere(3), make_forward_medium(sigma_t, 1, 0, 1));
+        return walk_from(ball->space, start_below({0, 0.995f, 0}, {0, 1, 0}), 1, 40000);
+    };
+    // Mean chord of cosine-distributed starts: 4/3 R.
+    for (const float sigma_t : {1e-4f, 1e-3f, 1e-2f}) {
+        const Leaving leaving = of(sigma_t);
+        const double depth = 4.0 / 3 * static_cast<double>(sigma_t);
+        EXPECT_NEAR(leaving.all / depth, 1, 0.03) << sigma_t;
+        EXPECT_LT(leaving.error, 0.01 * leaving.all) << sigma_t;
+    }
+}
+
+TEST(Walk, BlackMediumReturnsNothing) {
+    const auto ball = make_walked_body(make_sphere(2), make_grey_medium(0, 5));
+    EXPECT_TRUE(ball->space.bands.empty());
+}
+
+// Half of the ball's top is missing: what leaves through the hole is counted and made up for.
+TEST(Walk, LightLostThroughAHoleIsCountedAndReplacedByTheMeanOfTheRest) {
+    Primitive open = make_sphere(3);
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i + 2 < open.index.size(); i += 3) {
+        if (open.position[open.index[i]].y > -0.9f) {
+            kept.insert(kept.end(), open.index.begin() + static_cast<std::ptrdiff_t>(i),
+                        open.index.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+        }
+    }
+    ASSERT_LT(kept.size(), open.index.size());
+    open.index = kept;
+    const auto body = make_walked_body(open, make_forward_medium(2, 1, 0, 1.3f));
+    const Leaving leaving =
+        walk_from(body->space, start_below({0, 0.995f, 0}, {0, 1, 0}), 1, 20000);
+    EXPECT_GT(leaving.counts.lost, 100u);
+    const auto closed = make_walked_body(make_sphere(3), make_forward_medium(2, 1, 0, 1.3f));
+    const Leaving whole =
+        walk_from(closed->space, start_below({0, 0.995f, 0}, {0, 1, 0}), 1, 20000);
+    EXPECT_LT(leaving.all, whole.all - 0.02);
+    EXPECT_NEAR(leaving.all * leaving.counts.correction(), whole.all, 0.02);
+}
+
+// A walk goes through a shell of its own medium inside the body; another material ends it.
+TEST(Walk, InnerShellsOfTheSameMediumAreNoBoundaryAndOthersAre) {
+    const formats::Medium medium = make_forward_medium(10, 1, 0, 1.3f);
+    const auto walked = [&](std::vector<Primitive> parts) {
+        auto body = std::make_unique<WalkedBody>();
+        body->scene = make_translucent_scene(std::move(parts), medium);
+        body->triangles.emplace(bake::EmbreeScene::build(body->scene, 1).value());
+        body->space = bake::make_walk_space(body->scene, *body->triangles, 0, true);
+        return body;
+    };
+    const bake::WalkStart start = start_below({0, 0.995f, 0}, {0, 1, 0});
+    const auto shells = walked({make_sphere(3), make_sphere(3, 0.7f)});
+    const Leaving inside = walk_from(shells->space, start, 1, 4000);
+    EXPECT_NEAR(inside.all, 1, 4 * inside.error + 0.002);
+    Primitive core = make_sphere(3, 0.9f);
+    core.material = 1;
+    const auto opaque = walked({make_sphere(3), core});
+    EXPECT_LT(walk_from(opaque->space, start, 1, 4000).all, 0.9);
+    EXPECT_EQ(bake::count_shells(shells->space, {0, 0, 0}, {0, 1, 0}), 2);
+    EXPECT_EQ(bake::count_shells(shells->space, {0, 0.8f, 0}, {0, 1, 0}), 1);
+    EXPECT_EQ(bake::count_shells(shells->space, {0, 2, 0}, {0, 1, 0}), 0);
+}
+
+}  // namespace
+}  // namespace opaline::tests

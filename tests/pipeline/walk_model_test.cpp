@@ -1,0 +1,161 @@
+// Multiple scattering by random walks in whole bakes: against path tracing, where the dipole fails.
+
+#include <gmock/gmock.h>
+
+#include "bake/accuracy/check_model.h"
+#include "bake/effects/multiple/multiple_stage.h"
+#include "tests/support/media_bake.h"
+
+namespace opaline::bake {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr double kDipole = static_cast<double>(MultipleModel::dipole);
+constexpr double kScaled = static_cast<double>(MultipleModel::scaled);
+constexpr double kWalked = static_cast<double>(MultipleModel::walks);
+
+BakeOptions bake_by(double model, double walks = 300000) {
+    BakeOptions options = tests::only({"multiple"});
+    options.set(kMultipleModel, model);
+    options.set(kWalks, walks);
+    options.set(kSites, 1500);
+    return options;
+}
+
+const PlanEntry& entry_of(const BakeResult& baked, std::string_view name) {
+    const PlanEntry* entry = find_entry(baked.plan, name, 0);
+    EXPECT_NE(entry, nullptr) << name;
+    return *entry;
+}
+
+// Multiple scattering alone, under white: the reference converges fast.
+double model_error(const tests::Scene& scene, const BakeOptions& options) {
+    ModelCheckOptions check;
+    check.simulated = TermSet::multiple;
+    check.receivers = 24;
+    check.max_events = 3000000;
+    const BakeResult baked = tests::bake_scene(scene, options);
+    const auto report = check_model(scene, baked.asset.view(), check, {});
+    EXPECT_TRUE(report);
+    return report.value().by_light.front().rms_relative;
+}
+
+TEST(WalkModel, BallOfAFewMeanFreePathsIsAsBrightAsPathTracedWhereTheDipoleIsNot) {
+    const tests::Scene ball = tests::make_translucent_scene({tests::make_sphere(3)},
+                                                            tests::make_grey_medium(2.97f, 0.03f));
+    EXPECT_GT(model_error(ball, bake_by(kDipole)), 0.15);
+    EXPECT_LT(model_error(ball, bake_by(kWalked)), 0.04);
+    EXPECT_LT(model_error(ball, bake_by(kScaled)), 0.06) << "even light is what it is scaled by";
+}
+
+// Sites stand far apart: rows are the dipole's and what they lack.
+TEST(WalkModel, DenseBallIsTheDipoleAndWhatItLacks) {
+    const tests::Scene ball = tests::make_translucent_scene({tests::make_sphere(3)},
+                                                            tests::make_grey_medium(39.6f, 0.4f));
+    BakeOptions options = bake_by(kWalked);
+    options.set(kSites, 500);
+    EXPECT_LT(model_error(ball, options), 0.04);
+}
+
+TEST(WalkModel, SelfCheckFindsTheNoiseOfFewWalksAndNoneOfMany) {
+    const tests::Scene ball = tests::make_translucent_scene({tests::make_sphere(3)},
+                                                            tests::make_grey_medium(2.97f, 0.03f));
+    BakeOptions few = bake_by(kWalked, 3000), many = bake_by(kWalked, 600000);
+    few.cubemap_size = many.cubemap_size = 16;
+    const double noisy = tests::bake_scene(ball, few).error.at_receivers.rms_relative;
+    const double clean = tests::bake_scene(ball, many).error.at_receivers.rms_relative;
+    EXPECT_GT(noisy, 0.08);
+    EXPECT_LT(clean, 0.06);
+}
+
+TEST(WalkModel, AutoWalksAtProductionWhereTheDipoleWasMeasuredToErr) {
+    const auto bake_of = [](float sigma_t) {
+        BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
+        options.quality = Quality::production;
+        return tests::bake_scene(
+            tests::make_translucent_scene({tests::make_sphere(2)},
+                                          tests::make_grey_medium(0.9f * sigma_t, 0.1f * sigma_t)),
+            options);
+    };
+    const PlanEntry thin = entry_of(bake_of(3), "multiple.model");
+    EXPECT_TRUE(thin.on);
+    EXPECT_THAT(thin.reason, StartsWith("walks: measured at 64 vertices"));
+    const PlanEntry thick = entry_of(bake_of(3000), "multiple.model");
+    EXPECT_FALSE(thick.on);
+    EXPECT_THAT(thick.reason, HasSubstr("dipole"));
+}
+
+TEST(WalkModel, AutoKeepsTheDipoleInPreviewAndWhereAMediumNamesItsProfile) {
+    formats::Medium medium = tests::make_grey_medium(2.97f, 0.03f);
+    BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
+    const auto entry = [&] {
+        return entry_of(
+            tests::bake_scene(tests::make_translucent_scene({tests::make_sphere(2)}, medium),
+                              options),
+            "multiple.model");
+    };
+    EXPECT_THAT(entry().reason, StartsWith("dipole: preview"));
+    options.quality = Quality::production;
+    medium.profile = formats::Medium::Profile::classic;
+    EXPECT_EQ(entry().reason, "dipole: the medium names its profile");
+}
+
+TEST(WalkModel, BytesDoNotDependOnTheNumberOfThreads) {
+    const tests::Scene scene = tests::make_ball_on_floor(tests::make_grey_medium(4, 0.1f));
+    for (const double model : {kWalked, kScaled}) {
+        BakeOptions one = bake_by(model, 20000), three = one;
+        one.threads = 1;
+        three.threads = 3;
+        EXPECT_EQ(tests::largest_difference(tests::bake_scene(scene, one).asset,
+                                            tests::bake_scene(scene, three).asset, "studio"),
+                  0)
+            << model;
+    }
+}
+
+// Mean free paths far below and above the body, no absorption, extreme indices and mean cosines,
+// a sheet without volume, slivers, holes, bodies through each other.
+TEST(WalkModel, HardCasesGiveFiniteRowsThatAreNoBrighterThanTheSky) {
+    tests::Primitive sheet = tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4);
+    tests::Primitive back = tests::make_quad({-1, 0, -1}, {2, 0, 0}, {0, 0, 2}, 4);
+    tests::Primitive sliver = tests::make_sphere(1);
+    for (glm::vec3& p : sliver.position) {
+        p *= glm::vec3(1e-4f, 1, 1e-3f);
+    }
+    tests::Primitive open = tests::make_sphere(2);
+    open.index.resize(open.index.size() / 2);
+    const std::vector<std::vector<tests::Primitive>> bodies{
+        {tests::make_sphere(2)},
+        {sheet, back},
+        {sliver},
+        {open},
+        {tests::make_sphere(2), tests::make_sphere(2, 1, {0.7f, 0, 0})}};
+    std::vector<formats::Medium> media{
+        tests::make_grey_medium(1e-3f, 0), tests::make_grey_medium(5, 0, 3),
+        tests::make_grey_medium(5, 0, 1.0f / 3), tests::make_grey_medium(1e-20f, 1e5f),
+        tests::make_grey_medium(30, 0.1f, 1)};
+    for (const float g : {-0.99f, 0.99f}) {
+        media.push_back(tests::make_grey_medium(20, 0.1f));
+        media.back().phase.type = formats::PhaseFunction::Type::henyey_greenstein;
+        media.back().phase.g = g;
+    }
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        // All media in the ball, two of the hardest in the other bodies.
+        for (std::size_t m = b == 0 ? 0 : 1; m < media.size(); m += b == 0 ? 1 : 5) {
+            BakeOptions options = bake_by(kWalked, 2000);
+            options.set(kSamples, 500);
+            options.set(kSites, 500);
+            const BakeResult baked =
+                tests::bake_scene(tests::make_translucent_scene(bodies[b], media[m]), options);
+            EXPECT_TRUE(tests::all_finite(baked.asset)) << b << " " << m;
+            for (const formats::Rgb& c : tests::relight_primitive(baked.asset, "white")) {
+                EXPECT_TRUE(c.g >= 0 && c.g < 2.5f) << b << " " << m << ": " << c.g;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace opaline::bake
