@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bake/effects/multiple/medium_profile.h"
+#include "bake/effects/multiple/multiple_stage.h"
 #include "bake/effects/single/rules_single.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scattering/fresnel.h"
@@ -133,6 +134,7 @@ TEST(TranslucentPipeline, MultipleAndSingleBakedApartAddUpToBoth) {
         const auto scene = make_ball_on_floor(forward(g));
         BakeOptions options = small_bake();
         options.quality = Quality::reference;
+        options.set(kMultipleModel, static_cast<double>(MultipleModel::dipole));
         const std::uint32_t terms = g > 0 ? 4 : 1;
         options.set(kPhaseTerms, terms);
         const BakeResult merged = bake_scene(scene, options);

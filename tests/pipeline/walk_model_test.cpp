@@ -19,6 +19,7 @@ constexpr double kWalked = static_cast<double>(MultipleModel::walks);
 BakeOptions bake_by(double model, double walks = 300000) {
     BakeOptions options = tests::only({"multiple"});
     options.set(kMultipleModel, model);
+    options.set(kWalksAround, 1e9);
     options.set(kWalks, walks);
     options.set(kSites, 1500);
     return options;

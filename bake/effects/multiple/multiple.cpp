@@ -31,8 +31,8 @@ void lay_out_model(const PlanEntry&, RowLayout&) {}
 constexpr std::array<DecisionRule, 2> kRules{
     {{"multiple", has_medium, decide_multiple, lay_out},
      {"multiple.model", has_medium, decide_model, lay_out_model}}};
-constexpr std::array<const KnobSpec*, 6> kKnobs{&kMultipleModel, &kSamples, &kSamplesPerPath,
-                                                &kWalks,         &kSites,   &kEpsilon};
+constexpr std::array<const KnobSpec*, 7> kKnobs{
+    &kMultipleModel, &kSamples, &kSamplesPerPath, &kWalksAround, &kWalks, &kSites, &kEpsilon};
 
 // A pilot tries the tolerance; samples are refined round by round.
 constexpr std::array<PilotLadder::Setting, 1> kFinest{{{&kEpsilon, 3e-5}}};
@@ -54,6 +54,7 @@ bool refine_samples(Knobs& knobs) {
     }
     knobs.set(kSamplesPerPath, 4 * knobs[kSamplesPerPath]);
     knobs.set(kSamples, std::min(4 * knobs[kSamples], kMostSamples));
+    knobs.set(kWalksAround, 4 * knobs[kWalksAround]);
     knobs.set(kWalks, 4 * knobs[kWalks]);
     return true;
 }
@@ -88,14 +89,14 @@ bool needs_samples(const formats::Material&, const RowLayout& layout) {
 PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
     const Knobs& knobs = inputs.knobs;
     auto samples = std::make_unique<Samples>();
-    samples->stage =
-        prepare_multiple(inputs.bake.scene, inputs.outside(), inputs.bake.rays, inputs.material,
-                         profile_of(inputs.own),
-                         {knobs.cubemap_size, whole(knobs, kSamples), knobs.is_given(kSamples),
-                          knobs[kSamplesPerPath], sample_coefficients(knobs), knobs.seed,
-                          !knobs.exact_rays, inputs.layout.bands(), model_of(inputs.own),
-                          knobs[kWalks], whole(knobs, kSites), knobs[kEpsilon]},
-                         inputs.context);
+    samples->stage = prepare_multiple(
+        inputs.bake.scene, inputs.outside(), inputs.bake.rays, inputs.material,
+        profile_of(inputs.own),
+        {knobs.cubemap_size, whole(knobs, kSamples), knobs.is_given(kSamples),
+         knobs[kSamplesPerPath], sample_coefficients(knobs), knobs.seed, !knobs.exact_rays,
+         inputs.layout.bands(), model_of(inputs.own), knobs[kWalksAround], knobs[kWalks],
+         whole(knobs, kSites), knobs[kEpsilon]},
+        inputs.context);
     rays += samples->stage.rays;
     return samples;
 }

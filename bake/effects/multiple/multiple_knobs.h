@@ -23,7 +23,7 @@ inline double per_path_for(double error) {
 }
 // The walks' error falls with the root of their number.
 inline double walks_for(double error) {
-    return std::clamp(2.4e3 / (error * error), 250000.0, 24000000.0);
+    return std::clamp(4 / (error * error), 500.0, 40000.0);
 }
 inline constexpr std::array<std::string_view, 4> kModels{"auto", "scaled", "dipole", "walks"};
 inline constexpr std::array<double, 7> kSampleLadder{1000, 2000, 4000, 8000, 16000, 32000, 64000};
@@ -74,12 +74,18 @@ inline constexpr KnobSpec kMultipleModel{
     .matters = multiple_knobs::carries_light,
     .why_idle = multiple_knobs::kWhyIdle};
 
-/// Random walks through each medium, in all.
+/// Random walks around each receiver: within the radius of sites that its row is fitted to.
+inline constexpr KnobSpec kWalksAround{.name = "walks_around",
+                                       .lowest = 1,
+                                       .highest = 1e10,
+                                       .preset = {500, 2000, 10000, 40000},
+                                       .for_target = multiple_knobs::walks_for};
+
+/// Random walks through each medium in all, at most.
 inline constexpr KnobSpec kWalks{.name = "walks",
                                  .lowest = 1000,
                                  .highest = 1e10,
-                                 .preset = {250000, 1000000, 6000000, 24000000},
-                                 .for_target = multiple_knobs::walks_for};
+                                 .preset = {250000, 1000000, 6000000, 24000000}};
 
 /// Places on the surface of each medium where they start, at most.
 inline constexpr KnobSpec kSites{

@@ -90,13 +90,13 @@ struct EnteringLight {
     const std::array<SparseVectors, 3>& moments;
 };
 
-void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& entering,
+void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& entering, double walks,
           const MultipleOptions& options, const Context& context, MultipleStage& stage) {
     const bool scales = options.model == MultipleModel::scaled;
     const ExitLight light(entering.samples, entering.rows, scales ? nullptr : &entering.moments,
                           stage.medium.eta, stage.medium.exit);
     const WalkStageOptions wanted{plan.radius,
-                                  options.walks,
+                                  walks,
                                   {.cubemap_size = options.cubemap_size,
                                    .kept = scales ? 6 : options.kept,
                                    .bands = options.bands,
@@ -178,8 +178,9 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
         const WalkSpace space =
             make_walk_space(scene, bodies.hierarchy(), material, options.bands == 1);
         const bool has_tree = !stage.tree.nodes.empty();
-        walk(space, plan, {samples, has_tree ? stage.tree.samples : light, moments}, options,
-             context, stage);
+        walk(space, plan, {samples, has_tree ? stage.tree.samples : light, moments},
+             count_walks(plan, area, options.walks_around, options.most_walks), options, context,
+             stage);
     }
     return stage;
 }

@@ -55,7 +55,9 @@ Work walks_work(const SubjectCost& cost) {
         return {};
     }
     const SitePlan plan = plan_of(cost);
-    const double walks = std::max(knobs[kWalks], static_cast<double>(plan.sites));
+    const double walks =
+        std::max(count_walks(plan, cost.facts.area, knobs[kWalksAround], knobs[kWalks]),
+                 static_cast<double>(plan.sites));
     const double entries = kOwnSample * kMomentEntries * kept(knobs) * rates.gather_entry;
     const double dense = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     return {plan.sites * rates.place_sample,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/receivers/surface_samples.h"
@@ -138,6 +139,10 @@ TEST(SitePlan, SitesStandAsTheMeanFreePathAsksUpToTheirNumber) {
     EXPECT_TRUE(dense.is_residual);
     EXPECT_EQ(dense.sites, 20000u);
     EXPECT_NEAR(dense.radius, 1.8 * std::sqrt(4.0 / 20000), 1e-6);
+    // As many around each receiver, whatever the radius.
+    EXPECT_NEAR(bake::count_walks(wide, 4, 1000, 1e9),
+                1000 * 4 / (std::numbers::pi * wide.radius * wide.radius), 1);
+    EXPECT_EQ(bake::count_walks(wide, 4, 1000, 5000), 5000);
     EXPECT_LE(bake::plan_sites(4, 2, 100, 20000).radius, 0.1 + 1e-9) << "no wider than features";
 }
 

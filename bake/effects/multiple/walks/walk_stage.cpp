@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "bake/receivers/surface_samples.h"
@@ -22,6 +23,11 @@ SitePlan plan_sites(double area, double diagonal, double mean_free_path, std::ui
     plan.radius = std::max(wanted, kLeastRadius * apart);
     plan.is_residual = plan.radius > 1.5 * wanted;
     return plan;
+}
+
+double count_walks(const SitePlan& plan, double area, double around, double most) {
+    const double part = std::numbers::pi * plan.radius * plan.radius;
+    return part > 0 ? std::min(most, around * std::max(1.0, area / part)) : most;
 }
 
 std::vector<SurfaceSample> place_sites(const WalkSpace& space, const SitePlan& plan,

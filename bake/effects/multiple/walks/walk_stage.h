@@ -24,6 +24,10 @@ struct SitePlan {
 /// `area` [m^2] and `diagonal` [m] of the body; `mean_free_path` [m] > 0 (walk_space.h).
 SitePlan plan_sites(double area, double diagonal, double mean_free_path, std::uint32_t most_sites);
 
+/// Walks in all, for `around` of them within the radius of a receiver, but `most` at most. `area`
+/// [m^2] of the body.
+double count_walks(const SitePlan& plan, double area, double around, double most);
+
 /// Rows at sites, from which those of receivers follow.
 struct WalkStage {
     SiteField field;
