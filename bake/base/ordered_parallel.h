@@ -7,9 +7,10 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "bake/base/context.h"
 
@@ -36,48 +37,52 @@ void for_each_block_in_order(std::size_t count, std::size_t block, const Context
     const unsigned threads = thread_count(context);
     tbb::task_arena arena(static_cast<int>(threads));
     using Item = decltype(compute(Range{}));
-    struct Job {
+    struct Slot {
         Range range;
-        Item item;
+        std::optional<Item> item;
     };
-    // TBB hands work over inside its library, where the thread sanitizer sees nothing. Jobs are
-    // handed over by pointer, and every step begins and ends with this, so that it sees the order
-    // of steps that follow each other, and still a race of steps that do not.
+    // A ring: blocks leave in order and at most as many as there are slots are alive, so the block
+    // that stood in a slot has left when the next one takes it.
+    std::vector<Slot> slots(std::size_t{threads} * 4);
+    // TBB hands work over inside its library, where the thread sanitizer sees nothing. Every step
+    // begins and ends with this, so that it sees the order of steps that follow each other.
     std::atomic<std::uint64_t> steps{0};
     const auto in_order = [&](auto&& step) {
         steps.fetch_add(1, std::memory_order_acq_rel);
-        auto* const result = step();
+        Slot* const result = step();
         steps.fetch_add(1, std::memory_order_acq_rel);
         return result;
     };
-    std::size_t next = 0;
-    arena.execute([&] {
-        tbb::parallel_pipeline(
-            std::size_t{threads} * 4,
-            tbb::make_filter<void, Range*>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control&
-                                                                                      control) {
-                return in_order([&]() -> Range* {
-                    if (next >= count || context.cancelled()) {
-                        control.stop();
-                        return nullptr;
-                    }
-                    auto range = std::make_unique<Range>(next, std::min(count, next + block));
-                    next = range->end;
-                    return range.release();
-                });
-            }) & tbb::make_filter<Range*, Job*>(tbb::filter_mode::parallel, [&](Range* given) {
-                return in_order([&] {
-                    const std::unique_ptr<Range> range(given);
-                    return new Job{*range, compute(*range)};
-                });
-            }) & tbb::make_filter<Job*, void>(tbb::filter_mode::serial_in_order, [&](Job* given) {
-                in_order([&]() -> Job* {
-                    const std::unique_ptr<Job> job(given);
-                    consume(job->range, std::move(job->item));
+    std::size_t next = 0, slot = 0;
+    const auto take = tbb::make_filter<void, Slot*>(
+        tbb::filter_mode::serial_in_order, [&](tbb::flow_control& control) {
+            return in_order([&]() -> Slot* {
+                if (next >= count || context.cancelled()) {
+                    control.stop();
                     return nullptr;
-                });
-            }));
+                }
+                Slot& given = slots[slot];
+                slot = (slot + 1) % slots.size();
+                given.range = {next, std::min(count, next + block)};
+                next = given.range.end;
+                return &given;
+            });
+        });
+    const auto work = tbb::make_filter<Slot*, Slot*>(tbb::filter_mode::parallel, [&](Slot* given) {
+        return in_order([&] {
+            given->item.emplace(compute(given->range));
+            return given;
+        });
     });
+    const auto leave =
+        tbb::make_filter<Slot*, void>(tbb::filter_mode::serial_in_order, [&](Slot* given) {
+            in_order([&]() -> Slot* {
+                consume(given->range, *std::move(given->item));
+                given->item.reset();
+                return nullptr;
+            });
+        });
+    arena.execute([&] { tbb::parallel_pipeline(slots.size(), take & work & leave); });
 }
 
 }  // namespace opaline::bake
