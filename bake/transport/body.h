@@ -51,10 +51,10 @@ struct EntryCounts {
     std::uint64_t missing = 0;  ///< directions without an exit: holes in the boundary
 };
 
-/// The exit of each ray in `lanes` by signed depth (translucency.md 4, "Robust exit_hit"), then one
-/// any-hit query beyond it. Surfaces of other materials block anywhere. `packet`: origins inside
-/// the medium; unit directions toward the light. `shells`: number of shells of the medium around
-/// each origin, >= 1.
+/// The exit of each ray in `lanes` by signed depth (effects/single/README.md, "Signed depth"), then
+/// one any-hit query beyond it. Surfaces of other materials block anywhere. `packet`: origins
+/// inside the medium; unit directions toward the light. `shells`: number of shells of the medium
+/// around each origin, >= 1.
 PacketEntries find_entries(const RayScene& rays, std::uint32_t material, LaneMask lanes,
                            RayPacket packet, std::array<std::int32_t, RayPacket::kSize> shells,
                            EntryCounts& counts);

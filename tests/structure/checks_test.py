@@ -124,5 +124,18 @@ class Duplicates(unittest.TestCase):
         self.assertIn("0 pairs in", run("check_duplicates.py", tree, "bake")[1])
 
 
+class Documents(unittest.TestCase):
+    TREE = {"README.md": "see bake/README.md and https://example.org/other.md", "bake/README.md": "../README.md, low/README.md",
+            "bake/low/README.md": "", "bake/low/a.h": "// README.md, bake/README.md"}
+
+    def test_names_from_root_and_folder_are_accepted(self):
+        self.assertEqual(run("check_documents.py", self.TREE)[0], 0)
+
+    def test_a_document_that_stands_elsewhere_is_found(self):
+        code, output = run("check_documents.py", {**self.TREE, "bake/low/b.cpp": "\n// (theory.md 3)"})
+        self.assertEqual(code, 1)
+        self.assertIn("bake/low/b.cpp:2: names theory.md", output)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -48,7 +48,7 @@ struct IntegralKey {
 };
 
 /// Luminance that leaves the surface at `position` [m] by multiple scattering,
-///     1 / (pi c_exit) int R_d(|x - y|) E(y) dA,    translucency.md 3.3 and 3.5,
+///     1 / (pi c_exit) int R_d(|x - y|) E(y) dA,    README.md, "Transport",
 /// from `light.points` points for each estimate, chosen as R_d dA is distributed, at equal steps of
 /// its cumulative distribution. `traced` adds up.
 TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const SurfaceLight& light,

@@ -5,8 +5,8 @@
 namespace opaline::bake {
 
 /// Scatterings and reflections of a walk through a body, on average: at albedo 1 eta^2 4 V / (S
-/// mean_free_path escape) (walks.md 3), fewer where walks end by absorption. A body without a
-/// volume is taken for a ball of its area.
+/// mean_free_path escape) (walks/README.md, "The estimator"), fewer where walks end by absorption.
+/// A body without a volume is taken for a ball of its area.
 double count_body_events(const formats::Medium& medium, const MaterialFacts& body);
 
 /// Work of walks from sites, and of the rows of receivers between them.

@@ -16,7 +16,7 @@ struct SiteWeight {
     float weight = 0;
 };
 
-/// Rows between sites by local regression (walks.md 2, [Loader1999]): the row of a receiver is the
+/// Rows between sites by local regression (README.md, [Loader1999]): the row of a receiver is the
 /// constant of the linear function of position and normal that fits the sites around it best.
 class SiteField {
   public:

@@ -37,10 +37,10 @@ std::vector<WalkStart> make_walk_starts(const WalkSpace& space,
                                         std::span<const SurfaceSample> sites,
                                         const Context& context);
 
-/// For each site the mean of its walks' exits, each as the light of a sample nearby: T_0 (walks.md
-/// 1). `subtract(site, rgbx)`, if there is one, subtracts what is known of a row before it is
-/// truncated. No walk is stored. The same bits for any number of threads; incomplete if the context
-/// is cancelled.
+/// For each site the mean of its walks' exits, each as the light of a sample nearby: T_0
+/// (README.md, "The estimator"). `subtract(site, rgbx)`, if there is one, subtracts what is known
+/// of a row before it is truncated. No walk is stored. The same bits for any number of threads;
+/// incomplete if the context is cancelled.
 SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> starts,
                          const ExitLight& light, const SiteRowOptions& options,
                          const std::function<void(std::size_t, std::span<float>)>& subtract,

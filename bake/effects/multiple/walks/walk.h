@@ -64,7 +64,8 @@ struct WalkCounts {
     std::uint64_t endless = 0;  ///< given up after WalkSpace::most_events
     double unfinished = 0;      ///< weight that lost and endless walks still had
 
-    /// The factor by which the walks that ended stand for those that did not (walks.md 4).
+    /// The factor by which the walks that ended stand for those that did not (README.md, "The
+    /// estimator").
     double correction() const {
         const auto all = static_cast<double>(walks);
         return unfinished < 0.5 * all ? all / (all - unfinished) : 1;
@@ -80,9 +81,9 @@ struct WalkOrders {
     std::uint32_t least = 2;
 };
 
-/// Follows one walk backwards from the eye (walks.md 1). The start's direction is that of uniform
-/// light in reverse, with density F_t(c) c over the outer hemisphere, refracted; the sum of the
-/// exits' weights then has the mean of one term for all views,
+/// Follows one walk backwards from the eye (README.md, "The estimator"). The start's direction is
+/// that of uniform light in reverse, with density F_t(c) c over the outer hemisphere, refracted;
+/// the sum of the exits' weights then has the mean of one term for all views,
 ///     T_0 = E[sum of weight V L],    L_o = F_t <T_0, L>,
 /// without energy added or lost: albedo 1 gives 1, less what never scatters. The walk passes
 /// through inner shells of its own medium; where it meets another material it ends, because such

@@ -69,8 +69,8 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
     space.clearance = ClearanceGrid(scene, 0.5f * (space.low + space.high),
                                     0.5f * (space.high - space.low), kCell * diagonal);
     // The mean number of events in a cube of that diagonal as the albedo tends to 1 is
-    // eta^2 4 V / (S mean_free_path escape) (walks.md 3); a hundred times that is no walk that
-    // goes on for good.
+    // eta^2 4 V / (S mean_free_path escape) (README.md, "The estimator"); a hundred times that is
+    // no walk that goes on for good.
     float densest = 0;
     for (const WalkBands& group : space.bands) {
         densest = std::max(densest, group.sigma_t);
