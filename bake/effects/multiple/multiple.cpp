@@ -89,14 +89,20 @@ bool needs_samples(const formats::Material&, const RowLayout& layout) {
 PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
     const Knobs& knobs = inputs.knobs;
     auto samples = std::make_unique<Samples>();
-    samples->stage = prepare_multiple(
-        inputs.bake.scene, inputs.outside(), inputs.bake.rays, inputs.material,
-        profile_of(inputs.own),
-        {knobs.cubemap_size, whole(knobs, kSamples), knobs.is_given(kSamples),
-         knobs[kSamplesPerPath], sample_coefficients(knobs), knobs.seed, !knobs.exact_rays,
-         inputs.layout.bands(), model_of(inputs.own), knobs[kWalksAround], knobs[kWalks],
-         whole(knobs, kSites), knobs[kEpsilon]},
-        inputs.context);
+    samples->stage = prepare_multiple(inputs.bake.scene, inputs.outside(), inputs.bake.rays,
+                                      inputs.material, profile_of(inputs.own),
+                                      {knobs.cubemap_size,
+                                       whole(knobs, kSamples),
+                                       knobs.is_given(kSamples),
+                                       knobs[kSamplesPerPath],
+                                       sample_coefficients(knobs),
+                                       knobs.seed,
+                                       !knobs.exact_rays,
+                                       inputs.layout.bands(),
+                                       model_of(inputs.own),
+                                       {knobs[kWalksAround], knobs[kWalks], whole(knobs, kSites)},
+                                       knobs[kEpsilon]},
+                                      inputs.context);
     rays += samples->stage.rays;
     return samples;
 }

@@ -164,7 +164,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     if (walks) {
         plan =
             plan_sites(area, scene_diagonal(scene, primitives),
-                       transport_mean_free_path(*scene.materials[material].medium), options.sites);
+                       transport_mean_free_path(*scene.materials[material].medium), options.walks);
     }
     const std::array<SparseVectors, 3> moments = std::move(transport.moments);
     SparseVectors light;
@@ -179,8 +179,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
             make_walk_space(scene, bodies.hierarchy(), material, options.bands == 1);
         const bool has_tree = !stage.tree.nodes.empty();
         walk(space, plan, {samples, has_tree ? stage.tree.samples : light, moments},
-             count_walks(plan, area, options.walks_around, options.most_walks), options, context,
-             stage);
+             count_walks(plan, area, options.walks), options, context, stage);
     }
     return stage;
 }

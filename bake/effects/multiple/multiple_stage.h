@@ -43,9 +43,7 @@ struct MultipleOptions {
     bool share_rays = true;   ///< between neighbouring samples
     std::uint32_t bands = 3;  ///< or 1, where those of the medium coincide
     MultipleModel model = MultipleModel::dipole;
-    double walks_around = 0;  ///< a receiver: count_walks
-    double most_walks = 0;    ///< in all
-    std::uint32_t sites = 0;  ///< from which they start, at most
+    WalkBudget walks;
     double tolerance = 1e-3;  ///< GatherOptions, of the dipole at sites
 };
 

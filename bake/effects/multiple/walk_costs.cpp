@@ -22,10 +22,14 @@ double kept(const Knobs& knobs) {
                     static_cast<double>(formats::cubemap_texels(knobs.cubemap_size)));
 }
 
+WalkBudget budget_of(const Knobs& knobs) {
+    return {knobs[kWalksAround], knobs[kWalks], whole(knobs, kSites)};
+}
+
 SitePlan plan_of(const SubjectCost& cost) {
     const double length = transport_mean_free_path(cost.medium());
     const auto diagonal = static_cast<double>(glm::length(cost.facts.high - cost.facts.low));
-    return plan_sites(cost.facts.area, diagonal, length, whole(cost.input.knobs, kSites));
+    return plan_sites(cost.facts.area, diagonal, length, budget_of(cost.input.knobs));
 }
 
 }  // namespace
@@ -55,9 +59,8 @@ Work walks_work(const SubjectCost& cost) {
         return {};
     }
     const SitePlan plan = plan_of(cost);
-    const double walks =
-        std::max(count_walks(plan, cost.facts.area, knobs[kWalksAround], knobs[kWalks]),
-                 static_cast<double>(plan.sites));
+    const double walks = std::max(count_walks(plan, cost.facts.area, budget_of(knobs)),
+                                  static_cast<double>(plan.sites));
     const double entries = kOwnSample * kMomentEntries * kept(knobs) * rates.gather_entry;
     const double dense = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     return {plan.sites * rates.place_sample,

@@ -9,25 +9,29 @@
 
 namespace opaline::bake {
 
-SitePlan plan_sites(double area, double diagonal, double mean_free_path, std::uint32_t most_sites) {
+SitePlan plan_sites(double area, double diagonal, double mean_free_path, const WalkBudget& budget) {
     // In mean free paths, but never wider than the body's own features (RESULTS.md, "Walks").
     constexpr double kRadius = 1.5, kWidest = 0.05, kSpacing = 0.3, kFewestSites = 500;
     constexpr double kLeastRadius = 1.8;  // spacings: ten sites
-    const double wanted = std::min(kRadius * mean_free_path, kWidest * diagonal);
-    const double spacing = kSpacing * wanted;
+    const double widest = kWidest * diagonal;
+    const double wanted = std::min(kRadius * mean_free_path, widest);
+    const double for_walks =
+        std::sqrt(budget.around * area / (std::numbers::pi * std::max(budget.most, 1.0)));
+    const double radius = std::max(wanted, std::min(for_walks, widest));
+    const double spacing = kSpacing * radius;
     const double count = std::clamp(area / (spacing * spacing), kFewestSites,
-                                    std::max(kFewestSites, static_cast<double>(most_sites)));
-    const double apart = std::sqrt(area / count);
+                                    std::max(kFewestSites, static_cast<double>(budget.sites)));
     SitePlan plan;
     plan.sites = static_cast<std::uint32_t>(count);
-    plan.radius = std::max(wanted, kLeastRadius * apart);
+    plan.radius = std::max(radius, kLeastRadius * std::sqrt(area / count));
     plan.is_residual = plan.radius > 1.5 * wanted;
     return plan;
 }
 
-double count_walks(const SitePlan& plan, double area, double around, double most) {
+double count_walks(const SitePlan& plan, double area, const WalkBudget& budget) {
     const double part = std::numbers::pi * plan.radius * plan.radius;
-    return part > 0 ? std::min(most, around * std::max(1.0, area / part)) : most;
+    return part > 0 ? std::min(budget.most, budget.around * std::max(1.0, area / part))
+                    : budget.most;
 }
 
 std::vector<SurfaceSample> place_sites(const WalkSpace& space, const SitePlan& plan,

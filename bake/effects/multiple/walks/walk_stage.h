@@ -21,12 +21,19 @@ struct SitePlan {
     bool is_residual = false;
 };
 
-/// `area` [m^2] and `diagonal` [m] of the body; `mean_free_path` [m] > 0 (walk_space.h).
-SitePlan plan_sites(double area, double diagonal, double mean_free_path, std::uint32_t most_sites);
+/// What walks may cost.
+struct WalkBudget {
+    double around = 0;        ///< walks within the radius of each receiver
+    double most = 0;          ///< in all, at most
+    std::uint32_t sites = 0;  ///< from which they start, at most
+};
 
-/// Walks in all, for `around` of them within the radius of a receiver, but `most` at most. `area`
-/// [m^2] of the body.
-double count_walks(const SitePlan& plan, double area, double around, double most);
+/// `area` [m^2] and `diagonal` [m] of the body; `mean_free_path` [m] > 0 (walk_space.h). Where the
+/// budget is too small for as many walks around each receiver, the radius grows.
+SitePlan plan_sites(double area, double diagonal, double mean_free_path, const WalkBudget& budget);
+
+/// Walks in all. `area` [m^2] of the body.
+double count_walks(const SitePlan& plan, double area, const WalkBudget& budget);
 
 /// Rows at sites, from which those of receivers follow.
 struct WalkStage {
