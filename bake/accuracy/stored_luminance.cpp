@@ -57,7 +57,7 @@ std::vector<float> view_from_far(const RowLayout& layout, float eta, formats::Ve
 std::vector<float> view_of_rows(const RowLayout& layout, glm::vec3 normal) {
     std::vector<float> h(layout.terms(), 1.0f);
     const std::size_t first = layout.first_harmonic();
-    if (layout.harmonics > 0) {
+    if (layout.all_harmonics() > 0) {
         runtime::eval_view_terms(to_vec3(normal), std::span(h).subspan(first));
     }
     return h;

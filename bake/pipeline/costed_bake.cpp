@@ -16,13 +16,14 @@ void for_each_growth(const CostedBake& bake, const CostedSubject& subject, Visit
     const EffectTable& effects = bake.request.effects;
     RowLayout grown = subject.layout;
     grown.constant = false;
-    grown.harmonics = 0;
+    grown.harmonics = grown.view_harmonics = 0;
     for (PlanEntry& entry : subject.decisions) {
         const RowLayout before = grown;
         RowLayout after = grown;
         rule_of(effects, entry).lay_out(entry, after);
         grown.constant = after.constant;
         grown.harmonics = after.harmonics;
+        grown.view_harmonics = std::min(after.view_harmonics, subject.layout.view_harmonics);
         visit(entry, before, grown);
     }
 }

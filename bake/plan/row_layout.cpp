@@ -9,7 +9,7 @@ namespace opaline::bake {
 
 double RowLayout::view_of_constant() const {
     // Y_00 where the row is one of several harmonics, 1 where it stands alone.
-    return !separate && harmonics > 1 ? 0.5 * std::numbers::inv_sqrtpi : 1.0;
+    return !separate && all_harmonics() > 1 ? 0.5 * std::numbers::inv_sqrtpi : 1.0;
 }
 
 RowLayout layout_material(const EffectTable& effects, const formats::Material& material,
@@ -19,8 +19,11 @@ RowLayout layout_material(const EffectTable& effects, const formats::Material& m
     for (const PlanEntry& entry : decisions) {
         rule_of(effects, entry).lay_out(entry, layout);
     }
+    if (knobs.separate_terms || layout.at_entry || !layout.constant) {
+        layout.view_harmonics = 0;
+    }
     // A row for all views that stands alone is marked as such in the file.
-    layout.separate = layout.translucent && (knobs.separate_terms || layout.harmonics == 0);
+    layout.separate = layout.translucent && (knobs.separate_terms || layout.all_harmonics() == 0);
     layout.at_entry = layout.at_entry && layout.translucent && layout.has_rows();
     layout.grey = layout.grey && layout.translucent;
     return layout;

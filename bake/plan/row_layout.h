@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,15 +17,19 @@ struct RowLayout {
     bool occluded = false;     ///< visibility is traced
     bool constant = false;     ///< some effect fills a row that is the same for all views
     std::uint32_t harmonics = 0;  ///< rows that are seen through spherical harmonics: 0, 1, 4 … 25
-    bool at_entry = false;        ///< light leaves the medium where it entered
-    bool separate = false;        ///< the row for all views stands apart from the harmonics
-    bool grey = false;            ///< the three bands coincide: one stands for them
-    bool mirrors = false;         ///< its surface mirrors light: needs openness
-    formats::Rgb tint{1, 1, 1};   ///< times the base colour
+    std::uint32_t view_harmonics = 0;  ///< of these, filled by what `constant` says: 0 or 4
+    bool at_entry = false;             ///< light leaves the medium where it entered
+    bool separate = false;             ///< the row for all views stands apart from the harmonics
+    bool grey = false;                 ///< the three bands coincide: one stands for them
+    bool mirrors = false;              ///< its surface mirrors light: needs openness
+    formats::Rgb tint{1, 1, 1};        ///< times the base colour
 
     bool has_rows() const { return constant || harmonics > 0; }
     /// Rows of a receiver, at least one: a receiver without any is black.
-    std::uint32_t terms() const { return separate ? 1 + harmonics : harmonics > 1 ? harmonics : 1; }
+    std::uint32_t terms() const {
+        return separate ? 1 + all_harmonics() : std::max(all_harmonics(), 1u);
+    }
+    std::uint32_t all_harmonics() const { return std::max(harmonics, view_harmonics); }
     std::uint32_t bands() const { return translucent && !grey ? 3 : 1; }
     /// Row of the first harmonic.
     std::uint32_t first_harmonic() const { return separate ? 1 : 0; }

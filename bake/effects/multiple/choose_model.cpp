@@ -96,12 +96,12 @@ bool is_fixed(const formats::Medium& medium) {
            medium.fidelity == formats::Medium::Fidelity::paper;
 }
 
+}  // namespace
+
 std::string percent(double error) {
     const std::string text = std::to_string(1e-1 * std::round(1e3 * error));
     return text.substr(0, text.find('.') + 2) + " %";
 }
-
-}  // namespace
 
 double allowed_model_error(Quality quality) {
     return quality == Quality::reference    ? 0.005

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/plan/effect.h"
 
 namespace opaline::bake {
+
+/// A share in words, "3.1 %".
+std::string percent(double error);
 
 /// Relative RMS that the dipole's model may err by where no model is asked for: of draft and
 /// preview infinite, they are for the eye.

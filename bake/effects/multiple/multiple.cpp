@@ -14,6 +14,7 @@
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/true_multiple.h"
+#include "bake/effects/multiple/view_terms.h"
 #include "bake/effects/multiple/walks/true_walks.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/truth/true_irradiance.h"
@@ -28,11 +29,17 @@ void lay_out(const PlanEntry& entry, RowLayout& layout) {
 // Another model fills the same rows.
 void lay_out_model(const PlanEntry&, RowLayout&) {}
 
-constexpr std::array<DecisionRule, 2> kRules{
+void lay_out_views(const PlanEntry& entry, RowLayout& layout) {
+    layout.view_harmonics = entry.on ? entry.terms : 0;
+}
+
+constexpr std::array<DecisionRule, 3> kRules{
     {{"multiple", has_medium, decide_multiple, lay_out},
-     {"multiple.model", has_medium, decide_model, lay_out_model}}};
-constexpr std::array<const KnobSpec*, 7> kKnobs{
-    &kMultipleModel, &kSamples, &kSamplesPerPath, &kWalksAround, &kWalks, &kSites, &kEpsilon};
+     {"multiple.model", has_medium, decide_model, lay_out_model},
+     {"multiple.view", has_medium, decide_views, lay_out_views}}};
+constexpr std::array<const KnobSpec*, 8> kKnobs{&kMultipleModel,  &kViewTerms,   &kSamples,
+                                                &kSamplesPerPath, &kWalksAround, &kWalks,
+                                                &kSites,          &kEpsilon};
 
 // A pilot tries the tolerance; samples are refined round by round.
 constexpr std::array<PilotLadder::Setting, 1> kFinest{{{&kEpsilon, 3e-5}}};
@@ -101,38 +108,53 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        inputs.layout.bands(),
                                        model_of(inputs.own),
                                        {knobs[kWalksAround], knobs[kWalks], whole(knobs, kSites)},
-                                       knobs[kEpsilon]},
+                                       knobs[kEpsilon],
+                                       inputs.layout.view_harmonics > 0},
                                       inputs.context);
     rays += samples->stage.rays;
     return samples;
 }
 
+// Adds factor * sums, four floats per texel (one with one band), to a row of `to`.
+void add_sums(std::span<const float> sums, float factor, std::uint32_t row, const DenseRow& to) {
+    const std::size_t step = to.bands == 1 ? 1 : 4;
+    for (std::uint32_t band = 0; band < to.bands; ++band) {
+        const std::span<float> plane = to.plane(row, band);
+        for (std::size_t k = 0; k < plane.size(); ++k) {
+            plane[k] += factor * sums[step * k + band];
+        }
+    }
+}
+
+// T_d + sum of (w' - m n)_k R_k as harmonics of the view w': Y_00 and Y_1 = sqrt(3) Y_00 (y, z, x).
+void add_views(const MultipleStage& stage, const GatherReceiver& receiver, float scale,
+               const RowLayout& layout, const DenseRow& row) {
+    constexpr std::array<int, 3> kAxis{1, 2, 0};
+    constexpr double kFirst = 0.5 * std::numbers::sqrt3 * std::numbers::inv_sqrtpi;
+    const glm::vec3 normal = receiver.inside.normal;
+    const auto mean = static_cast<float>(make_view_lobe(stage.medium.eta).mean);
+    std::vector<float> rows(3 * (row.bands == 1 ? 1 : 4) * row.size());
+    gather_views(stage, receiver.inside.position, normal, rows);
+    const std::size_t size = rows.size() / 3;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+        const int axis = kAxis[k];
+        const auto own = std::span(rows).subspan(static_cast<std::size_t>(axis) * size, size);
+        add_sums(own, scale / static_cast<float>(kFirst), layout.first_harmonic() + 1 + k, row);
+        add_sums(own, -mean * normal[axis] * scale / static_cast<float>(layout.view_of_constant()),
+                 0, row);
+    }
+}
+
 // T_0 += T_d / (pi c_exit h_0).
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const MultipleStage& stage = static_cast<const Samples&>(*inputs.own.samples).stage;
-    const auto scale = static_cast<float>(
-        1 / (std::numbers::pi * stage.medium.exit * inputs.layout.view_of_constant()));
-    const std::size_t size = row.size();
-    const auto gather = [&](std::span<float> sums) {
-        gather_multiple_row(stage, receiver.inside.position, receiver.inside.normal,
-                            inputs.knobs[kEpsilon], row.bands, sums);
-    };
-    if (row.bands == 1) {
-        std::vector<float> sums(size);
-        gather(sums);
-        const std::span<float> to = row.plane(0, 0);
-        for (std::size_t k = 0; k < size; ++k) {
-            to[k] += scale * sums[k];
-        }
-        return 0;
-    }
-    std::vector<float> rgbx(4 * size);
-    gather(rgbx);
-    const std::array<std::span<float>, 3> to{row.plane(0, 0), row.plane(0, 1), row.plane(0, 2)};
-    for (std::size_t k = 0; k < size; ++k) {
-        for (std::size_t band = 0; band < to.size(); ++band) {
-            to[band][k] += scale * rgbx[4 * k + band];
-        }
+    const double scale = 1 / (std::numbers::pi * stage.medium.exit);
+    std::vector<float> sums((row.bands == 1 ? 1 : 4) * row.size());
+    gather_multiple_row(stage, receiver.inside.position, receiver.inside.normal,
+                        inputs.knobs[kEpsilon], row.bands, sums);
+    add_sums(sums, static_cast<float>(scale / inputs.layout.view_of_constant()), 0, row);
+    if (inputs.layout.view_harmonics > 0) {
+        add_views(stage, receiver, static_cast<float>(scale), inputs.layout, row);
     }
     return 0;
 }
@@ -203,10 +225,11 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
     const MultipleModel model = model_of(inputs.own);
     TwoEstimates walked, dipole;
     if (model != MultipleModel::dipole) {
-        walked = walk_to_lights(truth.space,
-                                {inputs.bake.rays, truth.suns, truth.smooth, truth.lobe,
-                                 profile_of(inputs.own).exit, truth.points},
-                                receiver.inside, {}, inputs.knobs.seed, receiver.key, rays);
+        walked = walk_to_lights(
+            truth.space,
+            {inputs.bake.rays, truth.suns, truth.smooth, truth.lobe, profile_of(inputs.own).exit,
+             truth.points, inputs.layout.view_harmonics > 0},
+            receiver.inside, {}, inputs.knobs.seed, receiver.key, rays);
     }
     if (model != MultipleModel::walks) {
         dipole = integrate_multiple(

@@ -12,6 +12,13 @@ namespace multiple_knobs {
 inline bool carries_light(const RowLayout& layout, std::span<const PlanEntry>) {
     return layout.translucent && layout.constant && !layout.at_entry;
 }
+inline bool is_walked(const RowLayout& layout, std::span<const PlanEntry> decisions) {
+    return carries_light(layout, decisions) &&
+           std::ranges::any_of(decisions, [](const PlanEntry& entry) {
+               return entry.on && entry.name == "multiple.model";
+           });
+}
+inline constexpr std::array<double, 2> kViewCounts{1, 4};
 inline constexpr const char* kWhyIdle = "no medium carries light across itself";
 
 // More than one sample a path is worth it below 3 %: a pilot of one would be for nothing.
@@ -73,6 +80,23 @@ inline constexpr KnobSpec kMultipleModel{
     .preset = {0, 0, 0, 0},
     .matters = multiple_knobs::carries_light,
     .why_idle = multiple_knobs::kWhyIdle};
+
+/// Rows of a receiver that say how light scattered many times changes with the view.
+inline constexpr KnobSpec kViewTerms{
+    .name = "view_terms",
+    .option = "--view-terms",
+    .placeholder = "K",
+    .help =
+        "rows of a receiver for light scattered many times that random walks follow: 1, the same "
+        "for all views, or 4; default: as many as the body and the quality ask for",
+    .lowest = 1,
+    .highest = 4,
+    .zero_is_auto = true,
+    .allowed = multiple_knobs::kViewCounts,
+    .preset = {0, 0, 0, 0},
+    .label = "K = %g",
+    .matters = multiple_knobs::is_walked,
+    .why_idle = "no medium's light is followed by random walks"};
 
 /// Random walks around each receiver: within the radius of sites that its row is fitted to.
 inline constexpr KnobSpec kWalksAround{.name = "walks_around",

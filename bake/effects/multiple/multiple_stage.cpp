@@ -99,6 +99,7 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
                                   walks,
                                   {.cubemap_size = options.cubemap_size,
                                    .kept = scales ? 6 : options.kept,
+                                   .views = options.by_view && !scales ? 4u : 1u,
                                    .bands = options.bands,
                                    .seed = options.seed,
                                    .orders = {}}};
@@ -196,6 +197,15 @@ void gather_multiple_row(const MultipleStage& stage, glm::vec3 position, glm::ve
         // A walked row is T_d / (pi c_exit).
         add_walked_row(stage.walks, position, normal,
                        static_cast<float>(std::numbers::pi * stage.medium.exit), rgbx);
+    }
+}
+
+void gather_views(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
+                  std::span<float> rows) {
+    std::ranges::fill(rows, 0.0f);
+    if (stage.model == MultipleModel::walks) {
+        add_walked_views(stage.walks, position, normal,
+                         static_cast<float>(std::numbers::pi * stage.medium.exit), rows);
     }
 }
 

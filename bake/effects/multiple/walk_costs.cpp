@@ -61,13 +61,19 @@ Work walks_work(const SubjectCost& cost) {
     const SitePlan plan = plan_of(cost);
     const double walks = std::max(count_walks(plan, cost.facts.area, budget_of(knobs)),
                                   static_cast<double>(plan.sites));
+<<<<<<< HEAD
     const double entries = kOwnSample * kMomentEntries * kept(knobs) * rates.gather_entry;
+=======
+    const bool by_view = cost.layout.view_harmonics > 0;
+    const double entries =
+        kOwnSample * (kMomentEntries + (by_view ? 3 : 0)) * kept(knobs) * rates.gather_entry;
+>>>>>>> 113402d (WIP: rows by view for random walks)
     const double dense = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     return {plan.sites * rates.place_sample,
             walks * (count_body_events(cost.medium(), cost.facts) *
                          rates.body_event.at(cost.input.triangles) +
                      kExitsPerWalk * (rates.walk_exit + entries)) +
-                plan.sites * dense * rates.truncate_texel};
+                plan.sites * (by_view ? 4 : 1) * dense * rates.truncate_texel};
 }
 
 Work walked_rows_work(const SubjectCost& cost) {
@@ -79,8 +85,11 @@ Work walked_rows_work(const SubjectCost& cost) {
                                       std::max(cost.facts.area, 1e-300),
                                   static_cast<double>(plan.sites));
     const Rates& rates = cost.input.rates;
+    // By view: four times as many sites, of each three rows with a quarter of the entries.
+    const double view = cost.layout.view_harmonics > 0 ? 4 : 0;
     return {0, cost.receivers * sites *
-                   (rates.site_weight + kept(cost.input.knobs) * rates.gather_entry)};
+                   ((1 + view) * rates.site_weight +
+                    (1 + 0.75 * view) * kept(cost.input.knobs) * rates.gather_entry)};
 }
 
 }  // namespace opaline::bake

@@ -80,7 +80,10 @@ PreparedPtr gather_batch(const EffectInputs& inputs, std::span<const BodyPoint> 
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const SingleBatch& batch = static_cast<const Batch&>(*receiver.batch).batch;
     const std::uint32_t m = stage_of(*inputs.own.prepared).directions.cubemap_size;
-    add_single(batch, receiver.place, m, inputs.layout.first_harmonic(), row);
+    // h = 1 of one term becomes h_0 where there are rows of other harmonics.
+    const double view = inputs.layout.harmonics == 1 ? inputs.layout.view_of_constant() : 1.0;
+    add_single(batch, receiver.place, m, inputs.layout.first_harmonic(),
+               static_cast<float>(1 / view), row);
     return 0;
 }
 

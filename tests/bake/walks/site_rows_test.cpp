@@ -126,8 +126,8 @@ TEST(SiteRows, SubtractedRowsAreLeftOut) {
     const bake::WalkStage whole = take(1), half = take(0.5f);
     ASSERT_FALSE(whole.rows.blocks.empty());
     std::vector<float> a(formats::cubemap_texels(kCubemap)), b(a.size());
-    bake::add_site_row(whole.rows, 7, 0.5f, a);
-    bake::add_site_row(half.rows, 7, 1, b);
+    bake::add_site_row(whole.rows, 7, 0, 0.5f, a);
+    bake::add_site_row(half.rows, 7, 0, 1, b);
     EXPECT_EQ(a, b);
 }
 

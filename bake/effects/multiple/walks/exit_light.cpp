@@ -13,6 +13,13 @@ namespace {
 
 using Float4 = float __attribute__((vector_size(16)));
 
+void add_to(float* to, Float4 value) {
+    Float4 sum;
+    std::memcpy(&sum, to, sizeof sum);
+    sum += value;
+    std::memcpy(to, &sum, sizeof sum);
+}
+
 std::vector<SurfacePoint> points_of(std::span<const SurfaceSample> samples) {
     std::vector<SurfacePoint> points;
     points.reserve(samples.size());
@@ -32,9 +39,9 @@ float cell_size(std::span<const SurfaceSample> samples) {
     return each > 0 ? static_cast<float>(1.5 * std::sqrt(each)) : 1.0f;
 }
 
-}  // namespace
-
-ExitLobe make_exit_lobe(double eta) {
+// Moments of a function of the cosine c under p = F_t c / (pi c_exit).
+template <class Cosine>
+ExitLobe fit_lobe(double eta, Cosine&& cosine) {
     const GaussLegendre rule = make_gauss_legendre(64);
     double sum = 0, first = 0, second = 0;
     // Below eta = 1 nothing enters beyond the critical angle; the rule covers the rest.
@@ -42,15 +49,26 @@ ExitLobe make_exit_lobe(double eta) {
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
         const double c = least + (1 - least) * rule.node[i];
         const double p = rule.weight[i] * c * fresnel_transmittance(c, eta);
+        const double value = cosine(c);
         sum += p;
-        first += p * c;
-        second += p * c * c;
+        first += p * value;
+        second += p * value * value;
     }
     ExitLobe lobe;
     lobe.mean = first / sum;
     lobe.variance = second / sum - lobe.mean * lobe.mean;
     lobe.across = 0.5 * (1 - second / sum);
     return lobe;
+}
+
+}  // namespace
+
+ExitLobe make_exit_lobe(double eta) {
+    return fit_lobe(eta, [](double c) { return c; });
+}
+
+ExitLobe make_view_lobe(double eta) {
+    return fit_lobe(eta, [eta](double c) { return refracted_cosine(c, eta); });
 }
 
 glm::vec4 ExitLobe::eval(glm::vec3 normal, glm::vec3 exit) const {
@@ -117,11 +135,23 @@ void ExitLight::add(std::uint32_t sample, const std::array<glm::vec4, 3>& factor
                         : (*moments_)[static_cast<std::size_t>(vector - 1)][sample];
         const Float4 factor{factors[0][vector], factors[1][vector], factors[2][vector], 0};
         for (std::size_t i = 0; i < entries.index.size(); ++i) {
-            float* const to = &rgbx[4 * std::size_t{entries.index[i]}];
-            Float4 sum;
-            std::memcpy(&sum, to, sizeof sum);
-            sum += factor * entries.value[i];
-            std::memcpy(to, &sum, sizeof sum);
+            add_to(&rgbx[4 * std::size_t{entries.index[i]}], factor * entries.value[i]);
+        }
+    }
+}
+
+void ExitLight::add_views(std::uint32_t sample, const std::array<glm::vec3, 3>& weight,
+                          std::span<float> rows) const {
+    const SurfaceSample& s = samples_[sample];
+    const float scale = s.area > 0 ? scale_ / s.area : 0;
+    const SparseVector entries = light_[sample];
+    const std::size_t size = rows.size() / 3;
+    for (int row = 0; row < 3; ++row) {
+        const Float4 factor{scale * weight[0][row], scale * weight[1][row], scale * weight[2][row],
+                            0};
+        float* const to = &rows[static_cast<std::size_t>(row) * size];
+        for (std::size_t i = 0; i < entries.index.size(); ++i) {
+            add_to(&to[4 * std::size_t{entries.index[i]}], factor * entries.value[i]);
         }
     }
 }

@@ -15,6 +15,7 @@ namespace {
 struct SampleExit {
     std::uint32_t sample = 0;
     std::array<glm::vec4, 3> factors{};  // per band
+    std::array<glm::vec3, 3> views{};    // per band, of the rows by view
 };
 
 class SiteWalker {
@@ -23,18 +24,23 @@ class SiteWalker {
         : space_(space),
           light_(light),
           options_(options),
-          dense_(4 * std::size_t{formats::cubemap_texels(options.cubemap_size)}) {}
+          view_lobe_(make_view_lobe(static_cast<double>(space.eta))),
+          dense_(4 * options.views * std::size_t{formats::cubemap_texels(options.cubemap_size)}) {}
 
-    // The dense row of one site.
+    // The dense rows of one site.
     std::span<float> walk(const WalkStart& start, std::uint32_t site, WalkCounts& counts) {
         std::fill(dense_.begin(), dense_.end(), 0.0f);
         std::uint32_t number = 0;
         for (const WalkBands& bands : space_.bands) {
             exits_.clear();
+            seen_.clear();
             WalkCounts own;
             for (std::uint32_t w = 0; w < options_.walks_per_site; ++w) {
                 WalkRandom random({options_.seed, RandomStage::body_walk, site, number++});
-                follow_walk(space_, bands, start, options_.orders, random, exits_, own);
+                const glm::vec3 seen =
+                    follow_walk(space_, bands, start, options_.orders, random, exits_, own);
+                const glm::vec4 view = view_lobe_.eval(start.normal, seen);
+                seen_.resize(exits_.size(), {view.y, view.z, view.w});
             }
             add_exits(static_cast<float>(own.correction() / options_.walks_per_site));
             counts += own;
@@ -46,11 +52,13 @@ class SiteWalker {
     // Exits of one sample are added up before its vectors are read.
     void add_exits(float scale) {
         by_sample_.clear();
-        for (const WalkExit& exit : exits_) {
-            SampleExit to{light_.nearest(exit, around_), {}};
+        for (std::size_t e = 0; e < exits_.size(); ++e) {
+            const WalkExit& exit = exits_[e];
+            SampleExit to{light_.nearest(exit, around_), {}, {}};
             const glm::vec4 factors = scale * light_.factors(to.sample, exit);
             for (std::size_t b = 0; b < 3; ++b) {
                 to.factors[b] = exit.weight[b] * factors;
+                to.views[b] = scale * exit.weight[b] * seen_[e];
             }
             by_sample_.push_back(to);
         }
@@ -62,17 +70,24 @@ class SiteWalker {
             for (; i < by_sample_.size() && by_sample_[i].sample == sum.sample; ++i) {
                 for (std::size_t b = 0; b < 3; ++b) {
                     sum.factors[b] += by_sample_[i].factors[b];
+                    sum.views[b] += by_sample_[i].views[b];
                 }
             }
-            light_.add(sum.sample, sum.factors, dense_);
+            const std::size_t size = dense_.size() / options_.views;
+            light_.add(sum.sample, sum.factors, std::span(dense_).first(size));
+            if (options_.views > 1) {
+                light_.add_views(sum.sample, sum.views, std::span(dense_).subspan(size));
+            }
         }
     }
 
     const WalkSpace& space_;
     const ExitLight& light_;
     const SiteRowOptions& options_;
+    ExitLobe view_lobe_;
     std::vector<float> dense_;
     std::vector<WalkExit> exits_;
+    std::vector<glm::vec3> seen_;  // of each exit, what its walk's view adds to the rows by view
     std::vector<SampleExit> by_sample_;
     std::vector<std::uint32_t> around_;
 };
@@ -133,6 +148,7 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
                          const Context& context, WalkCounts& counts) {
     SiteRows rows;
     rows.bands = options.bands;
+    rows.views = options.views;
     struct Part {
         SiteRows::Block block;
         WalkCounts counts;
@@ -143,12 +159,16 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
             Part part;
             SiteWalker walker(space, light, options);
             for (std::size_t site = range.begin; site < range.end; ++site) {
-                const std::span<float> row =
+                const std::span<float> own =
                     walker.walk(starts[site], static_cast<std::uint32_t>(site), part.counts);
+                const std::size_t size = own.size() / options.views;
                 if (subtract) {
-                    subtract(site, row);
+                    subtract(site, own.first(size));
                 }
-                append_row(part.block, row, options.bands, options.kept);
+                for (std::uint32_t view = 0; view < options.views; ++view) {
+                    append_row(part.block, own.subspan(view * size, size), options.bands,
+                               view == 0 ? options.kept : options.kept / 4);
+                }
             }
             part.block.index.shrink_to_fit();
             part.block.value.shrink_to_fit();
@@ -164,9 +184,10 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
     return rows;
 }
 
-void add_site_row(const SiteRows& rows, std::size_t site, float weight, std::span<float> rgbx) {
+void add_site_row(const SiteRows& rows, std::size_t site, std::uint32_t view, float weight,
+                  std::span<float> rgbx) {
     const SiteRows::Block& block = rows.blocks[site / SiteRows::kPerBlock];
-    const std::size_t i = site % SiteRows::kPerBlock;
+    const std::size_t i = site % SiteRows::kPerBlock * rows.views + view;
     for (std::size_t k = block.offset[i]; k < block.offset[i + 1]; ++k) {
         if (rows.bands == 1) {
             rgbx[block.index[k]] += weight * block.value[k];

@@ -11,21 +11,25 @@
 
 namespace opaline::bake {
 
-/// Rows of sites: Haar vectors with few entries, each with a value per band.
+/// Rows of sites: Haar vectors with few entries, each with a value per band. The first row of a
+/// site is T_0, the mean over views. Three more, if there are four, say how it changes with the
+/// view (README.md, "Views"): seen along w' inside, it is row 0 + sum of (w' - m n)_k row k + 1.
 struct SiteRows {
     struct Block {
-        std::vector<std::uint32_t> offset{0};  ///< sites + 1
+        std::vector<std::uint32_t> offset{0};  ///< rows + 1, site by site
         std::vector<std::uint32_t> index;      ///< ascending within a row
         std::vector<float> value;              ///< `bands` for each index
     };
     static constexpr std::size_t kPerBlock = 16;
     std::vector<Block> blocks;  ///< each of kPerBlock sites, the last of as many or fewer
     std::uint32_t bands = 3;    ///< or 1
+    std::uint32_t views = 1;    ///< rows of a site: 1 or 4
 };
 
 struct SiteRowOptions {
     std::uint32_t cubemap_size = 32;
-    std::uint32_t kept = 128;           ///< entries of a row
+    std::uint32_t kept = 128;           ///< entries of a row; of those by view a quarter
+    std::uint32_t views = 1;            ///< or 4
     std::uint32_t bands = 3;            ///< or 1, where those of the medium coincide
     std::uint32_t walks_per_site = 64;  ///< for each group of bands, >= 1
     std::uint64_t seed = 0;
@@ -46,7 +50,9 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
                          const std::function<void(std::size_t, std::span<float>)>& subtract,
                          const Context& context, WalkCounts& counts);
 
-/// Adds weight * row of a site to `rgbx`, four floats per texel (one with bands = 1).
-void add_site_row(const SiteRows& rows, std::size_t site, float weight, std::span<float> rgbx);
+/// Adds weight * row of a site to `rgbx`, four floats per texel (one with bands = 1). `view` <
+/// rows.views.
+void add_site_row(const SiteRows& rows, std::size_t site, std::uint32_t view, float weight,
+                  std::span<float> rgbx);
 
 }  // namespace opaline::bake

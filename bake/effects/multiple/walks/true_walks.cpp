@@ -47,7 +47,8 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
         shares += share_of(bands, is_grey);
     }
     const WalkStart start{point.inner, point.normal, point.normal,
-                          std::max(1, count_shells(space, point.inner, -point.normal))};
+                          std::max(1, count_shells(space, point.inner, -point.normal)),
+                          light.along_normal};
     std::vector<WalkExit> exits;
     Luminance irradiance(lights);
     std::uint32_t walk = 0;

@@ -16,9 +16,10 @@ struct WalkLight {
     const RayScene& rays;
     const SunRays& suns;
     const SmoothLights& smooth;
-    ExitLobe lobe;            ///< of the medium's boundary
-    double escape = 1;        ///< c_exit
-    std::uint32_t walks = 0;  ///< for each of the two estimates
+    ExitLobe lobe;              ///< of the medium's boundary
+    double escape = 1;          ///< c_exit
+    std::uint32_t walks = 0;    ///< for each of the two estimates
+    bool along_normal = false;  ///< seen so, instead of the mean over all views
 };
 
 /// Luminance that leaves the surface at a receiver toward its normal, less the factor F_t, by light

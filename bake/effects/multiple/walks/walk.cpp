@@ -22,6 +22,9 @@ float transmittance(float cosine, float eta) {
 // Into the half space below both normals. Refracted by the smooth one; where that leads above the
 // facet, by the facet's.
 glm::vec3 start_direction(const WalkSpace& space, const WalkStart& start, WalkRandom& random) {
+    if (start.is_along_normal) {
+        return -start.normal;
+    }
     float cosine = 1, azimuth = 0;
     constexpr int kMostTries = 1000;  // one in a hundred is accepted at the most extreme index
     for (int i = 0; i < kMostTries; ++i) {
@@ -61,22 +64,24 @@ class Walk {
           exits_(exits),
           counts_(counts) {}
 
-    void follow(const WalkStart& start) {
+    glm::vec3 follow(const WalkStart& start) {
         ++counts_.walks;
         position_ = start.position;
         shells_ = start.shells;
         direction_ = start_direction(space_, start, random_);
+        const glm::vec3 seen = -direction_;
         for (std::size_t b = 0; b < 3; ++b) {
             weight_[b] = bands_.member[b] ? 1.0f : 0.0f;
         }
         for (std::uint32_t i = 0; i < space_.most_events; ++i) {
             ++counts_.events;
             if (!(i == 0 ? fly_first() : fly(flight_length()))) {
-                return;
+                return seen;
             }
         }
         ++counts_.endless;
         counts_.unfinished += static_cast<double>(largest_weight());
+        return seen;
     }
 
   private:
@@ -231,10 +236,10 @@ WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
     return *this;
 }
 
-void follow_walk(const WalkSpace& space, const WalkBands& bands, const WalkStart& start,
-                 const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
-                 WalkCounts& counts) {
-    Walk(space, bands, orders, random, exits, counts).follow(start);
+glm::vec3 follow_walk(const WalkSpace& space, const WalkBands& bands, const WalkStart& start,
+                      const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
+                      WalkCounts& counts) {
+    return Walk(space, bands, orders, random, exits, counts).follow(start);
 }
 
 }  // namespace opaline::bake

@@ -38,10 +38,11 @@ class WalkRandom {
 
 /// A point just inside a body from which walks start, and the surface through which they are seen.
 struct WalkStart {
-    glm::vec3 position{0};  ///< [m], inside
-    glm::vec3 normal{0};    ///< unit, outward, of the smooth surface: it refracts
-    glm::vec3 flat{0};      ///< unit, outward, of the facet: walks start below it
-    int shells = 1;         ///< of the medium, around the point
+    glm::vec3 position{0};         ///< [m], inside
+    glm::vec3 normal{0};           ///< unit, outward, of the smooth surface: it refracts
+    glm::vec3 flat{0};             ///< unit, outward, of the facet: walks start below it
+    int shells = 1;                ///< of the medium, around the point
+    bool is_along_normal = false;  ///< seen along the normal, instead of from everywhere
 };
 
 /// Light that a walk finds: what arrives at `position` from outside along `direction` is seen at
@@ -88,9 +89,10 @@ struct WalkOrders {
 /// without energy added or lost: albedo 1 gives 1, less what never scatters. The walk passes
 /// through inner shells of its own medium; where it meets another material it ends, because such
 /// light has met a second surface. At every arrival at the boundary the transmitted part is an exit
-/// and the reflected part goes on. `exits` are appended.
-void follow_walk(const WalkSpace& space, const WalkBands& bands, const WalkStart& start,
-                 const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
-                 WalkCounts& counts);
+/// and the reflected part goes on. `exits` are appended. Returns the direction inside, away from
+/// the body, in which the walk is seen.
+glm::vec3 follow_walk(const WalkSpace& space, const WalkBands& bands, const WalkStart& start,
+                      const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
+                      WalkCounts& counts);
 
 }  // namespace opaline::bake

@@ -61,6 +61,10 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
         static_cast<std::uint32_t>(std::clamp(std::round(options.walks / runs), 1.0, 1e6));
     stage.rows = walk_from_sites(space, starts, light, rows, subtract, context, stage.counts);
     stage.field = SiteField(sites, static_cast<float>(options.radius));
+    if (options.rows.views > 1) {
+        constexpr double kWider = 2;
+        stage.view_field = SiteField(sites, static_cast<float>(kWider * options.radius));
+    }
     return stage;
 }
 
@@ -72,7 +76,22 @@ void add_walked_row(const WalkStage& stage, glm::vec3 position, glm::vec3 normal
     std::vector<SiteWeight> weights;
     stage.field.weigh(position, normal, weights);
     for (const SiteWeight& w : weights) {
-        add_site_row(stage.rows, w.site, scale * w.weight, rgbx);
+        add_site_row(stage.rows, w.site, 0, scale * w.weight, rgbx);
+    }
+}
+
+void add_walked_views(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
+                      std::span<float> rows) {
+    if (stage.rows.blocks.empty()) {
+        return;
+    }
+    std::vector<SiteWeight> weights;
+    stage.view_field.weigh(position, normal, weights);
+    const std::size_t size = rows.size() / 3;
+    for (const SiteWeight& w : weights) {
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            add_site_row(stage.rows, w.site, k + 1, scale * w.weight, rows.subspan(k * size, size));
+        }
     }
 }
 

@@ -37,7 +37,7 @@ double count_walks(const SitePlan& plan, double area, const WalkBudget& budget);
 
 /// Rows at sites, from which those of receivers follow.
 struct WalkStage {
-    SiteField field;
+    SiteField field, view_field;  ///< the latter of rows by view: they vary less and are noisier
     SiteRows rows;
     WalkCounts counts;
 };
@@ -61,5 +61,10 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
 /// Adds the row of a receiver, T_0, times `scale`, to four floats per texel (one with one band).
 void add_walked_row(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
                     std::span<float> rgbx);
+
+/// Adds the three rows of a receiver that say how T_0 changes with the view (SiteRows), times
+/// `scale`, to three rows that stand one after the other. Precondition: the sites have them.
+void add_walked_views(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
+                      std::span<float> rows);
 
 }  // namespace opaline::bake

@@ -1,0 +1,51 @@
+#include "bake/effects/multiple/view_terms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "bake/effects/multiple/choose_model.h"
+#include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/thin_parts.h"
+#include "bake/effects/multiple/walks/walk_space.h"
+
+namespace opaline::bake {
+
+double one_view_error(const formats::Medium& medium, const MaterialFacts& body) {
+    constexpr double kShare = 0.5, kMost = 0.3;  // measured: 0.47, 0.42, 0.56 at chords of 7, 3, 70
+    const double length = transport_mean_free_path(medium);
+    const double chord =
+        body.is_closed() && body.area > 0 ? 4 * std::abs(body.volume) / body.area : 0;
+    return length > 0 && chord > 0 ? std::min(kMost, kShare * length / chord) : kMost;
+}
+
+PlanEntry decide_views(const PlanInput& input) {
+    const formats::Medium& medium = *input.material.medium;
+    const PlanEntry& model = input.earlier.back();
+    const PlanEntry& effect = input.earlier[input.earlier.size() - 2];
+    const auto asked = static_cast<MultipleModel>(whole(input.knobs, kMultipleModel));
+    const auto given = whole(input.knobs, kViewTerms);
+    const double error = one_view_error(medium, input.subject);
+    const double allowed = 1.5 * allowed_model_error(input.knobs.quality);
+    PlanEntry entry;
+    entry.alternative = true;
+    entry.least_terms = 4;
+    entry.terms = 1;
+    entry.bound = effect.on ? error * effect.bound : 0;
+    if (!effect.on || !model.on || asked == MultipleModel::scaled) {
+        entry.reason = "one row for all views: no random walks";
+    } else if (input.knobs.separate_terms) {
+        entry.reason = "one row for all views stands apart, as --separate-terms says";
+    } else if (given == 0 && error <= allowed) {
+        entry.reason = "one row for all views errs by some " + percent(error);
+    } else if (given == 1) {
+        entry.reason = "one row for all views, as --view-terms says";
+    } else {
+        entry.on = true;
+        entry.terms = 4;
+        entry.reason = "4 rows: one for all views would err by some " + percent(error);
+    }
+    return entry;
+}
+
+}  // namespace opaline::bake

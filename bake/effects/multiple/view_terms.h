@@ -1,0 +1,15 @@
+#pragma once
+
+#include "bake/plan/plan_input.h"
+
+namespace opaline::bake {
+
+/// Relative RMS that one row for all views errs by, over the views: an estimate from the body's
+/// mean chord in transport mean free paths (walks/README.md, "Views").
+double one_view_error(const formats::Medium& medium, const MaterialFacts& body);
+
+/// The rule `multiple.view`: 4 rows where random walks are expected and one row for all views would
+/// err by more than half as much again as the model may. After the rule `multiple.model`.
+PlanEntry decide_views(const PlanInput& input);
+
+}  // namespace opaline::bake
