@@ -5,6 +5,7 @@
 #include "bake/accuracy/check_model.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "tests/support/media_bake.h"
+#include "tests/support/sheets.h"
 
 namespace opaline::bake {
 namespace {
@@ -32,7 +33,7 @@ const PlanEntry& entry_of(const BakeResult& baked, std::string_view name) {
 }
 
 // Multiple scattering alone, under white: the reference converges fast.
-double model_error(const tests::Scene& scene, const BakeOptions& options) {
+auto model_errors(const tests::Scene& scene, const BakeOptions& options) {
     ModelCheckOptions check;
     check.simulated = TermSet::multiple;
     check.receivers = 24;
@@ -40,7 +41,11 @@ double model_error(const tests::Scene& scene, const BakeOptions& options) {
     const BakeResult baked = tests::bake_scene(scene, options);
     const auto report = check_model(scene, baked.asset.view(), check, {});
     EXPECT_TRUE(report);
-    return report.value().by_light.front().rms_relative;
+    return report.value().by_light.front();
+}
+
+double model_error(const tests::Scene& scene, const BakeOptions& options) {
+    return model_errors(scene, options).rms_relative;
 }
 
 TEST(WalkModel, BallOfAFewMeanFreePathsIsAsBrightAsPathTracedWhereTheDipoleIsNot) {
@@ -101,6 +106,62 @@ TEST(WalkModel, AutoKeepsTheDipoleInPreviewAndWhereAMediumNamesItsProfile) {
     options.quality = Quality::production;
     medium.profile = formats::Medium::Profile::classic;
     EXPECT_EQ(entry().reason, "dipole: the medium names its profile");
+}
+
+// A sheet of one mean free path is darker seen along its normal than aslant.
+TEST(WalkModel, ThinSheetSeenAlongItsNormalIsAsBrightAsPathTracedWithFourRowsAndNotWithOne) {
+    const tests::Scene sheet = tests::make_translucent_scene(tests::make_sheet(0.3f, 6, 6),
+                                                             tests::make_grey_medium(3, 0.3f, 1));
+    BakeOptions one = bake_by(kWalked), four = one;
+    one.set(kViewTerms, 1);
+    four.set(kViewTerms, 4);
+    // The mean over receivers: its noise is small.
+    EXPECT_GT(model_errors(sheet, one).bias, 0.15);
+    EXPECT_NEAR(model_errors(sheet, four).bias, 0, 0.05);
+}
+
+TEST(WalkModel, RowsByViewAreTakenWhereTheBodyIsThinAndTheQualityAsks) {
+    const auto entry = [](float sigma_t, const BakeOptions& options) {
+        return entry_of(
+            tests::bake_scene(tests::make_translucent_scene(
+                                  {tests::make_sphere(2)},
+                                  tests::make_grey_medium(0.9f * sigma_t, 0.1f * sigma_t)),
+                              options),
+            "multiple.view");
+    };
+    BakeOptions options = bake_by(kWalked, 20000);
+    EXPECT_EQ(entry(3, options).terms, 1u) << "preview";
+    options.quality = Quality::production;
+    EXPECT_EQ(entry(1, options).terms, 4u);
+    EXPECT_EQ(entry(5, options).terms, 1u);
+    EXPECT_EQ(entry(3000, options).terms, 1u);
+    BakeOptions apart = options;
+    apart.separate_terms = true;
+    EXPECT_THAT(entry(3, apart).reason, HasSubstr("--separate-terms"));
+    options.set(kMultipleModel, kScaled);
+    EXPECT_EQ(entry(3, options).terms, 1u) << "no walks by view";
+}
+
+// Single scattering has one row; among four it is seen through another factor.
+TEST(WalkModel, RowsByViewAddUpWithThoseOfSingleScattering) {
+    const tests::Scene ball = tests::make_translucent_scene({tests::make_sphere(2)},
+                                                            tests::make_grey_medium(2.97f, 0.03f));
+    const auto relit = [&](std::vector<std::string> effects) {
+        BakeOptions options = bake_by(kWalked, 20000);
+        options.effects = std::move(effects);
+        options.coefficients = kAllCoefficients;
+        options.set(kViewTerms, 4);
+        const BakeResult baked = tests::bake_scene(ball, options);
+        return tests::relight(baked.asset.view(), "studio");
+    };
+    const auto both = relit({"multiple", "single"}), multiple = relit({"multiple"}),
+               single = relit({"single"});
+    double difference = 0, sum = 0;
+    for (std::size_t v = 0; v < both.size(); ++v) {
+        difference += std::abs(static_cast<double>(both[v].g - multiple[v].g - single[v].g));
+        sum += static_cast<double>(both[v].g);
+    }
+    EXPECT_LT(difference, 0.005 * sum) << "quantisation";
 }
 
 TEST(WalkModel, BytesDoNotDependOnTheNumberOfThreads) {

@@ -61,13 +61,9 @@ Work walks_work(const SubjectCost& cost) {
     const SitePlan plan = plan_of(cost);
     const double walks = std::max(count_walks(plan, cost.facts.area, budget_of(knobs)),
                                   static_cast<double>(plan.sites));
-<<<<<<< HEAD
-    const double entries = kOwnSample * kMomentEntries * kept(knobs) * rates.gather_entry;
-=======
     const bool by_view = cost.layout.view_harmonics > 0;
     const double entries =
         kOwnSample * (kMomentEntries + (by_view ? 3 : 0)) * kept(knobs) * rates.gather_entry;
->>>>>>> 113402d (WIP: rows by view for random walks)
     const double dense = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     return {plan.sites * rates.place_sample,
             walks * (count_body_events(cost.medium(), cost.facts) *

@@ -28,5 +28,15 @@ TEST(ViewOfRows, HasOneFactorForEachRowWhateverTheLayout) {
     EXPECT_NEAR(apart[2], kY1, 1e-6);
 }
 
+TEST(ViewOfRows, OneHarmonicOfOneEffectStandsAmongTheFourOfAnother) {
+    RowLayout layout = make_layout(1, false);
+    layout.view_harmonics = 4;
+    EXPECT_EQ(layout.terms(), 4u);
+    const std::vector<float> h = view_of_rows(layout, {0, 1, 0});
+    ASSERT_EQ(h.size(), 4u);
+    EXPECT_NEAR(static_cast<double>(h[0]), layout.view_of_constant(), 1e-6);
+    EXPECT_NEAR(h[1], 0.4886025f, 1e-6);
+}
+
 }  // namespace
 }  // namespace opaline::bake

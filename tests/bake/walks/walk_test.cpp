@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bake/effects/multiple/walks/exit_light.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/gauss_legendre.h"
 #include "bake/scattering/half_space_once.h"
@@ -12,10 +13,9 @@
 namespace opaline::tests {
 namespace {
 
-// Reflectance of uniform light by a half space of isotropic scatterers, index 1: 1 - 2 sqrt(1 - a)
-// int H mu dmu, H by Chandrasekhar's integral equation.
-double half_space_of(double albedo) {
-    const bake::GaussLegendre rule = bake::make_gauss_legendre(64);
+// What a half space of isotropic scatterers, index 1, shows of uniform light at the cosines of a
+// Gauss-Legendre rule: 1 - sqrt(1 - a) H(mu), H by Chandrasekhar's integral equation.
+std::vector<double> half_space_by_view(double albedo, const bake::GaussLegendre& rule) {
     const double root = std::sqrt(1 - albedo);
     std::vector<double> h(rule.node.size(), 1.0);
     for (int pass = 0; pass < 2000; ++pass) {
@@ -27,11 +27,38 @@ double half_space_of(double albedo) {
             h[i] = 1 / (root + 0.5 * albedo * sum);
         }
     }
-    double moment = 0;
-    for (std::size_t i = 0; i < h.size(); ++i) {
-        moment += rule.weight[i] * rule.node[i] * h[i];
+    for (double& value : h) {
+        value = 1 - root * value;
     }
-    return 1 - 2 * root * moment;
+    return h;
+}
+
+// The mean of that over views, weighted by the cosine: the reflectance.
+double half_space_of(double albedo) {
+    const bake::GaussLegendre rule = bake::make_gauss_legendre(64);
+    const std::vector<double> radiance = half_space_by_view(albedo, rule);
+    double sum = 0;
+    for (std::size_t i = 0; i < radiance.size(); ++i) {
+        sum += 2 * rule.weight[i] * rule.node[i] * radiance[i];
+    }
+    return sum;
+}
+
+// Its weighted least-squares fit linear in the cosine.
+struct LinearFit {
+    double mean = 0, slope = 0;  // slope: about the mean cosine, 2/3
+};
+LinearFit fit_half_space(double albedo) {
+    const bake::GaussLegendre rule = bake::make_gauss_legendre(64);
+    const std::vector<double> radiance = half_space_by_view(albedo, rule);
+    constexpr double kMean = 2.0 / 3, kVariance = 1.0 / 18;
+    LinearFit fit;
+    for (std::size_t i = 0; i < radiance.size(); ++i) {
+        const double p = 2 * rule.weight[i] * rule.node[i];
+        fit.mean += p * radiance[i];
+        fit.slope += p * radiance[i] * (rule.node[i] - kMean) / kVariance;
+    }
+    return fit;
 }
 
 TEST(Walk, HalfSpaceOfIsotropicScatterersReturnsWhatChandrasekharsFunctionSays) {
@@ -44,6 +71,43 @@ TEST(Walk, HalfSpaceOfIsotropicScatterersReturnsWhatChandrasekharsFunctionSays) 
         EXPECT_NEAR(leaving.all, half_space_of(static_cast<double>(albedo)), 4 * leaving.error)
             << albedo;
         EXPECT_LT(leaving.error, 0.003);
+    }
+}
+
+// The rows by view are the best linear function of the cosine.
+TEST(Walk, HalfSpaceDarkensTowardTheEdgeAsTheLinearFitOfChandrasekharsFunctionSays) {
+    constexpr std::uint32_t kWalks = 100000;
+    const bake::ExitLobe lobe = bake::make_view_lobe(1);
+    EXPECT_NEAR(lobe.mean, 2.0 / 3, 1e-6);
+    EXPECT_NEAR(lobe.variance, 1.0 / 18, 1e-6);
+    const glm::vec3 up(0, 1, 0);
+    for (const float albedo : {0.5f, 0.9f, 1.0f}) {
+        const auto slab =
+            make_walked_body(make_wide_slab(60), make_forward_medium(1, albedo, 0, 1));
+        std::vector<bake::WalkExit> exits;
+        bake::WalkCounts counts;
+        double mean = 0, squares = 0, across = 0;
+        for (std::uint32_t w = 0; w < kWalks; ++w) {
+            bake::WalkRandom random({1, bake::RandomStage::body_walk, 7, w});
+            exits.clear();
+            const glm::vec3 seen =
+                bake::follow_walk(slab->space, slab->space.bands.front(),
+                                  start_below({0, 0, 0}, up), {1}, random, exits, counts);
+            EXPECT_GT(seen.y, 0) << "toward the eye";
+            double sum = 0;
+            for (const bake::WalkExit& exit : exits) {
+                sum += static_cast<double>(exit.weight[0]);
+            }
+            const glm::vec4 view = lobe.eval(up, seen);
+            const double slope = sum * static_cast<double>(view.z);
+            mean += slope / kWalks;
+            squares += slope * slope / kWalks;
+            across += sum * static_cast<double>(view.y) / kWalks;
+        }
+        const double error = std::sqrt((squares - mean * mean) / kWalks);
+        EXPECT_NEAR(mean, fit_half_space(static_cast<double>(albedo)).slope, 4 * error) << albedo;
+        EXPECT_LT(error, 0.02);
+        EXPECT_NEAR(across, 0, 0.05) << "a plane looks the same from all sides";
     }
 }
 
