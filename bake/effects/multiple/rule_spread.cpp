@@ -71,7 +71,7 @@ PlanEntry decide_spread(const PlanInput& input) {
         entry.reason = "multiple and single scattering are asked for apart";
     } else if (std::any_of(input.earlier.begin(), input.earlier.end(),
                            [](const PlanEntry& e) { return e.on && e.terms > 1; })) {
-        entry.reason = "the phase function asks for several terms";
+        entry.reason = "the rows depend on the view";
     } else if (!is_worth(entry.bound, input, entry.forced)) {
         entry.on = false;
         entry.reason = "the medium is so dense that light leaves where it entered";
