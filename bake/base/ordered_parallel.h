@@ -83,6 +83,7 @@ void for_each_block_in_order(std::size_t count, std::size_t block, const Context
             });
         });
     arena.execute([&] { tbb::parallel_pipeline(slots.size(), take & work & leave); });
+    steps.fetch_add(1, std::memory_order_acq_rel);  // all steps are over
 }
 
 }  // namespace opaline::bake

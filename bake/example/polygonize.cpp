@@ -1,7 +1,5 @@
 #include "bake/example/polygonize.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,8 @@
 #include <cstdint>
 #include <iterator>
 #include <utility>
+
+#include "bake/base/parallel_indices.h"
 
 namespace opaline::bake {
 namespace {
@@ -66,7 +66,7 @@ Grid sample_grid(const Field& field, const Box& bounds, double cell) {
     grid.value.resize(grid.nx * grid.ny * grid.nz);
     const auto blocks = [](std::size_t count) { return (count + kBlock - 1) / kBlock; };
     const std::size_t mx = blocks(grid.nx), my = blocks(grid.ny), mz = blocks(grid.nz);
-    tbb::parallel_for(std::size_t{0}, mx * my * mz, [&](std::size_t i) {
+    for_each_index(mx * my * mz, [&](std::size_t i) {
         sample_block(field, grid, i % mx * kBlock, i / mx % my * kBlock, i / (mx * my) * kBlock);
     });
     return grid;

@@ -1,11 +1,10 @@
 #include "bake/example/remesh.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
+#include "bake/base/parallel_indices.h"
 #include "bake/example/edges.h"
 #include "bake/example/edit_mesh.h"
 
@@ -14,7 +13,7 @@ namespace {
 
 /// Sets every vertex's normal, after moving it toward the surface along the normal it has.
 void drop_onto_surface(const Field& field, double step, TriangleMesh& mesh) {
-    tbb::parallel_for(std::size_t{0}, mesh.position.size(), [&](std::size_t v) {
+    for_each_index(mesh.position.size(), [&](std::size_t v) {
         glm::dvec3 &p = mesh.position[v], &n = mesh.normal[v];
         if (glm::dot(n, n) > 0.0) {
             // Bounded, so that a bad guess beside a crease cannot fling a vertex away.
@@ -59,7 +58,7 @@ std::vector<double> edge_targets(const TriangleMesh& mesh, const RemeshOptions& 
 void relax(const std::vector<double>& target, TriangleMesh& mesh) {
     const VertexTriangles ring = find_vertex_triangles(mesh);
     std::vector<glm::dvec3> moved(mesh.position.size());
-    tbb::parallel_for(std::size_t{0}, mesh.position.size(), [&](std::size_t v) {
+    for_each_index(mesh.position.size(), [&](std::size_t v) {
         glm::dvec3 sum(0.0);
         double weights = 0.0;
         for (std::size_t i = ring.begin[v]; i < ring.begin[v + 1]; ++i) {

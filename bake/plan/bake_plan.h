@@ -26,6 +26,7 @@ struct PlanEntry {
     bool forced = false;       ///< below the bound, but forced on by Knobs::simulate_all
     bool has_bands = false;    ///< its light differs between red, green and blue
     bool alternative = false;  ///< it would replace other effects: turning it on is no addition
+    bool as_surface = false;   ///< it shows a medium as a surface: nothing enters, nothing mirrors
     std::string reason;        ///< the rule in words
     double bound = 0;          ///< largest radiance it can contribute under `white`
     std::uint32_t terms = 0;   ///< of rules that choose a number of rows: that number; otherwise 0

@@ -4,6 +4,8 @@
 
 #include "bake/accuracy/check_model.h"
 #include "bake/effects/multiple/multiple_stage.h"
+#include "bake/scene/inspect_scene.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/sheets.h"
 
@@ -106,6 +108,29 @@ TEST(WalkModel, AutoKeepsTheDipoleInPreviewAndWhereAMediumNamesItsProfile) {
     options.quality = Quality::production;
     medium.profile = formats::Medium::Profile::classic;
     EXPECT_EQ(entry().reason, "dipole: the medium names its profile");
+}
+
+TEST(WalkModel, AnotherModelOfMultipleScatteringTurnsNoOtherEffectOff) {
+    const tests::Scene ball = tests::make_translucent_scene({tests::make_sphere(2)},
+                                                            tests::make_grey_medium(2.97f, 0.03f));
+    const SceneFacts facts = inspect_scene(ball);
+    const auto effects_on = [&](double model) {
+        Knobs knobs;
+        knobs.quality = Quality::production;
+        knobs.set(kMultipleModel, model);
+        std::vector<std::string> on;
+        for (const PlanEntry& entry : plan_bake(all_effects(), ball, facts, knobs)) {
+            if (entry.on && entry.name.find('.') == std::string_view::npos) {
+                on.emplace_back(entry.name);
+            }
+        }
+        return on;
+    };
+    const std::vector<std::string> all{"multiple", "single", "specular"};
+    for (const double model :
+         {static_cast<double>(MultipleModel::automatic), kDipole, kScaled, kWalked}) {
+        EXPECT_EQ(effects_on(model), all) << model;
+    }
 }
 
 // A sheet of one mean free path is darker seen along its normal than aslant.

@@ -37,6 +37,7 @@ PlanEntry decide(const PlanInput& input) {
                            ? "the medium is shown as a diffuse surface of the same reflectance"
                            : "the surface reflects diffusely";
     }
+    entry.as_surface = entry.on && entry.alternative;
     return entry;
 }
 

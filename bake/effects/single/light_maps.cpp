@@ -1,7 +1,6 @@
 #include "bake/effects/single/light_maps.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/base/parallel_indices.h"
 #include "bake/effects/single/gather_direction.h"
 #include "bake/receivers/spatial_order.h"
 
@@ -117,7 +117,7 @@ SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::u
         (medium.bands == 1 ? pack_texel<1> : pack_texel<3>)(work.value, inverse_scale, inverse_term,
                                                             packed.data());
     };
-    arena.execute([&] { tbb::parallel_for(std::size_t{0}, texels.size(), gather_texel); });
+    arena.execute([&] { for_each_index(texels.size(), gather_texel); });
     for (const GatherWorkspace& work : workspaces) {
         result.counts.rays += work.counts.rays;
         result.counts.missing += work.counts.missing;

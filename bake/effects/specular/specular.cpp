@@ -12,7 +12,7 @@ PlanEntry decide(const PlanInput& input) {
     // At grazing angles everything is mirrored, where there is a boundary at all.
     entry.bound = medium.eta == 1 ? 0 : 1;
     const bool is_surface = std::any_of(input.earlier.begin(), input.earlier.end(),
-                                        [](const PlanEntry& e) { return e.alternative && e.on; });
+                                        [](const PlanEntry& e) { return e.as_surface; });
     if (!is_wanted(input.knobs, "specular")) {
         entry.reason = "left out by --effects";
     } else if (is_surface) {
