@@ -4,15 +4,14 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/base/thread_order.h"
 
 namespace opaline::bake {
 
@@ -44,46 +43,34 @@ void for_each_block_in_order(std::size_t count, std::size_t block, const Context
     // A ring: blocks leave in order and at most as many as there are slots are alive, so the block
     // that stood in a slot has left when the next one takes it.
     std::vector<Slot> slots(std::size_t{threads} * 4);
-    // TBB hands work over inside its library, where the thread sanitizer sees nothing. Every step
-    // begins and ends with this, so that it sees the order of steps that follow each other.
-    std::atomic<std::uint64_t> steps{0};
-    const auto in_order = [&](auto&& step) {
-        steps.fetch_add(1, std::memory_order_acq_rel);
-        Slot* const result = step();
-        steps.fetch_add(1, std::memory_order_acq_rel);
-        return result;
-    };
     std::size_t next = 0, slot = 0;
     const auto take = tbb::make_filter<void, Slot*>(
-        tbb::filter_mode::serial_in_order, [&](tbb::flow_control& control) {
-            return in_order([&]() -> Slot* {
-                if (next >= count || context.cancelled()) {
-                    control.stop();
-                    return nullptr;
-                }
-                Slot& given = slots[slot];
-                slot = (slot + 1) % slots.size();
-                given.range = {next, std::min(count, next + block)};
-                next = given.range.end;
-                return &given;
-            });
+        tbb::filter_mode::serial_in_order, [&](tbb::flow_control& control) -> Slot* {
+            const OrderedStep step;
+            if (next >= count || context.cancelled()) {
+                control.stop();
+                return nullptr;
+            }
+            Slot& given = slots[slot];
+            slot = (slot + 1) % slots.size();
+            given.range = {next, std::min(count, next + block)};
+            next = given.range.end;
+            return &given;
         });
     const auto work = tbb::make_filter<Slot*, Slot*>(tbb::filter_mode::parallel, [&](Slot* given) {
-        return in_order([&] {
-            given->item.emplace(compute(given->range));
-            return given;
-        });
+        const OrderedStep step;
+        given->item.emplace(compute(given->range));
+        return given;
     });
     const auto leave =
         tbb::make_filter<Slot*, void>(tbb::filter_mode::serial_in_order, [&](Slot* given) {
-            in_order([&]() -> Slot* {
-                consume(given->range, *std::move(given->item));
-                given->item.reset();
-                return nullptr;
-            });
+            const OrderedStep step;
+            consume(given->range, *std::move(given->item));
+            given->item.reset();
         });
+    order_finished();
     arena.execute([&] { tbb::parallel_pipeline(slots.size(), take & work & leave); });
-    steps.fetch_add(1, std::memory_order_acq_rel);  // all steps are over
+    order_after_finished();
 }
 
 }  // namespace opaline::bake

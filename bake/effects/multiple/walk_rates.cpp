@@ -22,7 +22,7 @@ void calibrate_walks(const CalibrationBench& bench, std::span<const SurfaceSampl
     for (std::uint32_t s = 0; s < starts.size(); ++s) {
         for (std::uint32_t w = 0; w < kFromEach; ++w) {
             WalkRandom random({0, RandomStage::body_walk, s, w});
-            follow_walk(space, space.bands.front(), starts[s], {}, random, exits, counts);
+            follow_walk(space, {}, starts[s], {}, random, exits, counts);
         }
     }
     bench.side_of(rates.body_event) =

@@ -63,8 +63,7 @@ inline Leaving walk_from(const bake::WalkSpace& space, const bake::WalkStart& st
     for (std::uint32_t w = 0; w < walks; ++w) {
         bake::WalkRandom random({1, bake::RandomStage::body_walk, 7, w});
         exits.clear();
-        bake::follow_walk(space, space.bands.front(), start, {least}, random, exits,
-                          leaving.counts);
+        bake::follow_walk(space, {}, start, {least}, random, exits, leaving.counts);
         double sum = 0;
         for (const bake::WalkExit& exit : exits) {
             sum += static_cast<double>(exit.weight[0]);

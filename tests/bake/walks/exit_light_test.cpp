@@ -51,6 +51,24 @@ TEST(ExitLobe, AveragesToOneOverExitsAndSeesLinearLightAsTheExitDoes) {
     }
 }
 
+// The radiance that leaves a conservative half space toward the cosine c is Chandrasekhar's H(c) in
+// proportion, of which the two moments are 2 / sqrt 3 and 0.82035 (Chandrasekhar 1960, table XI,
+// isotropic scattering, albedo 1: alpha_1 and alpha_2).
+TEST(ExitLobe, OfLightScatteredOftenIsThatOfAConservativeHalfSpace) {
+    const ExitLobe lobe = make_exit_lobe(1);
+    EXPECT_NEAR(lobe.diffuse, 0.82035 / (2 / std::sqrt(3.0)), 3e-3);
+    const glm::vec3 normal(0, 0, 1);
+    glm::vec4 mean(0);
+    double weights = 0;
+    visit_exits(1, [&](glm::vec3 w, double weight) {
+        weight *= 2.0 / 3 + static_cast<double>(w.y);
+        weights += weight;
+        mean += static_cast<float>(weight) * lobe.eval(normal, {w.x, -w.z, w.y});
+    });
+    mean /= static_cast<float>(weights);
+    EXPECT_NEAR(static_cast<double>(glm::length(mean - lobe.eval_diffuse(normal))), 0, 5e-3);
+}
+
 TEST(ExitLobe, OfAnExitBehindTheSampleIsEven) {
     EXPECT_EQ(make_exit_lobe(1.3).eval({0, 1, 0}, {0.6f, -0.8f, 0}), glm::vec4(1, 0, 0, 0));
 }

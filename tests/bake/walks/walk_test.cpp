@@ -90,9 +90,8 @@ TEST(Walk, HalfSpaceDarkensTowardTheEdgeAsTheLinearFitOfChandrasekharsFunctionSa
         for (std::uint32_t w = 0; w < kWalks; ++w) {
             bake::WalkRandom random({1, bake::RandomStage::body_walk, 7, w});
             exits.clear();
-            const glm::vec3 seen =
-                bake::follow_walk(slab->space, slab->space.bands.front(),
-                                  start_below({0, 0, 0}, up), {1}, random, exits, counts);
+            const glm::vec3 seen = bake::follow_walk(slab->space, {}, start_below({0, 0, 0}, up),
+                                                     {1}, random, exits, counts);
             EXPECT_GT(seen.y, 0) << "toward the eye";
             double sum = 0;
             for (const bake::WalkExit& exit : exits) {

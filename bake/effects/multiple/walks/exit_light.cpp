@@ -64,7 +64,16 @@ ExitLobe fit_lobe(double eta, Cosine&& cosine) {
 }  // namespace
 
 ExitLobe make_exit_lobe(double eta) {
-    return fit_lobe(eta, [](double c) { return c; });
+    ExitLobe lobe = fit_lobe(eta, [](double c) { return c; });
+    // Inside, the radiance of such light is z + c' in proportion, c' the cosine before refraction
+    // and z the extrapolation length in transport mean free paths (README.md, "The light at an
+    // exit").
+    const FresnelMoments moments = fresnel_moments(eta);
+    const double z = 2.0 / 3 * (1 + 3 * moments.c2) / (1 - 2 * moments.c1);
+    const auto radiance = [&](double c) { return z + refracted_cosine(c, eta); };
+    lobe.diffuse = fit_lobe(eta, [&](double c) { return c * radiance(c); }).mean /
+                   fit_lobe(eta, radiance).mean;
+    return lobe;
 }
 
 ExitLobe make_view_lobe(double eta) {
@@ -80,6 +89,11 @@ glm::vec4 ExitLobe::eval(glm::vec3 normal, glm::vec3 exit) const {
     const auto sideways = static_cast<float>(1 / across);
     const glm::vec3 a = along * normal + sideways * (exit - cosine * normal);
     return {1 - static_cast<float>(mean) * along, a};
+}
+
+glm::vec4 ExitLobe::eval_diffuse(glm::vec3 normal) const {
+    const auto along = static_cast<float>((diffuse - mean) / variance);
+    return {1 - static_cast<float>(mean) * along, along * normal};
 }
 
 ExitLight::ExitLight(std::span<const SurfaceSample> samples, const SparseVectors& light,
@@ -123,8 +137,11 @@ std::uint32_t ExitLight::nearest(const WalkExit& exit, std::vector<std::uint32_t
 glm::vec4 ExitLight::factors(std::uint32_t sample, const WalkExit& exit) const {
     const SurfaceSample& s = samples_[sample];
     const float scale = s.area > 0 ? scale_ / s.area : 0;
-    return moments_ == nullptr ? glm::vec4(scale, 0, 0, 0)
-                               : scale * lobe_.eval(s.normal, exit.direction);
+    if (moments_ == nullptr) {
+        return {scale, 0, 0, 0};
+    }
+    return scale *
+           (exit.is_diffuse ? lobe_.eval_diffuse(s.normal) : lobe_.eval(s.normal, exit.direction));
 }
 
 void ExitLight::add(std::uint32_t sample, const std::array<glm::vec4, 3>& factors,

@@ -23,9 +23,12 @@ struct ExitLobe {
     double mean = 0;      ///< of the cosine c under p = F_t c / (pi c_exit)
     double variance = 1;  ///< of c
     double across = 1;    ///< mean square of each coordinate across the normal
+    double diffuse = 0;   ///< mean of c over exits of light that was scattered often
 
     /// a_0, a_x, a_y, a_z; `normal` of the sample, `exit` away from the body, both unit.
     glm::vec4 eval(glm::vec3 normal, glm::vec3 exit) const;
+    /// Their mean over exits of light that was scattered often: the same, with much less noise.
+    glm::vec4 eval_diffuse(glm::vec3 normal) const;
 };
 
 /// `eta` > 0.

@@ -31,20 +31,20 @@ class SiteWalker {
     std::span<float> walk(const WalkStart& start, std::uint32_t site, WalkCounts& counts) {
         std::fill(dense_.begin(), dense_.end(), 0.0f);
         std::uint32_t number = 0;
-        for (const WalkBands& bands : space_.bands) {
-            exits_.clear();
-            seen_.clear();
-            WalkCounts own;
+        exits_.clear();
+        seen_.clear();
+        WalkCounts own;
+        for (WalkGroup group; group.flies_as < space_.bands.size(); ++group.flies_as) {
             for (std::uint32_t w = 0; w < options_.walks_per_site; ++w) {
                 WalkRandom random({options_.seed, RandomStage::body_walk, site, number++});
                 const glm::vec3 seen =
-                    follow_walk(space_, bands, start, options_.orders, random, exits_, own);
+                    follow_walk(space_, group, start, options_.orders, random, exits_, own);
                 const glm::vec4 view = view_lobe_.eval(start.normal, seen);
                 seen_.resize(exits_.size(), {view.y, view.z, view.w});
             }
-            add_exits(static_cast<float>(own.correction() / options_.walks_per_site));
-            counts += own;
         }
+        add_exits(static_cast<float>(own.correction() / options_.walks_per_site));
+        counts += own;
         return dense_;
     }
 

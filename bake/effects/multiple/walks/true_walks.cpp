@@ -42,9 +42,14 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
         return estimates;
     }
     const bool is_grey = space.is_grey;
+    // As many walks fly as a group as the eye sees of it.
+    WalkGroup group{0, {}};
     double shares = 0;
-    for (const WalkBands& bands : space.bands) {
-        shares += share_of(bands, is_grey);
+    for (std::size_t g = 0; g < space.bands.size(); ++g) {
+        shares += share_of(space.bands[g], is_grey);
+    }
+    for (std::size_t g = 0; g < space.bands.size(); ++g) {
+        group.walks[g] = static_cast<float>(share_of(space.bands[g], is_grey) / shares);
     }
     const WalkStart start{point.inner, point.normal, point.normal,
                           std::max(1, count_shells(space, point.inner, -point.normal)),
@@ -56,18 +61,14 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
         WalkCounts counts;
         for (std::uint32_t i = 0; i < light.walks; ++i, ++walk) {
             WalkRandom random({seed, RandomStage::true_body_walk, key, walk});
-            // Bands in proportion to what the eye sees of them.
-            double place = static_cast<double>(random.next()) * shares;
-            const WalkBands* bands = &space.bands.back();
-            for (const WalkBands& b : space.bands) {
-                if (place < share_of(b, is_grey)) {
-                    bands = &b;
-                    break;
-                }
-                place -= share_of(b, is_grey);
+            float place = random.next();
+            group.flies_as = 0;
+            while (group.flies_as + 1 < space.bands.size() &&
+                   place >= group.walks[group.flies_as]) {
+                place -= group.walks[group.flies_as++];
             }
             exits.clear();
-            follow_walk(space, *bands, start, orders, random, exits, counts);
+            follow_walk(space, group, start, orders, random, exits, counts);
             // One exit stands for all of the walk, drawn in proportion to its weight.
             double sum = 0;
             const WalkExit* exit = nullptr;
@@ -93,8 +94,7 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
                 add_sun_irradiance(light.rays, light.suns, at.receiver, eta, irradiance, lobe);
             traced += add_smooth_irradiance(light.rays, light.smooth, at.receiver, eta,
                                             {random.next(), random.next()}, irradiance, lobe);
-            const double weight = sum * shares / share_of(*bands, is_grey) /
-                                  (std::numbers::pi * light.escape * light.walks);
+            const double weight = sum / (std::numbers::pi * light.escape * light.walks);
             for (std::size_t l = 0; l < lights; ++l) {
                 (*estimate)[l] += weight * irradiance[l];
             }

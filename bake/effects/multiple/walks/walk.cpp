@@ -55,10 +55,10 @@ glm::vec3 scatter(const WalkSpace& space, glm::vec3 direction, WalkRandom& rando
 
 class Walk {
   public:
-    Walk(const WalkSpace& space, const WalkBands& bands, const WalkOrders& orders,
+    Walk(const WalkSpace& space, const WalkGroup& group, const WalkOrders& orders,
          WalkRandom& random, std::vector<WalkExit>& exits, WalkCounts& counts)
         : space_(space),
-          bands_(bands),
+          weight_(space, group),
           orders_(orders),
           random_(random),
           exits_(exits),
@@ -70,9 +70,6 @@ class Walk {
         shells_ = start.shells;
         direction_ = start_direction(space_, start, random_);
         const glm::vec3 seen = -direction_;
-        for (std::size_t b = 0; b < 3; ++b) {
-            weight_[b] = bands_.member[b] ? 1.0f : 0.0f;
-        }
         for (std::uint32_t i = 0; i < space_.most_events; ++i) {
             ++counts_.events;
             if (!(i == 0 ? fly_first() : fly(flight_length()))) {
@@ -80,38 +77,33 @@ class Walk {
             }
         }
         ++counts_.endless;
-        counts_.unfinished += static_cast<double>(largest_weight());
+        counts_.unfinished += weight_.left();
         return seen;
     }
 
   private:
-    float flight_length() { return -std::log(1 - random_.next()) / bands_.sigma_t; }
+    float flight_length() { return -std::log(1 - random_.next()) / weight_.sigma_t(); }
 
     // A flight from the start. Where a body is thin, nearly all light crosses it unscattered and is
-    // not counted: half of the walks scatter before the first surface.
+    // not counted: half of the walks scatter before the first surface (BandWeights).
     bool fly_first() {
-        constexpr float kThin = 0.6931472f;  // optical depth where half scatters by itself
-        const float length = flight_length(), reach = kThin / bands_.sigma_t;
+        const float reach = weight_.first_reach();
         if (space_.clearance(position_) >= reach) {
-            return fly(length);
+            return fly(flight_length());
         }
         WalkHit hit;
         ++counts_.rays;
         if (!find_hit(space_, position_, direction_, reach, hit)) {
-            return fly(length);
+            return fly(flight_length());
         }
         const float distance = glm::length(hit.position - position_);
-        const float scattered = -std::expm1(-bands_.sigma_t * distance);
-        const bool scatters = random_.next() < 0.5f;
-        full_weight_ = 2 * (scatters ? scattered : 1 - scattered);
-        if (!scale(full_weight_)) {
-            return false;
+        const float scattered = -std::expm1(-weight_.sigma_t() * distance);
+        if (random_.next() >= weight_.first_collision_chance(distance)) {
+            return weight_.cross_first(distance) && arrive(hit);
         }
-        if (!scatters) {
-            return arrive(hit);
-        }
-        const float inside = -std::log1p(-scattered * random_.next()) / bands_.sigma_t;
-        return collide(std::min(inside, distance));
+        const float inside =
+            std::min(distance, -std::log1p(-scattered * random_.next()) / weight_.sigma_t());
+        return weight_.collide_first(inside, distance) && collide(inside);
     }
 
     bool fly(float length) {
@@ -119,10 +111,10 @@ class Walk {
         if (space_.clearance(position_) < length) {
             ++counts_.rays;
             if (find_hit(space_, position_, direction_, length, hit)) {
-                return arrive(hit);
+                return weight_.fly(glm::distance(hit.position, position_), false) && arrive(hit);
             }
         }
-        return collide(length);
+        return weight_.fly(length, true) && collide(length);
     }
 
     bool collide(float length) {
@@ -130,15 +122,12 @@ class Walk {
         if (glm::any(glm::lessThan(position_, space_.low)) ||
             glm::any(glm::greaterThan(position_, space_.high))) {
             ++counts_.lost;
-            counts_.unfinished += static_cast<double>(largest_weight());
+            counts_.unfinished += weight_.left();
             return false;
-        }
-        for (std::size_t b = 0; b < 3; ++b) {
-            weight_[b] *= bands_.albedo[b];
         }
         ++scatterings_;
         direction_ = scatter(space_, direction_, random_);
-        return survives();
+        return weight_.absorb() && survives();
     }
 
     bool arrive(const WalkHit& hit) {
@@ -168,7 +157,7 @@ class Walk {
         is_reflected_ = true;
         position_ = hit.position - 2 * hit.error * hit.flat;
         direction_ = glm::normalize(reflect_at(normal));
-        return scale(1 - passed) && survives();
+        return weight_.scale(1 - passed) && survives();
     }
 
     void leave(const WalkHit& hit, glm::vec3 normal, float cosine, float passed) {
@@ -180,8 +169,9 @@ class Walk {
         exit.normal = normal;
         exit.direction = glm::normalize(along + outside * normal);
         for (std::size_t b = 0; b < 3; ++b) {
-            exit.weight[b] = passed * weight_[b];
+            exit.weight[b] = passed * weight_.value()[b];
         }
+        exit.is_diffuse = scatterings_ >= space_.diffuse_after;
         exit.primitive = hit.primitive;
         exit.first_index = hit.first_index;
         exit.u = hit.u;
@@ -189,36 +179,25 @@ class Walk {
         exits_.push_back(exit);
     }
 
-    bool scale(float factor) {
-        for (float& w : weight_) {
-            w *= factor;
-        }
-        return largest_weight() > 0;
-    }
-
-    float largest_weight() const { return std::max({weight_[0], weight_[1], weight_[2]}); }
-
     // Russian roulette.
     bool survives() {
         constexpr float kSmall = 0.4f, kAfter = 0.8f;
-        const float largest = largest_weight();
-        if (largest >= kSmall * full_weight_) {
+        const float largest = weight_.largest();
+        if (largest >= kSmall * weight_.full()) {
             return true;
         }
-        const float after = kAfter * full_weight_;
-        return random_.next() * after < largest && scale(after / largest);
+        const float after = kAfter * weight_.full();
+        return random_.next() * after < largest && weight_.scale(after / largest);
     }
 
     const WalkSpace& space_;
-    const WalkBands& bands_;
+    BandWeights weight_;
     const WalkOrders& orders_;
     WalkRandom& random_;
     std::vector<WalkExit>& exits_;
     WalkCounts& counts_;
 
     glm::vec3 position_{0}, direction_{0};
-    std::array<float, 3> weight_{};
-    float full_weight_ = 1;  // of a walk that has lost nothing
     std::uint32_t scatterings_ = 0;
     bool is_reflected_ = false;
     int shells_ = 1;
@@ -236,10 +215,10 @@ WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
     return *this;
 }
 
-glm::vec3 follow_walk(const WalkSpace& space, const WalkBands& bands, const WalkStart& start,
+glm::vec3 follow_walk(const WalkSpace& space, const WalkGroup& group, const WalkStart& start,
                       const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
                       WalkCounts& counts) {
-    return Walk(space, bands, orders, random, exits, counts).follow(start);
+    return Walk(space, group, orders, random, exits, counts).follow(start);
 }
 
 }  // namespace opaline::bake

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/base/rng.h"
+#include "bake/effects/multiple/walks/band_weights.h"
 #include "bake/effects/multiple/walks/walk_space.h"
 
 namespace opaline::bake {
@@ -51,7 +52,9 @@ struct WalkExit {
     glm::vec3 position{0};          ///< [m], on the boundary
     glm::vec3 normal{0};            ///< unit, outward, smooth
     glm::vec3 direction{0};         ///< unit, outside, away from the body
-    std::array<float, 3> weight{};  ///< per band; 0 in bands that the walk does not serve
+    std::array<float, 3> weight{};  ///< per band; 0 in bands that never scatter
+    /// Scattered so often that `direction` tells nothing of where the walk has been.
+    bool is_diffuse = false;
     std::uint32_t primitive = 0, first_index = 0;  ///< of the triangle
     float u = 0, v = 0;                            ///< weights of its second and third corner
 };
@@ -63,7 +66,7 @@ struct WalkCounts {
     std::uint64_t rays = 0;
     std::uint64_t lost = 0;     ///< left the body's box: through a hole, or past an edge
     std::uint64_t endless = 0;  ///< given up after WalkSpace::most_events
-    double unfinished = 0;      ///< weight that lost and endless walks still had
+    double unfinished = 0;      ///< weight that lost and endless walks still had, in walks
 
     /// The factor by which the walks that ended stand for those that did not (README.md, "The
     /// estimator").
@@ -86,12 +89,13 @@ struct WalkOrders {
 /// that of uniform light in reverse, with density F_t(c) c over the outer hemisphere, refracted;
 /// the sum of the exits' weights then has the mean of one term for all views,
 ///     T_0 = E[sum of weight V L],    L_o = F_t <T_0, L>,
-/// without energy added or lost: albedo 1 gives 1, less what never scatters. The walk passes
+/// without energy added or lost: albedo 1 gives 1, less what never scatters. E is over the walks of
+/// all groups of bands together (band_weights.h). The walk passes
 /// through inner shells of its own medium; where it meets another material it ends, because such
 /// light has met a second surface. At every arrival at the boundary the transmitted part is an exit
 /// and the reflected part goes on. `exits` are appended. Returns the direction inside, away from
 /// the body, in which the walk is seen.
-glm::vec3 follow_walk(const WalkSpace& space, const WalkBands& bands, const WalkStart& start,
+glm::vec3 follow_walk(const WalkSpace& space, const WalkGroup& group, const WalkStart& start,
                       const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
                       WalkCounts& counts);
 

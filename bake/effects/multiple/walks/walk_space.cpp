@@ -47,6 +47,9 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
     space.is_grey = grey;
     space.phase = make_phase_table(medium.phase);
     space.bands = group_bands(medium, grey);
+    // Three that are effectively isotropic (README.md, "The light at an exit").
+    space.diffuse_after = static_cast<std::uint32_t>(
+        std::ceil(3 / (1 - std::min(0.999, std::abs(formats::mean_cosine(medium.phase))))));
     space.low = glm::vec3(std::numeric_limits<float>::max());
     space.high = glm::vec3(std::numeric_limits<float>::lowest());
     for (const formats::Primitive& p : scene.primitives) {

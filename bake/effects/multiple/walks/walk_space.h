@@ -12,8 +12,8 @@
 
 namespace opaline::bake {
 
-/// Bands of a medium that one walk serves, because they have the same extinction. A walk's weights
-/// are products of their albedos; the other bands have none.
+/// Bands of a medium with the same extinction: light of each flies alike. Other bands have albedo
+/// 0.
 struct WalkBands {
     float sigma_t = 0;  ///< [1/m] > 0
     std::array<float, 3> albedo{};
@@ -30,7 +30,8 @@ struct WalkSpace {
     PhaseTable phase;
     std::vector<WalkBands> bands;  ///< 1 to 3; empty: nothing scatters
     ClearanceGrid clearance;
-    glm::vec3 low{0}, high{0};  ///< box around the body [m], a little wider
+    glm::vec3 low{0}, high{0};        ///< box around the body [m], a little wider
+    std::uint32_t diffuse_after = 0;  ///< scatterings that leave nothing of a direction
     /// More scatterings and reflections than any walk needs but one in thousands.
     std::uint32_t most_events = 0;
 };

@@ -1,0 +1,127 @@
+#include "bake/effects/multiple/walks/band_weights.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "tests/bake/walks/body_walks.h"
+
+namespace opaline::tests {
+namespace {
+
+formats::Medium make_coloured_medium(glm::vec3 sigma_s, glm::vec3 sigma_a) {
+    formats::Medium medium = make_grey_medium(1, 1, 1.3f);
+    medium.sigma_s = {sigma_s.r, sigma_s.g, sigma_s.b};
+    medium.sigma_a = {sigma_a.r, sigma_a.g, sigma_a.b};
+    return medium;
+}
+
+// What leaves through surfaces that face down, band by band: the mean of one walk for each group,
+// and its standard error.
+struct BandsLeaving {
+    std::array<double, 3> mean{}, error{};
+};
+
+BandsLeaving walk_down(const bake::WalkSpace& space, const bake::WalkStart& start,
+                       std::uint32_t walks) {
+    BandsLeaving leaving;
+    std::array<double, 3> squares{};
+    std::vector<bake::WalkExit> exits;
+    bake::WalkCounts counts;
+    for (std::uint32_t w = 0; w < walks; ++w) {
+        exits.clear();
+        for (bake::WalkGroup group; group.flies_as < space.bands.size(); ++group.flies_as) {
+            bake::WalkRandom random({1, bake::RandomStage::body_walk, group.flies_as, w});
+            bake::follow_walk(space, group, start, {1}, random, exits, counts);
+        }
+        for (std::size_t b = 0; b < 3; ++b) {
+            double sum = 0;
+            for (const bake::WalkExit& exit : exits) {
+                sum += exit.normal.y < 0 ? static_cast<double>(exit.weight[b]) : 0;
+            }
+            leaving.mean[b] += sum / walks;
+            squares[b] += sum * sum / walks;
+        }
+    }
+    for (std::size_t b = 0; b < 3; ++b) {
+        leaving.error[b] =
+            std::sqrt(std::max(0.0, squares[b] - leaving.mean[b] * leaving.mean[b]) / walks);
+    }
+    return leaving;
+}
+
+// Thick and thin bodies, extinctions that nearly coincide and that differ by much, a band that does
+// not scatter. Light of one side, as a sun's: of a furnace, walks of one band alone know the
+// answer.
+TEST(BandWeights, BandsThatShareTheirWalksLeaveAsMuchLightAsEachAloneWithNoMoreNoise) {
+    constexpr std::uint32_t kWalks = 20000;
+    const std::array<std::pair<glm::vec3, glm::vec3>, 4> media{
+        {{{6, 8, 9}, {0.01f, 0.1f, 1}},
+         {{0.2f, 0.3f, 0.4f}, {0.01f, 0, 0.2f}},
+         {{0.05f, 5, 50}, {0, 0.2f, 0.5f}},
+         {{3, 0, 4}, {0.1f, 2, 0.1f}}}};
+    const glm::vec3 up(0, 1, 0);
+    const bake::WalkStart start = start_below({0, 1, 0}, up);
+    for (const auto& [sigma_s, sigma_a] : media) {
+        const auto together =
+            make_walked_body(make_sphere(3), make_coloured_medium(sigma_s, sigma_a));
+        together->space = bake::make_walk_space(together->scene, *together->triangles, 0, false);
+        const BandsLeaving shared = walk_down(together->space, start, kWalks);
+        for (int b = 0; b < 3; ++b) {
+            const auto at = static_cast<std::size_t>(b);
+            if (sigma_s[b] == 0) {
+                EXPECT_EQ(shared.mean[at], 0);
+                continue;
+            }
+            const auto alone =
+                make_walked_body(make_sphere(3), make_grey_medium(sigma_s[b], sigma_a[b], 1.3f));
+            const BandsLeaving own = walk_down(alone->space, start, kWalks);
+            EXPECT_NEAR(shared.mean[at], own.mean[0],
+                        4 * std::hypot(own.error[0], shared.error[at]))
+                << sigma_s[b];
+            EXPECT_LT(shared.error[at], 1.2 * own.error[0] + 1e-6) << sigma_s[b];
+        }
+    }
+}
+
+TEST(BandWeights, ThatNearlyCoincideShareTheNoiseOfAllWalks) {
+    const auto ball =
+        make_walked_body(make_sphere(3), make_coloured_medium({4, 4.2f, 4.4f}, {0.4f, 0.4f, 0.4f}));
+    const bake::WalkStart start = start_below({0, 1, 0}, {0, 1, 0});
+    const BandsLeaving own = walk_down(ball->space, start, 20000);
+    ball->space = bake::make_walk_space(ball->scene, *ball->triangles, 0, false);
+    ASSERT_EQ(ball->space.bands.size(), 3u);
+    const BandsLeaving shared = walk_down(ball->space, start, 20000);
+    for (const double error : shared.error) {
+        EXPECT_NEAR(error, own.error[0] / std::sqrt(3.0), 0.1 * own.error[0]);
+    }
+}
+
+// No flight, however improbable in some band, gives a weight that is no number or above the mean's
+// bound.
+TEST(BandWeights, OfExtinctionsFarApartAreFiniteAndAtMostThatOfOneWalk) {
+    const auto ball = make_walked_body(make_sphere(2), make_grey_medium(1, 1));
+    for (const glm::vec3 sigma_s :
+         {glm::vec3(1e-20f, 1, 1e20f), glm::vec3(1e-38f, 1e38f, 1e4f), glm::vec3(1, 1.1f, 1.2f)}) {
+        ball->scene.materials[0].medium = make_coloured_medium(sigma_s, {0, 0, 0});
+        const bake::WalkSpace space =
+            bake::make_walk_space(ball->scene, *ball->triangles, 0, false);
+        for (std::uint32_t g = 0; g < space.bands.size(); ++g) {
+            for (const float depth : {0.0f, 1e-6f, 1.0f, 80.0f}) {
+                for (const bool collides : {false, true}) {
+                    bake::BandWeights weights(space, {g, {1, 1, 1}});
+                    const float length = depth / weights.sigma_t();
+                    for (int flight = 0; flight < 20 && weights.fly(length, collides); ++flight) {
+                        EXPECT_TRUE(weights.largest() <= 1.0001f) << depth;
+                        EXPECT_TRUE(weights.left() >= 0 && weights.left() <= 3.001) << depth;
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace opaline::tests
