@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bake/scattering/fresnel.h"
+#include "tests/bake/walks/body_walks.h"
 
 namespace opaline::bake {
 namespace {
@@ -66,7 +67,39 @@ TEST(ExitLobe, OfLightScatteredOftenIsThatOfAConservativeHalfSpace) {
         mean += static_cast<float>(weight) * lobe.eval(normal, {w.x, -w.z, w.y});
     });
     mean /= static_cast<float>(weights);
-    EXPECT_NEAR(static_cast<double>(glm::length(mean - lobe.eval_diffuse(normal))), 0, 5e-3);
+    EXPECT_NEAR(static_cast<double>(glm::length(mean - lobe.eval_diffuse(normal, {}))), 0, 5e-3);
+}
+
+// The lobe of a walk's way and length is the mean of the lobes of directions: over exits, the two
+// have the same product with the way.
+TEST(ExitLobe, OfLightScatteredOftenRemembersTheWayOfTheWalk) {
+    const glm::vec3 up(0, 1, 0);
+    constexpr std::uint32_t kWalks = 20000;
+    for (const float eta : {1.0f, 1.3f, 1.7f}) {
+        const ExitLobe lobe = make_exit_lobe(static_cast<double>(eta));
+        const auto slab = tests::make_walked_body(tests::make_wide_slab(40),
+                                                  tests::make_forward_medium(1, 0.98f, 0, eta));
+        double directions = 0, ways = 0;
+        std::vector<WalkExit> exits;
+        WalkCounts counts;
+        for (std::uint32_t w = 0; w < kWalks; ++w) {
+            WalkRandom random({1, RandomStage::body_walk, 7, w});
+            exits.clear();
+            follow_walk(slab->space, {}, tests::start_below({0, 0, 0}, up), {2}, random, exits,
+                        counts);
+            for (const WalkExit& exit : exits) {
+                if (exit.is_diffuse && exit.normal.y > 0.5f) {
+                    const glm::vec4 way(0, exit.drift.x, 0, exit.drift.z);
+                    const float weight = exit.weight[0];
+                    directions +=
+                        static_cast<double>(weight * glm::dot(way, lobe.eval(up, exit.direction)));
+                    ways += static_cast<double>(weight *
+                                                glm::dot(way, lobe.eval_diffuse(up, exit.drift)));
+                }
+            }
+        }
+        EXPECT_NEAR(ways / directions, 1, 0.15) << eta;
+    }
 }
 
 TEST(ExitLobe, OfAnExitBehindTheSampleIsEven) {

@@ -73,6 +73,7 @@ ExitLobe make_exit_lobe(double eta) {
     const auto radiance = [&](double c) { return z + refracted_cosine(c, eta); };
     lobe.diffuse = fit_lobe(eta, [&](double c) { return c * radiance(c); }).mean /
                    fit_lobe(eta, radiance).mean;
+    lobe.eta = eta;
     return lobe;
 }
 
@@ -91,9 +92,14 @@ glm::vec4 ExitLobe::eval(glm::vec3 normal, glm::vec3 exit) const {
     return {1 - static_cast<float>(mean) * along, a};
 }
 
-glm::vec4 ExitLobe::eval_diffuse(glm::vec3 normal) const {
+glm::vec4 ExitLobe::eval_diffuse(glm::vec3 normal, glm::vec3 drift) const {
     const auto along = static_cast<float>((diffuse - mean) / variance);
-    return {1 - static_cast<float>(mean) * along, along * normal};
+    // Light inside that drifts has a radiance of 1 + 3 drift . w in proportion; at the boundary it
+    // drifts less than on average over the walk (README.md, "The light at an exit").
+    constexpr double kAtBoundary = 0.65;
+    const auto sideways = static_cast<float>(3 * kAtBoundary / eta);
+    const glm::vec3 a = along * normal + sideways * (drift - glm::dot(normal, drift) * normal);
+    return {1 - static_cast<float>(mean) * along, a};
 }
 
 ExitLight::ExitLight(std::span<const SurfaceSample> samples, const SparseVectors& light,
@@ -140,8 +146,8 @@ glm::vec4 ExitLight::factors(std::uint32_t sample, const WalkExit& exit) const {
     if (moments_ == nullptr) {
         return {scale, 0, 0, 0};
     }
-    return scale *
-           (exit.is_diffuse ? lobe_.eval_diffuse(s.normal) : lobe_.eval(s.normal, exit.direction));
+    return scale * (exit.is_diffuse ? lobe_.eval_diffuse(s.normal, exit.drift)
+                                    : lobe_.eval(s.normal, exit.direction));
 }
 
 void ExitLight::add(std::uint32_t sample, const std::array<glm::vec4, 3>& factors,

@@ -24,11 +24,13 @@ struct ExitLobe {
     double variance = 1;  ///< of c
     double across = 1;    ///< mean square of each coordinate across the normal
     double diffuse = 0;   ///< mean of c over exits of light that was scattered often
+    double eta = 1;       ///< of the boundary
 
     /// a_0, a_x, a_y, a_z; `normal` of the sample, `exit` away from the body, both unit.
     glm::vec4 eval(glm::vec3 normal, glm::vec3 exit) const;
-    /// Their mean over exits of light that was scattered often: the same, with much less noise.
-    glm::vec4 eval_diffuse(glm::vec3 normal) const;
+    /// Their mean over exits of light that was scattered often, of walks with the same way and
+    /// length (WalkExit::drift): the same, with much less noise.
+    glm::vec4 eval_diffuse(glm::vec3 normal, glm::vec3 drift) const;
 };
 
 /// `eta` > 0.

@@ -66,7 +66,7 @@ class Walk {
 
     glm::vec3 follow(const WalkStart& start) {
         ++counts_.walks;
-        position_ = start.position;
+        position_ = start_ = start.position;
         shells_ = start.shells;
         direction_ = start_direction(space_, start, random_);
         const glm::vec3 seen = -direction_;
@@ -119,6 +119,7 @@ class Walk {
 
     bool collide(float length) {
         position_ += length * direction_;
+        length_ += length;
         if (glm::any(glm::lessThan(position_, space_.low)) ||
             glm::any(glm::greaterThan(position_, space_.high))) {
             ++counts_.lost;
@@ -134,6 +135,7 @@ class Walk {
         if (!hit.is_own) {
             return false;
         }
+        length_ += glm::distance(hit.position, position_);
         const bool leaves = glm::dot(direction_, hit.flat) > 0;
         if (!leaves || shells_ > 1) {
             shells_ += leaves ? -1 : 1;
@@ -172,6 +174,7 @@ class Walk {
             exit.weight[b] = passed * weight_.value()[b];
         }
         exit.is_diffuse = scatterings_ >= space_.diffuse_after;
+        exit.drift = length_ > 0 ? (hit.position - start_) / length_ : glm::vec3(0);
         exit.primitive = hit.primitive;
         exit.first_index = hit.first_index;
         exit.u = hit.u;
@@ -197,7 +200,8 @@ class Walk {
     std::vector<WalkExit>& exits_;
     WalkCounts& counts_;
 
-    glm::vec3 position_{0}, direction_{0};
+    glm::vec3 start_{0}, position_{0}, direction_{0};
+    float length_ = 0;  // of the walk so far
     std::uint32_t scatterings_ = 0;
     bool is_reflected_ = false;
     int shells_ = 1;
