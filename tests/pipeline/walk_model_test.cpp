@@ -146,11 +146,11 @@ TEST(WalkModel, ThinSheetSeenAlongItsNormalIsAsBrightAsPathTracedWithFourRowsAnd
 }
 
 TEST(WalkModel, RowsByViewAreTakenWhereTheBodyIsThinAndTheQualityAsks) {
-    const auto entry = [](float sigma_t, const BakeOptions& options) {
+    const auto entry = [](float sigma_t, const BakeOptions& options, float eta = 1.3f) {
         return entry_of(
             tests::bake_scene(tests::make_translucent_scene(
                                   {tests::make_sphere(2)},
-                                  tests::make_grey_medium(0.9f * sigma_t, 0.1f * sigma_t)),
+                                  tests::make_grey_medium(0.9f * sigma_t, 0.1f * sigma_t, eta)),
                               options),
             "multiple.view");
     };
@@ -158,7 +158,8 @@ TEST(WalkModel, RowsByViewAreTakenWhereTheBodyIsThinAndTheQualityAsks) {
     EXPECT_EQ(entry(3, options).terms, 1u) << "preview";
     options.quality = Quality::production;
     EXPECT_EQ(entry(1, options).terms, 4u);
-    EXPECT_EQ(entry(5, options).terms, 1u);
+    EXPECT_EQ(entry(10, options).terms, 1u);
+    EXPECT_EQ(entry(10, options, 1).terms, 4u) << "views are farther apart inside";
     EXPECT_EQ(entry(3000, options).terms, 1u);
     BakeOptions apart = options;
     apart.separate_terms = true;
