@@ -57,11 +57,12 @@ BandsLeaving walk_down(const bake::WalkSpace& space, const bake::WalkStart& star
 // answer.
 TEST(BandWeights, BandsThatShareTheirWalksLeaveAsMuchLightAsEachAloneWithNoMoreNoise) {
     constexpr std::uint32_t kWalks = 20000;
-    const std::array<std::pair<glm::vec3, glm::vec3>, 4> media{
+    const std::array<std::pair<glm::vec3, glm::vec3>, 5> media{
         {{{6, 8, 9}, {0.01f, 0.1f, 1}},
          {{0.2f, 0.3f, 0.4f}, {0.01f, 0, 0.2f}},
          {{0.05f, 5, 50}, {0, 0.2f, 0.5f}},
-         {{3, 0, 4}, {0.1f, 2, 0.1f}}}};
+         {{3, 0, 4}, {0.1f, 2, 0.1f}},
+         {{0.99f, 1, 1.2f}, {0.01f, 9, 0.01f}}}};
     const glm::vec3 up(0, 1, 0);
     const bake::WalkStart start = start_below({0, 1, 0}, up);
     for (const auto& [sigma_s, sigma_a] : media) {
@@ -99,23 +100,55 @@ TEST(BandWeights, ThatNearlyCoincideShareTheNoiseOfAllWalks) {
     }
 }
 
-// No flight, however improbable in some band, gives a weight that is no number or above the mean's
-// bound.
+// A band of high albedo beside one that absorbs nearly all: the latter's walks end soon, and what
+// they are worth in the former does not grow by that.
+TEST(BandWeights, OfABandThatHardlyAbsorbsAreAtMostThoseOfItsOwnWalksWhateverOthersAbsorb) {
+    const auto ball =
+        make_walked_body(make_sphere(3), make_coloured_medium({0.99f, 1, 1.2f}, {0.01f, 9, 0.01f}));
+    const bake::WalkSpace space = bake::make_walk_space(ball->scene, *ball->triangles, 0, false);
+    const bake::WalkStart start = start_below({0, 1, 0}, {0, 1, 0});
+    std::vector<bake::WalkExit> exits;
+    bake::WalkCounts counts;
+    for (std::uint32_t w = 0; w < 60000; ++w) {
+        bake::WalkRandom random({1, bake::RandomStage::body_walk, 7, w});
+        bake::follow_walk(space, {w % 3, {1, 1, 1}}, start, {1}, random, exits, counts);
+    }
+    ASSERT_GT(exits.size(), 10000u);
+    for (const bake::WalkExit& exit : exits) {
+        for (const float weight : exit.weight) {
+            EXPECT_LE(weight, 1.001f);
+        }
+    }
+}
+
+// No path, however improbable in some band, gives a weight that is no number or above that of one
+// walk.
 TEST(BandWeights, OfExtinctionsFarApartAreFiniteAndAtMostThatOfOneWalk) {
     const auto ball = make_walked_body(make_sphere(2), make_grey_medium(1, 1));
     for (const glm::vec3 sigma_s :
-         {glm::vec3(1e-20f, 1, 1e20f), glm::vec3(1e-38f, 1e38f, 1e4f), glm::vec3(1, 1.1f, 1.2f)}) {
-        ball->scene.materials[0].medium = make_coloured_medium(sigma_s, {0, 0, 0});
-        const bake::WalkSpace space =
-            bake::make_walk_space(ball->scene, *ball->triangles, 0, false);
-        for (std::uint32_t g = 0; g < space.bands.size(); ++g) {
-            for (const float depth : {0.0f, 1e-6f, 1.0f, 80.0f}) {
-                for (const bool collides : {false, true}) {
-                    bake::BandWeights weights(space, {g, {1, 1, 1}});
-                    const float length = depth / weights.sigma_t();
-                    for (int flight = 0; flight < 20 && weights.fly(length, collides); ++flight) {
-                        EXPECT_TRUE(weights.largest() <= 1.0001f) << depth;
-                        EXPECT_TRUE(weights.left() >= 0 && weights.left() <= 3.001) << depth;
+         {glm::vec3(1e-20f, 1, 1e20f), glm::vec3(1e-38f, 1e37f, 1e4f), glm::vec3(1e-36f, 1, 1.1f),
+          glm::vec3(18, 1e-20f, 1), glm::vec3(1, 1.1f, 1.2f)}) {
+        for (const float sigma_a : {0.0f, 100.0f}) {
+            ball->scene.materials[0].medium = make_coloured_medium(sigma_s, {sigma_a, 0, sigma_a});
+            const bake::WalkSpace space =
+                bake::make_walk_space(ball->scene, *ball->triangles, 0, false);
+            for (std::uint32_t g = 0; g < space.bands.size(); ++g) {
+                for (const float depth : {0.0f, 1e-6f, 0.5f, 1.0f, 15.0f}) {
+                    for (const int first : {0, 1, 2}) {
+                        bake::BandWeights weights(space, {g, {1, 1, 1}});
+                        const float length = depth / weights.sigma_t();
+                        bool goes_on = first == 0   ? weights.fly(length, true)
+                                       : first == 1 ? weights.cross_first(length)
+                                                    : weights.collide_first(0.5f * length, length);
+                        for (int flight = 0; goes_on && flight < 20; ++flight) {
+                            EXPECT_TRUE(weights.left() >= 0 && weights.left() <= 2.001)
+                                << weights.left();
+                            for (const float value : weights.value()) {
+                                EXPECT_TRUE(value >= 0 && value <= 2.001f) << value;
+                            }
+                            goes_on = weights.fly(length, flight % 3 != 0) && weights.absorb() &&
+                                      weights.scale(0.7f) && weights.survives(0);
+                        }
                     }
                 }
             }

@@ -8,14 +8,18 @@ namespace {
 
 constexpr float kThin = 0.6931472f;  // optical depth where half scatters by itself
 
-float collision_chance(float sigma_t, float distance) {
-    return distance * sigma_t <= kThin ? 0.5f : -std::expm1(-sigma_t * distance);
+bool is_split(float sigma_t, float distance) {
+    return distance * sigma_t <= kThin;
+}
+
+float crossing_chance(float sigma_t, float distance) {
+    return is_split(sigma_t, distance) ? 0.5f : std::exp(-sigma_t * distance);
 }
 
 }  // namespace
 
 BandWeights::BandWeights(const WalkSpace& space, const WalkGroup& group)
-    : space_(space), sigma_t_(space.bands[group.flies_as].sigma_t) {
+    : space_(space), flies_as_(group.flies_as), sigma_t_(space.bands[group.flies_as].sigma_t) {
     for (std::size_t g = 0; g < space.bands.size(); ++g) {
         const WalkBands& bands = space.bands[g];
         all_walks_ += group.walks[g];
@@ -28,17 +32,13 @@ BandWeights::BandWeights(const WalkSpace& space, const WalkGroup& group)
             }
         }
     }
-    full_ = 1 / all_walks_;
     for (std::size_t g = 0; g < space.bands.size(); ++g) {
         density_[g] = group.walks[g] / all_walks_;
     }
     for (std::size_t b = 0; b < 3; ++b) {
-        value_[b] = albedo_[b] > 0 ? full_ : 0;
+        own_[b] = albedo_[b] > 0 ? 1 : 0;
+        value_[b] = own_[b] / all_walks_;
     }
-}
-
-float BandWeights::largest() const {
-    return std::max({value_[0], value_[1], value_[2]});
 }
 
 double BandWeights::left() const {
@@ -50,12 +50,14 @@ double BandWeights::left() const {
     return static_cast<double>(all_walks_) * sum / std::max(1.0, bands);
 }
 
-// What a flight is worth in each group, over what it is worth in the one it is drawn from.
-BandWeights::PerGroup BandWeights::flight_factors(float length, bool collides) const {
+// What a flight is worth in each group, over what it is worth in the one it is drawn from, times
+// `scale`.
+BandWeights::PerGroup BandWeights::flight_factors(float length, bool collides, float scale) const {
     constexpr float kMost = 80;  // e to that is finite
+    const float log_scale = std::log(scale);
     PerGroup factors{1, 1, 1};
     for (std::size_t g = 0; g < space_.bands.size(); ++g) {
-        const float exponent = (sigma_t_ - space_.bands[g].sigma_t) * length;
+        const float exponent = (sigma_t_ - space_.bands[g].sigma_t) * length + log_scale;
         factors[g] = std::exp(std::min(kMost, collides ? exponent + log_ratio_[g] : exponent));
     }
     return factors;
@@ -67,69 +69,114 @@ bool BandWeights::reweigh(const PerGroup& light, const PerGroup& density) {
         density_[g] *= density[g];
         sum += density_[g];
     }
-    if (!(sum > 0)) {
-        return false;  // so unlikely that numbers do not tell
+    constexpr float kLeast = 1e-30f;  // less likely than numbers tell
+    if (!(sum > kLeast)) {
+        return false;
     }
     for (float& d : density_) {
         d /= sum;
     }
     for (std::size_t b = 0; b < 3; ++b) {
-        value_[b] *= light[group_[b]] / sum;
+        value_[b] = value_[b] * light[group_[b]] / sum;  // in this order: finite
     }
-    return largest() > 0;
+    return left() > 0;
 }
 
 bool BandWeights::fly(float length, bool collides) {
     if (space_.bands.size() == 1) {
         return true;
     }
-    const PerGroup factors = flight_factors(length, collides);
+    const PerGroup factors = flight_factors(length, collides, 1);
     return reweigh(factors, factors);
 }
 
-float BandWeights::first_collision_chance(float distance) const {
-    return collision_chance(sigma_t_, distance);
+float BandWeights::first_crossing_chance(float distance) const {
+    return crossing_chance(sigma_t_, distance);
 }
 
 bool BandWeights::cross_first(float distance) {
-    const float own = 1 - first_collision_chance(distance);
+    const float chance = crossing_chance(sigma_t_, distance);
     PerGroup light{}, density{};
     for (std::size_t g = 0; g < space_.bands.size(); ++g) {
-        const float sigma_t = space_.bands[g].sigma_t;
-        light[g] = std::exp(-sigma_t * distance) / own;
-        density[g] = (1 - collision_chance(sigma_t, distance)) / own;
+        const float sigma_t = space_.bands[g].sigma_t, crossing = std::exp(-sigma_t * distance);
+        light[g] = crossing / chance;
+        density[g] = crossing_chance(sigma_t, distance) / chance;
+        own_full_[g] = is_split(sigma_t, distance) ? 2 * crossing : 1;
     }
-    const bool goes_on = reweigh(light, density);
-    full_ = largest();
-    return goes_on;
+    return begin(light, density);
 }
 
 bool BandWeights::collide_first(float length, float distance) {
-    const float own = -std::expm1(-sigma_t_ * distance) / first_collision_chance(distance);
-    PerGroup light = flight_factors(length, true), density = light;
+    const auto scattered = [&](float sigma_t) { return -std::expm1(-sigma_t * distance); };
+    const auto chance = [&](float sigma_t) {
+        return is_split(sigma_t, distance) ? 0.5f : scattered(sigma_t);
+    };
+    const PerGroup light = flight_factors(length, true, scattered(sigma_t_) / chance(sigma_t_));
+    PerGroup density{};
     for (std::size_t g = 0; g < space_.bands.size(); ++g) {
         const float sigma_t = space_.bands[g].sigma_t;
-        const float scattered = -std::expm1(-sigma_t * distance);
-        light[g] *= own;
-        density[g] *= scattered > 0 ? own * collision_chance(sigma_t, distance) / scattered : 0;
+        own_full_[g] = scattered(sigma_t) / chance(sigma_t);
+        density[g] = own_full_[g] > 0 ? light[g] / own_full_[g] : 0;
     }
-    const bool goes_on = reweigh(light, density);
-    full_ = largest();
-    return goes_on;
+    return begin(light, density);
+}
+
+bool BandWeights::begin(const PerGroup& light, const PerGroup& density) {
+    for (std::size_t b = 0; b < 3; ++b) {
+        own_[b] *= own_full_[group_[b]];
+    }
+    return reweigh(light, density);
 }
 
 bool BandWeights::absorb() {
     for (std::size_t b = 0; b < 3; ++b) {
         value_[b] *= albedo_[b];
+        own_[b] *= albedo_[b];
     }
-    return largest() > 0;
+    return left() > 0;
 }
 
 bool BandWeights::scale(float factor) {
-    for (float& v : value_) {
-        v *= factor;
+    for (std::size_t b = 0; b < 3; ++b) {
+        value_[b] *= factor;
+        own_[b] *= factor;
     }
-    return largest() > 0;
+    return left() > 0;
+}
+
+float BandWeights::survival_chance(std::size_t group) const {
+    constexpr float kSmall = 0.4f, kAfter = 0.8f, kLeast = 1e-6f;
+    float largest = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+        largest = std::max(largest, group_[b] == group ? own_[b] : 0);
+    }
+    const float chance =
+        largest < kSmall * own_full_[group] ? largest / (kAfter * own_full_[group]) : 1;
+    return chance < kLeast ? 0 : chance;
+}
+
+bool BandWeights::survives(float u) {
+    PerGroup chance{}, light{}, density{};
+    bool risks = false;
+    for (std::size_t g = 0; g < space_.bands.size(); ++g) {
+        chance[g] = survival_chance(g);
+        risks |= chance[g] < 1;
+    }
+    if (!risks) {
+        return true;
+    }
+    const float own = chance[flies_as_];
+    if (!(u < own)) {
+        return false;
+    }
+    for (std::size_t g = 0; g < space_.bands.size(); ++g) {
+        light[g] = 1 / own;
+        density[g] = chance[g] / own;
+    }
+    for (std::size_t b = 0; b < 3; ++b) {
+        own_[b] /= chance[group_[b]] > 0 ? chance[group_[b]] : 1;
+    }
+    return reweigh(light, density);
 }
 
 }  // namespace opaline::bake

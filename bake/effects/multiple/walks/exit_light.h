@@ -14,8 +14,8 @@
 namespace opaline::bake {
 
 /// The light at a walk's exit as a row: E_j of the sample nearby, times a linear function of the
-/// light's direction w that remembers the walk's own direction w_e (README.md, "The light at an
-/// exit"),
+/// light's direction w that remembers the walk's own direction w_e, or its mean (README.md, "The
+/// light at an exit"),
 ///     E_j(w) / (pi c_exit) (a_0 + a . w).
 /// Its mean over exits that are distributed as diffuse light from inside is E_j / (pi c_exit), and
 /// it is exact for unoccluded light that is linear in w.

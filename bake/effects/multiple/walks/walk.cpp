@@ -98,7 +98,8 @@ class Walk {
         }
         const float distance = glm::length(hit.position - position_);
         const float scattered = -std::expm1(-weight_.sigma_t() * distance);
-        if (random_.next() >= weight_.first_collision_chance(distance)) {
+        constexpr float kHalfStep = 0x1p-25f;  // of random numbers: never 0
+        if (random_.next() + kHalfStep < weight_.first_crossing_chance(distance)) {
             return weight_.cross_first(distance) && arrive(hit);
         }
         const float inside =
@@ -182,16 +183,7 @@ class Walk {
         exits_.push_back(exit);
     }
 
-    // Russian roulette.
-    bool survives() {
-        constexpr float kSmall = 0.4f, kAfter = 0.8f;
-        const float largest = weight_.largest();
-        if (largest >= kSmall * weight_.full()) {
-            return true;
-        }
-        const float after = kAfter * weight_.full();
-        return random_.next() * after < largest && weight_.scale(after / largest);
-    }
+    bool survives() { return weight_.survives(weight_.is_at_risk() ? random_.next() : 0); }
 
     const WalkSpace& space_;
     BandWeights weight_;
