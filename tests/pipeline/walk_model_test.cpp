@@ -191,7 +191,9 @@ TEST(WalkModel, RowsByViewAddUpWithThoseOfSingleScattering) {
 }
 
 TEST(WalkModel, BytesDoNotDependOnTheNumberOfThreads) {
-    const tests::Scene scene = tests::make_ball_on_floor(tests::make_grey_medium(4, 0.1f));
+    formats::Medium medium = tests::make_grey_medium(4, 0.1f);
+    medium.sigma_s = {4, 4.5f, 9};
+    const tests::Scene scene = tests::make_ball_on_floor(medium);
     for (const double model : {kWalked, kScaled}) {
         BakeOptions one = bake_by(model, 20000), three = one;
         one.threads = 1;
