@@ -63,13 +63,14 @@ ExitLobe fit_lobe(double eta, Cosine&& cosine) {
 
 }  // namespace
 
+double extrapolation_length(double eta) {
+    const FresnelMoments moments = fresnel_moments(eta);
+    return 2.0 / 3 * (1 + 3 * moments.c2) / (1 - 2 * moments.c1);
+}
+
 ExitLobe make_exit_lobe(double eta) {
     ExitLobe lobe = fit_lobe(eta, [](double c) { return c; });
-    // Inside, the radiance of such light is z + c' in proportion, c' the cosine before refraction
-    // and z the extrapolation length in transport mean free paths (README.md, "The light at an
-    // exit").
-    const FresnelMoments moments = fresnel_moments(eta);
-    const double z = 2.0 / 3 * (1 + 3 * moments.c2) / (1 - 2 * moments.c1);
+    const double z = extrapolation_length(eta);
     const auto radiance = [&](double c) { return z + refracted_cosine(c, eta); };
     lobe.diffuse = fit_lobe(eta, [&](double c) { return c * radiance(c); }).mean /
                    fit_lobe(eta, radiance).mean;

@@ -36,6 +36,10 @@ struct ExitLobe {
 /// `eta` > 0.
 ExitLobe make_exit_lobe(double eta);
 
+/// z, in transport mean free paths: inside a boundary of that index light that was scattered often
+/// has a radiance of z + c' in proportion, c' the cosine toward the boundary.
+double extrapolation_length(double eta);
+
 /// The same for directions inside, toward the eye: of what leaves as uniform light would enter, as
 /// a function of the direction w' before refraction. It is the weighted least-squares fit linear in
 /// w' (README.md, "Views").
