@@ -92,11 +92,11 @@ struct WalkOrders {
 /// the sum of the exits' weights then has the mean of one term for all views,
 ///     T_0 = E[sum of weight V L],    L_o = F_t <T_0, L>,
 /// without energy added or lost: albedo 1 gives 1, less what never scatters. E is over the walks of
-/// all groups of bands together (band_weights.h). The walk passes
-/// through inner shells of its own medium; where it meets another material it ends, because such
-/// light has met a second surface. At every arrival at the boundary the transmitted part is an exit
-/// and the reflected part goes on. `exits` are appended. Returns the direction inside, away from
-/// the body, in which the walk is seen.
+/// all groups of bands together (band_weights.h). The walk passes through inner shells of its own
+/// medium; where it meets another material it ends, because such light has met a second surface. At
+/// every arrival at the boundary the transmitted part is an exit and the reflected part goes on.
+/// `exits` are appended. Returns the direction inside, away from the body, in which the walk is
+/// seen.
 glm::vec3 follow_walk(const WalkSpace& space, const WalkGroup& group, const WalkStart& start,
                       const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
                       WalkCounts& counts);
