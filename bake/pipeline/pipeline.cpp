@@ -129,17 +129,17 @@ std::vector<RowLayout> final_layouts(const BakeInputs& bake,
     return layouts;
 }
 
-// Lets effects say what their studies found.
-void amend_plan(const BakeInputs& bake, std::span<const SubjectState> subjects, const Knobs& knobs,
-                const Context& context, std::vector<PlanEntry>& plan) {
-    for (PlanEntry& entry : plan) {
+// The plan, now that studies have found what rules could not know.
+std::vector<PlanEntry> amend_plan(const BakeInputs& bake, std::span<const SubjectState> subjects,
+                                  const Knobs& knobs, const Context& context) {
+    return plan_bake(bake.effects, bake.scene, bake.facts, knobs, [&](PlanEntry& entry) {
         const EffectDescriptor& effect = bake.effects[entry.effect];
         const auto e = static_cast<std::size_t>(&effect - bake.effects.effects.data());
         const SubjectState& subject = state_of(subjects, entry.subject.index);
         if (effect.amend != nullptr && subject.effects[e].study != nullptr) {
             effect.amend(inputs_of(bake, subject, e, knobs, context), entry);
         }
-    }
+    });
 }
 
 void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjects,
@@ -169,14 +169,16 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context, B
     }
     std::vector<SubjectState> subjects = begin_subjects(bake, result.plan, knobs);
     run_step(Step::study, bake, knobs, context, subjects, log);
+    result.plan = amend_plan(bake, subjects, knobs, context);
+    settle_subjects(bake, result.plan, knobs, subjects);
+    run_step(Step::study, bake, knobs, context, subjects, log);  // of effects that act only now
     if (knobs.error_target > 0) {
         result.accuracy.emplace();
         knobs = choose_knobs(bake, knobs, context, {subjects, *lights, log, *result.accuracy});
-        result.plan = plan_bake(bake.effects, bake.scene, bake.facts, knobs);
+        result.plan = amend_plan(bake, subjects, knobs, context);
     } else {
         run_step(Step::samples, bake, knobs, context, subjects, log);
     }
-    amend_plan(bake, subjects, knobs, context, result.plan);
     run_step(Step::prepare, bake, knobs, context, subjects, log);
     if (context.cancelled()) {
         return interrupted();

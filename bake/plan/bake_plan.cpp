@@ -38,7 +38,8 @@ std::vector<Subject> list_subjects(const formats::Scene& scene, const SceneFacts
 }
 
 std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scene& scene,
-                                 const SceneFacts& facts, const Knobs& knobs) {
+                                 const SceneFacts& facts, const Knobs& knobs,
+                                 const AmendEntry& amend) {
     std::vector<PlanEntry> plan;
     for (const Subject& subject : list_subjects(scene, facts)) {
         PlanInput input{scene.materials[subject.index], facts.material[subject.index], knobs};
@@ -57,6 +58,9 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
             entry.subject = subject;
             if (entry.forced) {
                 entry.reason += "; forced: by its bound it would be left out";
+            }
+            if (amend) {
+                amend(entry);
             }
             decisions.push_back(std::move(entry));
         };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,9 +28,11 @@ struct PlanEntry {
     bool has_bands = false;    ///< its light differs between red, green and blue
     bool alternative = false;  ///< it would replace other effects: turning it on is no addition
     bool as_surface = false;   ///< it shows a medium as a surface: nothing enters, nothing mirrors
-    std::string reason;        ///< the rule in words
-    double bound = 0;          ///< largest radiance it can contribute under `white`
-    std::uint32_t terms = 0;   ///< of rules that choose a number of rows: that number; otherwise 0
+    /// On: its rows can hold light of all orders of scattering. Off: left to such rows.
+    bool all_orders = false;
+    std::string reason;       ///< the rule in words
+    double bound = 0;         ///< largest radiance it can contribute under `white`
+    std::uint32_t terms = 0;  ///< of rules that choose a number of rows: that number; otherwise 0
     std::uint32_t least_terms = 1;      ///< that number if the rule were on
     double predicted_seconds = 0;       ///< filled in by predict_costs (cost_model.h)
     std::uint64_t predicted_bytes = 0;  ///< the same; of the rows in the file
@@ -37,10 +40,15 @@ struct PlanEntry {
     std::uint64_t saved_bytes = 0;      ///< the same; of the rows in the file
 };
 
+/// What is known of a decision that its rule did not know; null: nothing.
+using AmendEntry = std::function<void(PlanEntry& entry)>;
+
 /// Decides what to simulate, from the scene alone: traces nothing. Subject by subject, and for each
-/// in the order of the effects and their rules. `facts`: inspect_scene's.
+/// in the order of the effects and their rules: later ones see what `amend` made of earlier ones.
+/// `facts`: inspect_scene's.
 std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scene& scene,
-                                 const SceneFacts& facts, const Knobs& knobs);
+                                 const SceneFacts& facts, const Knobs& knobs,
+                                 const AmendEntry& amend = {});
 
 /// The subjects of a scene: materials that have receivers.
 std::vector<Subject> list_subjects(const formats::Scene& scene, const SceneFacts& facts);

@@ -140,7 +140,7 @@ struct EffectDescriptor {
                          std::span<std::vector<double>> factor) = nullptr;
     /// Colour that replaces the base colour's own, of a medium shown as a surface.
     formats::Rgb (*tint)(const Prepared& study) = nullptr;
-    /// Completes the reason of one of its decisions once it has studied the subject.
+    /// Completes one of its decisions once it has studied the subject; rules after it follow.
     void (*amend)(const EffectInputs& inputs, PlanEntry& entry) = nullptr;
     /// Warnings about a decision that knobs contradict; and about what the model leaves out.
     void (*warn_of_plan)(const PlanInput& input, const PlanEntry& entry,

@@ -20,18 +20,25 @@ std::vector<SubjectState> begin_subjects(const BakeInputs& bake, std::span<const
                                          const Knobs& knobs) {
     std::vector<SubjectState> subjects;
     for (const Subject& subject : list_subjects(bake.scene, bake.facts)) {
-        const auto decisions = entries_of(plan, subject.index);
         SubjectState state;
         state.material = subject.index;
-        state.layout =
-            layout_material(bake.effects, bake.scene.materials[subject.index], decisions, knobs);
-        for (const EffectDescriptor& effect : bake.effects.effects) {
-            state.effects.emplace_back();
-            state.effects.back().acts = acts_on(effect, decisions, state.layout);
-        }
+        state.effects.resize(bake.effects.effects.size());
         subjects.push_back(std::move(state));
     }
+    settle_subjects(bake, plan, knobs, subjects);
     return subjects;
+}
+
+void settle_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan, const Knobs& knobs,
+                     std::vector<SubjectState>& subjects) {
+    for (SubjectState& state : subjects) {
+        const auto decisions = entries_of(plan, state.material);
+        state.layout =
+            layout_material(bake.effects, bake.scene.materials[state.material], decisions, knobs);
+        for (std::size_t e = 0; e < state.effects.size(); ++e) {
+            state.effects[e].acts = acts_on(bake.effects.effects[e], decisions, state.layout);
+        }
+    }
 }
 
 const SubjectState& state_of(std::span<const SubjectState> subjects, std::uint32_t material) {
@@ -67,8 +74,9 @@ void run_step(Step step, const BakeInputs& bake, const Knobs& knobs, const Conte
         const PreparationStep& own = step_of(effects[e], step);
         std::vector<SubjectState*> concerned;
         for (SubjectState& subject : subjects) {
-            if (is_taken(effects[e], subject.effects[e], step,
-                         bake.scene.materials[subject.material], subject.layout)) {
+            const bool is_done = step == Step::study && subject.effects[e].study != nullptr;
+            if (!is_done && is_taken(effects[e], subject.effects[e], step,
+                                     bake.scene.materials[subject.material], subject.layout)) {
                 concerned.push_back(&subject);
             }
         }

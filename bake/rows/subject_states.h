@@ -20,6 +20,11 @@ struct SubjectState {
 std::vector<SubjectState> begin_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan,
                                          const Knobs& knobs);
 
+/// What the plan says of the subjects now that some effects have studied them: rows and effects
+/// that act; what was studied stays.
+void settle_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan, const Knobs& knobs,
+                     std::vector<SubjectState>& subjects);
+
 /// The state of a material. Precondition: it has receivers.
 const SubjectState& state_of(std::span<const SubjectState> subjects, std::uint32_t material);
 
@@ -33,7 +38,8 @@ const PreparationStep& step_of(const EffectDescriptor& effect, Step step);
 bool is_taken(const EffectDescriptor& effect, const EffectState& state, Step step,
               const formats::Material& material, const RowLayout& layout);
 
-/// Runs one step for all subjects and notes its stages. Stops early once cancelled.
+/// Runs one step for all subjects and notes its stages; a study, which depends on no knob, once.
+/// Stops early once cancelled.
 void run_step(Step step, const BakeInputs& bake, const Knobs& knobs, const Context& context,
               std::vector<SubjectState>& subjects, StageLog& log);
 

@@ -11,8 +11,10 @@
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/true_multiple.h"
+#include "bake/effects/multiple/walk_costs.h"
 #include "bake/effects/multiple/walks/true_walks.h"
 #include "bake/truth/draw_receivers.h"
+#include "formats/media/mean_cosine.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -88,6 +90,15 @@ double expected_error(const formats::Medium& medium, const MaterialFacts& body) 
     return body.is_closed() && body.area > 0
                ? half_space_error(4 * std::abs(body.volume) / body.area / length)
                : half_space_error(0);
+}
+
+// Sites so far apart that they hold what the dipole lacks blur light that scatters once. Where its
+// phase function is peaked, terms in the view err by more (tests/bench/RESULTS.md, "Walks").
+bool hold_all_orders(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
+    constexpr double kPeaked = 0.5;
+    return transport_mean_free_path(medium) > 0 &&
+           (!expected_sites(medium, body, knobs).is_residual ||
+            std::abs(formats::mean_cosine(medium.phase)) >= kPeaked);
 }
 
 // A profile that the user chose is meant.
@@ -166,14 +177,14 @@ ModelErrors measure_models(const EffectInputs& inputs, const MediumProfile& prof
 ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profile,
                          std::uint64_t& traced) {
     const auto asked = static_cast<MultipleModel>(whole(inputs.knobs, kMultipleModel));
+    const MaterialFacts& body = inputs.bake.facts.material[inputs.material];
     ModelChoice choice;
-    if (asked != MultipleModel::automatic) {
-        choice.model = asked;
+    choice.all_orders = hold_all_orders(inputs.medium(), body, inputs.knobs);
+    if (inputs.layout.at_entry || !expects_walks(inputs.medium(), body, inputs.knobs)) {
         return choice;
     }
-    if (inputs.layout.at_entry ||
-        !expects_walks(inputs.medium(), inputs.bake.facts.material[inputs.material],
-                       inputs.knobs)) {
+    if (asked != MultipleModel::automatic) {
+        choice.model = asked;
         return choice;
     }
     const double allowed = allowed_model_error(inputs.knobs.quality);
@@ -213,14 +224,17 @@ PlanEntry decide_model(const PlanInput& input) {
             "more than " +
             percent(allowed);
     }
+    entry.all_orders = effect.on && entry.on && asked != MultipleModel::scaled &&
+                       hold_all_orders(medium, input.subject, input.knobs);
     return entry;
 }
 
 void describe_choice(const ModelChoice& choice, PlanEntry& entry) {
+    entry.on = choice.model != MultipleModel::dipole;
+    entry.all_orders = choice.model == MultipleModel::walks && choice.all_orders;
     if (choice.errors.receivers == 0) {
         return;
     }
-    entry.on = choice.model != MultipleModel::dipole;
     entry.reason = std::string(kMultipleModel.words[static_cast<std::size_t>(choice.model)]) +
                    ": measured at " + std::to_string(choice.errors.receivers) +
                    " vertices, the dipole differs from random walks by " +

@@ -29,6 +29,7 @@ struct ModelErrors {
 struct ModelChoice {
     MultipleModel model = MultipleModel::dipole;  ///< not automatic
     ModelErrors errors;
+    bool all_orders = false;  ///< walks may follow light scattered once as well
 };
 
 /// Compares the dipole, and the dipole scaled to walks under even light, with random walks at some
@@ -38,14 +39,15 @@ ModelErrors measure_models(const EffectInputs& inputs, const MediumProfile& prof
                            std::uint64_t& traced);
 
 /// The model asked for; automatic: the dipole where its error is allowed, by estimate or as
-/// measured, else the scaled dipole where its error is, else walks.
+/// measured, else the scaled dipole where its error is, else walks. The dipole, where light leaves
+/// where it entered.
 ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profile,
                          std::uint64_t& traced);
 
 /// The rule `multiple.model`.
 PlanEntry decide_model(const PlanInput& input);
 
-/// Its reason once the choice is made.
+/// The decision once the choice is made.
 void describe_choice(const ModelChoice& choice, PlanEntry& entry);
 
 }  // namespace opaline::bake

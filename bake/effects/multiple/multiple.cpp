@@ -109,7 +109,8 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        model_of(inputs.own),
                                        {knobs[kWalksAround], knobs[kWalks], whole(knobs, kSites)},
                                        knobs[kEpsilon],
-                                       inputs.layout.view_harmonics > 0},
+                                       inputs.layout.view_harmonics > 0,
+                                       inputs.layout.all_orders},
                                       inputs.context);
     rays += samples->stage.rays;
     return samples;
@@ -229,7 +230,8 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
             truth.space,
             {inputs.bake.rays, truth.suns, truth.smooth, truth.lobe, profile_of(inputs.own).exit,
              truth.points, inputs.layout.view_harmonics > 0},
-            receiver.inside, {}, inputs.knobs.seed, receiver.key, rays);
+            receiver.inside, {inputs.layout.all_orders ? 1u : 2u}, inputs.knobs.seed, receiver.key,
+            rays);
     }
     if (model != MultipleModel::walks) {
         dipole = integrate_multiple(

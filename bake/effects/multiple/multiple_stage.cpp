@@ -102,7 +102,7 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
                                    .views = options.by_view && !scales ? 4u : 1u,
                                    .bands = options.bands,
                                    .seed = options.seed,
-                                   .orders = {}}};
+                                   .orders = {options.all_orders ? 1u : 2u}}};
     const std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
     const std::size_t step = options.bands == 1 ? 1 : 4;
     const glm::vec3 scale(static_cast<float>(1 / (std::numbers::pi * stage.medium.exit)));

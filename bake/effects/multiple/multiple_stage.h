@@ -46,6 +46,7 @@ struct MultipleOptions {
     WalkBudget walks;
     double tolerance = 1e-3;  ///< GatherOptions, of the dipole at sites
     bool by_view = false;     ///< walks also say how the light changes with the view
+    bool all_orders = false;  ///< walks also count light that scatters once
 };
 
 /// Samples the surface of the material's medium with profile `medium`, traces the entering light,

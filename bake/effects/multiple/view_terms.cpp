@@ -1,6 +1,7 @@
 #include "bake/effects/multiple/view_terms.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -10,6 +11,7 @@
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/walks/exit_light.h"
 #include "bake/effects/multiple/walks/walk_space.h"
+#include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {
 namespace {
@@ -20,6 +22,27 @@ double allowed_view_error(Quality quality) {
     return quality == Quality::reference    ? 0.01
            : quality == Quality::production ? 0.03
                                             : std::numeric_limits<double>::infinity();
+}
+
+// Of a half space under even light, seen along the normal: how much darker it is than on average.
+// Radiance inside is 1 - sqrt(1 - a) H(c') [Chandrasekhar1960], a the albedo of the similar
+// isotropic medium, H(c') = (1 + 2 c') / (1 + 2 c' sqrt(1 - a)) [Hapke1981].
+double half_space_view_error(const formats::Medium& medium, double mean) {
+    constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
+    const double g = formats::mean_cosine(medium.phase);
+    double change = 0, sum = 0;
+    const auto bands = bands_of(medium);
+    for (std::size_t b = 0; b < bands.size(); ++b) {
+        const double scattered = (1 - g) * bands[b].sigma_s;
+        if (!(scattered > 0)) {
+            continue;
+        }
+        const double root = std::sqrt(bands[b].sigma_a / (scattered + bands[b].sigma_a));
+        const auto radiance = [&](double c) { return 1 - root * (1 + 2 * c) / (1 + 2 * c * root); };
+        change += kLuminance[b] * (radiance(mean) - radiance(1));
+        sum += kLuminance[b] * radiance(mean);
+    }
+    return sum > 0 ? change / sum : 0;
 }
 
 }  // namespace
@@ -36,14 +59,14 @@ double one_view_error(const formats::Medium& medium, const MaterialFacts& body) 
     const double length = transport_mean_free_path(medium);
     const double chord =
         body.is_closed() && body.area > 0 ? 4 * std::abs(body.volume) / body.area : 0;
-    return length > 0 && chord > 0 ? std::min(kMost, share * length / chord) : kMost;
+    const double thin = length > 0 && chord > 0 ? share * length / chord : kMost;
+    return std::min(kMost, std::hypot(thin, half_space_view_error(medium, mean)));
 }
 
 PlanEntry decide_views(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
     const PlanEntry& model = input.earlier.back();
     const PlanEntry& effect = input.earlier[input.earlier.size() - 2];
-    const auto asked = static_cast<MultipleModel>(whole(input.knobs, kMultipleModel));
     const auto given = whole(input.knobs, kViewTerms);
     const double error = one_view_error(medium, input.subject);
     const double allowed = allowed_view_error(input.knobs.quality);
@@ -52,8 +75,9 @@ PlanEntry decide_views(const PlanInput& input) {
     entry.least_terms = 4;
     entry.terms = 1;
     entry.bound = effect.on ? error * effect.bound : 0;
-    if (!effect.on || !model.on || asked == MultipleModel::scaled) {
-        entry.reason = "one row for all views: no random walks";
+    if (!model.all_orders) {
+        entry.reason = effect.on && model.on ? "one row for all views: as the dipole has it"
+                                             : "one row for all views: no random walks";
     } else if (input.knobs.separate_terms) {
         entry.reason = "one row for all views stands apart, as --separate-terms says";
     } else if (given == 0 && error <= allowed) {

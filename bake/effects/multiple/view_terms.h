@@ -5,7 +5,7 @@
 namespace opaline::bake {
 
 /// Relative RMS that one row for all views errs by, over the views: an estimate from the body's
-/// mean chord in transport mean free paths (walks/README.md, "Views").
+/// mean chord in transport mean free paths and from the albedo (walks/README.md, "Views").
 double one_view_error(const formats::Medium& medium, const MaterialFacts& body);
 
 /// The rule `multiple.view`: 4 rows where random walks are expected and one row for all views would

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "bake/effects/multiple/multiple_knobs.h"
-#include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/plan/plan_input.h"
 #include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
@@ -27,12 +26,16 @@ WalkBudget budget_of(const Knobs& knobs) {
 }
 
 SitePlan plan_of(const SubjectCost& cost) {
-    const double length = transport_mean_free_path(cost.medium());
-    const auto diagonal = static_cast<double>(glm::length(cost.facts.high - cost.facts.low));
-    return plan_sites(cost.facts.area, diagonal, length, budget_of(cost.input.knobs));
+    return expected_sites(cost.medium(), cost.facts, cost.input.knobs);
 }
 
 }  // namespace
+
+SitePlan expected_sites(const formats::Medium& medium, const MaterialFacts& body,
+                        const Knobs& knobs) {
+    const auto diagonal = static_cast<double>(glm::length(body.high - body.low));
+    return plan_sites(body.area, diagonal, transport_mean_free_path(medium), budget_of(knobs));
+}
 
 double count_body_events(const formats::Medium& medium, const MaterialFacts& body) {
     const auto eta = static_cast<double>(medium.eta);

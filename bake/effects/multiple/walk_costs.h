@@ -1,8 +1,13 @@
 #pragma once
 
+#include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/plan/stage_work.h"
 
 namespace opaline::bake {
+
+/// Where walks are expected to start.
+SitePlan expected_sites(const formats::Medium& medium, const MaterialFacts& body,
+                        const Knobs& knobs);
 
 /// Scatterings and reflections of a walk through a body, on average: at albedo 1 eta^2 4 V / (S
 /// mean_free_path escape) (walks/README.md, "The estimator"), fewer where walks end by absorption.

@@ -32,6 +32,12 @@ double largest_scattered_share(const PlanInput& input) {
     return share;
 }
 
+// Whether rows decided on earlier can hold light that scatters once as well.
+bool holds_all_orders(const PlanInput& input) {
+    return std::ranges::any_of(input.earlier,
+                               [](const PlanEntry& e) { return e.on && e.all_orders; });
+}
+
 std::string percent(double share) {
     char text[32];
     std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
@@ -54,6 +60,11 @@ PlanEntry decide_single(const PlanInput& input) {
         largest_scattered_share(input) * std::min(1.0, 4 * std::numbers::pi * peak / (eta * eta));
     if (!is_wanted(input.knobs, "single")) {
         entry.reason = "left out by --effects";
+    } else if (!input.knobs.separate_terms && holds_all_orders(input)) {
+        entry.alternative = entry.all_orders = true;
+        entry.reason =
+            "random walks follow light that scatters once together with the rest, along its true "
+            "path";
     } else if (medium.profile == formats::Medium::Profile::normalized &&
                medium.fidelity == formats::Medium::Fidelity::physical &&
                !is_named(input.knobs, "single")) {
@@ -81,7 +92,7 @@ PlanEntry decide_terms(const PlanInput& input) {
     entry.least_terms = 4;
     entry.bound = largest_scattered_share(input) * 4 * std::numbers::pi * phase_rms(series, 1);
     if (!decide_single(input).on) {
-        entry.reason = "no light is simulated that scatters once";
+        entry.reason = "no light that scatters once is simulated apart";
         return entry;
     }
     const std::uint32_t needed = needed_terms(medium, input.knobs);

@@ -24,6 +24,7 @@ constexpr std::array<DecisionRule, 2> kRules{
     {{"single", has_medium, decide_single,
       [](const PlanEntry& entry, RowLayout& layout) {
           layout.harmonics = std::max(layout.harmonics, entry.on ? 1u : 0u);
+          layout.all_orders = !entry.on && entry.all_orders;
       }},
      {"single.terms", is_anisotropic, decide_terms, [](const PlanEntry& entry, RowLayout& layout) {
           layout.harmonics = entry.on && layout.harmonics > 0
@@ -80,10 +81,7 @@ PreparedPtr gather_batch(const EffectInputs& inputs, std::span<const BodyPoint> 
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const SingleBatch& batch = static_cast<const Batch&>(*receiver.batch).batch;
     const std::uint32_t m = stage_of(*inputs.own.prepared).directions.cubemap_size;
-    // h = 1 of one term becomes h_0 where there are rows of other harmonics.
-    const double view = inputs.layout.harmonics == 1 ? inputs.layout.view_of_constant() : 1.0;
-    add_single(batch, receiver.place, m, inputs.layout.first_harmonic(),
-               static_cast<float>(1 / view), row);
+    add_single(batch, receiver.place, m, inputs.layout.first_harmonic(), row);
     return 0;
 }
 

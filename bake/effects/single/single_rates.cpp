@@ -41,7 +41,7 @@ double measure_unpacking() {
     const Stopwatch watch;
     for (std::uint32_t r = 0; r < kReceivers; ++r) {
         std::fill(values.begin(), values.end(), 0.0f);
-        add_single(batch, r, kCoarse, 0, 1.0f, row);
+        add_single(batch, r, kCoarse, 0, row);
     }
     return watch.seconds() / (double{kReceivers} * kTerms * texels);
 }

@@ -114,13 +114,10 @@ void read_single(const SingleBatch& batch, std::size_t receiver, std::span<float
 }
 
 void add_single(const SingleBatch& batch, std::size_t receiver, std::uint32_t m,
-                std::uint32_t first, float scale, const DenseRow& row) {
+                std::uint32_t first, const DenseRow& row) {
     const std::size_t coarse = formats::cubemap_texels(m);
     std::vector<float> own(batch.row_size);
     read_single(batch, receiver, own);
-    for (float& value : own) {
-        value *= scale;
-    }
     for (std::size_t plane = 0; plane < own.size() / coarse; ++plane) {
         const std::span<float> from = std::span(own).subspan(plane * coarse, coarse);
         formats::haar_forward_cube(from, m);

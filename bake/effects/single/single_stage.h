@@ -48,9 +48,9 @@ SingleBatch gather_single_batch(const SingleStage& stage, const RayScene& rays,
 /// The row of one receiver: terms, in each the bands, in each the texels. `row`:
 /// batch.row_size values. Any thread may read.
 void read_single(const SingleBatch& batch, std::size_t receiver, std::span<float> row);
-/// Adds `scale` times the transform of that row, gathered on a cube map of size m, to rows `first`
-/// and on of a dense row of a cube map at least as large.
+/// Adds the transform of that row, gathered on a cube map of size m, to rows `first` and on of a
+/// dense row of a cube map at least as large.
 void add_single(const SingleBatch& batch, std::size_t receiver, std::uint32_t m,
-                std::uint32_t first, float scale, const DenseRow& row);
+                std::uint32_t first, const DenseRow& row);
 
 }  // namespace opaline::bake
