@@ -35,8 +35,9 @@ double acceptable_error(Quality quality) {
 }
 
 bool meets_target(const ErrorReport& error, const Knobs& knobs) {
-    return error.at_receivers.rms_relative <= knobs.error_target &&
-           error.between.rms_relative <= knobs.error_target;
+    const double target = knobs.numerical_target();
+    return knobs.model_error < knobs.error_target && error.at_receivers.rms_relative <= target &&
+           error.between.rms_relative <= target;
 }
 
 std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& scene,
@@ -44,7 +45,7 @@ std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& s
                                                          const ErrorReport& error) {
     std::vector<formats::Diagnostic> warnings;
     const bool asked = knobs.error_target > 0;
-    const double limit = asked ? knobs.error_target : acceptable_error(knobs.quality);
+    const double limit = asked ? knobs.numerical_target() : acceptable_error(knobs.quality);
     const auto is_above = [&](const MeasuredError& e) {
         return (asked ? e.rms_relative : e.ci95[0]) > limit;
     };

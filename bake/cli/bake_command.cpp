@@ -44,9 +44,12 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
     if (const auto& names = result.error.not_measured; !names.empty()) {
         line += fmt::format("; not measured: {}", fmt::join(names, ", "));
     }
+    if (result.knobs.model_error > 0 && !result.model_error) {
+        line += fmt::format("; the model errs by some {:.1f} %", 100 * result.knobs.model_error);
+    }
     if (result.accuracy) {
-        line += fmt::format("; asked for {:g} %, expected {:.2f} %", 100 * result.accuracy->target,
-                            100 * result.accuracy->predicted);
+        line += fmt::format("; asked for {:g} % in all, expected {:.2f} % besides the model",
+                            100 * result.accuracy->target, 100 * result.accuracy->predicted);
     }
     if (const auto& model = result.model_error) {
         line += fmt::format("; model error {:.1f} % (95 %: {:.1f} to {:.1f}), mean {:+.1f} %",

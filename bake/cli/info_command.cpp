@@ -112,6 +112,10 @@ void print_provenance(const Json& provenance) {
                            name.is_string() ? printable(name.get<std::string>()) : "?");
             }
         }
+        if (error.contains("model_estimate") && error["model_estimate"].is_number() &&
+            error["model_estimate"].get<double>() > 0) {
+            fmt::print("; the model, some {:.1f} %", 100 * error["model_estimate"].get<double>());
+        }
         fmt::print("\n");
     }
     if (provenance.contains("model_error") && provenance["model_error"].is_object()) {

@@ -23,6 +23,7 @@ Json plan_array(const std::vector<bake::PlanEntry>& plan) {
                          {"forced", entry.forced},
                          {"reason", entry.reason},
                          {"bound", entry.bound},
+                         {"model_error", entry.model_error},
                          {"predicted_seconds", entry.predicted_seconds},
                          {"predicted_bytes", entry.predicted_bytes},
                          {"saved_seconds", entry.saved_seconds},
@@ -71,6 +72,8 @@ Json accuracy_json(const bake::AccuracyReport& accuracy) {
              {"error", trial.error}});
     }
     return {{"error_requested", accuracy.target},
+            {"model_error", accuracy.model},
+            {"numerical_target", accuracy.numerical},
             {"error_predicted", accuracy.predicted},
             {"error_likely", accuracy.likely},
             {"met", accuracy.met},
@@ -111,6 +114,7 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     report["predicted_seconds_total"] = expected.cost.seconds;
     report["calibration"] = expected.rates_note;
     report["error"] = bake::error_json(result.error);
+    report["error"]["model_estimate"] = result.knobs.model_error;
     if (result.accuracy) {
         report["accuracy"] = accuracy_json(*result.accuracy);
     }
@@ -178,6 +182,19 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
             : fmt::format("--quality {}", bake::quality_name(knobs.quality));
     table += fmt::format("knobs ({}): {} texels along a face of the light's cube map, {}\n",
                          asked_for, knobs.cubemap_size, coefficients_text(knobs));
+    if (const double model = bake::find_model_error(plan); model > 0) {
+        table += fmt::format("model error: some {:.1f} %", 100 * model);
+        if (knobs.error_target > 0) {
+            bake::Knobs budget = knobs;
+            budget.model_error = model;
+            table +=
+                model < knobs.error_target
+                    ? fmt::format(", which leaves {:.2f} % to the numerical error",
+                                  100 * budget.numerical_target())
+                    : fmt::format(", more than the {:g} % asked for", 100 * knobs.error_target);
+        }
+        table += "\n";
+    }
     return table + fmt::format("predicted: {} on {}, {}, {} receivers, {} of memory\n",
                                format_seconds(cost.seconds),
                                threads == 1 ? "1 thread" : fmt::format("{} threads", threads),

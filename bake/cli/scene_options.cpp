@@ -153,8 +153,9 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 void add_error_option(CLI::App& command, SceneOptions& options) {
     command
         .add_option("--error", options.bake.error,
-                    "relative RMS error that the file may have: a pilot measures what each knob "
-                    "costs and picks the cheapest; those given stay")
+                    "relative RMS error that the file may have, of model and numbers together: the "
+                    "cheapest model that leaves enough is taken, then a pilot measures what each "
+                    "knob costs and picks the cheapest; those given stay")
         ->check(real_number(1e-4, 0.99))
         ->excludes("--quality")
         ->option_text("E");

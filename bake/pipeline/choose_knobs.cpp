@@ -69,7 +69,9 @@ std::string name_given(const EffectTable& effects, const Knobs& knobs) {
 
 Knobs choose_knobs(const BakeInputs& bake, const Knobs& wanted, const Context& context,
                    PilotState state) {
-    state.report = {wanted.error_target, 0, 0, false, {}};
+    state.report.target = wanted.error_target;
+    state.report.model = wanted.model_error;
+    state.report.numerical = wanted.numerical_target();
     const auto scene = [&] { return PilotScene{bake, state.subjects, state.lights, context}; };
     const std::vector<PilotReceiver> receivers =
         run_stage(state.log, "pilot truth",
@@ -85,7 +87,7 @@ Knobs choose_knobs(const BakeInputs& bake, const Knobs& wanted, const Context& c
             return measure_fixed(scene(), receivers, tried);
         });
         const double floor = find_fixed_floor(fixed, receivers);
-        if (floor > tried.error_target && !whole.base &&
+        if (floor > tried.numerical_target() && !whole.base &&
             learn(fixed_alone, {tried, false, floor, 0}) &&
             (next = next_knobs(bake.effects, fixed_alone))) {
             continue;
@@ -119,21 +121,29 @@ void warn_of_missed_target(const EffectTable& effects, const AccuracyReport& acc
         const std::string text = std::to_string(1e-3 * std::round(1e5 * error));
         return text.substr(0, text.find('.') + 3) + " %";
     };
+    if (accuracy.model >= accuracy.target) {
+        warnings.push_back(formats::make_warning(
+            "", "--error",
+            percent(accuracy.target) + " is out of reach: the models err by " +
+                percent(accuracy.model),
+            "leave the choice of the model to the bake, or allow a larger error; `opaline plan` "
+            "says which decision errs"));
+    }
     if (!accuracy.met) {
         const std::string given = name_given(effects, knobs);
         warnings.push_back(formats::make_warning(
             "", "--error",
-            percent(accuracy.target) + " is out of reach: " + percent(accuracy.likely) +
+            percent(accuracy.numerical) + " is out of reach: " + percent(accuracy.likely) +
                 " is the least that was found worth its cost, with " +
                 std::to_string(knobs.cubemap_size) + " texels along a face",
             given.empty() ? "allow a larger error; more vertices where shadows end, or a finer "
                             "--cubemap, come closer"
                           : "leave " + given + " out"));
-    } else if (measured > accuracy.target) {
+    } else if (measured > accuracy.numerical) {
         warnings.push_back(formats::make_warning("", "--error",
                                                  "the self-check measured " + percent(measured) +
                                                      " at vertices, more than the " +
-                                                     percent(accuracy.target) + " asked for",
+                                                     percent(accuracy.numerical) + " asked for",
                                                  "ask for a little less"));
     }
 }

@@ -10,8 +10,10 @@ namespace opaline::bake {
 
 /// Results of the pilot for a target error.
 struct AccuracyReport {
-    double target = 0;     ///< relative RMS asked for
-    double predicted = 0;  ///< expected error of the chosen knobs, before the bake
+    double target = 0;     ///< relative RMS asked for, of model and numerical error together
+    double model = 0;      ///< of it the models', measured or estimated before the bake
+    double numerical = 0;  ///< what they leave
+    double predicted = 0;  ///< expected numerical error of the chosen knobs, before the bake
     double likely = 0;     ///< `predicted` plus one standard error of the pilot
     bool met = false;      ///< expected to, and measured at receivers and between them
     struct Trial {
@@ -30,8 +32,8 @@ struct PilotState {
 };
 
 /// The cheapest of the knobs that the user did not fix with which the error meets
-/// knobs.error_target, as far as the pilot can tell. The subjects have been studied; they are left
-/// with the samples of the chosen knobs, the lights with their cube map.
+/// knobs.numerical_target(), as far as the pilot can tell. The subjects have been studied; they are
+/// left with the samples of the chosen knobs, the lights with their cube map.
 Knobs choose_knobs(const BakeInputs& bake, const Knobs& knobs, const Context& context,
                    PilotState state);
 

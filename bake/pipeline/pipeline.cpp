@@ -171,6 +171,7 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context, B
     run_step(Step::study, bake, knobs, context, subjects, log);
     result.plan = amend_plan(bake, subjects, knobs, context);
     settle_subjects(bake, result.plan, knobs, subjects);
+    knobs.model_error = find_model_error(result.plan);
     run_step(Step::study, bake, knobs, context, subjects, log);  // of effects that act only now
     if (knobs.error_target > 0) {
         result.accuracy.emplace();

@@ -110,6 +110,7 @@ std::string make_provenance(const formats::Scene& scene, const BakeRecord& recor
                                 {"bound", entry.bound}});
     }
     root["error"] = error_json(record.error);
+    root["error"]["model_estimate"] = knobs.model_error;
     if (record.model_error != nullptr) {
         root["model_error"] = model_error_json(*record.model_error);
     }

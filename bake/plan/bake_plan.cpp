@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "bake/plan/effect.h"
 #include "bake/plan/plan_input.h"
@@ -68,6 +69,20 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
         plan.insert(plan.end(), decisions.begin(), decisions.end());
     }
     return plan;
+}
+
+double find_model_error(std::span<const PlanEntry> plan) {
+    double most = 0;
+    while (!plan.empty()) {
+        const auto own = entries_of(plan, plan.front().subject.index);
+        double square = 0;
+        for (const PlanEntry& entry : own) {
+            square += entry.model_error * entry.model_error;
+        }
+        most = std::max(most, std::sqrt(square));
+        plan = plan.subspan(own.size());
+    }
+    return most;
 }
 
 const PlanEntry* find_entry(std::span<const PlanEntry> plan, std::string_view name,

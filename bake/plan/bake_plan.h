@@ -32,6 +32,7 @@ struct PlanEntry {
     bool all_orders = false;
     std::string reason;       ///< the rule in words
     double bound = 0;         ///< largest radiance it can contribute under `white`
+    double model_error = 0;   ///< relative RMS that it errs by as a model, as far as is known
     std::uint32_t terms = 0;  ///< of rules that choose a number of rows: that number; otherwise 0
     std::uint32_t least_terms = 1;      ///< that number if the rule were on
     double predicted_seconds = 0;       ///< filled in by predict_costs (cost_model.h)
@@ -49,6 +50,10 @@ using AmendEntry = std::function<void(PlanEntry& entry)>;
 std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scene& scene,
                                  const SceneFacts& facts, const Knobs& knobs,
                                  const AmendEntry& amend = {});
+
+/// Relative RMS that the models of a plan err by, as far as is known: of the subject where they err
+/// most.
+double find_model_error(std::span<const PlanEntry> plan);
 
 /// The subjects of a scene: materials that have receivers.
 std::vector<Subject> list_subjects(const formats::Scene& scene, const SceneFacts& facts);

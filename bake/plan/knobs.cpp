@@ -104,6 +104,12 @@ void Knobs::set(const KnobSpec& knob, double value) {
     values.set(knob, value);
 }
 
+double Knobs::numerical_target() const {
+    return model_error < error_target
+               ? std::sqrt(error_target * error_target - model_error * model_error)
+               : error_target;
+}
+
 bool Knobs::is_given(const KnobSpec& knob) const {
     return std::find(given.begin(), given.end(), &knob) != given.end();
 }

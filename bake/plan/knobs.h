@@ -66,7 +66,10 @@ struct Knobs {
     bool simulate_all = false;
     bool check_model = false;
     std::uint64_t seed = 0;
-    double error_target = 0;  ///< 0: none; otherwise the pilot changes what the user did not give
+    /// Relative RMS that model and numerical error may have together; 0: none, otherwise the pilot
+    /// changes what the user did not give.
+    double error_target = 0;
+    double model_error = 0;  ///< relative RMS that the models taken err by: the worst subject's
     bool cubemap_given = false, coefficients_given = false;
     KnobValues values;                   ///< of all effects
     std::vector<const KnobSpec*> given;  ///< those that the user gave
@@ -75,6 +78,9 @@ struct Knobs {
     double operator[](const KnobSpec& knob) const;
     void set(const KnobSpec& knob, double value);
     bool is_given(const KnobSpec& knob) const;
+    /// What the models leave of error_target to the numerical error; all of it, where they err by
+    /// more: the target is missed then.
+    double numerical_target() const;
 };
 
 /// The value of an integer knob.

@@ -43,7 +43,7 @@ struct Trials {
         : pilot(scene),
           receivers(all),
           fixed(known),
-          target(finest.error_target),
+          target(finest.numerical_target()),
           choice{.knobs = std::move(finest)},
           tried(select_receivers(scene, all, true)),
           rows(scene, tried, choice.knobs) {}

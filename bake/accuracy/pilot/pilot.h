@@ -82,7 +82,7 @@ struct PilotChoice {
                               ///< error is hardly above that of the finest
     double error = 0;         ///< expected, relative RMS
     double likely = 0;        ///< one standard error above that
-    bool met = false;         ///< knobs.error_target is likely met
+    bool met = false;         ///< knobs.numerical_target() is likely met
     double finest_error = 0;  ///< with all coefficients and the finest knobs
     double smooth_error = 0;  ///< the same, of lights without suns
     std::vector<PilotTrial> trials{};

@@ -49,9 +49,10 @@ std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs
     thin_out(pilot, receivers);
     for (const PilotReceiver& r : receivers) {
         if (!truths.contains(r.material)) {
-            truths.emplace(r.material, make_subject_truth(
-                                           pilot.bake, state_of(pilot.subjects, r.material), knobs,
-                                           {knobs.error_target}, pilot.lights, pilot.context));
+            truths.emplace(
+                r.material,
+                make_subject_truth(pilot.bake, state_of(pilot.subjects, r.material), knobs,
+                                   {knobs.numerical_target()}, pilot.lights, pilot.context));
         }
     }
     std::size_t done = 0;

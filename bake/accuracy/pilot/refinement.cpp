@@ -53,17 +53,17 @@ bool learn(Refinement& refinement, const PilotRound& round) {
 std::optional<Knobs> next_knobs(const EffectTable& effects, const Refinement& refinement) {
     Knobs knobs = refinement.base->knobs;
     if (!knobs.coefficients_given) {
-        knobs.coefficients = expected_coefficients(knobs.error_target);
+        knobs.coefficients = expected_coefficients(knobs.numerical_target());
     }
     const std::optional<Knobs> finer_samples = refine_samples(effects, refinement, knobs);
     const bool finer_texels =
         refinement.more_texels_help && !knobs.cubemap_given && knobs.cubemap_size < kLargestCubemap;
-    const bool is_smooth = refinement.base->smooth_error > 0.5 * knobs.error_target;
+    const bool is_smooth = refinement.base->smooth_error > 0.5 * knobs.numerical_target();
     if (finer_samples && (is_smooth || !finer_texels)) {
         return finer_samples;
     }
     const bool in_reach =
-        refinement.texel_gain == 0 || least_error_of_texels(refinement) <= knobs.error_target;
+        refinement.texel_gain == 0 || least_error_of_texels(refinement) <= knobs.numerical_target();
     if (finer_texels && in_reach) {
         knobs.cubemap_size *= 2;
         return knobs;

@@ -30,7 +30,7 @@ struct Refinement {
 /// new base.
 bool learn(Refinement& refinement, const PilotRound& round);
 
-/// The next knobs to try if the base did not meet its error_target: more surface samples or a finer
+/// The next knobs to try if the base did not meet its target: more surface samples or a finer
 /// cube map, whichever causes the error. Nothing if the user fixed both, they are at their limits,
 /// they did not help, or the error falls too slowly to reach the target with the finest cube map.
 /// Precondition: there is a base.

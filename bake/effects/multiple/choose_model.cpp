@@ -114,17 +114,17 @@ std::string percent(double error) {
     return text.substr(0, text.find('.') + 2) + " %";
 }
 
-double allowed_model_error(Quality quality) {
-    return quality == Quality::reference    ? 0.005
-           : quality == Quality::production ? 0.02
-                                            : std::numeric_limits<double>::infinity();
+double allowed_model_error(const Knobs& knobs) {
+    return knobs.error_target > 0                 ? std::numbers::sqrt2 / 2 * knobs.error_target
+           : knobs.quality == Quality::reference  ? 0.005
+           : knobs.quality == Quality::production ? 0.02
+                                                  : std::numeric_limits<double>::infinity();
 }
 
 bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
     const auto asked = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
     return asked == MultipleModel::automatic
-               ? !is_fixed(medium) &&
-                     expected_error(medium, body) > allowed_model_error(knobs.quality)
+               ? !is_fixed(medium) && expected_error(medium, body) > allowed_model_error(knobs)
                : asked != MultipleModel::dipole;
 }
 
@@ -180,19 +180,31 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
     const MaterialFacts& body = inputs.bake.facts.material[inputs.material];
     ModelChoice choice;
     choice.all_orders = hold_all_orders(inputs.medium(), body, inputs.knobs);
-    if (inputs.layout.at_entry || !expects_walks(inputs.medium(), body, inputs.knobs)) {
+    choice.error = expected_error(inputs.medium(), body);
+    if (inputs.layout.at_entry) {
         return choice;
     }
-    if (asked != MultipleModel::automatic) {
-        choice.model = asked;
-        return choice;
+    const bool is_auto = asked == MultipleModel::automatic;
+    choice.model = is_auto ? MultipleModel::dipole : asked;
+    // A target also needs to know what the model that was asked for leaves of it.
+    const bool is_budgeted = inputs.knobs.error_target > 0 && asked != MultipleModel::walks &&
+                             choice.error > allowed_model_error(inputs.knobs);
+    if (is_budgeted || (is_auto && expects_walks(inputs.medium(), body, inputs.knobs))) {
+        choice.errors = measure_models(inputs, profile, traced);
     }
-    const double allowed = allowed_model_error(inputs.knobs.quality);
-    choice.errors = measure_models(inputs, profile, traced);
-    choice.model = choice.errors.receivers == 0      ? MultipleModel::dipole
-                   : choice.errors.dipole <= allowed ? MultipleModel::dipole
-                   : choice.errors.scaled <= allowed ? MultipleModel::scaled
-                                                     : MultipleModel::walks;
+    if (choice.errors.receivers > 0) {
+        const double allowed = allowed_model_error(inputs.knobs);
+        if (is_auto && !is_fixed(inputs.medium())) {
+            choice.model = choice.errors.dipole <= allowed   ? MultipleModel::dipole
+                           : choice.errors.scaled <= allowed ? MultipleModel::scaled
+                                                             : MultipleModel::walks;
+        }
+        choice.error =
+            choice.model == MultipleModel::scaled ? choice.errors.scaled : choice.errors.dipole;
+    }
+    if (choice.model == MultipleModel::walks) {
+        choice.error = 0;
+    }
     return choice;
 }
 
@@ -205,7 +217,7 @@ PlanEntry decide_model(const PlanInput& input) {
     const PlanEntry& effect = input.earlier.back();
     entry.bound = effect.on ? error * effect.bound : 0;
     const auto asked = static_cast<MultipleModel>(whole(input.knobs, kMultipleModel));
-    const double allowed = allowed_model_error(input.knobs.quality);
+    const double allowed = allowed_model_error(input.knobs);
     if (asked != MultipleModel::automatic) {
         entry.on = asked != MultipleModel::dipole;
         entry.reason = std::string(kMultipleModel.words[static_cast<std::size_t>(asked)]) +
@@ -214,9 +226,10 @@ PlanEntry decide_model(const PlanInput& input) {
         entry.reason = "dipole: the medium names its profile";
     } else if (!std::isfinite(allowed)) {
         entry.reason = "dipole: " + std::string(quality_name(input.knobs.quality)) +
-                       " takes every surface for that of a half space";
+                       " takes every surface for that of a half space, which errs by some " +
+                       percent(error);
     } else if (error <= allowed || !effect.on) {
-        entry.reason = "dipole: the body is so thick that it serves";
+        entry.reason = "dipole: the body is so thick that it errs by some " + percent(error);
     } else {
         entry.on = true;
         entry.reason =
@@ -224,6 +237,7 @@ PlanEntry decide_model(const PlanInput& input) {
             "more than " +
             percent(allowed);
     }
+    entry.model_error = effect.on && !entry.on ? error : 0;
     entry.all_orders = effect.on && entry.on && asked != MultipleModel::scaled &&
                        hold_all_orders(medium, input.subject, input.knobs);
     return entry;
@@ -232,6 +246,7 @@ PlanEntry decide_model(const PlanInput& input) {
 void describe_choice(const ModelChoice& choice, PlanEntry& entry) {
     entry.on = choice.model != MultipleModel::dipole;
     entry.all_orders = choice.model == MultipleModel::walks && choice.all_orders;
+    entry.model_error = choice.error;
     if (choice.errors.receivers == 0) {
         return;
     }

@@ -11,9 +11,10 @@ namespace opaline::bake {
 /// A share in words, "3.1 %".
 std::string percent(double error);
 
-/// Relative RMS that the dipole's model may err by where no model is asked for: of draft and
-/// preview infinite, they are for the eye.
-double allowed_model_error(Quality quality);
+/// Relative RMS that a model may err by where none is asked for: half of the square of
+/// Knobs::error_target; without one, as the quality allows; of draft and preview infinite, they are
+/// for the eye.
+double allowed_model_error(const Knobs& knobs);
 
 /// Whether random walks are expected: asked for, or the dipole errs by more than is allowed, by
 /// estimate. What is chosen in the end is measured (choose_model).
@@ -29,6 +30,7 @@ struct ModelErrors {
 struct ModelChoice {
     MultipleModel model = MultipleModel::dipole;  ///< not automatic
     ModelErrors errors;
+    double error = 0;         ///< relative RMS that the model errs by: measured, or else estimated
     bool all_orders = false;  ///< walks may follow light scattered once as well
 };
 

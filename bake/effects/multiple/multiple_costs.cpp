@@ -164,7 +164,7 @@ double sample_bytes(const Knobs& knobs) {
     constexpr double kMoments = 0.75;        // of a sample's entries
     constexpr double kSiteEntry = 16;        // of a site's row: index and three values
     const bool may_walk = whole(knobs, kMultipleModel) == 0
-                              ? std::isfinite(allowed_model_error(knobs.quality))
+                              ? std::isfinite(allowed_model_error(knobs))
                               : kMultipleModel.words[whole(knobs, kMultipleModel)] == "walks";
     const double walked = may_walk ? kMoments * knobs[kSamples] * kept_by_samples(knobs) * kEntry +
                                          knobs[kSites] * kept_by_samples(knobs) * kSiteEntry

@@ -32,6 +32,13 @@ inline double per_path_for(double error) {
 inline double walks_for(double error) {
     return std::clamp(4 / (error * error), 500.0, 40000.0);
 }
+// In all as production's are to those around: fewer would widen the radius.
+inline double all_walks_for(double error) {
+    return std::clamp(600 * walks_for(error), 1e6, 2.4e7);
+}
+inline double sites_for(double error) {
+    return error < 0.05 ? 40000 : 20000;
+}
 inline constexpr std::array<std::string_view, 4> kModels{"auto", "scaled", "dipole", "walks"};
 inline constexpr std::array<double, 7> kSampleLadder{1000, 2000, 4000, 8000, 16000, 32000, 64000};
 inline constexpr std::array<double, 5> kSampleDiagonal{4000, 8000, 16000, 32000, 64000};
@@ -109,11 +116,15 @@ inline constexpr KnobSpec kWalksAround{.name = "walks_around",
 inline constexpr KnobSpec kWalks{.name = "walks",
                                  .lowest = 1000,
                                  .highest = 1e10,
-                                 .preset = {250000, 1000000, 6000000, 24000000}};
+                                 .preset = {250000, 1000000, 6000000, 24000000},
+                                 .for_target = multiple_knobs::all_walks_for};
 
 /// Places on the surface of each medium where they start, at most.
-inline constexpr KnobSpec kSites{
-    .name = "sites", .lowest = 500, .highest = 1000000, .preset = {8000, 20000, 40000, 80000}};
+inline constexpr KnobSpec kSites{.name = "sites",
+                                 .lowest = 500,
+                                 .highest = 1000000,
+                                 .preset = {8000, 20000, 40000, 80000},
+                                 .for_target = multiple_knobs::sites_for};
 
 /// Surface samples per square of the depth of a medium's source.
 inline constexpr KnobSpec kSamplesPerPath{.name = "samples_per_path",

@@ -18,10 +18,11 @@ namespace {
 
 // Three rows more are noisier than one: less is gained than an error of this size costs (README.md,
 // "Views").
-double allowed_view_error(Quality quality) {
-    return quality == Quality::reference    ? 0.01
-           : quality == Quality::production ? 0.03
-                                            : std::numeric_limits<double>::infinity();
+double allowed_view_error(const Knobs& knobs) {
+    return knobs.error_target > 0                 ? 0.5 * knobs.error_target
+           : knobs.quality == Quality::reference  ? 0.01
+           : knobs.quality == Quality::production ? 0.03
+                                                  : std::numeric_limits<double>::infinity();
 }
 
 // Of a half space under even light, seen along the normal: how much darker it is than on average.
@@ -69,7 +70,7 @@ PlanEntry decide_views(const PlanInput& input) {
     const PlanEntry& effect = input.earlier[input.earlier.size() - 2];
     const auto given = whole(input.knobs, kViewTerms);
     const double error = one_view_error(medium, input.subject);
-    const double allowed = allowed_view_error(input.knobs.quality);
+    const double allowed = allowed_view_error(input.knobs);
     PlanEntry entry;
     entry.alternative = true;
     entry.least_terms = 4;
@@ -89,6 +90,7 @@ PlanEntry decide_views(const PlanInput& input) {
         entry.terms = 4;
         entry.reason = "4 rows: one for all views would err by some " + percent(error);
     }
+    entry.model_error = model.all_orders && !entry.on ? error : 0;
     return entry;
 }
 

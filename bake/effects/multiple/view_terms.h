@@ -9,7 +9,8 @@ namespace opaline::bake {
 double one_view_error(const formats::Medium& medium, const MaterialFacts& body);
 
 /// The rule `multiple.view`: 4 rows where random walks are expected and one row for all views would
-/// err by more than 3 % (reference: 1 %; draft, preview: never). After the rule `multiple.model`.
+/// err by more than 3 % (reference: 1 %; draft, preview: never), or more than half of
+/// Knobs::error_target. After the rule `multiple.model`.
 PlanEntry decide_views(const PlanInput& input);
 
 }  // namespace opaline::bake
