@@ -48,8 +48,9 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
         line += fmt::format("; the model errs by some {:.1f} %", 100 * result.knobs.model_error);
     }
     if (result.accuracy) {
-        line += fmt::format("; asked for {:g} % in all, expected {:.2f} % besides the model",
-                            100 * result.accuracy->target, 100 * result.accuracy->predicted);
+        line += fmt::format("; asked for {:g} %, expected {:.2f} %{}",
+                            100 * result.accuracy->target, 100 * result.accuracy->predicted,
+                            result.accuracy->model > 0 ? " besides the model" : "");
     }
     if (const auto& model = result.model_error) {
         line += fmt::format("; model error {:.1f} % (95 %: {:.1f} to {:.1f}), mean {:+.1f} %",

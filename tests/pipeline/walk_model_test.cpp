@@ -175,6 +175,38 @@ TEST(WalkModel, StronglyForwardMediumIsAsBrightAsPathTracedByWalksAndNotByTermsO
     EXPECT_GT(errors(kDipole).rms_relative, 0.3);
 }
 
+// The dipole where it leaves enough of the target, another model where it does not; what the models
+// err by is no more to be had for the numbers.
+TEST(WalkModel, ErrorAskedForIsThatOfTheModelAndTheNumbersTogether) {
+    const auto bake_of = [](float sigma_t, double error, double model) {
+        BakeOptions options = tests::only({"multiple"});
+        options.error = error;
+        options.set(kMultipleModel, model);
+        return tests::bake_scene(
+            tests::make_translucent_scene(
+                {tests::make_sphere(2)}, tests::make_grey_medium(0.99f * sigma_t, 0.01f * sigma_t)),
+            options);
+    };
+    const double automatic = static_cast<double>(MultipleModel::automatic);
+    const BakeResult thick = bake_of(100, 0.2, automatic);
+    const PlanEntry dipole = entry_of(thick, "multiple.model");
+    EXPECT_FALSE(dipole.on);
+    EXPECT_GT(dipole.model_error, 0.01);
+    EXPECT_DOUBLE_EQ(thick.accuracy->model, dipole.model_error);
+    EXPECT_NEAR(std::hypot(thick.accuracy->model, thick.accuracy->numerical), 0.2, 1e-9);
+
+    const BakeResult thin = bake_of(3, 0.2, automatic);
+    EXPECT_TRUE(entry_of(thin, "multiple.model").on);
+    EXPECT_LE(thin.accuracy->model, std::sqrt(0.75) * 0.2) << "a quarter is left to the numbers";
+
+    const BakeResult forced = bake_of(3, 0.1, kDipole);
+    EXPECT_GT(forced.accuracy->model, 0.15) << "measured, because it was asked for";
+    EXPECT_FALSE(forced.accuracy->met);
+    EXPECT_TRUE(std::ranges::any_of(forced.warnings, [](const formats::Diagnostic& w) {
+        return w.fault.find("out of reach: the models err by") != std::string::npos;
+    }));
+}
+
 // A sheet of one mean free path is darker seen along its normal than aslant.
 TEST(WalkModel, ThinSheetSeenAlongItsNormalIsAsBrightAsPathTracedWithFourRowsAndNotWithOne) {
     const tests::Scene sheet = tests::make_translucent_scene(tests::make_sheet(0.3f, 6, 6),

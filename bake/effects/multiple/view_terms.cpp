@@ -26,7 +26,7 @@ double allowed_view_error(const Knobs& knobs) {
 }
 
 // Of a half space under even light, seen along the normal: how much darker it is than on average.
-// Radiance inside is 1 - sqrt(1 - a) H(c') [Chandrasekhar1960], a the albedo of the similar
+// Radiance inside is 1 - sqrt(1 - a) H(c') (Chandrasekhar), a the albedo of the similar
 // isotropic medium, H(c') = (1 + 2 c') / (1 + 2 c' sqrt(1 - a)) [Hapke1981].
 double half_space_view_error(const formats::Medium& medium, double mean) {
     constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
