@@ -1,6 +1,7 @@
 #include "bake/accuracy/error_warnings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -35,9 +36,10 @@ double acceptable_error(Quality quality) {
 }
 
 bool meets_target(const ErrorReport& error, const Knobs& knobs) {
-    const double target = knobs.numerical_target();
-    return knobs.model_error < knobs.error_target && error.at_receivers.rms_relative <= target &&
-           error.between.rms_relative <= target;
+    const auto meets = [&](const MeasuredError& part) {
+        return std::hypot(knobs.model_error, part.rms_relative) <= knobs.error_target;
+    };
+    return meets(error.at_receivers) && meets(error.between);
 }
 
 std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& scene,
@@ -50,7 +52,11 @@ std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& s
         return (asked ? e.rms_relative : e.ci95[0]) > limit;
     };
     const std::string more =
-        ", more than the " + percent(limit) + (asked ? " asked for" : " that pass unnoticed");
+        ", more than the " + percent(limit) +
+        (!asked ? " that pass unnoticed"
+         : knobs.model_error > 0
+             ? " that the models leave of the " + percent(knobs.error_target) + " asked for"
+             : " asked for");
     if (!asked && is_above(error.at_receivers)) {
         warnings.push_back(formats::make_warning(
             "", "self-check",

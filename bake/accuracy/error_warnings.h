@@ -17,12 +17,13 @@ namespace opaline::bake {
 /// drafts, 10 % of everything finer.
 double acceptable_error(Quality quality);
 
-/// Whether neither receivers nor what lies between them err by more than Knobs::error_target.
+/// Whether neither receivers nor what lies between them err by more than Knobs::error_target, the
+/// models' error included.
 bool meets_target(const ErrorReport& error, const Knobs& knobs);
 
 /// Says where the self-check found too much, and what to change. With Knobs::error_target: between
-/// receivers alone, more than the target; what it found at receivers is for the pilot to explain.
-/// Without: wherever the lower end of the interval is above acceptable_error.
+/// receivers alone, more than Knobs::numerical_target(); what it found at receivers is for the
+/// pilot to explain. Without: wherever the lower end of the interval is above acceptable_error.
 std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& scene,
                                                          const Knobs& knobs,
                                                          const ErrorReport& error);

@@ -44,7 +44,7 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
     if (const auto& names = result.error.not_measured; !names.empty()) {
         line += fmt::format("; not measured: {}", fmt::join(names, ", "));
     }
-    if (result.knobs.model_error > 0 && !result.model_error) {
+    if (result.knobs.model_error > 0.0005 && !result.model_error) {
         line += fmt::format("; the model errs by some {:.1f} %", 100 * result.knobs.model_error);
     }
     if (result.accuracy) {
@@ -118,8 +118,10 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
     bake::predict_costs(used, result.plan);
     bake::predict_savings(used, result.plan);
     std::vector<bake::PlanEntry> first = bake::plan_bake(effects, scene, result.facts, wanted);
+    bake::Knobs budget = wanted;
+    budget.model_error = bake::find_model_error(first);
     return {bake::predict_costs(
-                {effects, scene, result.facts, wanted, machine.rates, result.threads}, first),
+                {effects, scene, result.facts, budget, machine.rates, result.threads}, first),
             machine.note};
 }
 

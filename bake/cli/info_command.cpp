@@ -113,7 +113,7 @@ void print_provenance(const Json& provenance) {
             }
         }
         if (error.contains("model_estimate") && error["model_estimate"].is_number() &&
-            error["model_estimate"].get<double>() > 0) {
+            error["model_estimate"].get<double>() > 0.0005) {
             fmt::print("; the model, some {:.1f} %", 100 * error["model_estimate"].get<double>());
         }
         fmt::print("\n");

@@ -66,11 +66,13 @@ int run(const Options& options) {
         return report_error(status.error());
     }
     const bake::Rates rates = find_machine_rates().rates;
-    const bake::CostRequest request{effects, imported->scene, facts, *knobs, rates, threads};
+    bake::Knobs budget = *knobs;
+    budget.model_error = bake::find_model_error(plan);
+    const bake::CostRequest request{effects, imported->scene, facts, budget, rates, threads};
     const bake::CostPrediction cost = bake::predict_costs(request, plan);
     bake::predict_savings(request, plan);
-    fmt::print("{}", options.json ? make_plan_json(*knobs, plan, cost)
-                                  : make_plan_table(*knobs, plan, cost, threads));
+    fmt::print("{}", options.json ? make_plan_json(budget, plan, cost)
+                                  : make_plan_table(budget, plan, cost, threads));
     return kExitSuccess;
 }
 

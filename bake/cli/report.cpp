@@ -182,15 +182,13 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
             : fmt::format("--quality {}", bake::quality_name(knobs.quality));
     table += fmt::format("knobs ({}): {} texels along a face of the light's cube map, {}\n",
                          asked_for, knobs.cubemap_size, coefficients_text(knobs));
-    if (const double model = bake::find_model_error(plan); model > 0) {
-        table += fmt::format("model error: some {:.1f} %", 100 * model);
+    if (knobs.model_error > 0.0005) {
+        table += fmt::format("model error: some {:.1f} %", 100 * knobs.model_error);
         if (knobs.error_target > 0) {
-            bake::Knobs budget = knobs;
-            budget.model_error = model;
             table +=
-                model < knobs.error_target
+                knobs.model_error < knobs.error_target
                     ? fmt::format(", which leaves {:.2f} % to the numerical error",
-                                  100 * budget.numerical_target())
+                                  100 * knobs.numerical_target())
                     : fmt::format(", more than the {:g} % asked for", 100 * knobs.error_target);
         }
         table += "\n";

@@ -46,7 +46,7 @@ void bill_pilot_truth(const CostedBake& bake, Bill& bill) {
     bill.open("pilot truth");
     const double drawn = pilot_receivers(bake);
     add_truth(bake, drawn, std::min(drawn, double{kMostExpensivePilotReceivers}),
-              {bake.request.knobs.error_target}, bill);
+              {bake.request.knobs.numerical_target()}, bill);
 }
 
 void bill_fixed_trials(const CostedBake& bake, Bill& bill) {

@@ -126,14 +126,18 @@ void warn_of_missed_target(const EffectTable& effects, const AccuracyReport& acc
             "", "--error",
             percent(accuracy.target) + " is out of reach: the models err by " +
                 percent(accuracy.model),
-            "leave the choice of the model to the bake, or allow a larger error; `opaline plan` "
-            "says which decision errs"));
+            "allow a larger error, or leave out the option that chose; `opaline plan` says which "
+            "decision errs"));
     }
+    const std::string left = percent(accuracy.numerical) +
+                             (accuracy.model > 0 ? ", what the models leave of the " +
+                                                       percent(accuracy.target) + " asked for"
+                                                 : "");
     if (!accuracy.met) {
         const std::string given = name_given(effects, knobs);
         warnings.push_back(formats::make_warning(
             "", "--error",
-            percent(accuracy.numerical) + " is out of reach: " + percent(accuracy.likely) +
+            left + " is out of reach: " + percent(accuracy.likely) +
                 " is the least that was found worth its cost, with " +
                 std::to_string(knobs.cubemap_size) + " texels along a face",
             given.empty() ? "allow a larger error; more vertices where shadows end, or a finer "
@@ -142,8 +146,8 @@ void warn_of_missed_target(const EffectTable& effects, const AccuracyReport& acc
     } else if (measured > accuracy.numerical) {
         warnings.push_back(formats::make_warning("", "--error",
                                                  "the self-check measured " + percent(measured) +
-                                                     " at vertices, more than the " +
-                                                     percent(accuracy.numerical) + " asked for",
+                                                     " at vertices, more than " + left +
+                                                     (accuracy.model > 0 ? "" : " asked for"),
                                                  "ask for a little less"));
     }
 }

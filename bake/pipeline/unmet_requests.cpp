@@ -36,7 +36,7 @@ void describe_effects(const DecidedBake& decided, std::vector<Diagnostic>& warni
         bool is_on = false;
         for (const PlanEntry& entry : decided.plan) {
             if (entry.name == effect) {
-                is_on = is_on || entry.on;
+                is_on = is_on || entry.on || entry.all_orders;  // another effect has its light
                 left_out = &entry;
             }
         }

@@ -105,9 +105,8 @@ void Knobs::set(const KnobSpec& knob, double value) {
 }
 
 double Knobs::numerical_target() const {
-    return model_error < error_target
-               ? std::sqrt(error_target * error_target - model_error * model_error)
-               : error_target;
+    const double left = error_target * error_target - model_error * model_error;
+    return std::max(0.5 * error_target, std::sqrt(std::max(0.0, left)));
 }
 
 bool Knobs::is_given(const KnobSpec& knob) const {

@@ -78,8 +78,8 @@ struct Knobs {
     double operator[](const KnobSpec& knob) const;
     void set(const KnobSpec& knob, double value);
     bool is_given(const KnobSpec& knob) const;
-    /// What the models leave of error_target to the numerical error; all of it, where they err by
-    /// more: the target is missed then.
+    /// What the models leave of error_target to the numerical error; half of it at least, where the
+    /// target is missed for their sake.
     double numerical_target() const;
 };
 

@@ -38,7 +38,8 @@ const PreparationStep& step_of(const EffectDescriptor& effect, Step step);
 bool is_taken(const EffectDescriptor& effect, const EffectState& state, Step step,
               const formats::Material& material, const RowLayout& layout);
 
-/// Runs one step for all subjects and notes its stages; a study, which depends on no knob, once.
+/// Runs one step for all subjects and notes its stages; a study once: what a pilot changes
+/// later does not undo its choices.
 /// Stops early once cancelled.
 void run_step(Step step, const BakeInputs& bake, const Knobs& knobs, const Context& context,
               std::vector<SubjectState>& subjects, StageLog& log);

@@ -11,6 +11,7 @@
 
 #include "bake/accuracy/pilot/pilot_rows.h"
 #include "bake/base/ordered_parallel.h"
+#include "bake/effects/multiple/multiple_stage.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/inspect_scene.h"
@@ -52,6 +53,7 @@ int compare(const std::string& file, const std::string& media_file) {
     const formats::Scene& scene = bodies.scene ? *bodies.scene : imported->scene;
     BakeOptions options;
     options.quality = Quality::production;
+    options.set(kMultipleModel, static_cast<double>(MultipleModel::dipole));  // the gather's error
     Knobs knobs = *resolve_knobs(options);
     Context context;
     context.threads = thread_count(context);

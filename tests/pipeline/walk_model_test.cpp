@@ -4,6 +4,7 @@
 
 #include "bake/accuracy/check_model.h"
 #include "bake/effects/multiple/multiple_stage.h"
+#include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/inspect_scene.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
@@ -13,6 +14,7 @@ namespace opaline::bake {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr double kDipole = static_cast<double>(MultipleModel::dipole);
@@ -147,6 +149,8 @@ TEST(WalkModel, LightScatteredOnceIsTheSameByWalksAsByItsOwnEffect) {
         options.effects = std::move(effects);
         options.set(kViewTerms, 4);
         const BakeResult baked = tests::bake_scene(ball, options);
+        EXPECT_EQ(entry_of(baked, "single").on,
+                  options.effects == std::vector<std::string>{"single"});
         double sum = 0;
         for (const formats::Rgb& c : tests::relight(baked.asset.view(), "white")) {
             sum += static_cast<double>(c.g);
@@ -197,6 +201,7 @@ TEST(WalkModel, ErrorAskedForIsThatOfTheModelAndTheNumbersTogether) {
 
     const BakeResult thin = bake_of(3, 0.2, automatic);
     EXPECT_TRUE(entry_of(thin, "multiple.model").on);
+    EXPECT_GT(thin.accuracy->model, 0.01) << "the scaled dipole";
     EXPECT_LE(thin.accuracy->model, std::sqrt(0.75) * 0.2) << "a quarter is left to the numbers";
 
     const BakeResult forced = bake_of(3, 0.1, kDipole);
@@ -205,6 +210,54 @@ TEST(WalkModel, ErrorAskedForIsThatOfTheModelAndTheNumbersTogether) {
     EXPECT_TRUE(std::ranges::any_of(forced.warnings, [](const formats::Diagnostic& w) {
         return w.fault.find("out of reach: the models err by") != std::string::npos;
     }));
+}
+
+// An open body may be a sheet, so walks are expected; this one is thick.
+TEST(WalkModel, LightScatteredOnceIsBackWhereTheDipoleWasMeasuredToServe) {
+    formats::Medium medium = tests::make_grey_medium(198, 2);
+    medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
+    medium.phase.g = 0.5f;
+    tests::Primitive open = tests::make_sphere(2);
+    open.index.resize(open.index.size() - 3);
+    const tests::Scene ball = tests::make_translucent_scene({open}, medium);
+    const auto bake_of = [&](double model) {
+        BakeOptions options = tests::only({"multiple", "single"});
+        options.error = 0.3;
+        options.set(kMultipleModel, model);
+        return tests::bake_scene(ball, options);
+    };
+    const BakeResult chosen = bake_of(static_cast<double>(MultipleModel::automatic));
+    const auto first = plan_bake(all_effects(), ball, inspect_scene(ball), chosen.knobs);
+    EXPECT_FALSE(find_entry(first, "single", 0)->on);
+    EXPECT_TRUE(entry_of(chosen, "single").on);
+    EXPECT_THAT(entry_of(chosen, "multiple.model").reason, StartsWith("dipole: measured"));
+    EXPECT_EQ(tests::largest_difference(chosen.asset, bake_of(kDipole).asset, "studio"), 0);
+}
+
+TEST(WalkModel, RequestsThatWalksOverruleAreNamed) {
+    // Sites too far apart for rows by view.
+    const tests::Scene dense =
+        tests::make_translucent_scene({tests::make_sphere(2)}, tests::make_grey_medium(297, 3));
+    BakeOptions options = bake_by(kWalked, 20000);
+    options.set(kViewTerms, 4);
+    const auto warnings_of = [](const tests::Scene& scene, const BakeOptions& wanted) {
+        const Knobs knobs = *resolve_knobs(wanted);
+        const SceneFacts facts = inspect_scene(scene);
+        const auto plan = plan_bake(all_effects(), scene, facts, knobs);
+        std::string all;
+        for (const formats::Diagnostic& w :
+             describe_unmet({all_effects(), scene, facts, knobs, plan}, wanted)) {
+            all += w.where + ": " + w.fault + "; ";
+        }
+        return all;
+    };
+    EXPECT_THAT(warnings_of(dense, options), HasSubstr("--view-terms: does nothing here"));
+    const tests::Scene thin = tests::make_translucent_scene({tests::make_sphere(2)},
+                                                            tests::make_grey_medium(2.97f, 0.03f));
+    EXPECT_THAT(warnings_of(thin, options), Not(HasSubstr("--view-terms")));
+    options.effects = {"multiple", "single"};
+    EXPECT_THAT(warnings_of(thin, options), Not(HasSubstr("--effects")))
+        << "light scattered once is in the file";
 }
 
 // A sheet of one mean free path is darker seen along its normal than aslant.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/effects/multiple/multiple_knobs.h"
@@ -96,7 +97,7 @@ double expected_error(const formats::Medium& medium, const MaterialFacts& body) 
 // phase function is peaked, terms in the view err by more (tests/bench/RESULTS.md, "Walks").
 bool hold_all_orders(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
     constexpr double kPeaked = 0.5;
-    return transport_mean_free_path(medium) > 0 &&
+    return transport_mean_free_path(medium) > 0 && body.area > 0 &&
            (!expected_sites(medium, body, knobs).is_residual ||
             std::abs(formats::mean_cosine(medium.phase)) >= kPeaked);
 }
@@ -178,32 +179,32 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
                          std::uint64_t& traced) {
     const auto asked = static_cast<MultipleModel>(whole(inputs.knobs, kMultipleModel));
     const MaterialFacts& body = inputs.bake.facts.material[inputs.material];
-    ModelChoice choice;
-    choice.all_orders = hold_all_orders(inputs.medium(), body, inputs.knobs);
-    choice.error = expected_error(inputs.medium(), body);
-    if (inputs.layout.at_entry) {
-        return choice;
-    }
     const bool is_auto = asked == MultipleModel::automatic;
+    const bool may_hold = hold_all_orders(inputs.medium(), body, inputs.knobs);
+    const double expected = expected_error(inputs.medium(), body);
+    const double allowed = allowed_model_error(inputs.knobs);
+    ModelChoice choice;
     choice.model = is_auto ? MultipleModel::dipole : asked;
-    // A target also needs to know what the model that was asked for leaves of it.
-    const bool is_budgeted = inputs.knobs.error_target > 0 && asked != MultipleModel::walks &&
-                             choice.error > allowed_model_error(inputs.knobs);
-    if (is_budgeted || (is_auto && expects_walks(inputs.medium(), body, inputs.knobs))) {
+    choice.all_orders = may_hold && !inputs.layout.at_entry;
+    // Peaked media may leave this layout once light scattered once has terms of its own.
+    const bool is_measured = is_auto
+                                 ? expects_walks(inputs.medium(), body, inputs.knobs) &&
+                                       (may_hold || !inputs.layout.at_entry)
+                                 : inputs.knobs.error_target > 0 && !is_fixed(inputs.medium()) &&
+                                       asked != MultipleModel::walks && expected > allowed;
+    if (is_measured) {
         choice.errors = measure_models(inputs, profile, traced);
     }
-    if (choice.errors.receivers > 0) {
-        const double allowed = allowed_model_error(inputs.knobs);
-        if (is_auto && !is_fixed(inputs.medium())) {
-            choice.model = choice.errors.dipole <= allowed   ? MultipleModel::dipole
-                           : choice.errors.scaled <= allowed ? MultipleModel::scaled
-                                                             : MultipleModel::walks;
-        }
-        choice.error =
-            choice.model == MultipleModel::scaled ? choice.errors.scaled : choice.errors.dipole;
+    const ModelErrors& errors = choice.errors;
+    if (is_auto && errors.receivers > 0) {
+        choice.model = errors.dipole <= allowed   ? MultipleModel::dipole
+                       : errors.scaled <= allowed ? MultipleModel::scaled
+                                                  : MultipleModel::walks;
     }
-    if (choice.model == MultipleModel::walks) {
-        choice.error = 0;
+    if (choice.model == MultipleModel::dipole) {
+        choice.error = errors.receivers > 0 ? errors.dipole : expected;
+    } else if (choice.model == MultipleModel::scaled) {
+        choice.error = errors.scaled;
     }
     return choice;
 }
@@ -244,10 +245,11 @@ PlanEntry decide_model(const PlanInput& input) {
 }
 
 void describe_choice(const ModelChoice& choice, PlanEntry& entry) {
-    entry.on = choice.model != MultipleModel::dipole;
+    const bool was_on = std::exchange(entry.on, choice.model != MultipleModel::dipole);
     entry.all_orders = choice.model == MultipleModel::walks && choice.all_orders;
     entry.model_error = choice.error;
     if (choice.errors.receivers == 0) {
+        entry.reason = was_on && !entry.on ? "dipole: light leaves where it entered" : entry.reason;
         return;
     }
     entry.reason = std::string(kMultipleModel.words[static_cast<std::size_t>(choice.model)]) +

@@ -30,7 +30,9 @@ struct ModelErrors {
 struct ModelChoice {
     MultipleModel model = MultipleModel::dipole;  ///< not automatic
     ModelErrors errors;
-    double error = 0;         ///< relative RMS that the model errs by: measured, or else estimated
+    /// Relative RMS that the dipole, measured or else estimated, or the scaled dipole, measured,
+    /// errs by, as a share of multiple scattering alone.
+    double error = 0;
     bool all_orders = false;  ///< walks may follow light scattered once as well
 };
 
@@ -41,8 +43,7 @@ ModelErrors measure_models(const EffectInputs& inputs, const MediumProfile& prof
                            std::uint64_t& traced);
 
 /// The model asked for; automatic: the dipole where its error is allowed, by estimate or as
-/// measured, else the scaled dipole where its error is, else walks. The dipole, where light leaves
-/// where it entered.
+/// measured, else the scaled dipole where its error is, else walks.
 ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profile,
                          std::uint64_t& traced);
 

@@ -61,8 +61,12 @@ bool refine_samples(Knobs& knobs) {
     }
     knobs.set(kSamplesPerPath, 4 * knobs[kSamplesPerPath]);
     knobs.set(kSamples, std::min(4 * knobs[kSamples], kMostSamples));
-    knobs.set(kWalksAround, 4 * knobs[kWalksAround]);
-    knobs.set(kWalks, 4 * knobs[kWalks]);
+    // No more walks than `reference` takes: they cost most.
+    const auto add_walks = [&](const KnobSpec& knob) {
+        knobs.set(knob, std::max(knobs[knob], std::min(4 * knobs[knob], knob.preset.back())));
+    };
+    add_walks(kWalksAround);
+    add_walks(kWalks);
     return true;
 }
 

@@ -14,9 +14,8 @@ inline bool carries_light(const RowLayout& layout, std::span<const PlanEntry>) {
 }
 inline bool is_walked(const RowLayout& layout, std::span<const PlanEntry> decisions) {
     return carries_light(layout, decisions) &&
-           std::ranges::any_of(decisions, [](const PlanEntry& entry) {
-               return entry.on && entry.name == "multiple.model";
-           });
+           std::ranges::any_of(decisions,
+                               [](const PlanEntry& entry) { return entry.on && entry.all_orders; });
 }
 inline constexpr std::array<double, 2> kViewCounts{1, 4};
 inline constexpr const char* kWhyIdle = "no medium carries light across itself";
@@ -103,7 +102,7 @@ inline constexpr KnobSpec kViewTerms{
     .preset = {0, 0, 0, 0},
     .label = "K = %g",
     .matters = multiple_knobs::is_walked,
-    .why_idle = "no medium's light is followed by random walks"};
+    .why_idle = "no medium's light is followed by random walks that stand close enough"};
 
 /// Random walks around each receiver: within the radius of sites that its row is fitted to.
 inline constexpr KnobSpec kWalksAround{.name = "walks_around",

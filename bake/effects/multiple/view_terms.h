@@ -8,9 +8,9 @@ namespace opaline::bake {
 /// mean chord in transport mean free paths and from the albedo (walks/README.md, "Views").
 double one_view_error(const formats::Medium& medium, const MaterialFacts& body);
 
-/// The rule `multiple.view`: 4 rows where random walks are expected and one row for all views would
-/// err by more than 3 % (reference: 1 %; draft, preview: never), or more than half of
-/// Knobs::error_target. After the rule `multiple.model`.
+/// The rule `multiple.view`: 4 rows where random walks that hold light of all orders are expected
+/// and one row for all views would err by more than 3 % (reference: 1 %; draft, preview: never), or
+/// more than half of Knobs::error_target. After the rule `multiple.model`.
 PlanEntry decide_views(const PlanInput& input);
 
 }  // namespace opaline::bake

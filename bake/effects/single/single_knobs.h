@@ -100,7 +100,8 @@ inline constexpr KnobSpec kPhaseTerms{
                .value = single_knobs::degree_of},
     .matters = single_knobs::is_expanded,
     .why_idle =
-        "nothing scatters once into some directions more than into others, one term is all"};
+        "nothing scatters once into some directions more than into others, or random walks follow "
+        "that light: one term is all"};
 
 /// What the terms may leave wrong, as a share of what a half space returns (choose_terms).
 inline constexpr KnobSpec kPhaseTolerance{.name = "phase_tolerance",
