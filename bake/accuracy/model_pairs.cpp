@@ -7,6 +7,29 @@
 #include "bake/reference/reference_image.h"
 
 namespace opaline::bake {
+namespace {
+
+// Mean luminance of what is not compared.
+formats::Result<double> measure_missing(const PathSpace& space,
+                                        std::span<const ReferenceReceiver> receivers,
+                                        const ModelCheckOptions& options, const Context& context) {
+    PathSpace other = space;
+    other.options.terms = TermSet::all & ~TermSet::specular & ~options.simulated;
+    EstimateOptions wanted;
+    wanted.seed = options.seed;
+    wanted.samples = 256;
+    const auto estimate = estimate_luminance(other, receivers, wanted, context);
+    if (!estimate) {
+        return estimate.error();
+    }
+    double sum = 0;
+    for (const Moments& m : estimate->pixel) {
+        sum += m.mean.x;
+    }
+    return receivers.empty() ? 0 : sum / static_cast<double>(receivers.size());
+}
+
+}  // namespace
 
 void MeanSquares::add(const ModelPair& p) {
     difference += p.difference * p.difference - p.variance;
@@ -48,6 +71,9 @@ formats::Result<LightCheck> check_light(const PathSpace& space,
                                         const ModelCheckOptions& options, const Context& context) {
     LightCheck check;
     check.pairs.resize(receivers.size());
+    if (receivers.empty()) {
+        return check;
+    }
     std::vector<Moments> moments(receivers.size());
     std::uint64_t events = 0;
     EstimateOptions wanted;
@@ -78,6 +104,57 @@ formats::Result<LightCheck> check_light(const PathSpace& space,
             return check;
         }
     }
+}
+
+formats::Result<LightCheck> check_unmirrored(const ReferenceScene& scene, const ModelLight& light,
+                                             std::span<const ReferenceReceiver> receivers,
+                                             std::span<const double> baked,
+                                             const ModelCheckOptions& options,
+                                             const Context& context) {
+    PathOptions paths;
+    paths.terms = options.simulated;
+    paths.own_mirror = false;
+    const LightSampler sampler = make_light_sampler(light.environment, glm::mat3(1.0f));
+    const PathSpace space{scene, sampler, paths};
+    auto check = check_light(space, receivers, baked, options, context);
+    if (!check) {
+        return check;
+    }
+    const auto missing = measure_missing(space, receivers, options, context);
+    if (!missing) {
+        return missing.error();
+    }
+    check->light = light.name;
+    check->missing = *missing;
+    return check;
+}
+
+ModelErrorReport make_model_report(std::span<const LightCheck> checks, std::size_t receivers,
+                                   std::uint64_t seed) {
+    ModelErrorReport report;
+    report.reference =
+        "path tracing; luminance along the normals of light that met one surface or body, "
+        "without mirror reflection and what crosses a body unscattered";
+    report.receivers_checked = static_cast<std::uint32_t>(receivers);
+    if (receivers == 0) {
+        return report;
+    }
+    std::vector<ModelPair> pairs;  // light by light
+    for (const LightCheck& check : checks) {
+        const MeanSquares sum = sum_up(check.pairs);
+        const double total = sum.mean_truth / sum.count + check.missing;
+        report.by_light.push_back({check.light, sum.rms_relative(), sum.bias(),
+                                   total > 0 ? check.missing / total : 0, sum.noise(),
+                                   check.samples});
+        report.missing += report.by_light.back().missing / static_cast<double>(checks.size());
+        report.samples += std::uint64_t{check.samples} * receivers;
+        pairs.insert(pairs.end(), check.pairs.begin(), check.pairs.end());
+    }
+    const MeanSquares all = sum_up(pairs);
+    report.rms_relative = all.rms_relative();
+    report.bias = all.bias();
+    std::ranges::copy(model_interval(pairs, receivers, seed), report.ci95);
+    return report;
 }
 
 }  // namespace opaline::bake

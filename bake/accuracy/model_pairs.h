@@ -3,9 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bake/accuracy/check_model.h"
+#include "bake/accuracy/model_lights.h"
 #include "bake/base/context.h"
 #include "bake/reference/path.h"
 #include "formats/opal/result.h"
@@ -38,8 +40,10 @@ std::array<double, 2> model_interval(std::span<const ModelPair> pairs, std::size
 
 /// The pairs of one light, one per receiver.
 struct LightCheck {
+    std::string light;
     std::vector<ModelPair> pairs;
     std::uint32_t samples = 0;  ///< for each
+    double missing = 0;         ///< mean luminance of light that files do not simulate
 };
 
 /// Compares `baked`, luminance by receiver, with path tracing of the terms of `space`. Doubles the
@@ -49,5 +53,17 @@ formats::Result<LightCheck> check_light(const PathSpace& space,
                                         std::span<const ReferenceReceiver> receivers,
                                         std::span<const double> baked,
                                         const ModelCheckOptions& options, const Context& context);
+
+/// The same of what files simulate without mirror reflection, and what is missing.
+formats::Result<LightCheck> check_unmirrored(const ReferenceScene& scene, const ModelLight& light,
+                                             std::span<const ReferenceReceiver> receivers,
+                                             std::span<const double> baked,
+                                             const ModelCheckOptions& options,
+                                             const Context& context);
+
+/// Sums up the checks of all lights at `receivers` receivers; without `left_out`, `mirrored` and
+/// `seconds`.
+ModelErrorReport make_model_report(std::span<const LightCheck> checks, std::size_t receivers,
+                                   std::uint64_t seed);
 
 }  // namespace opaline::bake

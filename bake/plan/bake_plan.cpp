@@ -85,6 +85,18 @@ double find_model_error(std::span<const PlanEntry> plan) {
     return most;
 }
 
+std::string list_choices(std::span<const PlanEntry> plan) {
+    std::vector<std::string_view> seen;
+    std::string list;
+    for (const PlanEntry& entry : plan) {
+        if (!entry.choice.empty() && std::ranges::find(seen, entry.choice) == seen.end()) {
+            seen.push_back(entry.choice);
+            list += (list.empty() ? "" : ", ") + std::string(entry.choice);
+        }
+    }
+    return list;
+}
+
 const PlanEntry* find_entry(std::span<const PlanEntry> plan, std::string_view name,
                             std::uint32_t material) {
     const auto entry = std::find_if(plan.begin(), plan.end(), [&](const PlanEntry& e) {

@@ -30,10 +30,11 @@ struct PlanEntry {
     bool as_surface = false;   ///< it shows a medium as a surface: nothing enters, nothing mirrors
     /// On: its rows can hold light of all orders of scattering. Off: left to such rows.
     bool all_orders = false;
-    std::string reason;       ///< the rule in words
-    double bound = 0;         ///< largest radiance it can contribute under `white`
-    double model_error = 0;   ///< relative RMS that it errs by as a model, as far as is known
-    std::uint32_t terms = 0;  ///< of rules that choose a number of rows: that number; otherwise 0
+    std::string_view choice{};  ///< on or off: the way it takes of several; empty: none or unknown
+    std::string reason;         ///< the rule in words
+    double bound = 0;           ///< largest radiance it can contribute under `white`
+    double model_error = 0;     ///< relative RMS that it errs by as a model, as far as is known
+    std::uint32_t terms = 0;    ///< of rules that choose a number of rows: that number; otherwise 0
     std::uint32_t least_terms = 1;      ///< that number if the rule were on
     double predicted_seconds = 0;       ///< filled in by predict_costs (cost_model.h)
     std::uint64_t predicted_bytes = 0;  ///< the same; of the rows in the file
@@ -54,6 +55,9 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
 /// Relative RMS that the models of a plan err by, as far as is known: of the subject where they err
 /// most.
 double find_model_error(std::span<const PlanEntry> plan);
+
+/// What the plan's effects chose, each once, in the order of the plan: "dipole, walks".
+std::string list_choices(std::span<const PlanEntry> plan);
 
 /// The subjects of a scene: materials that have receivers.
 std::vector<Subject> list_subjects(const formats::Scene& scene, const SceneFacts& facts);

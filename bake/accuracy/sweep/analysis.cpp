@@ -108,28 +108,78 @@ std::optional<Answer> answer_of(std::span<const CostPoint> time, std::span<const
     return std::nullopt;
 }
 
+// Indices of the points of each way to choose, in the order in which they were first made.
+std::vector<std::vector<std::size_t>> group_by_choices(const SweepResult& result) {
+    std::vector<std::vector<std::size_t>> groups;
+    for (std::size_t i = 0; i < result.points.size(); ++i) {
+        const auto same = std::ranges::find_if(groups, [&](const auto& group) {
+            return result.points[group.front()].choices == result.points[i].choices;
+        });
+        if (same == groups.end()) {
+            groups.push_back({i});
+        } else {
+            same->push_back(i);
+        }
+    }
+    return groups;
+}
+
+std::optional<CostPair> pair_of(const std::optional<CostPair>& pair,
+                                const std::vector<std::size_t>& group) {
+    return pair ? std::optional(CostPair{group[pair->better], group[pair->other]}) : std::nullopt;
+}
+
+ChoiceLine line_of(const SweepResult& result, const std::vector<std::size_t>& group,
+                   const std::vector<bool>& on_front) {
+    ChoiceLine line{result.points[group.front()].choices, {}};
+    for (std::size_t k = 0; k < group.size(); ++k) {
+        if (on_front[k]) {
+            line.front.push_back(group[k]);
+        }
+    }
+    std::ranges::sort(line.front, {}, [&](std::size_t i) { return result.points[i].seconds; });
+    return line;
+}
+
+// Fronts, pairs and answer within one way to choose.
+void analyse_group(const SweepResult& result, const std::vector<std::size_t>& group,
+                   SweepAnalysis& analysis) {
+    std::vector<CostPoint> time, bytes, total;
+    for (const std::size_t i : group) {
+        const PointRecord& record = result.points[i];
+        time.push_back({record.seconds, record.error.rms_relative});
+        bytes.push_back({static_cast<double>(record.bytes), record.error.rms_relative});
+        total.push_back({record.seconds, record.total.rms_relative});
+    }
+    const std::vector<bool> on_time = pareto_front(time), on_bytes = pareto_front(bytes),
+                            on_total = pareto_front(total);
+    for (std::size_t k = 0; k < group.size(); ++k) {
+        analysis.standing[group[k]] = {on_time[k], on_bytes[k], times_the_front(time, k),
+                                       times_the_front(bytes, k), on_total[k]};
+    }
+    analysis.lines.push_back(line_of(result, group, on_total));
+    if (std::ranges::find(group, result.truth) != group.end()) {
+        analysis.answer = answer_of(time, bytes);
+        analysis.equal_time = pair_of(equal_cost_pair(time), group);
+        analysis.equal_error = pair_of(equal_error_pair(time), group);
+    }
+}
+
 }  // namespace
 
 SweepAnalysis analyse_sweep(const SweepResult& result) {
     SweepAnalysis analysis;
-    std::vector<CostPoint> time, bytes;
+    analysis.standing.resize(result.points.size());
+    for (const std::vector<std::size_t>& group : group_by_choices(result)) {
+        analyse_group(result, group, analysis);
+    }
     for (std::size_t i = 0; i < result.points.size(); ++i) {
         const PointRecord& record = result.points[i];
-        time.push_back({record.seconds, record.error.rms_relative});
-        bytes.push_back({static_cast<double>(record.bytes), record.error.rms_relative});
-        if (i != result.truth) {
+        if (i != record.finest) {
             ++analysis.checks;
             analysis.checks_agreeing += meet(record.against_finest.ci95, record.error.ci95) ? 1 : 0;
         }
     }
-    const std::vector<bool> on_time = pareto_front(time), on_bytes = pareto_front(bytes);
-    for (std::size_t i = 0; i < result.points.size(); ++i) {
-        analysis.standing.push_back(
-            {on_time[i], on_bytes[i], times_the_front(time, i), times_the_front(bytes, i)});
-    }
-    analysis.answer = answer_of(time, bytes);
-    analysis.equal_time = equal_cost_pair(time);
-    analysis.equal_error = equal_error_pair(time);
     for (const Ladder& ladder : converging_ladders(result.subject)) {
         if (auto fit = fit_ladder(result, ladder)) {
             analysis.fits.push_back(std::move(*fit));

@@ -9,11 +9,18 @@
 
 namespace opaline::bake {
 
-/// A point's relation to the front: whether it is on it, and its cost relative to the cheapest
-/// point with no larger error.
+/// A point's relation to the front of the points of its choices: whether it is on it, and its cost
+/// relative to the cheapest point with no larger error.
 struct Standing {
     bool on_front_time = false, on_front_bytes = false;
     double times_front_time = 1, times_front_bytes = 1;
+    bool on_front_total = false;  ///< of total error against time
+};
+
+/// What one way to choose costs: the time against the total error of the points that made it.
+struct ChoiceLine {
+    std::string choices;             ///< PointRecord::choices
+    std::vector<std::size_t> front;  ///< indices of points, by rising seconds and falling error
 };
 
 /// Convergence of one knob. Each rung is compared with the ladder's finest at equal other knobs, so
@@ -34,13 +41,14 @@ struct Answer {
 };
 
 struct SweepAnalysis {
-    std::optional<Answer> answer;
+    std::optional<Answer> answer;    ///< of the truth's choices
+    std::vector<ChoiceLine> lines;   ///< in the order in which they were first made
     std::vector<Standing> standing;  ///< of each point
     std::vector<LadderFit> fits;
-    /// Indices of points; nothing where no two differ enough.
+    /// Indices of points of the truth's choices; nothing where no two differ enough.
     std::optional<CostPair> equal_time, equal_error;
-    /// Number of points whose error interval overlaps the one against the finest bake, and the
-    /// number of points compared.
+    /// Number of points whose error interval overlaps the one against the finest bake of their
+    /// choices, and the number of points compared.
     std::size_t checks_agreeing = 0, checks = 0;
 };
 

@@ -1,8 +1,9 @@
 #include "bake/accuracy/sweep/finest.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
-#include <utility>
+#include <tuple>
 
 namespace opaline::bake {
 namespace {
@@ -24,12 +25,11 @@ std::vector<std::string> name_row_effects(const SweepResult& result, const Effec
 
 }  // namespace
 
-std::size_t find_finest(std::span<const PointRecord> points) {
-    const auto finest = std::min_element(points.begin(), points.end(),
-                                         [](const PointRecord& a, const PointRecord& b) {
-                                             return std::pair{a.error.rms_relative, -a.seconds} <
-                                                    std::pair{b.error.rms_relative, -b.seconds};
-                                         });
+std::size_t find_finest(std::span<const PointRecord> points, std::string_view choices) {
+    const auto worth = [&](const PointRecord& p) {
+        return std::tuple{p.choices != choices, p.error.rms_relative, -p.seconds};
+    };
+    const auto finest = std::ranges::min_element(points, {}, worth);
     return static_cast<std::size_t>(finest - points.begin());
 }
 
@@ -44,9 +44,16 @@ void compare_with_finest(SweepResult& result, const EffectTable& effects,
     for (const std::uint32_t probe : probes) {
         effect.push_back(of_material[material[probe]]);
     }
-    result.truth = find_finest(result.points);
-    const PointRecord& finest = result.points[result.truth];
+    std::map<std::string, std::size_t> count;
     for (PointRecord& record : result.points) {
+        record.finest = find_finest(result.points, record.choices);
+        ++count[record.choices];
+    }
+    const auto most = std::ranges::max_element(
+        count, {}, [](const auto& choices_and_points) { return choices_and_points.second; });
+    result.truth = find_finest(result.points, most->first);
+    for (PointRecord& record : result.points) {
+        const PointRecord& finest = result.points[record.finest];
         record.against_finest =
             compare_probes(record.luminance, finest.luminance, effect, result.lights);
         add_error_of_truth(record.against_finest, finest.error);

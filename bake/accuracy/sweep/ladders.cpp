@@ -36,6 +36,13 @@ std::string label_of(const KnobSpec& knob, double value) {
     return pattern.substr(0, at) + text + pattern.substr(at + 2);
 }
 
+// The choice of that name among the subject's knobs; 0 where there is none, or it is the automatic
+// one.
+std::size_t find_word(const KnobSpec& knob, std::string_view word) {
+    const auto found = std::ranges::find(knob.words, word);
+    return found == knob.words.end() ? 0 : static_cast<std::size_t>(found - knob.words.begin());
+}
+
 // As the user would give it.
 void give(Knobs& knobs, const KnobSpec& knob, double value) {
     knobs.set(knob, value);
@@ -87,6 +94,22 @@ void add_transport_ladders(Points& points, const Knobs& base) {
     knobs.code_bits = 16;
     points.add("16-bit codes", Ladder::code_bits, 16, knobs);
     points.add("8-bit codes", Ladder::code_bits, 8, base);
+}
+
+// Every way to choose, as accurate as the presets: what each costs, and what it cannot reach.
+void add_choices(Points& points, const LadderRequest& request) {
+    for (const KnobSpec* knob : points.subject.knobs) {
+        for (std::size_t word = 1; word < knob->words.size(); ++word) {
+            for (const Quality quality : {Quality::draft, Quality::preview, Quality::production}) {
+                Knobs knobs = preset_knobs(request, quality);
+                const auto value = static_cast<double>(word);
+                give(knobs, *knob, value);
+                points.add(
+                    std::string(knob->words[word]) + ", " + std::string(quality_name(quality)),
+                    ladder_of(*knob), value, knobs);
+            }
+        }
+    }
 }
 
 void add_knob_ladders(Points& points, const Knobs& base) {
@@ -206,6 +229,7 @@ std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base)
         points.add(std::string(quality_name(kQualities[q])), Ladder::preset, static_cast<double>(q),
                    preset_knobs(request, kQualities[q]));
     }
+    add_choices(points, request);
     const Knobs knobs = preset_knobs(request, base);
     if (request.subject.in_media) {
         add_diagonal(points, knobs);
@@ -218,13 +242,24 @@ std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base)
 
 std::vector<SweepPoint> make_truths(const LadderRequest& request) {
     Points points{request.subject};
-    const Knobs reference = preset_knobs(request, Quality::reference);
+    Knobs reference = preset_knobs(request, Quality::reference);
+    std::string of;  // the choice, where there is one
+    for (const KnobSpec* knob : request.subject.knobs) {
+        if (const std::size_t word = find_word(*knob, request.choices); word > 0) {
+            give(reference, *knob, static_cast<double>(word));
+            of = request.choices + ", ";
+        }
+    }
     if (!request.subject.in_media) {
         Knobs finest = reference;
         finest.cubemap_size = 128;
         points.add("N = 128, all coefficients, 16 bits", Ladder::resolution, 128, finest);
     }
-    points.add("reference", Ladder::preset, 3, reference);
+    if (of.empty()) {
+        points.add("reference", Ladder::preset, 3, reference);
+    } else {
+        points.list.push_back({of + "reference", {}, reference});
+    }
     // Then the knobs that cost most for the least: rays, coefficients, samples, at last resolution.
     struct Rows {
         std::uint32_t cubemap, coefficients;
@@ -241,7 +276,7 @@ std::vector<SweepPoint> make_truths(const LadderRequest& request) {
         knobs.cubemap_size = kRows[at].cubemap;
         knobs.coefficients = kRows[at].coefficients;
         knobs = settle(std::move(knobs));
-        points.list.push_back({"N = " + std::to_string(knobs.cubemap_size) +
+        points.list.push_back({of + "N = " + std::to_string(knobs.cubemap_size) +
                                    ", M = " + coefficients_text(knobs) + ", 16 bits, fine",
                                {},
                                knobs});

@@ -44,8 +44,9 @@ constexpr Ladder ladder_of(const KnobSpec& knob) {
     return {knob.name, &knob};
 }
 
-/// A point's place on a ladder: `value` is the knob's, or 0 to 3 for presets, N for grids, and the
-/// step for the diagonal. All coefficients count as as many as there are.
+/// A point's place on a ladder: `value` is the knob's (of a choice its place among the words), or 0
+/// to 3 for presets, N for grids, and the step for the diagonal. All coefficients count as as many
+/// as there are.
 struct Rung {
     Ladder ladder;
     double value = 0;
@@ -77,10 +78,13 @@ struct LadderRequest {
     const EffectTable& effects;
     const SweepSubject& subject;
     const BakeOptions& options;  ///< effects and seed go into every point
+    /// What the base's plan chose (list_choices): the truths choose the same, where that is one
+    /// word.
+    std::string choices{};
 };
 
-/// Presets, one-at-a-time ladders around the preset `base`, and joint ladders, without the knobs of
-/// effects that the scene does not call for.
+/// Presets, every choice in the three cheaper presets, one-at-a-time ladders around the preset
+/// `base`, and joint ladders, without the knobs of effects that the scene does not call for.
 std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base);
 
 /// Candidates for the truth, the finest first.

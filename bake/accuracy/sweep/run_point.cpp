@@ -80,14 +80,12 @@ double seconds_of(const StageGroups& groups, const std::string& name) {
 
 formats::Result<PointRecord> run_point(const EffectTable& effects, const formats::Scene& scene,
                                        const SweepPoint& point, const SweepView& view,
-                                       const ProbeLights& lights, const Context& context) {
+                                       const SweepLights& lights, const Context& context) {
     forget_peak_memory();
     const double cpu_before = cpu_seconds();
-    Knobs knobs = point.knobs;
-    knobs.check_model = false;  // later: it is no part of what a bake costs
-    auto bake = run_bake(effects, scene, knobs, context);
+    const auto bake = run_bake(effects, scene, point.knobs, context);
     if (!bake) {
-        return std::move(bake).error();
+        return bake.error();
     }
     const double cpu_after = cpu_seconds();
     const formats::AssetView asset = bake->asset.view();
@@ -102,15 +100,11 @@ formats::Result<PointRecord> run_point(const EffectTable& effects, const formats
     record.error = bake->error;
     // Knobs are compared: what a mesh is too coarse for is the same for all of them.
     static_cast<MeasuredError&>(record.error) = bake->error.at_receivers;
-    record.luminance = relight_probes(asset, view.probes, lights);
-    if (point.knobs.check_model) {
-        ModelCheckOptions options;
-        options.seed = knobs.seed;
-        auto checked = check_model(scene, asset, options, context);
-        if (!checked) {
-            return std::move(checked).error();
-        }
-        record.model_error = std::move(*checked);
+    record.choices = list_choices(bake->plan);
+    record.luminance = relight_probes(asset, view.probes, lights.probes);
+    for (const runtime::LightVector& light : lights.model) {
+        record.model_luminance.push_back(
+            relight_receivers(asset, view.model.receivers, {.vector = light}));
     }
     auto picture = draw(asset, view, context.threads);
     if (!picture) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bake/accuracy/measure_error.h"
+#include "bake/accuracy/model_truth.h"
 #include "bake/accuracy/sweep/ladders.h"
 #include "bake/accuracy/sweep/probes.h"
 #include "bake/base/context.h"
@@ -29,6 +30,13 @@ StageGroups group_stages(const StageLog& stages, double seconds_total);
 /// Of a group; 0 where there is none of that name.
 double seconds_of(const StageGroups& groups, const std::string& name);
 
+/// The lights of one cube map size: those that bakes check themselves under, and those of the path
+/// tracing (ModelProbes::lights).
+struct SweepLights {
+    ProbeLights probes;
+    std::vector<runtime::LightVector> model;
+};
+
 /// The result of one point.
 struct PointRecord {
     SweepPoint point;
@@ -36,27 +44,32 @@ struct PointRecord {
     double cpu_seconds = 0;  ///< of all threads together; other programs do not count
     StageGroups groups;
     StageLog stages;
-    std::uint64_t bytes = 0;                      ///< of the file
-    std::uint64_t peak_bytes = 0;                 ///< largest resident memory during the bake
-    ErrorReport error;                            ///< as the bake measured it
-    std::optional<ModelErrorReport> model_error;  ///< where the knobs ask for it
-    ErrorReport against_finest;     ///< from the finest bake, at all probes, and that one's own
-                                    ///< error added in squares
-    std::vector<double> luminance;  ///< relight_probes
-    runtime::Picture picture;       ///< empty where none was wanted
+    std::uint64_t bytes = 0;       ///< of the file
+    std::uint64_t peak_bytes = 0;  ///< largest resident memory during the bake
+    ErrorReport error;             ///< of the numbers, as the bake measured it
+    std::string choices;         ///< of its plan (list_choices); only equal ones differ in numbers
+                                 ///< alone
+    std::size_t finest = 0;      ///< index of the finest point of the same choices
+    ErrorReport against_finest;  ///< from that one, at all probes, and its own error added in
+                                 ///< squares
+    ModelErrorReport total;      ///< of model and numbers, against path tracing
+    std::vector<double> luminance;                     ///< relight_probes
+    std::vector<std::vector<double>> model_luminance;  ///< relight_receivers, light by light
+    runtime::Picture picture;                          ///< empty where none was wanted
 };
 
 /// Probes, lights and camera shared by all points.
 struct SweepView {
     std::vector<std::uint32_t> probes;
+    ModelProbes model;
     formats::Environment picture_light;
     std::uint32_t picture_width = 480, picture_height = 360;
 };
 
-/// Bakes and measures; the asset itself is dropped. `error` is left for later, when the truth is
-/// known. Errors: as run_bake and render_software.
+/// Bakes and measures; the asset itself is dropped. What needs a truth is left for later. Errors:
+/// as run_bake and render_software.
 formats::Result<PointRecord> run_point(const EffectTable& effects, const formats::Scene& scene,
                                        const SweepPoint& point, const SweepView& view,
-                                       const ProbeLights& lights, const Context& context);
+                                       const SweepLights& lights, const Context& context);
 
 }  // namespace opaline::bake

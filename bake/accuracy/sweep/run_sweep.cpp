@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bake/accuracy/sweep/finest.h"
+#include "bake/accuracy/sweep/trace_for.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/environment/builtin_environment.h"
 #include "bake/pipeline/cost_model.h"
@@ -48,14 +49,16 @@ struct Sweep {
     Clock::time_point start = Clock::now();
     SweepResult result{};
     SweepView view{};
-    std::map<std::uint32_t, ProbeLights> lights{};  // by cube map size
+    std::map<std::uint32_t, SweepLights> lights{};  // by cube map size
     std::size_t total = 1;
     double measured = 0, predicted = 0;  // of the points so far
 
     Prediction predict_point(const Knobs& knobs) const {
         return predict({effects, scene, facts, knobs, options.rates, context.threads});
     }
-    LadderRequest ladder_request() const { return {effects, result.subject, options.bake}; }
+    LadderRequest ladder_request() const {
+        return {effects, result.subject, options.bake, list_choices(result.plan)};
+    }
 
     double left() const { return options.seconds - seconds_since(start); }
     // Predictions are right within a factor of two, and the factor is the same for all points on a
@@ -78,24 +81,55 @@ struct Sweep {
         return {};
     }
 
-    formats::Result<const ProbeLights*> lights_of(std::uint32_t n) {
+    formats::Result<const SweepLights*> lights_of(std::uint32_t n) {
         auto known = lights.find(n);
         if (known == lights.end()) {
-            auto made = make_probe_lights(n, context.threads);
-            if (!made) {
-                return std::move(made).error();
+            auto probes = make_probe_lights(n, context.threads);
+            if (!probes) {
+                return std::move(probes).error();
             }
-            known = lights.emplace(n, std::move(*made)).first;
+            SweepLights made{std::move(*probes), {}};
+            for (const ModelLight& light : view.model.lights) {
+                made.model.push_back(
+                    runtime::project_environment(light.environment, n, {}, context.threads));
+            }
+            known = lights.emplace(n, std::move(made)).first;
         }
         return &known->second;
+    }
+
+    // A point that differs in what was left to be chosen alone, and chose just that.
+    PointRecord* find_chosen(const SweepPoint& point) {
+        for (const Rung& rung : point.rungs) {
+            if (rung.ladder.knob == nullptr || rung.ladder.knob->words.empty()) {
+                continue;
+            }
+            const KnobSpec& knob = *rung.ladder.knob;
+            for (PointRecord& record : result.points) {
+                Knobs given = record.point.knobs;
+                given.set(knob, rung.value);
+                if (record.choices == knob.words[static_cast<std::size_t>(rung.value)] &&
+                    same_bake(given, point.knobs, result.subject)) {
+                    return &record;
+                }
+            }
+        }
+        return nullptr;
     }
 
     void skip(const SweepPoint& point, const Prediction& cost, std::string reason) {
         result.skipped.push_back({point, cost.seconds * scale(), cost.bytes, std::move(reason)});
     }
 
-    // Bakes a point, or notes why not.
+    // Bakes a point, or notes why not. A choice that an automatic one made as well is not baked
+    // again.
     formats::Status visit(const SweepPoint& point, double seconds_left) {
+        if (PointRecord* same = find_chosen(point)) {
+            same->point.rungs.insert(same->point.rungs.end(), point.rungs.begin(),
+                                     point.rungs.end());
+            --total;
+            return formats::ok_status();
+        }
         const Prediction cost = predict_point(point.knobs);
         if (std::string reason = objection(cost, seconds_left); !reason.empty()) {
             skip(point, cost, std::move(reason));
@@ -104,12 +138,12 @@ struct Sweep {
         if (on_step) {
             on_step({result.points.size() + result.skipped.size(), total, point.label});
         }
-        const auto probe_lights = lights_of(point.knobs.cubemap_size);
-        if (!probe_lights) {
-            return probe_lights.error();
+        const auto point_lights = lights_of(point.knobs.cubemap_size);
+        if (!point_lights) {
+            return point_lights.error();
         }
         try {
-            auto record = run_point(effects, scene, point, view, **probe_lights, context);
+            auto record = run_point(effects, scene, point, view, **point_lights, context);
             if (!record) {
                 return std::move(record).error();
             }
@@ -134,13 +168,18 @@ std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
     return std::nullopt;
 }
 
-// Cheap points first: they give the most information per second. Joint ladders come last.
+// Cheap points first: they give the most information per second. Choices come after the presets
+// that may have made them, joint ladders last.
 int urgency(const SweepPoint& point) {
     const auto stands_on = [&](Ladder ladder) {
         return std::any_of(point.rungs.begin(), point.rungs.end(),
                            [&](const Rung& r) { return r.ladder == ladder; });
     };
-    return stands_on(Ladder::preset) ? 0 : point.rungs.front().ladder == Ladder::grid ? 2 : 1;
+    const Ladder& first = point.rungs.front().ladder;
+    return stands_on(Ladder::preset)                             ? 0
+           : first.knob != nullptr && !first.knob->words.empty() ? 1
+           : first == Ladder::grid                               ? 3
+                                                                 : 2;
 }
 
 // Bakes the finest setting that can be afforded. A point of the ladders keeps its label and rungs,
@@ -197,6 +236,12 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     }
     sweep.view.probes = choose_probes(result.receivers, options.probes);
     sweep.view.picture_light = std::move(picture_light->environment);
+    constexpr std::uint32_t kModelReceivers = 96;
+    auto model = choose_model_probes(scene, kModelReceivers, options.bake.seed, context);
+    if (!model) {
+        return std::move(model).error();
+    }
+    sweep.view.model = std::move(*model);
 
     BakeOptions base = options.bake;
     base.quality = Quality::draft;
@@ -209,8 +254,8 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     result.plan = plan_bake(effects, scene, facts, *preview);
     result.subject = sweep_subject(effects, scene, result.plan, *preview);
     // A quick point measures the speed of this machine.
-    SweepPoint first{std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
-    first.knobs.check_model = true;
+    const SweepPoint first{
+        std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
     if (auto status = sweep.visit(first, sweep.left()); !status) {
         return std::move(status).error();
     }
@@ -228,12 +273,17 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         return std::move(reference).error();
     }
     result.reference = std::move(*reference);
+    auto traced =
+        trace_for(scene, sweep.view.model,
+                  {.seconds = kShare * options.seconds, .seed = options.bake.seed}, context);
+    if (!traced) {
+        return std::move(traced).error();
+    }
     if (sweep.predict_point(*preview).seconds * sweep.scale() > kShare * options.seconds) {
         result.base = Quality::draft;
         result.plan = plan_bake(effects, scene, facts, *draft);
     }
     std::vector<SweepPoint> points = make_ladders(sweep.ladder_request(), result.base);
-    result.model_error = result.points.front().model_error;
     result.points.front().point = points.front();  // with the rungs of a base, if it is one
     points.erase(points.begin());
     sweep.total = 1 + points.size();
@@ -247,14 +297,18 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         return sweep.predict_point(a.knobs).seconds < sweep.predict_point(b.knobs).seconds;
     });
     for (const SweepPoint& point : points) {
-        // One preset must not take the time of all ladders.
-        const double share = urgency(point) == 0 ? 0.5 : 1.0;
+        // One preset or choice must not take the time of all ladders.
+        const double share = urgency(point) <= 1 ? 0.5 : 1.0;
         if (auto status = sweep.visit(point, share * sweep.left()); !status) {
             return std::move(status).error();
         }
     }
-    result.lights = sweep.lights.begin()->second.names;
+    result.lights = sweep.lights.begin()->second.probes.names;
     compare_with_finest(result, effects, scene, sweep.view.probes);
+    for (PointRecord& record : result.points) {
+        record.total = compare_with_truth(record.model_luminance, *traced, sweep.view.model,
+                                          options.bake.seed);
+    }
     result.seconds = seconds_since(sweep.start);
     return std::move(sweep.result);
 }

@@ -34,16 +34,16 @@ struct SweepResult {
     std::uint64_t seed = 0;
     double mean_cosine = 0;  ///< of the first medium's phase function
     SweepSubject subject;
-    Quality base = Quality::preview;           ///< what the ladders change one knob of
-    std::vector<PlanEntry> plan;               ///< of the base
-    std::vector<PointRecord> points;           ///< in the order in which they were baked
-    std::size_t truth = 0;                     ///< index of the finest point (find_finest)
+    Quality base = Quality::preview;  ///< what the ladders change one knob of
+    std::vector<PlanEntry> plan;      ///< of the base
+    std::vector<PointRecord> points;  ///< in the order in which they were baked
+    /// index of the finest point of the choices that most points made (find_finest)
+    std::size_t truth = 0;
     std::optional<ReferenceLadder> reference;  ///< nothing: no light
     std::vector<SkippedPoint> skipped;
     std::vector<std::string> lights;
     std::string picture_light;
-    std::optional<ModelErrorReport> model_error;  ///< of the draft: no knob changes it
-    double seconds = 0;                           ///< of the whole sweep
+    double seconds = 0;  ///< of the whole sweep
 };
 
 /// What is about to be baked, of how many points at most.
@@ -52,9 +52,10 @@ struct SweepStep {
     const std::string& label;
 };
 
-/// Bakes the ladders of a scene. Order: `draft`; the ladder of the Monte Carlo reference, for a
-/// twentieth of the time; the most accurate setting that half of the time allows; the other
-/// presets; one-at-a-time and diagonal ladders and grids, cheap points first. The ladders stand
+/// Bakes the ladders of a scene. Order: `draft`; the ladder of the Monte Carlo reference, and the
+/// path tracing that total errors are against, for a twentieth of the time each; the most accurate
+/// setting that half of the time allows; the other presets; choices; one-at-a-time and diagonal
+/// ladders and grids, cheap points first. The ladders stand
 /// around `preview`, or `draft` where a twentieth of the time is less than `preview` takes.
 /// Predictions are predict_costs', scaled by how long the points so far took. A point that runs out
 /// of memory is skipped. Errors: as run_bake; usage, for a light that is none or too little time.

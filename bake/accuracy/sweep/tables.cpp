@@ -99,6 +99,11 @@ Cells cells_of(const SweepResult& result, const SweepAnalysis& analysis, std::si
     cells.emplace_back("against_finest", number_cell(record.against_finest.rms_relative));
     cells.emplace_back("against_finest_ci95_low", number_cell(record.against_finest.ci95[0]));
     cells.emplace_back("against_finest_ci95_high", number_cell(record.against_finest.ci95[1]));
+    cells.emplace_back("choices", text_cell(record.choices));
+    cells.emplace_back("total_error", number_cell(record.total.rms_relative));
+    cells.emplace_back("total_error_ci95_low", number_cell(record.total.ci95[0]));
+    cells.emplace_back("total_error_ci95_high", number_cell(record.total.ci95[1]));
+    cells.emplace_back("total_bias", number_cell(record.total.bias));
     for (const std::string& effect : effects_of(result)) {
         cells.emplace_back("error " + effect, part_of(record.error.by_effect, effect));
     }
@@ -108,6 +113,7 @@ Cells cells_of(const SweepResult& result, const SweepAnalysis& analysis, std::si
     const Standing& standing = analysis.standing[i];
     cells.emplace_back("on_front_time", standing.on_front_time ? "1" : "0");
     cells.emplace_back("on_front_bytes", standing.on_front_bytes ? "1" : "0");
+    cells.emplace_back("on_front_total", standing.on_front_total ? "1" : "0");
     cells.emplace_back("times_front_time", number_cell(standing.times_front_time));
     cells.emplace_back("times_front_bytes", number_cell(standing.times_front_bytes));
     cells.emplace_back("reference_samples", "");
@@ -152,10 +158,16 @@ Json point_json(const SweepResult& result, const SweepAnalysis& analysis, std::s
     json["bytes"] = record.bytes;
     json["peak_rss_bytes"] = record.peak_bytes;
     json["error"] = error_json(record.error);
+    json["finest"] = record.finest;
     json["against_finest"] = error_json(record.against_finest);
+    json["choices"] = record.choices;
+    json["total_error"] = {{"rms_relative", record.total.rms_relative},
+                           {"ci95", {record.total.ci95[0], record.total.ci95[1]}},
+                           {"bias", record.total.bias}};
     const Standing& standing = analysis.standing[i];
     json["on_front_time"] = standing.on_front_time;
     json["on_front_bytes"] = standing.on_front_bytes;
+    json["on_front_total"] = standing.on_front_total;
     json["times_front_time"] = standing.times_front_time;
     json["times_front_bytes"] = standing.times_front_bytes;
     return json;
@@ -263,9 +275,11 @@ Json make_sweep_json(const SweepResult& result, const SweepAnalysis& analysis) {
     json["lights"] = result.lights;
     json["picture_light"] = result.picture_light;
     json["groups"] = stage_group_names(result);
-    json["knobs"] = Json::array();  // of effects that the scene calls for
+    json["knobs"] = Json::array();  // of effects that the scene calls for; `choices` say the others
     for (const KnobSpec* knob : result.subject.knobs) {
-        json["knobs"].push_back(knob->name);
+        if (knob->words.empty()) {
+            json["knobs"].push_back(knob->name);
+        }
     }
     json["base"] = quality_name(result.base);
     json["plan"] = plan_json(result.plan);
@@ -274,6 +288,10 @@ Json make_sweep_json(const SweepResult& result, const SweepAnalysis& analysis) {
                           {"seconds", analysis.answer->seconds},
                           {"bytes", analysis.answer->bytes},
                           {"times_for_half", analysis.answer->halving}};
+    }
+    json["lines"] = Json::array();  // total error against time, one line for each way to choose
+    for (const ChoiceLine& line : analysis.lines) {
+        json["lines"].push_back({{"choices", line.choices}, {"points", line.front}});
     }
     json["truth"] = result.truth;
     json["points"] = Json::array();
@@ -290,9 +308,7 @@ Json make_sweep_json(const SweepResult& result, const SweepAnalysis& analysis) {
     json["pairs"] = {{"equal_time", pair_json(analysis.equal_time)},
                      {"equal_error", pair_json(analysis.equal_error)}};
     json["agreement"] = {{"agreeing", analysis.checks_agreeing}, {"of", analysis.checks}};
-    if (result.model_error) {
-        json["model_error"] = model_error_json(*result.model_error);
-    }
+    json["model_error"] = model_error_json(result.points[result.truth].total);
     json["skipped"] = Json::array();
     for (const SkippedPoint& skipped : result.skipped) {
         json["skipped"].push_back({{"label", skipped.point.label},

@@ -12,10 +12,10 @@ nlohmann::ordered_json sweep_knobs_json(const Knobs& knobs);
 
 /// One row a point, in the order in which they were baked; RFC 4180. Columns: label, the ladders it
 /// stands on, its knobs, seconds as a whole and by what they went into, bytes, peak memory, error
-/// with confidence interval, the same against the finest bake,
-/// errors by effect and by light, and where it stands to both fronts. Then one row for each rung of
-/// the Monte Carlo reference (`reference_samples`): its seconds, and its error against its own
-/// truth.
+/// with confidence interval, the same against the finest bake, the ways to compute that it chose,
+/// its total error against path tracing, errors by effect and by light, and where it stands to the
+/// fronts. Then one row for each rung of the Monte Carlo reference (`reference_samples`): its
+/// seconds, and its error against its own truth.
 std::string make_sweep_csv(const SweepResult& result, const SweepAnalysis& analysis);
 
 /// The same with scene, plan, presets, fronts, slopes, pairs of pictures and skipped points. Text

@@ -238,6 +238,12 @@ PlanEntry decide_model(const PlanInput& input) {
             "more than " +
             percent(allowed);
     }
+    if (effect.on) {
+        entry.choice = asked != MultipleModel::automatic
+                           ? kMultipleModel.words[static_cast<std::size_t>(asked)]
+                       : entry.on ? std::string_view()
+                                  : "dipole";
+    }
     entry.model_error = effect.on && !entry.on ? error : 0;
     entry.all_orders = effect.on && entry.on && asked != MultipleModel::scaled &&
                        hold_all_orders(medium, input.subject, input.knobs);
@@ -245,6 +251,7 @@ PlanEntry decide_model(const PlanInput& input) {
 }
 
 void describe_choice(const ModelChoice& choice, PlanEntry& entry) {
+    entry.choice = kMultipleModel.words[static_cast<std::size_t>(choice.model)];
     const bool was_on = std::exchange(entry.on, choice.model != MultipleModel::dipole);
     entry.all_orders = choice.model == MultipleModel::walks && choice.all_orders;
     entry.model_error = choice.error;
@@ -252,11 +259,10 @@ void describe_choice(const ModelChoice& choice, PlanEntry& entry) {
         entry.reason = was_on && !entry.on ? "dipole: light leaves where it entered" : entry.reason;
         return;
     }
-    entry.reason = std::string(kMultipleModel.words[static_cast<std::size_t>(choice.model)]) +
-                   ": measured at " + std::to_string(choice.errors.receivers) +
-                   " vertices, the dipole differs from random walks by " +
-                   percent(choice.errors.dipole) + ", scaled to them by " +
-                   percent(choice.errors.scaled);
+    entry.reason =
+        std::string(entry.choice) + ": measured at " + std::to_string(choice.errors.receivers) +
+        " vertices, the dipole differs from random walks by " + percent(choice.errors.dipole) +
+        ", scaled to them by " + percent(choice.errors.scaled);
 }
 
 }  // namespace opaline::bake

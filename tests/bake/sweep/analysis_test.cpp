@@ -68,12 +68,42 @@ TEST(Analysis, ErrorsAgreeWhereIntervalsMeetAndTheFinestIsNotAsked) {
         record.error.ci95[0] = 0.2;
         record.error.ci95[1] = 0.4;
         record.against_finest.ci95[1] = high;
+        record.finest = 2;
         result.points.push_back(record);
     }
     result.truth = 2;
     const SweepAnalysis analysis = analyse_sweep(result);
     EXPECT_EQ(analysis.checks, 2u);
     EXPECT_EQ(analysis.checks_agreeing, 1u);
+}
+
+// Two ways to compute: the dipole is quicker, and stops at 30 %.
+TEST(Analysis, EachWayToComputeHasAFrontOfItsOwnInTimeAndTotalError) {
+    struct Bake {
+        const char* choices;
+        double seconds, numerical, total;
+    };
+    SweepResult result;
+    for (const Bake& bake :
+         {Bake{"dipole", 1, 0.1, 0.32}, Bake{"walks", 2, 0.2, 0.21}, Bake{"dipole", 4, 0.01, 0.3},
+          Bake{"walks", 8, 0.02, 0.03}, Bake{"dipole", 3, 0.15, 0.33}}) {
+        PointRecord record = rung(Ladder::grid, 1, 1);
+        record.choices = bake.choices;
+        record.seconds = bake.seconds;
+        record.error.rms_relative = bake.numerical;
+        record.total.rms_relative = bake.total;
+        result.points.push_back(record);
+    }
+    result.truth = 2;
+    const SweepAnalysis analysis = analyse_sweep(result);
+    ASSERT_EQ(analysis.lines.size(), 2u);
+    EXPECT_EQ(analysis.lines[0].choices, "dipole");
+    EXPECT_THAT(analysis.lines[0].front, ElementsAre(0, 2));
+    EXPECT_EQ(analysis.lines[1].choices, "walks");
+    EXPECT_THAT(analysis.lines[1].front, ElementsAre(1, 3));
+    EXPECT_TRUE(analysis.standing[1].on_front_time) << "of the bakes by walks";
+    EXPECT_FALSE(analysis.standing[4].on_front_time);
+    EXPECT_FALSE(analysis.standing[4].on_front_total);
 }
 
 TEST(StageGroups, AddUpToTheWholeAndStagesOfOneGroupStandTogether) {

@@ -110,6 +110,38 @@ TEST(Ladders, AllFourPresetsComeFirstAsBakesKnowThem) {
     }
 }
 
+TEST(Ladders, EveryModelIsBakedInThreePresets) {
+    SweepSubject subject = kMarble;
+    subject.knobs.push_back(&kMultipleModel);
+    std::set<std::string> labels;
+    for (const SweepPoint& p : make_ladders(subject, {}, Quality::preview)) {
+        if (p.rungs.front().ladder == ladder_of(kMultipleModel)) {
+            labels.insert(p.label);
+            EXPECT_EQ(p.knobs[kMultipleModel], p.rungs.front().value) << p.label;
+        }
+    }
+    EXPECT_EQ(labels,
+              (std::set<std::string>{"dipole, draft", "dipole, preview", "dipole, production",
+                                     "scaled, draft", "scaled, preview", "scaled, production",
+                                     "walks, draft", "walks, preview", "walks, production"}));
+}
+
+TEST(Ladders, TruthsChooseWhatTheLaddersBaseChose) {
+    SweepSubject subject = kMarble;
+    subject.knobs.push_back(&kMultipleModel);
+    const BakeOptions options;
+    for (const SweepPoint& p :
+         make_truths(LadderRequest{all_effects(), subject, options, "dipole"})) {
+        EXPECT_EQ(kMultipleModel.words[static_cast<std::size_t>(p.knobs[kMultipleModel])], "dipole")
+            << p.label;
+        EXPECT_THAT(p.label, ::testing::StartsWith("dipole, "));
+    }
+    for (const SweepPoint& p :
+         make_truths(LadderRequest{all_effects(), subject, options, "dipole, walks"})) {
+        EXPECT_EQ(p.knobs[kMultipleModel], 0) << "two bodies that differ: left to the bake";
+    }
+}
+
 TEST(Ladders, EveryPointIsPossible) {
     for (const SweepSubject& subject : {kOpaque, kFog}) {
         auto points = make_ladders(subject, {}, Quality::preview);

@@ -42,6 +42,8 @@ SweepResult small_sweep(const std::string& name) {
         record.error.by_effect = {{"direct", errors[i]}};
         record.error.by_light = {{"white", errors[i]}, {"sun:30,60", errors[i]}};
         record.against_finest = record.error;
+        record.total.rms_relative = 0.03;
+        record.total.receivers_checked = 64;
         record.luminance = {1.0 + errors[i]};
         record.picture = grey(0.5f + static_cast<float>(errors[i]));
         result.points.push_back(record);
@@ -107,19 +109,21 @@ TEST(SweepJson, SaysWhatIsOnTheFrontAndHowFarTheRestIsOff) {
     EXPECT_EQ(json.at("points").at(2).at("on_front_time"), false);
     EXPECT_EQ(json.at("points").at(2).at("times_front_time"), 2);
     EXPECT_EQ(json.at("agreement").at("agreeing"), 2);
-    EXPECT_FALSE(json.contains("model_error"));
     EXPECT_NEAR(json.at("answer").at("error").get<double>(), 0.01, 1e-12);
 }
 
-TEST(SweepJson, ModelErrorStandsApartWhereItWasMeasured) {
+TEST(SweepJson, TotalErrorStandsBesideThatOfTheNumbersAndTheFinestBakesIsTheModels) {
     SweepResult result = small_sweep("plain");
-    ModelErrorReport model;
-    model.rms_relative = 0.03;
-    model.receivers_checked = 64;
-    result.model_error = model;
+    result.points[1].choices = "walks";
+    result.points[1].total.rms_relative = 0.01;
+    result.points[1].total.bias = -0.005;
     const Json json = make_sweep_json(result, analyse_sweep(result));
     EXPECT_EQ(json.at("model_error").at("rms_relative"), 0.03);
     EXPECT_EQ(json.at("model_error").at("receivers_checked"), 64);
+    EXPECT_EQ(json.at("points").at(1).at("total_error").at("rms_relative"), 0.01);
+    EXPECT_EQ(json.at("points").at(1).at("total_error").at("bias"), -0.005);
+    EXPECT_EQ(json.at("lines").at(1).at("choices"), "walks");
+    EXPECT_EQ(json.at("lines").at(1).at("points"), Json({1}));
 }
 
 // A name that would end the script element, open a comment, or is no UTF-8.

@@ -50,6 +50,7 @@ const nameMarks = {
       if (!dataset.named || !chart.isDatasetVisible(d)) return;
       chart.getDatasetMeta(d).data.forEach((mark, i) => {
         const name = dataset.data[i].name;
+        if (!name) return;
         const { width } = ctx.measureText(name);
         const x = mark.x + 12 + width < chartArea.right ? mark.x + 10 : mark.x - 10 - width;
         const meets = y => taken.some(t => x < t.x + t.width && t.x < x + width && Math.abs(y - t.y) < height);
@@ -68,7 +69,8 @@ const nameMarks = {
 
 function frontChart(id, key, title, format, onFront) {
   const at = p => ({ x: p[key], y: p.error.rms_relative, point: p, name: p.label });
-  const front = points.filter(p => p[onFront]).sort((a, b) => a[key] - b[key]);
+  const front = alike.filter(p => p[onFront]).sort((a, b) => a[key] - b[key]);
+  const compared = points.filter(p => p !== truth), own = compared.filter(p => alike.includes(p));
   const mark = (label, list, colour, pointStyle, extra) => ({
     label, data: list.map(at), backgroundColor: colour + 'cc', borderColor: colour, pointStyle,
     radius: 5, hoverRadius: 8, borderWidth: 1, ...extra });
@@ -76,14 +78,16 @@ function frontChart(id, key, title, format, onFront) {
     mark('finest', [truth], colours.green, 'rectRot',
       { radius: 9, borderWidth: 2, backgroundColor: '#ffffff', named: true }),
     mark('presets', compared.filter(isPreset), colours.vermilion, 'rectRot', { radius: 9, named: true }),
-    mark('one knob changed', compared.filter(p => !isPreset(p) && !isJoint(p)), colours.blue, 'circle'),
-    mark('several knobs changed', compared.filter(p => !isPreset(p) && isJoint(p)), colours.orange, 'triangle',
+    mark('one knob changed', own.filter(p => !isPreset(p) && !isJoint(p)), colours.blue, 'circle'),
+    mark('several knobs changed', own.filter(p => !isPreset(p) && isJoint(p)), colours.orange, 'triangle',
       { radius: 6 }),
+    mark('other models', compared.filter(p => !isPreset(p) && !alike.includes(p)), colours.black, 'crossRot',
+      { borderWidth: 2 }),
     { label: 'front', data: front.map(at), type: 'line', borderColor: colours.black, borderWidth: 1.5,
       pointRadius: 0, pointHitRadius: 0, pointStyle: 'line', tension: 0, fill: false },
     { label: 'against the finest bake', hidden: true, pointStyle: 'crossRot', borderColor: colours.purple,
       backgroundColor: colours.purple, radius: 5, borderWidth: 2,
-      data: compared.map(p => ({ x: p[key], y: p.against_finest.rms_relative, point: p, own: true }))
+      data: points.filter(isCompared).map(p => ({ x: p[key], y: p.against_finest.rms_relative, point: p, own: true }))
         .filter(p => p.y > 0) },
   ].filter(d => d.data.length > 0);
   const shown = points.filter(p => p.error.rms_relative > 0);
@@ -103,6 +107,49 @@ function frontChart(id, key, title, format, onFront) {
             (own ? 'against the finest ' + interval(point.against_finest) : 'error ' + interval(point.error)),
             `${seconds(point.seconds)}, ${bytes(point.bytes)}`, ...knobLines(point)],
         } } },
+    },
+  });
+}
+
+// Total error: one line for each way to compute, through the bakes that no other of its kind beats.
+function totalChart() {
+  const y = p => p.total_error.rms_relative;
+  const shown = points.filter(p => y(p) > 0);
+  const box = document.getElementById('total');
+  box.hidden = shown.length === 0;
+  if (box.hidden) return;
+  const styles = [['circle', colours.blue], ['rectRot', colours.vermilion], ['triangle', colours.green],
+    ['rect', colours.purple], ['star', colours.orange]];
+  const at = p => ({ x: p.seconds, y: y(p), point: p, name: isPreset(p) ? p.label : '' });
+  const datasets = data.lines.flatMap((line, l) => {
+    const [pointStyle, colour] = styles[l % styles.length];
+    const own = shown.filter(p => p.choices === line.choices);
+    return [
+      { label: named(line), data: own.map(at), pointStyle, backgroundColor: colour + '99', borderColor: colour,
+        radius: own.map(p => isPreset(p) ? 8 : 5), hoverRadius: 9, borderWidth: 1, named: true },
+      { label: 'front', data: line.points.map(i => points[i]).filter(p => y(p) > 0).map(at), type: 'line',
+        borderColor: colour, borderWidth: 2, pointRadius: 0, pointHitRadius: 0, tension: 0, fill: false },
+    ].filter(d => d.data.length > 0);
+  });
+  new Chart(document.getElementById('total-time'), {
+    type: 'scatter', data: { datasets }, plugins: [nameMarks],
+    options: {
+      scales: {
+        x: logAxis('x', 'seconds to bake [s]', v => significant(v, 2), shown.map(p => p.seconds)),
+        y: logAxis('y', 'relative RMS error against path tracing', v => percent(v), shown.map(y)),
+      },
+      plugins: {
+        legend: { labels: { filter: item => item.text !== 'front' } },
+        tooltip: {
+          filter: item => item.dataset.label !== 'front',
+          callbacks: {
+            title: items => items.length ? items[0].raw.point.label : '',
+            label: ({ raw: { point } }) => [
+              'total error ' + interval(point.total_error), 'of the numbers ' + interval(point.error),
+              `${seconds(point.seconds)}, ${bytes(point.bytes)}`, ...knobLines(point)],
+          },
+        },
+      },
     },
   });
 }

@@ -6,47 +6,61 @@ function introduce() {
   document.title = `What accuracy costs: ${data.scene.name}`;
   const answer = data.answer;
   fill('answer', answer
-    ? `An error of ${percent(answer.error)} costs ${seconds(answer.seconds)} and ${bytes(answer.bytes)}` +
+    ? `An error of the numbers of ${percent(answer.error)} costs ${seconds(answer.seconds)} and ${bytes(answer.bytes)}` +
       (answer.times_for_half > 0
         ? `; halving it takes ${significant(answer.times_for_half, 2)} times as long.`
         : '; no setting of this sweep halves it.')
     : 'Too few settings were baked to say what an error costs.');
   fill('facts', `${data.scene.receivers} receivers, ${data.scene.triangles} triangles; ${points.length} bakes ` +
     `in ${seconds(data.seconds_total)} on ${data.threads} thread${data.threads === 1 ? '' : 's'}; ` +
-    `error: relative RMS of relit luminance over ${data.lights.length} lights.`);
+    `errors: relative RMS of relit luminance over ${data.lights.length} lights.`);
   fill('method', `Each bake measured its own error at receivers of its own choice under ${data.lights.join(', ')}, ` +
     `against ${points[0].error.reference.split(';')[0].replace(/^[^:]*: /, '')}. Intervals are 95\u00a0% bootstrap intervals over receivers. ` +
-    `Besides, up to 2000 receivers were compared with the finest bake that the time allowed: \u201c${truth.label}\u201d ` +
+    `Besides, up to 2000 receivers were compared with the finest bake of the same model that the time allowed: \u201c${truth.label}\u201d ` +
     `(${knobLines(truth).join('; ')}; ${seconds(truth.seconds)}, ${bytes(truth.bytes)}; it errs by ` +
     `${interval(truth.error)}, which is added in squares). The two intervals meet for ${data.agreement.agreeing} of ${data.agreement.of} ` +
     'bakes. Seconds are wall time of whole bakes with their self-checks, once each; CPU is that of all threads. ' +
-    'Where CPU is far below the seconds times the threads, something else kept the machine busy. All of this is numerical error: the same physical model with coarser numbers.');
-  if (data.model_error) {
-    document.getElementById('model').hidden = false;
-    fill('model-text', `Against ${data.model_error.reference}, at ${data.model_error.receivers_checked} receivers: ` +
-      `${interval(data.model_error)}, in the mean ${percent(data.model_error.bias)}. No knob changes it.`);
-  }
+    'Where CPU is far below the seconds times the threads, something else kept the machine busy. All but the total error is error of the numbers: the same physical model, coarser.');
+}
+
+// What each way to compute comes to at best, and in what time it is within a tenth of that.
+function totalText() {
+  const model = data.model_error;
+  const best = data.lines.map(line => {
+    const front = line.points.map(i => points[i]);
+    const least = front[front.length - 1];
+    const soon = front.find(p => p.total_error.rms_relative <= 1.1 * least.total_error.rms_relative);
+    return `${named(line)}: ${interval(least.total_error)} at best, within a tenth of that in ${seconds(soon.seconds)}`;
+  });
+  fill('total-text', best.join('; ') + '.');
+  const noise = Math.max(...Object.values(model.by_light).map(l => l.noise));
+  fill('total-note', `Errors of model and numbers together, against ${model.reference}: at ${model.receivers_checked} ` +
+    `receivers under ${Object.keys(model.by_light).join(', ')}. The noise of path tracing, at most ${percent(noise)}, is ` +
+    'subtracted; where a line becomes level, finer numbers are wasted on what the model leaves out.' +
+    (model.left_out.length > 0 ? ` Left out, as no path finds a sun through a refracting surface: the suns of ${model.left_out.join(', ')}.` : '') +
+    (model.missing > 0.001 ? ` Of all light, ${percent(model.missing)} is in no file: it met several surfaces or crossed a body unscattered.` : ''));
 }
 
 function presetTable() {
-  const effects = [...new Set(compared.flatMap(p => Object.keys(p.error.by_effect)))];
+  const effects = [...new Set(points.flatMap(p => Object.keys(p.error.by_effect)))];
   const perEffect = effects.length > 1 ? effects : [];
-  table('preset-table', ['preset', 'seconds', 'bytes', 'memory', 'error', ...perEffect, 'against finest',
+  const ways = points.some(p => p.choices) ? ['by'] : [];
+  table('preset-table', ['preset', ...ways, 'seconds', 'bytes', 'memory', 'total error', 'error of the numbers', ...perEffect, 'against finest',
     'time \u00f7 front', 'bytes \u00f7 front'],
   presets.map(p => ({ cells: [
-    p.label, seconds(p.seconds), bytes(p.bytes), bytes(p.peak_rss_bytes),
-    interval(p.error),
+    p.label, ...ways.map(() => p.choices), seconds(p.seconds), bytes(p.bytes), bytes(p.peak_rss_bytes),
+    interval(p.total_error), interval(p.error),
     ...perEffect.map(e => e in p.error.by_effect ? percent(p.error.by_effect[e]) : ''),
-    p === truth ? '' : interval(p.against_finest),
+    isCompared(p) ? interval(p.against_finest) : '',
     times(p.times_front_time, p.on_front_time), times(p.times_front_bytes, p.on_front_bytes)] })));
 }
 
 function allTable() {
   const rows = [...points].sort((a, b) => a.seconds - b.seconds);
-  table('all', ['setting', 'seconds', 'CPU', 'bytes', 'error', 'against finest', 'time \u00f7 front', 'bytes \u00f7 front', 'knobs'],
+  table('all', ['setting', 'seconds', 'CPU', 'bytes', 'total error', 'error of the numbers', 'against finest', 'time \u00f7 front', 'bytes \u00f7 front', 'knobs'],
   rows.map(p => ({ preset: isPreset(p), cells: [
-    p.label, seconds(p.seconds), seconds(p.cpu_seconds), bytes(p.bytes), percent(p.error.rms_relative),
-    p === truth ? '' : percent(p.against_finest.rms_relative), times(p.times_front_time, p.on_front_time),
+    p.label, seconds(p.seconds), seconds(p.cpu_seconds), bytes(p.bytes), percent(p.total_error.rms_relative), percent(p.error.rms_relative),
+    isCompared(p) ? percent(p.against_finest.rms_relative) : '', times(p.times_front_time, p.on_front_time),
     times(p.times_front_bytes, p.on_front_bytes), knobLines(p).join('; ')] })));
   if (data.skipped.length > 0) {
     const box = document.getElementById('skipped');
@@ -115,6 +129,9 @@ function warnIfBusy() {
 }
 
 introduce();
+totalText();
+totalChart();
+document.querySelectorAll('.of-truth').forEach(e => { e.textContent = truth.choices ? ` by ${truth.choices}` : ''; });
 warnIfBusy();
 presetTable();
 frontChart('front-time', 'seconds', 'seconds to bake [s]', v => significant(v, 2), 'on_front_time');

@@ -52,9 +52,12 @@ function table(id, head, rows) {
 
 const points = data.points.map((point, index) => ({ ...point, index }));
 const truth = points[data.truth];
-const compared = points.filter(p => p !== truth);
+const isCompared = p => points[p.finest] !== p;
 const isPreset = p => 'preset' in p.ladders;
+// Of the truth's choices: only such bakes differ in numbers alone.
+const alike = points.filter(p => p.choices === truth.choices);
 const isJoint = p => 'grid' in p.ladders || 'diagonal' in p.ladders;
+const named = line => line.choices || 'bakes';
 const presets = points.filter(isPreset).sort((a, b) => a.ladders.preset - b.ladders.preset);
 
 function interval(error) {
@@ -67,6 +70,9 @@ function knobLines(point) {
     if (data.knobs.includes(name)) {
       lines.push(`${name.replaceAll('_', ' ')} ${value}`);
     }
+  }
+  if (point.choices) {
+    lines.push(`by ${point.choices}`);
   }
   if (k.exact_rays) {
     lines.push('rays instead of light maps');

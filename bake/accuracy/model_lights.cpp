@@ -1,0 +1,65 @@
+#include "bake/accuracy/model_lights.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bake/environment/builtin_environment.h"
+#include "bake/truth/test_lights.h"
+#include "formats/opal/rgb.h"
+#include "runtime/shade.h"
+
+namespace opaline::bake {
+namespace {
+
+bool refracts(const formats::Scene& scene) {
+    return std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const auto& p) {
+        const auto& medium = scene.materials[p.material].medium;
+        return medium && !p.index.empty() && !is_matched(medium->eta);
+    });
+}
+
+}  // namespace
+
+formats::Result<std::vector<ModelLight>> make_model_lights(const formats::Scene& scene,
+                                                           std::vector<std::string>& left_out) {
+    const bool with_suns = !refracts(scene);
+    std::vector<ModelLight> lights;
+    for (const char* name : published_lights()) {
+        auto environment = make_environment(name);
+        if (!environment) {
+            return std::move(environment).error();
+        }
+        ModelLight light{name, std::move(*environment)};
+        if (!with_suns && !light.environment.discs.empty()) {
+            left_out.emplace_back(name);
+            if (light.environment.pixel.empty()) {
+                continue;
+            }
+            light.environment.discs.clear();
+            light.name += " without its sun";
+        }
+        lights.push_back(std::move(light));
+    }
+    return lights;
+}
+
+std::vector<double> relight_receivers(const formats::AssetView& asset,
+                                      std::span<const ReferenceReceiver> receivers,
+                                      const FileLight& light) {
+    runtime::ShadeOptions shading;
+    if (light.mirrored != nullptr) {
+        shading.terms = TermSet::specular;
+        shading.specular = light.mirrored;
+    }
+    std::vector<double> luminance;
+    for (const ReferenceReceiver& r : receivers) {
+        formats::Rgb radiance;
+        runtime::shade_range(asset, light.vector,
+                             asset.primitives[r.primitive].first_vertex + r.vertex, {&radiance, 1},
+                             shading);
+        luminance.push_back(static_cast<double>(formats::luminance(radiance)));
+    }
+    return luminance;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,29 @@
+#include "bake/accuracy/sweep/trace_for.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace opaline::bake {
+
+formats::Result<std::vector<LightCheck>> trace_for(const formats::Scene& scene,
+                                                   const ModelProbes& probes,
+                                                   const TraceForOptions& options,
+                                                   const Context& context) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::uint64_t kFewEvents = 300000;  // for each light
+    constexpr double kMostTimes = 1000;
+    ModelCheckOptions wanted;
+    wanted.seed = options.seed;
+    wanted.max_events = kFewEvents;
+    const Clock::time_point start = Clock::now();
+    auto traced = trace_model_truth(scene, probes, wanted, context);
+    const std::chrono::duration<double> took = Clock::now() - start;
+    const double times = std::min(options.seconds / std::max(took.count(), 1e-3), kMostTimes);
+    if (!traced || times < 2) {
+        return traced;
+    }
+    wanted.max_events = static_cast<std::uint64_t>(times * static_cast<double>(kFewEvents));
+    return trace_model_truth(scene, probes, wanted, context);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bake/accuracy/model_truth.h"
+
+namespace opaline::bake {
+
+struct TraceForOptions {
+    double seconds = 15;  ///< about; a least amount is traced whatever it takes
+    std::uint64_t seed = 0;
+};
+
+/// Path tracing that the total error of every bake is measured against: a small one first, which
+/// says how much the time allows. Errors: as trace_model_truth.
+formats::Result<std::vector<LightCheck>> trace_for(const formats::Scene& scene,
+                                                   const ModelProbes& probes,
+                                                   const TraceForOptions& options,
+                                                   const Context& context);
+
+}  // namespace opaline::bake
