@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bake/effects/multiple/walks/exit_light.h"
+#include "bake/effects/multiple/walks/find_hit.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/gauss_legendre.h"
 #include "bake/scattering/half_space_once.h"
@@ -197,6 +198,32 @@ TEST(Walk, LightLostThroughAHoleIsCountedAndReplacedByTheMeanOfTheRest) {
         walk_from(closed->space, start_below({0, 0.995f, 0}, {0, 1, 0}), 1, 20000);
     EXPECT_LT(leaving.all, whole.all - 0.02);
     EXPECT_NEAR(leaving.all * leaving.counts.correction(), whole.all, 0.02);
+}
+
+// Upward from the ball at the origin a line enters the ball above through a hole and leaves it: two
+// shells by that line, and walks that begin so would leave the body unseen.
+TEST(Walk, LineThroughAHoleOfAnotherPartIsOutvotedByOthers) {
+    Primitive above = make_sphere(3);
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i + 2 < above.index.size(); i += 3) {
+        if (above.position[above.index[i]].y > -0.9f) {
+            kept.insert(kept.end(), above.index.begin() + static_cast<std::ptrdiff_t>(i),
+                        above.index.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+        }
+    }
+    above.index = kept;
+    for (glm::vec3& p : above.position) {
+        p.y += 3;
+    }
+    WalkedBody body;
+    body.scene = make_translucent_scene({make_sphere(3), above}, make_grey_medium(10, 0));
+    body.triangles.emplace(bake::EmbreeScene::build(body.scene, 1).value());
+    body.space = bake::make_walk_space(body.scene, *body.triangles, 0, true);
+    bake::WalkHit hit;
+    ASSERT_TRUE(find_hit(body.space, {0, 1.01f, 0}, {0, 1, 0}, 10, hit));
+    ASSERT_GT(hit.position.y, 3.5f) << "there is no hole";
+    EXPECT_EQ(bake::count_shells(body.space, {0, 0.9f, 0}, {0, 1, 0}), 1);
+    EXPECT_EQ(bake::count_shells(body.space, {0, 3, 0}, {0, 1, 0}), 1);
 }
 
 // A walk goes through a shell of its own medium inside the body; another material ends it.

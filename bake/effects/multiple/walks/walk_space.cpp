@@ -1,6 +1,7 @@
 #include "bake/effects/multiple/walks/walk_space.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -32,6 +33,22 @@ std::vector<WalkBands> group_bands(const formats::Medium& medium, bool grey) {
         group->member[b] = true;
     }
     return groups;
+}
+
+int count_along(const WalkSpace& space, glm::vec3 point, glm::vec3 direction) {
+    constexpr int kMostCrossings = 10000;  // ends a line that rounding holds up
+    int shells = 0;
+    WalkHit hit;
+    for (int i = 0; i < kMostCrossings &&
+                    find_hit(space, point, direction, std::numeric_limits<float>::infinity(), hit);
+         ++i) {
+        const bool leaves = glm::dot(direction, hit.flat) > 0;
+        if (hit.is_own) {
+            shells += leaves ? 1 : -1;
+        }
+        point = hit.position + (leaves ? 2 : -2) * hit.error * hit.flat;
+    }
+    return shells;
 }
 
 }  // namespace
@@ -86,19 +103,21 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
 }
 
 int count_shells(const WalkSpace& space, glm::vec3 point, glm::vec3 direction) {
-    constexpr int kMostCrossings = 10000;  // ends a line that rounding holds up
-    int shells = 0;
-    WalkHit hit;
-    for (int i = 0; i < kMostCrossings &&
-                    find_hit(space, point, direction, std::numeric_limits<float>::infinity(), hit);
-         ++i) {
-        const bool leaves = glm::dot(direction, hit.flat) > 0;
-        if (hit.is_own) {
-            shells += leaves ? 1 : -1;
+    // Along no axis, edge or diagonal of common models.
+    const std::array<glm::vec3, 5> lines{direction,
+                                         {0.36f, 0.48f, 0.8f},
+                                         {-0.8f, 0.36f, -0.48f},
+                                         {0.48f, -0.8f, 0.36f},
+                                         {-0.64f, -0.48f, 0.6f}};
+    std::array<int, lines.size()> found{};
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+        found[l] = count_along(space, point, lines[l]);
+        const auto end = found.begin() + static_cast<std::ptrdiff_t>(l);
+        if (std::find(found.begin(), end, found[l]) != end) {
+            return found[l];
         }
-        point = hit.position + (leaves ? 2 : -2) * hit.error * hit.flat;
     }
-    return shells;
+    return found.front();
 }
 
 double transport_mean_free_path(const formats::Medium& medium) {

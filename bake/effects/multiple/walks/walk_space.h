@@ -40,9 +40,10 @@ struct WalkSpace {
 WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triangles,
                           std::uint32_t material, bool grey);
 
-/// Number of the medium's shells around a point, counted along a line to infinity: every surface of
-/// the medium that the line leaves through, less those that it enters through. 1 just inside a
-/// closed body; 0 or less: the mesh has a hole there, or the point lies outside.
+/// Number of the medium's shells around a point, counted along lines to infinity: every surface of
+/// the medium that a line leaves through, less those that it enters through. 1 just inside a closed
+/// body; 0 or less: the point lies outside, or the mesh has holes all around. A line through a hole
+/// miscounts: the answer is what two lines agree on, the first of them along `direction`.
 int count_shells(const WalkSpace& space, glm::vec3 point, glm::vec3 direction);
 
 /// The mean free path [m] between effectively isotropic events, 1 / (sigma_t - g sigma_s), of the
