@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <vector>
 
+#include "bake/accuracy/model_truth.h"
+#include "runtime/light_vector.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/sheets.h"
 
@@ -128,6 +131,33 @@ TEST(ModelError, HasTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(a.bias, b.bias);
     EXPECT_EQ(a.missing, b.missing);
     EXPECT_EQ(a.samples, b.samples);
+}
+
+TEST(ModelError, AgainstTruthTracedBeforeTheBakeIsTheSame) {
+    const tests::Scene scene = tests::make_ball_on_floor(tests::make_grey_medium(2, 0.1f));
+    const BakeResult baked = tests::bake_scene(scene, tests::small_bake());
+    ModelCheckOptions options;
+    options.receivers = 16;
+    options.max_events = 1;
+    options.noise_share = 0;  // of a file to come nothing is known
+    const auto probes = choose_model_probes(scene, options.receivers, options.seed, {});
+    ASSERT_TRUE(probes);
+    const auto truth = trace_model_truth(scene, *probes, options, {});
+    ASSERT_TRUE(truth);
+    std::vector<std::vector<double>> luminance;
+    const formats::AssetView asset = baked.asset.view();
+    for (const ModelLight& light : probes->lights) {
+        const runtime::LightVector vector =
+            runtime::project_environment(light.environment, asset.cubemap_size, {}, 1);
+        luminance.push_back(relight_receivers(asset, probes->receivers, {.vector = vector}));
+    }
+    const ModelErrorReport early = compare_with_truth(luminance, *truth, *probes, options.seed);
+    const ModelErrorReport late = check(scene, baked, options);
+    EXPECT_GT(late.rms_relative, 0);
+    EXPECT_EQ(early.rms_relative, late.rms_relative);
+    EXPECT_EQ(early.ci95[0], late.ci95[0]);
+    EXPECT_EQ(early.ci95[1], late.ci95[1]);
+    EXPECT_EQ(early.bias, late.bias);
 }
 
 TEST(ModelError, IsMeasuredOnRequestAndKeptInTheFileWithoutItsSeconds) {

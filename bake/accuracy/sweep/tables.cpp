@@ -100,10 +100,13 @@ Cells cells_of(const SweepResult& result, const SweepAnalysis& analysis, std::si
     cells.emplace_back("against_finest_ci95_low", number_cell(record.against_finest.ci95[0]));
     cells.emplace_back("against_finest_ci95_high", number_cell(record.against_finest.ci95[1]));
     cells.emplace_back("choices", text_cell(record.choices));
-    cells.emplace_back("total_error", number_cell(record.total.rms_relative));
-    cells.emplace_back("total_error_ci95_low", number_cell(record.total.ci95[0]));
-    cells.emplace_back("total_error_ci95_high", number_cell(record.total.ci95[1]));
-    cells.emplace_back("total_bias", number_cell(record.total.bias));
+    const auto total_cell = [&](double value) {
+        return record.total.receivers_checked > 0 ? number_cell(value) : "";
+    };
+    cells.emplace_back("total_error", total_cell(record.total.rms_relative));
+    cells.emplace_back("total_error_ci95_low", total_cell(record.total.ci95[0]));
+    cells.emplace_back("total_error_ci95_high", total_cell(record.total.ci95[1]));
+    cells.emplace_back("total_bias", total_cell(record.total.bias));
     for (const std::string& effect : effects_of(result)) {
         cells.emplace_back("error " + effect, part_of(record.error.by_effect, effect));
     }
@@ -161,9 +164,11 @@ Json point_json(const SweepResult& result, const SweepAnalysis& analysis, std::s
     json["finest"] = record.finest;
     json["against_finest"] = error_json(record.against_finest);
     json["choices"] = record.choices;
-    json["total_error"] = {{"rms_relative", record.total.rms_relative},
-                           {"ci95", {record.total.ci95[0], record.total.ci95[1]}},
-                           {"bias", record.total.bias}};
+    if (record.total.receivers_checked > 0) {
+        json["total_error"] = {{"rms_relative", record.total.rms_relative},
+                               {"ci95", {record.total.ci95[0], record.total.ci95[1]}},
+                               {"bias", record.total.bias}};
+    }
     const Standing& standing = analysis.standing[i];
     json["on_front_time"] = standing.on_front_time;
     json["on_front_bytes"] = standing.on_front_bytes;

@@ -54,5 +54,17 @@ TEST(Presets, NoKnobOfABetterOneIsCoarser) {
     }
 }
 
+TEST(Knobs, WhatTheModelLeavesOfATargetIsForTheNumbersAndHalfOfItAtLeast) {
+    Knobs knobs;
+    knobs.error_target = 0.05;
+    EXPECT_DOUBLE_EQ(knobs.numerical_target(), 0.05);
+    knobs.model_error = 0.03;
+    EXPECT_DOUBLE_EQ(knobs.numerical_target(), 0.04) << "3, 4, 5";
+    knobs.model_error = 0.049;
+    EXPECT_DOUBLE_EQ(knobs.numerical_target(), 0.025);
+    knobs.model_error = 1;
+    EXPECT_DOUBLE_EQ(knobs.numerical_target(), 0.025) << "out of reach, but as good as can be";
+}
+
 }  // namespace
 }  // namespace opaline::bake

@@ -126,6 +126,15 @@ TEST(SweepJson, TotalErrorStandsBesideThatOfTheNumbersAndTheFinestBakesIsTheMode
     EXPECT_EQ(json.at("lines").at(1).at("points"), Json({1}));
 }
 
+TEST(SweepJson, TotalErrorThatCouldNotBeMeasuredIsLeftOut) {
+    SweepResult result = small_sweep("plain");
+    result.points[0].total = {};
+    const SweepAnalysis analysis = analyse_sweep(result);
+    const Json points = make_sweep_json(result, analysis).at("points");
+    EXPECT_FALSE(points.at(0).contains("total_error")) << "0 would read as no error";
+    EXPECT_TRUE(points.at(1).contains("total_error"));
+}
+
 // A name that would end the script element, open a comment, or is no UTF-8.
 TEST(ReportPage, HostileNamesStayText) {
     const std::string name = "</script><script>alert(1)</script><!--&lt;\xff\xfe\"'/*DATA*/";

@@ -114,7 +114,7 @@ function frontChart(id, key, title, format, onFront) {
 // Total error: one line for each way to compute, through the bakes that no other of its kind beats.
 function totalChart() {
   const y = p => p.total_error.rms_relative;
-  const shown = points.filter(p => y(p) > 0);
+  const shown = points.filter(p => p.total_error && y(p) > 0);
   const box = document.getElementById('total');
   box.hidden = shown.length === 0;
   if (box.hidden) return;
@@ -127,7 +127,7 @@ function totalChart() {
     return [
       { label: named(line), data: own.map(at), pointStyle, backgroundColor: colour + '99', borderColor: colour,
         radius: own.map(p => isPreset(p) ? 8 : 5), hoverRadius: 9, borderWidth: 1, named: true },
-      { label: 'front', data: line.points.map(i => points[i]).filter(p => y(p) > 0).map(at), type: 'line',
+      { label: 'front', data: line.points.map(i => points[i]).filter(p => shown.includes(p)).map(at), type: 'line',
         borderColor: colour, borderWidth: 2, pointRadius: 0, pointHitRadius: 0, tension: 0, fill: false },
     ].filter(d => d.data.length > 0);
   });

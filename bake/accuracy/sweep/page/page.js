@@ -26,6 +26,10 @@ function introduce() {
 // What each way to compute comes to at best, and in what time it is within a tenth of that.
 function totalText() {
   const model = data.model_error;
+  if (!points.some(p => p.total_error)) {
+    fill('total-text', 'Not measured: no receiver could be compared with path tracing.');
+    return;
+  }
   const best = data.lines.map(line => {
     const front = line.points.map(i => points[i]);
     const least = front[front.length - 1];
@@ -49,7 +53,7 @@ function presetTable() {
     'time \u00f7 front', 'bytes \u00f7 front'],
   presets.map(p => ({ cells: [
     p.label, ...ways.map(() => p.choices), seconds(p.seconds), bytes(p.bytes), bytes(p.peak_rss_bytes),
-    interval(p.total_error), interval(p.error),
+    p.total_error ? interval(p.total_error) : '', interval(p.error),
     ...perEffect.map(e => e in p.error.by_effect ? percent(p.error.by_effect[e]) : ''),
     isCompared(p) ? interval(p.against_finest) : '',
     times(p.times_front_time, p.on_front_time), times(p.times_front_bytes, p.on_front_bytes)] })));
@@ -59,7 +63,7 @@ function allTable() {
   const rows = [...points].sort((a, b) => a.seconds - b.seconds);
   table('all', ['setting', 'seconds', 'CPU', 'bytes', 'total error', 'error of the numbers', 'against finest', 'time \u00f7 front', 'bytes \u00f7 front', 'knobs'],
   rows.map(p => ({ preset: isPreset(p), cells: [
-    p.label, seconds(p.seconds), seconds(p.cpu_seconds), bytes(p.bytes), percent(p.total_error.rms_relative), percent(p.error.rms_relative),
+    p.label, seconds(p.seconds), seconds(p.cpu_seconds), bytes(p.bytes), p.total_error ? percent(p.total_error.rms_relative) : '', percent(p.error.rms_relative),
     isCompared(p) ? percent(p.against_finest.rms_relative) : '', times(p.times_front_time, p.on_front_time),
     times(p.times_front_bytes, p.on_front_bytes), knobLines(p).join('; ')] })));
   if (data.skipped.length > 0) {
