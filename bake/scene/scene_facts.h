@@ -30,13 +30,15 @@ struct MaterialFacts {
     std::uint32_t convex_parts = 0;  ///< whose points all lie on their hull, within kMostElevation
     std::uint64_t open_edges = 0;    ///< where an odd number of triangles meet
     bool is_closed() const { return triangles > 0 && open_edges == 0; }
+    /// Whether volume and area say how thick it is. An open body may be a sheet: only rays tell.
+    bool has_thickness() const { return is_closed() && area > 0 && volume != 0; }
 
     Horizon horizon;
 
     float brightest_vertex = 0;  ///< largest component of its vertex colours; 1 without any
     float color_contrast = 0;    ///< ColorRange::contrast; 0: its colour is constant
 
-    bool is_grey = false;  ///< a medium whose coefficients are the same in all three bands
+    bool is_grey = false;  ///< a medium or sheet whose numbers are the same in all three bands
     bool mirrors = false;  ///< a medium with a boundary: eta is not 1
 };
 

@@ -47,9 +47,14 @@ TEST_F(Requests, FewerPhaseTermsThanTheErrorNeedsAreTakenWithAWarning) {
         bake(forward, {"--quality", "draft", "--effects", "single", "--phase-terms", "1"}).err,
         HasSubstr("material 'Chalk': --phase-terms 1 was taken as given; the quality "
                   "needs "));
-    EXPECT_THAT(plan(forward, {"--phase-terms", "25"}).err, Not(HasSubstr("--phase-terms")));
-    EXPECT_THAT(plan(forward, {"--phase-terms", "1"}).err,
-                HasSubstr("--phase-terms 1 was taken as given"));
+    const auto plan_dipole = [&](const char* terms) {
+        return plan(forward, {"--phase-terms", terms, "--multiple-model", "dipole"}).err;
+    };
+    EXPECT_THAT(plan_dipole("25"), Not(HasSubstr("--phase-terms")));
+    EXPECT_THAT(plan_dipole("1"), HasSubstr("--phase-terms 1 was taken as given"));
+    EXPECT_THAT(plan(forward, {"--phase-terms", "25"}).err,
+                HasSubstr("--phase-terms: does nothing here"))
+        << "random walks carry light scattered once";
 }
 
 TEST_F(Requests, TermsOfAnIsotropicPhaseFunctionAreOne) {

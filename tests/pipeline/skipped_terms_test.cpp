@@ -59,6 +59,7 @@ TEST(SkippedTerms, AreSimulatedAsSoonAsTheyCouldShow) {
 TEST(SkippedTerms, AreForcedWithEverythingElse) {
     BakeOptions options;
     options.simulate_all = true;
+    options.set(kMultipleModel, static_cast<double>(MultipleModel::dipole));
     const auto scene = ball_of(kNearlyIsotropic);
     const auto plan = plan_bake(scene, inspect_scene(scene), *resolve_knobs(options));
     const PlanEntry& entry = *find_entry(plan, "single.terms", 0);

@@ -98,19 +98,64 @@ TEST(WalkModel, AutoWalksAtProductionWhereTheDipoleWasMeasuredToErr) {
     EXPECT_THAT(thick.reason, HasSubstr("dipole"));
 }
 
-TEST(WalkModel, AutoKeepsTheDipoleInPreviewAndWhereAMediumNamesItsProfile) {
-    formats::Medium medium = tests::make_grey_medium(2.97f, 0.03f);
-    BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
-    const auto entry = [&] {
+// Draft and preview measure nothing: the plan already knows.
+TEST(WalkModel, AutoWalksAtDraftAndPreviewWhereTheDipoleIsEstimatedToErrByMore) {
+    const auto entries = [](float sigma_t, Quality quality) {
+        BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
+        options.quality = quality;
+        const tests::Scene ball = tests::make_translucent_scene(
+            {tests::make_sphere(2)}, tests::make_grey_medium(0.9f * sigma_t, 0.1f * sigma_t));
+        const PlanEntry planned = *find_entry(
+            plan_bake(all_effects(), ball, inspect_scene(ball), *resolve_knobs(options)),
+            "multiple.model", 0);
+        const PlanEntry baked = entry_of(tests::bake_scene(ball, options), "multiple.model");
+        EXPECT_EQ(planned.on, baked.on);
+        EXPECT_EQ(planned.choice, baked.choice);
+        EXPECT_EQ(planned.reason, baked.reason);
+        return baked;
+    };
+    // Mean chord 4 / 3: 4, 53 and 4000 transport mean free paths.
+    EXPECT_THAT(entries(3, Quality::draft).reason, StartsWith("walks: the dipole takes"));
+    EXPECT_EQ(entries(40, Quality::draft).choice, "dipole");
+    EXPECT_EQ(entries(40, Quality::preview).choice, "walks");
+    EXPECT_EQ(entries(3000, Quality::preview).choice, "dipole");
+}
+
+// Volume and area of an open mesh say nothing: rays along its normals do.
+TEST(WalkModel, AutoFindsByRaysHowThickAnOpenBodyIs) {
+    const auto entry = [](std::vector<tests::Primitive> body, float sigma_t) {
+        const BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
         return entry_of(
-            tests::bake_scene(tests::make_translucent_scene({tests::make_sphere(2)}, medium),
+            tests::bake_scene(tests::make_translucent_scene(
+                                  std::move(body), tests::make_grey_medium(sigma_t, 0.01f)),
                               options),
             "multiple.model");
     };
-    EXPECT_THAT(entry().reason, StartsWith("dipole: preview"));
-    options.quality = Quality::production;
+    tests::Primitive holed = tests::make_sphere(2);
+    holed.index.resize(holed.index.size() - 3);
+    const PlanEntry thin = entry({holed}, 3), thick = entry({holed}, 3000);
+    EXPECT_TRUE(thin.on);
+    EXPECT_THAT(thin.reason, StartsWith("walks: along its normals the body is so thin"));
+    EXPECT_FALSE(thick.on);
+    EXPECT_THAT(thick.reason, StartsWith("dipole: along its normals the body is so thick"));
+    EXPECT_LT(thick.model_error, 0.05);
+    EXPECT_FALSE(entry({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4)}, 3).on)
+        << "nothing stands behind it: a half space";
+}
+
+TEST(WalkModel, AutoKeepsTheDipoleWhereAMediumNamesItsProfile) {
+    formats::Medium medium = tests::make_grey_medium(2.97f, 0.03f);
     medium.profile = formats::Medium::Profile::classic;
-    EXPECT_EQ(entry().reason, "dipole: the medium names its profile");
+    BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
+    for (const Quality quality : {Quality::preview, Quality::production}) {
+        options.quality = quality;
+        EXPECT_EQ(
+            entry_of(tests::bake_scene(
+                         tests::make_translucent_scene({tests::make_sphere(2)}, medium), options),
+                     "multiple.model")
+                .reason,
+            "dipole: the medium names its profile");
+    }
 }
 
 TEST(WalkModel, LightScatteredOnceIsLeftToWalksThatStandCloseAndToNoOtherModel) {
@@ -201,8 +246,13 @@ TEST(WalkModel, ErrorAskedForIsThatOfTheModelAndTheNumbersTogether) {
 
     const BakeResult thin = bake_of(3, 0.2, automatic);
     EXPECT_TRUE(entry_of(thin, "multiple.model").on);
-    EXPECT_GT(thin.accuracy->model, 0.01) << "the scaled dipole";
-    EXPECT_LE(thin.accuracy->model, std::sqrt(0.75) * 0.2) << "a quarter is left to the numbers";
+    EXPECT_EQ(entry_of(thin, "multiple.model").choice, "walks")
+        << "the scaled dipole errs by less than is allowed, but costs no less";
+    EXPECT_LT(thin.accuracy->model, 0.05) << "one row for all views";
+
+    const BakeResult scaled = bake_of(3, 0.2, kScaled);
+    EXPECT_GT(scaled.accuracy->model, 0.01);
+    EXPECT_LE(scaled.accuracy->model, std::sqrt(0.75) * 0.2) << "a quarter is left to the numbers";
 
     const BakeResult forced = bake_of(3, 0.1, kDipole);
     EXPECT_GT(forced.accuracy->model, 0.15) << "measured, because it was asked for";
@@ -284,6 +334,7 @@ TEST(WalkModel, RowsByViewAreTakenWhereTheBodyIsThinOrAbsorbsAndTheQualityAsks) 
     };
     BakeOptions options = bake_by(kWalked, 20000);
     EXPECT_EQ(entry(3, options).terms, 1u) << "preview";
+    EXPECT_EQ(entry(1, options).terms, 4u) << "even in preview";
     options.quality = Quality::production;
     EXPECT_EQ(entry(1, options).terms, 4u);
     EXPECT_EQ(entry(10, options).terms, 1u);

@@ -6,19 +6,21 @@
 #include <utility>
 #include <vector>
 
+#include "bake/effects/multiple/multiple_stage.h"
 #include "tests/support/bake.h"
 #include "tests/support/effects.h"
 #include "tests/support/media.h"
 
 namespace opaline::tests {
 
-/// Enough for whole bakes of small bodies in a second or so.
+/// Enough for whole bakes of small bodies in a second or so. By the dipole: tests of walks say so.
 inline bake::BakeOptions small_bake() {
     bake::BakeOptions options;
     options.cubemap_size = 8;
     options.coefficients = bake::kAllCoefficients;
     options.set(bake::kSamples, 3000);
     options.set(bake::kDepthSamples, 4);
+    options.set(bake::kMultipleModel, static_cast<double>(bake::MultipleModel::dipole));
     options.threads = 2;
     return options;
 }

@@ -163,9 +163,8 @@ double sample_bytes(const Knobs& knobs) {
     constexpr double kTree = 2;              // nodes hold as much as the samples
     constexpr double kMoments = 0.75;        // of a sample's entries
     constexpr double kSiteEntry = 16;        // of a site's row: index and three values
-    const bool may_walk = whole(knobs, kMultipleModel) == 0
-                              ? std::isfinite(allowed_model_error(knobs))
-                              : kMultipleModel.words[whole(knobs, kMultipleModel)] == "walks";
+    const auto model = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
+    const bool may_walk = model == MultipleModel::automatic || model == MultipleModel::walks;
     const double walked = may_walk ? kMoments * knobs[kSamples] * kept_by_samples(knobs) * kEntry +
                                          knobs[kSites] * kept_by_samples(knobs) * kSiteEntry
                                    : 0;

@@ -61,6 +61,25 @@ double closed_body_error(const std::array<double, 3>& lengths, double mean_chord
     return longest > 0 ? half_space_error(mean_chord / longest) : 0;
 }
 
+std::vector<BodyPoint> draw_body_points(const EffectInputs& inputs, std::size_t count) {
+    std::vector<BodyPoint> all;
+    for (const ReceiverSet& set : inputs.bake.receivers) {
+        if (set.material == inputs.material) {
+            for (const BodyPoint& point : set.inside) {
+                if (point.normal != glm::vec3(0)) {
+                    all.push_back(point);
+                }
+            }
+        }
+    }
+    std::vector<BodyPoint> drawn;
+    for (const std::uint32_t v : draw_evenly(static_cast<std::uint32_t>(all.size()), count,
+                                             RandomStage::pilot_receivers, inputs.knobs.seed)) {
+        drawn.push_back(all[v]);
+    }
+    return drawn;
+}
+
 double open_body_error(const std::array<double, 3>& lengths, const RayScene& rays,
                        std::span<const BodyPoint> points) {
     constexpr float kNoLimit = 1e30f;  // beyond a hole nothing is near
@@ -81,27 +100,22 @@ double open_body_error(const std::array<double, 3>& lengths, const RayScene& ray
     return count == 0 ? 0 : sum / static_cast<double>(count);
 }
 
+double body_error(const EffectInputs& inputs, const MediumProfile& profile) {
+    constexpr std::size_t kMostDrawn = 256;
+    const MaterialFacts& body = inputs.bake.facts.material[inputs.material];
+    const auto lengths = transport_lengths(inputs.medium(), profile);
+    return body.has_thickness()
+               ? closed_body_error(lengths, 4 * std::abs(body.volume) / body.area)
+               : open_body_error(lengths, inputs.bake.rays, draw_body_points(inputs, kMostDrawn));
+}
+
 void warn_of_thin_parts(const EffectInputs& inputs, const MediumProfile& profile,
                         std::vector<formats::Diagnostic>& warnings) {
     if (inputs.layout.at_entry) {
         return;
     }
     constexpr double kWorthSaying = 0.1;
-    constexpr std::size_t kMostDrawn = 256;
-    std::vector<BodyPoint> points;
-    const auto& sets = inputs.bake.receivers;
-    for (const std::uint32_t v : draw_evenly(count_receivers(sets), kMostDrawn,
-                                             RandomStage::held_back_receivers, inputs.knobs.seed)) {
-        const ReceiverSet& set = set_of(sets, v);
-        if (set.material == inputs.material) {
-            points.push_back(set.inside[v - set.first]);
-        }
-    }
-    const MaterialFacts& body = inputs.bake.facts.material[inputs.material];
-    const auto lengths = transport_lengths(inputs.medium(), profile);
-    const double error = body.is_closed() && body.area > 0
-                             ? closed_body_error(lengths, 4 * std::abs(body.volume) / body.area)
-                             : open_body_error(lengths, inputs.bake.rays, points);
+    const double error = body_error(inputs, profile);
     if (error > kWorthSaying) {
         warnings.push_back(formats::make_warning(
             "", "material '" + inputs.bake.scene.materials[inputs.material].name + "'",

@@ -33,6 +33,12 @@ double closed_body_error(const std::array<double, 3>& lengths, double mean_chord
 double open_body_error(const std::array<double, 3>& lengths, const RayScene& rays,
                        std::span<const BodyPoint> points);
 
+/// Receivers of the material with a normal, `count` of them spread over all, or all.
+std::vector<BodyPoint> draw_body_points(const EffectInputs& inputs, std::size_t count);
+
+/// closed_body_error where volume and area say how thick the body is, else open_body_error.
+double body_error(const EffectInputs& inputs, const MediumProfile& profile);
+
 /// Warns of a body that light crosses, where a half space's profile errs by a tenth or more.
 void warn_of_thin_parts(const EffectInputs& inputs, const MediumProfile& profile,
                         std::vector<formats::Diagnostic>& warnings);

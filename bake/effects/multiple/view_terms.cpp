@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "bake/effects/multiple/choose_model.h"
@@ -22,7 +21,8 @@ double allowed_view_error(const Knobs& knobs) {
     return knobs.error_target > 0                 ? 0.5 * knobs.error_target
            : knobs.quality == Quality::reference  ? 0.01
            : knobs.quality == Quality::production ? 0.03
-                                                  : std::numeric_limits<double>::infinity();
+           : knobs.quality == Quality::preview    ? 0.1
+                                                  : 0.2;
 }
 
 // Of a half space under even light, seen along the normal: how much darker it is than on average.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <numeric>
 
+#include "bake/effects/multiple/multiple_stage.h"
 #include "tests/support/effects.h"
 #include "tests/support/media.h"
 #include "tests/support/rates.h"
@@ -71,6 +72,7 @@ TEST(CostModel, TotalIsTheSumOfStagesAndOfEffectsAndTheRest) {
 TEST(CostModel, TermsBeyondTheFirstPayForTheirRows) {
     Knobs knobs;
     knobs.set(kPhaseTerms, 9);
+    knobs.set(kMultipleModel, static_cast<double>(MultipleModel::dipole));
     const Predicted p = predict(ball_on_floor(), knobs);
     const auto entry = [&](const char* effect) { return *find_entry(p.plan, effect, 0); };
     // The first row is that of multiple scattering too, which pays for it.
@@ -160,10 +162,12 @@ TEST(CostModel, FinerKnobsAreNeverCheaper) {
     const formats::Scene scene = ball_on_floor(3);
     const auto with = [&](const std::function<void(Knobs&)>& change) {
         Knobs knobs;
+        // Walks have no knobs of single scattering.
+        knobs.set(kMultipleModel, static_cast<double>(MultipleModel::dipole));
         change(knobs);
         return predict(scene, knobs);
     };
-    const Predicted base = predict(scene);
+    const Predicted base = with([](Knobs&) {});
     expect_dearer(base, with([](Knobs& k) { k.cubemap_size = 64; }), "texels");
     expect_dearer(base, with([](Knobs& k) { k.coefficients = 512; }), "coefficients");
     expect_dearer(base, with([](Knobs& k) { k.set(kSingleCubemap, 32); }), "texels of light maps");
