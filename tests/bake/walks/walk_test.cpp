@@ -75,6 +75,85 @@ TEST(Walk, HalfSpaceOfIsotropicScatterersReturnsWhatChandrasekharsFunctionSays) 
     }
 }
 
+// Published for light at normal incidence, which is what a view along the normal sees of light from
+// everywhere. Total transmission includes what passes unscattered; walks do not.
+TEST(Walk, SlabAlongItsNormalReflectsAndTransmitsWhatVanDeHulstTabulated) {
+    const auto slab = make_walked_body(make_wide_slab(2), make_forward_medium(1, 0.9f, 0.75f, 1));
+    bake::WalkStart start = start_below({0, 0, 0}, {0, 1, 0});
+    start.is_along_normal = true;
+    const Leaving leaving = walk_from(slab->space, start, 1, 200000);
+    EXPECT_NEAR(leaving.all - leaving.below, 0.09739, 4 * leaving.error);
+    EXPECT_NEAR(leaving.below, 0.66096 - std::exp(-2), 4 * leaving.error);
+    EXPECT_LT(leaving.error, 0.001);
+}
+
+// Total reflectance of a half space, with the boundary's own.
+TEST(Walk, RefractingHalfSpaceAlongItsNormalReflectsWhatGiovanelliTabulated) {
+    const auto slab = make_walked_body(make_wide_slab(60), make_forward_medium(1, 0.9f, 0, 1.5f));
+    bake::WalkStart start = start_below({0, 0, 0}, {0, 1, 0});
+    start.is_along_normal = true;
+    const Leaving leaving = walk_from(slab->space, start, 1, 200000);
+    constexpr double kBoundary = 0.04;
+    EXPECT_NEAR(kBoundary + (1 - kBoundary) * leaving.all, 0.2600, 4 * leaving.error + 5e-4);
+    EXPECT_LT(leaving.error, 0.001);
+}
+
+// Light that enters evenly through one patch and leaves through another is as much the other way.
+TEST(Walk, LightBetweenTwoPatchesIsTheSameEitherWay) {
+    Primitive egg = make_sphere(2);
+    for (std::size_t v = 0; v < egg.position.size(); ++v) {
+        egg.position[v] *= glm::vec3(1, 0.5f, 0.4f);
+        egg.normal[v] = glm::normalize(egg.normal[v] / glm::vec3(1, 0.5f, 0.4f));
+    }
+    struct Face {
+        glm::vec3 corner, along, across, flat;
+        double area;
+    };
+    std::vector<Face> faces;
+    for (std::size_t i = 0; i < egg.index.size(); i += 3) {
+        const glm::vec3 a = egg.position[egg.index[i]], b = egg.position[egg.index[i + 1]],
+                        c = egg.position[egg.index[i + 2]];
+        const glm::vec3 n = glm::cross(b - a, c - a);
+        faces.push_back({a, b - a, c - a, glm::normalize(n), 0.5 * glm::length(n)});
+    }
+    const auto at_tip = [&](std::uint32_t f) { return faces[f].corner.x > 0.85f; };
+    const auto on_flank = [&](std::uint32_t f) { return faces[f].corner.z < -0.33f; };
+    for (const float eta : {1.0f, 1.4f}) {
+        const auto body = make_walked_body(egg, make_forward_medium(4, 0.95f, 0.3f, eta));
+        const auto carried = [&](auto from, auto to) {
+            constexpr std::uint32_t kWalks = 8000;
+            double sum = 0;
+            std::vector<bake::WalkExit> exits;
+            bake::WalkCounts counts;
+            for (std::uint32_t f = 0; f < faces.size(); ++f) {
+                for (std::uint32_t w = 0; from(f) && w < kWalks; ++w) {
+                    bake::WalkRandom random({1, bake::RandomStage::body_walk, f, w});
+                    exits.clear();
+                    // Evenly over the facet. Seen through it: smooth normals would differ.
+                    float s = random.next(), t = random.next();
+                    if (s + t > 1) {
+                        s = 1 - s;
+                        t = 1 - t;
+                    }
+                    const Face& face = faces[f];
+                    const glm::vec3 at = face.corner + s * face.along + t * face.across;
+                    bake::follow_walk(body->space, {}, start_below(at, face.flat), {1}, random,
+                                      exits, counts);
+                    for (const bake::WalkExit& exit : exits) {
+                        sum += to(exit.first_index / 3)
+                                   ? faces[f].area / kWalks * static_cast<double>(exit.weight[0])
+                                   : 0;
+                    }
+                }
+            }
+            return sum;
+        };
+        const double there = carried(at_tip, on_flank), back = carried(on_flank, at_tip);
+        EXPECT_GT(there, 1e-3);
+        EXPECT_NEAR(there / back, 1, 0.04) << eta;
+    }
+}
+
 // The rows by view are the best linear function of the cosine.
 TEST(Walk, HalfSpaceDarkensTowardTheEdgeAsTheLinearFitOfChandrasekharsFunctionSays) {
     constexpr std::uint32_t kWalks = 100000;
