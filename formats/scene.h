@@ -56,6 +56,13 @@ struct Marble {
     std::vector<Rgb> colors;  ///< from within a vein to halfway between two; 2 or more, in [0, 1]
 };
 
+/// A surface without an inside, such as a leaf or paper: of the light that arrives on one side, the
+/// share base colour * reflect leaves on that side and base colour * transmit on the other one,
+/// both diffusely. The two shares of a band add up to 1 at most.
+struct Sheet {
+    Rgb reflect{1, 1, 1}, transmit{0, 0, 0};  ///< each in [0, 1]
+};
+
 /// How a texture goes on outside of [0, 1].
 enum class TextureWrap { repeat, clamp, mirror };
 
@@ -91,6 +98,7 @@ struct Material {
     Gloss gloss = {};                                   ///< of opaque materials: unused in a medium
     bool double_sided = false;
     std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque
+    std::optional<Sheet> sheet = std::nullopt;    ///< thin-walled; no medium then
     std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
 };
 

@@ -79,8 +79,9 @@ OPALINE_API opaline_status opaline_asset_primitive(const opaline_asset* asset, u
                                                    opaline_primitive_info* info);
 
 typedef enum opaline_shading {
-    OPALINE_SHADING_DIFFUSE = 1,    /* opaque: without gloss the same from everywhere */
-    OPALINE_SHADING_TRANSLUCENT = 2 /* depends on the eye: Fresnel, and directions inside */
+    OPALINE_SHADING_DIFFUSE = 1,     /* opaque: without gloss the same from everywhere */
+    OPALINE_SHADING_TRANSLUCENT = 2, /* depends on the eye: Fresnel, and directions inside */
+    OPALINE_SHADING_SHEET = 3        /* thin-walled: depends on the side that the eye is on */
 } opaline_shading;
 
 typedef struct opaline_primitive_shading {

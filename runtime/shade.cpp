@@ -52,11 +52,27 @@ ViewOfReceiver view_of(const Job& job, std::uint32_t vertex) {
                          job.options.eye);
 }
 
+// <T_0, L> of each vertex; <T_1, L> of a thin-walled surface that is seen from behind.
+void dot_opaque_block(const Job& job, std::uint32_t first_vertex, std::span<Rgb> out) {
+    const formats::PrimitiveRecord& primitive = job.primitive();
+    const std::uint32_t first = first_vertex - primitive.first_vertex;
+    if (primitive.shading == formats::Shading::diffuse) {
+        dot_rows(job.asset.transport, primitive.rows(), job.light, first, out, job.options.path);
+        return;
+    }
+    for (std::uint32_t i = 0; i < out.size(); ++i) {
+        const std::uint32_t vertex = first_vertex + i;
+        const bool behind = is_seen_from_behind(job.asset.position[vertex],
+                                                job.asset.normal[vertex], job.options.eye);
+        dot_rows(job.asset.transport, primitive.rows(), job.light,
+                 2 * (first + i) + (behind ? 1 : 0), out.subspan(i, 1), job.options.path);
+    }
+}
+
 void shade_opaque_block(const Job& job, std::uint32_t first_vertex, std::span<Rgb> out) {
     const bool is_glossy = job.material.gloss != nullptr && job.options.fresnel;
     if (has_any(job.options.terms, TermSet::diffuse)) {
-        dot_rows(job.asset.transport, job.primitive().rows(), job.light,
-                 first_vertex - job.primitive().first_vertex, out, job.options.path);
+        dot_opaque_block(job, first_vertex, out);
     } else if (!is_glossy) {
         return;  // out is black
     }

@@ -33,12 +33,12 @@ struct ShadeOptions {
 };
 
 /// Outgoing radiance [W m^-2 sr^-1] of every receiver: L_o = base_color * <T_0, L>
-/// (Shading::diffuse; with gloss times (1 - metallic) (1 - max E)) or base_color * Ft *
-/// sum_k h_k(w_o') <T_k, L> (Shading::translucent), plus L_spec where it is glossy (gloss.h,
-/// specular.h). Each of these values is clamped to [0, largest
-/// float]; what belongs to no primitive is black, and so are translucent receivers that face away
-/// or have no normal. Preconditions: light.n == asset.cubemap_size, out.size() ==
-/// asset.receivers(), the asset passed read_opal's checks.
+/// (Shading::diffuse; Shading::sheet with the row of the side seen; with gloss times (1 - metallic)
+/// (1 - max E)) or base_color * Ft * sum_k h_k(w_o') <T_k, L> (Shading::translucent), plus L_spec
+/// where it is glossy (gloss.h, specular.h). Each of these values is clamped to [0, largest float];
+/// what belongs to no primitive is black, and so are translucent receivers that face away or have
+/// no normal. Preconditions: light.n == asset.cubemap_size, out.size() == asset.receivers(), the
+/// asset passed read_opal's checks.
 void shade(const formats::AssetView& asset, const LightVector& light, std::span<formats::Rgb> out,
            const ShadeOptions& options = {});
 

@@ -74,6 +74,10 @@ ViewOfReceiver view_receiver(const formats::PrimitiveRecord& primitive, Vec3 pos
     return view;
 }
 
+bool is_seen_from_behind(Vec3 position, Vec3 normal, const std::optional<Vec3>& eye) {
+    return eye && dot(normal, direction(position, *eye)) < 0;
+}
+
 void eval_view_terms(Vec3 refracted, std::span<float> value) {
     if (value.size() == 1) {
         value[0] = 1;

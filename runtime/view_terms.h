@@ -39,6 +39,10 @@ struct ViewOfReceiver {
 ViewOfReceiver view_receiver(const formats::PrimitiveRecord& primitive, formats::Vec3 position,
                              formats::Vec3 normal, const std::optional<formats::Vec3>& eye);
 
+/// Whether the eye is on the side that the normal points away from. Without an eye: no.
+bool is_seen_from_behind(formats::Vec3 position, formats::Vec3 normal,
+                         const std::optional<formats::Vec3>& eye);
+
 /// h_k(w_o') for k < value.size(), a number of terms that a file may have: 1 for one term,
 /// spherical harmonics otherwise.
 void eval_view_terms(formats::Vec3 refracted, std::span<float> value);

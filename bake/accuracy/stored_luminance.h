@@ -14,7 +14,7 @@
 
 namespace opaline::bake {
 
-/// h_k of each of a translucent receiver's rows, seen along its normal.
+/// h_k of each of a receiver's rows, seen along its normal.
 std::vector<float> view_of_rows(const RowLayout& layout, glm::vec3 normal);
 
 /// Rows of one receiver, as a file keeps them: what measuring reads.

@@ -8,17 +8,21 @@
 #include "bake/effects/local/local.h"
 #include "bake/effects/multiple/multiple.h"
 #include "bake/effects/multiple/rule_spread.h"
+#include "bake/effects/sheet/sheet.h"
 #include "bake/effects/single/single.h"
 #include "bake/effects/specular/specular.h"
 
 namespace opaline::bake {
 
 const EffectTable& all_effects() {
-    static const std::array kDescriptors{
-        describe_direct(Effect::direct),     describe_multiple(Effect::multiple),
-        describe_single(Effect::single),     describe_local(Effect::local, spread_rules()),
-        describe_specular(Effect::specular), describe_gloss(Effect::gloss),
-        describe_incident(Effect::incident)};
+    static const std::array kDescriptors{describe_direct(Effect::direct),
+                                         describe_sheet(Effect::sheet),
+                                         describe_multiple(Effect::multiple),
+                                         describe_single(Effect::single),
+                                         describe_local(Effect::local, spread_rules()),
+                                         describe_specular(Effect::specular),
+                                         describe_gloss(Effect::gloss),
+                                         describe_incident(Effect::incident)};
     static const EffectTable kTable{kDescriptors};
     return kTable;
 }

@@ -68,7 +68,9 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         record.first_row = rows;
         record.terms = layout.terms();
         record.bands = layout.bands();
-        record.shading = layout.translucent ? Shading::translucent : Shading::diffuse;
+        record.shading = layout.translucent ? Shading::translucent
+                         : layout.sheet     ? Shading::sheet
+                                            : Shading::diffuse;
         record.eta = layout.translucent ? material.medium->eta : 0.0f;
         record.first_band_row = band_rows;
         record.first_code = codes;
@@ -85,7 +87,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
             record.wrap_v = to_wrap(material.wrap_v);
         }
         record.flags =
-            (material.double_sided ? PrimitiveRecord::kDoubleSided : 0) |
+            (material.double_sided || layout.sheet ? PrimitiveRecord::kDoubleSided : 0) |
             (layout.separate ? PrimitiveRecord::kSeparate : 0) |
             (layout.translucent && !layout.separate && !layout.constant && layout.harmonics > 0
                  ? PrimitiveRecord::kSingleOnly

@@ -8,6 +8,7 @@
 #include "bake/example/contact.h"
 #include "bake/example/floor.h"
 #include "bake/example/knot.h"
+#include "bake/example/leaves.h"
 #include "bake/example/polygonize.h"
 #include "bake/example/remesh.h"
 #include "bake/example/sphere.h"
@@ -74,6 +75,14 @@ std::vector<GltfObject> make_glossy() {
             std::move(floor)};
 }
 
+std::vector<GltfObject> make_plant() {
+    GltfObject leaves{"Leaves", "Leaf", {0.12, 0.20, 0.05}, in_metres(make_leaves({}))};
+    leaves.transmission = {.share = 0.5, .color = {0.16, 0.34, 0.03}};
+    return {std::move(leaves),
+            floor_object(
+                make_floor({.finest = 4.0, .fine_radius = 110.0, .growth = 0.15, .levels = 7}))};
+}
+
 constexpr Example kExamples[] = {
     {{"statue", "a resting swan with thin lifted wings, the showpiece for translucent media"},
      make_statue},
@@ -81,6 +90,8 @@ constexpr Example kExamples[] = {
      make_trefoil},
     {{"glossy", "two metal balls and a lacquered one on a glossy floor: metallic-roughness gloss"},
      make_glossy},
+    {{"leaves", "a plant of eleven arched leaves: thin-walled surfaces that transmit light"},
+     make_plant},
 };
 
 }  // namespace

@@ -19,6 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kFloat = 5126, kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr const char* kReflectionExtension = "KHR_materials_specular";
+constexpr const char* kTransmissionExtension = "KHR_materials_diffuse_transmission";
 
 void append(std::string& bytes, std::uint32_t word) {
     for (int shift = 0; shift < 32; shift += 8) {
@@ -91,6 +92,7 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
     Draft draft;
     Json nodes = Json::array(), roots = Json::array();
     Json meshes = Json::array(), materials = Json::array();
+    Json extensions = Json::array({kReflectionExtension});
     for (const GltfObject& object : objects) {
         assert(!object.mesh.position.empty() && !object.mesh.triangles.empty());
         assert(object.mesh.normal.size() == object.mesh.position.size());
@@ -112,10 +114,20 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
                {"roughnessFactor", object.reflection.roughness}}},
              {"extensions",
               {{kReflectionExtension, {{"specularFactor", object.reflection.strength}}}}}});
+        if (const GltfTransmission& thin = object.transmission; thin.share > 0) {
+            Json& material = materials.back();
+            material["doubleSided"] = true;
+            material["extensions"][kTransmissionExtension] = {
+                {"diffuseTransmissionFactor", thin.share},
+                {"diffuseTransmissionColorFactor", thin.color}};
+            if (extensions.size() == 1) {
+                extensions.push_back(kTransmissionExtension);
+            }
+        }
     }
     const Json document = {
         {"asset", {{"version", "2.0"}, {"generator", "Opaline"}}},
-        {"extensionsUsed", Json::array({kReflectionExtension})},
+        {"extensionsUsed", extensions},
         {"scene", 0},
         {"scenes", Json::array({{{"name", name}, {"nodes", roots}}})},
         {"nodes", nodes},

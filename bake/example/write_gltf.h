@@ -17,6 +17,12 @@ struct GltfReflection {
     double strength = 0;  ///< specularFactor of KHR_materials_specular
 };
 
+/// Thin-walled: KHR_materials_diffuse_transmission. The default is opaque.
+struct GltfTransmission {
+    double share = 0;                      ///< diffuseTransmissionFactor, in [0, 1]
+    std::array<double, 3> color{1, 1, 1};  ///< linear Rec. 709, each in [0, 1]
+};
+
 /// A mesh in a node of its own. Names are free; several objects may not share a material name.
 struct GltfObject {
     std::string name;                           ///< of node and mesh
@@ -24,6 +30,7 @@ struct GltfObject {
     std::array<double, 3> base_color{1, 1, 1};  ///< linear Rec. 709, each in [0, 1]
     TriangleMesh mesh;                          ///< positions in metres, one unit normal each
     GltfReflection reflection = {};
+    GltfTransmission transmission = {};
 };
 
 /// Writes FOLDER/NAME.gltf and its buffer FOLDER/NAME.bin as glTF 2.0 and returns both paths; the

@@ -116,8 +116,10 @@ void bill_rows(const CostedBake& bake, const CostedSubject& subject, double rece
 void bill_encoding(const CostedBake& bake, const CostedSubject& subject, double receivers,
                    Bill& bill) {
     const std::uint32_t bands = subject.layout.bands();
-    const double bytes = receivers * static_cast<double>(row_bytes(
-                                         bake.request.knobs, subject.layout.translucent, bands));
+    const double bytes =
+        receivers *
+        static_cast<double>(row_bytes(bake.request.knobs,
+                                      subject.layout.translucent || subject.layout.sheet, bands));
     const auto bill_some = [&](std::uint32_t rows, PlanEntry* payer) {
         // Local rows are gathered by texel and transformed band by band, as grey ones are; the
         // others are gathered as coefficients.

@@ -41,7 +41,12 @@ MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scen
         ++counts.scene.primitives;
         counts.scene.vertices += primitive.position.size();
         counts.scene.indices += primitive.index.size();
-        const auto& medium = scene.materials[primitive.material].medium;
+        const formats::Material& material = scene.materials[primitive.material];
+        const auto& medium = material.medium;
+        if (material.sheet) {
+            counts.translucent_rows += 2 * vertices;
+            continue;
+        }
         if (!medium) {
             counts.opaque_rows += vertices;
             continue;

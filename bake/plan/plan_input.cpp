@@ -34,4 +34,8 @@ bool is_any_material(const PlanInput&) {
     return true;
 }
 
+bool is_thin_walled(const PlanInput& input) {
+    return input.material.sheet.has_value();
+}
+
 }  // namespace opaline::bake

@@ -40,5 +40,6 @@ std::array<Band, 3> bands_of(const formats::Medium& medium);
 // Predicates for rules.
 bool has_medium(const PlanInput& input);
 bool is_any_material(const PlanInput& input);
+bool is_thin_walled(const PlanInput& input);
 
 }  // namespace opaline::bake

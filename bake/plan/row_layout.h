@@ -21,6 +21,7 @@ struct RowLayout {
     bool all_orders = false;           ///< `constant` holds light of all orders of scattering
     bool at_entry = false;             ///< light leaves the medium where it entered
     bool separate = false;             ///< the row for all views stands apart from the harmonics
+    bool sheet = false;                ///< a row for each side that it may be seen from
     bool grey = false;                 ///< the three bands coincide: one stands for them
     bool mirrors = false;              ///< its surface mirrors light: needs openness
     formats::Rgb tint{1, 1, 1};        ///< times the base colour
@@ -28,10 +29,10 @@ struct RowLayout {
     bool has_rows() const { return constant || harmonics > 0; }
     /// Rows of a receiver, at least one: a receiver without any is black.
     std::uint32_t terms() const {
-        return separate ? 1 + all_harmonics() : std::max(all_harmonics(), 1u);
+        return sheet ? 2 : separate ? 1 + all_harmonics() : std::max(all_harmonics(), 1u);
     }
     std::uint32_t all_harmonics() const { return std::max(harmonics, view_harmonics); }
-    std::uint32_t bands() const { return translucent && !grey ? 3 : 1; }
+    std::uint32_t bands() const { return (translucent || sheet) && !grey ? 3 : 1; }
     /// Row of the first harmonic.
     std::uint32_t first_harmonic() const { return separate ? 1 : 0; }
     /// h_0 through which row 0 is seen: what is the same for all views is divided by it.

@@ -1,6 +1,7 @@
 #include "bake/plan/stage_work.h"
 
 #include "bake/transport/bake_openness.h"
+#include "bake/truth/test_lights.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -23,6 +24,13 @@ Work irradiance_work(const CostInput& input, double receivers, bool occluded) {
     const double ray =
         occluded ? kClutter * input.rates.coherent_ray.at(input.triangles) : input.rates.open_cell;
     return {0, receivers * count_rays(input.knobs.cubemap_size) * ray};
+}
+
+Work true_irradiance_work(const SubjectCost& cost) {
+    const double rays = count_rays(kTruthCubemap);
+    return {0, cost.receivers * rays *
+                   (cost.traces_rays ? cost.input.rates.coherent_ray.at(cost.input.triangles)
+                                     : cost.input.rates.open_cell)};
 }
 
 Work encode_work(const CostInput& input, std::uint32_t rows, std::uint32_t bands,

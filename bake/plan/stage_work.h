@@ -49,6 +49,8 @@ double count_rays(std::uint32_t cubemap_size);
 
 /// Irradiance rows of `receivers`, dense.
 Work irradiance_work(const CostInput& input, double receivers, bool occluded);
+/// Irradiance at `cost.receivers` on the truths' cube map.
+Work true_irradiance_work(const SubjectCost& cost);
 /// Transform, selection and quantising.
 Work encode_work(const CostInput& input, std::uint32_t rows, std::uint32_t bands, double receivers);
 Work openness_work(const CostInput& input, double receivers, bool occluded);

@@ -164,12 +164,31 @@ float mean(glm::vec3 v) {
     return (v.x + v.y + v.z) / 3;
 }
 
+// The same point for light that comes from the other side.
+OpaquePoint turned(const OpaquePoint& point) {
+    return {point.behind, point.from, -point.normal, -point.flat, point.surface, false};
+}
+
+bool scatter_diffusely(const PathSpace& space, Path& path, const OpaquePoint& point,
+                       glm::vec3 albedo, RandomStream& random) {
+    const glm::vec3 reflected = albedo * point.surface.reflect,
+                    transmitted = albedo * point.surface.transmit;
+    const float there = mean(transmitted), here = mean(reflected);
+    if (!(there > 0)) {
+        return reflect_diffusely(space, path, point, reflected, random);
+    }
+    const float chance = there / (there + here);
+    return here > 0 && !(random.next() < chance)
+               ? reflect_diffusely(space, path, point, reflected / (1 - chance), random)
+               : reflect_diffusely(space, path, turned(point), transmitted / chance, random);
+}
+
 }  // namespace
 
 bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& point,
                         RandomStream& random) {
     if (point.surface.is_diffuse()) {
-        return reflect_diffusely(space, path, point, point.surface.base_color, random);
+        return scatter_diffusely(space, path, point, point.surface.base_color, random);
     }
     const GlossyBrdf brdf = make_glossy_brdf(point.surface, point.normal, -path.direction);
     const bool may_mirror = !point.is_own_mirror && is_wanted(space, after_mirror(path.state));
@@ -186,7 +205,7 @@ bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& p
         path.beta /= mirrors ? chance : 1 - chance;
     }
     return mirrors ? reflect_as_mirror(space, path, point, brdf, random)
-                   : reflect_diffusely(space, path, point, brdf.diffuse_albedo, random);
+                   : scatter_diffusely(space, path, point, brdf.diffuse_albedo, random);
 }
 
 void pass_boundary(Path& path, const Crossing& crossing) {

@@ -40,14 +40,15 @@ inline bool is_wanted(const PathSpace& space, PathState state) {
 
 /// A point of an opaque surface that a path has arrived at. Normals face the path.
 struct OpaquePoint {
-    RayOrigin from;  ///< where rays start in front of it
+    RayOrigin from, behind;  ///< where rays start in front of it, and on its other side
     glm::vec3 normal{0};
     glm::vec3 flat{0};  ///< of the triangle; {0,0,0} at a vertex, which lies on several
     OpaqueSurface surface;
     bool is_own_mirror = false;  ///< its specular lobe is left out: see PathOptions::own_mirror
 };
 
-/// An opaque surface. Of a glossy one, either lobe is taken by chance in proportion to what it
+/// An opaque or thin-walled surface. A thin-walled one reflects or transmits what it scatters
+/// diffusely, by chance. Of a glossy one, either lobe is taken by chance in proportion to what it
 /// reflects (surely, where the other one leads to no wanted term), so that the path belongs to one
 /// term; light and path are then sampled for that lobe alone. False: the path ends.
 bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& point,

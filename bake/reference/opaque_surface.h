@@ -12,8 +12,9 @@ namespace opaline::bake {
 struct OpaqueSurface {
     glm::vec3 base_color{1};
     float metallic = 0, roughness = 1;
-    glm::vec3 f0{0};  ///< of its dielectric part: reflectance at normal incidence
-    float f90 = 0;    ///< and at grazing; 0: none
+    glm::vec3 f0{0};                    ///< of its dielectric part: reflectance at normal incidence
+    float f90 = 0;                      ///< and at grazing; 0: none
+    glm::vec3 reflect{1}, transmit{0};  ///< shares of diffuse light that stay on this side, and not
 
     bool is_diffuse() const { return metallic == 0 && f90 == 0; }
 };

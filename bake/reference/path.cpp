@@ -62,8 +62,9 @@ bool meet_surface(const PathSpace& space, Path& path, const SurfaceHit& hit, Ran
         return false;
     }
     const float side = back ? -1.0f : 1.0f;
-    const OpaquePoint point{leave_surface(hit, side * hit.flat), side * hit.smooth, side * hit.flat,
-                            opaque_surface_at(scene, hit)};
+    const OpaquePoint point{leave_surface(hit, side * hit.flat),
+                            leave_surface(hit, -side * hit.flat), side * hit.smooth,
+                            side * hit.flat, opaque_surface_at(scene, hit)};
     return reflect_at_surface(space, path, point, random);
 }
 
@@ -174,7 +175,7 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
     path.stack = receiver.around;
     bool walks = false;
     if (opaque) {
-        OpaquePoint point{outside, normal, glm::vec3(0),
+        OpaquePoint point{outside, inside, normal, glm::vec3(0),
                           opaque_surface_at_vertex(scene, receiver.primitive, receiver.vertex)};
         point.surface.base_color = receiver.base_color;
         point.is_own_mirror = !space.options.own_mirror;

@@ -127,9 +127,14 @@ glm::vec3 base_color(const formats::Scene& scene, const Place& place) {
 
 OpaqueSurface opaque_surface(const formats::Scene& scene, const Place& place) {
     const Primitive& p = scene.primitives[place.primitive];
-    const formats::Gloss& gloss = scene.materials[p.material].gloss;
+    const Material& material = scene.materials[p.material];
+    const formats::Gloss& gloss = material.gloss;
     OpaqueSurface surface;
     surface.base_color = base_color(scene, place);
+    if (material.sheet) {
+        surface.reflect = to_vec(material.sheet->reflect);
+        surface.transmit = to_vec(material.sheet->transmit);
+    }
     if (gloss.is_diffuse()) {
         return surface;
     }

@@ -136,8 +136,11 @@ void inspect_colors(const Scene& scene, std::uint32_t material, MaterialFacts& f
     const ColorRange color = find_color_range(scene, material);
     facts.brightest_vertex = color.brightest_vertex;
     facts.color_contrast = color.contrast;
+    const auto same = [](formats::Rgb c) { return c.r == c.g && c.g == c.b; };
+    if (const auto& sheet = scene.materials[material].sheet) {
+        facts.is_grey = same(sheet->reflect) && same(sheet->transmit);
+    }
     if (const auto& medium = scene.materials[material].medium) {
-        const auto same = [](formats::Rgb c) { return c.r == c.g && c.g == c.b; };
         facts.is_grey = same(medium->sigma_s) && same(medium->sigma_a);
         facts.mirrors = medium->eta != 1;
     }

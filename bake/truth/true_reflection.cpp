@@ -1,4 +1,4 @@
-#include "bake/effects/direct/true_direct.h"
+#include "bake/truth/true_reflection.h"
 
 #include <numbers>
 #include <vector>
@@ -7,13 +7,14 @@
 
 namespace opaline::bake {
 
-DirectTruth make_direct_truth(std::span<const TestLight> lights) {
+ReflectionTruth make_reflection_truth(std::span<const TestLight> lights) {
     constexpr std::uint32_t kRaysPerSun = 16;
     return {make_direction_set(kTruthCubemap), make_sun_rays(lights, kRaysPerSun)};
 }
 
-TwoEstimates eval_truth(const DirectTruth& truth, const RayScene& rays, const Receiver& receiver,
-                        std::span<const TestLight> lights, std::uint64_t& traced) {
+TwoEstimates eval_reflection(const ReflectionTruth& truth, const RayScene& rays,
+                             const Receiver& receiver, std::span<const TestLight> lights,
+                             std::uint64_t& traced) {
     Luminance reflected(lights.size());
     if (receiver.normal != glm::vec3(0)) {
         std::vector<float> dense(lights.front().smooth.size());
@@ -24,13 +25,6 @@ TwoEstimates eval_truth(const DirectTruth& truth, const RayScene& rays, const Re
         }
     }
     return {reflected, reflected};
-}
-
-Work direct_truth_work(const SubjectCost& cost) {
-    const double rays = count_rays(kTruthCubemap);
-    return {0, cost.receivers * rays *
-                   (cost.traces_rays ? cost.input.rates.coherent_ray.at(cost.input.triangles)
-                                     : cost.input.rates.open_cell)};
 }
 
 }  // namespace opaline::bake

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <span>
 
-#include "bake/plan/stage_work.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/direction_set.h"
 #include "bake/truth/luminance.h"
@@ -13,14 +12,14 @@ namespace opaline::bake {
 
 /// True reflected luminance of opaque receivers with albedo 1: rays to the suns, dense quadrature
 /// of all other light.
-struct DirectTruth {
+struct ReflectionTruth {
     DirectionSet directions;
     SunRays suns;
 };
-DirectTruth make_direct_truth(std::span<const TestLight> lights);
+ReflectionTruth make_reflection_truth(std::span<const TestLight> lights);
 /// Both estimates are equal, because the computation is deterministic. `traced` adds up.
-TwoEstimates eval_truth(const DirectTruth& truth, const RayScene& rays, const Receiver& receiver,
-                        std::span<const TestLight> lights, std::uint64_t& traced);
-Work direct_truth_work(const SubjectCost& cost);
+TwoEstimates eval_reflection(const ReflectionTruth& truth, const RayScene& rays,
+                             const Receiver& receiver, std::span<const TestLight> lights,
+                             std::uint64_t& traced);
 
 }  // namespace opaline::bake

@@ -9,6 +9,7 @@
 #include "formats/gltf/load_texture.h"
 #include "formats/gltf/map_gloss.h"
 #include "formats/gltf/map_medium.h"
+#include "formats/gltf/map_sheet.h"
 
 namespace opaline::formats::gltf {
 
@@ -41,7 +42,7 @@ std::string unsimulated_extension(const std::string& name) {
     return "extension " + in_quotes(name) + " is not simulated";
 }
 
-/// The extensions that a medium stands for.
+/// The extensions that a medium or a thin-walled surface stands for.
 bool is_part_of_medium(std::string_view name) {
     constexpr std::array<std::string_view, 5> kParts = {
         "KHR_materials_volume", "KHR_materials_scatter", "KHR_materials_volume_scatter",
@@ -54,10 +55,11 @@ bool is_part_of_gloss(std::string_view name) {
     return name == "KHR_materials_ior" || name == "KHR_materials_specular";
 }
 
-std::vector<std::string> unsimulated(const MaterialSource& material, bool has_medium) {
+std::vector<std::string> unsimulated(const MaterialSource& material, const Material& mapped) {
     std::vector<std::string> faults;
+    const bool has_medium = mapped.medium.has_value();
     for (const std::string& name : material.extensions) {
-        if (!is_part_of_gloss(name) && !(has_medium && is_part_of_medium(name))) {
+        if (!is_part_of_gloss(name) && !((has_medium || mapped.sheet) && is_part_of_medium(name))) {
             faults.push_back(unsimulated_extension(name));
         }
     }
@@ -168,13 +170,20 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
         const std::string where = label("material", i, source.name);
         Material material = convert(source, where, report);
         std::vector<std::string> remarks;
-        material.medium = map_medium(source.translucency, metres_per_unit, remarks);
+        if (const auto thin = map_sheet(source.translucency, material.base_color,
+                                        source.base_color_texture.texture != kNone, remarks)) {
+            material.base_color = thin->base_color;
+            material.sheet = thin->sheet;
+            material.double_sided = true;  // it has two sides
+        } else {
+            material.medium = map_medium(source.translucency, metres_per_unit, remarks);
+        }
         if (!material.medium) {
             material.gloss = map_gloss(source.translucency, remarks);
         }
         if (used[i]) {
             add_textures(source, where, loader, material, remarks);
-            for (const std::string& fault : unsimulated(source, material.medium.has_value())) {
+            for (const std::string& fault : unsimulated(source, material)) {
                 lost[fault].push_back(where);
             }
             for (const std::string& remark : remarks) {

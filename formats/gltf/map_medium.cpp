@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/gltf/clamp_factor.h"
+
 namespace opaline::formats::gltf {
 
 namespace {
@@ -15,22 +17,6 @@ constexpr double kMaxAnisotropy = 0.99, kMinEta = 1.0 / 3.0, kMaxEta = 3.0;
 
 bool is_black(glm::dvec3 color) {
     return !(std::max({color.x, color.y, color.z}) > 0.0);
-}
-
-double clamped(double value, double least, double greatest, const char* name, Remarks& remarks) {
-    if (value >= least && value <= greatest) {
-        return value;
-    }
-    remarks.push_back(std::string(name) + " is out of its range and is clamped");
-    return value > least ? greatest : least;
-}
-
-glm::dvec3 clamped(glm::dvec3 color, const char* name, Remarks& remarks) {
-    const glm::dvec3 inside = glm::clamp(color, 0.0, 1.0);
-    if (inside != color) {
-        remarks.push_back(std::string(name) + " is outside [0, 1] and is clamped");
-    }
-    return inside;
 }
 
 /// Why the extensions describe no scattering medium; empty where they do.
@@ -46,11 +32,6 @@ std::string obstacle(const TranslucencySource& source) {
     if (is_black(source.multiscatter_color)) {
         return "the multiscatter colour is black, so that nothing scatters: the surface is baked "
                "diffuse";
-    }
-    if (!(source.thickness > 0.0)) {
-        return "thicknessFactor is 0, which makes the surface thin-walled: scattering without an "
-               "inside is not simulated, and it is baked diffuse (set it above 0 for a closed "
-               "mesh)";
     }
     const bool lets_in = source.transmission > 0.0 ||
                          (source.has_volume_scatter && source.diffuse_transmission > 0.0);
@@ -78,7 +59,7 @@ double relative_ior(const TranslucencySource& source, Remarks& remarks) {
         remarks.push_back("ior 0 (total reflection) is not simulated: 1.5 is used");
         return 1.5;
     }
-    return clamped(source.ior, 1.0, kMaxEta, "ior", remarks);
+    return clamp_factor(source.ior, 1.0, kMaxEta, "ior", remarks);
 }
 
 /// A medium has one number for its boundary, so the reflectance at normal incidence that ior and
@@ -90,7 +71,7 @@ double boundary_eta(const TranslucencySource& source, Remarks& remarks) {
         (source.specular == 1.0 && source.specular_color == glm::dvec3(1.0))) {
         return ior;
     }
-    const double factor = clamped(source.specular, 0.0, 1.0, "specularFactor", remarks);
+    const double factor = clamp_factor(source.specular, 0.0, 1.0, "specularFactor", remarks);
     const glm::dvec3 color = glm::max(source.specular_color, 0.0);
     if (color.x != color.y || color.y != color.z) {
         remarks.push_back("a coloured specularColorFactor is not simulated: its luminance is used");
@@ -144,13 +125,14 @@ std::optional<Medium> map_medium(const TranslucencySource& source, double metres
         remarks.push_back(std::move(why));
         return std::nullopt;
     }
-    const double strength = source.has_scatter ? clamped(*source.scatter_strength, 0.0, 1.0,
-                                                         "scatterStrengthFactor", remarks)
+    const double strength = source.has_scatter ? clamp_factor(*source.scatter_strength, 0.0, 1.0,
+                                                              "scatterStrengthFactor", remarks)
                                                : 1.0;
-    const double g =
-        clamped(source.anisotropy, -kMaxAnisotropy, kMaxAnisotropy, "scatterAnisotropy", remarks);
-    const glm::dvec3 color = clamped(source.multiscatter_color, "the multiscatter colour", remarks);
-    const glm::dvec3 kept = clamped(source.attenuation_color, "attenuationColor", remarks);
+    const double g = clamp_factor(source.anisotropy, -kMaxAnisotropy, kMaxAnisotropy,
+                                  "scatterAnisotropy", remarks);
+    const glm::dvec3 color =
+        clamp_color(source.multiscatter_color, "the multiscatter colour", remarks);
+    const glm::dvec3 kept = clamp_color(source.attenuation_color, "attenuationColor", remarks);
     const double metres = source.attenuation_distance * metres_per_unit;
     std::array<float, 3> scattering{}, absorption{};
     double greatest = 0.0;
@@ -182,7 +164,7 @@ std::optional<Medium> map_medium(const TranslucencySource& source, double metres
     }
     medium.eta = static_cast<float>(boundary_eta(source, remarks));
     medium.roughness =
-        static_cast<float>(clamped(source.roughness, 0.0, 1.0, "roughnessFactor", remarks));
+        static_cast<float>(clamp_factor(source.roughness, 0.0, 1.0, "roughnessFactor", remarks));
     remark_losses(source, remarks);
     return medium;
 }

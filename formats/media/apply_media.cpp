@@ -84,9 +84,11 @@ std::optional<Error> find_unmapped(const std::string& file, const Scene& scene,
 void fill(const MaterialMedium& entry, Material& material, std::vector<Image8>& images,
           std::map<const MaterialMedium*, std::uint32_t>& known) {
     material.medium = entry.medium;
-    // The medium has its own colour; the factor was for the surface it replaces.
-    material.base_color =
-        entry.base_color.value_or(material.medium ? Rgb{1, 1, 1} : material.base_color);
+    material.sheet = entry.sheet;
+    material.double_sided = material.double_sided || entry.sheet;  // it has two sides
+    // Medium and sheet have their own colour; the factor was for the surface they replace.
+    const bool has_color = material.medium || material.sheet;
+    material.base_color = entry.base_color.value_or(has_color ? Rgb{1, 1, 1} : material.base_color);
     material.marble = entry.marble;
     if (entry.albedo) {
         const auto [at, is_new] =

@@ -13,6 +13,7 @@ namespace opaline::formats {
 struct MaterialMedium {
     std::string name;               ///< of the glTF material; "*": all that no other entry names
     std::optional<Medium> medium;   ///< none: opaque, whatever the glTF file says
+    std::optional<Sheet> sheet;     ///< thin-walled; no medium then
     std::optional<Rgb> base_color;  ///< replaces the material's factor; linear, each in [0, 1]
     std::optional<Image8> albedo;   ///< replaces the texture; multiplies the light that leaves
     std::optional<Marble> marble;   ///< multiplies the light that leaves, by position

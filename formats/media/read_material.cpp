@@ -11,6 +11,7 @@
 #include "formats/media/presets.h"
 #include "formats/media/read_marble.h"
 #include "formats/media/read_phase.h"
+#include "formats/media/read_sheet.h"
 
 namespace opaline::formats::media {
 
@@ -140,14 +141,20 @@ MaterialMedium read_material(const std::string& name, const nlohmann::json& entr
     const Fields fields{entry, where, report};
     refuse_unknown_keys(fields, {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase",
                                  "eta", "roughness", "base_color", "albedo_texture", "marble",
-                                 "profile", "fidelity", "opaque"});
+                                 "profile", "fidelity", "opaque", "thin_walled"});
     refuse_beside(fields, "preset", {"sigma_s", "sigma_s_prime", "sigma_a", "unit"},
                   "give the preset or coefficients");
     refuse_beside(fields, "sigma_s", {"sigma_s_prime"}, "give one of them");
     material.base_color = rgb(fields, "base_color", 0, 1);
     material.albedo = read_albedo(fields, resources);
     material.marble = read_marble(fields);
-    if (truth(fields, "opaque").value_or(false)) {
+    material.sheet = read_sheet(fields);
+    if (has(fields, "thin_walled")) {
+        refuse_beside(fields, "thin_walled",
+                      {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta",
+                       "roughness", "profile", "fidelity", "opaque"},
+                      "give a medium or thin_walled");
+    } else if (truth(fields, "opaque").value_or(false)) {
         refuse_beside(fields, "opaque",
                       {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta",
                        "roughness", "profile", "fidelity"},

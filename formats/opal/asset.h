@@ -42,6 +42,12 @@ enum class Shading : std::uint32_t {
     /// terms - 1, none or any of the numbers above, are single scattering with the h_k of that
     /// number.
     translucent = 2,
+    /// A thin-walled surface, seen from either side: L_o = base_color * <T_0, L> where the eye is
+    /// in
+    /// front, n.w_o >= 0, and base_color * <T_1, L> where it is behind. T_0 = V (r max(0, n.w) +
+    /// t max(0, -n.w)) / pi, T_1 the same with r and t exchanged: r and t are the shares reflected
+    /// and transmitted. Two terms, grey or RGB. Gloss as with `diffuse`.
+    sheet = 3,
 };
 
 /// One glTF primitive of one node instance. Receivers and vertices are the same thing: row
@@ -50,7 +56,7 @@ struct PrimitiveRecord {
     std::uint32_t node = 0, mesh = 0, primitive = 0, material = 0;  ///< indices in the source file
     std::uint32_t first_vertex = 0, vertex_count = 0;
     std::uint32_t first_index = 0, index_count = 0;  ///< triangles; indices count from first_vertex
-    std::uint32_t terms = 1;                         ///< K, view terms per receiver
+    std::uint32_t terms = 1;                         ///< K, rows per receiver
     std::uint32_t bands = 1;                         ///< 1 grey, 3 RGB
     std::uint32_t first_row = 0, first_band_row = 0;
     std::uint64_t first_code = 0;
@@ -65,6 +71,7 @@ struct PrimitiveRecord {
     /// Translucent, not separate: its rows hold single scattering alone.
     static constexpr std::uint32_t kSingleOnly = 4;
 
+    bool is_opaque() const { return shading != Shading::translucent; }
     bool is_separate() const { return (flags & kSeparate) != 0; }
     bool is_single_only() const { return (flags & kSingleOnly) != 0; }
 

@@ -60,6 +60,15 @@ std::string find_shading_fault(const PrimitiveRecord& p) {
             return p.is_separate() || p.is_single_only()
                        ? "diffuse shading with separate scattering"
                        : std::string();
+        case Shading::sheet:
+            if (p.terms != 2 || (p.bands != 1 && p.bands != 3) || p.eta != 0.0f) {
+                return "thin-walled shading with " + number(p.terms) + " terms, " +
+                       number(p.bands) + " bands and index of refraction " + number(p.eta) +
+                       "; expected 2 terms, 1 or 3 bands and index 0";
+            }
+            return p.is_separate() || p.is_single_only()
+                       ? "thin-walled shading with separate scattering"
+                       : std::string();
         case Shading::translucent:
             if (p.is_separate() && p.is_single_only()) {
                 return "rows of single scattering alone with multiple scattering in a row of its "
@@ -137,7 +146,7 @@ std::string find_gloss_record_fault(const AssetView& asset, std::size_t i) {
     const GlossRecord& g = asset.gloss[i];
     const auto share = [](float x) { return x >= 0.0f && x <= 1.0f; };
     if (g.roughness == kNotGlossy) return {};
-    if (asset.primitives[i].shading != Shading::diffuse) {
+    if (!asset.primitives[i].is_opaque()) {
         return "it is not opaque: its roughness must be -1";
     }
     if (!share(g.roughness) || !share(g.metallic) || !share(g.f90) || !share(g.f0.r) ||

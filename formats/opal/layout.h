@@ -25,6 +25,9 @@ inline constexpr std::uint32_t kGreyMediaVersion = 2;
 /// its rows for multiple and single scattering together.
 inline constexpr std::uint32_t kSingleOnlyVersion = 3;
 
+/// Section version of PRIM where a primitive has Shading::sheet, which earlier readers do not know.
+inline constexpr std::uint32_t kSheetVersion = 4;
+
 /// Section version of TRAN: 8-bit detail codes stand for their squares (detail_codes.h). Files of
 /// version 1, where they stood for themselves, are refused.
 inline constexpr std::uint32_t kTransportVersion = 2;

@@ -152,7 +152,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 read = read_basis, bit = 1;
                 break;
             case kPrimSection:
-                read = read_primitives, bit = 2, latest = kSingleOnlyVersion;
+                read = read_primitives, bit = 2, latest = kSheetVersion;
                 break;
             case kTranSection:
                 read = read_transport, bit = 4, earliest = latest = kTransportVersion;

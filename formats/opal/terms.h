@@ -17,7 +17,8 @@ enum class TermSet : std::uint32_t {
                    ///< from inside), and out again
     single = 2,    ///< into a body, scattered there once, and out again
     specular = 4,  ///< reflected once by a glossy surface: the specular lobe, opaque or translucent
-    diffuse = 8,   ///< reflected once by an opaque surface: the diffuse lobe
+    diffuse = 8,   ///< reflected once by an opaque surface: the diffuse lobe; or transmitted once
+                   ///< by a thin-walled one
     unscattered = 16,      ///< through a body without being scattered
     interreflection = 32,  ///< everything that met a second body or surface
     baked = 15,            ///< what `.opal` files hold: multiple, single, specular, diffuse

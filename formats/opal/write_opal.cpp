@@ -74,14 +74,18 @@ Stored store(std::uint32_t id, Codec codec, std::span<const std::span<const std:
 
 // Of PRIM: the earliest version that has all of it.
 std::uint32_t version_of(std::span<const PrimitiveRecord> primitives) {
-    if (std::any_of(primitives.begin(), primitives.end(),
-                    [](const PrimitiveRecord& p) { return p.is_single_only(); })) {
+    const auto any = [&](auto has) {
+        return std::any_of(primitives.begin(), primitives.end(), has);
+    };
+    if (any([](const PrimitiveRecord& p) { return p.shading == Shading::sheet; })) {
+        return kSheetVersion;
+    }
+    if (any([](const PrimitiveRecord& p) { return p.is_single_only(); })) {
         return kSingleOnlyVersion;
     }
-    return std::any_of(primitives.begin(), primitives.end(),
-                       [](const PrimitiveRecord& p) {
-                           return p.shading == Shading::translucent && p.bands == 1;
-                       })
+    return any([](const PrimitiveRecord& p) {
+        return p.shading == Shading::translucent && p.bands == 1;
+    })
                ? kGreyMediaVersion
                : 1;
 }

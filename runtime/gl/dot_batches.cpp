@@ -66,7 +66,7 @@ bool fits(const DotBatch& batch, const DotLimits& limits) {
 }  // namespace
 
 bool needs_view(const PrimitiveRecord& primitive) {
-    return primitive.shading == formats::Shading::translucent && primitive.terms > 1;
+    return primitive.terms > 1;  // diffuse primitives have one
 }
 
 formats::Result<std::vector<DotBatch>> plan_dot_batches(const formats::AssetView& asset,

@@ -125,7 +125,7 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& l
         gl.product = make_zero_buffer(rows.rows() * kRadianceBytes, gl.resident);
     }
     const SpecularNeeds needs = specular_needs(asset);
-    if (gl.has_translucent || needs.gloss) {
+    if (gl.has_translucent || needs.gloss || gl.product.name() != 0) {
         gl.normal = make_buffer_of(asset.normal, gl.resident);
     }
     if (!needs.levels.empty()) {

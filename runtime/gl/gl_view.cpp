@@ -9,7 +9,7 @@
 namespace opaline::runtime {
 namespace {
 
-// Locations of view.comp.glsl; those from kEye on exist where there are several harmonics.
+// Locations of view.comp.glsl; those from kEye on exist where the sum depends on the eye.
 enum Uniform : GLint {
     kVertices,
     kProductOrigin,
@@ -25,13 +25,18 @@ enum Uniform : GLint {
 constexpr std::uint32_t kGroupSize = 64;  ///< local_size_x of the shader
 
 std::uint32_t harmonics(const ViewPrograms::Sum& sum) {
-    return sum.terms - (sum.is_separate ? 1 : 0);
+    return sum.is_sheet ? 0 : sum.terms - (sum.is_separate ? 1 : 0);
+}
+
+bool is_sheet(const formats::PrimitiveRecord& primitive) {
+    return primitive.shading == formats::Shading::sheet;
 }
 
 const ViewPrograms::Sum* find_sum(const ViewPrograms& programs,
                                   const formats::PrimitiveRecord& primitive) {
     const auto sum = std::ranges::find_if(programs.sums, [&](const ViewPrograms::Sum& s) {
-        return s.terms == primitive.terms && s.is_separate == primitive.is_separate();
+        return s.terms == primitive.terms && s.is_separate == primitive.is_separate() &&
+               s.is_sheet == is_sheet(primitive);
     });
     return sum == programs.sums.end() ? nullptr : &*sum;
 }
@@ -43,10 +48,11 @@ formats::Result<ViewPrograms> make_view_programs(const GlAsset& asset) {
     const StageSource stage{GL_COMPUTE_SHADER, view_comp_text};
     for (const formats::PrimitiveRecord& primitive : asset.primitives) {
         if (!needs_view(primitive) || find_sum(programs, primitive) != nullptr) continue;
-        ViewPrograms::Sum sum{primitive.terms, primitive.is_separate(), {}};
+        ViewPrograms::Sum sum{primitive.terms, primitive.is_separate(), is_sheet(primitive), {}};
         auto program = make_program("view terms",
                                     "#define HARMONICS " + std::to_string(harmonics(sum)) + "\n" +
-                                        (sum.is_separate ? "#define SEPARATE\n" : ""),
+                                        (sum.is_separate ? "#define SEPARATE\n" : "") +
+                                        (sum.is_sheet ? "#define SHEET\n" : ""),
                                     {&stage, 1});
         if (!program) return program.error();
         sum.program = std::move(program).value();
@@ -74,10 +80,12 @@ formats::Status dispatch_views(const GlAsset& asset, const ViewPrograms& program
         bind_storage(0, asset.product, batch.product);
         bind_storage(3, asset.radiance, batch.radiance);
         if (harmonics(sum) > 1) {
-            glUniform3f(kEye, eye.x, eye.y, eye.z);
-            glUniform1f(kUnit, unit);
             glUniform1f(kEta, primitive.eta);
             glUniform1ui(kIsDoubleSided, primitive.flags & formats::PrimitiveRecord::kDoubleSided);
+        }
+        if (harmonics(sum) > 1 || sum.is_sheet) {
+            glUniform3f(kEye, eye.x, eye.y, eye.z);
+            glUniform1f(kUnit, unit);
             glUniform1ui(kPointOrigin, batch.point.origin);
             bind_storage(1, asset.position, batch.point);
             bind_storage(2, asset.normal, batch.point);

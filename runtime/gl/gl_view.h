@@ -11,12 +11,12 @@
 
 namespace opaline::runtime {
 
-/// The compute shader that adds up the terms of translucent vertices, specialised for each number
-/// of them that the asset has; none where no vertex has several.
+/// The compute shader that makes one radiance of a vertex's several terms, specialised for each
+/// number and kind of them that the asset has; none where no vertex has several.
 struct ViewPrograms {
     struct Sum {
         std::uint32_t terms = 0;
-        bool is_separate = false;
+        bool is_separate = false, is_sheet = false;
         GlProgram program;
     };
     std::vector<Sum> sums;

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "bake/accuracy/stored_luminance.h"
-#include "bake/effects/direct/true_direct.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/transport/hidden_receivers.h"
+#include "bake/truth/true_reflection.h"
 #include "tests/support/media_bake.h"
 
 // What the 95 % interval of a file's stated error promises: of 100 seeds, which draw the receivers
@@ -25,14 +25,14 @@ std::vector<CheckedPair> check_every_receiver(const formats::Scene& scene,
     const auto rays = RayScene::build(scene, 2);
     EXPECT_TRUE(rays);
     const auto receivers = replace_hidden_receivers(*rays, scene, make_vertex_receivers(scene), {});
-    const DirectTruth truth = make_direct_truth(lights);
+    const ReflectionTruth truth = make_reflection_truth(lights);
     std::vector<CheckedPair> pairs;
     std::uint64_t traced = 0;
     for (std::uint32_t v = 0; v < receivers.size(); ++v) {
         const formats::PrimitiveRecord& primitive = formats::primitive_of(asset, v);
         append_pairs(relight_rows({asset.transport, primitive.rows(), v - primitive.first_vertex},
                                   kDiffuse, lights),
-                     eval_truth(truth, *rays, receivers[v], lights, traced), pairs);
+                     eval_reflection(truth, *rays, receivers[v], lights, traced), pairs);
     }
     return pairs;
 }

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/effects/direct/true_direct.h"
 #include "bake/plan/walk_work.h"
 #include "bake/scattering/half_space_medium.h"
 #include "bake/transport/irradiance_transport.h"
+#include "bake/truth/true_reflection.h"
 #include "formats/opal/haar.h"
 
 namespace opaline::bake {
@@ -48,7 +48,8 @@ void lay_out(const PlanEntry& entry, RowLayout& layout) {
     }
 }
 
-constexpr std::array<DecisionRule, 1> kRules{{{"direct", is_any_material, decide, lay_out}}};
+constexpr std::array<DecisionRule, 1> kRules{
+    {{"direct", [](const PlanInput& input) { return !is_thin_walled(input); }, decide, lay_out}}};
 
 // The reflectance of the medium that is shown as a surface.
 struct Albedo : Prepared {
@@ -89,13 +90,13 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
 }
 
 struct Truth : Prepared {
-    DirectTruth truth;
+    ReflectionTruth truth;
     std::span<const TestLight> lights;
 };
 
 PreparedPtr make_truth(const EffectInputs&, TruthEffort, std::span<const TestLight> lights) {
     auto truth = std::make_unique<Truth>();
-    truth->truth = make_direct_truth(lights);
+    truth->truth = make_reflection_truth(lights);
     truth->lights = lights;
     return truth;
 }
@@ -103,7 +104,7 @@ PreparedPtr make_truth(const EffectInputs&, TruthEffort, std::span<const TestLig
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& own = static_cast<const Truth&>(prepared);
-    return eval_truth(own.truth, inputs.bake.rays, receiver.outside, own.lights, rays);
+    return eval_reflection(own.truth, inputs.bake.rays, receiver.outside, own.lights, rays);
 }
 
 }  // namespace
@@ -128,7 +129,8 @@ EffectDescriptor describe_direct(Effect id) {
         .truth = {.reference = "rays to the suns, and to all else four a texel of 6 x 64 x 64",
                   .make = make_truth,
                   .eval = eval,
-                  .work = [](const SubjectCost& c, TruthEffort) { return direct_truth_work(c); }},
+                  .work = [](const SubjectCost& c,
+                             TruthEffort) { return true_irradiance_work(c); }},
         .tint = [](const Prepared& albedo) { return static_cast<const Albedo&>(albedo).value; }};
 }
 

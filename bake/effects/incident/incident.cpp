@@ -11,8 +11,9 @@ namespace {
 constexpr std::array<DecisionRule, 2> kRules{
     {{"light.visibility", is_any_material, decide_visibility,
       [](const PlanEntry& entry, RowLayout& layout) { layout.occluded = entry.on; }},
-     {"light.colour", has_medium, decide_colour,
-      [](const PlanEntry& entry, RowLayout& layout) { layout.grey = !entry.on; }}}};
+     {"light.colour",
+      [](const PlanInput& input) { return has_medium(input) || is_thin_walled(input); },
+      decide_colour, [](const PlanEntry& entry, RowLayout& layout) { layout.grey = !entry.on; }}}};
 
 }  // namespace
 

@@ -12,8 +12,8 @@ PlanEntry decide_colour(const PlanInput& input) {
     }
     entry.on = is_worth(entry.bound, input, entry.forced);
     entry.reason = input.subject.is_grey ? "the three bands coincide"
-                   : entry.on            ? "the medium treats red, green and blue differently"
-                                         : "hardly any scattered light of the medium is simulated";
+                   : entry.on            ? "red, green and blue are scattered differently"
+                                         : "hardly any scattered light is simulated";
     return entry;
 }
 

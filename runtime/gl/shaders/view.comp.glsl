@@ -1,7 +1,8 @@
-// What a translucent vertex shows the eye without its Fresnel factor: sum_k h_k(w_o') <T_k, L>.
-// The same steps as view_terms.cpp. Specialised by HARMONICS, the rows of a vertex that the
-// direction to the eye weighs, 1, 4, 9, 16 or 25, and SEPARATE: multiple scattering has a row of its
-// own before them.
+// What a vertex of several rows shows the eye, without base colour and Fresnel factor.
+// Translucent: sum_k h_k(w_o') <T_k, L>, the same steps as view_terms.cpp. Specialised by HARMONICS,
+// the rows of a vertex that the direction to the eye weighs, 1, 4, 9, 16 or 25, and SEPARATE:
+// multiple scattering has a row of its own before them.
+// SHEET, thin-walled (HARMONICS is 0): <T_k, L> of the side that the eye is on.
 layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) readonly buffer Products { vec4 product[]; };
@@ -13,15 +14,28 @@ layout(location = 1) uniform uint product_origin;
 layout(location = 2) uniform uint radiance_origin;
 layout(location = 3) uniform uvec2 shows;  // multiple, single
 
-#if HARMONICS > 1
+#if HARMONICS > 1 || defined(SHEET)
 layout(std430, binding = 1) readonly buffer Positions { float position[]; };
 layout(std430, binding = 2) readonly buffer Normals { float normal[]; };
 
 layout(location = 4) uniform vec3 eye;
 layout(location = 5) uniform float unit;  // 1 / distance scale: keeps squares within floats
+layout(location = 8) uniform uint point_origin;  // of positions and normals
+
+vec3 normal_of(uint vertex) {
+    uint p = point_origin + 3u * vertex;
+    return vec3(normal[p], normal[p + 1u], normal[p + 2u]);
+}
+
+vec3 from_vertex_to_eye(uint vertex) {
+    uint p = point_origin + 3u * vertex;
+    return (eye - vec3(position[p], position[p + 1u], position[p + 2u])) * unit;
+}
+#endif
+
+#if HARMONICS > 1
 layout(location = 6) uniform float eta;
 layout(location = 7) uniform uint is_double_sided;
-layout(location = 8) uniform uint point_origin;  // of positions and normals
 
 vec3 refract_to_eye(vec3 n, vec3 w, float c) {
     vec3 tangent = w - c * n;
@@ -101,9 +115,7 @@ vec3 sum_harmonics(uint at, vec3 w) {
 }
 
 vec3 sum_toward_eye(uint vertex, uint at) {
-    uint p = point_origin + 3u * vertex;
-    vec3 n = vec3(normal[p], normal[p + 1u], normal[p + 2u]);
-    vec3 to_eye = (eye - vec3(position[p], position[p + 1u], position[p + 2u])) * unit;
+    vec3 n = normal_of(vertex), to_eye = from_vertex_to_eye(vertex);
     float distance_to_eye = length(to_eye);
     vec3 w = distance_to_eye > 0.0 ? to_eye / distance_to_eye : n;
     float c = dot(n, w);
@@ -125,7 +137,10 @@ void main() {
         return;
     }
     vec3 sum = vec3(0.0);
-#ifdef SEPARATE
+#ifdef SHEET
+    bool is_behind = dot(normal_of(vertex), from_vertex_to_eye(vertex)) < 0.0;
+    sum = product[product_origin + 2u * vertex + (is_behind ? 1u : 0u)].rgb;
+#elif defined(SEPARATE)
     uint at = product_origin + vertex * (uint(HARMONICS) + 1u);
     if (shows.x != 0u) {
         sum = product[at].rgb;

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/effects/direct/true_direct.h"
 #include "bake/effects/multiple/true_multiple.h"
 #include "bake/effects/single/true_single.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scattering/fresnel.h"
+#include "bake/truth/true_reflection.h"
 #include "formats/opal/cubemap.h"
 #include "tests/bake/single/single_support.h"
 
@@ -34,14 +34,14 @@ double mean(const TwoEstimates& estimates, std::size_t light) {
     return 0.5 * (estimates.first[light] + estimates.second[light]);
 }
 
-TEST(DirectTruth, OpenFloorReflectsTheCosineOfEachSunAndAllOfTheSky) {
+TEST(ReflectionTruth, OpenFloorReflectsTheCosineOfEachSunAndAllOfTheSky) {
     const auto scene = tests::make_scene({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2)});
     const auto rays = RayScene::build(scene, 1);
     const std::vector<Receiver> receivers = make_vertex_receivers(scene);
     const std::vector<TestLight> lights = published_lights();
     std::uint64_t traced = 0;
     const TwoEstimates truth =
-        eval_truth(make_direct_truth(lights), *rays, receivers[4], lights, traced);
+        eval_reflection(make_reflection_truth(lights), *rays, receivers[4], lights, traced);
     const auto sine = [](double degrees) { return std::sin(degrees * std::numbers::pi / 180); };
     EXPECT_NEAR(mean(truth, place_of(lights, "white")), 1, 1e-4);
     EXPECT_NEAR(mean(truth, place_of(lights, "sun:30,60")), sine(60), 2e-4);

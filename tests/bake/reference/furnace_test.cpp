@@ -91,6 +91,41 @@ TEST(ReferenceFurnace, WhiteSurfacesThatFaceEachOtherVanish) {
     expect_white(found, "plates");
 }
 
+// Two wide sheets close together, each reflecting r and transmitting t: what passes and returns
+// between them adds up to r + t^2 / (1 - r) under light from both sides.
+TEST(ReferenceFurnace, TwoSheetsExchangeLightAsTheSeriesSays) {
+    constexpr float kReflect = 0.3f, kTransmit = 0.5f;
+    Scene input = make_scene({make_quad({-50, 0, -50}, {0, 0, 100}, {100, 0, 0}),
+                              make_quad({-50, 0.05f, -50}, {0, 0, 100}, {100, 0, 0})});
+    input.materials[0].sheet =
+        formats::Sheet{{kReflect, kReflect, kReflect}, {kTransmit, kTransmit, kTransmit}};
+    input.materials[0].double_sided = true;
+    const auto sheets = make_fixture(std::move(input), make_white_sky());
+    bake::Moments seen;
+    constexpr std::uint32_t kSamples = 100000;
+    for (const glm::vec3 from : {glm::vec3(0, 2, 0), glm::vec3(0, -2, 0)}) {
+        for (std::uint32_t i = 0; i < kSamples; ++i) {
+            bake::RandomStream random(7, from.y > 0 ? 1 : 0, i);
+            seen.add(bake::trace_ray(sheets->space(), from, {0, from.y > 0 ? -1.0f : 1.0f, 0},
+                                     random, {})
+                         .radiance);
+        }
+    }
+    const double expected = kReflect + kTransmit * kTransmit / (1 - kReflect);
+    EXPECT_NEAR(seen.mean.x, expected, 4 * standard_error(seen) + 1e-3);
+    EXPECT_LT(standard_error(seen), 2e-3);
+}
+
+// r + t = 1: a curved sheet is as bright as its surroundings, whatever it reflects onto itself.
+TEST(ReferenceFurnace, SheetThatAbsorbsNothingIsAsBrightAsItsSurroundings) {
+    Scene input = make_scene({make_sphere(2)});
+    input.primitives[0].index.resize(input.primitives[0].index.size() / 2);
+    input.materials[0].sheet = formats::Sheet{{0.4f, 0.4f, 0.4f}, {0.6f, 0.6f, 0.6f}};
+    input.materials[0].double_sided = true;
+    const auto body = make_fixture(std::move(input), make_white_sky());
+    expect_white(estimate(*body, 8, 320000), "half a hollow ball");
+}
+
 TEST(ReferenceFurnace, ShellsOfOneMediumInEachOtherAreOneBody) {
     // The inner shell changes nothing: same paths, same numbers.
     Scene lone = make_scene({make_sphere(2)}),

@@ -131,7 +131,6 @@ TEST(GltfTranslucency, WhatDescribesNoScatteringMediumIsBakedDiffuseWithAWarning
         EXPECT_THAT(result.warnings, HasSubstr("baked diffuse")) << pointer << value;
         return result.warnings;
     };
-    EXPECT_THAT(refused("/KHR_materials_volume/thicknessFactor", 0), HasSubstr("thin-walled"));
     EXPECT_THAT(refused("/KHR_materials_volume/attenuationDistance", 0), HasSubstr("not above 0"));
     EXPECT_THAT(refused("/KHR_materials_volume/attenuationDistance", 1e-30), HasSubstr("extreme"));
     EXPECT_THAT(refused("/KHR_materials_volume/attenuationDistance", 1e30), HasSubstr("extreme"));
@@ -145,6 +144,70 @@ TEST(GltfTranslucency, WhatDescribesNoScatteringMediumIsBakedDiffuseWithAWarning
     Json extensions = scattering_extensions();
     extensions.erase("KHR_materials_volume");
     EXPECT_FALSE(mapped(asset_with(extensions)).medium.has_value());
+}
+
+void expect_near(formats::Rgb found, glm::dvec3 expected) {
+    EXPECT_NEAR(found.r, expected.x, 1e-6);
+    EXPECT_NEAR(found.g, expected.y, 1e-6);
+    EXPECT_NEAR(found.b, expected.z, 1e-6);
+}
+
+TEST(GltfTranslucency, DiffuseTransmissionIsAThinWalledSurfaceOfTwoSides) {
+    AssetBuilder leaf = asset_with({{"KHR_materials_diffuse_transmission",
+                                     {{"diffuseTransmissionFactor", 0.25},
+                                      {"diffuseTransmissionColorFactor", {0.4, 1, 0.8}}}}});
+    leaf.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.2, 0, 1};
+    const auto imported = must_import(leaf);
+    const formats::Material& material = imported.scene.materials[0];
+    EXPECT_EQ(lines(imported.warnings), "");
+    EXPECT_FALSE(material.medium);
+    ASSERT_TRUE(material.sheet);
+    EXPECT_TRUE(material.double_sided);
+    // What is reflected and transmitted, whichever of the two is the larger.
+    expect_near(material.base_color * material.sheet->reflect, {0.375, 0.15, 0});
+    expect_near(material.base_color * material.sheet->transmit, {0.1, 0.25, 0.2});
+    for (const float share : {material.sheet->reflect.r, material.sheet->reflect.b,
+                              material.sheet->transmit.g, material.sheet->transmit.b}) {
+        EXPECT_TRUE(share >= 0 && share <= 1);
+    }
+    // A volume makes it a body, which is as it was.
+    leaf.json["materials"][0]["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+    EXPECT_FALSE(must_import(leaf).scene.materials[0].sheet);
+    // Out of range, and of nothing.
+    leaf.json["materials"][0]["extensions"].erase("KHR_materials_volume");
+    Json& thin = leaf.json["materials"][0]["extensions"]["KHR_materials_diffuse_transmission"];
+    thin["diffuseTransmissionFactor"] = 7;
+    const auto clamped = must_import(leaf);
+    EXPECT_THAT(lines(clamped.warnings), HasSubstr("clamped"));
+    EXPECT_EQ(clamped.scene.materials[0].sheet->reflect, formats::Rgb{});
+    thin["diffuseTransmissionFactor"] = 0;
+    EXPECT_FALSE(must_import(leaf).scene.materials[0].sheet);
+}
+
+// Share (1 + g) / 2 goes on forward.
+TEST(GltfTranslucency, ScatteringWithoutThicknessIsAThinWalledSurface) {
+    Json extensions = scattering_extensions();
+    extensions["KHR_materials_volume"]["thicknessFactor"] = 0;
+    AssetBuilder paper = asset_with(extensions);
+    paper.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 0.5, 1, 1};
+    const auto imported = must_import(paper);
+    const formats::Material& material = imported.scene.materials[0];
+    EXPECT_EQ(lines(imported.warnings), "");
+    EXPECT_FALSE(material.medium);
+    ASSERT_TRUE(material.sheet);
+    expect_near(material.base_color * material.sheet->reflect, {0.25 * 0.8, 0.25 * 0.25, 0});
+    expect_near(material.base_color * material.sheet->transmit, {0.75 * 0.8, 0.75 * 0.25, 0});
+    // Half of it does not enter; half of the rest passes unscattered.
+    paper.json["materials"][0]["extensions"]["KHR_materials_transmission"]["transmissionFactor"] =
+        0.5;
+    paper.json["materials"][0]["extensions"]["KHR_materials_scatter"]["scatterStrengthFactor"] =
+        0.5;
+    const auto half = must_import(paper);
+    EXPECT_THAT(lines(half.warnings), HasSubstr("unscattered"));
+    const formats::Material& mixed = half.scene.materials[0];
+    expect_near(mixed.base_color * mixed.sheet->transmit, {0.75 * 0.2, 0.75 * 0.0625, 0});
+    expect_near(mixed.base_color * mixed.sheet->reflect,
+                {0.5 + 0.25 * 0.2, 0.25 + 0.25 * 0.0625, 0.5});
 }
 
 TEST(GltfTranslucency, ClearAndAbsorbingGlassAreNoScatteringMedia) {

@@ -140,6 +140,14 @@ TEST(MediaErrors, ContradictingKeysAreNamed) {
     EXPECT_THAT(refuse(kGood + R"(, "sigma_s_prime": [1, 1, 1])"),
                 HasSubstr("Wax > sigma_s_prime: it contradicts sigma_s"));
     EXPECT_THAT(refuse(R"("opaque": true, "preset": "skin1")"), HasSubstr("contradicts opaque"));
+    EXPECT_THAT(refuse(R"("thin_walled": {"reflect": [1, 0, 0]}, "preset": "skin1")"),
+                HasSubstr("contradicts thin_walled"));
+    EXPECT_THAT(refuse(R"("thin_walled": {}, "opaque": true)"), HasSubstr("neither reflect"));
+    EXPECT_THAT(refuse(R"("thin_walled": 1)"), HasSubstr("not an object"));
+    EXPECT_THAT(refuse(R"("thin_walled": {"transmit": [0.5, 2, 0]})"), HasSubstr("transmit"));
+    EXPECT_THAT(refuse(R"("thin_walled": {"reflect": [0.6, 0, 0], "transmit": [0.5, 0, 0]})"),
+                HasSubstr("exceed 1"));
+    EXPECT_THAT(refuse(R"("thin_walled": {"reflected": [0.6, 0, 0]})"), HasSubstr("reflected"));
 }
 
 TEST(MediaErrors, MediumWithoutAnyCoefficientIsRefused) {

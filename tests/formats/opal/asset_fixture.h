@@ -101,6 +101,12 @@ inline void add_translucent_triangle(formats::Asset& asset, std::uint32_t terms,
     }
 }
 
+/// Adds a thin-walled triangle: two random rows a vertex.
+inline void add_sheet_triangle(formats::Asset& asset, std::uint32_t bands = 3) {
+    add_translucent_triangle(asset, 2, 0, false, bands);
+    asset.primitives.back().shading = formats::Shading::sheet;
+}
+
 /// Makes translucent primitives glossy: roughness 0.3, openness from closed to open along the
 /// vertices.
 inline void add_gloss(formats::Asset& asset) {

@@ -125,7 +125,7 @@ Result<LoadedAsset> read_with_version(std::uint32_t id, std::uint32_t version) {
 }
 
 TEST(OpalVersion, ALaterSectionVersionAsksForAnUpdate) {
-    for (const auto& [id, version] : {std::pair{kPrimSection, kSingleOnlyVersion + 1},
+    for (const auto& [id, version] : {std::pair{kPrimSection, kSheetVersion + 1},
                                       std::pair{kTranSection, kTransportVersion + 1}}) {
         const auto loaded = read_with_version(id, version);
         ASSERT_FALSE(loaded);

@@ -145,10 +145,36 @@ TEST(OpalFile, ImpossibleShadingIsRefusedByName) {
         }
     }
     EXPECT_THAT(fault_of([](Primitives& p) { p[0].terms = 4; }), testing::HasSubstr("terms"));
-    EXPECT_THAT(fault_of([](Primitives& p) { p[1].shading = static_cast<Shading>(3); }),
-                testing::HasSubstr("shading 3"));
+    EXPECT_THAT(fault_of([](Primitives& p) { p[1].shading = static_cast<Shading>(4); }),
+                testing::HasSubstr("shading 4"));
     // More rows than there are, by the number of terms.
     EXPECT_NE(fault_of([](Primitives& p) { p[2].terms = 9; }), "");
+}
+
+TEST(OpalFile, ThinWalledSurfacesHaveARowForEachSideAndASectionVersionOfTheirOwn) {
+    const auto fault_of = [](auto edit) {
+        Asset asset = tests::make_small_asset();
+        tests::add_sheet_triangle(asset);
+        edit(asset.primitives.back());
+        AlignedBytes stored(encode(asset));
+        const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+        return loaded ? std::string() : loaded.error().diagnostics.front().fault;
+    };
+    EXPECT_EQ(fault_of([](PrimitiveRecord&) {}), "");
+    EXPECT_THAT(fault_of([](PrimitiveRecord& p) { p.terms = 1; }),
+                testing::HasSubstr("thin-walled shading with 1 terms"));
+    EXPECT_THAT(fault_of([](PrimitiveRecord& p) { p.eta = 1.3f; }),
+                testing::HasSubstr("index of refraction 1.3"));
+    EXPECT_THAT(fault_of([](PrimitiveRecord& p) { p.bands = 2; }), testing::HasSubstr("2 bands"));
+    EXPECT_THAT(fault_of([](PrimitiveRecord& p) { p.flags = PrimitiveRecord::kSeparate; }),
+                testing::HasSubstr("separate scattering"));
+    Asset asset = tests::make_small_asset();
+    tests::add_sheet_triangle(asset, 1);
+    AlignedBytes stored(encode(asset));
+    const auto view = read_opal(stored.bytes(), "a.opal", Checks::full);
+    ASSERT_TRUE(view);
+    EXPECT_EQ(view->view.primitives[2].shading, Shading::sheet);
+    EXPECT_EQ(version_of_primitives(*view), 4u);
 }
 
 TEST(OpalFile, SeparateScatteringHasOneRowMoreThanItsHarmonics) {

@@ -90,6 +90,41 @@ TEST_F(GlTranslucent, PicturesAgreeWithTheCpuForEveryNumberOfTermsAndBands) {
     }
 }
 
+// Seen from in front and from behind, beside a medium of as many rows.
+TEST_F(GlTranslucent, PicturesOfThinWalledSurfacesAgreeWithTheCpu) {
+    const Environment sky = test::make_lat_long(128, 64, test::two_lights);
+    for (const std::uint32_t bands : {1u, 3u}) {
+        Asset asset = test::make_asset(16, 8);
+        asset.images.push_back(test::make_noise_image(13, 9));
+        for (const float turn : {1.0f, -1.0f}) {
+            test::add_primitive(
+                asset,
+                test::make_sheet({turn, 1, 0}, {0.7f * turn, 0, 0.2f}, {0, 0.8f, 0.1f}, 4, 1.8f),
+                {.bands = bands, .image = turn > 0 ? 0 : formats::kNoImage, .is_sheet = true});
+        }
+        test::add_primitive(asset, test::make_sphere({0, 1, 1.5f}, 0.4f, 16, 10),
+                            {.bands = 3, .eta = 1.3f, .terms = 2, .is_separate = true});
+        const AssetView view = asset.view();
+        const LightVector light = project_environment(sky, 16);
+        auto renderer = GlRenderer::create(view, sky);
+        ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
+        ASSERT_TRUE(renderer->set_light(light, {}));
+        const Camera camera = frame_asset(view, 45, 200, 150);
+        for (const float degrees : {0.0f, 180.0f}) {
+            const Camera at = orbit(camera, degrees);
+            const std::vector<Rgb> radiance = view_on_cpu(view, light, at);
+            const auto cpu = render_software(view, radiance, sky, {}, at);
+            const auto gl = renderer->render(at);
+            ASSERT_TRUE(cpu.has_value());
+            ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
+            const auto on_gl = renderer->read_radiance();
+            ASSERT_TRUE(on_gl.has_value());
+            expect_same_radiance(radiance, *on_gl);
+            expect_same_picture(*cpu, *gl);
+        }
+    }
+}
+
 TEST_F(GlTranslucent, SeveralDispatchesMakeTheSamePicture) {
     const Environment sky = test::make_lat_long(64, 32, test::two_lights);
     const Asset asset = make_scene(4, 1.3f);

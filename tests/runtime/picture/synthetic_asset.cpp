@@ -155,6 +155,10 @@ void add_primitive(formats::Asset& asset, const TestMesh& mesh, const TestPrimit
         primitive.terms = options.terms;
         primitive.flags |= options.is_separate ? formats::PrimitiveRecord::kSeparate : 0;
     }
+    if (options.is_sheet) {
+        primitive.shading = formats::Shading::sheet;
+        primitive.terms = 2;
+    }
     for (const Vec3 normal : mesh.normal) {
         for (std::uint32_t k = 0; k < primitive.terms; ++k) {
             const float t = static_cast<float>(k);

@@ -36,6 +36,7 @@ struct TestPrimitive {
     std::uint32_t terms = 1;
     bool is_double_sided = false;
     bool is_separate = false;  ///< translucent: PrimitiveRecord::kSeparate
+    bool is_sheet = false;     ///< thin-walled: two rows a vertex
 };
 
 /// Empty asset over a cube map of n x n texels.
