@@ -71,7 +71,8 @@ perl -MMIME::Base64 -e '
 # a statue 12 cm high, and what scatters once can be seen.
 bird='"sigma_s": [0.075, 0.085, 0.100], "sigma_a": [0.002, 0.004, 0.007], "unit": "1/mm", "eta": 1.3'
 phase() { echo "\"phase\": {\"type\": \"hg\", \"g\": $1}"; }
-draft=(--quality draft --samples 10000)
+# The paper's method.
+draft=(--quality draft --samples 10000 --multiple-model dipole)
 view=(--size 400x400 --fov 22)
 back=(--light sky:3,20 --rotate-light 205)
 
@@ -183,3 +184,13 @@ picture marble marble-front --size 440x440 --fov 16.5 --light sky:3,35
 panel figure8 2x1 marble-front "sun from the front" marble "sun from behind"
 montage marble.png jade.png wax.png -tile 3x1 -geometry +0+0 -depth 8 "$out/materials.png"
 echo "$out/materials.png"
+
+# Thin-walled leaves with the sun behind the eye and behind them.
+"$opaline" example leaves -o . >/dev/null
+"$opaline" bake leaves.gltf --media "$root/examples/media/leaf.json" -o leaves.opal 2>/dev/null
+for sun in 20 200; do
+    picture leaves "leaves$sun" --size 640x440 --distance 0.26 --azimuth 20 --elevation 25 \
+        --target 0,0.04,0 --light sky:3,20 --rotate-light "$sun"
+done
+montage leaves20.png leaves200.png -tile 2x1 -geometry +0+0 -depth 8 "$out/leaves.png"
+echo "$out/leaves.png"

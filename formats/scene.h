@@ -37,6 +37,7 @@ struct Medium {
     PhaseFunction phase;
     float eta = 1.3f;        ///< index of refraction relative to the outside, in [1/3, 3]
     float roughness = 0.2f;  ///< of the specular reflection at its surface, GGX, in [0, 1]
+    float thickness = 0;     ///< [m]; > 0: fills no closed surface but a sheet so thick
     enum class Profile {
         automatic,
         classic,

@@ -9,6 +9,7 @@
 
 #include "bake/cli/messages.h"
 #include "bake/environment/builtin_environment.h"
+#include "bake/scene/flatten_slabs.h"
 #include "formats/media/apply_media.h"
 #include "formats/media/read_media.h"
 
@@ -72,6 +73,8 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
             return std::move(status).error();
         }
     }
+    const auto flattened = bake::flatten_slabs(imported->scene, {});
+    imported->warnings.insert(imported->warnings.end(), flattened.begin(), flattened.end());
     if (auto status = report_warnings(imported->warnings); !status) {
         return std::move(status).error();
     }

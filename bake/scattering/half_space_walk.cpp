@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "bake/base/ordered_parallel.h"
@@ -24,8 +25,8 @@ double scatter(double mu, double g, double u, double v) {
     return std::clamp(mu * cosine + sines * std::cos(2 * std::numbers::pi * v), -1.0, 1.0);
 }
 
-HalfSpaceReflectance walk(double albedo, double g, double eta, std::uint32_t path,
-                          std::uint64_t seed) {
+SlabShares walk(double albedo, double g, double eta, double thickness, std::uint32_t path,
+                std::uint64_t seed) {
     std::uint32_t event = 0;
     const auto random = [&] {
         return random_uniform(seed, RandomStage::half_space_walk, path, event++);
@@ -37,7 +38,7 @@ HalfSpaceReflectance walk(double albedo, double g, double eta, std::uint32_t pat
     double depth = 0;                            // in mean free paths
     unsigned scatterings = 0;
     bool reflected = false;
-    HalfSpaceReflectance found;
+    SlabShares found;
     constexpr unsigned kMostEvents = 100000;
     while (weight > 0 && event < kMostEvents) {
         const std::array<float, 4> u = random();
@@ -47,12 +48,23 @@ HalfSpaceReflectance walk(double albedo, double g, double eta, std::uint32_t pat
                 return found;  // horizontal within rounding
             }
             const double leaves = fresnel_transmittance(-mu, 1 / eta);
-            (scatterings == 1 && !reflected ? found.once : found.rest) += weight * leaves;
+            (scatterings == 0                 ? found.straight
+             : scatterings == 1 && !reflected ? found.once
+                                              : found.rest) += weight * leaves;
             weight *= 1 - leaves;
             depth = 0;
             mu = -mu;
             reflected = true;
             continue;  // free flight has no memory
+        }
+        if (depth >= thickness) {
+            const double leaves = fresnel_transmittance(mu, 1 / eta);
+            (scatterings == 0 ? found.straight : found.through) += weight * leaves;
+            weight *= 1 - leaves;
+            depth = thickness;
+            mu = -mu;
+            reflected = true;
+            continue;
         }
         weight *= albedo;
         ++scatterings;
@@ -68,28 +80,37 @@ HalfSpaceReflectance walk(double albedo, double g, double eta, std::uint32_t pat
     return found;
 }
 
+void add(SlabShares& sum, const SlabShares& part) {
+    sum.once += part.once;
+    sum.rest += part.rest;
+    sum.through += part.through;
+    sum.straight += part.straight;
+}
+
 }  // namespace
 
 HalfSpaceReflectance walk_half_space(double albedo, double g, double eta, std::uint32_t paths,
                                      std::uint64_t seed, const Context& context) {
-    HalfSpaceReflectance sum;
+    return walk_slab(albedo, g, eta, std::numeric_limits<double>::infinity(), paths, seed, context);
+}
+
+SlabShares walk_slab(double albedo, double g, double eta, double thickness, std::uint32_t paths,
+                     std::uint64_t seed, const Context& context) {
+    SlabShares sum;
     for_each_block_in_order(
         paths, 2048, context,
         [&](Range range) {
-            HalfSpaceReflectance part;
+            SlabShares part;
             for (std::size_t path = range.begin; path < range.end; ++path) {
-                const HalfSpaceReflectance one =
-                    walk(albedo, g, eta, static_cast<std::uint32_t>(path), seed);
-                part.once += one.once;
-                part.rest += one.rest;
+                add(part, walk(albedo, g, eta, thickness, static_cast<std::uint32_t>(path), seed));
             }
             return part;
         },
-        [&](Range, const HalfSpaceReflectance& part) {
-            sum.once += part.once;
-            sum.rest += part.rest;
-        });
-    return {sum.once / paths, sum.rest / paths};
+        [&](Range, const SlabShares& part) { add(sum, part); });
+    for (double* share : {&sum.once, &sum.rest, &sum.through, &sum.straight}) {
+        *share /= paths;
+    }
+    return sum;
 }
 
 }  // namespace opaline::bake

@@ -11,6 +11,7 @@ inline constexpr double kMinRmsAngle = 1e-3;         ///< [rad]
 inline constexpr double kMinEta = 1.0 / 3.0, kMaxEta = 3.0;
 inline constexpr double kMaxTableValue = 1e30, kMinTableIntegral = 1e-30;
 inline constexpr std::size_t kMaxTableRows = 65536;
+inline constexpr double kMinThickness = 1e-9, kMaxThickness = 1e3;      ///< [m]
 inline constexpr double kMinMarbleScale = 1e-6, kMaxMarbleScale = 1e6;  ///< [m]
 inline constexpr std::size_t kMaxMarbleColors = 16;
 

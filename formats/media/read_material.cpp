@@ -119,6 +119,8 @@ std::optional<Medium> read_medium(const Fields& fields, gltf::Resources& resourc
         number(fields, "eta", kMinEta, kMaxEta).value_or(static_cast<double>(medium.eta)));
     medium.roughness = static_cast<float>(
         number(fields, "roughness", 0, 1).value_or(static_cast<double>(medium.roughness)));
+    medium.thickness =
+        static_cast<float>(number(fields, "thickness", kMinThickness, kMaxThickness).value_or(0));
     medium.profile = static_cast<Medium::Profile>(
         choice(fields, "profile", {"auto", "classic", "better", "beams", "normalized"})
             .value_or(0));
@@ -141,7 +143,7 @@ MaterialMedium read_material(const std::string& name, const nlohmann::json& entr
     const Fields fields{entry, where, report};
     refuse_unknown_keys(fields, {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase",
                                  "eta", "roughness", "base_color", "albedo_texture", "marble",
-                                 "profile", "fidelity", "opaque", "thin_walled"});
+                                 "profile", "fidelity", "opaque", "thin_walled", "thickness"});
     refuse_beside(fields, "preset", {"sigma_s", "sigma_s_prime", "sigma_a", "unit"},
                   "give the preset or coefficients");
     refuse_beside(fields, "sigma_s", {"sigma_s_prime"}, "give one of them");
@@ -152,12 +154,12 @@ MaterialMedium read_material(const std::string& name, const nlohmann::json& entr
     if (has(fields, "thin_walled")) {
         refuse_beside(fields, "thin_walled",
                       {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta",
-                       "roughness", "profile", "fidelity", "opaque"},
+                       "roughness", "profile", "fidelity", "opaque", "thickness"},
                       "give a medium or thin_walled");
     } else if (truth(fields, "opaque").value_or(false)) {
         refuse_beside(fields, "opaque",
                       {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta",
-                       "roughness", "profile", "fidelity"},
+                       "roughness", "profile", "fidelity", "thickness"},
                       "give a medium or \"opaque\": true");
     } else {
         material.medium = read_medium(fields, resources);

@@ -1,12 +1,17 @@
 // Thin-walled surfaces in whole bakes: both sides, against closed forms and path tracing.
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "bake/accuracy/check_model.h"
+#include "bake/reference/estimate.h"
+#include "bake/reference/random_stream.h"
+#include "bake/scene/flatten_slabs.h"
 #include "bake/scene/inspect_scene.h"
 #include "tests/support/media_bake.h"
+#include "tests/support/sheets.h"
 
 namespace opaline::bake {
 namespace {
@@ -93,6 +98,65 @@ TEST(Sheet, IsAsBrightAsPathTracedFromAboveAndFromBelow) {
         EXPECT_LT(std::abs(report->by_light[0].bias), 0.01) << turned;
         EXPECT_LT(baked.error.at_receivers.rms_relative, 0.08);
     }
+}
+
+// Under even light, the mean over views of a real slab of index 1, far from its rim.
+TEST(Sheet, OfAMediumIsAsBrightAsAPathTracedSlabInTheMean) {
+    formats::Medium medium = tests::make_grey_medium(300, 30, 1);
+    medium.thickness = 0.01f;  // three mean free paths
+    tests::Scene scene = tests::make_scene({make_leaf()});
+    scene.materials[0].medium = medium;
+    EXPECT_TRUE(flatten_slabs(scene, {}).empty());
+    ASSERT_FALSE(scene.materials[0].medium);
+    ASSERT_TRUE(scene.materials[0].sheet);
+    EXPECT_TRUE(scene.materials[0].double_sided);
+    const formats::Sheet sheet = *scene.materials[0].sheet;
+    EXPECT_EQ(sheet.reflect.r, sheet.reflect.b) << "the same walks";
+
+    const tests::Scene slab = tests::make_translucent_scene(tests::make_sheet(0.01f, 8, 2), medium);
+    const auto traced = make_reference_scene(slab, 0);
+    ASSERT_TRUE(traced);
+    const formats::Environment white = make_environment("white").value();
+    const LightSampler light = make_light_sampler(white, glm::mat3(1.0f));
+    PathOptions options;
+    options.terms = TermSet::multiple | TermSet::single;
+    Moments seen;
+    for (std::uint32_t i = 0; i < 100000; ++i) {
+        RandomStream random(3, 0, i);
+        // Cosine-distributed.
+        const float u = random.next(), phi = 2 * std::numbers::pi_v<float> * random.next();
+        const glm::vec3 to_eye(std::sqrt(u) * std::cos(phi), std::sqrt(1 - u),
+                               std::sqrt(u) * std::sin(phi));
+        seen.add(trace_ray({*traced, light, options}, 0.9f * to_eye, -to_eye, random, {}).radiance);
+    }
+    const double error = std::sqrt(seen.variance_of_mean().x);
+    EXPECT_LT(error, 0.003);
+    EXPECT_NEAR(static_cast<double>(sheet.reflect.g + sheet.transmit.g), seen.mean.x,
+                4 * error + 0.004);
+}
+
+TEST(Sheet, OfAClearMediumWarnsOfWhatPassesUnscattered) {
+    tests::Scene scene = tests::make_scene({make_leaf()});
+    scene.materials[0].medium = tests::make_grey_medium(10, 0, 1);
+    scene.materials[0].medium->thickness = 0.01f;
+    EXPECT_THAT(flatten_slabs(scene, {}),
+                ::testing::ElementsAre(::testing::Field(&formats::Diagnostic::fault,
+                                                        ::testing::HasSubstr("83 % of the light"))))
+        << "2 E_3(0.1)";
+}
+
+// Index above 1: what does not enter is mirrored; the energy of both adds up.
+TEST(Sheet, OfARefractingMediumIsGlossyAndLosesNothing) {
+    tests::Scene scene = tests::make_scene({make_leaf()});
+    scene.materials[0].medium = tests::make_grey_medium(1000, 0, 1.5f);
+    scene.materials[0].medium->thickness = 0.02f;
+    EXPECT_TRUE(flatten_slabs(scene, {}).empty());
+    const formats::Sheet sheet = *scene.materials[0].sheet;
+    EXPECT_NEAR(sheet.reflect.g + sheet.transmit.g, 1, 0.01f);
+    EXPECT_GT(sheet.reflect.g, 5 * sheet.transmit.g);
+    EXPECT_EQ(scene.materials[0].gloss.ior, 1.5f);
+    const BakeResult baked = tests::bake_scene(scene, tests::small_bake());
+    EXPECT_TRUE(find_entry(baked.plan, "gloss", 0)->on);
 }
 
 TEST(Sheet, CostsNothingWhereThereIsNone) {

@@ -109,14 +109,14 @@ inline constexpr KnobSpec kViewTerms{
 inline constexpr KnobSpec kWalksAround{.name = "walks_around",
                                        .lowest = 1,
                                        .highest = 1e10,
-                                       .preset = {500, 2000, 10000, 40000},
+                                       .preset = {2000, 6000, 10000, 40000},
                                        .for_target = multiple_knobs::walks_for};
 
 /// Random walks through each medium in all, at most.
 inline constexpr KnobSpec kWalks{.name = "walks",
                                  .lowest = 1000,
                                  .highest = 1e10,
-                                 .preset = {250000, 1000000, 6000000, 24000000},
+                                 .preset = {1000000, 3000000, 6000000, 24000000},
                                  .for_target = multiple_knobs::all_walks_for};
 
 /// Places on the surface of each medium where they start, at most.

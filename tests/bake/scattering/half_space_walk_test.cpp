@@ -50,6 +50,42 @@ TEST(HalfSpaceWalk, ForwardScatteringReturnsLess) {
     EXPECT_LT(forward.once + forward.rest, 0.5 * (backward.once + backward.rest));
 }
 
+TEST(SlabWalk, ConservativeSlabLosesNothingAndTransmitsByItsTransportThickness) {
+    for (const double eta : {0.8, 1.0, 1.4}) {
+        for (const double thickness : {0.05, 1.0, 8.0}) {
+            const SlabShares s = walk_slab(1, 0.5, eta, thickness, 40000, 2, {});
+            EXPECT_NEAR(s.once + s.rest + s.through + s.straight, 1 - fresnel_moments(eta).external,
+                        0.006)
+                << eta << " " << thickness;
+        }
+    }
+    // 4/3 / (tau' + 2 * 0.7104), asymptotic in tau'.
+    for (const double g : {0.0, 0.8}) {
+        const SlabShares s = walk_slab(1, g, 1, 8 / (1 - g), 60000, 2, {});
+        EXPECT_NEAR(s.through + s.straight, 4.0 / 3 / (8 + 1.4208), 0.006) << g;
+    }
+}
+
+// In the limit each path is as likely to scatter as it is long, 2 tau in the mean, and half of that
+// goes each way where the phase function is even.
+TEST(SlabWalk, ThinSlabScattersInProportionToItsThicknessBothWaysAlike) {
+    const SlabShares s = walk_slab(0.8, 0, 1, 0.01, 400000, 3, {});
+    const double seen = 2 * 0.8 * 0.01;
+    EXPECT_NEAR(s.once + s.rest, 0.5 * seen, 0.1 * seen);
+    EXPECT_NEAR(s.through, 0.5 * seen, 0.1 * seen);
+    EXPECT_NEAR(s.straight, 1 - 2 * 0.01, 0.002);
+    const SlabShares forward = walk_slab(0.8, 0.9, 1, 0.01, 400000, 3, {});
+    EXPECT_GT(forward.through, 3 * (forward.once + forward.rest));
+}
+
+TEST(SlabWalk, ThickSlabIsAHalfSpace) {
+    const SlabShares s = walk_slab(0.9, 0.3, 1.3, 60, 20000, 5, {});
+    const HalfSpaceReflectance half = walk_half_space(0.9, 0.3, 1.3, 20000, 5, {});
+    EXPECT_NEAR(s.once, half.once, 1e-12);
+    EXPECT_NEAR(s.rest, half.rest, 1e-3);
+    EXPECT_LT(s.through + s.straight, 1e-3);
+}
+
 TEST(HalfSpaceWalk, SameForAnyNumberOfThreads) {
     Context one, three;
     one.threads = 1;

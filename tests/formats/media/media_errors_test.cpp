@@ -143,6 +143,8 @@ TEST(MediaErrors, ContradictingKeysAreNamed) {
     EXPECT_THAT(refuse(R"("thin_walled": {"reflect": [1, 0, 0]}, "preset": "skin1")"),
                 HasSubstr("contradicts thin_walled"));
     EXPECT_THAT(refuse(R"("thin_walled": {}, "opaque": true)"), HasSubstr("neither reflect"));
+    EXPECT_THAT(refuse(R"("preset": "skin1", "thickness": 0)"), HasSubstr("thickness"));
+    EXPECT_THAT(refuse(R"("opaque": true, "thickness": 1)"), HasSubstr("contradicts opaque"));
     EXPECT_THAT(refuse(R"("thin_walled": 1)"), HasSubstr("not an object"));
     EXPECT_THAT(refuse(R"("thin_walled": {"transmit": [0.5, 2, 0]})"), HasSubstr("transmit"));
     EXPECT_THAT(refuse(R"("thin_walled": {"reflect": [0.6, 0, 0], "transmit": [0.5, 0, 0]})"),

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "bake/base/context.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Media that fill sheets (Medium::thickness > 0) become thin-walled surfaces: shares of the light
+/// that enters a slab of the medium and leaves it scattered, on either side, by random walks under
+/// even light; a boundary with an index other than 1 becomes a glossy dielectric. Warns where much
+/// light passes a sheet unscattered, which is not simulated.
+std::vector<formats::Diagnostic> flatten_slabs(formats::Scene& scene, const Context& context);
+
+}  // namespace opaline::bake
