@@ -59,9 +59,12 @@ struct Marble {
 
 /// A surface without an inside, such as a leaf or paper: of the light that arrives on one side, the
 /// share base colour * reflect leaves on that side and base colour * transmit on the other one,
-/// both diffusely. The two shares of a band add up to 1 at most.
+/// both diffusely. With the base colour the two shares of a band add up to 1 at most.
 struct Sheet {
     Rgb reflect{1, 1, 1}, transmit{0, 0, 0};  ///< each in [0, 1]
+    /// The material's base colour and sides without it, for what replaces it.
+    Rgb opaque_color{1, 1, 1};
+    bool opaque_double_sided = false;
 };
 
 /// How a texture goes on outside of [0, 1].

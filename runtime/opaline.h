@@ -155,7 +155,7 @@ typedef enum opaline_shade_flags {
     OPALINE_SHADE_WITHOUT_MULTIPLE = 4,  /* scattered often inside a translucent body */
     OPALINE_SHADE_WITHOUT_SINGLE = 8,    /* scattered once */
     OPALINE_SHADE_WITHOUT_SPECULAR = 16, /* mirrored by glossy surfaces, translucent or opaque */
-    OPALINE_SHADE_WITHOUT_DIFFUSE = 32   /* scattered back by opaque surfaces */
+    OPALINE_SHADE_WITHOUT_DIFFUSE = 32   /* by opaque surfaces; by thin-walled ones, both ways */
 } opaline_shade_flags;
 
 /* out_rgb[3 i .. 3 i + 2]: outgoing radiance [W m^-2 sr^-1] of receiver i, finite and not
@@ -176,9 +176,10 @@ OPALINE_API opaline_status opaline_shade_range(const opaline_asset* asset,
                                                size_t out_count);
 
 /* The same as opaline_shade_range, seen from the point `eye`: three finite floats [m], in world
-   space as the mesh is. NULL: each receiver along its own normal. Only translucent and glossy
-   receivers look different; those that face away are black unless their primitive is double-sided,
-   but for a rim of specular reflection that fades just behind the silhouette. */
+   space as the mesh is. NULL: each receiver along its own normal. Only translucent, thin-walled and
+   glossy receivers look different. Translucent ones that face away are black unless their primitive
+   is double-sided, but for a rim of specular reflection that fades just behind the silhouette;
+   thin-walled ones show the side that the eye is on. */
 OPALINE_API opaline_status opaline_shade_from(const opaline_asset* asset,
                                               const opaline_light* light, uint32_t flags,
                                               const float eye[3], uint32_t first, uint32_t count,

@@ -19,8 +19,8 @@ struct ShadeOptions {
     unsigned threads = 0;    ///< 0: all cores; results have the same bits for any number
     bool base_color = true;  ///< false: as if every base colour were white
     DotPath path = best_dot_path();
-    /// Where translucent and glossy receivers are seen from [m, world]; nothing: each along its own
-    /// normal. Others look the same from everywhere.
+    /// Where translucent, thin-walled and glossy receivers are seen from [m, world]; nothing: each
+    /// along its own normal. Others look the same from everywhere.
     std::optional<formats::Vec3> eye = std::nullopt;
     /// false: translucent receivers without their factor Ft and with their sign, glossy opaque ones
     /// without the factor before their diffuse part. That is what a renderer interpolates, to

@@ -21,6 +21,12 @@ struct Options {
     bool json = false;
 };
 
+const char* shading_name(formats::Shading shading) {
+    return shading == formats::Shading::translucent ? "translucent"
+           : shading == formats::Shading::sheet     ? "thin-walled"
+                                                    : "diffuse";
+}
+
 bool is_glossy(const formats::AssetView& view, std::size_t primitive) {
     return !view.roughness.empty() && view.roughness[primitive] >= 0;
 }
@@ -43,6 +49,7 @@ Json describe(const OpenedAsset& asset) {
                                       {"primitive", p.primitive},
                                       {"vertices", p.vertex_count},
                                       {"triangles", p.index_count / 3},
+                                      {"shading", shading_name(p.shading)},
                                       {"terms", p.terms},
                                       {"bands", p.bands}});
         Json& entry = info["primitives"].back();
@@ -161,8 +168,9 @@ int run(const Options& options) {
     for (std::size_t i = 0; i < view.primitives.size(); ++i) {
         const formats::PrimitiveRecord& p = view.primitives[i];
         fmt::print(
-            "  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}{}{}\n", i, p.vertex_count,
+            "  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}{}{}{}\n", i, p.vertex_count,
             p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
+            p.shading == formats::Shading::sheet ? ", thin-walled" : "",
             p.is_separate()
                 ? ", " + formats::term_names(formats::TermSet::separable, " and ") + " separate"
                 : "",

@@ -140,7 +140,7 @@ void add_relight_command(CLI::App& app, Job& job) {
     command
         ->add_option("--eye", options->eye,
                      "the point everything is seen from [m]; default: each receiver along its own "
-                     "normal. Only translucent surfaces depend on it")
+                     "normal. Only translucent, thin-walled and glossy surfaces depend on it")
         ->option_text("X,Y,Z");
     command
         ->add_option("--terms", options->terms,

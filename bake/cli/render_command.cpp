@@ -121,7 +121,7 @@ int render_on_cpu(const Options& options, const formats::AssetView& view, const 
         print_stat(options, "mirrored light", seconds_since(start));
     }
     const bool depends_on_eye = std::ranges::any_of(view.primitives, [](const auto& primitive) {
-        return primitive.shading == formats::Shading::translucent;
+        return primitive.shading != formats::Shading::diffuse;
     });
     return render_frames(options, camera, [&](const runtime::Camera& at) {
         if (depends_on_eye && shaded_for != at.eye) {

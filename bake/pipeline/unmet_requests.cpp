@@ -26,7 +26,7 @@ bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const
 }
 
 std::string concerns_nothing(const std::string& effect) {
-    return "'" + effect + "' concerns nothing in the scene: no surface has a medium";
+    return "'" + effect + "' concerns nothing in the scene: no material is of its kind";
 }
 
 // Effects that were named, and that no subject has.
@@ -44,8 +44,10 @@ void describe_effects(const DecidedBake& decided, std::vector<Diagnostic>& warni
             continue;
         }
         if (!is_concerned(decided.effects, decided.scene, decided.knobs, effect)) {
-            warnings.push_back(make_warning("", "--effects", concerns_nothing(effect),
-                                            "describe its medium with --media"));
+            warnings.push_back(make_warning(
+                "", "--effects", concerns_nothing(effect),
+                "`opaline plan` shows what does; media and thin-walled surfaces may be "
+                "described with --media"));
         } else if (left_out != nullptr) {
             warnings.push_back(make_warning(
                 "", "--effects", "'" + effect + "' was left out all the same: " + left_out->reason,
@@ -103,9 +105,9 @@ formats::Status check_effects(const EffectTable& effects, const formats::Scene& 
         std::any_of(knobs.effects.begin(), knobs.effects.end(), concerned)) {
         return formats::ok_status();
     }
-    return formats::make_error(formats::ErrorKind::usage, "", "--effects",
-                               concerns_nothing(knobs.effects.front()),
-                               "describe its medium with --media, or leave --effects out");
+    return formats::make_error(
+        formats::ErrorKind::usage, "", "--effects", concerns_nothing(knobs.effects.front()),
+        "describe media and thin-walled surfaces with --media, or leave --effects out");
 }
 
 std::vector<Diagnostic> describe_unmet(const DecidedBake& decided, const BakeOptions& options) {

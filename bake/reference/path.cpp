@@ -166,7 +166,7 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
         std::swap(outside, inside);
     }
     const bool opaque = receiver.medium == formats::kNone;
-    // Diffuse rows do not depend on the direction of view.
+    // An opaque surface shows its front from anywhere, as its row does.
     if (normal == glm::vec3(0) || (!opaque && !(glm::dot(normal, receiver.to_eye) > 0))) {
         return {};
     }

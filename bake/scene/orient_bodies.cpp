@@ -185,7 +185,8 @@ std::vector<formats::Diagnostic> describe_faults(const Scene& scene,
                 scene.source, where,
                 "the surface of the medium is open at " + std::to_string(surface.open_edges) +
                     " edges: light that scatters once is missing where it would enter or leave "
-                    "through the holes, and light that scatters many times is that of a thick body",
+                    "through the holes, and by the dipole light that scatters many times is that "
+                    "of a thick body",
                 "close the surface"));
         }
     }

@@ -15,11 +15,12 @@ namespace opaline::bake {
 struct ReflectionTruth {
     DirectionSet directions;
     SunRays suns;
+    std::span<const TestLight> lights;
 };
+/// `lights` must outlive the result.
 ReflectionTruth make_reflection_truth(std::span<const TestLight> lights);
 /// Both estimates are equal, because the computation is deterministic. `traced` adds up.
 TwoEstimates eval_reflection(const ReflectionTruth& truth, const RayScene& rays,
-                             const Receiver& receiver, std::span<const TestLight> lights,
-                             std::uint64_t& traced);
+                             const Receiver& receiver, std::uint64_t& traced);
 
 }  // namespace opaline::bake

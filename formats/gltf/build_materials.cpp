@@ -172,8 +172,10 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
         std::vector<std::string> remarks;
         if (const auto thin = map_sheet(source.translucency, material.base_color,
                                         source.base_color_texture.texture != kNone, remarks)) {
-            material.base_color = thin->base_color;
             material.sheet = thin->sheet;
+            material.sheet->opaque_color = material.base_color;
+            material.sheet->opaque_double_sided = material.double_sided;
+            material.base_color = thin->base_color;
             material.double_sided = true;  // it has two sides
         } else {
             material.medium = map_medium(source.translucency, metres_per_unit, remarks);

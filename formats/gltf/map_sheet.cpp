@@ -43,7 +43,8 @@ std::optional<Sides> scatter(const TranslucencySource& source, glm::dvec3 base,
 std::optional<Sides> transmit_diffusely(const TranslucencySource& source, glm::dvec3 base,
                                         bool has_base_color_texture,
                                         std::vector<std::string>& remarks) {
-    if (!(source.diffuse_transmission > 0.0) || source.has_scatter) {
+    const bool scatters = source.has_scatter && source.scatter_strength.value_or(0.0) > 0.0;
+    if (!(source.diffuse_transmission > 0.0) || scatters) {
         return std::nullopt;
     }
     const double f =
@@ -51,8 +52,16 @@ std::optional<Sides> transmit_diffusely(const TranslucencySource& source, glm::d
     if (has_base_color_texture) {
         remarks.push_back("baseColorTexture colours diffusely transmitted light as well");
     }
-    return Sides{(1.0 - f) * base, f * clamp_color(source.diffuse_transmission_color,
-                                                   "diffuseTransmissionColorFactor", remarks)};
+    const double clear = clamp_factor(source.transmission, 0.0, 1.0, "transmissionFactor", remarks);
+    if (clear > 0.0) {
+        remarks.push_back(
+            "what KHR_materials_transmission lets through is not simulated: the "
+            "diffuse part is baked alone");
+    }
+    return Sides{(1.0 - clear) * (1.0 - f) * base,
+                 (1.0 - clear) * f *
+                     clamp_color(source.diffuse_transmission_color,
+                                 "diffuseTransmissionColorFactor", remarks)};
 }
 
 }  // namespace
@@ -73,6 +82,11 @@ std::optional<MappedSheet> map_sheet(const TranslucencySource& source, Rgb base_
     }
     for (const std::string& texture : source.textures) {
         remarks.push_back(texture + " is not simulated: the factor is used alone");
+    }
+    if (source.metallic > 0.0) {
+        remarks.push_back(
+            "a metallicFactor above 0 of a thin-walled surface mirrors in the larger "
+            "of the colours that it reflects and transmits");
     }
     const glm::dvec3 larger = glm::max(sides->reflected, sides->transmitted);
     const auto share = [&](glm::dvec3 part) {

@@ -83,8 +83,16 @@ std::optional<Error> find_unmapped(const std::string& file, const Scene& scene,
 
 void fill(const MaterialMedium& entry, Material& material, std::vector<Image8>& images,
           std::map<const MaterialMedium*, std::uint32_t>& known) {
+    if (material.sheet) {
+        material.base_color = material.sheet->opaque_color;
+        material.double_sided = material.sheet->opaque_double_sided;
+    }
     material.medium = entry.medium;
     material.sheet = entry.sheet;
+    if (material.sheet) {
+        material.sheet->opaque_color = material.base_color;
+        material.sheet->opaque_double_sided = material.double_sided;
+    }
     material.double_sided = material.double_sided || entry.sheet;  // it has two sides
     // Medium and sheet have their own colour; the factor was for the surface they replace.
     const bool has_color = material.medium || material.sheet;

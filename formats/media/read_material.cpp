@@ -147,6 +147,7 @@ MaterialMedium read_material(const std::string& name, const nlohmann::json& entr
     refuse_beside(fields, "preset", {"sigma_s", "sigma_s_prime", "sigma_a", "unit"},
                   "give the preset or coefficients");
     refuse_beside(fields, "sigma_s", {"sigma_s_prime"}, "give one of them");
+    refuse_beside(fields, "thickness", {"profile", "fidelity"}, "sheets have no profile");
     material.base_color = rgb(fields, "base_color", 0, 1);
     material.albedo = read_albedo(fields, resources);
     material.marble = read_marble(fields);

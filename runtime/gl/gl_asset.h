@@ -18,15 +18,15 @@ struct GlAsset {
     std::vector<DotBatch> batches;
 
     GlBuffer row_offset, index, code, average_scale, detail_scale, average_code;
-    /// <T_0, L> of every vertex, four floats each; zeros at first. Of translucent ones what they
-    /// show the eye, without Fresnel's factor.
+    /// <T_0, L> of every vertex, four floats each; zeros at first. Of translucent and thin-walled
+    /// ones what they show the eye, without Fresnel's factor.
     GlBuffer radiance;
     GlBuffer position, base_color, texcoord, triangle;
     bool has_translucent = false;
     std::vector<float> roughness;  ///< of each primitive; empty: no translucent one is glossy
     std::vector<formats::GlossRecord> gloss;  ///< of each primitive; empty: no opaque one is
     GlBuffer openness;                        ///< where one is: formats::Openness of each vertex
-    GlBuffer normal;                          ///< where has_translucent or a surface is glossy
+    GlBuffer normal;                          ///< where has_translucent, needs_view or glossy
     GlBuffer product;     ///< where a primitive needs_view: <T_k, L> of every row
     GlBuffer srgb_table;  ///< linear value of each 8-bit code, 256 floats
     GlVertexArray vertex_array;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -257,6 +258,44 @@ TEST(Render, BackendsAgreeOnTranslucentPrimitives) {
     }
     const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "2e-3"});
     EXPECT_EQ(same.exit_code, 0) << same.out;
+}
+
+// Seen from above and from below.
+TEST(Render, BackendsAgreeOnBothSidesOfThinWalledSurfaces) {
+    SmallScene small;
+    std::ofstream(small.path("leaf.json"))
+        << R"({"materials": {"*": {"thin_walled": {"reflect": [0.2, 0.2, 0.2],
+                                                   "transmit": [0.6, 0.5, 0.4]}}}})";
+    const std::string file = small.path("leaf.opal");
+    const Outcome baked = run_opaline(
+        {"bake", small.scene(), "--media", small.path("leaf.json"), "--cubemap", "8", "-o", file});
+    ASSERT_EQ(baked.exit_code, 0) << baked.err;
+    EXPECT_THAT(run_opaline({"info", file}).out, HasSubstr("2 term(s), RGB, thin-walled"));
+    for (const char* elevation : {"60", "-60"}) {
+        const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
+        for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
+            const Outcome render =
+                run_opaline({"render", file, "--light", "sun:40,60", "--size", "61x43",
+                             "--elevation", elevation, "--backend", backend, "-o", out});
+            ASSERT_EQ(render.exit_code, 0) << render.err;
+        }
+        const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "1e-2"});
+        EXPECT_EQ(same.exit_code, 0) << elevation << same.out << "a pixel or two at edges";
+    }
+    // A sun 60 degrees high, from below: the transmitted share, in the ratio of its bands.
+    const auto relit = [&](const char* eye) {
+        const std::string table = small.path("t.csv");
+        EXPECT_EQ(run_opaline({"relight", file, "--light", "sun:40,60", "--eye", eye, "-o", table})
+                      .exit_code,
+                  0);
+        double r = 0, g = 0, b = 0;
+        const std::string text = read_text(table);
+        EXPECT_EQ(std::sscanf(text.c_str() + text.rfind("1,3,"), "1,3,%lf,%lf,%lf", &r, &g, &b), 3);
+        return std::array{r, g, b};
+    };
+    const auto above = relit("0,9,0"), below = relit("0,-9,0");
+    EXPECT_NEAR(below[0] / above[0], 3, 0.15);
+    EXPECT_NEAR(below[2] / below[0], 4.0 / 6, 0.03);
 }
 
 TEST(Render, PicturesHaveTheSizeAskedForAndAgreeBetweenBackends) {

@@ -32,7 +32,7 @@ std::vector<CheckedPair> check_every_receiver(const formats::Scene& scene,
         const formats::PrimitiveRecord& primitive = formats::primitive_of(asset, v);
         append_pairs(relight_rows({asset.transport, primitive.rows(), v - primitive.first_vertex},
                                   kDiffuse, lights),
-                     eval_reflection(truth, *rays, receivers[v], lights, traced), pairs);
+                     eval_reflection(truth, *rays, receivers[v], traced), pairs);
     }
     return pairs;
 }

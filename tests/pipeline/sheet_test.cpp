@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -159,6 +160,65 @@ TEST(Sheet, OfARefractingMediumIsGlossyAndLosesNothing) {
     EXPECT_TRUE(find_entry(baked.plan, "gloss", 0)->on);
 }
 
+// What is seen of one from behind is what is seen of it in front, turned inside out: with all that
+// stands before its light.
+TEST(Sheet, SeenFromBehindIsAsTurnedInsideOutSeenInFront) {
+    tests::Primitive bowl = tests::make_sphere(2, 1, {0, 1.2f, 0});
+    bowl.index.resize(bowl.index.size() / 2);
+    const auto bake_of = [](const tests::Primitive& body) {
+        tests::Primitive floor = tests::make_quad({-3, 0, -3}, {0, 0, 6}, {6, 0, 0}, 6);
+        floor.material = 1;
+        BakeOptions options = tests::small_bake();
+        options.cubemap_size = 16;
+        return tests::bake_scene(
+            make_sheet_scene({body, floor}, {0.1f, 0.3f, 0.05f}, {0.2f, 0.6f, 0.1f}), options);
+    };
+    const BakeResult front = bake_of(bowl), turned = bake_of(tests::turned_inside_out(bowl));
+    const formats::Vec3 eye{0.3f, 4, 0.2f};
+    for (const char* light : {"studio", "sun:40,30"}) {
+        const auto a = seen_from(front.asset, eye, light), b = seen_from(turned.asset, eye, light);
+        EXPECT_LT(tests::relative_rms(a, b), 0.02) << light;
+        double sum = 0;
+        for (const Rgb c : a) {
+            sum += static_cast<double>(c.g) / static_cast<double>(a.size());
+        }
+        EXPECT_GT(sum, 0.05) << light;
+    }
+}
+
+// Two of its vertices stand inside a box, where nothing is lit: both of their sides borrow from
+// where the sheet comes out of it.
+TEST(Sheet, VerticesInsideABoxAreBlackOnNeitherSide) {
+    tests::Primitive box = tests::make_cube(2, false);
+    box.material = 1;
+    tests::Primitive sheet = tests::make_quad({-0.5f, 0.9f, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+    for (const Rgb share : {Rgb{1, 1, 1}, Rgb{0, 0, 0}}) {
+        const Rgb rest{1 - share.r, 1 - share.g, 1 - share.b};
+        const BakeResult baked =
+            tests::bake_scene(make_sheet_scene({sheet, box}, share, rest), tests::small_bake());
+        for (const float z : {9.0f, -9.0f}) {
+            for (const Rgb c : seen_from(baked.asset, {0, 1, z}, "white")) {
+                EXPECT_GT(c.g, 0.3f) << share.g << " " << z;
+            }
+        }
+    }
+}
+
+TEST(Sheet, OfAMediumThatTakesLongWalksEndsSoonAndLosesNothing) {
+    for (const float eta : {0.75f, 1.0f, 1.5f}) {
+        tests::Scene scene = tests::make_scene({make_leaf()});
+        formats::Medium medium = tests::make_grey_medium(1e7f, 0, eta);
+        medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
+        medium.phase.g = 0.99f;
+        medium.thickness = 1;
+        scene.materials[0].medium = medium;
+        EXPECT_TRUE(flatten_slabs(scene, {}).empty());
+        const formats::Sheet sheet = *scene.materials[0].sheet;
+        EXPECT_NEAR(sheet.reflect.g + sheet.transmit.g, 1, 0.02f) << eta;
+        EXPECT_LT(sheet.transmit.g, 0.05f) << eta;
+    }
+}
+
 TEST(Sheet, CostsNothingWhereThereIsNone) {
     const tests::Scene plain = tests::make_scene({make_leaf()});
     for (const PlanEntry& entry : plan_bake(all_effects(), plain, inspect_scene(plain), {})) {
@@ -202,9 +262,13 @@ TEST(Sheet, HardCasesAreFiniteAndNoBrighterThanTheSky) {
         const BakeResult baked = tests::bake_scene(
             make_sheet_scene(body, {0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}), tests::small_bake());
         EXPECT_TRUE(tests::all_finite(baked.asset));
+        float most = 0;
         for (const Rgb c : seen_from(baked.asset, {0, -3, 0}, "white")) {
             EXPECT_TRUE(c.g >= 0 && c.g < 1.05f) << c.g;
+            most = std::max(most, c.g);
         }
+        const bool has_normals = body[0].normal[0] != glm::vec3(0);
+        EXPECT_EQ(most > 0.4f, has_normals);
     }
 }
 

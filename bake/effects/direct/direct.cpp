@@ -91,20 +91,18 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
 
 struct Truth : Prepared {
     ReflectionTruth truth;
-    std::span<const TestLight> lights;
 };
 
 PreparedPtr make_truth(const EffectInputs&, TruthEffort, std::span<const TestLight> lights) {
     auto truth = std::make_unique<Truth>();
     truth->truth = make_reflection_truth(lights);
-    truth->lights = lights;
     return truth;
 }
 
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& own = static_cast<const Truth&>(prepared);
-    return eval_reflection(own.truth, inputs.bake.rays, receiver.outside, own.lights, rays);
+    return eval_reflection(own.truth, inputs.bake.rays, receiver.outside, rays);
 }
 
 }  // namespace

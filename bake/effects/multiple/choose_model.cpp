@@ -31,11 +31,6 @@ bool hold_all_orders(const formats::Medium& medium, const MaterialFacts& body, c
             std::abs(formats::mean_cosine(medium.phase)) >= kPeaked);
 }
 
-// A measurement costs about as much as a bake at draft.
-bool measures_models(const Knobs& knobs) {
-    return knobs.error_target > 0 || knobs.quality >= Quality::production;
-}
-
 // A profile that the user chose is meant.
 bool is_fixed(const formats::Medium& medium) {
     return medium.profile != formats::Medium::Profile::automatic ||
@@ -55,6 +50,11 @@ double allowed_model_error(const Knobs& knobs) {
            : knobs.quality == Quality::production ? 0.02
            : knobs.quality == Quality::preview    ? 0.05
                                                   : 0.1;
+}
+
+// A measurement costs about as much as a bake at draft.
+bool measures_models(const Knobs& knobs) {
+    return knobs.error_target > 0 || knobs.quality >= Quality::production;
 }
 
 bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
@@ -92,7 +92,7 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
     if (has_measured) {
         choice.dipole_error = choice.errors.dipole;
     }
-    // Never the scaled dipole: walks have cost no more (tests/bench/RESULTS.md, "Walks").
+    // Never the scaled dipole: it costs about as much as walks (tests/bench/RESULTS.md, "Walks").
     if (may_walk && has_measured == is_measured && choice.dipole_error > allowed) {
         choice.model = MultipleModel::walks;
     }
@@ -156,9 +156,9 @@ void describe_choice(const ModelChoice& choice, PlanEntry& entry) {
     entry.model_error = choice.error();
     if (choice.errors.receivers == 0) {
         if (choice.is_found) {
-            entry.reason = std::string(entry.choice) + ": along its normals the body is so " +
-                           (entry.on ? "thin" : "thick") + " that the dipole errs by some " +
-                           percent(choice.dipole_error);
+            entry.reason =
+                std::string(entry.choice) + ": the body is so " + (entry.on ? "thin" : "thick") +
+                " along rays into it that the dipole errs by some " + percent(choice.dipole_error);
         } else if (was_on && !entry.on) {
             entry.reason = "dipole: light leaves where it entered";
         }

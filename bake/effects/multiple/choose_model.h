@@ -16,6 +16,9 @@ std::string percent(double error);
 /// Knobs::error_target; without one, as the quality allows.
 double allowed_model_error(const Knobs& knobs);
 
+/// Whether models are compared before the bake (measure_models), instead of estimated.
+bool measures_models(const Knobs& knobs);
+
 /// Whether random walks are expected: asked for, or the dipole errs by more than is allowed, by
 /// estimate. choose_model may find otherwise.
 bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs);

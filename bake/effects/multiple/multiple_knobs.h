@@ -79,8 +79,8 @@ inline constexpr KnobSpec kMultipleModel{
     .placeholder = "auto|scaled|dipole|walks [auto]",
     .help =
         "how light scattered many times is computed: by random walks in the true shape, by the "
-        "dipole of a half space, by the dipole scaled to walks; auto: the cheapest whose error "
-        "fits",
+        "dipole of a half space, by the dipole scaled to walks; auto: the dipole where its "
+        "error fits, else walks",
     .lowest = 0,
     .highest = 3,
     .words = multiple_knobs::kModels,

@@ -16,7 +16,7 @@ namespace opaline::bake {
 
 /// How light scattered many times is computed.
 enum class MultipleModel : std::uint8_t {
-    automatic,  ///< the cheapest whose error fits
+    automatic,  ///< the dipole where its error fits, else walks
     scaled,     ///< the dipole, each row scaled to what walks find under even light
     dipole,     ///< every surface is a half space
     walks       ///< random walks in the true shape

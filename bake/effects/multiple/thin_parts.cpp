@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string>
 
+#include "bake/base/frame.h"
+#include "bake/base/rng.h"
 #include "bake/transport/body.h"
 #include "bake/truth/draw_receivers.h"
 #include "formats/media/mean_cosine.h"
@@ -83,21 +86,29 @@ std::vector<BodyPoint> draw_body_points(const EffectInputs& inputs, std::size_t 
 double open_body_error(const std::array<double, 3>& lengths, const RayScene& rays,
                        std::span<const BodyPoint> points) {
     constexpr float kNoLimit = 1e30f;  // beyond a hole nothing is near
-    const double longest = *std::max_element(lengths.begin(), lengths.end());
+    constexpr std::uint32_t kDirections = 4;
     double sum = 0;
-    std::size_t count = 0;
-    for (const BodyPoint& point : points) {
-        if (point.normal == glm::vec3(0) || longest == 0) {
-            continue;
-        }
-        const InwardPath path = trace_inward_path(rays, point, kNoLimit);
-        ++count;
-        // A normal that points out of the body says nothing of its thickness.
-        if (!path.open && path.length > 0) {
-            sum += half_space_error(2 * static_cast<double>(path.length) / longest);
+    std::size_t ends = 0, count = 0;
+    for (std::uint32_t p = 0; p < points.size(); ++p) {
+        for (std::uint32_t d = 0; points[p].normal != glm::vec3(0) && d < kDirections; ++d) {
+            const auto u = random_uniform(0, RandomStage::pilot_receivers, p, d);
+            const float r = std::sqrt(u[0]), phi = 2 * std::numbers::pi_v<float> * u[1];
+            BodyPoint point = points[p];
+            point.normal =
+                make_frame(point.normal)
+                    .to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u[0])});
+            const InwardPath path = trace_inward_path(rays, point, kNoLimit);
+            ++count;
+            // A normal that points out of the body says nothing of its thickness.
+            if (!path.open && path.length > 0) {
+                sum += static_cast<double>(path.length);
+                ++ends;
+            }
         }
     }
-    return count == 0 ? 0 : sum / static_cast<double>(count);
+    return ends == 0 ? 0
+                     : closed_body_error(lengths, sum / static_cast<double>(ends)) *
+                           static_cast<double>(ends) / static_cast<double>(count);
 }
 
 double body_error(const EffectInputs& inputs, const MediumProfile& profile) {

@@ -27,9 +27,9 @@ double half_space_error(double chord);
 /// The same of a body with the mean chord 4 V / S [m], in the worst band of `lengths`.
 double closed_body_error(const std::array<double, 3>& lengths, double mean_chord);
 
-/// The same of a body that does not close, by its thickness d along the inward normals of the
-/// points: a sheet of thickness d has the mean chord 2 d. The mean over the points; those that look
-/// out through a hole err by nothing.
+/// The same of a body that does not close, by the mean length of cosine-distributed rays into it,
+/// which is the mean chord of a closed one; times their share, as those that look out through a
+/// hole err by nothing.
 double open_body_error(const std::array<double, 3>& lengths, const RayScene& rays,
                        std::span<const BodyPoint> points);
 

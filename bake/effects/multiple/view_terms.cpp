@@ -84,6 +84,8 @@ PlanEntry decide_views(const PlanInput& input) {
                                              : "one row for all views: no random walks";
     } else if (input.knobs.separate_terms) {
         entry.reason = "one row for all views stands apart, as --separate-terms says";
+    } else if (given == 0 && !input.subject.has_thickness() && !measures_models(input.knobs)) {
+        entry.reason = "one row for all views: how thick the open body is, is not known";
     } else if (given == 0 && error <= allowed) {
         entry.reason = "one row for all views errs by some " + percent(error);
     } else if (given == 1) {

@@ -10,7 +10,8 @@ double one_view_error(const formats::Medium& medium, const MaterialFacts& body);
 
 /// The rule `multiple.view`: 4 rows where random walks that hold light of all orders are expected
 /// and one row for all views would err by more than 3 % (reference: 1 %, preview: 10 %, draft: 20
-/// %), or more than half of Knobs::error_target. After the rule `multiple.model`.
+/// %), or more than half of Knobs::error_target; open bodies at draft and preview have one row.
+/// After the rule `multiple.model`.
 PlanEntry decide_views(const PlanInput& input);
 
 }  // namespace opaline::bake

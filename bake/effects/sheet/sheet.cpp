@@ -47,8 +47,11 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     return directions;
 }
 
+// `inside.inner` mirrors the origin in front of the point's own triangles; where that was moved, as
+// from inside a body, the origin behind moves along.
 Receiver other_side(const Receiver& front, const BodyPoint& inside) {
-    return {inside.inner, -front.normal};
+    const glm::vec3 moved = front.origin - (2.0f * inside.position - inside.inner);
+    return {inside.inner + moved, -front.normal};
 }
 
 const formats::Sheet& sheet_of(const EffectInputs& inputs) {
@@ -85,13 +88,11 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
 
 struct Truth : Prepared {
     ReflectionTruth truth;
-    std::span<const TestLight> lights;
 };
 
 PreparedPtr make_truth(const EffectInputs&, TruthEffort, std::span<const TestLight> lights) {
     auto truth = std::make_unique<Truth>();
     truth->truth = make_reflection_truth(lights);
-    truth->lights = lights;
     return truth;
 }
 
@@ -99,11 +100,9 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& own = static_cast<const Truth&>(prepared);
     const formats::Sheet& sheet = sheet_of(inputs);
-    TwoEstimates seen =
-        eval_reflection(own.truth, inputs.bake.rays, receiver.outside, own.lights, rays);
-    const TwoEstimates through =
-        eval_reflection(own.truth, inputs.bake.rays, other_side(receiver.outside, receiver.inside),
-                        own.lights, rays);
+    TwoEstimates seen = eval_reflection(own.truth, inputs.bake.rays, receiver.outside, rays);
+    const TwoEstimates through = eval_reflection(
+        own.truth, inputs.bake.rays, other_side(receiver.outside, receiver.inside), rays);
     const auto r = static_cast<double>(formats::luminance(sheet.reflect)),
                t = static_cast<double>(formats::luminance(sheet.transmit));
     for (std::size_t l = 0; l < seen.first.size(); ++l) {

@@ -53,8 +53,17 @@ TEST(ThinParts, SheetWithoutARimErrsAsOneWithARim) {
     const double length = 0.05;
     const double closed = closed_body_error({length, length, length}, 2 * 0.1);
     const double open = open_error({sheet[0], sheet[1]}, length);
-    EXPECT_LT(open, closed + 1e-3);
+    EXPECT_LT(open, 1.15 * closed);
     EXPECT_GT(open, 0.6 * closed) << "at the edge the way inward may meet nothing";
+}
+
+TEST(ThinParts, BallWithAHoleErrsAsTheBall) {
+    tests::Primitive holed = tests::make_sphere(3);
+    holed.index.resize(holed.index.size() - 3);
+    for (const double length : {0.3, 0.03}) {
+        const double closed = closed_body_error({length, length, length}, 4.0 / 3);
+        EXPECT_NEAR(open_error({holed}, length) / closed, 1, 0.15) << length;
+    }
 }
 
 TEST(ThinParts, DenseBodiesErrLittle) {

@@ -41,7 +41,7 @@ TEST(ReflectionTruth, OpenFloorReflectsTheCosineOfEachSunAndAllOfTheSky) {
     const std::vector<TestLight> lights = published_lights();
     std::uint64_t traced = 0;
     const TwoEstimates truth =
-        eval_reflection(make_reflection_truth(lights), *rays, receivers[4], lights, traced);
+        eval_reflection(make_reflection_truth(lights), *rays, receivers[4], traced);
     const auto sine = [](double degrees) { return std::sin(degrees * std::numbers::pi / 180); };
     EXPECT_NEAR(mean(truth, place_of(lights, "white")), 1, 1e-4);
     EXPECT_NEAR(mean(truth, place_of(lights, "sun:30,60")), sine(60), 2e-4);

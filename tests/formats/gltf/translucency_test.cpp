@@ -170,6 +170,18 @@ TEST(GltfTranslucency, DiffuseTransmissionIsAThinWalledSurfaceOfTwoSides) {
                               material.sheet->transmit.g, material.sheet->transmit.b}) {
         EXPECT_TRUE(share >= 0 && share <= 1);
     }
+    EXPECT_EQ(material.sheet->opaque_color, (formats::Rgb{0.5f, 0.2f, 0}));
+    EXPECT_FALSE(material.sheet->opaque_double_sided);
+    // A clear lobe in place of half of the diffuse part; a metal that the colours would tint.
+    AssetBuilder clear = leaf;
+    clear.json["materials"][0]["extensions"]["KHR_materials_transmission"] = {
+        {"transmissionFactor", 0.5}};
+    clear.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 1;
+    const auto half = must_import(clear);
+    EXPECT_THAT(lines(half.warnings),
+                AllOf(HasSubstr("lets through"), HasSubstr("metallicFactor")));
+    expect_near(half.scene.materials[0].base_color * half.scene.materials[0].sheet->transmit,
+                {0.05, 0.125, 0.1});
     // A volume makes it a body, which is as it was.
     leaf.json["materials"][0]["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1}};
     EXPECT_FALSE(must_import(leaf).scene.materials[0].sheet);

@@ -55,6 +55,27 @@ TEST(ApplyMedia, WithoutStarTheOthersStayAsTheyAre) {
     EXPECT_EQ(scene.materials[1].medium->eta, 1.7f);
 }
 
+// Of a thin-walled surface nothing stays, neither its colour nor its second side.
+TEST(ApplyMedia, WhatReplacesAThinWalledSurfaceFindsTheMaterialAsItWas) {
+    Scene scene = scene_of({"Leaf", "Body"});
+    for (formats::Material& material : scene.materials) {
+        material.sheet = formats::Sheet{{1, 1, 1}, {0.5f, 1, 1}, {0.1f, 0.2f, 0.3f}, false};
+        material.base_color = {0.2f, 0.2f, 0.3f};
+        material.double_sided = true;
+    }
+    (void)apply(media_of(R"("Leaf": {"opaque": true}, "Body": {"preset": "marble"})"), scene);
+    EXPECT_EQ(scene.materials[0].base_color, (formats::Rgb{0.1f, 0.2f, 0.3f}));
+    for (const formats::Material& material : scene.materials) {
+        EXPECT_FALSE(material.sheet);
+        EXPECT_FALSE(material.double_sided);
+    }
+    (void)apply(media_of(R"("Leaf": {"thin_walled": {"transmit": [0, 1, 0]}})"), scene);
+    ASSERT_TRUE(scene.materials[0].sheet);
+    EXPECT_EQ(scene.materials[0].sheet->transmit, (formats::Rgb{0, 1, 0}));
+    EXPECT_EQ(scene.materials[0].base_color, (formats::Rgb{1, 1, 1}));
+    EXPECT_TRUE(scene.materials[0].double_sided);
+}
+
 TEST(ApplyMedia, ReplacesWhatTheSceneSaysAndOpaqueRemovesIt) {
     Scene scene = scene_of({"Body", "Glass"});
     scene.materials[0].medium = scene.materials[1].medium = Medium{};

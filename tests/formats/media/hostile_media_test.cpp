@@ -13,7 +13,8 @@ const std::string kRich = R"({"materials": {
     "Body": {"preset": "marble", "phase": {"type": "gaussian", "rms_angle": 0.3}},
     "Wax": {"sigma_s_prime": [1, 2, 3], "sigma_a": [0.1, 0, 4e-2], "unit": "1/mm", "eta": 1.44,
             "phase": {"type": "hg", "g": 0.3}, "roughness": 0.2, "base_color": [1, 0.5, 0],
-            "profile": "better", "fidelity": "paper", "thickness": 1e-3},
+            "profile": "better", "fidelity": "paper"},
+    "Ear": {"preset": "skin1", "thickness": 1e-3},
     "Leaf": {"thin_walled": {"reflect": [0.1, 0.2, 0.3], "transmit": [0.4, 0.5, 0.6]}},
     "*": {"opaque": true}}})";
 
