@@ -123,17 +123,21 @@ TEST(WalkModel, AutoWalksAtDraftAndPreviewWhereTheDipoleIsEstimatedToErrByMore) 
 
 // Volume and area of an open mesh say nothing: rays along its normals do.
 TEST(WalkModel, AutoFindsByRaysHowThickAnOpenBodyIs) {
-    const auto entry = [](std::vector<tests::Primitive> body, float sigma_t) {
+    const auto entry = [](std::vector<tests::Primitive> body, float sigma_t,
+                          const char* rule = "multiple.model") {
         const BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
         return entry_of(
             tests::bake_scene(tests::make_translucent_scene(
                                   std::move(body), tests::make_grey_medium(sigma_t, 0.01f)),
                               options),
-            "multiple.model");
+            rule);
     };
     tests::Primitive holed = tests::make_sphere(2);
     holed.index.resize(holed.index.size() - 3);
     const PlanEntry thin = entry({holed}, 3), thick = entry({holed}, 3000);
+    const PlanEntry views = entry({holed}, 3, "multiple.view");
+    EXPECT_EQ(views.terms, 1u);
+    EXPECT_EQ(views.model_error, 0) << "unknown is not 30 %";
     EXPECT_TRUE(thin.on);
     EXPECT_THAT(thin.reason, StartsWith("walks: the body is so thin"));
     EXPECT_FALSE(thick.on);

@@ -74,6 +74,7 @@ PlanEntry decide_views(const PlanInput& input) {
     const auto given = whole(input.knobs, kViewTerms);
     const double error = one_view_error(medium, input.subject);
     const double allowed = allowed_view_error(input.knobs);
+    const bool is_known = input.subject.has_thickness() || measures_models(input.knobs);
     PlanEntry entry;
     entry.alternative = true;
     entry.least_terms = 4;
@@ -84,7 +85,7 @@ PlanEntry decide_views(const PlanInput& input) {
                                              : "one row for all views: no random walks";
     } else if (input.knobs.separate_terms) {
         entry.reason = "one row for all views stands apart, as --separate-terms says";
-    } else if (given == 0 && !input.subject.has_thickness() && !measures_models(input.knobs)) {
+    } else if (given == 0 && !is_known) {
         entry.reason = "one row for all views: how thick the open body is, is not known";
     } else if (given == 0 && error <= allowed) {
         entry.reason = "one row for all views errs by some " + percent(error);
@@ -95,7 +96,8 @@ PlanEntry decide_views(const PlanInput& input) {
         entry.terms = 4;
         entry.reason = "4 rows: one for all views would err by some " + percent(error);
     }
-    entry.model_error = model.all_orders && !entry.on && !input.knobs.separate_terms ? error : 0;
+    entry.model_error =
+        model.all_orders && !entry.on && is_known && !input.knobs.separate_terms ? error : 0;
     return entry;
 }
 
