@@ -1,40 +1,14 @@
 // Multiple scattering by random walks in whole bakes: against path tracing, where the dipole fails.
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "bake/accuracy/check_model.h"
-#include "bake/effects/multiple/multiple_stage.h"
-#include "bake/pipeline/unmet_requests.h"
-#include "bake/scene/inspect_scene.h"
 #include "tests/support/effects.h"
-#include "tests/support/media_bake.h"
 #include "tests/support/sheets.h"
+#include "tests/support/walk_bake.h"
 
 namespace opaline::bake {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
-
-constexpr double kDipole = static_cast<double>(MultipleModel::dipole);
-constexpr double kScaled = static_cast<double>(MultipleModel::scaled);
-constexpr double kWalked = static_cast<double>(MultipleModel::walks);
-
-BakeOptions bake_by(double model, double walks = 300000) {
-    BakeOptions options = tests::only({"multiple"});
-    options.set(kMultipleModel, model);
-    options.set(kWalksAround, 1e9);
-    options.set(kWalks, walks);
-    options.set(kSites, 1500);
-    return options;
-}
-
-const PlanEntry& entry_of(const BakeResult& baked, std::string_view name) {
-    const PlanEntry* entry = find_entry(baked.plan, name, 0);
-    EXPECT_NE(entry, nullptr) << name;
-    return *entry;
-}
 
 // Under white: the reference converges fast.
 auto model_errors(const tests::Scene& scene, const BakeOptions& options,
@@ -81,116 +55,6 @@ TEST(WalkModel, SelfCheckFindsTheNoiseOfFewWalksAndNoneOfMany) {
     EXPECT_LT(clean, 0.06);
 }
 
-TEST(WalkModel, AutoWalksAtProductionWhereTheDipoleWasMeasuredToErr) {
-    const auto bake_of = [](float sigma_t) {
-        BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
-        options.quality = Quality::production;
-        return tests::bake_scene(
-            tests::make_translucent_scene({tests::make_sphere(2)},
-                                          tests::make_grey_medium(0.9f * sigma_t, 0.1f * sigma_t)),
-            options);
-    };
-    const PlanEntry thin = entry_of(bake_of(3), "multiple.model");
-    EXPECT_TRUE(thin.on);
-    EXPECT_THAT(thin.reason, StartsWith("walks: measured at 64 vertices"));
-    const PlanEntry thick = entry_of(bake_of(3000), "multiple.model");
-    EXPECT_FALSE(thick.on);
-    EXPECT_THAT(thick.reason, HasSubstr("dipole"));
-}
-
-// Draft and preview measure nothing: the plan already knows.
-TEST(WalkModel, AutoWalksAtDraftAndPreviewWhereTheDipoleIsEstimatedToErrByMore) {
-    const auto entries = [](float sigma_t, Quality quality) {
-        BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
-        options.quality = quality;
-        const tests::Scene ball = tests::make_translucent_scene(
-            {tests::make_sphere(2)}, tests::make_grey_medium(0.9f * sigma_t, 0.1f * sigma_t));
-        const PlanEntry planned = *find_entry(
-            plan_bake(all_effects(), ball, inspect_scene(ball), *resolve_knobs(options)),
-            "multiple.model", 0);
-        const PlanEntry baked = entry_of(tests::bake_scene(ball, options), "multiple.model");
-        EXPECT_EQ(planned.on, baked.on);
-        EXPECT_EQ(planned.choice, baked.choice);
-        EXPECT_EQ(planned.reason, baked.reason);
-        return baked;
-    };
-    // Mean chord 4 / 3: 4, 53 and 4000 transport mean free paths.
-    EXPECT_THAT(entries(3, Quality::draft).reason, StartsWith("walks: the dipole takes"));
-    EXPECT_EQ(entries(40, Quality::draft).choice, "dipole");
-    EXPECT_EQ(entries(40, Quality::preview).choice, "walks");
-    EXPECT_EQ(entries(3000, Quality::preview).choice, "dipole");
-}
-
-// Volume and area of an open mesh say nothing: rays along its normals do.
-TEST(WalkModel, AutoFindsByRaysHowThickAnOpenBodyIs) {
-    const auto entry = [](std::vector<tests::Primitive> body, float sigma_t,
-                          const char* rule = "multiple.model") {
-        const BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
-        return entry_of(
-            tests::bake_scene(tests::make_translucent_scene(
-                                  std::move(body), tests::make_grey_medium(sigma_t, 0.01f)),
-                              options),
-            rule);
-    };
-    tests::Primitive holed = tests::make_sphere(2);
-    holed.index.resize(holed.index.size() - 3);
-    const PlanEntry thin = entry({holed}, 3), thick = entry({holed}, 3000);
-    const PlanEntry views = entry({holed}, 3, "multiple.view");
-    EXPECT_EQ(views.terms, 1u);
-    EXPECT_EQ(views.model_error, 0) << "unknown is not 30 %";
-    EXPECT_TRUE(thin.on);
-    EXPECT_THAT(thin.reason, StartsWith("walks: the body is so thin"));
-    EXPECT_FALSE(thick.on);
-    EXPECT_THAT(thick.reason, StartsWith("dipole: the body is so thick"));
-    EXPECT_LT(thick.model_error, 0.05);
-    EXPECT_EQ(entry({holed}, 40).choice, entry({tests::make_sphere(2)}, 40).choice)
-        << "one triangle makes no difference";
-    EXPECT_FALSE(entry({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4)}, 3).on)
-        << "nothing stands behind it: a half space";
-}
-
-TEST(WalkModel, AutoKeepsTheDipoleWhereAMediumNamesItsProfile) {
-    formats::Medium medium = tests::make_grey_medium(2.97f, 0.03f);
-    medium.profile = formats::Medium::Profile::classic;
-    BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
-    for (const Quality quality : {Quality::preview, Quality::production}) {
-        options.quality = quality;
-        EXPECT_EQ(
-            entry_of(tests::bake_scene(
-                         tests::make_translucent_scene({tests::make_sphere(2)}, medium), options),
-                     "multiple.model")
-                .reason,
-            "dipole: the medium names its profile");
-    }
-}
-
-TEST(WalkModel, LightScatteredOnceIsLeftToWalksThatStandCloseAndToNoOtherModel) {
-    const auto effects_on = [](float sigma_t, double model, bool apart = false) {
-        const tests::Scene ball = tests::make_translucent_scene(
-            {tests::make_sphere(2)}, tests::make_grey_medium(0.99f * sigma_t, 0.01f * sigma_t));
-        Knobs knobs;
-        knobs.quality = Quality::production;
-        knobs.separate_terms = apart;
-        knobs.set(kMultipleModel, model);
-        knobs.set(kSites, 1500);
-        std::vector<std::string> on;
-        for (const PlanEntry& entry : plan_bake(all_effects(), ball, inspect_scene(ball), knobs)) {
-            if (entry.on && entry.name.find('.') == std::string_view::npos) {
-                on.emplace_back(entry.name);
-            }
-        }
-        return on;
-    };
-    const std::vector<std::string> apart{"multiple", "single", "specular"},
-        together{"multiple", "specular"};
-    EXPECT_EQ(effects_on(3, kWalked), together);
-    EXPECT_EQ(effects_on(3, static_cast<double>(MultipleModel::automatic)), together);
-    EXPECT_EQ(effects_on(3, kDipole), apart);
-    EXPECT_EQ(effects_on(3, kScaled), apart);
-    EXPECT_EQ(effects_on(300, kWalked), apart) << "1500 sites would blur it";
-    EXPECT_EQ(effects_on(3, kWalked, true), apart) << "--separate-terms";
-}
-
 // Of index 1 and isotropic, light scattered once is exact by its own effect.
 TEST(WalkModel, LightScatteredOnceIsTheSameByWalksAsByItsOwnEffect) {
     const tests::Scene ball =
@@ -230,92 +94,6 @@ TEST(WalkModel, StronglyForwardMediumIsAsBrightAsPathTracedByWalksAndNotByTermsO
     EXPECT_GT(errors(kDipole).rms_relative, 0.3);
 }
 
-// The dipole where it leaves enough of the target, another model where it does not; what the models
-// err by is no more to be had for the numbers.
-TEST(WalkModel, ErrorAskedForIsThatOfTheModelAndTheNumbersTogether) {
-    const auto bake_of = [](float sigma_t, double error, double model) {
-        BakeOptions options = tests::only({"multiple"});
-        options.error = error;
-        options.set(kMultipleModel, model);
-        return tests::bake_scene(
-            tests::make_translucent_scene(
-                {tests::make_sphere(2)}, tests::make_grey_medium(0.99f * sigma_t, 0.01f * sigma_t)),
-            options);
-    };
-    const double automatic = static_cast<double>(MultipleModel::automatic);
-    const BakeResult thick = bake_of(100, 0.2, automatic);
-    const PlanEntry dipole = entry_of(thick, "multiple.model");
-    EXPECT_FALSE(dipole.on);
-    EXPECT_GT(dipole.model_error, 0.01);
-    EXPECT_DOUBLE_EQ(thick.accuracy->model, dipole.model_error);
-    EXPECT_NEAR(std::hypot(thick.accuracy->model, thick.accuracy->numerical), 0.2, 1e-9);
-
-    const BakeResult thin = bake_of(3, 0.2, automatic);
-    EXPECT_TRUE(entry_of(thin, "multiple.model").on);
-    EXPECT_EQ(entry_of(thin, "multiple.model").choice, "walks")
-        << "the scaled dipole errs by less than is allowed, but costs no less";
-    EXPECT_LT(thin.accuracy->model, 0.05) << "one row for all views";
-
-    const BakeResult scaled = bake_of(3, 0.2, kScaled);
-    EXPECT_GT(scaled.accuracy->model, 0.01);
-    EXPECT_LE(scaled.accuracy->model, std::sqrt(0.75) * 0.2) << "a quarter is left to the numbers";
-
-    const BakeResult forced = bake_of(3, 0.1, kDipole);
-    EXPECT_GT(forced.accuracy->model, 0.15) << "measured, because it was asked for";
-    EXPECT_FALSE(forced.accuracy->met);
-    EXPECT_TRUE(std::ranges::any_of(forced.warnings, [](const formats::Diagnostic& w) {
-        return w.fault.find("out of reach: the models err by") != std::string::npos;
-    }));
-}
-
-// An open body may be a sheet, so walks are expected; this one is thick.
-TEST(WalkModel, LightScatteredOnceIsBackWhereTheDipoleWasMeasuredToServe) {
-    formats::Medium medium = tests::make_grey_medium(198, 2);
-    medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
-    medium.phase.g = 0.5f;
-    tests::Primitive open = tests::make_sphere(2);
-    open.index.resize(open.index.size() - 3);
-    const tests::Scene ball = tests::make_translucent_scene({open}, medium);
-    const auto bake_of = [&](double model) {
-        BakeOptions options = tests::only({"multiple", "single"});
-        options.error = 0.3;
-        options.set(kMultipleModel, model);
-        return tests::bake_scene(ball, options);
-    };
-    const BakeResult chosen = bake_of(static_cast<double>(MultipleModel::automatic));
-    const auto first = plan_bake(all_effects(), ball, inspect_scene(ball), chosen.knobs);
-    EXPECT_FALSE(find_entry(first, "single", 0)->on);
-    EXPECT_TRUE(entry_of(chosen, "single").on);
-    EXPECT_THAT(entry_of(chosen, "multiple.model").reason, StartsWith("dipole: measured"));
-    EXPECT_EQ(tests::largest_difference(chosen.asset, bake_of(kDipole).asset, "studio"), 0);
-}
-
-TEST(WalkModel, RequestsThatWalksOverruleAreNamed) {
-    // Sites too far apart for rows by view.
-    const tests::Scene dense =
-        tests::make_translucent_scene({tests::make_sphere(2)}, tests::make_grey_medium(297, 3));
-    BakeOptions options = bake_by(kWalked, 20000);
-    options.set(kViewTerms, 4);
-    const auto warnings_of = [](const tests::Scene& scene, const BakeOptions& wanted) {
-        const Knobs knobs = *resolve_knobs(wanted);
-        const SceneFacts facts = inspect_scene(scene);
-        const auto plan = plan_bake(all_effects(), scene, facts, knobs);
-        std::string all;
-        for (const formats::Diagnostic& w :
-             describe_unmet({all_effects(), scene, facts, knobs, plan}, wanted)) {
-            all += w.where + ": " + w.fault + "; ";
-        }
-        return all;
-    };
-    EXPECT_THAT(warnings_of(dense, options), HasSubstr("--view-terms: does nothing here"));
-    const tests::Scene thin = tests::make_translucent_scene({tests::make_sphere(2)},
-                                                            tests::make_grey_medium(2.97f, 0.03f));
-    EXPECT_THAT(warnings_of(thin, options), Not(HasSubstr("--view-terms")));
-    options.effects = {"multiple", "single"};
-    EXPECT_THAT(warnings_of(thin, options), Not(HasSubstr("--effects")))
-        << "light scattered once is in the file";
-}
-
 // A sheet of one mean free path is darker seen along its normal than aslant.
 TEST(WalkModel, ThinSheetSeenAlongItsNormalIsAsBrightAsPathTracedWithFourRowsAndNotWithOne) {
     const tests::Scene sheet = tests::make_translucent_scene(tests::make_sheet(0.3f, 6, 6),
@@ -326,32 +104,6 @@ TEST(WalkModel, ThinSheetSeenAlongItsNormalIsAsBrightAsPathTracedWithFourRowsAnd
     // The mean over receivers: its noise is small.
     EXPECT_GT(model_errors(sheet, one).bias, 0.15);
     EXPECT_NEAR(model_errors(sheet, four).bias, 0, 0.05);
-}
-
-TEST(WalkModel, RowsByViewAreTakenWhereTheBodyIsThinOrAbsorbsAndTheQualityAsks) {
-    const auto entry = [](float sigma_t, const BakeOptions& options, float eta = 1.3f,
-                          float albedo = 0.999f) {
-        return entry_of(tests::bake_scene(tests::make_translucent_scene(
-                                              {tests::make_sphere(2)},
-                                              tests::make_grey_medium(albedo * sigma_t,
-                                                                      (1 - albedo) * sigma_t, eta)),
-                                          options),
-                        "multiple.view");
-    };
-    BakeOptions options = bake_by(kWalked, 20000);
-    EXPECT_EQ(entry(3, options).terms, 1u) << "preview";
-    EXPECT_EQ(entry(1, options).terms, 4u) << "even in preview";
-    options.quality = Quality::production;
-    EXPECT_EQ(entry(1, options).terms, 4u);
-    EXPECT_EQ(entry(10, options).terms, 1u);
-    EXPECT_EQ(entry(10, options, 1).terms, 4u) << "views are farther apart inside";
-    EXPECT_EQ(entry(10, options, 1.3f, 0.9f).terms, 4u) << "light from deep inside is missing";
-    EXPECT_EQ(entry(3000, options).terms, 1u);
-    BakeOptions apart = options;
-    apart.separate_terms = true;
-    EXPECT_THAT(entry(3, apart).reason, HasSubstr("--separate-terms"));
-    options.set(kMultipleModel, kScaled);
-    EXPECT_EQ(entry(3, options).terms, 1u) << "no walks by view";
 }
 
 TEST(WalkModel, BytesDoNotDependOnTheNumberOfThreads) {
