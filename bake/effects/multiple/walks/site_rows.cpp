@@ -33,22 +33,38 @@ class SiteWalker {
         std::uint32_t number = 0;
         exits_.clear();
         seen_.clear();
+        glm::vec3 mean_seen(0);
         WalkCounts own;
         for (WalkGroup group; group.flies_as < space_.bands.size(); ++group.flies_as) {
             for (std::uint32_t w = 0; w < options_.walks_per_site; ++w) {
-                WalkRandom random({options_.seed, RandomStage::body_walk, site, number++});
+                WalkRandom random({options_.seed, RandomStage::body_walk, site, number++}, true);
                 const glm::vec3 seen =
                     follow_walk(space_, group, start, options_.orders, random, exits_, own);
                 const glm::vec4 view = view_lobe_.eval(start.normal, seen);
-                seen_.resize(exits_.size(), {view.y, view.z, view.w});
+                const glm::vec3 lobe(view.y, view.z, view.w);
+                mean_seen += lobe;
+                seen_.resize(exits_.size(), lobe);
             }
         }
         add_exits(static_cast<float>(own.correction() / options_.walks_per_site));
+        take_out_mean(mean_seen / static_cast<float>(number));
         counts += own;
         return dense_;
     }
 
   private:
+    // Its lobes' mean would be 0 over more walks. What it makes of the light that all views have in
+    // common is noise.
+    void take_out_mean(glm::vec3 mean) {
+        const std::size_t size = dense_.size() / options_.views;
+        for (std::uint32_t view = 1; view < options_.views; ++view) {
+            float* const row = &dense_[view * size];
+            for (std::size_t k = 0; k < size; ++k) {
+                row[k] -= mean[static_cast<int>(view) - 1] * dense_[k];
+            }
+        }
+    }
+
     // Exits of one sample are added up before its vectors are read.
     void add_exits(float scale) {
         by_sample_.clear();

@@ -19,10 +19,15 @@ class WalkRandom {
         RandomStage stage = RandomStage::body_walk;
         std::uint32_t start = 0, walk = 0;
     };
-    explicit WalkRandom(Key key) : key_(key) {}
+    /// `spread`: the first numbers of walks with the same start are spread evenly over these walks
+    /// (a rank-1 lattice), which then are not independent of one another.
+    explicit WalkRandom(Key key, bool spread = false) : key_(key), spread_(spread) {}
 
     /// Uniform in [0, 1), 24 bits.
     float next() {
+        if (spread_ && number_ < kSpread) {
+            return next_spread();
+        }
         if (used_ == 4) {
             block_ = random_uniform(key_.seed, key_.stage,
                                     key_.start | std::uint64_t{blocks_++} << 32, key_.walk);
@@ -32,7 +37,26 @@ class WalkRandom {
     }
 
   private:
+    // A start's direction, a flight, a turn, a flight.
+    static constexpr std::uint32_t kSpread = 7;
+    // Steps of the lattice in units of 2^-32: powers of 1 / phi, phi^8 = phi + 1 [Roberts2018].
+    static constexpr std::array<std::uint32_t, kSpread> kStep{
+        3915259345u, 3569120481u, 3253582939u, 2965941329u, 2703729436u, 2464699080u, 2246800835u};
+
+    float next_spread() {
+        if (number_ % 4 == 0) {
+            constexpr std::uint64_t kShifts = std::uint64_t{1} << 63;
+            block_ = random_uniform(key_.seed, key_.stage, key_.start | kShifts, number_ / 4);
+        }
+        const std::uint32_t place =
+            kStep[number_] * key_.walk + static_cast<std::uint32_t>(0x1p32f * block_[number_ % 4]);
+        ++number_;
+        return static_cast<float>(place >> 8) * 0x1p-24f;
+    }
+
     Key key_;
+    bool spread_;
+    std::uint32_t number_ = 0;  // of spread numbers drawn
     std::uint32_t blocks_ = 0, used_ = 4;
     std::array<float, 4> block_{};
 };
