@@ -9,6 +9,7 @@
 #include "bake/accuracy/subject_truth.h"
 #include "bake/accuracy/surface_probes.h"
 #include "bake/base/ordered_parallel.h"
+#include "bake/receivers/used_vertices.h"
 
 namespace opaline::bake {
 namespace {
@@ -55,8 +56,13 @@ ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset
                        const Context& context, std::uint64_t& traced) {
     const std::uint64_t seed = bake.knobs.seed;
     const std::size_t all = count_receivers(bake.inputs.receivers);
-    const std::vector<std::uint32_t> drawn = draw_evenly(
-        all, count_checked(all, bake.knobs.cubemap_size), RandomStage::held_back_receivers, seed);
+    const std::vector<std::uint32_t> used = find_used_vertices(bake.inputs.scene);
+    std::vector<std::uint32_t> drawn =
+        draw_evenly(used.size(), count_checked(used.size(), bake.knobs.cubemap_size),
+                    RandomStage::held_back_receivers, seed);
+    for (std::uint32_t& receiver : drawn) {
+        receiver = used[receiver];
+    }
     const std::vector<CheckPoint> receivers = make_check_points(bake.inputs.receivers, drawn);
     const std::vector<CheckPoint> between =
         draw_surface_probes(bake.inputs.scene, bake.inputs.rays, find_lit_primitives(bake),

@@ -19,6 +19,7 @@
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "bake/reference/write_receivers.h"
+#include "bake/scene/orient_bodies.h"
 #include "formats/image/exr.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/terms.h"
@@ -123,6 +124,18 @@ Status report_lost_paths(const Options& options, const bake::Estimate& estimate)
         "close the holes of its mesh")});
 }
 
+// As a bake sees them.
+formats::Result<bake::OrientedBodies> close_bodies(const formats::Scene& scene) {
+    bake::OrientedBodies bodies = bake::orient_bodies(scene);
+    for (bake::BodySurface& surface : bodies.surfaces) {
+        surface.open_edges = 0;  // paths are counted that are lost there
+    }
+    if (auto status = report_warnings(bake::describe_faults(scene, bodies.surfaces)); !status) {
+        return std::move(status).error();
+    }
+    return bodies;
+}
+
 Status make_table(const Options& options, const bake::PathSpace& space,
                   const bake::EstimateOptions& wanted, const bake::Context& context) {
     std::optional<glm::vec3> eye;
@@ -217,7 +230,12 @@ int run(const Options& options) {
     if (auto status = check_threads(options.threads); !status) {
         return report_error(status.error());
     }
-    const auto scene = bake::make_reference_scene(imported->scene, options.threads);
+    const auto bodies = close_bodies(imported->scene);
+    if (!bodies) {
+        return report_error(bodies.error());
+    }
+    const auto scene = bake::make_reference_scene(bodies->scene ? *bodies->scene : imported->scene,
+                                                  options.threads);
     if (!scene) {
         return report_error(scene.error());
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bake/base/rng.h"
+#include "bake/receivers/used_vertices.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/transport/touching_triangles.h"
 
@@ -39,7 +40,9 @@ std::vector<ReferenceReceiver> choose_receivers(const ReferenceScene& scene, std
     std::vector<ReferenceReceiver> receivers;
     std::uint64_t first = 0;
     std::uint32_t primitive = 0;
-    for (const std::uint64_t number : draw(origins.size(), wanted, seed)) {
+    const std::vector<std::uint32_t> used = find_used_vertices(input);
+    for (const std::uint64_t drawn : draw(used.size(), wanted, seed)) {
+        const std::uint32_t number = used[drawn];
         while (number >= first + input.primitives[primitive].position.size()) {
             first += input.primitives[primitive++].position.size();
         }

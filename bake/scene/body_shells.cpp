@@ -25,40 +25,6 @@ struct Neighbour {
     bool same_way;  // they already face the same way
 };
 
-BodyShells collect_triangles(const Scene& scene, std::uint32_t material) {
-    BodyShells body;
-    std::unordered_map<glm::vec3, std::uint32_t, PositionHash> places;
-    std::size_t vertices = 0;
-    for (const Primitive& primitive : scene.primitives) {
-        vertices += primitive.material == material ? primitive.position.size() : 0;
-    }
-    places.reserve(vertices);
-    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
-        const Primitive& primitive = scene.primitives[p];
-        if (primitive.material != material) {
-            continue;
-        }
-        for (std::uint32_t i = 0; i + 2 < primitive.index.size(); i += 3) {
-            BodyTriangle t{{}, p, i};
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                const glm::vec3 at = weld_key(primitive.position[primitive.index[i + k]]);
-                const auto [it, added] =
-                    places.try_emplace(at, static_cast<std::uint32_t>(body.position.size()));
-                if (added) {
-                    body.position.push_back(at);
-                }
-                t.point[k] = it->second;
-            }
-            // Skip triangles with two equal corners: their neighbours' edges coincide and join
-            // directly.
-            if (t.point[0] != t.point[1] && t.point[1] != t.point[2] && t.point[2] != t.point[0]) {
-                body.triangle.push_back(t);
-            }
-        }
-    }
-    return body;
-}
-
 std::vector<std::vector<Neighbour>> find_neighbours(BodyShells& body) {
     std::vector<Side> sides;
     sides.reserve(3 * body.triangle.size());
@@ -184,8 +150,42 @@ glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t) {
     return 0.5 * glm::cross(b - a, c - a);
 }
 
+BodyShells weld_triangles(const Scene& scene, std::uint32_t material) {
+    BodyShells body;
+    std::unordered_map<glm::vec3, std::uint32_t, PositionHash> places;
+    std::size_t vertices = 0;
+    for (const Primitive& primitive : scene.primitives) {
+        vertices += primitive.material == material ? primitive.position.size() : 0;
+    }
+    places.reserve(vertices);
+    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
+        const Primitive& primitive = scene.primitives[p];
+        if (primitive.material != material) {
+            continue;
+        }
+        for (std::uint32_t i = 0; i + 2 < primitive.index.size(); i += 3) {
+            BodyTriangle t{{}, p, i};
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const glm::vec3 at = weld_key(primitive.position[primitive.index[i + k]]);
+                const auto [it, added] =
+                    places.try_emplace(at, static_cast<std::uint32_t>(body.position.size()));
+                if (added) {
+                    body.position.push_back(at);
+                }
+                t.point[k] = it->second;
+            }
+            // Skip triangles with two equal corners: their neighbours' edges coincide and join
+            // directly.
+            if (t.point[0] != t.point[1] && t.point[1] != t.point[2] && t.point[2] != t.point[0]) {
+                body.triangle.push_back(t);
+            }
+        }
+    }
+    return body;
+}
+
 BodyShells make_body_shells(const Scene& scene, std::uint32_t material) {
-    BodyShells body = collect_triangles(scene, material);
+    BodyShells body = weld_triangles(scene, material);
     cut_into_shells(body);
     return body;
 }

@@ -44,6 +44,10 @@ std::array<glm::dvec3, 3> corners(const BodyShells& body, const BodyTriangle& t)
 /// Normal times area [m^2].
 glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t);
 
+/// The triangles of a material's surface, as the scene turns them, not cut into shells: `position`
+/// and `triangle` alone. Those folded to a line are left out.
+BodyShells weld_triangles(const formats::Scene& scene, std::uint32_t material);
+
 /// The shells of a material's surface. Vertices at one position are one point. Triangles are
 /// connected if they share an edge with exactly one other triangle. The smaller part of a shell by
 /// area is turned, so that the whole shell faces one way. Triangles folded to a line are left out.

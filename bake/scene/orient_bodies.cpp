@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bake/scene/body_shells.h"
+#include "bake/scene/cancel_flaps.h"
 
 namespace opaline::bake {
 namespace {
@@ -144,12 +145,19 @@ OrientedBodies orient_bodies(const Scene& scene) {
         if (!scene.materials[m].medium) {
             continue;
         }
-        BodyShells body = make_body_shells(scene, m);
+        const Flaps flaps = find_flaps(scene, m);
+        if (flaps.pairs > 0) {
+            if (!result.scene) {
+                result.scene = scene;
+            }
+            remove_flaps(flaps, *result.scene);
+        }
+        BodyShells body = make_body_shells(result.scene ? *result.scene : scene, m);
         if (body.triangle.empty()) {
             continue;
         }
         turn_shells_outward(body);
-        BodySurface surface{m, 0, body.open_edges};
+        BodySurface surface{m, 0, body.open_edges, flaps.pairs};
         for (const BodyTriangle& t : body.triangle) {
             if (t.turned) {
                 if (!result.scene) {
@@ -179,6 +187,14 @@ std::vector<formats::Diagnostic> describe_faults(const Scene& scene,
                 std::to_string(surface.turned) +
                     " triangles of the medium's surface face into it; they were turned outward",
                 "make all faces point outward"));
+        }
+        if (surface.flaps > 0) {
+            warnings.push_back(formats::make_warning(
+                scene.source, where,
+                std::to_string(surface.flaps) +
+                    " pairs of triangles lie on one another and face opposite ways: nothing is "
+                    "between them, so they were left out",
+                "remove such pairs, or give the part a thickness"));
         }
         if (surface.open_edges > 0) {
             warnings.push_back(formats::make_warning(

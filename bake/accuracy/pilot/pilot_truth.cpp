@@ -6,6 +6,7 @@
 #include "bake/accuracy/subject_truth.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
+#include "bake/receivers/used_vertices.h"
 #include "bake/truth/draw_receivers.h"
 
 namespace opaline::bake {
@@ -34,13 +35,14 @@ void thin_out(const PilotScene& pilot, std::vector<PilotReceiver>& receivers) {
 
 std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs& knobs) {
     const auto& sets = pilot.bake.receivers;
-    const std::size_t all = count_receivers(sets);
-    const std::size_t wanted =
-        std::clamp(all / kReceiversPerPilotReceiver, kLeastPilotReceivers, kMostPilotReceivers);
+    const std::vector<std::uint32_t> used = find_used_vertices(pilot.bake.scene);
+    const std::size_t wanted = std::clamp(used.size() / kReceiversPerPilotReceiver,
+                                          kLeastPilotReceivers, kMostPilotReceivers);
     std::vector<PilotReceiver> receivers;
     std::map<std::uint32_t, SubjectTruth> truths;
-    for (const std::uint32_t r :
-         draw_evenly(all, wanted, RandomStage::pilot_receivers, knobs.seed)) {
+    for (const std::uint32_t d :
+         draw_evenly(used.size(), wanted, RandomStage::pilot_receivers, knobs.seed)) {
+        const std::uint32_t r = used[d];
         const std::uint32_t material = set_of(sets, r).material;
         if (has_truth(pilot.bake, state_of(pilot.subjects, material))) {
             receivers.push_back({r, material, {}});

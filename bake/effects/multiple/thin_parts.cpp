@@ -8,6 +8,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
+#include "bake/receivers/used_vertices.h"
 #include "bake/transport/body.h"
 #include "bake/truth/draw_receivers.h"
 #include "formats/media/mean_cosine.h"
@@ -66,13 +67,10 @@ double closed_body_error(const std::array<double, 3>& lengths, double mean_chord
 
 std::vector<BodyPoint> draw_body_points(const EffectInputs& inputs, std::size_t count) {
     std::vector<BodyPoint> all;
-    for (const ReceiverSet& set : inputs.bake.receivers) {
-        if (set.material == inputs.material) {
-            for (const BodyPoint& point : set.inside) {
-                if (point.normal != glm::vec3(0)) {
-                    all.push_back(point);
-                }
-            }
+    for (const std::uint32_t r : find_used_vertices(inputs.bake.scene)) {
+        const ReceiverSet& set = set_of(inputs.bake.receivers, r);
+        if (set.material == inputs.material && set.inside[r - set.first].normal != glm::vec3(0)) {
+            all.push_back(set.inside[r - set.first]);
         }
     }
     std::vector<BodyPoint> drawn;

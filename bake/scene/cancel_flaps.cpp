@@ -1,0 +1,98 @@
+#include "bake/scene/cancel_flaps.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+#include "bake/scene/body_shells.h"
+
+namespace opaline::bake {
+namespace {
+
+// A triangle by its corners, whichever way it faces.
+struct Facet {
+    std::array<std::uint32_t, 3> corner;  // ascending
+    bool is_even;                         // they are in that order up to rotation
+    std::uint32_t triangle;
+};
+
+Facet make_facet(const BodyTriangle& t, std::uint32_t triangle) {
+    Facet facet{t.point, true, triangle};
+    auto& [a, b, c] = facet.corner;
+    for (auto [first, second] : {std::pair(&a, &b), std::pair(&b, &c), std::pair(&a, &b)}) {
+        if (*first > *second) {
+            std::swap(*first, *second);
+            facet.is_even = !facet.is_even;
+        }
+    }
+    return facet;
+}
+
+double area_of(const BodyShells& body, std::uint32_t triangle) {
+    return glm::length(area_vector(body, body.triangle[triangle]));
+}
+
+}  // namespace
+
+Flaps find_flaps(const formats::Scene& scene, std::uint32_t material) {
+    Flaps flaps;
+    flaps.first_index.resize(scene.primitives.size());
+    const BodyShells body = weld_triangles(scene, material);
+    std::vector<Facet> facets;
+    facets.reserve(body.triangle.size());
+    double area = 0, cancelled = 0;
+    for (std::uint32_t t = 0; t < body.triangle.size(); ++t) {
+        facets.push_back(make_facet(body.triangle[t], t));
+        area += area_of(body, t);
+    }
+    // Of one set of corners: first those that face one way, then the others.
+    std::ranges::sort(facets, [](const Facet& a, const Facet& b) {
+        return std::tie(a.corner, a.is_even, a.triangle) <
+               std::tie(b.corner, b.is_even, b.triangle);
+    });
+    std::vector<std::uint32_t> triangles;
+    for (std::size_t begin = 0, end = 0; begin < facets.size(); begin = end) {
+        std::size_t odd = 0;
+        while (end < facets.size() && facets[end].corner == facets[begin].corner) {
+            odd += facets[end++].is_even ? 0u : 1u;
+        }
+        const std::size_t pairs = std::min(odd, end - begin - odd);
+        for (std::size_t i = 0; i < pairs; ++i) {
+            triangles.push_back(facets[begin + i].triangle);
+            triangles.push_back(facets[begin + odd + i].triangle);
+            cancelled += 2 * area_of(body, facets[begin].triangle);
+        }
+    }
+    if (cancelled > 0.5 * area) {
+        return flaps;
+    }
+    for (const std::uint32_t t : triangles) {
+        flaps.first_index[body.triangle[t].primitive].push_back(body.triangle[t].first_index);
+    }
+    for (std::vector<std::uint32_t>& first : flaps.first_index) {
+        std::ranges::sort(first);
+    }
+    flaps.pairs = triangles.size() / 2;
+    return flaps;
+}
+
+void remove_flaps(const Flaps& flaps, formats::Scene& scene) {
+    for (std::size_t p = 0; p < flaps.first_index.size(); ++p) {
+        std::vector<std::uint32_t>& index = scene.primitives[p].index;
+        auto next = flaps.first_index[p].begin();
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i + 2 < index.size(); i += 3) {
+            if (next != flaps.first_index[p].end() && *next == i) {
+                ++next;
+                continue;
+            }
+            std::copy_n(&index[i], 3, &index[kept]);
+            kept += 3;
+        }
+        index.resize(kept);
+    }
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Pairs of triangles that bound nothing.
+struct Flaps {
+    /// Per primitive of the scene: where such a triangle's corners begin in Primitive::index,
+    /// ascending.
+    std::vector<std::vector<std::uint32_t>> first_index;
+    std::uint64_t pairs = 0;
+};
+
+/// Triangles of a medium's surface with the same three corners that face opposite ways: what is
+/// left of a thin part once a mesh was simplified. Nothing lies between them, yet a ray that meets
+/// two surfaces at one distance finds either of them and takes the inside for the outside. Vertices
+/// at one position are one point. None are found where they are more than half of the surface by
+/// area: then they are the body, a sheet or one that was modelled with two sides.
+Flaps find_flaps(const formats::Scene& scene, std::uint32_t material);
+
+/// The scene without them. Vertices stay.
+void remove_flaps(const Flaps& flaps, formats::Scene& scene);
+
+}  // namespace opaline::bake
