@@ -34,7 +34,7 @@ inline double walks_for(double error) {
 }
 // In all as production's are to those around: fewer would widen the radius.
 inline double all_walks_for(double error) {
-    return std::clamp(600 * walks_for(error), 1e6, 2.4e7);
+    return std::clamp(1500 * walks_for(error), 1e6, 4.8e7);
 }
 inline double sites_for(double error) {
     return error < 0.05 ? 40000 : 20000;
@@ -109,14 +109,14 @@ inline constexpr KnobSpec kViewTerms{
 inline constexpr KnobSpec kWalksAround{.name = "walks_around",
                                        .lowest = 1,
                                        .highest = 1e10,
-                                       .preset = {2000, 6000, 10000, 40000},
+                                       .preset = {2000, 6000, 8000, 40000},
                                        .for_target = multiple_knobs::walks_for};
 
 /// Random walks through each medium in all, at most.
 inline constexpr KnobSpec kWalks{.name = "walks",
                                  .lowest = 1000,
                                  .highest = 1e10,
-                                 .preset = {1000000, 3000000, 6000000, 24000000},
+                                 .preset = {1000000, 3000000, 12000000, 48000000},
                                  .for_target = multiple_knobs::all_walks_for};
 
 /// Places on the surface of each medium where they start, at most.

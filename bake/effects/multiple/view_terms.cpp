@@ -18,9 +18,9 @@ namespace {
 // Three rows more are noisier than one: less is gained than an error of this size costs (README.md,
 // "Views").
 double allowed_view_error(const Knobs& knobs) {
-    return knobs.error_target > 0                 ? 0.5 * knobs.error_target
-           : knobs.quality == Quality::reference  ? 0.01
-           : knobs.quality == Quality::production ? 0.03
+    return knobs.error_target > 0                 ? 0.3 * knobs.error_target
+           : knobs.quality == Quality::reference  ? 0.005
+           : knobs.quality == Quality::production ? 0.005
            : knobs.quality == Quality::preview    ? 0.1
                                                   : 0.2;
 }
