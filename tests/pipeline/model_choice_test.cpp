@@ -225,7 +225,7 @@ TEST(ModelChoice, RowsByViewAreTakenWhereTheBodyIsThinOrAbsorbsAndTheQualityAsks
     EXPECT_EQ(entry(1, options).terms, 4u) << "even in preview";
     options.quality = Quality::production;
     EXPECT_EQ(entry(1, options).terms, 4u);
-    EXPECT_EQ(entry(10, options).terms, 1u);
+    EXPECT_EQ(entry(100, options, 1.3f, 1).terms, 1u);
     EXPECT_EQ(entry(10, options, 1).terms, 4u) << "views are farther apart inside";
     EXPECT_EQ(entry(10, options, 1.3f, 0.9f).terms, 4u) << "light from deep inside is missing";
     EXPECT_EQ(entry(3000, options).terms, 1u);

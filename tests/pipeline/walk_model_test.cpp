@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "bake/accuracy/check_model.h"
+#include "bake/reference/reference_receivers.h"
+#include "bake/scene/orient_bodies.h"
 #include "tests/support/effects.h"
 #include "tests/support/sheets.h"
 #include "tests/support/walk_bake.h"
@@ -118,6 +120,37 @@ TEST(WalkModel, BytesDoNotDependOnTheNumberOfThreads) {
                                             tests::bake_scene(scene, three).asset, "studio"),
                   0)
             << model;
+    }
+}
+
+// A pair of triangles within the ball, one beside it: nothing is between them.
+TEST(WalkModel, FlapsWithoutThicknessChangeNoBitOfTheBodyThatTheyStandIn) {
+    tests::Primitive flaps;
+    for (const float at : {0.3f, 0.7f}) {
+        const glm::vec3 corner(at);
+        flaps.position.insert(flaps.position.end(), {corner, corner + glm::vec3(0.1f, 0, 0),
+                                                     corner + glm::vec3(0, 0.1f, 0)});
+    }
+    flaps.normal.assign(6, {0, 0, 1});
+    flaps.index = {0, 1, 2, 0, 2, 1, 3, 4, 5, 3, 5, 4};
+    const formats::Medium medium = tests::make_grey_medium(6, 0.1f);
+    const tests::Primitive ball = tests::make_sphere(2);
+    const auto relit = [&](std::vector<tests::Primitive> bodies) {
+        const BakeResult baked = tests::bake_scene(
+            tests::make_translucent_scene(std::move(bodies), medium), bake_by(kWalked, 20000));
+        auto colors = tests::relight(baked.asset.view(), "studio");
+        EXPECT_TRUE(tests::all_finite(baked.asset));
+        colors.resize(ball.position.size());
+        return colors;
+    };
+    EXPECT_EQ(relit({ball, flaps}), relit({ball}));
+    const OrientedBodies bodies =
+        orient_bodies(tests::make_translucent_scene({ball, flaps}, medium));
+    ASSERT_TRUE(bodies.scene);
+    const auto scene = make_reference_scene(*bodies.scene, 1);
+    ASSERT_TRUE(scene);
+    for (const ReferenceReceiver& r : choose_receivers(*scene, 10000, 0, std::nullopt)) {
+        EXPECT_EQ(r.primitive, 0u) << "nothing is compared where there is no triangle";
     }
 }
 

@@ -15,6 +15,7 @@
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/true_multiple.h"
 #include "bake/effects/multiple/view_terms.h"
+#include "bake/effects/multiple/walks/limit_views.h"
 #include "bake/effects/multiple/walks/true_walks.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/truth/true_irradiance.h"
@@ -132,14 +133,18 @@ void add_sums(std::span<const float> sums, float factor, std::uint32_t row, cons
 }
 
 // T_d + sum of (w' - m n)_k R_k as harmonics of the view w': Y_00 and Y_1 = sqrt(3) Y_00 (y, z, x).
-void add_views(const MultipleStage& stage, const GatherReceiver& receiver, float scale,
-               const RowLayout& layout, const DenseRow& row) {
+// `sums`: T_d / scale.
+void add_views(const MultipleStage& stage, const GatherReceiver& receiver,
+               std::span<const float> sums, float scale, const RowLayout& layout,
+               const DenseRow& row) {
     constexpr std::array<int, 3> kAxis{1, 2, 0};
     constexpr double kFirst = 0.5 * std::numbers::sqrt3 * std::numbers::inv_sqrtpi;
     const glm::vec3 normal = receiver.inside.normal;
-    const auto mean = static_cast<float>(make_view_lobe(stage.medium.eta).mean);
-    std::vector<float> rows(3 * (row.bands == 1 ? 1 : 4) * row.size());
+    const double eta = stage.medium.eta, cosine = make_view_lobe(eta).mean;
+    const auto mean = static_cast<float>(cosine);
+    std::vector<float> rows(3 * sums.size());
     gather_views(stage, receiver.inside.position, normal, rows);
+    scale *= limit_views(sums, rows, row.bands == 1 ? 1 : 4, normal, cosine, eta);
     const std::size_t size = rows.size() / 3;
     for (std::uint32_t k = 0; k < 3; ++k) {
         const int axis = kAxis[k];
@@ -159,7 +164,7 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
                         inputs.knobs[kEpsilon], row.bands, sums);
     add_sums(sums, static_cast<float>(scale / inputs.layout.view_of_constant()), 0, row);
     if (inputs.layout.view_harmonics > 0) {
-        add_views(stage, receiver, static_cast<float>(scale), inputs.layout, row);
+        add_views(stage, receiver, sums, static_cast<float>(scale), inputs.layout, row);
     }
     return 0;
 }

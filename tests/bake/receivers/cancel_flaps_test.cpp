@@ -1,0 +1,109 @@
+#include "bake/scene/cancel_flaps.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bake/receivers/used_vertices.h"
+#include "bake/scene/orient_bodies.h"
+#include "tests/support/media.h"
+#include "tests/support/scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Primitive;
+using formats::Scene;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Scene wax(std::vector<Primitive> primitives) {
+    return tests::make_translucent_scene(std::move(primitives), tests::make_grey_medium(1, 0.1f));
+}
+
+// A triangle seen from both sides, each with corners of its own.
+Primitive make_flap(float x) {
+    Primitive flap;
+    flap.position = {{x, 0, 0}, {x, 0.1f, 0}, {x, 0, 0.1f}, {x, 0, 0}, {x, 0.1f, 0}, {x, 0, 0.1f}};
+    flap.normal.assign(3, {1, 0, 0});
+    flap.normal.resize(6, {-1, 0, 0});
+    flap.index = {0, 1, 2, 5, 4, 3};
+    return flap;
+}
+
+// The body's own triangles stay as they are, whichever primitive holds the flaps.
+TEST(CancelFlaps, PairsThatFaceOppositeWaysAreRemovedWhereverTheyStand) {
+    const Primitive ball = tests::make_sphere(2);
+    Primitive both = ball;
+    const Primitive flap = make_flap(0.5f);
+    const auto first = static_cast<std::uint32_t>(both.position.size());
+    both.position.insert(both.position.end(), flap.position.begin(), flap.position.end());
+    both.normal.insert(both.normal.end(), flap.normal.begin(), flap.normal.end());
+    for (std::size_t i = 0; i < flap.index.size(); ++i) {
+        // In the middle: what stands before and after is kept in order.
+        both.index.insert(both.index.begin() + 30 + static_cast<std::ptrdiff_t>(i),
+                          first + flap.index[i]);
+    }
+    const Scene scene = wax({both, make_flap(3)});
+    const Flaps flaps = find_flaps(scene, 0);
+    EXPECT_EQ(flaps.pairs, 2u);
+    EXPECT_THAT(flaps.first_index, ElementsAre(ElementsAre(30, 33), ElementsAre(0, 3)));
+    const OrientedBodies bodies = orient_bodies(scene);
+    ASSERT_TRUE(bodies.scene);
+    EXPECT_EQ(bodies.scene->primitives[0].index, ball.index);
+    EXPECT_EQ(bodies.scene->primitives[0].position, both.position) << "vertices are receivers";
+    EXPECT_THAT(bodies.scene->primitives[1].index, IsEmpty());
+    EXPECT_EQ(bodies.surfaces[0].open_edges, 0u);
+    EXPECT_EQ(bodies.surfaces[0].turned, 0u);
+    const auto warnings = describe_faults(scene, bodies.surfaces);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_THAT(warnings[0].fault, HasSubstr("2 pairs of triangles"));
+}
+
+TEST(CancelFlaps, OfThreeOnOneAnotherOneIsLeftToFaceTheWayOfTheMost) {
+    Primitive ball = tests::make_sphere(2);
+    const std::vector<std::uint32_t> closed = ball.index;
+    for (const std::size_t k : {0u, 2u, 1u, 1u, 2u, 0u}) {
+        ball.index.push_back(closed[k]);  // the first one again, once each way
+    }
+    const OrientedBodies bodies = orient_bodies(wax({ball}));
+    ASSERT_TRUE(bodies.scene);
+    EXPECT_EQ(bodies.scene->primitives[0].index.size(), closed.size());
+    EXPECT_EQ(bodies.surfaces[0].open_edges, 0u);
+}
+
+TEST(CancelFlaps, TrianglesThatFaceOneWayOrOnlyShareAnEdgeStay) {
+    Primitive twice = tests::make_sphere(1);
+    twice.index.insert(twice.index.end(), twice.index.begin(), twice.index.begin() + 3);
+    EXPECT_EQ(find_flaps(wax({twice}), 0).pairs, 0u);
+    EXPECT_EQ(find_flaps(wax({tests::make_cube(3, false)}), 0).pairs, 0u);
+    Scene others = wax({tests::make_sphere(1), make_flap(3)});
+    others.materials.push_back({.name = "Opaque"});
+    others.primitives[1].material = 1;
+    EXPECT_EQ(find_flaps(others, 0).pairs, 0u) << "opaque leaves may have two sides";
+}
+
+// What consists of such pairs is meant.
+TEST(CancelFlaps, ABodyOfNothingElseStays) {
+    EXPECT_EQ(find_flaps(wax({make_flap(0)}), 0).pairs, 0u);
+    EXPECT_FALSE(orient_bodies(wax({make_flap(0)})).scene);
+}
+
+TEST(CancelFlaps, TrianglesWithoutAreaAndEmptyScenesAreHarmless) {
+    Primitive point = make_flap(0);
+    point.position.assign(6, glm::vec3(1));
+    EXPECT_EQ(find_flaps(wax({point}), 0).pairs, 0u);
+    EXPECT_EQ(find_flaps(wax({}), 0).pairs, 0u);
+}
+
+TEST(UsedVertices, AreThoseOfTrianglesAndAllWhereThereIsNone) {
+    Primitive corner = make_flap(0);
+    corner.index = {5, 3, 0};
+    EXPECT_THAT(find_used_vertices(wax({corner, make_flap(1), corner})),
+                ElementsAre(0, 3, 5, 6, 7, 8, 9, 10, 11, 12, 15, 17));
+    corner.index.clear();
+    EXPECT_THAT(find_used_vertices(wax({corner})), ElementsAre(0, 1, 2, 3, 4, 5));
+}
+
+}  // namespace
+}  // namespace opaline::bake
