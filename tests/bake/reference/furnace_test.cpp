@@ -117,8 +117,9 @@ TEST(ReferenceFurnace, TwoSheetsExchangeLightAsTheSeriesSays) {
 }
 
 // r + t = 1: a curved sheet is as bright as its surroundings, whatever it reflects onto itself.
+// Facets under smooth normals lose 0.09 % of it on a ball of level 2, 0.02 % here.
 TEST(ReferenceFurnace, SheetThatAbsorbsNothingIsAsBrightAsItsSurroundings) {
-    Scene input = make_scene({make_sphere(2)});
+    Scene input = make_scene({make_sphere(3)});
     input.primitives[0].index.resize(input.primitives[0].index.size() / 2);
     input.materials[0].sheet = formats::Sheet{{0.4f, 0.4f, 0.4f}, {0.6f, 0.6f, 0.6f}};
     input.materials[0].double_sided = true;
