@@ -12,6 +12,7 @@
 #include "bake/effects/effects.h"
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"
+#include "bake/scene/cancel_flaps.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"
 
@@ -24,12 +25,13 @@ struct Options {
 };
 
 // As the bake will warn of it. Which faces must be turned takes it seconds to find out.
-std::vector<formats::Diagnostic> describe_open_media(const formats::Scene& scene,
-                                                     const bake::SceneFacts& facts) {
+std::vector<formats::Diagnostic> describe_media_faults(const formats::Scene& scene,
+                                                       const bake::SceneFacts& facts) {
     std::vector<bake::BodySurface> surfaces;
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         if (scene.materials[m].medium) {
-            surfaces.push_back({m, 0, facts.material[m].open_edges});
+            surfaces.push_back(
+                {m, 0, facts.material[m].open_edges, bake::find_flaps(scene, m).pairs});
         }
     }
     return bake::describe_faults(scene, surfaces);
@@ -57,7 +59,7 @@ int run(const Options& options) {
     const unsigned threads = bake::thread_count(context);
     const bake::SceneFacts facts = bake::inspect_scene(imported->scene);
     auto plan = bake::plan_bake(effects, imported->scene, facts, *knobs);
-    std::vector<formats::Diagnostic> warnings = describe_open_media(imported->scene, facts);
+    std::vector<formats::Diagnostic> warnings = describe_media_faults(imported->scene, facts);
     for (formats::Diagnostic& unmet :
          bake::describe_unmet({effects, imported->scene, facts, *knobs, plan}, *wanted)) {
         warnings.push_back(std::move(unmet));

@@ -191,9 +191,9 @@ std::vector<formats::Diagnostic> describe_faults(const Scene& scene,
         if (surface.flaps > 0) {
             warnings.push_back(formats::make_warning(
                 scene.source, where,
-                std::to_string(surface.flaps) +
-                    " pairs of triangles lie on one another and face opposite ways: nothing is "
-                    "between them, so they were left out",
+                "pairs of triangles that lie on one another and face opposite ways bound nothing "
+                "and were left out: " +
+                    std::to_string(surface.flaps),
                 "remove such pairs, or give the part a thickness"));
         }
         if (surface.open_edges > 0) {

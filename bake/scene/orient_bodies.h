@@ -25,7 +25,7 @@ struct OrientedBodies {
 };
 
 /// Turns the triangles of media that face inward, and the normals of their vertices with them
-/// (receivers/README.md, "Orientation"): the medium lies behind its triangles, so a body turned
+/// (README.md, "Orientation"): the medium lies behind its triangles, so a body turned
 /// inside out would be black.
 ///
 /// Vertices at one position are one point. Triangles that share an edge with exactly one other form

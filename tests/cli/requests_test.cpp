@@ -124,6 +124,40 @@ TEST_F(Requests, PlansWarnOfOpenMediaAsBakesDo) {
     EXPECT_THAT(plan("", {}).err, Not(HasSubstr("open at")));
 }
 
+// A tetrahedron with a triangle of two sides within.
+TEST(Request, PlansBakesAndPathTracersLeaveOutFlapsAndSaySo) {
+    SmallScene small;
+    AssetBuilder asset;
+    const auto position = asset.add<float>(
+        {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.1f, 0.1f, 0.1f, 0.2f, 0.1f, 0.1f, 0.1f, 0.2f, 0.1f},
+        "VEC3");
+    const auto index =
+        asset.add<std::uint16_t>({0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3, 4, 5, 6, 4, 6, 5}, "SCALAR");
+    asset.add_node(asset.add_mesh({{"POSITION", position}}, {{"indices", index}}));
+    const std::string scene = small.path("tetrahedron.glb"), media = small.path("media.json");
+    write_file(scene, asset.glb());
+    std::ofstream(media) << "{\"materials\": {\"*\": {" << kFog << "}}}";
+    for (Arguments line : {Arguments{"plan", scene},
+                           {"bake", scene, "-o", small.path("t.opal")},
+                           {"reference", scene, "--light", "white", "--receivers", "9", "--spp",
+                            "4", "-o", small.path("t.csv")}}) {
+        line.insert(line.end(), {"--media", media});
+        const Outcome outcome = run_opaline(line);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_THAT(outcome.err, AllOf(HasSubstr("bound nothing and were left out: 1"),
+                                       Not(HasSubstr("is open")), Not(HasSubstr("face into"))))
+            << line.front();
+    }
+    // Four vertices have triangles.
+    std::ifstream table(small.path("t.csv"));
+    std::string row;
+    int rows = 0;
+    while (std::getline(table, row)) {
+        ++rows;
+    }
+    EXPECT_EQ(rows, 1 + 4);
+}
+
 TEST_F(Requests, PlansForAnErrorStartFromTheKnobsOfItsPilot) {
     EXPECT_THAT(plan("", {"--error", "0.02"}).out,
                 HasSubstr("for the pilot of --error 0.02 to begin with"));
