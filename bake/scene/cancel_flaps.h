@@ -16,7 +16,8 @@ struct Flaps {
 };
 
 /// Triangles of a medium's surface with the same three corners that face opposite ways: what is
-/// left of a thin part once a mesh was simplified. Nothing lies between them, yet a ray that meets
+/// left of a thin part once a mesh was simplified, or where two bodies of one medium touch, which
+/// become one. Nothing lies between them, yet a ray that meets
 /// two surfaces at one distance finds either of them and takes the inside for the outside. Vertices
 /// at one position are one point. None are found where they are more than half of the surface by
 /// area: then they are the body, a sheet or one that was modelled with two sides.

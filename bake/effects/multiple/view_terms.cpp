@@ -15,8 +15,8 @@
 namespace opaline::bake {
 namespace {
 
-// Three rows more are noisier than one: less is gained than an error of this size costs (README.md,
-// "Views").
+// Three rows more cost time and memory. From production on they are taken nearly always, because
+// thin parts of a body err by more than the estimate for the whole (walks/README.md, "Views").
 double allowed_view_error(const Knobs& knobs) {
     return knobs.error_target > 0                 ? 0.3 * knobs.error_target
            : knobs.quality == Quality::reference  ? 0.005

@@ -83,6 +83,27 @@ TEST(CancelFlaps, TrianglesThatFaceOneWayOrOnlyShareAnEdgeStay) {
     EXPECT_EQ(find_flaps(others, 0).pairs, 0u) << "opaque leaves may have two sides";
 }
 
+TEST(CancelFlaps, BodiesOfOneMediumThatTouchBecomeOne) {
+    const Primitive cube = tests::make_cube(1, false);
+    Primitive other = cube;  // mirrored, so that the sides that touch are cut alike
+    for (std::size_t v = 0; v < other.position.size(); ++v) {
+        other.position[v].x = 2 - other.position[v].x;
+        other.normal[v].x = -other.normal[v].x;
+    }
+    for (std::size_t i = 0; i < other.index.size(); i += 3) {
+        std::swap(other.index[i + 1], other.index[i + 2]);
+    }
+    const OrientedBodies bodies = orient_bodies(wax({cube, other}));
+    ASSERT_TRUE(bodies.scene);
+    EXPECT_EQ(bodies.surfaces[0].flaps, 2u);
+    EXPECT_EQ(bodies.surfaces[0].open_edges, 0u);
+    EXPECT_EQ(bodies.surfaces[0].turned, 0u);
+    EXPECT_NEAR(formats::surface_area(bodies.scene->primitives[0]) +
+                    formats::surface_area(bodies.scene->primitives[1]),
+                40, 1e-4)
+        << "that of a box of 4 x 2 x 2";
+}
+
 // What consists of such pairs is meant.
 TEST(CancelFlaps, ABodyOfNothingElseStays) {
     EXPECT_EQ(find_flaps(wax({make_flap(0)}), 0).pairs, 0u);

@@ -7,7 +7,8 @@
 namespace opaline::bake {
 namespace {
 
-// In proportion to what a row makes of even light: the first coefficient of each face is its mean.
+// In proportion to what a row makes of light that is even over texels: the first coefficient of
+// each face is its mean.
 float under_even_light(std::span<const float> row, std::uint32_t stride, std::uint32_t band) {
     const std::size_t face = row.size() / stride / 6;
     float sum = 0;
