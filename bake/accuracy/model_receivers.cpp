@@ -45,6 +45,33 @@ bool is_pierced(const ReferenceScene& scene, const ReferenceReceiver& receiver) 
     return hit && scene.medium_of[input.primitives[hit->primitive].material] != receiver.medium;
 }
 
+// Its body ends just behind it and begins again: a fold of the mesh that lies on itself. Hardly
+// anything scatters between; light from below the gap has met a second surface, and is not
+// simulated as such (README.md).
+bool is_folded(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
+    if (receiver.medium == formats::kNone) {
+        return false;
+    }
+    constexpr float kThin = 0.1f;  // mean free paths, in the clearest channel
+    const glm::vec3 sigma_t = scene.media[receiver.medium].sigma_t;
+    float reach = kThin / std::max(std::min({sigma_t.x, sigma_t.y, sigma_t.z}), 1e-30f);
+    const glm::vec3 down = -receiver.normal;
+    const formats::Scene& input = scene.surfaces.scene();
+    RayOrigin from{receiver.inside};
+    for (int i = 0; i < 2; ++i) {  // where it ends, and where it begins again
+        const auto hit = scene.surfaces.closest_hit(from, down, reach);
+        if (!hit || scene.medium_of[input.primitives[hit->primitive].material] != receiver.medium) {
+            return false;
+        }
+        if (glm::dot(hit->flat, down) < 0) {
+            return true;
+        }
+        reach -= hit->distance;
+        from = leave_surface(*hit, down);
+    }
+    return false;
+}
+
 // At a sharp edge of its body radiance is discontinuous, because the path along one face's normal
 // lies in the other face.
 bool is_on_edge(const ReferenceReceiver& receiver) {
@@ -60,7 +87,7 @@ std::vector<ReferenceReceiver> choose_model_receivers(const ReferenceScene& scen
     std::vector<ReferenceReceiver> receivers = choose_receivers(scene, wanted, seed, std::nullopt);
     std::erase_if(receivers, [&](const ReferenceReceiver& r) {
         return r.normal == glm::vec3(0) || is_buried(scene, r) || is_pierced(scene, r) ||
-               is_on_edge(r);
+               is_folded(scene, r) || is_on_edge(r);
     });
     return receivers;
 }

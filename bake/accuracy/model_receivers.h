@@ -8,8 +8,9 @@
 namespace opaline::bake {
 
 /// `wanted` vertices of the scene, seen along their normals, without those where bake and reference
-/// model different geometry: inside bodies, on sharp edges, or less than three mean free paths
-/// above a surface inside their own body.
+/// model different geometry: inside bodies, on sharp edges, less than three mean free paths above
+/// another surface inside their own body, or on folds thinner than a tenth of one that lie on their
+/// own body.
 std::vector<ReferenceReceiver> choose_model_receivers(const ReferenceScene& scene,
                                                       std::uint32_t wanted, std::uint64_t seed);
 

@@ -1,0 +1,43 @@
+#include "bake/accuracy/model_receivers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "tests/support/media.h"
+#include "tests/support/media_bake.h"
+
+namespace opaline::bake {
+namespace {
+
+// Receivers of the first of two plates, the second `gap` [m] below it; a mean free path is 0.1 m.
+std::size_t count_chosen_on_plate(float thickness, float gap) {
+    tests::Primitive plate = tests::make_cube(4, false), body = plate;
+    for (glm::vec3& p : plate.position) {
+        p.y = p.y > 0 ? 0.0f : -thickness;
+    }
+    for (glm::vec3& p : body.position) {
+        p = 2.0f * p;
+        p.y -= thickness + gap + 2;
+    }
+    const auto vertices = static_cast<std::uint32_t>(plate.position.size());
+    const formats::Scene scene =
+        tests::make_translucent_scene({plate, body}, tests::make_grey_medium(10, 0));
+    const auto reference = make_reference_scene(scene, 1).value();
+    const std::vector<ReferenceReceiver> chosen =
+        choose_model_receivers(reference, 2 * vertices, 0);
+    return static_cast<std::size_t>(std::count_if(
+        chosen.begin(), chosen.end(),
+        [&](const ReferenceReceiver& r) { return r.primitive == 0 && r.normal.y > 0.99f; }));
+}
+
+TEST(ModelReceivers, LeaveOutAFoldThatLiesOnItsOwnBody) {
+    EXPECT_EQ(count_chosen_on_plate(0.002f, 0.002f), 0u);
+    EXPECT_GT(count_chosen_on_plate(0.002f, 0.5f), 0u) << "the gap is wide";
+    EXPECT_GT(count_chosen_on_plate(0.5f, 0.002f), 0u) << "what lies there scatters";
+}
+
+}  // namespace
+}  // namespace opaline::bake
