@@ -20,6 +20,7 @@ struct CheckPoint {
     Receiver receiver;      ///< of opaque materials
     BodyPoint body;         ///< of media
     std::uint32_t key = 0;  ///< of the random numbers of its truth
+    bool behind = false;    ///< seen from behind: of thin-walled surfaces alone
 };
 
 /// The receivers `drawn` as points: running numbers of the sets.

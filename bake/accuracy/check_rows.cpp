@@ -1,5 +1,7 @@
 #include "bake/accuracy/check_rows.h"
 
+#include <bit>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,9 +31,11 @@ EffectCheck check_subject(const SubjectTruth& truth, const SubjectState& subject
             const CheckPoint& point = points[range.begin];
             CheckedPoint found{point.primitive, {}, 0};
             if (point.material == subject.material && range.begin % step == 0) {
-                append_pairs(relight_point(asset, point, subject.layout, lights),
-                             eval_truth(truth, {point.receiver, point.body, point.key}, found.rays),
-                             found.pairs);
+                append_pairs(
+                    relight_point(asset, point, subject.layout, lights),
+                    eval_truth(truth, {point.receiver, point.body, point.key, point.behind},
+                               found.rays),
+                    found.pairs);
             }
             return found;
         },
@@ -50,6 +54,14 @@ std::vector<std::uint32_t> find_lit_primitives(const FinishedBake& bake) {
     return lit;
 }
 
+// Half of the points of thin-walled surfaces are seen from behind.
+void turn_thin_walled(const formats::Scene& scene, std::span<CheckPoint> points) {
+    for (CheckPoint& point : points) {
+        point.behind =
+            scene.materials[point.material].sheet.has_value() && std::popcount(point.key) % 2 == 1;
+    }
+}
+
 }  // namespace
 
 ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset,
@@ -63,10 +75,12 @@ ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset
     for (std::uint32_t& receiver : drawn) {
         receiver = used[receiver];
     }
-    const std::vector<CheckPoint> receivers = make_check_points(bake.inputs.receivers, drawn);
-    const std::vector<CheckPoint> between =
+    std::vector<CheckPoint> receivers = make_check_points(bake.inputs.receivers, drawn);
+    std::vector<CheckPoint> between =
         draw_surface_probes(bake.inputs.scene, bake.inputs.rays, find_lit_primitives(bake),
                             {drawn.size(), seed, static_cast<std::uint32_t>(all)}, context);
+    turn_thin_walled(bake.inputs.scene, receivers);
+    turn_thin_walled(bake.inputs.scene, between);
     std::vector<EffectCheck> checks;
     for (const SubjectState& subject : bake.subjects) {
         const SubjectTruth truth =

@@ -1,6 +1,7 @@
 #include "bake/accuracy/model_lights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bake/environment/builtin_environment.h"
@@ -16,6 +17,12 @@ bool refracts(const formats::Scene& scene) {
         const auto& medium = scene.materials[p.material].medium;
         return medium && !p.index.empty() && !is_matched(medium->eta);
     });
+}
+
+// Far from the point, in direction `to_eye`.
+formats::Vec3 far_eye(formats::Vec3 point, glm::vec3 to_eye) {
+    const float away = 1 + std::abs(point.x) + std::abs(point.y) + std::abs(point.z);
+    return point + away * formats::Vec3{to_eye.x, to_eye.y, to_eye.z};
 }
 
 }  // namespace
@@ -53,10 +60,13 @@ std::vector<double> relight_receivers(const formats::AssetView& asset,
     }
     std::vector<double> luminance;
     for (const ReferenceReceiver& r : receivers) {
+        const std::uint32_t vertex = asset.primitives[r.primitive].first_vertex + r.vertex;
+        shading.eye.reset();
+        if (glm::dot(r.to_eye, r.normal) < 0) {
+            shading.eye = far_eye(asset.position[vertex], r.to_eye);
+        }
         formats::Rgb radiance;
-        runtime::shade_range(asset, light.vector,
-                             asset.primitives[r.primitive].first_vertex + r.vertex, {&radiance, 1},
-                             shading);
+        runtime::shade_range(asset, light.vector, vertex, {&radiance, 1}, shading);
         luminance.push_back(static_cast<double>(formats::luminance(radiance)));
     }
     return luminance;

@@ -89,6 +89,14 @@ std::vector<ReferenceReceiver> choose_model_receivers(const ReferenceScene& scen
         return r.normal == glm::vec3(0) || is_buried(scene, r) || is_pierced(scene, r) ||
                is_folded(scene, r) || is_on_edge(r);
     });
+    const formats::Scene& input = scene.surfaces.scene();
+    bool turn = false;
+    for (ReferenceReceiver& r : receivers) {
+        if (input.materials[input.primitives[r.primitive].material].sheet) {
+            r.to_eye = turn ? -r.normal : r.normal;
+            turn = !turn;
+        }
+    }
     return receivers;
 }
 

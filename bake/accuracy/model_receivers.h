@@ -7,7 +7,8 @@
 
 namespace opaline::bake {
 
-/// `wanted` vertices of the scene, seen along their normals, without those where bake and reference
+/// `wanted` vertices of the scene, seen along their normals, of thin-walled surfaces every
+/// other one from behind, without those where bake and reference
 /// model different geometry: inside bodies, on sharp edges, less than three mean free paths above
 /// another surface inside their own body, or on folds thinner than a tenth of one that lie on their
 /// own body.

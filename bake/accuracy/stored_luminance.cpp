@@ -54,9 +54,9 @@ std::vector<float> view_from_far(const RowLayout& layout, float eta, formats::Ve
 
 }  // namespace
 
-std::vector<float> view_of_rows(const RowLayout& layout, glm::vec3 normal) {
+std::vector<float> view_of_rows(const RowLayout& layout, glm::vec3 normal, bool behind) {
     if (layout.sheet) {
-        return {1.0f, 0.0f};  // from the front
+        return behind ? std::vector{0.0f, 1.0f} : std::vector{1.0f, 0.0f};
     }
     std::vector<float> h(layout.terms(), 1.0f);
     const std::size_t first = layout.first_harmonic();
@@ -88,7 +88,7 @@ Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point
         const std::vector<float> h =
             layout.translucent
                 ? view_from_far(layout, primitive.eta, asset.normal[v], point.body.normal)
-                : view_of_rows(layout, point.body.normal);
+                : view_of_rows(layout, point.body.normal, point.behind);
         add_luminance({asset.transport, range, (v - primitive.first_vertex) * primitive.terms}, h,
                       point.weight[k], {band, sum});
     }

@@ -14,8 +14,9 @@
 
 namespace opaline::bake {
 
-/// h_k of each of a receiver's rows, seen along its normal.
-std::vector<float> view_of_rows(const RowLayout& layout, glm::vec3 normal);
+/// h_k of each of a receiver's rows, seen along its normal; `behind`: of a thin-walled surface,
+/// seen against it.
+std::vector<float> view_of_rows(const RowLayout& layout, glm::vec3 normal, bool behind = false);
 
 /// Rows of one receiver, as a file keeps them: what measuring reads.
 struct RowSource {

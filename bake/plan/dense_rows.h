@@ -36,6 +36,7 @@ struct TruthReceiver {
     const Receiver& outside;
     const BodyPoint& inside;
     std::uint32_t key = 0;  ///< of its random numbers: the receiver's running number
+    bool behind = false;    ///< seen from behind: of thin-walled surfaces alone
 };
 
 }  // namespace opaline::bake

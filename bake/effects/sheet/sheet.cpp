@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "bake/transport/irradiance_transport.h"
@@ -103,8 +104,11 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
     TwoEstimates seen = eval_reflection(own.truth, inputs.bake.rays, receiver.outside, rays);
     const TwoEstimates through = eval_reflection(
         own.truth, inputs.bake.rays, other_side(receiver.outside, receiver.inside), rays);
-    const auto r = static_cast<double>(formats::luminance(sheet.reflect)),
-               t = static_cast<double>(formats::luminance(sheet.transmit));
+    auto r = static_cast<double>(formats::luminance(sheet.reflect)),
+         t = static_cast<double>(formats::luminance(sheet.transmit));
+    if (receiver.behind) {
+        std::swap(r, t);
+    }
     for (std::size_t l = 0; l < seen.first.size(); ++l) {
         seen.first[l] = r * seen.first[l] + t * through.first[l];
         seen.second[l] = r * seen.second[l] + t * through.second[l];
