@@ -21,6 +21,15 @@ double largest_share(const formats::Medium& medium, double diameter) {
     return share;
 }
 
+// Of even light that views see past the facets of their own vertex, whose smooth normal is tilted
+// against them by up to `tilt`. Inside, views stand at least the complement of the critical angle
+// above the smooth surface.
+double share_past_facets(double eta, double behind_facets) {
+    const double tilt = std::acos(std::clamp(1 - 2 * behind_facets, -1.0, 1.0));
+    const double lowest = eta > 1 ? std::acos(1 / eta) : 0;
+    return tilt > lowest ? behind_facets / (1 - fresnel_moments(eta).external) : 0;
+}
+
 double mean_thickness(const MaterialFacts& body) {
     return body.has_thickness() ? 2 * std::abs(body.volume) / body.area : 0;
 }
@@ -73,7 +82,9 @@ PlanEntry decide_transmission(const PlanInput& input) {
     constexpr double kThinParts = 0.25;
     PlanEntry entry;
     entry.has_bands = true;
-    entry.bound = largest_share(medium, kThinParts * mean_thickness(input.subject));
+    entry.bound = std::min(1.0, largest_share(medium, kThinParts * mean_thickness(input.subject)) +
+                                    share_past_facets(static_cast<double>(medium.eta),
+                                                      input.subject.horizon.behind_facets));
     if (!is_wanted(input.knobs, "transmission")) {
         entry.reason = "left out by --effects";
     } else if (medium.fidelity == formats::Medium::Fidelity::paper &&
