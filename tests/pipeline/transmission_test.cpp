@@ -63,10 +63,10 @@ TEST(Transmission, OfABodyThatIsTooDenseIsLessThanItsBoundAndOfAClearerOneMoreTh
 
 TEST(Transmission, RowsByViewAreTakenWhereTheyShowAndChangeLessThanTheirBound) {
     BakeOptions options = tests::only({"transmission"});
-    const BakeResult dim = tests::bake_scene(ball_of(0, 2), options);
+    const BakeResult dim = tests::bake_scene(ball_of(0, 2.5f), options);
     EXPECT_FALSE(entry_of(dim, "transmission.view").on);
     options.set(kStraightTerms, 4);
-    const BakeResult four = tests::bake_scene(ball_of(0, 2), options);
+    const BakeResult four = tests::bake_scene(ball_of(0, 2.5f), options);
     ASSERT_TRUE(entry_of(four, "transmission.view").on);
     EXPECT_EQ(four.asset.primitives[0].terms, 4u);
     EXPECT_LT(tests::largest_difference(dim.asset, four.asset, "white"),
@@ -101,7 +101,7 @@ TEST(Transmission, AgreesWithTheReferencesUnscatteredTermUnderEvenLight) {
 }
 
 TEST(Transmission, StandsInTheRowOfMultipleScatteringWhereTermsAreApart) {
-    const formats::Scene scene = ball_of(1, 0.2f);
+    const formats::Scene scene = ball_of(0.5f, 0.1f);
     BakeOptions options = tests::small_bake();
     options.separate_terms = true;
     const BakeResult all = tests::bake_scene(scene, options);

@@ -18,9 +18,9 @@ namespace {
 constexpr double kSmoothing = 5e-4;
 
 void eval_harmonics(glm::vec3 w, std::span<double> value) {
-    std::array<float, formats::kMaxHarmonics> single{};
-    formats::eval_spherical_harmonics({w.x, w.y, w.z}, std::span(single).first(value.size()));
-    std::copy_n(single.begin(), value.size(), value.begin());
+    std::array<float, formats::kMaxHarmonics> floats{};
+    formats::eval_spherical_harmonics({w.x, w.y, w.z}, std::span(floats).first(value.size()));
+    std::copy_n(floats.begin(), value.size(), value.begin());
 }
 
 // A symmetric positive definite matrix, row by row, as its Cholesky factor.

@@ -36,12 +36,15 @@ inline std::unique_ptr<CrossedBody> make_crossed(std::vector<Primitive> primitiv
     return crossed;
 }
 
-/// A slab between y = 0 and y = -thickness, practically without an end.
+/// A slab between y = 0 and y = -thickness, practically without an end. Its last vertex lies within
+/// its upper face, of no triangle.
 inline Primitive make_crossed_slab(float thickness) {
     Primitive slab = make_cube(1, false);
     for (glm::vec3& p : slab.position) {
         p = (p + glm::vec3(0, -1, 0)) * glm::vec3(400, 0.5f, 400) * thickness;
     }
+    slab.position.push_back(thickness * glm::vec3(5, 0, 3));
+    slab.normal.emplace_back(0, 1, 0);
     return slab;
 }
 
