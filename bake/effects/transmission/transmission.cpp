@@ -46,7 +46,7 @@ struct Truth : Prepared {
 
 // For each of two estimates.
 std::uint32_t truth_views(TruthEffort effort) {
-    return effort.target >= 0.03 ? 512 : effort.target > 0 ? 1024 : 2048;
+    return effort.target >= 0.03 ? 512 : 1024;
 }
 
 PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
