@@ -76,13 +76,17 @@ double typical_share(const formats::Medium& medium, const MaterialFacts& body) {
     return largest_share(medium, kWidth * mean_thickness(body));
 }
 
+double thin_share(const formats::Medium& medium, const MaterialFacts& body) {
+    // As rule `multiple.spread` has it: a quarter of the mean thickness.
+    constexpr double kThinParts = 0.25;
+    return largest_share(medium, kThinParts * mean_thickness(body));
+}
+
 PlanEntry decide_transmission(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
-    // As rule `multiple.spread` has it: thin parts are taken as a quarter of the mean thickness.
-    constexpr double kThinParts = 0.25;
     PlanEntry entry;
     entry.has_bands = true;
-    entry.bound = std::min(1.0, largest_share(medium, kThinParts * mean_thickness(input.subject)) +
+    entry.bound = std::min(1.0, thin_share(medium, input.subject) +
                                     share_past_facets(static_cast<double>(medium.eta),
                                                       input.subject.horizon.behind_facets));
     if (!is_wanted(input.knobs, "transmission")) {

@@ -14,6 +14,9 @@ double straight_share(double eta, double depth);
 /// not known.
 double typical_share(const formats::Medium& medium, const MaterialFacts& body);
 
+/// The same of thin parts: the bound of the rule, but for facets.
+double thin_share(const formats::Medium& medium, const MaterialFacts& body);
+
 /// The rules `transmission` and, after it, `transmission.view`.
 PlanEntry decide_transmission(const PlanInput& input);
 PlanEntry decide_straight_views(const PlanInput& input);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bake/calibration/bench/stopwatch.h"
+#include "bake/effects/transmission/rules_transmission.h"
 #include "bake/effects/transmission/straight_rows.h"
 #include "bake/effects/transmission/view_fit.h"
 #include "formats/opal/cubemap.h"
@@ -23,8 +24,13 @@ double cells(double texels, double views, double rows) {
 Work straight_rows_work(const SubjectCost& cost, double views) {
     const auto texels = static_cast<double>(formats::cubemap_texels(cost.input.knobs.cubemap_size));
     const double rows = straight_terms(cost.layout) * cost.layout.bands();
-    return {0, cost.receivers * (views * cost.input.rates.straight_view.at(cost.input.triangles) +
-                                 cells(texels, views, rows) * cost.input.rates.straight_cell)};
+    // Where a medium is dense, one short flight is all of a view, and few receivers have exits.
+    constexpr double kOneFlight = 0.2;
+    const double crossing = thin_share(cost.medium(), cost.facts);
+    const double view = cost.input.rates.straight_view.at(cost.input.triangles);
+    return {0, cost.receivers *
+                   (views * view * (kOneFlight + (1 - kOneFlight) * crossing) +
+                    crossing * cells(texels, views, rows) * cost.input.rates.straight_cell)};
 }
 
 Work straight_truth_work(const SubjectCost& cost, double views) {

@@ -229,7 +229,7 @@ TEST(GltfTranslucency, GlassIsAMediumThatAbsorbsAndDoesNotScatter) {
         {"thicknessFactor", 1}, {"attenuationDistance", 0.5}, {"attenuationColor", {0.25, 1, 0}}};
     const Mapped tinted = mapped(asset_with(glass));
     ASSERT_TRUE(tinted.medium.has_value()) << tinted.warnings;
-    EXPECT_EQ(tinted.medium->sigma_s, Rgb{});
+    EXPECT_EQ(tinted.medium->sigma_s, formats::Rgb{});
     EXPECT_NEAR(tinted.medium->sigma_a.r, std::log(4.0) / 0.5, 1e-5) << "a quarter in half a metre";
     EXPECT_LT(tinted.medium->sigma_a.g, 1e-9f);
     EXPECT_GT(tinted.medium->sigma_a.b, 100);
