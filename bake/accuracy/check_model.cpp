@@ -59,6 +59,14 @@ formats::Result<ModelErrorReport::Mirrored> check_mirrors(
 
 }  // namespace
 
+TermSet held_light(const EffectTable& effects, std::span<const PlanEntry> plan) {
+    TermSet held = ModelCheckOptions().simulated;
+    for (const PlanEntry& entry : plan) {
+        held |= entry.on && entry.rule == 0 ? effects[entry.effect].held_light : TermSet::none;
+    }
+    return held;
+}
+
 formats::Result<ModelErrorReport> check_model(const formats::Scene& given,
                                               const formats::AssetView& asset,
                                               const ModelCheckOptions& options,

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/plan/effect.h"
 #include "bake/reference/terms.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/result.h"
@@ -56,9 +58,12 @@ struct ModelCheckOptions {
     std::uint64_t max_events = 10000000;  ///< most scatterings and surfaces met, for each light
 };
 
+/// The terms of the reference that the files of a plan hold, without mirror reflection.
+TermSet held_light(const EffectTable& effects, std::span<const PlanEntry> plan);
+
 /// Compares `asset`, baked from `scene`, with path tracing of the same terms; this measures the
-/// error of diffusion and straight paths. Other light (interreflection, light that crosses a body
-/// unscattered) is not compared but stated as `missing`. Light that receivers mirror is left out on
+/// error of diffusion and straight paths. Other light, such as interreflection, is not compared but
+/// stated as `missing`. Light that receivers mirror is left out on
 /// both sides; that of opaque ones is compared by itself (`mirrored`). Receivers inside a body, on
 /// a sharp edge, or with another surface close behind them in their own body are left out.
 ///

@@ -126,6 +126,7 @@ formats::Result<LightCheck> check_unmirrored(const ReferenceScene& scene, const 
     }
     check->light = light.name;
     check->missing = *missing;
+    check->terms = options.simulated;
     return check;
 }
 
@@ -134,7 +135,10 @@ ModelErrorReport make_model_report(std::span<const LightCheck> checks, std::size
     ModelErrorReport report;
     report.reference =
         "path tracing; luminance along the normals of light that met one surface or body, "
-        "without mirror reflection and what crosses a body unscattered";
+        "without mirror reflection";
+    if (!checks.empty() && !has_any(checks.front().terms, TermSet::unscattered)) {
+        report.reference += " and what crosses a body unscattered";
+    }
     report.receivers_checked = static_cast<std::uint32_t>(receivers);
     if (receivers == 0) {
         return report;

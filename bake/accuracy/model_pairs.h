@@ -42,8 +42,9 @@ std::array<double, 2> model_interval(std::span<const ModelPair> pairs, std::size
 struct LightCheck {
     std::string light;
     std::vector<ModelPair> pairs;
-    std::uint32_t samples = 0;  ///< for each
-    double missing = 0;         ///< mean luminance of light that files do not simulate
+    std::uint32_t samples = 0;      ///< for each
+    double missing = 0;             ///< mean luminance of light that files do not simulate
+    TermSet terms = TermSet::none;  ///< that were compared
 };
 
 /// Compares `baked`, luminance by receiver, with path tracing of the terms of `space`. Doubles the

@@ -20,7 +20,9 @@ enum class RandomStage : std::uint32_t {
     pilot_receivers = 8,
     surface_probes = 9,
     body_walk = 10,
-    true_body_walk = 11
+    true_body_walk = 11,
+    straight_views = 12,
+    true_straight_views = 13
 };
 
 /// Four uniform numbers in [0, 1), a pure function of the arguments. There is no state, so results

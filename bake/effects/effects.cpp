@@ -11,6 +11,7 @@
 #include "bake/effects/sheet/sheet.h"
 #include "bake/effects/single/single.h"
 #include "bake/effects/specular/specular.h"
+#include "bake/effects/transmission/transmission.h"
 
 namespace opaline::bake {
 
@@ -19,6 +20,7 @@ const EffectTable& all_effects() {
                                          describe_sheet(Effect::sheet),
                                          describe_multiple(Effect::multiple),
                                          describe_single(Effect::single),
+                                         describe_transmission(Effect::transmission),
                                          describe_local(Effect::local, spread_rules()),
                                          describe_specular(Effect::specular),
                                          describe_gloss(Effect::gloss),

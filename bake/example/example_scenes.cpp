@@ -77,7 +77,7 @@ std::vector<GltfObject> make_glossy() {
 
 std::vector<GltfObject> make_plant() {
     GltfObject leaves{"Leaves", "Leaf", {0.12, 0.20, 0.05}, in_metres(make_leaves({}))};
-    leaves.transmission = {.share = 0.5, .color = {0.16, 0.34, 0.03}};
+    leaves.thin_wall = {.share = 0.5, .color = {0.16, 0.34, 0.03}};
     return {std::move(leaves),
             floor_object(
                 make_floor({.finest = 4.0, .fine_radius = 110.0, .growth = 0.15, .levels = 7}))};

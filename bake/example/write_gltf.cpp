@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kFloat = 5126, kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr const char* kReflectionExtension = "KHR_materials_specular";
-constexpr const char* kTransmissionExtension = "KHR_materials_diffuse_transmission";
+constexpr const char* kThinWallExtension = "KHR_materials_diffuse_transmission";
 
 void append(std::string& bytes, std::uint32_t word) {
     for (int shift = 0; shift < 32; shift += 8) {
@@ -114,14 +114,14 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
                {"roughnessFactor", object.reflection.roughness}}},
              {"extensions",
               {{kReflectionExtension, {{"specularFactor", object.reflection.strength}}}}}});
-        if (const GltfTransmission& thin = object.transmission; thin.share > 0) {
+        if (const GltfThinWall& thin = object.thin_wall; thin.share > 0) {
             Json& material = materials.back();
             material["doubleSided"] = true;
-            material["extensions"][kTransmissionExtension] = {
+            material["extensions"][kThinWallExtension] = {
                 {"diffuseTransmissionFactor", thin.share},
                 {"diffuseTransmissionColorFactor", thin.color}};
             if (extensions.size() == 1) {
-                extensions.push_back(kTransmissionExtension);
+                extensions.push_back(kThinWallExtension);
             }
         }
     }

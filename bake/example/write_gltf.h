@@ -18,7 +18,7 @@ struct GltfReflection {
 };
 
 /// Thin-walled: KHR_materials_diffuse_transmission. The default is opaque.
-struct GltfTransmission {
+struct GltfThinWall {
     double share = 0;                      ///< diffuseTransmissionFactor, in [0, 1]
     std::array<double, 3> color{1, 1, 1};  ///< linear Rec. 709, each in [0, 1]
 };
@@ -30,7 +30,7 @@ struct GltfObject {
     std::array<double, 3> base_color{1, 1, 1};  ///< linear Rec. 709, each in [0, 1]
     TriangleMesh mesh;                          ///< positions in metres, one unit normal each
     GltfReflection reflection = {};
-    GltfTransmission transmission = {};
+    GltfThinWall thin_wall = {};
 };
 
 /// Writes FOLDER/NAME.gltf and its buffer FOLDER/NAME.bin as glTF 2.0 and returns both paths; the

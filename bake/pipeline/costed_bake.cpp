@@ -16,7 +16,7 @@ void for_each_growth(const CostedBake& bake, const CostedSubject& subject, Visit
     const EffectTable& effects = bake.request.effects;
     RowLayout grown = subject.layout;
     grown.constant = false;
-    grown.harmonics = grown.view_harmonics = 0;
+    grown.harmonics = grown.view_harmonics = grown.straight_harmonics = 0;
     for (PlanEntry& entry : subject.decisions) {
         const RowLayout before = grown;
         RowLayout after = grown;
@@ -24,6 +24,8 @@ void for_each_growth(const CostedBake& bake, const CostedSubject& subject, Visit
         grown.constant = after.constant;
         grown.harmonics = after.harmonics;
         grown.view_harmonics = std::min(after.view_harmonics, subject.layout.view_harmonics);
+        grown.straight_harmonics =
+            std::min(after.straight_harmonics, subject.layout.straight_harmonics);
         visit(entry, before, grown);
     }
 }

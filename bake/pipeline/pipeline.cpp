@@ -215,9 +215,10 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context, B
     return formats::ok_status();
 }
 
-formats::Status check_model_of(const formats::Scene& scene, const Context& context,
-                               BakeResult& result) {
+formats::Status check_model_of(const EffectTable& effects, const formats::Scene& scene,
+                               const Context& context, BakeResult& result) {
     ModelCheckOptions options;
+    options.simulated = held_light(effects, result.plan);
     options.seed = result.knobs.seed;
     auto checked = run_stage(result.stages, "model check", [&](std::uint64_t&) {
         return check_model(scene, result.asset.view(), options, context);
@@ -271,7 +272,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         return std::move(status).error();
     }
     if (wanted.check_model) {
-        if (auto status = check_model_of(scene, context, result); !status) {
+        if (auto status = check_model_of(effects, scene, context, result); !status) {
             return std::move(status).error();
         }
     }

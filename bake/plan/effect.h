@@ -18,6 +18,7 @@
 #include "bake/truth/luminance.h"
 #include "bake/truth/test_lights.h"
 #include "formats/opal/result.h"
+#include "formats/opal/terms.h"
 
 namespace opaline::bake {
 
@@ -124,6 +125,8 @@ struct EffectDescriptor {
     GatherStep gather{};
     TruthStep truth{};
     bool reads_openness = false;
+    /// Light of the reference that files with it hold, beside what all files are compared with.
+    formats::TermSet held_light = formats::TermSet::none;
 
     /// Measures the seconds of its units of work on one thread, of few or of many triangles
     /// (`bench`). Null: other rooms measure them.

@@ -54,6 +54,9 @@ struct Rates {
     double look_up_term = 0;   ///< each term beyond the first of a look-up
     double unpack_texel = 0;   ///< from packed rows into a receiver's, per term
     CostBySize entry_packet;   ///< sixteen rays out of a body, with their entries
+    // Light that crosses bodies unscattered.
+    CostBySize straight_view;  ///< a view through a body: its flights, and rays beyond its exits
+    double straight_cell = 0;  ///< a texel of one row and band, and half an exit's share of one
     // The self-check.
     double split_triangle = 0;  ///< of the surface integral
     CostBySize surface_point;   ///< of the surface integral: its rays to all lights
@@ -97,6 +100,8 @@ void visit_rates(AnyRates&& rates, Visit&& visit) {
     visit("look_up_term", rates.look_up_term);
     visit("unpack_texel", rates.unpack_texel);
     by_size("entry_packet_few", "entry_packet_many", rates.entry_packet);
+    by_size("straight_view_few", "straight_view_many", rates.straight_view);
+    visit("straight_cell", rates.straight_cell);
     visit("split_triangle", rates.split_triangle);
     by_size("surface_point_few", "surface_point_many", rates.surface_point);
     visit("crowding", rates.crowding);

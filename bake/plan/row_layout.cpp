@@ -20,7 +20,7 @@ RowLayout layout_material(const EffectTable& effects, const formats::Material& m
         rule_of(effects, entry).lay_out(entry, layout);
     }
     if (knobs.separate_terms || layout.at_entry || !layout.constant) {
-        layout.view_harmonics = 0;
+        layout.view_harmonics = layout.straight_harmonics = 0;
     }
     // A row for all views that stands alone is marked as such in the file.
     layout.separate = layout.translucent && (knobs.separate_terms || layout.all_harmonics() == 0);

@@ -25,13 +25,17 @@ struct RowLayout {
     bool grey = false;                 ///< the three bands coincide: one stands for them
     bool mirrors = false;              ///< its surface mirrors light: needs openness
     formats::Rgb tint{1, 1, 1};        ///< times the base colour
+    /// Of the harmonics, those filled with light that nothing scatters: 0, 4 or 9.
+    std::uint32_t straight_harmonics = 0;
 
     bool has_rows() const { return constant || harmonics > 0; }
     /// Rows of a receiver, at least one: a receiver without any is black.
     std::uint32_t terms() const {
         return sheet ? 2 : separate ? 1 + all_harmonics() : std::max(all_harmonics(), 1u);
     }
-    std::uint32_t all_harmonics() const { return std::max(harmonics, view_harmonics); }
+    std::uint32_t all_harmonics() const {
+        return std::max({harmonics, view_harmonics, straight_harmonics});
+    }
     std::uint32_t bands() const { return (translucent || sheet) && !grey ? 3 : 1; }
     /// Row of the first harmonic.
     std::uint32_t first_harmonic() const { return separate ? 1 : 0; }

@@ -68,6 +68,10 @@ PacketHits RayScene::closest(const LaneMask& lanes, const RayPacket& packet) con
         const EmbreeScene::Geometry& met = triangles_.geometry(ray.hit.geomID[i]);
         hits.error[i] = met.error_bound;
         hits.material[i] = met.material;
+        hits.primitive[i] = met.primitive;
+        hits.first_index[i] = 3 * ray.hit.primID[i];
+        hits.u[i] = ray.hit.u[i];
+        hits.v[i] = ray.hit.v[i];
     }
     return hits;
 }

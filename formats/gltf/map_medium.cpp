@@ -19,6 +19,10 @@ bool is_black(glm::dvec3 color) {
     return !(std::max({color.x, color.y, color.z}) > 0.0);
 }
 
+constexpr const char* kNoDistance =
+    "attenuationDistance is not above 0, which makes the medium infinitely dense: the surface is "
+    "baked diffuse (set it above 0)";
+
 /// Why the extensions describe no scattering medium; empty where they do.
 std::string obstacle(const TranslucencySource& source) {
     if (source.has_scatter && !source.scatter_strength) {
@@ -40,8 +44,7 @@ std::string obstacle(const TranslucencySource& source) {
                "surface is baked diffuse (set it to 1)";
     }
     if (!(source.attenuation_distance > 0.0)) {
-        return "attenuationDistance is not above 0, which makes the medium infinitely dense: the "
-               "surface is baked diffuse (set it above 0)";
+        return kNoDistance;
     }
     if (!std::isfinite(source.attenuation_distance)) {
         return "attenuationDistance is absent and infinite by default, so that nothing scatters: "
@@ -103,6 +106,35 @@ void remark_losses(const TranslucencySource& source, Remarks& remarks) {
     }
 }
 
+/// Absorption alone, or nothing inside; nothing where the surface lets no light in.
+std::optional<Medium> map_glass(const TranslucencySource& source, double metres_per_unit,
+                                Remarks& remarks) {
+    const bool has_inside = source.has_volume && source.thickness > 0.0;
+    if (!has_inside || !(source.transmission > 0.0)) {
+        return std::nullopt;
+    }
+    if (!(source.attenuation_distance > 0.0)) {
+        remarks.emplace_back(kNoDistance);
+        return std::nullopt;
+    }
+    const glm::dvec3 kept = clamp_color(source.attenuation_color, "attenuationColor", remarks);
+    const double metres = source.attenuation_distance * metres_per_unit;
+    const auto absorption = [&](double color) {
+        constexpr double kClearest = 1e-15, kDensest = 1e15;  // [1/m]: float keeps its products
+        constexpr double kTiny = std::numeric_limits<float>::min();
+        return static_cast<float>(
+            std::clamp(-std::log(std::max(color, kTiny)) / metres, kClearest, kDensest));
+    };
+    Medium medium;
+    medium.sigma_s = {0, 0, 0};
+    medium.sigma_a = {absorption(kept.x), absorption(kept.y), absorption(kept.z)};
+    medium.eta = static_cast<float>(boundary_eta(source, remarks));
+    medium.roughness =
+        static_cast<float>(clamp_factor(source.roughness, 0.0, 1.0, "roughnessFactor", remarks));
+    remark_losses(source, remarks);
+    return medium;
+}
+
 }  // namespace
 
 double single_scattering_albedo(double multiscatter, double g) {
@@ -119,7 +151,7 @@ double single_scattering_albedo(double multiscatter, double g) {
 std::optional<Medium> map_medium(const TranslucencySource& source, double metres_per_unit,
                                  Remarks& remarks) {
     if (!source.has_scatter && !source.has_volume_scatter) {
-        return std::nullopt;  // absorption alone, or nothing inside
+        return map_glass(source, metres_per_unit, remarks);
     }
     if (std::string why = obstacle(source); !why.empty()) {
         remarks.push_back(std::move(why));

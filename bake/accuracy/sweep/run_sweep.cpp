@@ -273,9 +273,11 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         return std::move(reference).error();
     }
     result.reference = std::move(*reference);
-    auto traced =
-        trace_for(scene, sweep.view.model,
-                  {.seconds = kShare * options.seconds, .seed = options.bake.seed}, context);
+    auto traced = trace_for(scene, sweep.view.model,
+                            {.seconds = kShare * options.seconds,
+                             .seed = options.bake.seed,
+                             .simulated = held_light(effects, result.plan)},
+                            context);
     if (!traced) {
         return std::move(traced).error();
     }

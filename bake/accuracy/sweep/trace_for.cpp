@@ -14,6 +14,7 @@ formats::Result<std::vector<LightCheck>> trace_for(const formats::Scene& scene,
     constexpr double kMostTimes = 1000;
     ModelCheckOptions wanted;
     wanted.seed = options.seed;
+    wanted.simulated = options.simulated;
     wanted.max_events = kFewEvents;
     const Clock::time_point start = Clock::now();
     auto traced = trace_model_truth(scene, probes, wanted, context);

@@ -10,6 +10,7 @@ namespace opaline::bake {
 struct TraceForOptions {
     double seconds = 15;  ///< about; a least amount is traced whatever it takes
     std::uint64_t seed = 0;
+    TermSet simulated = ModelCheckOptions().simulated;  ///< light that the bakes hold
 };
 
 /// Path tracing that the total error of every bake is measured against: a small one first, which

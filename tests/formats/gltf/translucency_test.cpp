@@ -222,13 +222,32 @@ TEST(GltfTranslucency, ScatteringWithoutThicknessIsAThinWalledSurface) {
                 {0.5 + 0.25 * 0.2, 0.25 + 0.25 * 0.0625, 0.5});
 }
 
-TEST(GltfTranslucency, ClearAndAbsorbingGlassAreNoScatteringMedia) {
+TEST(GltfTranslucency, GlassIsAMediumThatAbsorbsAndDoesNotScatter) {
     Json glass = scattering_extensions();
     glass.erase("KHR_materials_scatter");
-    const Mapped result = mapped(asset_with(glass));
-    EXPECT_FALSE(result.medium.has_value());
-    EXPECT_THAT(result.warnings, AllOf(HasSubstr("KHR_materials_volume is not simulated"),
-                                       HasSubstr("KHR_materials_transmission is not simulated")));
+    glass["KHR_materials_volume"] = {
+        {"thicknessFactor", 1}, {"attenuationDistance", 0.5}, {"attenuationColor", {0.25, 1, 0}}};
+    const Mapped tinted = mapped(asset_with(glass));
+    ASSERT_TRUE(tinted.medium.has_value()) << tinted.warnings;
+    EXPECT_EQ(tinted.medium->sigma_s, formats::Rgb{});
+    EXPECT_NEAR(tinted.medium->sigma_a.r, std::log(4.0) / 0.5, 1e-5) << "a quarter in half a metre";
+    EXPECT_LT(tinted.medium->sigma_a.g, 1e-9f);
+    EXPECT_GT(tinted.medium->sigma_a.b, 100);
+    glass["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+    const Mapped clear = mapped(asset_with(glass));
+    ASSERT_TRUE(clear.medium.has_value()) << "the distance is infinite by default";
+    EXPECT_GT(clear.medium->sigma_a.r, 0) << "some number, that nobody sees";
+    EXPECT_LT(clear.medium->sigma_a.r, 1e-9f);
+    // Without an inside, or where no light enters, there is no medium.
+    glass["KHR_materials_volume"] = {{"thicknessFactor", 0}};
+    EXPECT_FALSE(mapped(asset_with(glass)).medium.has_value());
+    glass["KHR_materials_volume"] = {{"thicknessFactor", 1}, {"attenuationDistance", 0}};
+    EXPECT_FALSE(mapped(asset_with(glass)).medium.has_value());
+    glass["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+    glass.erase("KHR_materials_transmission");
+    const Mapped closed = mapped(asset_with(glass));
+    EXPECT_FALSE(closed.medium.has_value());
+    EXPECT_THAT(closed.warnings, HasSubstr("KHR_materials_volume is not simulated"));
 }
 
 TEST(GltfTranslucency, IndexOfRefractionComesFromIorAndSpecular) {

@@ -1,0 +1,248 @@
+#include "bake/effects/transmission/straight_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bake/scattering/entry.h"
+#include "bake/scattering/fresnel.h"
+#include "bake/transport/body.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::uint32_t kLanes = RayPacket::kSize;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// More arrivals at surfaces than any view needs; bounds the work that a hostile mesh can ask for.
+constexpr int kMostArrivals = 256;
+
+// A triangle that a view has arrived at.
+struct Arrival {
+    glm::vec3 position;  // [m], on the triangle
+    glm::vec3 flat;      // unit, of the triangle
+    glm::vec3 normal;    // unit, interpolated, along `flat`
+    float error;         // [m], bound on that of the position
+};
+
+Arrival arrival_at(const formats::Scene& scene, const PacketHits& hits, std::uint32_t lane) {
+    const formats::Primitive& p = scene.primitives[hits.primitive[lane]];
+    const std::uint32_t* corner = &p.index[hits.first_index[lane]];
+    const float u = hits.u[lane], v = hits.v[lane];
+    const auto mix = [&](const std::vector<glm::vec3>& of) {
+        return (1 - u - v) * of[corner[0]] + u * of[corner[1]] + v * of[corner[2]];
+    };
+    Arrival a{mix(p.position),
+              {hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]},
+              mix(p.normal),
+              hits.error[lane]};
+    const float length = glm::length(a.normal);
+    a.normal = length > 0 && glm::dot(a.normal, a.flat) > 0 ? a.normal / length : a.flat;
+    return a;
+}
+
+// One view on its way.
+struct Lane {
+    glm::vec3 position{0}, direction{0};
+    std::array<float, 3> weight{};
+    std::int32_t shells = 1;
+    bool is_on_its_way = false;
+};
+
+// A lane of rays toward the sky.
+struct Escape {
+    glm::vec3 origin;
+    StraightExit exit;
+};
+
+class Follower {
+  public:
+    Follower(const StraightBody& body, std::vector<StraightExit>& exits)
+        : body_(body), exits_(exits), clearest_(body.sigma_t[0]) {
+        for (std::size_t b = 1; b < body.bands; ++b) {
+            clearest_ = std::min(clearest_, body.sigma_t[b]);
+        }
+    }
+
+    void follow(const StraightStart& start, std::span<const glm::vec3> seen, std::uint32_t first) {
+        for (std::uint32_t i = 0; i < kLanes; ++i) {
+            Lane& lane = lanes_[i];
+            lane = {start.position, {}, {1, 1, 1}, start.shells, i < seen.size()};
+            lane.direction = i < seen.size() ? -seen[i] : glm::vec3(0, 1, 0);
+        }
+        for (int arrival = 0; arrival < kMostArrivals && advance(first); ++arrival) {
+        }
+        look_out();
+    }
+
+    std::uint64_t traced() const { return traced_; }
+
+  private:
+    float largest(const Lane& lane) const {
+        return body_.bands == 1 ? lane.weight[0]
+                                : std::max({lane.weight[0], lane.weight[1], lane.weight[2]});
+    }
+
+    // Beyond it a view's weight is below the least in all bands.
+    float reach_of(const Lane& lane) const {
+        const float depth = std::log(largest(lane) / kLeastStraightWeight);
+        return clearest_ > 0 ? depth / clearest_ : kInfinity;
+    }
+
+    // All views to their next surface. False: none is on its way any more.
+    bool advance(std::uint32_t first) {
+        RayPacket packet{};
+        packet.mask.fill(0xffffffffu);
+        LaneMask mask{};
+        bool any = false;
+        for (std::uint32_t i = 0; i < kLanes; ++i) {
+            const Lane& lane = lanes_[i];
+            packet.org_x[i] = lane.position.x, packet.org_y[i] = lane.position.y;
+            packet.org_z[i] = lane.position.z;
+            packet.dir_x[i] = lane.direction.x, packet.dir_y[i] = lane.direction.y;
+            packet.dir_z[i] = lane.direction.z;
+            packet.tfar[i] = lane.is_on_its_way ? reach_of(lane) : 0;
+            mask[i] = lane.is_on_its_way ? -1 : 0;
+            any = any || lane.is_on_its_way;
+            traced_ += lane.is_on_its_way ? 1 : 0;
+        }
+        if (!any) {
+            return false;
+        }
+        const PacketHits hits = body_.rays->closest(mask, packet);
+        for (std::uint32_t i = 0; i < kLanes; ++i) {
+            if (mask[i] != 0) {
+                lanes_[i].is_on_its_way = hits.hit[i] != 0 && hits.material[i] == body_.material &&
+                                          arrive(lanes_[i], hits, i, first + i);
+            }
+        }
+        return true;
+    }
+
+    // False: nothing of the view goes on.
+    bool arrive(Lane& lane, const PacketHits& hits, std::uint32_t i, std::uint32_t view) {
+        for (std::size_t b = 0; b < body_.bands; ++b) {
+            lane.weight[b] *= exp_of_negative(-body_.sigma_t[b] * hits.distance[i]);
+        }
+        const float cosine = hits.cosine[i];
+        if (cosine == 0) {  // without area, or edge-on: as if it were not there
+            constexpr float kBeyond = 1e-6f;
+            lane.position +=
+                (hits.distance[i] * (1 + kBeyond) + 2 * hits.error[i]) * lane.direction;
+            return true;
+        }
+        const Arrival at = arrival_at(*body_.scene, hits, i);
+        if (cosine < 0 || lane.shells > 1) {  // of a shell inside
+            lane.shells += cosine > 0 ? -1 : 1;
+            lane.position = at.position + (cosine > 0 ? 2 : -2) * at.error * at.flat;
+            return largest(lane) >= kLeastStraightWeight;
+        }
+        return leave(lane, at, view);
+    }
+
+    bool leave(Lane& lane, const Arrival& at, std::uint32_t view) {
+        const auto mirrored = [&](glm::vec3 n) {
+            return lane.direction - 2 * glm::dot(lane.direction, n) * n;
+        };
+        // The smooth normal, unless it faces away or reflects to behind the triangle.
+        glm::vec3 normal = at.normal;
+        if (glm::dot(lane.direction, normal) <= 0 || glm::dot(mirrored(normal), at.flat) >= 0) {
+            normal = at.flat;
+        }
+        const double inverse = 1 / body_.eta;
+        const float cosine = std::min(1.0f, glm::dot(lane.direction, normal));
+        const auto outside =
+            static_cast<float>(refracted_cosine(static_cast<double>(cosine), inverse));
+        const glm::vec3 direction = glm::normalize(
+            static_cast<float>(body_.eta) * (lane.direction - cosine * normal) + outside * normal);
+        // A smooth normal may refract to behind the triangle: then all is reflected.
+        const float passed =
+            glm::dot(direction, at.flat) > 0
+                ? static_cast<float>(fresnel_transmittance(static_cast<double>(cosine), inverse))
+                : 0;
+        if (passed > 0) {
+            StraightExit exit{view, direction, {}};
+            for (std::size_t b = 0; b < body_.bands; ++b) {
+                exit.weight[b] = passed * lane.weight[b];
+                lane.weight[b] *= 1 - passed;
+            }
+            escapes_.push_back({at.position + 2 * at.error * at.flat, exit});
+        }
+        lane.position = at.position - 2 * at.error * at.flat;
+        lane.direction = glm::normalize(mirrored(normal));
+        return largest(lane) >= kLeastStraightWeight;
+    }
+
+    // Keeps the exits that nothing stands before.
+    void look_out() {
+        for (std::size_t begin = 0; begin < escapes_.size(); begin += kLanes) {
+            const std::size_t count = std::min<std::size_t>(kLanes, escapes_.size() - begin);
+            RayPacket packet{};
+            packet.mask.fill(0xffffffffu);
+            packet.dir_y.fill(1.0f);
+            packet.tfar.fill(kInfinity);
+            LaneMask mask{};
+            for (std::size_t i = 0; i < count; ++i) {
+                const Escape& e = escapes_[begin + i];
+                packet.org_x[i] = e.origin.x, packet.org_y[i] = e.origin.y;
+                packet.org_z[i] = e.origin.z;
+                packet.dir_x[i] = e.exit.direction.x, packet.dir_y[i] = e.exit.direction.y;
+                packet.dir_z[i] = e.exit.direction.z;
+                mask[i] = -1;
+            }
+            if (!body_.sky->is_empty()) {
+                body_.sky->occluded(mask, packet);
+                traced_ += count;
+            }
+            for (std::size_t i = 0; i < count; ++i) {
+                if (packet.tfar[i] > 0) {
+                    exits_.push_back(escapes_[begin + i].exit);
+                }
+            }
+        }
+        escapes_.clear();
+    }
+
+    const StraightBody& body_;
+    std::vector<StraightExit>& exits_;
+    float clearest_;
+    std::array<Lane, kLanes> lanes_;
+    std::vector<Escape> escapes_;
+    std::uint64_t traced_ = 0;
+};
+
+}  // namespace
+
+StraightBody make_straight_body(const EffectInputs& inputs) {
+    const formats::Medium& medium = inputs.medium();
+    StraightBody body;
+    body.scene = &inputs.bake.scene;
+    body.rays = &inputs.bake.rays;
+    body.sky = &inputs.outside();
+    body.material = inputs.material;
+    body.eta = static_cast<double>(medium.eta);
+    const formats::Rgb sigma_t = medium.sigma_s + medium.sigma_a;
+    body.sigma_t = {sigma_t.r, sigma_t.g, sigma_t.b};
+    body.bands = inputs.layout.bands();
+    return body;
+}
+
+StraightStart make_straight_start(const StraightBody& body, const BodyPoint& point,
+                                  std::uint64_t& rays) {
+    const InwardPath path = trace_inward_path(*body.rays, point, kInfinity);
+    rays += path.steps.size();
+    return {point.inner, std::max(1, shells_at(path, 0))};
+}
+
+std::uint64_t follow_straight(const StraightBody& body, const StraightStart& start,
+                              std::span<const glm::vec3> seen, std::vector<StraightExit>& exits) {
+    Follower follower(body, exits);
+    for (std::size_t first = 0; first < seen.size(); first += kLanes) {
+        follower.follow(start,
+                        seen.subspan(first, std::min<std::size_t>(kLanes, seen.size() - first)),
+                        static_cast<std::uint32_t>(first));
+    }
+    return follower.traced();
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/plan/effect.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// A body through which light goes straight.
+struct StraightBody {
+    const formats::Scene* scene = nullptr;
+    const RayScene* rays = nullptr;  ///< all triangles
+    const RayScene* sky = nullptr;   ///< what stands before the light that leaves the body
+    std::uint32_t material = 0;
+    double eta = 1;
+    std::array<float, 3> sigma_t{};  ///< [1/m]; scattering included: it takes light away too
+    std::uint32_t bands = 3;         ///< 1: the first stands for all
+};
+
+/// All must outlive the result.
+StraightBody make_straight_body(const EffectInputs& inputs);
+
+/// Where views through a body start.
+struct StraightStart {
+    glm::vec3 position{0};    ///< [m], just inside
+    std::int32_t shells = 1;  ///< of the medium, around the point: >= 1
+};
+
+/// The start of a receiver's views. `rays` counts up.
+StraightStart make_straight_start(const StraightBody& body, const BodyPoint& point,
+                                  std::uint64_t& rays);
+
+/// Light that a view finds: what arrives from `direction` is seen with `weight`.
+struct StraightExit {
+    std::uint32_t view = 0;
+    glm::vec3 direction{0};         ///< unit, outside, away from the body
+    std::array<float, 3> weight{};  ///< per band: attenuated, transmitted, of radiance over eta^2
+};
+
+/// Weights below are left out: with them at most that much of the light of each view.
+inline constexpr float kLeastStraightWeight = 0x1p-12f;
+
+/// Follows views straight through a body, backwards from the eye (README.md, "The paths"): at each
+/// arrival at the boundary the transmitted share is an exit, unless something stands before it, and
+/// the reflected share goes on. `seen`: unit directions inside, away from the body, toward the eye.
+/// Light from other materials inside is another effect's, and light through a hole is none. Appends
+/// to `exits`, not in the order of the views. Returns the rays traced. Any thread.
+std::uint64_t follow_straight(const StraightBody& body, const StraightStart& start,
+                              std::span<const glm::vec3> seen, std::vector<StraightExit>& exits);
+
+}  // namespace opaline::bake

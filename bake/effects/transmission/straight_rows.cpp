@@ -1,0 +1,136 @@
+#include "bake/effects/transmission/straight_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "bake/base/frame.h"
+#include "bake/base/rng.h"
+#include "bake/effects/transmission/view_fit.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+
+namespace opaline::bake {
+namespace {
+
+// Vertices at one place, as along seams, have the same random numbers, in whatever order a file
+// lists them.
+std::array<float, 4> random_at(std::uint64_t seed, glm::vec3 place) {
+    const auto x = std::bit_cast<std::uint32_t>(place.x), y = std::bit_cast<std::uint32_t>(place.y),
+               z = std::bit_cast<std::uint32_t>(place.z);
+    return random_uniform(seed, RandomStage::straight_views, x | std::uint64_t{y} << 32, z);
+}
+
+// The light of exits over the cube map, row by row.
+class Splat {
+  public:
+    Splat(const DenseRow& row, std::uint32_t terms, double cosine)
+        : row_(row),
+          terms_(terms),
+          solid_angle_(formats::texel_solid_angles(row.cubemap_size)),
+          dense_(std::size_t{terms} * row.bands * row.size()) {
+        for (std::uint32_t s = 0; s < kParts; ++s) {
+            const double c = 1 - (1 - cosine) * (s + 0.5) / kParts, sine = std::sqrt(1 - c * c);
+            const double azimuth = 2 * std::numbers::pi * s * (std::numbers::phi - 1);
+            disc_[s] = glm::vec3(glm::dvec3(sine * std::cos(azimuth), sine * std::sin(azimuth), c));
+        }
+    }
+
+    // `factor`: of each row. The texels' values are means of densities: a part of the exit's light
+    // over the texel's solid angle.
+    void add(const StraightExit& exit, std::span<const float> factor) {
+        const Frame frame = make_frame(exit.direction);
+        const std::size_t face = solid_angle_.size();
+        const std::size_t values = std::size_t{terms_} * row_.bands;
+        std::array<float, kMostValues> value;
+        for (std::uint32_t k = 0; k < terms_; ++k) {
+            for (std::uint32_t b = 0; b < row_.bands; ++b) {
+                value[k * row_.bands + b] = factor[k] * exit.weight[b];
+            }
+        }
+        for (const glm::vec3& part : disc_) {
+            const glm::vec3 w = frame.to_world(part);
+            const std::size_t j = formats::texel_index(row_.cubemap_size, {w.x, w.y, w.z});
+            const auto density = static_cast<float>(1 / (kParts * solid_angle_[j % face]));
+            float* const to = &dense_[j * values];
+            for (std::size_t i = 0; i < values; ++i) {
+                to[i] += density * value[i];
+            }
+        }
+    }
+
+    // To the rows from the first one on.
+    void add_to(const DenseRow& row) const {
+        const std::size_t values = std::size_t{terms_} * row_.bands;
+        std::vector<float> own(row.size());
+        for (std::uint32_t k = 0; k < terms_; ++k) {
+            for (std::uint32_t b = 0; b < row.bands; ++b) {
+                for (std::size_t j = 0; j < own.size(); ++j) {
+                    own[j] = dense_[j * values + k * row_.bands + b];
+                }
+                formats::haar_forward_cube(std::span<float>(own), row.cubemap_size);
+                const std::span<float> to = row.plane(k, b);
+                for (std::size_t j = 0; j < own.size(); ++j) {
+                    to[j] += own[j];
+                }
+            }
+        }
+    }
+
+  private:
+    static constexpr std::uint32_t kParts = 16;
+    static constexpr std::size_t kMostValues = 27;  // nine harmonics in three bands
+
+    const DenseRow& row_;
+    std::uint32_t terms_;
+    std::vector<double> solid_angle_;
+    std::array<glm::vec3, kParts> disc_{};
+    std::vector<float> dense_;  // texel by texel
+};
+
+}  // namespace
+
+double spread_cosine(double views) {
+    return 1 - 1 / views;
+}
+
+std::uint32_t straight_terms(const RowLayout& layout) {
+    constexpr std::uint32_t kMost = 9;
+    return layout.separate || layout.at_entry
+               ? 1
+               : std::clamp(layout.all_harmonics(), std::uint32_t{1}, kMost);
+}
+
+std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
+                           std::uint64_t seed, const RowLayout& layout, const DenseRow& row) {
+    if (point.normal == glm::vec3(0)) {
+        return 0;
+    }
+    const std::array<float, 4> u = random_at(seed, point.position);
+    const ViewSet set = spread_views(point.normal, body.eta, views, {u[0], u[1]});
+    std::uint64_t rays = 0;
+    const StraightStart start = make_straight_start(body, point, rays);
+    std::vector<StraightExit> exits;
+    rays += follow_straight(body, start, set.seen, exits);
+    if (exits.empty()) {
+        return rays;
+    }
+    const std::uint32_t terms = straight_terms(layout);
+    std::vector<float> factors = fit_views(set, terms);
+    if (terms == 1) {
+        for (float& factor : factors) {
+            factor /= static_cast<float>(layout.view_of_constant());
+        }
+    }
+    Splat splat(row, terms, spread_cosine(views));
+    for (const StraightExit& exit : exits) {
+        splat.add(exit, std::span(factors).subspan(std::size_t{exit.view} * terms, terms));
+    }
+    splat.add_to(row);
+    return rays;
+}
+
+}  // namespace opaline::bake

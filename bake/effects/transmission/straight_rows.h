@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "bake/effects/transmission/straight_paths.h"
+#include "bake/plan/dense_rows.h"
+#include "bake/plan/row_layout.h"
+
+namespace opaline::bake {
+
+/// Cosine of the radius of the disc of directions over which the light of an exit is spread, for
+/// `views` of a receiver: the discs of all views together cover a hemisphere.
+double spread_cosine(double views);
+
+/// Harmonics of the view that a subject's rows hold light in that crosses it: 1, 4 or 9.
+std::uint32_t straight_terms(const RowLayout& layout);
+
+/// Adds light that crosses the body straight to the rows of a receiver (README.md, "Rows"), from
+/// `views` of it. Random numbers belong to the seed and the receiver's place. Any thread; returns
+/// the rays traced.
+std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
+                           std::uint64_t seed, const RowLayout& layout, const DenseRow& row);
+
+}  // namespace opaline::bake

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace opaline::bake {
+
+/// Views of a receiver, those of uniform light in reverse: of density F_t(c) c over the outer
+/// hemisphere, c the cosine with the normal.
+struct ViewSet {
+    std::vector<glm::vec3> seen;  ///< unit, refracted: inside, toward the eye
+    std::vector<double> weight;   ///< sum 1
+};
+
+/// `count` of them, evenly spread: a spiral with equal steps in c^2. `shift`: in [0, 1)^2, of the
+/// steps and of the azimuth. Where nothing enters, as below the critical angle, are fewer. Empty:
+/// nothing enters at all.
+ViewSet spread_views(glm::vec3 normal, double eta, std::uint32_t count, glm::vec2 shift);
+
+/// How a function of the view inside, known at a set of views, becomes harmonics: the row k is the
+/// sum over views i of factor[i * terms + k] times its value there (README.md, "Views").
+/// `terms` 1: their mean; 4, 9 …: weighted least squares, smoothed.
+std::vector<float> fit_views(const ViewSet& views, std::uint32_t terms);
+
+/// That fit, over all views there are, seen along `seen`: the mean over views w' of k(w') times
+/// the function. Immutable once made.
+class ViewKernel {
+  public:
+    ViewKernel(glm::vec3 normal, double eta, std::uint32_t terms, glm::vec3 seen);
+    double operator()(glm::vec3 view) const;
+
+  private:
+    std::vector<double> mean_, slope_;
+};
+
+}  // namespace opaline::bake

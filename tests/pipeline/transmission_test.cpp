@@ -1,0 +1,143 @@
+// Light that crosses a body unscattered: what a clear body shows, and when it is left out.
+#include <gtest/gtest.h>
+
+#include "bake/accuracy/check_model.h"
+#include "bake/effects/transmission/rules_transmission.h"
+#include "bake/effects/transmission/transmission_knobs.h"
+#include "tests/support/media_bake.h"
+
+namespace opaline::bake {
+namespace {
+
+formats::Scene ball_of(float sigma_s, float sigma_a, float eta = 1.3f) {
+    return tests::make_translucent_scene({tests::make_sphere(3)},
+                                         tests::make_grey_medium(sigma_s, sigma_a, eta));
+}
+
+const PlanEntry& entry_of(const BakeResult& baked, const char* name) {
+    return *find_entry(baked.plan, name, 0);
+}
+
+double mean_green(const std::vector<formats::Rgb>& radiance) {
+    double sum = 0;
+    for (const formats::Rgb& c : radiance) {
+        sum += double{c.g} / static_cast<double>(radiance.size());
+    }
+    return sum;
+}
+
+// 1 less what the boundary mirrors along the normal.
+TEST(Transmission, AClearBallIsBakedByItAloneAndShowsAFurnaceAsItIs) {
+    const BakeResult baked = tests::bake_scene(ball_of(0, 1e-6f, 1.5f), tests::small_bake());
+    EXPECT_FALSE(entry_of(baked, "multiple").on);
+    EXPECT_FALSE(entry_of(baked, "single").on);
+    ASSERT_TRUE(entry_of(baked, "transmission").on);
+    EXPECT_TRUE(tests::all_finite(baked.asset));
+    for (const formats::Rgb& c : tests::relight(baked.asset.view(), "white")) {
+        ASSERT_NEAR(c.g, 0.96, 0.02);
+    }
+    EXPECT_NEAR(mean_green(tests::relight(baked.asset.view(), "white")), 0.96, 0.003);
+}
+
+// Just dense enough for the rule to leave it out; a sheet as thick as its thinnest parts may be
+// shows as much as the bound says.
+TEST(Transmission, OfABodyThatIsTooDenseIsLessThanItsBoundAndOfAClearerOneMoreThanTheThreshold) {
+    BakeOptions options = tests::only({"transmission"});
+    for (const float eta : {1.0f, 1.3f}) {
+        const float dense = eta == 1 ? 200.0f : 56.0f;
+        const BakeResult chosen = tests::bake_scene(ball_of(0, dense, eta), options);
+        ASSERT_FALSE(entry_of(chosen, "transmission").on) << entry_of(chosen, "transmission").bound;
+        options.simulate_all = true;
+        const BakeResult forced = tests::bake_scene(ball_of(0, dense, eta), options);
+        options.simulate_all = false;
+        EXPECT_TRUE(entry_of(forced, "transmission").forced);
+        EXPECT_LE(tests::largest_difference(chosen.asset, forced.asset, "white"),
+                  entry_of(chosen, "transmission").bound);
+        const BakeResult clearer = tests::bake_scene(ball_of(0, 1.5f, eta), options);
+        ASSERT_TRUE(entry_of(clearer, "transmission").on);
+        const double shown = tests::largest_difference(chosen.asset, clearer.asset, "white");
+        EXPECT_GT(shown, kLeastBound);
+        EXPECT_LT(shown, entry_of(clearer, "transmission").bound);
+    }
+}
+
+TEST(Transmission, RowsByViewAreTakenWhereTheyShowAndChangeLessThanTheirBound) {
+    BakeOptions options = tests::only({"transmission"});
+    const BakeResult dim = tests::bake_scene(ball_of(0, 2.5f), options);
+    EXPECT_FALSE(entry_of(dim, "transmission.view").on);
+    options.set(kStraightTerms, 4);
+    const BakeResult four = tests::bake_scene(ball_of(0, 2.5f), options);
+    ASSERT_TRUE(entry_of(four, "transmission.view").on);
+    EXPECT_EQ(four.asset.primitives[0].terms, 4u);
+    EXPECT_LT(tests::largest_difference(dim.asset, four.asset, "white"),
+              entry_of(dim, "transmission.view").bound);
+    options = tests::only({"transmission"});
+    const BakeResult bright = tests::bake_scene(ball_of(0, 0.1f), options);
+    ASSERT_TRUE(entry_of(bright, "transmission.view").on);
+    options.set(kStraightTerms, 1);
+    const BakeResult one = tests::bake_scene(ball_of(0, 0.1f), options);
+    EXPECT_EQ(one.asset.primitives[0].terms, 1u);
+    EXPECT_GT(tests::largest_difference(bright.asset, one.asset, "sun:30,60"), 0.05)
+        << "they see the sun from one side";
+}
+
+TEST(Transmission, AgreesWithTheReferencesUnscatteredTermUnderEvenLight) {
+    const formats::Scene scene =
+        tests::make_translucent_scene({tests::make_sphere(4)}, tests::make_grey_medium(0.4f, 0.4f));
+    BakeOptions options = tests::only({"transmission"});
+    options.quality = Quality::production;
+    options.cubemap_size = 16;
+    const BakeResult baked = tests::bake_scene(scene, options);
+    EXPECT_EQ(held_light(all_effects(), baked.plan),
+              ModelCheckOptions().simulated | TermSet::unscattered);
+    ModelCheckOptions wanted;
+    wanted.simulated = TermSet::unscattered;
+    wanted.max_events = 200000;
+    const auto report = check_model(scene, baked.asset.view(), wanted, {}).value();
+    ASSERT_EQ(report.by_light[0].name, "white");
+    EXPECT_LT(std::abs(report.by_light[0].bias), 0.02 + 2 * report.by_light[0].noise / 7)
+        << "nine rows along the normal of 48 receivers";
+    EXPECT_LT(report.by_light[0].rms_relative, 0.04);
+}
+
+TEST(Transmission, StandsInTheRowOfMultipleScatteringWhereTermsAreApart) {
+    const formats::Scene scene = ball_of(0.5f, 0.1f);
+    BakeOptions options = tests::small_bake();
+    options.separate_terms = true;
+    const BakeResult all = tests::bake_scene(scene, options);
+    options.effects = {"multiple", "single"};
+    const BakeResult scattered = tests::bake_scene(scene, options);
+    ASSERT_TRUE(all.asset.primitives[0].is_separate());
+    EXPECT_EQ(all.asset.primitives[0].terms, scattered.asset.primitives[0].terms);
+    runtime::ShadeOptions single;
+    single.terms = formats::TermSet::single;
+    EXPECT_EQ(tests::largest_difference(all.asset, scattered.asset, "white", single), 0);
+    runtime::ShadeOptions multiple;
+    multiple.terms = formats::TermSet::multiple;
+    EXPECT_GT(tests::largest_difference(all.asset, scattered.asset, "white", multiple), 0.2);
+}
+
+TEST(Transmission, HasTheSameBitsForAnyNumberOfThreads) {
+    BakeOptions options = tests::only({"transmission"});
+    options.threads = 1;
+    const BakeResult one = tests::bake_scene(ball_of(0.1f, 0.2f), options);
+    options.threads = 3;
+    const BakeResult three = tests::bake_scene(ball_of(0.1f, 0.2f), options);
+    EXPECT_EQ(one.asset.transport.code8, three.asset.transport.code8);
+    EXPECT_EQ(one.asset.transport.average_code, three.asset.transport.average_code);
+    EXPECT_EQ(one.error.rms_relative, three.error.rms_relative);
+}
+
+TEST(Transmission, ItsSelfCheckFindsFewViewsWorseThanMany) {
+    BakeOptions options = tests::only({"transmission"});
+    options.set(kStraightViews, 16);
+    const BakeResult few = tests::bake_scene(ball_of(0, 0.5f), options);
+    options.set(kStraightViews, 512);
+    const BakeResult many = tests::bake_scene(ball_of(0, 0.5f), options);
+    EXPECT_LT(many.error.at_receivers.by_light[0].rms_relative, 0.03) << "white";
+    EXPECT_LT(many.error.at_receivers.rms_relative, few.error.at_receivers.rms_relative);
+    EXPECT_LT(many.error.at_receivers.rms_relative, 0.15);
+}
+
+}  // namespace
+}  // namespace opaline::bake
