@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "bake/effects/multiple/choose_model.h"
 #include "bake/effects/multiple/multiple_knobs.h"
@@ -29,67 +31,66 @@ double allowed_view_error(const Knobs& knobs) {
 // Five rows more cost time, memory and noise (walks/README.md, "Views").
 double allowed_curvature(const Knobs& knobs) {
     return knobs.error_target > 0                 ? 0.3 * knobs.error_target
-           : knobs.quality == Quality::reference  ? 0.005
-           : knobs.quality == Quality::production ? 0.01
+           : knobs.quality == Quality::reference  ? 0.01
+           : knobs.quality == Quality::production ? 0.03
            : knobs.quality == Quality::preview    ? 0.1
                                                   : 0.2;
 }
 
-// Of radiance that depends on the cosine inside alone.
-struct ViewErrors {
-    double mean = 0;
-    double constant = 0;  // by how much it is darker along the normal than at the mean cosine
-    double linear = 0;    // RMS of what no line holds
+// 1 - sqrt(1 - a) H(c') (Chandrasekhar) is the radiance inside a half space under even light, a the
+// albedo of the similar isotropic medium, H(c') = (1 + 2 c') / (1 + 2 c' sqrt(1 - a)) [Hapke1981].
+struct HalfSpace {
+    double root = 0;    // sqrt(1 - a)
+    double peak = 1;    // by how much more forward scattering bends it
+    double weight = 0;  // of the band in luminance
+
+    double radiance(double c) const { return 1 - root * (1 + 2 * c) / (1 + 2 * c * root); }
+    // Light that the boundary reflects inside evens its views out, the more the brighter it is; on
+    // Spot at index 1.3 (RESULTS.md, "Walks") by about that radiance itself.
+    double left(const formats::Medium& medium, double mean) const {
+        return medium.eta == 1 ? 1 : 1 - radiance(mean);
+    }
 };
 
-template <class Radiance>
-ViewErrors view_errors(double eta, const ViewFit& fit, Radiance&& radiance) {
-    const auto mean_of = [&](auto&& factor) {
-        return mean_over_views(
-            eta, [&](double c, double) { return factor(c, radiance(std::max(c, 1e-6))); });
-    };
-    const double mean = mean_of([](double, double f) { return f; });
-    const double slope = mean_of([&](double c, double f) { return f * (c - fit.mean); });
-    const double rest = mean_of([&](double c, double f) {
-        const double off = f - mean - slope / fit.variance * (c - fit.mean);
-        return off * off;
-    });
-    return {mean, radiance(fit.mean) - radiance(1), std::sqrt(rest)};
-}
-
-// Of half spaces under even light, relative to what they show.
-ViewErrors half_space_errors(const formats::Medium& medium) {
+// Of bands that scatter.
+std::vector<HalfSpace> half_spaces(const formats::Medium& medium) {
     constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
-    const auto eta = static_cast<double>(medium.eta);
-    const ViewFit fit = make_view_fit(eta);
     const double g = formats::mean_cosine(medium.phase);
-    ViewErrors errors;
+    std::vector<HalfSpace> spaces;
     const auto bands = bands_of(medium);
     for (std::size_t b = 0; b < bands.size(); ++b) {
         const double scattered = (1 - g) * bands[b].sigma_s;
-        if (!(scattered > 0)) {
-            continue;
+        if (scattered > 0) {
+            // The peak: fitted to half spaces of g = 0 to .9 and albedos of .1 to .99 by doubling,
+            // within 40 %.
+            const double square = bands[b].sigma_a / (scattered + bands[b].sigma_a);
+            const double peak = 1 + 2.5 * std::sqrt(std::max(g, 0.0) / (1 - g)) * square;
+            spaces.push_back({std::sqrt(square), peak, kLuminance[b]});
         }
-        // Radiance inside is 1 - sqrt(1 - a) H(c') (Chandrasekhar), a the albedo of the similar
-        // isotropic medium, H(c') = (1 + 2 c') / (1 + 2 c' sqrt(1 - a)) [Hapke1981].
-        const double root = std::sqrt(bands[b].sigma_a / (scattered + bands[b].sigma_a));
-        const auto radiance = [&](double c) { return 1 - root * (1 + 2 * c) / (1 + 2 * c * root); };
-        const ViewErrors own = view_errors(eta, fit, radiance);
-        // Light that the boundary reflects inside evens that out, the more the brighter it is; on
-        // Spot at index 1.3 (RESULTS.md, "Walks") by about that radiance itself.
-        const double left = medium.eta == 1 ? 1 : 1 - radiance(fit.mean);
-        // Forward scattering bends it more than isotropic events of the same transport do: fitted
-        // to half spaces of g = 0 to .9 and albedos of .1 to .99 by doubling, within 40 %.
-        const double peak = 1 + 2.5 * std::sqrt(std::max(g, 0.0) / (1 - g)) * root * root;
-        errors.constant += kLuminance[b] * left * own.constant;
-        errors.linear += kLuminance[b] * left * own.linear * peak;
-        errors.mean += kLuminance[b] * own.mean;
     }
-    if (errors.mean > 0) {
-        errors.constant /= errors.mean;
-        errors.linear /= errors.mean;
+    return spaces;
+}
+
+// How much darker half spaces are along the normal than on average.
+double half_space_view_error(const formats::Medium& medium, double mean) {
+    double change = 0, sum = 0;
+    for (const HalfSpace& space : half_spaces(medium)) {
+        const double average = space.radiance(mean);
+        change += space.weight * space.left(medium, mean) * (average - space.radiance(1));
+        sum += space.weight * average;
     }
-    return errors;
+    return sum > 0 ? change / sum : 0;
+}
+
+// Of a function of the cosine inside: the RMS of its part of degree two over its mean, with the
+// sign of that part along the normal.
+template <class Radiance>
+double curvature(double eta, const ViewFit& fit, Radiance&& radiance) {
+    const double part = mean_over_views(
+        eta, [&](double c, double) { return radiance(std::max(c, 1e-6)) * bend_of(fit, c); });
+    const double mean =
+        mean_over_views(eta, [&](double c, double) { return radiance(std::max(c, 1e-6)); });
+    return mean > 0 ? part / std::sqrt(fit.bend) / mean : 0;
 }
 
 // In transport mean free paths; infinite where it is not known or nothing scatters.
@@ -98,6 +99,13 @@ double mean_chord(const formats::Medium& medium, const MaterialFacts& body) {
     const double chord =
         body.is_closed() && body.area > 0 ? 4 * std::abs(body.volume) / body.area : 0;
     return length > 0 && chord > 0 ? chord / length : HUGE_VAL;
+}
+
+// 36 pi V^2 / S^3: 1 of a ball, 0.08 of a square plate ten times as wide as thick.
+bool is_flat(const MaterialFacts& body) {
+    constexpr double kPlate = 0.08;
+    return body.is_closed() && 36 * std::numbers::pi * body.volume * body.volume <
+                                   kPlate * body.area * body.area * body.area;
 }
 
 }  // namespace
@@ -113,21 +121,39 @@ double one_view_error(const formats::Medium& medium, const MaterialFacts& body) 
     const double share = 2 * (1 - mean) / (z + mean);
     const double chord = mean_chord(medium, body);
     const double thin = std::isfinite(chord) ? share / chord : kMost;
-    return std::min(kMost, std::hypot(thin, half_space_errors(medium).constant));
+    return std::min(kMost, std::hypot(thin, half_space_view_error(medium, mean)));
 }
 
 double four_views_error(const formats::Medium& medium, const MaterialFacts& body) {
-    // A slab under even light that absorbs nothing shows 1 - e^(-x / c'), with x its thickness in
-    // mean free paths, half its mean chord.
     const auto eta = static_cast<double>(medium.eta);
-    const double x = 0.5 * mean_chord(medium, body);
-    double thin = 0;
-    if (std::isfinite(x)) {
-        const ViewErrors slab =
-            view_errors(eta, make_view_fit(eta), [x](double c) { return -std::expm1(-x / c); });
-        thin = slab.linear / slab.mean;
+    const ViewFit fit = make_view_fit(eta);
+    const double chord = mean_chord(medium, body);
+    double flat = 0, round = 0, sum = 0;
+    for (const HalfSpace& space : half_spaces(medium)) {
+        const auto half = [&](double c) { return space.radiance(c); };
+        const double own = space.left(medium, fit.mean) * space.peak * curvature(eta, fit, half);
+        // A ball shows less toward its edge, where the way through it, 3/2 of the mean chord along
+        // the normal, is short.
+        const auto ball = [&](double c) { return -half(c) * std::expm1(-1.5 * chord * c); };
+        flat += space.weight * own;
+        round += space.weight * (own + (std::isfinite(chord)
+                                            ? curvature(eta, fit, ball) - curvature(eta, fit, half)
+                                            : 0));
+        sum += space.weight;
     }
-    return std::hypot(thin, half_space_errors(medium).linear);
+    if (!(sum > 0)) {
+        return 0;
+    }
+    if (std::isfinite(chord)) {
+        // A slab that absorbs nothing shows 1 - e^(-x / c') under even light, x its thickness in
+        // mean free paths. Lit from one side it bends by more, within 20 % of doubling at x = .5 to
+        // 5 and index 1.
+        const double x = 0.5 * chord, narrow = fit.bend / make_view_fit(1).bend;
+        const double slab = curvature(eta, fit, [x](double c) { return -std::expm1(-x / c); });
+        flat = std::hypot(flat / sum, slab, 0.12 * std::sqrt(narrow) * x * std::exp(-x)) * sum;
+    }
+    flat = std::abs(flat / sum);
+    return is_flat(body) ? flat : std::min(flat, std::abs(round / sum));
 }
 
 PlanEntry decide_views(const PlanInput& input) {
