@@ -17,7 +17,7 @@ struct RowLayout {
     bool occluded = false;     ///< visibility is traced
     bool constant = false;     ///< some effect fills a row that is the same for all views
     std::uint32_t harmonics = 0;  ///< rows that are seen through spherical harmonics: 0, 1, 4 … 25
-    std::uint32_t view_harmonics = 0;  ///< of these, filled by what `constant` says: 0 or 4
+    std::uint32_t view_harmonics = 0;  ///< of these, filled by what `constant` says: 0, 4 or 9
     bool all_orders = false;           ///< `constant` holds light of all orders of scattering
     bool at_entry = false;             ///< light leaves the medium where it entered
     bool separate = false;             ///< the row for all views stands apart from the harmonics

@@ -1,12 +1,16 @@
 // How far the model is from the Monte Carlo reference, as the table of RESULTS.md states it: light
-// that a file shows over light that there is, at one receiver. `opaline_model_table` prints it as
-// markdown; 9 minutes.
+// that a file shows over light that there is, at one receiver. `opaline_model_table [ETA [K]]`
+// prints it as markdown, of one index and with K rows by view where they are given; 9 minutes.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
@@ -57,7 +61,7 @@ Body make_ball_body(const char* name, float radius, bool back_lit) {
     return body;
 }
 
-void print_ratio(const Body& body, const formats::Medium& medium) {
+void print_ratio(const Body& body, const formats::Medium& medium, double views) {
     const formats::Scene scene = tests::make_translucent_scene(body.primitives, medium);
     const formats::Environment light = make_light(body.back_lit);
     BakeOptions options;
@@ -65,6 +69,9 @@ void print_ratio(const Body& body, const formats::Medium& medium) {
     options.cubemap_size = 16;
     options.coefficients = kAllCoefficients;
     options.quality = Quality::production;
+    if (views > 0) {
+        options.set(kViewTerms, views);
+    }
     const BakeResult baked = run_bake(scene, resolve_knobs(options).value(), {}).value();
     formats::Rgb radiance;
     runtime::shade_range(baked.asset.view(), runtime::project_environment(light, 16), body.vertex,
@@ -88,7 +95,7 @@ void print_ratio(const Body& body, const formats::Medium& medium) {
     std::fflush(stdout);
 }
 
-void print_table() {
+void print_table(std::span<const float> indices, double views) {
     const std::vector<Body> bodies{make_sheet_body("slab of 40, white", 0.4f, false),
                                    make_ball_body("ball of 10, white", 0.05f, false),
                                    make_sheet_body("sheet of 1, white", 0.01f, false),
@@ -100,11 +107,12 @@ void print_table() {
         std::printf(" %s |", body.name);
     }
     std::printf("\n|---|%s\n", "---:|---:|---:|---:|---:|---:|");
-    for (const float eta : {1.0f, 1.3f, 1.5f}) {
+    for (const float eta : indices) {
         for (const float albedo : {0.5f, 0.9f, 0.99f}) {
             std::printf("| %g, %g |", static_cast<double>(eta), static_cast<double>(albedo));
             for (const Body& body : bodies) {
-                print_ratio(body, tests::make_grey_medium(100 * albedo, 100 * (1 - albedo), eta));
+                print_ratio(body, tests::make_grey_medium(100 * albedo, 100 * (1 - albedo), eta),
+                            views);
             }
             std::printf("\n");
         }
@@ -114,6 +122,10 @@ void print_table() {
 }  // namespace
 }  // namespace opaline::bake
 
-int main() {
-    opaline::bake::print_table();
+int main(int count, char** argument) {
+    constexpr std::array<float, 3> kIndices{1.0f, 1.3f, 1.5f};
+    const float index = count > 1 ? std::strtof(argument[1], nullptr) : 0;
+    const double views = count > 2 ? std::strtod(argument[2], nullptr) : 0;
+    opaline::bake::print_table(index > 0 ? std::span(&index, 1) : std::span<const float>(kIndices),
+                               views);
 }

@@ -5,6 +5,7 @@
 #include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/inspect_scene.h"
 #include "tests/support/effects.h"
+#include "tests/support/sheets.h"
 #include "tests/support/walk_bake.h"
 
 namespace opaline::bake {
@@ -234,6 +235,86 @@ TEST(ModelChoice, RowsByViewAreTakenWhereTheBodyIsThinOrAbsorbsAndTheQualityAsks
     EXPECT_THAT(entry(3, apart).reason, HasSubstr("--separate-terms"));
     options.set(kMultipleModel, kScaled);
     EXPECT_EQ(entry(3, options).terms, 1u) << "no walks by view";
+}
+
+// Under even light, along the normal, what is of degree two in the cosine shows 1.73 of its RMS
+// over the views: (P_2 - a - b (c' - m)) at 1 over its own. The plan takes the lesser of plates and
+// balls.
+TEST(ModelChoice, NineRowsByViewAreTakenWhereTheyMakeTheDifferenceThatThePlanSays) {
+    struct Said {
+        std::uint32_t terms = 0;
+        double error = 0, difference = 0;
+    };
+    const auto said = [](float albedo) {
+        const tests::Scene block = tests::make_translucent_scene(
+            tests::make_sheet(1, 6, 1.5f),
+            tests::make_grey_medium(40 * albedo, 40 * (1 - albedo), 1));
+        BakeOptions options = bake_by(kWalked, 500000);
+        options.set(kSites, 12000);
+        options.set(kWalksAround, 300);
+        options.effects = {"multiple", "single"};
+        options.quality = Quality::production;
+        const auto planned = [&](const BakeOptions& wanted) {
+            return *find_entry(
+                plan_bake(all_effects(), block, inspect_scene(block), *resolve_knobs(wanted)),
+                "multiple.view", 0);
+        };
+        const auto mean = [&](double views) {
+            BakeOptions wanted = options;
+            wanted.set(kViewTerms, views);
+            const BakeResult baked = tests::bake_scene(block, wanted);
+            const std::vector<formats::Rgb> radiance =
+                tests::relight_primitive(baked.asset, "white");
+            double sum = 0;
+            for (std::size_t v = 0; v < radiance.size(); ++v) {
+                const formats::Vec3 at = baked.asset.position[v];
+                const bool inner = std::max(std::abs(at.x), std::abs(at.z)) < 0.6f;
+                sum += inner ? static_cast<double>(radiance[v].g) : 0;
+            }
+            return sum;
+        };
+        BakeOptions four = options;
+        four.set(kViewTerms, 4);
+        constexpr double kAlongNormal = 1.73;
+        return Said{planned(options).terms, planned(four).model_error,
+                    std::abs(mean(9) / mean(4) - 1) / kAlongNormal};
+    };
+    const Said dark = said(0.5f), bright = said(0.9f);
+    EXPECT_EQ(dark.terms, 9u);
+    EXPECT_GT(dark.difference, 0.8 * dark.error);
+    EXPECT_LT(dark.difference, 2 * dark.error);
+    EXPECT_EQ(bright.terms, 4u);
+    EXPECT_LT(bright.error, 0.03);
+    EXPECT_LT(bright.difference, 0.03);
+}
+
+TEST(ModelChoice, MoreRowsByViewAreTakenWhereFlatBodiesAbsorbOrAreThin) {
+    const auto rows = [](std::vector<tests::Primitive> body, float sigma_t, float albedo, float eta,
+                         float g, Quality quality) {
+        formats::Medium medium =
+            tests::make_grey_medium(albedo * sigma_t, (1 - albedo) * sigma_t, eta);
+        medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
+        medium.phase.g = g;
+        const tests::Scene scene = tests::make_translucent_scene(std::move(body), medium);
+        BakeOptions options = bake_by(kWalked, 20000);
+        options.set(kSites, 100000);
+        options.set(kWalksAround, 1);
+        options.quality = quality;
+        return find_entry(
+                   plan_bake(all_effects(), scene, inspect_scene(scene), *resolve_knobs(options)),
+                   "multiple.view", 0)
+            ->terms;
+    };
+    const auto plate = tests::make_sheet(0.05f, 4, 2);
+    const std::vector<tests::Primitive> ball{tests::make_sphere(2)};
+    constexpr Quality kBest = Quality::production;
+    EXPECT_EQ(rows(plate, 20, 0.99f, 1, 0, kBest), 9u) << "one mean free path";
+    EXPECT_EQ(rows(plate, 100, 0.99f, 1, 0, kBest), 4u) << "five";
+    EXPECT_EQ(rows(plate, 100, 0.5f, 1, 0, kBest), 9u) << "half of what arrives is absorbed";
+    EXPECT_EQ(rows(plate, 100, 0.5f, 1, 0, Quality::preview), 4u);
+    EXPECT_EQ(rows(plate, 100, 0.5f, 1.5f, 0, kBest), 4u) << "views inside lie close";
+    EXPECT_EQ(rows(ball, 5, 0.5f, 1, 0, kBest), 4u) << "its edge is bright and then dark";
+    EXPECT_EQ(rows(ball, 30, 0.5f, 1, 0.9f, kBest), 9u) << "a forward peak";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "bake/accuracy/check_model.h"
 #include "bake/reference/reference_receivers.h"
 #include "bake/scene/orient_bodies.h"
+#include "tests/support/doubled_slab.h"
 #include "tests/support/effects.h"
 #include "tests/support/sheets.h"
 #include "tests/support/walk_bake.h"
@@ -109,12 +110,54 @@ TEST(WalkModel, ThinSheetSeenAlongItsNormalIsAsBrightAsPathTracedWithFourRowsAnd
     EXPECT_NEAR(model_errors(sheet, four).bias, 0, 0.05);
 }
 
+// The file itself, toward eyes aslant: a slab of 6 mean free paths that absorbs half of what
+// arrives, against doubling.
+TEST(WalkModel, FileOfNineRowsShowsAnAbsorbingSlabTowardEveryEyeBetterThanOneOfFour) {
+    const float sigma_t = 6;
+    const tests::DoubledSlab doubled(1.0 * static_cast<double>(sigma_t), 0.5, 0, 3);
+    const tests::Scene slab = tests::make_translucent_scene(
+        tests::make_sheet(1, 8, 4), tests::make_grey_medium(0.5f * sigma_t, 0.5f * sigma_t, 1));
+    const auto error = [&](double views) {
+        BakeOptions options = bake_by(kWalked, 1000000);
+        options.effects = {"multiple", "single"};
+        options.set(kViewTerms, views);
+        const BakeResult baked = tests::bake_scene(slab, options);
+        EXPECT_EQ(baked.asset.view().primitives[0].terms, views);
+        const runtime::LightVector white =
+            tests::make_light("white", baked.asset.view().cubemap_size);
+        double squares = 0, sum = 0;
+        for (int i = 0; i < doubled.nodes(); i += 3) {
+            const double c = doubled.cosine(i), s = std::sqrt(1 - c * c);
+            runtime::ShadeOptions seen;
+            seen.eye = {static_cast<float>(1e6 * s), static_cast<float>(1e6 * c), 0};
+            std::vector<formats::Rgb> radiance(baked.asset.position.size());
+            runtime::shade(baked.asset.view(), white, radiance, seen);
+            double mean = 0, count = 0;
+            for (std::size_t v = 0; v < baked.asset.primitives[0].vertex_count; ++v) {
+                const formats::Vec3 at = baked.asset.position[v];
+                if (std::max(std::abs(at.x), std::abs(at.z)) < 1.2f) {  // far from the rim
+                    mean += static_cast<double>(radiance[v].g);
+                    count += 1;
+                }
+            }
+            const double truth = doubled.reflected_sky(i) + doubled.transmitted_sky(i);
+            squares += c * std::pow(mean / count - truth, 2);
+            sum += c * truth * truth;
+        }
+        return std::sqrt(squares / sum);
+    };
+    EXPECT_GT(error(4), 0.035) << "of the exact fit: .045";
+    EXPECT_LT(error(9), 0.025) << "of the exact fit: .012";
+}
+
 TEST(WalkModel, BytesDoNotDependOnTheNumberOfThreads) {
     formats::Medium medium = tests::make_grey_medium(4, 0.1f);
     medium.sigma_s = {4, 4.5f, 9};
     const tests::Scene scene = tests::make_ball_on_floor(medium);
     for (const double model : {kWalked, kScaled}) {
-        BakeOptions one = bake_by(model, 20000), three = one;
+        BakeOptions one = bake_by(model, 20000);
+        one.set(kViewTerms, 9);
+        BakeOptions three = one;
         one.threads = 1;
         three.threads = 3;
         EXPECT_EQ(tests::largest_difference(tests::bake_scene(scene, one).asset,

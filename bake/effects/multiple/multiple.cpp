@@ -17,6 +17,7 @@
 #include "bake/effects/multiple/view_terms.h"
 #include "bake/effects/multiple/walks/limit_views.h"
 #include "bake/effects/multiple/walks/true_walks.h"
+#include "bake/effects/multiple/walks/view_fit.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/truth/true_irradiance.h"
 
@@ -114,7 +115,7 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        model_of(inputs.own),
                                        {knobs[kWalksAround], knobs[kWalks], whole(knobs, kSites)},
                                        knobs[kEpsilon],
-                                       inputs.layout.view_harmonics > 0,
+                                       std::max(1u, inputs.layout.view_harmonics),
                                        inputs.layout.all_orders},
                                       inputs.context);
     rays += samples->stage.rays;
@@ -132,26 +133,27 @@ void add_sums(std::span<const float> sums, float factor, std::uint32_t row, cons
     }
 }
 
-// T_d + sum of (w' - m n)_k R_k as harmonics of the view w': Y_00 and Y_1 = sqrt(3) Y_00 (y, z, x).
-// `sums`: T_d / scale.
+// Rows by view as harmonics of the view w'. `sums`: T_d / scale.
 void add_views(const MultipleStage& stage, const GatherReceiver& receiver,
                std::span<const float> sums, float scale, const RowLayout& layout,
                const DenseRow& row) {
-    constexpr std::array<int, 3> kAxis{1, 2, 0};
-    constexpr double kFirst = 0.5 * std::numbers::sqrt3 * std::numbers::inv_sqrtpi;
     const glm::vec3 normal = receiver.inside.normal;
-    const double eta = stage.medium.eta, cosine = make_view_lobe(eta).mean;
-    const auto mean = static_cast<float>(cosine);
-    std::vector<float> rows(3 * sums.size());
+    const ViewFit& fit = stage.walks.view_fit;
+    const std::uint32_t count = layout.view_harmonics - 1;
+    std::vector<float> rows(std::size_t{count} * sums.size());
     gather_views(stage, receiver.inside.position, normal, rows);
-    scale *= limit_views(sums, rows, row.bands == 1 ? 1 : 4, normal, cosine, eta);
-    const std::size_t size = rows.size() / 3;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-        const int axis = kAxis[k];
-        const auto own = std::span(rows).subspan(static_cast<std::size_t>(axis) * size, size);
-        add_sums(own, scale / static_cast<float>(kFirst), layout.first_harmonic() + 1 + k, row);
-        add_sums(own, -mean * normal[axis] * scale / static_cast<float>(layout.view_of_constant()),
-                 0, row);
+    const ViewLimit limit = limit_views(sums, rows, row.bands == 1 ? 1 : 4, normal, fit);
+    const ViewMatrix matrix = to_harmonics(fit, normal);
+    for (std::uint32_t k = 0; k < layout.view_harmonics; ++k) {
+        // The constant stands in the first row even where more harmonics follow it.
+        const std::uint32_t to = k == 0 ? 0 : layout.first_harmonic() + k;
+        for (std::uint32_t r = 0; r < count; ++r) {
+            const float factor =
+                scale * (r < kFirstDegree ? limit.first : limit.second) * matrix[k][r];
+            if (factor != 0) {
+                add_sums(std::span(rows).subspan(r * sums.size(), sums.size()), factor, to, row);
+            }
+        }
     }
 }
 

@@ -17,7 +17,7 @@ inline bool is_walked(const RowLayout& layout, std::span<const PlanEntry> decisi
            std::ranges::any_of(decisions,
                                [](const PlanEntry& entry) { return entry.on && entry.all_orders; });
 }
-inline constexpr std::array<double, 2> kViewCounts{1, 4};
+inline constexpr std::array<double, 3> kViewCounts{1, 4, 9};
 inline constexpr const char* kWhyIdle = "no medium carries light across itself";
 
 // More than one sample a path is worth it below 3 %: a pilot of one would be for nothing.
@@ -95,9 +95,10 @@ inline constexpr KnobSpec kViewTerms{
     .placeholder = "K",
     .help =
         "rows of a receiver for light scattered many times that random walks follow: 1, the same "
-        "for all views, or 4; default: as many as the body and the quality ask for",
+        "for all views, 4, linear in the view, or 9, of degree two; default: as many as the body "
+        "and the quality ask for",
     .lowest = 1,
-    .highest = 4,
+    .highest = 9,
     .zero_is_auto = true,
     .allowed = multiple_knobs::kViewCounts,
     .preset = {0, 0, 0, 0},

@@ -99,7 +99,7 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
                                   walks,
                                   {.cubemap_size = options.cubemap_size,
                                    .kept = scales ? 6 : options.kept,
-                                   .views = options.by_view && !scales ? 4u : 1u,
+                                   .views = scales ? 1 : options.views,
                                    .bands = options.bands,
                                    .seed = options.seed,
                                    .orders = {options.all_orders ? 1u : 2u}}};

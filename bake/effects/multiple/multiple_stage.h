@@ -45,7 +45,8 @@ struct MultipleOptions {
     MultipleModel model = MultipleModel::dipole;
     WalkBudget walks;
     double tolerance = 1e-3;  ///< GatherOptions, of the dipole at sites
-    bool by_view = false;     ///< walks also say how the light changes with the view
+    /// 4 or 9: walks also say how the light changes with the view (SiteRows).
+    std::uint32_t views = 1;
     bool all_orders = false;  ///< walks also count light that scatters once
 };
 
@@ -63,8 +64,8 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
 void gather_multiple_row(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
                          double tolerance, std::uint32_t bands, std::span<float> rgbx);
 
-/// How T_d changes with the view, as walks found it (walks/README.md, "Views"): seen along w'
-/// inside, T_d + sum of (w' - m n)_k R_k. Three rows R_k, one after the other, overwritten.
+/// How T_d changes with the view, as walks found it: rows by view (walks/view_fit.h), 3 or 8, one
+/// after the other, overwritten.
 void gather_views(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
                   std::span<float> rows);
 

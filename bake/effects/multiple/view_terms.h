@@ -8,9 +8,15 @@ namespace opaline::bake {
 /// mean chord in transport mean free paths and from the albedo (walks/README.md, "Views").
 double one_view_error(const formats::Medium& medium, const MaterialFacts& body);
 
-/// The rule `multiple.view`: 4 rows where random walks that hold light of all orders are expected
-/// and one row for all views would err by more than 3 % (reference: 1 %, preview: 10 %, draft: 20
-/// %), or more than half of Knobs::error_target; open bodies at draft and preview have one row.
+/// The same of four rows, linear in the view: the part of degree two of what a plate or a ball of
+/// the same mean chord shows. Of bodies that are no plates the lesser of both: which of their parts
+/// are round is not known.
+double four_views_error(const formats::Medium& medium, const MaterialFacts& body);
+
+/// The rule `multiple.view`: rows where random walks that hold light of all orders are expected, 4
+/// where one row for all views would err by more than .5 % (preview: 10 %, draft: 20 %) or three
+/// tenths of Knobs::error_target, and 9 where four would by more than 3 % (reference: 1 %, preview:
+/// 10 %, draft: 20 %) or as much of the target; open bodies at draft and preview have one row.
 /// After the rule `multiple.model`.
 PlanEntry decide_views(const PlanInput& input);
 

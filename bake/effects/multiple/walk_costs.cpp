@@ -25,6 +25,10 @@ WalkBudget budget_of(const Knobs& knobs) {
     return {knobs[kWalksAround], knobs[kWalks], whole(knobs, kSites)};
 }
 
+double rows_by_view(const RowLayout& layout) {
+    return layout.view_harmonics > 0 ? layout.view_harmonics - 1.0 : 0.0;
+}
+
 SitePlan plan_of(const SubjectCost& cost) {
     return expected_sites(cost.medium(), cost.facts, cost.input.knobs);
 }
@@ -64,15 +68,14 @@ Work walks_work(const SubjectCost& cost) {
     const SitePlan plan = plan_of(cost);
     const double walks = std::max(count_walks(plan, cost.facts.area, budget_of(knobs)),
                                   static_cast<double>(plan.sites));
-    const bool by_view = cost.layout.view_harmonics > 0;
-    const double entries =
-        kOwnSample * (kMomentEntries + (by_view ? 3 : 0)) * kept(knobs) * rates.gather_entry;
+    const double views = rows_by_view(cost.layout);
+    const double entries = kOwnSample * (kMomentEntries + views) * kept(knobs) * rates.gather_entry;
     const double dense = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     return {plan.sites * rates.place_sample,
             walks * (count_body_events(cost.medium(), cost.facts) *
                          rates.body_event.at(cost.input.triangles) +
                      kExitsPerWalk * (rates.walk_exit + entries)) +
-                plan.sites * (by_view ? 4 : 1) * dense * rates.truncate_texel};
+                plan.sites * (1 + views) * dense * rates.truncate_texel};
 }
 
 Work walked_rows_work(const SubjectCost& cost) {
@@ -84,11 +87,11 @@ Work walked_rows_work(const SubjectCost& cost) {
                                       std::max(cost.facts.area, 1e-300),
                                   static_cast<double>(plan.sites));
     const Rates& rates = cost.input.rates;
-    // By view: four times as many sites, of each three rows with a quarter of the entries.
-    const double view = cost.layout.view_harmonics > 0 ? 4 : 0;
+    // By view: four times as many sites, of each three or eight rows with a quarter of the entries.
+    const double views = rows_by_view(cost.layout);
     return {0, cost.receivers * sites *
-                   ((1 + view) * rates.site_weight +
-                    (1 + 0.75 * view) * kept(cost.input.knobs) * rates.gather_entry)};
+                   ((views > 0 ? 5 : 1) * rates.site_weight +
+                    (1 + views) * kept(cost.input.knobs) * rates.gather_entry)};
 }
 
 }  // namespace opaline::bake

@@ -78,10 +78,6 @@ ExitLobe make_exit_lobe(double eta) {
     return lobe;
 }
 
-ExitLobe make_view_lobe(double eta) {
-    return fit_lobe(eta, [eta](double c) { return refracted_cosine(c, eta); });
-}
-
 glm::vec4 ExitLobe::eval(glm::vec3 normal, glm::vec3 exit) const {
     const float cosine = glm::dot(normal, exit);
     if (!(cosine > 0)) {
@@ -164,16 +160,16 @@ void ExitLight::add(std::uint32_t sample, const std::array<glm::vec4, 3>& factor
     }
 }
 
-void ExitLight::add_views(std::uint32_t sample, const std::array<glm::vec3, 3>& weight,
+void ExitLight::add_views(std::uint32_t sample, std::span<const std::array<float, 3>> weight,
                           std::span<float> rows) const {
     const SurfaceSample& s = samples_[sample];
     const float scale = s.area > 0 ? scale_ / s.area : 0;
     const SparseVector entries = light_[sample];
-    const std::size_t size = rows.size() / 3;
-    for (int row = 0; row < 3; ++row) {
-        const Float4 factor{scale * weight[0][row], scale * weight[1][row], scale * weight[2][row],
+    const std::size_t size = rows.size() / weight.size();
+    for (std::size_t row = 0; row < weight.size(); ++row) {
+        const Float4 factor{scale * weight[row][0], scale * weight[row][1], scale * weight[row][2],
                             0};
-        float* const to = &rows[static_cast<std::size_t>(row) * size];
+        float* const to = &rows[row * size];
         for (std::size_t i = 0; i < entries.index.size(); ++i) {
             add_to(&to[4 * std::size_t{entries.index[i]}], factor * entries.value[i]);
         }

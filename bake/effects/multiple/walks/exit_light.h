@@ -40,11 +40,6 @@ ExitLobe make_exit_lobe(double eta);
 /// has a radiance of z + c' in proportion, c' the cosine toward the boundary.
 double extrapolation_length(double eta);
 
-/// The same for directions inside, toward the eye: of what leaves as uniform light would enter, as
-/// a function of the direction w' before refraction. It is the weighted least-squares fit linear in
-/// w' (README.md, "Views").
-ExitLobe make_view_lobe(double eta);
-
 /// Surface samples and the light that enters through them, ready for exits.
 class ExitLight {
   public:
@@ -63,9 +58,9 @@ class ExitLight {
     /// Adds weight[b] * (factors . vectors) of a sample to a row of four floats per texel.
     void add(std::uint32_t sample, const std::array<glm::vec4, 3>& factors,
              std::span<float> rgbx) const;
-    /// The first of the four vectors alone, to three rows that stand one after the other, with
-    /// weight[b][row].
-    void add_views(std::uint32_t sample, const std::array<glm::vec3, 3>& weight,
+    /// The first of the four vectors alone, to as many rows one after the other as are asked for,
+    /// with weight[row][b].
+    void add_views(std::uint32_t sample, std::span<const std::array<float, 3>> weight,
                    std::span<float> rows) const;
 
   private:

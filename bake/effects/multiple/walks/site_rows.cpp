@@ -6,6 +6,7 @@
 
 #include "bake/base/largest.h"
 #include "bake/base/ordered_parallel.h"
+#include "bake/effects/multiple/walks/view_fit.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -14,8 +15,8 @@ namespace {
 // An exit as light of a sample.
 struct SampleExit {
     std::uint32_t sample = 0;
-    std::array<glm::vec4, 3> factors{};  // per band
-    std::array<glm::vec3, 3> views{};    // per band, of the rows by view
+    std::array<glm::vec4, 3> factors{};                     // per band
+    std::array<std::array<float, 3>, kAllDegrees> views{};  // of each row by view, per band
 };
 
 class SiteWalker {
@@ -24,7 +25,7 @@ class SiteWalker {
         : space_(space),
           light_(light),
           options_(options),
-          view_lobe_(make_view_lobe(static_cast<double>(space.eta))),
+          view_fit_(make_view_fit(static_cast<double>(space.eta))),
           dense_(4 * options.views * std::size_t{formats::cubemap_texels(options.cubemap_size)}) {}
 
     // The dense rows of one site.
@@ -33,21 +34,25 @@ class SiteWalker {
         std::uint32_t number = 0;
         exits_.clear();
         seen_.clear();
-        glm::vec3 mean_seen(0);
+        ViewLobe mean_seen{};
         WalkCounts own;
         for (WalkGroup group; group.flies_as < space_.bands.size(); ++group.flies_as) {
             for (std::uint32_t w = 0; w < options_.walks_per_site; ++w) {
                 WalkRandom random({options_.seed, RandomStage::body_walk, site, number++}, true);
                 const glm::vec3 seen =
                     follow_walk(space_, group, start, options_.orders, random, exits_, own);
-                const glm::vec4 view = view_lobe_.eval(start.normal, seen);
-                const glm::vec3 lobe(view.y, view.z, view.w);
-                mean_seen += lobe;
-                seen_.resize(exits_.size(), lobe);
+                if (options_.views > 1) {
+                    const ViewLobe lobe = eval_view_lobe(view_fit_, start.normal, seen,
+                                                         options_.views > 1 + kFirstDegree);
+                    for (std::size_t r = 0; r < lobe.size(); ++r) {
+                        mean_seen[r] += lobe[r];
+                    }
+                    seen_.resize(exits_.size(), lobe);
+                }
             }
         }
         add_exits(static_cast<float>(own.correction() / options_.walks_per_site));
-        take_out_mean(mean_seen / static_cast<float>(number));
+        take_out_mean(mean_seen, static_cast<float>(number));
         counts += own;
         return dense_;
     }
@@ -55,12 +60,13 @@ class SiteWalker {
   private:
     // Its lobes' mean would be 0 over more walks. What it makes of the light that all views have in
     // common is noise.
-    void take_out_mean(glm::vec3 mean) {
+    void take_out_mean(const ViewLobe& sum, float walks) {
         const std::size_t size = dense_.size() / options_.views;
         for (std::uint32_t view = 1; view < options_.views; ++view) {
             float* const row = &dense_[view * size];
+            const float mean = sum[view - 1] / walks;
             for (std::size_t k = 0; k < size; ++k) {
-                row[k] -= mean[static_cast<int>(view) - 1] * dense_[k];
+                row[k] -= mean * dense_[k];
             }
         }
     }
@@ -74,7 +80,9 @@ class SiteWalker {
             const glm::vec4 factors = scale * light_.factors(to.sample, exit);
             for (std::size_t b = 0; b < 3; ++b) {
                 to.factors[b] = exit.weight[b] * factors;
-                to.views[b] = scale * exit.weight[b] * seen_[e];
+                for (std::size_t r = 0; r + 1 < options_.views; ++r) {
+                    to.views[r][b] = scale * exit.weight[b] * seen_[e][r];
+                }
             }
             by_sample_.push_back(to);
         }
@@ -86,13 +94,16 @@ class SiteWalker {
             for (; i < by_sample_.size() && by_sample_[i].sample == sum.sample; ++i) {
                 for (std::size_t b = 0; b < 3; ++b) {
                     sum.factors[b] += by_sample_[i].factors[b];
-                    sum.views[b] += by_sample_[i].views[b];
+                    for (std::size_t r = 0; r + 1 < options_.views; ++r) {
+                        sum.views[r][b] += by_sample_[i].views[r][b];
+                    }
                 }
             }
             const std::size_t size = dense_.size() / options_.views;
             light_.add(sum.sample, sum.factors, std::span(dense_).first(size));
             if (options_.views > 1) {
-                light_.add_views(sum.sample, sum.views, std::span(dense_).subspan(size));
+                light_.add_views(sum.sample, std::span(sum.views).first(options_.views - 1),
+                                 std::span(dense_).subspan(size));
             }
         }
     }
@@ -100,10 +111,10 @@ class SiteWalker {
     const WalkSpace& space_;
     const ExitLight& light_;
     const SiteRowOptions& options_;
-    ExitLobe view_lobe_;
+    ViewFit view_fit_;
     std::vector<float> dense_;
     std::vector<WalkExit> exits_;
-    std::vector<glm::vec3> seen_;  // of each exit, what its walk's view adds to the rows by view
+    std::vector<ViewLobe> seen_;  // of each exit, what its walk's view adds to the rows by view
     std::vector<SampleExit> by_sample_;
     std::vector<std::uint32_t> around_;
 };

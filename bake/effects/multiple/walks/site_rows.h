@@ -14,6 +14,7 @@ namespace opaline::bake {
 /// Rows of sites: Haar vectors with few entries, each with a value per band. The first row of a
 /// site is T_0, the mean over views. Three more, if there are four, say how it changes with the
 /// view (README.md, "Views"): seen along w' inside, it is row 0 + sum of (w' - m n)_k row k + 1.
+/// Five more, of nine, add functions of degree two (view_fit.h).
 struct SiteRows {
     struct Block {
         std::vector<std::uint32_t> offset{0};  ///< rows + 1, site by site
@@ -23,13 +24,13 @@ struct SiteRows {
     static constexpr std::size_t kPerBlock = 16;
     std::vector<Block> blocks;  ///< each of kPerBlock sites, the last of as many or fewer
     std::uint32_t bands = 3;    ///< or 1
-    std::uint32_t views = 1;    ///< rows of a site: 1 or 4
+    std::uint32_t views = 1;    ///< rows of a site: 1, 4 or 9
 };
 
 struct SiteRowOptions {
     std::uint32_t cubemap_size = 32;
     std::uint32_t kept = 128;           ///< entries of a row; of those by view a quarter
-    std::uint32_t views = 1;            ///< or 4
+    std::uint32_t views = 1;            ///< or 4 or 9
     std::uint32_t bands = 3;            ///< or 1, where those of the medium coincide
     std::uint32_t walks_per_site = 64;  ///< for each group of bands, >= 1
     std::uint64_t seed = 0;

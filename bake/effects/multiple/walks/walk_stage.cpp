@@ -63,6 +63,7 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
     stage.field = SiteField(sites, static_cast<float>(options.radius));
     if (options.rows.views > 1) {
         constexpr double kWider = 2;
+        stage.view_fit = make_view_fit(static_cast<double>(space.eta));
         stage.view_field = SiteField(sites, static_cast<float>(kWider * options.radius));
     }
     return stage;
@@ -87,9 +88,10 @@ void add_walked_views(const WalkStage& stage, glm::vec3 position, glm::vec3 norm
     }
     std::vector<SiteWeight> weights;
     stage.view_field.weigh(position, normal, weights);
-    const std::size_t size = rows.size() / 3;
+    const std::uint32_t count = stage.rows.views - 1;
+    const std::size_t size = rows.size() / count;
     for (const SiteWeight& w : weights) {
-        for (std::uint32_t k = 0; k < 3; ++k) {
+        for (std::uint32_t k = 0; k < count; ++k) {
             add_site_row(stage.rows, w.site, k + 1, scale * w.weight, rows.subspan(k * size, size));
         }
     }

@@ -9,6 +9,7 @@
 #include "bake/effects/multiple/walks/exit_light.h"
 #include "bake/effects/multiple/walks/site_field.h"
 #include "bake/effects/multiple/walks/site_rows.h"
+#include "bake/effects/multiple/walks/view_fit.h"
 #include "bake/effects/multiple/walks/walk_space.h"
 
 namespace opaline::bake {
@@ -39,6 +40,7 @@ double count_walks(const SitePlan& plan, double area, const WalkBudget& budget);
 struct WalkStage {
     SiteField field, view_field;  ///< the latter of rows by view: they vary less and are noisier
     SiteRows rows;
+    ViewFit view_fit;  ///< of the boundary
     WalkCounts counts;
 };
 
@@ -62,8 +64,8 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
 void add_walked_row(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
                     std::span<float> rgbx);
 
-/// Adds the three rows of a receiver that say how T_0 changes with the view (SiteRows), times
-/// `scale`, to three rows that stand one after the other. Precondition: the sites have them.
+/// Adds the rows of a receiver that say how T_0 changes with the view (SiteRows), times `scale`, to
+/// 3 or 8 rows that stand one after the other. Precondition: the sites have as many.
 void add_walked_views(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
                       std::span<float> rows);
 
