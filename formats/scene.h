@@ -31,7 +31,35 @@ struct PhaseFunction {
     std::vector<float> cosine, value;  ///< tabulated: ascending from -1 to 1, p >= 0 [1/sr]
 };
 
-/// A homogeneous scattering medium that fills the closed surface of its material. SI units.
+/// Veins through a solid: a colour as a function of the position alone (bake/scene/marble.h).
+struct Marble {
+    float scale = 0.04f;      ///< distance between veins [m], > 0
+    std::vector<Rgb> colors;  ///< from within a vein to halfway between two; 2 or more, in [0, 1]
+};
+
+/// How a texture goes on outside of [0, 1].
+enum class TextureWrap { repeat, clamp, mirror };
+
+/// An image over the surface of a body that says what is inside: a point inside has the value of
+/// the nearest point of the surface. Coordinates: Primitive::texcoord.
+struct InnerTexture {
+    std::uint32_t image = kNone;  ///< index into Scene::inner_images; none: 1 everywhere
+    TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
+};
+
+/// How a medium differs from point to point inside its body: its scattering colour, which is what a
+/// thick layer reflects of even light, is that of the stated coefficients times `marble`, `color`
+/// and `strength`, and both coefficients are scaled by `density` (bake/scene/medium_field.h).
+struct Variation {
+    std::optional<Marble> marble = std::nullopt;
+    InnerTexture color = {};     ///< red, green and blue as sRGB codes
+    InnerTexture strength = {};  ///< alpha, linear codes
+    InnerTexture density = {};   ///< red, linear codes; 0 counts as 1/255
+    float g = 0;                 ///< in the relation of scattering colour and albedo, |g| < 1
+};
+
+/// A scattering medium that fills the closed surface of its material, homogeneous unless it has a
+/// variation. SI units.
 struct Medium {
     Rgb sigma_s, sigma_a;  ///< scattering, absorption [1/m], finite, >= 0, not all zero
     PhaseFunction phase;
@@ -49,12 +77,8 @@ struct Medium {
         physical,  ///< corrected formulas (formats/media/README.md, "Fidelity")
         paper      ///< [Wang2005] to the letter
     } fidelity = Fidelity::physical;
-};
-
-/// Veins through a solid: a colour as a function of the position alone (bake/encode/marble.h).
-struct Marble {
-    float scale = 0.04f;      ///< distance between veins [m], > 0
-    std::vector<Rgb> colors;  ///< from within a vein to halfway between two; 2 or more, in [0, 1]
+    /// None: homogeneous. Else automatic and physical, without a thickness.
+    std::optional<Variation> variation = std::nullopt;
 };
 
 /// A surface without an inside, such as a leaf or paper: of the light that arrives on one side, the
@@ -66,9 +90,6 @@ struct Sheet {
     Rgb opaque_color{1, 1, 1};
     bool opaque_double_sided = false;
 };
-
-/// How a texture goes on outside of [0, 1].
-enum class TextureWrap { repeat, clamp, mirror };
 
 /// What an opaque surface adds to its diffuse reflection: the metallic-roughness model of glTF 2.0
 /// with KHR_materials_specular and KHR_materials_ior. Of a metal, the base colour is the
@@ -153,9 +174,10 @@ struct Scene {
     /// frame's axes are parallel to those of the world. All stages compute in the frame, so float
     /// precision does not depend on the distance between the scene and the world's origin.
     glm::dvec3 origin{0};
-    std::vector<Image8> images;  ///< decoded textures that a material uses
-    std::string source;          ///< path as given by the user
-    std::string sha256;          ///< of all input bytes, in reading order, lower-case hex
+    std::vector<Image8> images;        ///< decoded textures that a material uses
+    std::vector<Image8> inner_images;  ///< those of variations, which no file keeps
+    std::string source;                ///< path as given by the user
+    std::string sha256;                ///< of all input bytes, in reading order, lower-case hex
     std::vector<std::filesystem::path> inputs;  ///< files read, for dependency files
 
     /// World position [m] of a point given in the frame.

@@ -13,6 +13,7 @@
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/cancel_flaps.h"
+#include "bake/scene/even_media.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"
 
@@ -57,11 +58,17 @@ int run(const Options& options) {
     bake::Context context;
     context.threads = options.scene.bake.threads;
     const unsigned threads = bake::thread_count(context);
-    const bake::SceneFacts facts = bake::inspect_scene(imported->scene);
-    auto plan = bake::plan_bake(effects, imported->scene, facts, *knobs);
-    std::vector<formats::Diagnostic> warnings = describe_media_faults(imported->scene, facts);
+    const auto evened =
+        bake::takes_even_media(effects, *knobs) ? bake::even_media(imported->scene) : std::nullopt;
+    const formats::Scene& scene = evened ? evened->scene : imported->scene;
+    const bake::SceneFacts facts = bake::inspect_scene(scene);
+    auto plan = bake::plan_bake(effects, scene, facts, *knobs);
+    std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, facts);
+    if (evened) {
+        warnings.insert(warnings.end(), evened->warnings.begin(), evened->warnings.end());
+    }
     for (formats::Diagnostic& unmet :
-         bake::describe_unmet({effects, imported->scene, facts, *knobs, plan}, *wanted)) {
+         bake::describe_unmet({effects, scene, facts, *knobs, plan}, *wanted)) {
         warnings.push_back(std::move(unmet));
     }
     if (auto status = report_warnings(warnings); !status) {
@@ -70,7 +77,7 @@ int run(const Options& options) {
     const bake::Rates rates = find_machine_rates().rates;
     bake::Knobs budget = *knobs;
     budget.model_error = bake::find_model_error(plan);
-    const bake::CostRequest request{effects, imported->scene, facts, budget, rates, threads};
+    const bake::CostRequest request{effects, scene, facts, budget, rates, threads};
     const bake::CostPrediction cost = bake::predict_costs(request, plan);
     bake::predict_savings(request, plan);
     fmt::print("{}", options.json ? make_plan_json(budget, plan, cost)

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "bake/encode/marble.h"
 #include "bake/scene/lobe_record.h"
+#include "bake/scene/marble.h"
 
 namespace opaline::bake {
 namespace {

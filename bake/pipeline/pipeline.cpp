@@ -1,6 +1,7 @@
 #include "bake/pipeline/pipeline.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/rows/gather_rows.h"
+#include "bake/scene/even_media.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"
 #include "bake/transport/bake_openness.h"
@@ -244,8 +246,13 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
 
     const OrientedBodies bodies =
         run_stage(log, "bodies", [&](std::uint64_t&) { return orient_bodies(given); });
-    const formats::Scene& scene = bodies.scene ? *bodies.scene : given;
+    const formats::Scene& facing = bodies.scene ? *bodies.scene : given;
     result.warnings = describe_faults(given, bodies.surfaces);
+    const auto evened = takes_even_media(effects, wanted) ? even_media(facing) : std::nullopt;
+    if (evened) {
+        std::ranges::copy(evened->warnings, std::back_inserter(result.warnings));
+    }
+    const formats::Scene& scene = evened ? evened->scene : facing;
     result.plan = run_stage(log, "plan", [&](std::uint64_t&) {
         result.facts = inspect_scene(scene);
         return plan_bake(effects, scene, result.facts, wanted);
@@ -272,7 +279,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         return std::move(status).error();
     }
     if (wanted.check_model) {
-        if (auto status = check_model_of(effects, scene, context, result); !status) {
+        if (auto status = check_model_of(effects, facing, context, result); !status) {
             return std::move(status).error();
         }
     }

@@ -12,6 +12,13 @@ const EffectDescriptor& EffectTable::operator[](Effect id) const {
     return *found;
 }
 
+bool takes_even_media(const EffectTable& effects, const Knobs& knobs) {
+    return std::any_of(
+        effects.effects.begin(), effects.effects.end(), [&](const EffectDescriptor& effect) {
+            return effect.takes_even_media != nullptr && effect.takes_even_media(knobs);
+        });
+}
+
 const DecisionRule& rule_of(const EffectTable& effects, const PlanEntry& entry) {
     const EffectDescriptor& effect = effects[entry.effect];
     assert(entry.rule < effect.rules.size());

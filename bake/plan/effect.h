@@ -143,6 +143,8 @@ struct EffectDescriptor {
                          std::span<std::vector<double>> factor) = nullptr;
     /// Colour that replaces the base colour's own, of a medium shown as a surface.
     formats::Rgb (*tint)(const Prepared& study) = nullptr;
+    /// Whether it takes media for homogeneous, as these knobs ask for. Null: never.
+    bool (*takes_even_media)(const Knobs& knobs) = nullptr;
     /// Completes one of its decisions once it has studied the subject; rules after it follow.
     void (*amend)(const EffectInputs& inputs, PlanEntry& entry) = nullptr;
     /// Warnings about a decision that knobs contradict; and about what the model leaves out.
@@ -160,6 +162,9 @@ struct EffectTable {
 
     const EffectDescriptor& operator[](Effect id) const;
 };
+
+/// Whether some effect takes media for homogeneous (EffectDescriptor::takes_even_media).
+bool takes_even_media(const EffectTable& effects, const Knobs& knobs);
 
 const DecisionRule& rule_of(const EffectTable& effects, const PlanEntry& entry);
 

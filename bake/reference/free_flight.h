@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
@@ -8,12 +9,15 @@
 #include "bake/reference/hit_scene.h"
 #include "bake/reference/phase_sampler.h"
 #include "bake/reference/random_stream.h"
+#include "bake/scene/medium_field.h"
 
 namespace opaline::bake {
 
-/// A homogeneous medium as the walk needs it [1/m].
+/// A medium as the walk needs it [1/m]: homogeneous, or with less than that where its field says
+/// so.
 struct ReferenceMedium {
     glm::vec3 sigma_s{0}, sigma_t{0};
+    std::optional<MediumField> field;
     float eta = 1;  ///< index of refraction relative to the outside of everything
     PhaseSampler phase;
 
@@ -40,8 +44,7 @@ inline int draw_channel(glm::vec3 odds, float u) {
 /// channel, drawn in proportion to beta, decides the distance. The weight divides by the mean
 /// density of all three with the same probabilities (balance heuristic), so the sum of the
 /// throughput's channels never grows. `find_surface(t)` returns the first surface if it is nearer
-/// than t [m]; farther ones count as none. A medium of another kind (a density grid by delta
-/// tracking) is one more overload of this function.
+/// than t [m]; farther ones count as none.
 template <class FindSurface>
 Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream& random,
                      FindSurface&& find_surface) {
@@ -73,6 +76,44 @@ Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream
         flight.weight = medium.sigma_s * passing / glm::dot(odds, medium.sigma_t * passing);
     }
     return flight;
+}
+
+/// The same through a medium that varies, by delta tracking [Woodcock1965]: collisions with
+/// the stated extinction, of which the share 1 - density is with nothing, so that the flight goes
+/// on. That share is the same in all channels: what the weight holds of it cancels.
+template <class FindSurface>
+Flight sample_varied_flight(const ReferenceMedium& medium, glm::vec3 from, glm::vec3 direction,
+                            glm::vec3 beta, RandomStream& random, FindSurface&& find_surface) {
+    const MediumField& field = *medium.field;
+    ReferenceMedium dense;
+    dense.sigma_s = dense.sigma_t = medium.sigma_t;  // of a collision, whatever it is with
+    glm::vec3 weight(1);
+    float way = 0;
+    for (;;) {
+        Flight step = sample_flight(dense, beta * weight, random,
+                                    [&](float free) -> std::optional<SurfaceHit> {
+                                        auto hit = find_surface(way + free);
+                                        if (hit) {
+                                            hit->distance = std::max(0.0f, hit->distance - way);
+                                        }
+                                        return hit;
+                                    });
+        weight *= step.weight;
+        const float done = way;
+        way += step.distance;
+        if (step.surface) {
+            step.surface->distance += done;
+        }
+        const glm::vec3 at = from + way * direction;
+        const bool collides = !step.surface && !std::isinf(way);
+        const bool is_null =
+            collides && field.has_density() && !(random.next() < field.density(at));
+        if (!is_null || !(glm::dot(beta, weight) > 0)) {
+            step.distance = way;
+            step.weight = collides ? weight * field.albedo(at) : weight;
+            return step;
+        }
+    }
 }
 
 }  // namespace opaline::bake

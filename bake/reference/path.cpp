@@ -98,8 +98,11 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
             is_near_surface = found.has_value();
             return found;
         };
-        const Flight flight =
-            sample_flight(space.scene.media[path.stack.top()], path.beta, random, find);
+        const ReferenceMedium& medium = space.scene.media[path.stack.top()];
+        const Flight flight = medium.field
+                                  ? sample_varied_flight(medium, path.origin.position,
+                                                         path.direction, path.beta, random, find)
+                                  : sample_flight(medium, path.beta, random, find);
         path.beta *= flight.weight;
         hit = flight.surface;
         if (!hit && !std::isinf(flight.distance)) {

@@ -18,6 +18,7 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
     float densest = 0;
     for (const formats::Material& material : scene.materials) {
         result.medium_of.push_back(formats::kNone);
+        const auto number = static_cast<std::uint32_t>(result.medium_of.size() - 1);
         if (material.medium) {
             result.medium_of.back() = static_cast<std::uint32_t>(result.media.size());
             const formats::Medium& m = *material.medium;
@@ -26,6 +27,9 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
             medium.sigma_t = medium.sigma_s + glm::vec3(m.sigma_a.r, m.sigma_a.g, m.sigma_a.b);
             medium.eta = m.eta;
             medium.phase = make_phase_sampler(m.phase);
+            if (m.variation) {
+                medium.field.emplace(scene, number);
+            }
             result.has_matched_boundary = result.has_matched_boundary || is_matched(m.eta);
             densest = std::max({densest, medium.sigma_t.x, medium.sigma_t.y, medium.sigma_t.z});
             result.media.push_back(std::move(medium));

@@ -9,6 +9,7 @@
 #include "bake/scene/body_shells.h"
 #include "bake/scene/color_contrast.h"
 #include "bake/scene/horizon.h"
+#include "bake/scene/medium_field.h"
 
 namespace opaline::bake {
 namespace {
@@ -141,7 +142,9 @@ void inspect_colors(const Scene& scene, std::uint32_t material, MaterialFacts& f
         facts.is_grey = same(sheet->reflect) && same(sheet->transmit);
     }
     if (const auto& medium = scene.materials[material].medium) {
-        facts.is_grey = same(medium->sigma_s) && same(medium->sigma_a);
+        facts.varies = medium->variation.has_value();
+        facts.is_grey = same(medium->sigma_s) && same(medium->sigma_a) &&
+                        (!facts.varies || is_grey(scene, *medium->variation));
         facts.mirrors = medium->eta != 1;
     }
 }

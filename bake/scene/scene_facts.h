@@ -38,8 +38,10 @@ struct MaterialFacts {
     float brightest_vertex = 0;  ///< largest component of its vertex colours; 1 without any
     float color_contrast = 0;    ///< ColorRange::contrast; 0: its colour is constant
 
-    bool is_grey = false;  ///< a medium or sheet whose numbers are the same in all three bands
+    bool is_grey = false;  ///< a medium or sheet whose numbers are the same in all three bands,
+                           ///< everywhere
     bool mirrors = false;  ///< a medium with a boundary: eta is not 1
+    bool varies = false;   ///< a medium that differs from point to point
 };
 
 /// Facts about a scene, found without simulation.

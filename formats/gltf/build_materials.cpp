@@ -147,6 +147,41 @@ void add_textures(const MaterialSource& source, const std::string& where, Textur
     material.gloss.wrap_v = loaded.wrap_v;
 }
 
+/// Scatter textures make a medium vary inside; they share the material's coordinates.
+void add_scatter_textures(const MaterialSource& source, const std::string& where,
+                          TextureLoader& loader, Material& material,
+                          std::vector<std::string>& remarks) {
+    const TranslucencySource& inside = source.translucency;
+    bool is_mapped = source.base_color_texture.texture != kNone;
+    const auto add = [&](const TextureUse& use, const char* name, InnerTexture& to) {
+        if (use.texture == kNone) {
+            return;
+        }
+        if (!is_mapped) {
+            material.base_color_texcoord = use.texcoord;
+            material.base_color_uv_transform = use.transform;
+            is_mapped = true;
+        } else if (use.texcoord != material.base_color_texcoord ||
+                   use.transform != material.base_color_uv_transform) {
+            remarks.push_back(std::string(name) +
+                              " is mapped otherwise than the material's other textures: the factor "
+                              "is used alone (give all the same texCoord and "
+                              "KHR_texture_transform)");
+            return;
+        }
+        const LoadedTexture loaded = loader.load_inner(use.texture, where);
+        to = {loaded.image, loaded.wrap_u, loaded.wrap_v};
+    };
+    Variation variation;
+    add(inside.multiscatter_color_texture, "multiscatterColorTexture", variation.color);
+    add(inside.scatter_strength_texture, "scatterStrengthTexture", variation.strength);
+    if (variation.color.image != kNone || variation.strength.image != kNone) {
+        // Of the predecessor, the albedo is that of g = 0 (map_medium.h).
+        variation.g = inside.has_scatter ? material.medium->phase.g : 0.0f;
+        material.medium->variation = variation;
+    }
+}
+
 }  // namespace
 
 void build_materials(const Document& document, const std::vector<MeshInstance>& instances,
@@ -185,6 +220,9 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
         }
         if (used[i]) {
             add_textures(source, where, loader, material, remarks);
+            if (material.medium) {
+                add_scatter_textures(source, where, loader, material, remarks);
+            }
             for (const std::string& fault : unsimulated(source, material)) {
                 lost[fault].push_back(where);
             }

@@ -67,7 +67,8 @@ void place_normals(const PrimitiveData& data, const glm::dmat4& world, Primitive
 
 void place_texcoords(const PrimitiveData& data, const Material& material, Primitive& out,
                      Report& report) {
-    const bool has_image = material.base_color_image != kNone || material.gloss.image != kNone;
+    const bool has_image = material.base_color_image != kNone || material.gloss.image != kNone ||
+                           (material.medium && material.medium->variation);
     if (data.texcoord.empty() && has_image) {
         report.warn(out.name,
                     "its material has a texture, but TEXCOORD_" +

@@ -103,7 +103,9 @@ struct TranslucencySource {
     double anisotropy = 0.0;
     double metallic = 1.0, roughness = 1.0;
     bool is_diffuse = false;  ///< unlit, or specular-glossiness without pbrMetallicRoughness
-    std::vector<std::string> textures;  ///< names of the members above that a texture modulates
+    TextureUse scatter_strength_texture, multiscatter_color_texture;
+    std::vector<std::string> textures;  ///< names of the members above that a texture modulates and
+                                        ///< nothing reads
 };
 
 struct MaterialSource {

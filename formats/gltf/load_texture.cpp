@@ -60,18 +60,27 @@ std::optional<Image8> TextureLoader::decode(std::uint32_t texture, const std::st
 }
 
 LoadedTexture TextureLoader::load(std::uint32_t texture, const std::string& where) {
+    return load_into(scene_.images, known_, texture, where);
+}
+
+LoadedTexture TextureLoader::load_inner(std::uint32_t texture, const std::string& where) {
+    return load_into(scene_.inner_images, known_inner_, texture, where);
+}
+
+LoadedTexture TextureLoader::load_into(std::vector<Image8>& images, Known& known,
+                                       std::uint32_t texture, const std::string& where) {
     LoadedTexture loaded;
     const Texture& source = document_.textures[texture];
-    if (const auto found = known_.find(source.image); found != known_.end()) {
+    if (const auto found = known.find(source.image); found != known.end()) {
         loaded.image = found->second;
     } else {
         auto image = decode(texture, where);
         if (image) {
-            loaded.image = static_cast<std::uint32_t>(scene_.images.size());
-            scene_.images.push_back(std::move(*image));
+            loaded.image = static_cast<std::uint32_t>(images.size());
+            images.push_back(std::move(*image));
         }
         if (source.image != kNone) {
-            known_[source.image] = loaded.image;
+            known[source.image] = loaded.image;
         }
     }
     if (source.sampler != kNone) {

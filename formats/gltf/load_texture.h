@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "formats/gltf/document.h"
 #include "formats/gltf/report.h"
@@ -27,17 +28,22 @@ class TextureLoader {
 
     /// `where` names the material, for messages.
     LoadedTexture load(std::uint32_t texture, const std::string& where);
+    /// The same with the image in Scene::inner_images.
+    LoadedTexture load_inner(std::uint32_t texture, const std::string& where);
     /// Decodes the image without adding it to the scene. Nothing if it cannot be read.
     std::optional<Image8> decode(std::uint32_t texture, const std::string& where);
 
   private:
+    using Known = std::map<std::uint32_t, std::uint32_t>;  // glTF image -> index into images
     std::optional<Image8> decode_image(std::uint32_t index);
+    LoadedTexture load_into(std::vector<Image8>& images, Known& known, std::uint32_t texture,
+                            const std::string& where);
 
     const Document& document_;
     Resources& resources_;
     Scene& scene_;
     Report& report_;
-    std::map<std::uint32_t, std::uint32_t> known_;  ///< glTF image -> index into Scene::images
+    Known known_, known_inner_;  ///< of Scene::images and Scene::inner_images
 };
 
 }  // namespace opaline::formats::gltf

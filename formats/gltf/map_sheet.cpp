@@ -80,7 +80,14 @@ std::optional<MappedSheet> map_sheet(const TranslucencySource& source, Rgb base_
     if (!sides) {
         return std::nullopt;
     }
-    for (const std::string& texture : source.textures) {
+    std::vector<std::string> textures = source.textures;
+    if (source.scatter_strength_texture.texture != kNone) {
+        textures.emplace_back("scatterStrengthTexture");
+    }
+    if (source.multiscatter_color_texture.texture != kNone) {
+        textures.emplace_back("multiscatterColorTexture");
+    }
+    for (const std::string& texture : textures) {
         remarks.push_back(texture + " is not simulated: the factor is used alone");
     }
     if (source.metallic > 0.0) {

@@ -17,6 +17,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
 
+#include "formats/gltf/read_texture_use.h"
 #include "formats/gltf/read_translucency.h"
 
 namespace opaline::formats::gltf {
@@ -185,9 +186,6 @@ double number_in(const tinygltf::Value& value, const char* key, std::size_t elem
     return found->IsNumber() ? found->GetNumberAsDouble() : otherwise;
 }
 
-/// KHR_texture_transform: translation * rotation * scale. Its example (offset 0 1, rotation pi/2,
-/// scale 1/2 is the lower left quadrant) holds for a rotation that is counter-clockwise with v
-/// pointing down, so sin enters with the opposite sign of a v-up plane.
 TextureUse convert(const tinygltf::TextureInfo& in, const std::string& where, Report& report) {
     TextureUse out;
     out.texture = link(in.index);
@@ -200,10 +198,7 @@ TextureUse convert(const tinygltf::TextureInfo& in, const std::string& where, Re
     const double angle = number_in(value, "rotation", 0, 0.0);
     const glm::dvec2 offset(number_in(value, "offset", 0, 0.0), number_in(value, "offset", 1, 0.0));
     const glm::dvec2 scale(number_in(value, "scale", 0, 1.0), number_in(value, "scale", 1, 1.0));
-    const double cosine = std::cos(angle), sine = std::sin(angle);
-    out.transform = glm::mat3(glm::dmat3(cosine * scale.x, -sine * scale.x, 0.0,  //
-                                         sine * scale.y, cosine * scale.y, 0.0,   //
-                                         offset.x, offset.y, 1.0));
+    out.transform = texture_transform(offset, angle, scale);
     const double texcoord = number_in(value, "texCoord", 0, out.texcoord);
     if (!(texcoord >= 0 && texcoord <= 255 && texcoord == std::floor(texcoord))) {
         report.error(where, "the texCoord of its KHR_texture_transform is not a small whole number",

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "formats/gltf/read_texture_use.h"
+
 namespace opaline::formats::gltf {
 
 namespace {
@@ -44,6 +46,11 @@ struct Extension {
         }
         value = {(*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>()};
     }
+    void texture(const char* key, TextureUse& use) const {
+        if (const auto found = object.find(key); found != object.end()) {
+            use = read_texture_use(*found, where + " > " + key, report);
+        }
+    }
     void texture(const char* key) const {
         if (object.contains(key)) {
             out.textures.emplace_back(key);
@@ -76,22 +83,22 @@ void read_scattering(const Json& extensions, const std::string& where, Transluce
             }
             scatter.color("multiscatterColorFactor", out.multiscatter_color);
             scatter.number("scatterAnisotropy", out.anisotropy);
-            scatter.texture("scatterStrengthTexture");
-            scatter.texture("multiscatterColorTexture");
+            scatter.texture("scatterStrengthTexture", out.scatter_strength_texture);
+            scatter.texture("multiscatterColorTexture", out.multiscatter_color_texture);
         });
     if (out.has_scatter) {
         return;  // a file with both was written for readers of either
     }
-    out.has_volume_scatter =
-        read_extension(extensions, "KHR_materials_volume_scatter", where, out, report,
-                       [&](const Extension& scatter) {
-                           out.multiscatter_color = glm::dvec3(0.0);
-                           // The draft's revisions differ in the name.
-                           scatter.color("multiscatterColor", out.multiscatter_color);
-                           scatter.color("multiscatterColorFactor", out.multiscatter_color);
-                           scatter.number("scatterAnisotropy", out.anisotropy);
-                           scatter.texture("multiscatterColorTexture");
-                       });
+    out.has_volume_scatter = read_extension(
+        extensions, "KHR_materials_volume_scatter", where, out, report,
+        [&](const Extension& scatter) {
+            out.multiscatter_color = glm::dvec3(0.0);
+            // The draft's revisions differ in the name.
+            scatter.color("multiscatterColor", out.multiscatter_color);
+            scatter.color("multiscatterColorFactor", out.multiscatter_color);
+            scatter.number("scatterAnisotropy", out.anisotropy);
+            scatter.texture("multiscatterColorTexture", out.multiscatter_color_texture);
+        });
 }
 
 void read_surface(const Json& material, const Json& extensions, const std::string& where,

@@ -164,7 +164,9 @@ void validate_links(const Document& document, Report& report) {
     for (std::size_t i = 0; i < document.materials.size(); ++i) {
         const MaterialSource& material = document.materials[i];
         for (const TextureUse& use :
-             {material.base_color_texture, material.metallic_roughness_texture}) {
+             {material.base_color_texture, material.metallic_roughness_texture,
+              material.translucency.scatter_strength_texture,
+              material.translucency.multiscatter_color_texture}) {
             check_link(use.texture, document.textures.size(), label("material", i, material.name),
                        "texture", report);
         }

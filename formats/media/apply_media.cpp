@@ -67,22 +67,36 @@ std::optional<Error> find_unmapped(const std::string& file, const Scene& scene,
                                    const EntryOf& entry_of) {
     for (const Primitive& primitive : scene.primitives) {
         const MaterialMedium* entry = entry_of(scene.materials[primitive.material]);
-        if (entry && entry->albedo && primitive.texcoord.empty() && !primitive.index.empty()) {
+        const char* const key = entry == nullptr ? nullptr
+                                : entry->albedo  ? "albedo_texture"
+                                : entry->scatter ? "scatter_texture"
+                                : entry->density ? "density_texture"
+                                                 : nullptr;
+        if (key != nullptr && primitive.texcoord.empty() && !primitive.index.empty()) {
             const Material& material = scene.materials[primitive.material];
-            return make_error(
-                ErrorKind::bad_input, file,
-                media::place(media::place("materials", entry->name), "albedo_texture"),
-                primitive.name + " of material " + gltf::in_quotes(material.name) +
-                    " has no texture coordinates TEXCOORD_" +
-                    std::to_string(material.base_color_texcoord),
-                "unwrap the mesh before export, or use marble, which needs none");
+            return make_error(ErrorKind::bad_input, file,
+                              media::place(media::place("materials", entry->name), key),
+                              primitive.name + " of material " + gltf::in_quotes(material.name) +
+                                  " has no texture coordinates TEXCOORD_" +
+                                  std::to_string(material.base_color_texcoord),
+                              "unwrap the mesh before export, or use marble, which needs none");
         }
     }
     return std::nullopt;
 }
 
-void fill(const MaterialMedium& entry, Material& material, std::vector<Image8>& images,
-          std::map<const MaterialMedium*, std::uint32_t>& known) {
+// Where the images of entries are in a scene: each once, for all materials of an entry.
+using KnownImages = std::map<const Image8*, std::uint32_t>;
+
+std::uint32_t add_image(const Image8& image, std::vector<Image8>& images, KnownImages& known) {
+    const auto [at, is_new] = known.try_emplace(&image, static_cast<std::uint32_t>(images.size()));
+    if (is_new) {
+        images.push_back(image);
+    }
+    return at->second;
+}
+
+void fill(const MaterialMedium& entry, Material& material, Scene& scene, KnownImages& known) {
     if (material.sheet) {
         material.base_color = material.sheet->opaque_color;
         material.double_sided = material.sheet->opaque_double_sided;
@@ -99,12 +113,16 @@ void fill(const MaterialMedium& entry, Material& material, std::vector<Image8>& 
     material.base_color = entry.base_color.value_or(has_color ? Rgb{1, 1, 1} : material.base_color);
     material.marble = entry.marble;
     if (entry.albedo) {
-        const auto [at, is_new] =
-            known.try_emplace(&entry, static_cast<std::uint32_t>(images.size()));
-        if (is_new) {
-            images.push_back(*entry.albedo);
+        material.base_color_image = add_image(*entry.albedo, scene.images, known);
+    }
+    const auto add_inner = [&](const std::optional<Image8>& image, InnerTexture& to) {
+        if (image) {
+            to = {add_image(*image, scene.inner_images, known), material.wrap_u, material.wrap_v};
         }
-        material.base_color_image = at->second;
+    };
+    if (material.medium && material.medium->variation) {
+        add_inner(entry.scatter, material.medium->variation->color);
+        add_inner(entry.density, material.medium->variation->density);
     }
 }
 
@@ -123,10 +141,10 @@ Result<std::vector<Diagnostic>> apply_media(const MediaFile& media, Scene& scene
     if (auto error = find_unmapped(media.file, scene, entry_of)) {
         return std::move(*error);
     }
-    std::map<const MaterialMedium*, std::uint32_t> images;  // one for all materials of an entry
+    KnownImages known;
     for (Material& material : scene.materials) {
         if (const MaterialMedium* entry = entry_of(material)) {
-            fill(*entry, material, scene.images, images);
+            fill(*entry, material, scene, known);
         }
     }
     std::vector<Diagnostic> warnings;

@@ -17,6 +17,8 @@ struct MaterialMedium {
     std::optional<Rgb> base_color;  ///< replaces the material's factor; linear, each in [0, 1]
     std::optional<Image8> albedo;   ///< replaces the texture; multiplies the light that leaves
     std::optional<Marble> marble;   ///< multiplies the light that leaves, by position
+    /// Images of the medium's variation, which then is there.
+    std::optional<Image8> scatter, density;
 };
 
 /// A media file, checked.

@@ -17,7 +17,7 @@ const std::vector<Rgb>& default_colors() {
 
 }  // namespace
 
-std::optional<Marble> read_marble(const Fields& material) {
+std::optional<PlacedMarble> read_marble(const Fields& material) {
     const auto found = material.object.find("marble");
     if (found == material.object.end()) {
         return std::nullopt;
@@ -29,13 +29,15 @@ std::optional<Marble> read_marble(const Fields& material) {
         return std::nullopt;
     }
     const Fields fields{*found, where, material.report};
-    refuse_unknown_keys(fields, {"scale", "colors"});
-    Marble marble;
+    refuse_unknown_keys(fields, {"scale", "colors", "inside"});
+    PlacedMarble placed;
+    Marble& marble = placed.marble;
     marble.scale = static_cast<float>(number(fields, "scale", kMinMarbleScale, kMaxMarbleScale)
                                           .value_or(static_cast<double>(marble.scale)));
     marble.colors =
         rgb_list(fields, "colors", 2, kMaxMarbleColors, 0, 1).value_or(default_colors());
-    return marble;
+    placed.is_inside = truth(fields, "inside").value_or(false);
+    return placed;
 }
 
 }  // namespace opaline::formats::media

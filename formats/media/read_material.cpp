@@ -32,10 +32,11 @@ bool is_black(Rgb c) {
     return c == Rgb{};
 }
 
-/// The image that `albedo_texture` names.
-std::optional<Image8> read_albedo(const Fields& fields, gltf::Resources& resources) {
-    const auto name = text(fields, "albedo_texture");
-    const std::string where = place(fields.where, "albedo_texture");
+/// The image that a key names.
+std::optional<Image8> read_image(const Fields& fields, const char* key,
+                                 gltf::Resources& resources) {
+    const auto name = text(fields, key);
+    const std::string where = place(fields.where, key);
     const auto bytes =
         name ? gltf::read_inside(resources, *name, where, fields.report) : std::nullopt;
     if (!bytes) {
@@ -129,6 +130,36 @@ std::optional<Medium> read_medium(const Fields& fields, gltf::Resources& resourc
     return medium;
 }
 
+/// Of a material that has no inside.
+void refuse_veins_inside(const Fields& fields, const std::optional<PlacedMarble>& marble) {
+    if (marble && marble->is_inside) {
+        fields.report.error(place(place(fields.where, "marble"), "inside"),
+                            "there is no medium for veins to be inside of",
+                            "give a medium, or leave `inside` out");
+    }
+}
+
+/// What makes a medium differ from point to point, of which there is some.
+void vary(const Fields& fields, const std::optional<PlacedMarble>& marble, Medium& medium) {
+    const bool is_veined = marble && marble->is_inside;
+    if (!is_veined && !has(fields, "scatter_texture") && !has(fields, "density_texture")) {
+        return;
+    }
+    for (const char* key : {"thickness", "profile", "fidelity"}) {
+        if (has(fields, key)) {
+            fields.report.error(place(fields.where, key),
+                                "it contradicts a medium that varies in space",
+                                "leave it out, or marble inside, scatter_texture and "
+                                "density_texture");
+        }
+    }
+    Variation& variation = medium.variation.emplace();
+    if (is_veined) {
+        variation.marble = marble->marble;
+    }
+    variation.g = static_cast<float>(mean_cosine(medium.phase));
+}
+
 }  // namespace
 
 MaterialMedium read_material(const std::string& name, const nlohmann::json& entry,
@@ -141,29 +172,40 @@ MaterialMedium read_material(const std::string& name, const nlohmann::json& entr
         return material;
     }
     const Fields fields{entry, where, report};
-    refuse_unknown_keys(fields, {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase",
-                                 "eta", "roughness", "base_color", "albedo_texture", "marble",
-                                 "profile", "fidelity", "opaque", "thin_walled", "thickness"});
+    refuse_unknown_keys(
+        fields, {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta",
+                 "roughness", "base_color", "albedo_texture", "marble", "scatter_texture",
+                 "density_texture", "profile", "fidelity", "opaque", "thin_walled", "thickness"});
     refuse_beside(fields, "preset", {"sigma_s", "sigma_s_prime", "sigma_a", "unit"},
                   "give the preset or coefficients");
     refuse_beside(fields, "sigma_s", {"sigma_s_prime"}, "give one of them");
     refuse_beside(fields, "thickness", {"profile", "fidelity"}, "sheets have no profile");
     material.base_color = rgb(fields, "base_color", 0, 1);
-    material.albedo = read_albedo(fields, resources);
-    material.marble = read_marble(fields);
+    material.albedo = read_image(fields, "albedo_texture", resources);
+    material.scatter = read_image(fields, "scatter_texture", resources);
+    material.density = read_image(fields, "density_texture", resources);
+    const std::optional<PlacedMarble> marble = read_marble(fields);
+    if (marble && !marble->is_inside) {
+        material.marble = marble->marble;
+    }
     material.sheet = read_sheet(fields);
     if (has(fields, "thin_walled")) {
-        refuse_beside(fields, "thin_walled",
-                      {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta",
-                       "roughness", "profile", "fidelity", "opaque", "thickness"},
-                      "give a medium or thin_walled");
+        refuse_beside(
+            fields, "thin_walled",
+            {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta", "roughness",
+             "profile", "fidelity", "opaque", "thickness", "scatter_texture", "density_texture"},
+            "give a medium or thin_walled");
+        refuse_veins_inside(fields, marble);
     } else if (truth(fields, "opaque").value_or(false)) {
-        refuse_beside(fields, "opaque",
-                      {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta",
-                       "roughness", "profile", "fidelity", "thickness"},
-                      "give a medium or \"opaque\": true");
+        refuse_beside(
+            fields, "opaque",
+            {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta", "roughness",
+             "profile", "fidelity", "thickness", "scatter_texture", "density_texture"},
+            "give a medium or \"opaque\": true");
+        refuse_veins_inside(fields, marble);
     } else {
         material.medium = read_medium(fields, resources);
+        vary(fields, marble, *material.medium);
     }
     return material;
 }

@@ -23,11 +23,12 @@ double expected_error(const formats::Medium& medium, const MaterialFacts& body) 
 }
 
 // Sites so far apart that they hold what the dipole lacks blur light that scatters once. Where its
-// phase function is peaked, terms in the view err by more (tests/bench/RESULTS.md, "Walks").
+// phase function is peaked, terms in the view err by more (tests/bench/RESULTS.md, "Walks"), and
+// where the medium varies nothing else knows it.
 bool hold_all_orders(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
     constexpr double kPeaked = 0.5;
     return transport_mean_free_path(medium) > 0 && body.area > 0 &&
-           (!expected_sites(medium, body, knobs).is_residual ||
+           (body.varies || !expected_sites(medium, body, knobs).is_residual ||
             std::abs(formats::mean_cosine(medium.phase)) >= kPeaked);
 }
 
@@ -60,7 +61,8 @@ bool measures_models(const Knobs& knobs) {
 bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
     const auto asked = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
     return asked == MultipleModel::automatic
-               ? !is_fixed(medium) && expected_error(medium, body) > allowed_model_error(knobs)
+               ? body.varies || (!is_fixed(medium) &&
+                                 expected_error(medium, body) > allowed_model_error(knobs))
                : asked != MultipleModel::dipole;
 }
 
@@ -81,6 +83,10 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
     const bool is_doubted = inputs.knobs.error_target > 0 && !is_fixed(inputs.medium()) &&
                             (asked == MultipleModel::scaled || asked == MultipleModel::dipole) &&
                             choice.dipole_error > allowed;
+    if (body.varies && may_walk) {
+        choice.model = MultipleModel::walks;
+        return choice;
+    }
     const bool is_measured = is_doubted || (may_walk && measures_models(inputs.knobs));
     if (is_measured) {
         choice.errors = measure_models(inputs, profile, traced);
@@ -113,6 +119,10 @@ PlanEntry decide_model(const PlanInput& input) {
         entry.on = asked != MultipleModel::dipole;
         entry.reason = std::string(kMultipleModel.words[static_cast<std::size_t>(asked)]) +
                        ": as --multiple-model says";
+    } else if (input.subject.varies) {
+        entry.on = true;
+        entry.choice = kMultipleModel.words[static_cast<std::size_t>(MultipleModel::walks)];
+        entry.reason = "walks: the medium varies in space, which other models do not know";
     } else if (is_fixed(medium)) {
         entry.reason = "dipole: the medium names its profile";
     } else if (error <= allowed || !effect.on) {

@@ -19,6 +19,7 @@
 #include "bake/effects/multiple/walks/true_walks.h"
 #include "bake/effects/multiple/walks/view_fit.h"
 #include "bake/scattering/fresnel.h"
+#include "bake/scene/even_media.h"
 #include "bake/truth/true_irradiance.h"
 
 namespace opaline::bake {
@@ -90,7 +91,8 @@ MultipleModel model_of(const EffectState& state) {
 
 PreparedPtr study(const EffectInputs& inputs, std::uint64_t& rays) {
     auto studied = std::make_unique<Studied>();
-    studied->profile = make_medium_profile(inputs.medium(), inputs.knobs.seed, inputs.context);
+    studied->profile = make_medium_profile(even_medium(inputs.bake.scene, inputs.material),
+                                           inputs.knobs.seed, inputs.context);
     studied->choice = choose_model(inputs, studied->profile, rays);
     return studied;
 }
@@ -255,6 +257,12 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                                             : scale_to(walked, std::move(dipole));
 }
 
+// The scaled dipole has the detail of its dipole.
+bool takes_even_media(const Knobs& knobs) {
+    const auto asked = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
+    return asked == MultipleModel::dipole || asked == MultipleModel::scaled;
+}
+
 void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>& warnings) {
     if (model_of(inputs.own) == MultipleModel::dipole) {
         warn_of_thin_parts(inputs, profile_of(inputs.own), warnings);
@@ -298,6 +306,7 @@ EffectDescriptor describe_multiple(Effect id) {
             .calibrate = calibrate_multiple,
             .sample_bytes = sample_bytes,
             .add_at_entry = add_at_entry,
+            .takes_even_media = takes_even_media,
             .amend = amend,
             .warn_of_model = warn_of_model};
 }

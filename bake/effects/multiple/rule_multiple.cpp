@@ -65,6 +65,15 @@ PlanEntry decide_multiple(const PlanInput& input) {
             entry.bound,
             std::min(half_space, small_body_bound(medium, band, diagonal, input.subject.area)));
     }
+    if (input.subject.varies) {
+        // Walks of a medium that varies carry light that scatters once as well.
+        for (const Band& band : bands_of(medium)) {
+            const double sigma_t = band.sigma_s + band.sigma_a;
+            const double once =
+                sigma_t > 0 ? band.sigma_s / sigma_t * -std::expm1(-sigma_t * diagonal) : 0;
+            entry.bound = std::max(entry.bound, once);
+        }
+    }
     if (!is_wanted(input.knobs, "multiple")) {
         entry.reason = "left out by --effects";
         return entry;

@@ -69,6 +69,10 @@ PlanEntry decide_spread(const PlanInput& input) {
     entry.bound = std::min(entry.bound, 1.0);
     if (input.knobs.separate_terms) {
         entry.reason = "multiple and single scattering are asked for apart";
+    } else if (subject.varies) {
+        entry.bound = 1;
+        entry.reason =
+            "the medium varies in space: light that leaves where it entered has no one colour";
     } else if (std::any_of(input.earlier.begin(), input.earlier.end(),
                            [](const PlanEntry& e) { return e.on && e.terms > 1; })) {
         entry.reason = "the rows depend on the view";

@@ -65,6 +65,14 @@ PlanEntry decide_single(const PlanInput& input) {
         entry.reason =
             "random walks follow light that scatters once together with the rest, along its true "
             "path";
+    } else if (input.subject.varies) {
+        entry.alternative = true;
+        entry.all_orders = holds_all_orders(input);
+        entry.reason = entry.all_orders
+                           ? "random walks follow light that scatters once together with the rest: "
+                             "the medium varies in space"
+                           : "the medium varies in space: only random walks know it, with multiple "
+                             "scattering";
     } else if (medium.profile == formats::Medium::Profile::normalized &&
                medium.fidelity == formats::Medium::Fidelity::physical &&
                !is_named(input.knobs, "single")) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bake/encode/marble.h"
+#include "bake/scene/marble.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::tests {

@@ -277,14 +277,12 @@ TEST(GltfTranslucency, EveryTextureOnAFactorIsNamed) {
     Json extensions = scattering_extensions();
     extensions["KHR_materials_transmission"]["transmissionTexture"] = {{"index", 0}};
     extensions["KHR_materials_volume"]["thicknessTexture"] = {{"index", 0}};
-    extensions["KHR_materials_scatter"]["multiscatterColorTexture"] = {{"index", 0}};
-    extensions["KHR_materials_scatter"]["scatterStrengthTexture"] = {{"index", 0}};
     extensions["KHR_materials_specular"]["specularTexture"] = {{"index", 0}};
     extensions["KHR_materials_specular"]["specularColorTexture"] = {{"index", 0}};
     const Mapped result = mapped(asset_with(extensions));
     ASSERT_TRUE(result.medium.has_value());
-    for (const char* name : {"transmissionTexture", "thicknessTexture", "multiscatterColorTexture",
-                             "scatterStrengthTexture", "specularTexture", "specularColorTexture"}) {
+    for (const char* name :
+         {"transmissionTexture", "thicknessTexture", "specularTexture", "specularColorTexture"}) {
         EXPECT_THAT(result.warnings,
                     HasSubstr(std::string(name) + " is not simulated: the factor is used alone"));
     }

@@ -179,5 +179,35 @@ TEST(ApplyMedia, AlbedoOnAPrimitiveWithoutTextureCoordinatesIsAnError) {
     EXPECT_TRUE(apply_media(media, scene).has_value());
 }
 
+TEST(ApplyMedia, ImagesOfAVaryingMediumAreThereOnceAndOfNoFile) {
+    Scene scene = scene_of({"A", "B"});
+    scene.primitives.resize(1);
+    scene.primitives[0].index = {0, 1, 2};
+    scene.materials[0].wrap_v = formats::TextureWrap::mirror;
+    formats::MediaFile media = media_of(R"("*": {"preset": "cream", "marble": {"inside": true}})");
+    formats::MaterialMedium& entry = media.materials.at(0);
+    entry.scatter = formats::Image8{1, 1, {1, 2, 3, 255}};
+    entry.density = formats::Image8{1, 1, {9, 9, 9, 255}};
+    const auto refused = apply_media(media, scene);
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().diagnostics.at(0).where, "materials > * > scatter_texture");
+
+    scene.primitives[0].texcoord.resize(3);
+    (void)apply(media, scene);
+    EXPECT_TRUE(scene.images.empty());
+    ASSERT_EQ(scene.inner_images.size(), 2u);
+    for (const formats::Material& material : scene.materials) {
+        EXPECT_EQ(material.base_color_image, formats::kNone);
+        EXPECT_FALSE(material.marble);
+        ASSERT_TRUE(material.medium && material.medium->variation);
+        const formats::Variation& variation = *material.medium->variation;
+        EXPECT_TRUE(variation.marble);
+        EXPECT_EQ(scene.inner_images.at(variation.color.image).rgba[1], 2);
+        EXPECT_EQ(scene.inner_images.at(variation.density.image).rgba[1], 9);
+        EXPECT_EQ(variation.strength.image, formats::kNone);
+        EXPECT_EQ(variation.color.wrap_v, material.wrap_v);
+    }
+}
+
 }  // namespace
 }  // namespace opaline::tests

@@ -10,7 +10,8 @@ using Json = nlohmann::json;
 
 /// Something of everything.
 const std::string kRich = R"({"materials": {
-    "Body": {"preset": "marble", "phase": {"type": "gaussian", "rms_angle": 0.3}},
+    "Body": {"preset": "marble", "phase": {"type": "gaussian", "rms_angle": 0.3},
+             "marble": {"scale": 0.1, "inside": true}},
     "Wax": {"sigma_s_prime": [1, 2, 3], "sigma_a": [0.1, 0, 4e-2], "unit": "1/mm", "eta": 1.44,
             "phase": {"type": "hg", "g": 0.3}, "roughness": 0.2, "base_color": [1, 0.5, 0],
             "profile": "better", "fidelity": "paper"},

@@ -187,6 +187,35 @@ TEST(MediaErrors, AlbedoTextureMustBeAnImageInTheSameFolder) {
     EXPECT_THAT(refuse(kGood + R"(, "albedo_texture": 3)"), HasSubstr("a text"));
 }
 
+TEST(MediaErrors, TexturesInsideMustBeImagesInTheSameFolder) {
+    for (const std::string key : {"scatter_texture", "density_texture"}) {
+        for (const std::string bad : {"\"nowhere.png\"", "\"../a.png\"", "\"media.json\"", "3"}) {
+            EXPECT_THAT(refuse(kGood + ", \"" + key + "\": " + bad), HasSubstr("Wax > " + key))
+                << bad;
+        }
+    }
+}
+
+TEST(MediaErrors, WhatVariesInsideNeedsAMediumWithoutThicknessProfileOrFidelity) {
+    const std::string inside = R"("marble": {"inside": true})";
+    EXPECT_THAT(refuse(kGood + R"(, "marble": {"inside": 1})"), HasSubstr("Wax > marble > inside"));
+    EXPECT_THAT(refuse(R"("opaque": true, )" + inside), HasSubstr("Wax > marble > inside"));
+    EXPECT_THAT(refuse(R"("thin_walled": {"reflect": [1, 1, 1]}, )" + inside),
+                HasSubstr("Wax > marble > inside"));
+    for (const std::string key : {"scatter_texture", "density_texture"}) {
+        EXPECT_THAT(refuse(R"("opaque": true, ")" + key + R"(": "a.png")"),
+                    HasSubstr(key + ": it contradicts opaque"));
+        EXPECT_THAT(refuse(R"("thin_walled": {"reflect": [1, 1, 1]}, ")" + key + R"(": "a.png")"),
+                    HasSubstr(key + ": it contradicts thin_walled"));
+    }
+    for (const std::string other :
+         {R"("thickness": 0.001)", R"("profile": "beams")", R"("fidelity": "paper")"}) {
+        EXPECT_THAT(refuse(kGood + ", " + inside + ", " + other),
+                    HasSubstr("contradicts a medium that varies"))
+            << other;
+    }
+}
+
 TEST(MediaErrors, EveryFaultIsListedAtOnce) {
     const std::string all =
         refuse(R"("sigma_s": [1, 1, -1], "sigma_a": 0, "eta": 9, "phase": {"type": "hg", "g": 2})");

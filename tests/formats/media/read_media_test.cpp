@@ -164,6 +164,20 @@ TEST(ReadMedia, MarbleHasDefaultsOfVeinedStone) {
     EXPECT_EQ(marble.colors.back(), (Rgb{1, 1, 1}));
 }
 
+TEST(ReadMedia, MarbleInsideBelongsToTheMediumAndNotToTheLightThatLeaves) {
+    const auto media =
+        read_text_as_media(wax(R"("preset": "marble", "phase": {"type": "hg", "g": 0.25},
+               "marble": {"scale": 2, "inside": true})"));
+    ASSERT_TRUE(media.has_value()) << faults(media);
+    EXPECT_FALSE(media->materials.at(0).marble);
+    ASSERT_TRUE(media->materials[0].medium->variation);
+    const formats::Variation& variation = *media->materials[0].medium->variation;
+    ASSERT_TRUE(variation.marble);
+    EXPECT_EQ(variation.marble->scale, 2.0f);
+    EXPECT_EQ(variation.g, 0.25f);
+    EXPECT_FALSE(medium_of(R"("preset": "marble", "marble": {"inside": false})").variation);
+}
+
 TEST(ReadMedia, MarbleTakesScaleAndColoursOfTheFile) {
     const auto media = read_text_as_media(
         wax(R"("opaque": true, "marble": {"scale": 2, "colors": [[0, 0.5, 1], [1, 0, 0]]})"));

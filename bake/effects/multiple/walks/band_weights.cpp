@@ -128,10 +128,10 @@ bool BandWeights::begin(const PerGroup& light, const PerGroup& density) {
     return reweigh(light, density);
 }
 
-bool BandWeights::absorb() {
+bool BandWeights::absorb(const std::array<float, 3>& albedo) {
     for (std::size_t b = 0; b < 3; ++b) {
-        value_[b] *= albedo_[b];
-        own_[b] *= albedo_[b];
+        value_[b] *= albedo[b];
+        own_[b] *= albedo[b];
     }
     return left() > 0;
 }

@@ -41,7 +41,9 @@ class BandWeights {
     bool cross_first(float distance);
     bool collide_first(float length, float distance);
 
-    bool absorb();
+    bool absorb() { return absorb(albedo_); }
+    /// An event where the albedos of the bands are not the stated ones, of which each is >= it.
+    bool absorb(const std::array<float, 3>& albedo);
     bool scale(float factor);
     /// Russian roulette; `u` uniform in [0, 1), any value where the walk is not at risk. False: the
     /// walk ends.

@@ -127,9 +127,25 @@ class Walk {
             counts_.unfinished += weight_.left();
             return false;
         }
+        if (space_.field) {
+            return collide_in(*space_.field);
+        }
         ++scatterings_;
         direction_ = scatter(space_, direction_, random_);
         return weight_.absorb() && survives();
+    }
+
+    // Flights are those of the stated extinction, the largest there is. Where it is less, the rest
+    // of the collisions are with nothing. All groups of bands have the same share of these, so it
+    // cancels from their weights.
+    bool collide_in(const MediumField& field) {
+        if (field.has_density() && !(random_.next() < field.density(position_))) {
+            return true;
+        }
+        ++scatterings_;
+        direction_ = scatter(space_, direction_, random_);
+        const glm::vec3 albedo = field.albedo(position_);
+        return weight_.absorb({albedo.x, albedo.y, albedo.z}) && survives();
     }
 
     bool arrive(const WalkHit& hit) {

@@ -64,6 +64,9 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
     space.is_grey = grey;
     space.phase = make_phase_table(medium.phase);
     space.bands = group_bands(medium, grey);
+    if (medium.variation && !space.bands.empty()) {
+        space.field.emplace(scene, material);
+    }
     // Three that are effectively isotropic (README.md, "The light at an exit").
     space.diffuse_after = static_cast<std::uint32_t>(
         std::ceil(3 / (1 - std::min(0.999, std::abs(formats::mean_cosine(medium.phase))))));

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "bake/effects/multiple/walks/phase_table.h"
+#include "bake/scene/medium_field.h"
 #include "bake/transport/clearance_grid.h"
 #include "bake/transport/embree_scene.h"
 #include "formats/scene.h"
@@ -20,7 +22,8 @@ struct WalkBands {
     std::array<bool, 3> member{};
 };
 
-/// A body and its medium, ready for random walks.
+/// A body and its medium, ready for random walks. Bands hold the stated coefficients; `field` says
+/// how much less of them there is at a point.
 struct WalkSpace {
     const formats::Scene* scene = nullptr;
     const EmbreeScene* triangles = nullptr;  ///< of the whole scene
@@ -28,7 +31,8 @@ struct WalkSpace {
     float eta = 1;
     bool is_grey = false;  ///< the first band stands for all three
     PhaseTable phase;
-    std::vector<WalkBands> bands;  ///< 1 to 3; empty: nothing scatters
+    std::vector<WalkBands> bands;      ///< 1 to 3; empty: nothing scatters
+    std::optional<MediumField> field;  ///< none: the medium is homogeneous
     ClearanceGrid clearance;
     glm::vec3 low{0}, high{0};        ///< box around the body [m], a little wider
     std::uint32_t diffuse_after = 0;  ///< scatterings that leave nothing of a direction

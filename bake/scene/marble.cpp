@@ -1,4 +1,4 @@
-#include "bake/encode/marble.h"
+#include "bake/scene/marble.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,178 @@
+#include "bake/scene/medium_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bake/base/parallel_indices.h"
+#include "bake/scattering/scattering_color.h"
+#include "bake/scene/marble.h"
+#include "bake/scene/nearest_surface.h"
+#include "bake/scene/sample_image.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::InnerTexture;
+using formats::Rgb;
+using formats::Variation;
+
+constexpr float kLeastDensity = 1.0f / 255, kCodes = 65535;
+
+glm::vec3 to_vec(Rgb c) {
+    return {c.r, c.g, c.b};
+}
+
+// Textures of a variation at a point of the surface: colour times strength, and density.
+glm::vec4 sample_textures(const formats::Scene& scene, const Variation& variation,
+                          const NearestSurface::Place& place) {
+    const formats::Primitive& p = scene.primitives[place.primitive];
+    if (p.texcoord.empty()) {
+        return glm::vec4(1);
+    }
+    const std::uint32_t* const corner = &p.index[place.first_index];
+    const glm::vec2 uv = (1 - place.u - place.v) * p.texcoord[corner[0]] +
+                         place.u * p.texcoord[corner[1]] + place.v * p.texcoord[corner[2]];
+    const auto look = [&](const InnerTexture& texture, bool is_linear) {
+        if (texture.image == formats::kNone || scene.inner_images[texture.image].rgba.empty()) {
+            return glm::vec4(1);
+        }
+        return sample_image(
+            {scene.inner_images[texture.image], texture.wrap_u, texture.wrap_v, is_linear}, uv);
+    };
+    const glm::vec3 color =
+        glm::vec3(look(variation.color, false)) * look(variation.strength, true).a;
+    return {color, std::max(kLeastDensity, look(variation.density, true).r)};
+}
+
+bool is_grey(const formats::Image8& image) {
+    for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
+        if (image.rgba[i] != image.rgba[i + 1] || image.rgba[i] != image.rgba[i + 2]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+bool is_grey(const formats::Scene& scene, const Variation& variation) {
+    const bool has_grey_veins =
+        !variation.marble || std::ranges::all_of(variation.marble->colors,
+                                                 [](Rgb c) { return c.r == c.g && c.g == c.b; });
+    return has_grey_veins && (variation.color.image == formats::kNone ||
+                              is_grey(scene.inner_images[variation.color.image]));
+}
+
+MediumField::MediumField(const formats::Scene& scene, std::uint32_t material)
+    : origin_(scene.origin) {
+    const formats::Medium& medium = *scene.materials[material].medium;
+    const Variation& variation = *medium.variation;
+    marble_ = variation.marble;
+    g_ = variation.g;
+    has_density_ = variation.density.image != formats::kNone;
+    const glm::vec3 scattered = to_vec(medium.sigma_s), absorbed = to_vec(medium.sigma_a);
+    for (int b = 0; b < 3; ++b) {
+        // As walks and reference divide: a white field changes no bit.
+        stated_albedo_[b] = scattered[b] > 0 ? scattered[b] / (scattered[b] + absorbed[b]) : 0;
+        stated_color_[b] = static_cast<float>(
+            scattering_color(static_cast<double>(stated_albedo_[b]), static_cast<double>(g_)));
+    }
+    if (has_density_ || variation.color.image != formats::kNone ||
+        variation.strength.image != formats::kNone) {
+        fill_grid(scene, material);
+    }
+}
+
+void MediumField::fill_grid(const formats::Scene& scene, std::uint32_t material) {
+    constexpr float kCells = 96;
+    const NearestSurface surface(scene, material);
+    if (surface.is_empty()) {
+        return;
+    }
+    glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+    for (const formats::Primitive& p : scene.primitives) {
+        for (std::size_t i = 0; p.material == material && i < p.index.size(); ++i) {
+            low = glm::min(low, p.position[p.index[i]]);
+            high = glm::max(high, p.position[p.index[i]]);
+        }
+    }
+    const glm::vec3 size = high - low;
+    const float longest = std::max({size.x, size.y, size.z});
+    if (!(longest > 0)) {
+        return;
+    }
+    const float cell = longest / kCells;
+    low_ = low;
+    per_cell_ = 1 / cell;
+    nodes_ = glm::ivec3(glm::ceil(size * per_cell_)) + 1;
+    nodes_ = glm::min(nodes_, glm::ivec3(static_cast<int>(kCells) + 2));
+    const glm::uvec3 count(nodes_);
+    grid_.resize(std::size_t{count.x} * count.y * count.z);
+    const Variation& variation = *scene.materials[material].medium->variation;
+    for_each_index(count.z, [&](std::size_t z) {
+        for (std::uint32_t y = 0; y < count.y; ++y) {
+            float reach = std::numeric_limits<float>::infinity();
+            for (std::uint32_t x = 0; x < count.x; ++x) {
+                const glm::vec3 at = low + cell * glm::vec3(x, y, z);
+                NearestSurface::Place place = surface.find(at, reach);
+                if (place.primitive == formats::kNone) {
+                    place = surface.find(at);
+                }
+                // Not farther than its neighbour's and the way there, with room for rounding.
+                reach = 1.001f * (place.distance + cell);
+                if (place.primitive == formats::kNone) {
+                    return;
+                }
+                const glm::vec4 values = sample_textures(scene, variation, place);
+                Codes& codes = grid_[(z * count.y + y) * count.x + x];
+                for (std::size_t c = 0; c < codes.size(); ++c) {
+                    const float value = std::clamp(values[static_cast<int>(c)], 0.0f, 1.0f);
+                    codes[c] = static_cast<std::uint16_t>(std::lround(kCodes * value));
+                }
+            }
+        }
+    });
+}
+
+glm::vec4 MediumField::grid(glm::vec3 position) const {
+    if (grid_.empty()) {
+        return glm::vec4(1);
+    }
+    const glm::vec3 most(nodes_ - 1);
+    const glm::vec3 place = glm::clamp((position - low_) * per_cell_, glm::vec3(0), most);
+    const glm::ivec3 cell = glm::min(glm::ivec3(place), glm::max(nodes_ - 2, glm::ivec3(0)));
+    const glm::vec3 share = place - glm::vec3(cell);
+    const glm::ivec3 step = glm::min(glm::ivec3(1), nodes_ - 1 - cell);
+    const auto at = [&](int x, int y, int z) {
+        const glm::ivec3 n = cell + glm::ivec3(x, y, z) * step;
+        const auto index = static_cast<std::size_t>((n.z * nodes_.y + n.y) * nodes_.x + n.x);
+        const Codes& codes = grid_[index];
+        return glm::vec4(codes[0], codes[1], codes[2], codes[3]);
+    };
+    // Exact between equal values, as glm::mix is not.
+    const auto mix = [](glm::vec4 a, glm::vec4 b, float s) { return a + s * (b - a); };
+    const auto along_x = [&](int y, int z) { return mix(at(0, y, z), at(1, y, z), share.x); };
+    const auto along_y = [&](int z) { return mix(along_x(0, z), along_x(1, z), share.y); };
+    return mix(along_y(0), along_y(1), share.z) / kCodes;
+}
+
+glm::vec3 MediumField::color(glm::vec3 position) const {
+    const glm::vec3 textures = grid_.empty() ? glm::vec3(1) : glm::vec3(grid(position));
+    return marble_ ? textures * to_vec(marble_color(*marble_, origin_ + glm::dvec3(position)))
+                   : textures;
+}
+
+glm::vec3 MediumField::albedo(glm::vec3 position) const {
+    const glm::vec3 local = color(position);
+    glm::vec3 albedo = stated_albedo_;
+    for (int b = 0; b < 3; ++b) {
+        if (local[b] < 1 && albedo[b] > 0) {
+            albedo[b] = static_cast<float>(albedo_of_color(
+                static_cast<double>(stated_color_[b] * local[b]), static_cast<double>(g_)));
+        }
+    }
+    return albedo;
+}
+
+}  // namespace opaline::bake

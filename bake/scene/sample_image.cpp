@@ -1,0 +1,65 @@
+#include "bake/scene/sample_image.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "formats/image/srgb.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::TextureWrap;
+
+const std::array<float, 256>& linear_codes() {
+    static const std::array<float, 256> table = [] {
+        std::array<float, 256> values{};
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            values[i] = formats::linear_from_srgb(static_cast<float>(i) / 255.0f);
+        }
+        return values;
+    }();
+    return table;
+}
+
+std::uint32_t wrap(std::int64_t i, std::int64_t size, TextureWrap mode) {
+    if (mode == TextureWrap::clamp) {
+        i = i < 0 ? 0 : i >= size ? size - 1 : i;
+    } else if (mode == TextureWrap::repeat) {
+        i = (i % size + size) % size;
+    } else {
+        const std::int64_t period = 2 * size;
+        i = (i % period + period) % period;
+        i = i < size ? i : period - 1 - i;
+    }
+    return static_cast<std::uint32_t>(i);
+}
+
+}  // namespace
+
+glm::vec4 sample_image(const ImageLookup& lookup, glm::vec2 uv) {
+    const formats::Image8& image = lookup.image;
+    constexpr float kLargest = 1e6f;
+    if (!(std::abs(uv.x) < kLargest) || !(std::abs(uv.y) < kLargest)) {
+        uv = glm::vec2(0);
+    }
+    const float x = uv.x * static_cast<float>(image.width) - 0.5f;
+    const float y = uv.y * static_cast<float>(image.height) - 0.5f;
+    const float x0 = std::floor(x), y0 = std::floor(y), s = x - x0, t = y - y0;
+    const auto at = [&](int dx, int dy) {
+        const std::uint32_t column =
+            wrap(static_cast<std::int64_t>(x0) + dx, image.width, lookup.wrap_u);
+        const std::uint32_t row =
+            wrap(static_cast<std::int64_t>(y0) + dy, image.height, lookup.wrap_v);
+        const std::uint8_t* code = &image.rgba[4 * (std::size_t{row} * image.width + column)];
+        if (lookup.is_linear) {
+            return glm::vec4(code[0], code[1], code[2], code[3]) / 255.0f;
+        }
+        const auto& linear = linear_codes();
+        return glm::vec4(linear[code[0]], linear[code[1]], linear[code[2]],
+                         static_cast<float>(code[3]) / 255.0f);
+    };
+    return (1 - t) * ((1 - s) * at(0, 0) + s * at(1, 0)) + t * ((1 - s) * at(0, 1) + s * at(1, 1));
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "tests/bake/reference/reference_support.h"
+#include "tests/bake/walks/body_walks.h"
+#include "tests/support/varied_media.h"
+
+namespace opaline::tests {
+
+inline std::unique_ptr<WalkedBody> make_walked_scene(Scene scene, bool grey = true) {
+    auto walked = std::make_unique<WalkedBody>();
+    walked->scene = std::move(scene);
+    walked->triangles.emplace(bake::EmbreeScene::build(walked->scene, 1).value());
+    walked->space = bake::make_walk_space(walked->scene, *walked->triangles, 0, grey);
+    return walked;
+}
+
+/// A ball of a medium, mapped along x.
+inline Scene make_mapped_ball(const formats::Medium& medium, int levels = 3) {
+    Primitive ball = make_sphere(levels);
+    map_along_x(ball);
+    Scene scene = make_translucent_scene({std::move(ball)}, medium);
+    scene.materials[0].medium->variation.emplace();
+    return scene;
+}
+
+inline formats::Variation& variation_of(Scene& scene) {
+    return *scene.materials[0].medium->variation;
+}
+
+/// A rod from x = -1 to 1, 0.1 wide, whose density rises evenly along x: almost nowhere is its side
+/// farther than its end.
+inline constexpr float kRodHalfWidth = 0.05f;
+inline Scene make_rod(const formats::Medium& medium) {
+    Primitive rod = make_cube(1, false);
+    map_along_x(rod);
+    for (glm::vec3& p : rod.position) {
+        p *= glm::vec3(1, kRodHalfWidth, kRodHalfWidth);
+    }
+    Scene scene = make_translucent_scene({std::move(rod)}, medium);
+    scene.materials[0].medium->variation.emplace();
+    variation_of(scene).density = add_inner_texture(scene, make_rising_image());
+    return scene;
+}
+
+inline double density_in_rod(double x) {
+    return std::clamp(0.5 * (x + 1), 1.0 / 255, 1.0);
+}
+
+}  // namespace opaline::tests
