@@ -7,7 +7,7 @@
 #include "bake/base/parallel_indices.h"
 #include "bake/scattering/scattering_color.h"
 #include "bake/scene/marble.h"
-#include "bake/scene/nearest_surface.h"
+#include "bake/scene/nearest_grid.h"
 #include "bake/scene/sample_image.h"
 
 namespace opaline::bake {
@@ -102,35 +102,22 @@ void MediumField::fill_grid(const formats::Scene& scene, std::uint32_t material)
     if (!(longest > 0)) {
         return;
     }
-    const float cell = longest / kCells;
+    GridNodes nodes{low, longest / kCells, glm::uvec3(0)};
     low_ = low;
-    per_cell_ = 1 / cell;
-    nodes_ = glm::ivec3(glm::ceil(size * per_cell_)) + 1;
-    nodes_ = glm::min(nodes_, glm::ivec3(static_cast<int>(kCells) + 2));
-    const glm::uvec3 count(nodes_);
-    grid_.resize(std::size_t{count.x} * count.y * count.z);
+    per_cell_ = 1 / nodes.cell;
+    nodes.count = glm::min(glm::uvec3(glm::ceil(size * per_cell_)) + 1u,
+                           glm::uvec3(static_cast<std::uint32_t>(kCells) + 2));
+    nodes_ = glm::ivec3(nodes.count);
+    const std::vector<NearestSurface::Place> places = find_nearest(scene, surface, nodes);
     const Variation& variation = *scene.materials[material].medium->variation;
-    for_each_index(count.z, [&](std::size_t z) {
-        for (std::uint32_t y = 0; y < count.y; ++y) {
-            float reach = std::numeric_limits<float>::infinity();
-            for (std::uint32_t x = 0; x < count.x; ++x) {
-                const glm::vec3 at = low + cell * glm::vec3(x, y, z);
-                NearestSurface::Place place = surface.find(at, reach);
-                if (place.primitive == formats::kNone) {
-                    place = surface.find(at);
-                }
-                // Not farther than its neighbour's and the way there, with room for rounding.
-                reach = 1.001f * (place.distance + cell);
-                if (place.primitive == formats::kNone) {
-                    return;
-                }
-                const glm::vec4 values = sample_textures(scene, variation, place);
-                Codes& codes = grid_[(z * count.y + y) * count.x + x];
-                for (std::size_t c = 0; c < codes.size(); ++c) {
-                    const float value = std::clamp(values[static_cast<int>(c)], 0.0f, 1.0f);
-                    codes[c] = static_cast<std::uint16_t>(std::lround(kCodes * value));
-                }
-            }
+    grid_.resize(places.size());
+    for_each_index(places.size(), [&](std::size_t i) {
+        const glm::vec4 values = places[i].primitive == formats::kNone
+                                     ? glm::vec4(1)
+                                     : sample_textures(scene, variation, places[i]);
+        for (std::size_t c = 0; c < grid_[i].size(); ++c) {
+            const float value = std::clamp(values[static_cast<int>(c)], 0.0f, 1.0f);
+            grid_[i][c] = static_cast<std::uint16_t>(std::lround(kCodes * value));
         }
     });
 }
@@ -146,8 +133,9 @@ glm::vec4 MediumField::grid(glm::vec3 position) const {
     const glm::ivec3 step = glm::min(glm::ivec3(1), nodes_ - 1 - cell);
     const auto at = [&](int x, int y, int z) {
         const glm::ivec3 n = cell + glm::ivec3(x, y, z) * step;
-        const auto index = static_cast<std::size_t>((n.z * nodes_.y + n.y) * nodes_.x + n.x);
-        const Codes& codes = grid_[index];
+        const glm::uvec3 at_node(n), count(nodes_);
+        const Codes& codes =
+            grid_[(std::size_t{at_node.z} * count.y + at_node.y) * count.x + at_node.x];
         return glm::vec4(codes[0], codes[1], codes[2], codes[3]);
     };
     // Exact between equal values, as glm::mix is not.
@@ -164,12 +152,12 @@ glm::vec3 MediumField::color(glm::vec3 position) const {
 }
 
 glm::vec3 MediumField::albedo(glm::vec3 position) const {
-    const glm::vec3 local = color(position);
+    const glm::vec3 share = color(position);
     glm::vec3 albedo = stated_albedo_;
     for (int b = 0; b < 3; ++b) {
-        if (local[b] < 1 && albedo[b] > 0) {
+        if (share[b] < 1 && albedo[b] > 0) {
             albedo[b] = static_cast<float>(albedo_of_color(
-                static_cast<double>(stated_color_[b] * local[b]), static_cast<double>(g_)));
+                static_cast<double>(stated_color_[b] * share[b]), static_cast<double>(g_)));
         }
     }
     return albedo;

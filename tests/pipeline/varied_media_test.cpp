@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/accuracy/check_model.h"
+#include "bake/scene/inspect_scene.h"
 #include "tests/support/effects.h"
 #include "tests/support/varied_media.h"
 #include "tests/support/walk_bake.h"

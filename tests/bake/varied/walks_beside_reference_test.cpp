@@ -18,7 +18,7 @@ TEST(WalksBesideReference, SeeTheSameLightOfAVeinedBallOfVaryingDensity) {
     variation_of(scene).g = 0.4f;
     const auto walked = make_walked_scene(scene, false);
     const auto fixture = make_fixture(std::move(scene), make_white_sky());
-    const auto passed = fresnel_transmittance(1, 1.3);
+    const auto passed = bake::fresnel_transmittance(1, 1.3);
     double largest = 0, smallest = 1;
     for (const glm::vec3 axis :
          {glm::vec3(0.6f, 0.8f, 0), {0, 0.6f, 0.8f}, {-0.8f, 0, 0.6f}, {0, -1, 0}}) {
@@ -49,12 +49,12 @@ TEST(WalksBesideReference, SeeTheSameLightOfAVeinedBallOfVaryingDensity) {
         bake::PathOptions terms;
         terms.terms = bake::TermSet::single | bake::TermSet::multiple;
         const bake::PathSpace space = fixture->space(terms);
-        const bake::ReferenceReceiver receiver{.position = hit->position,
-                                               .outside = hit->position + 1e-5f * hit->flat,
-                                               .inside = start.position,
-                                               .normal = axis,
-                                               .to_eye = axis,
-                                               .medium = 0};
+        bake::ReferenceReceiver receiver;
+        receiver.position = hit->position;
+        receiver.outside = hit->position + 1e-5f * hit->flat;
+        receiver.inside = start.position;
+        receiver.normal = receiver.to_eye = axis;
+        receiver.medium = 0;
         const auto estimate =
             bake::estimate_pixels(8, options, {}, [&](std::uint32_t, bake::RandomStream& random) {
                 return bake::trace_receiver(space, receiver, random);

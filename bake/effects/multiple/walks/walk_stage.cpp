@@ -1,6 +1,7 @@
 #include "bake/effects/multiple/walks/walk_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -60,7 +61,16 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
     rows.walks_per_site =
         static_cast<std::uint32_t>(std::clamp(std::round(options.walks / runs), 1.0, 1e6));
     stage.rows = walk_from_sites(space, starts, light, rows, subtract, context, stage.counts);
-    stage.field = SiteField(sites, static_cast<float>(options.radius));
+    std::vector<float> tints;
+    if (space.field) {
+        stage.medium = space.field;
+        stage.depth = static_cast<float>(
+            transport_mean_free_path(*space.scene->materials[space.material].medium));
+        for (const SurfaceSample& s : sites) {
+            tints.push_back(stage.tint(s.position, s.normal));
+        }
+    }
+    stage.field = SiteField(sites, static_cast<float>(options.radius), std::move(tints));
     if (options.rows.views > 1) {
         constexpr double kWider = 2;
         stage.view_fit = make_view_fit(static_cast<double>(space.eta));
@@ -69,13 +79,26 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
     return stage;
 }
 
+float WalkStage::tint(glm::vec3 position, glm::vec3 normal) const {
+    if (!medium) {
+        return 1;
+    }
+    // Where light that is scattered few times turns back.
+    constexpr std::array<float, 3> kDepths{0.1f, 0.4f, 1};
+    glm::vec3 sum(0);
+    for (const float share : kDepths) {
+        sum += medium->color(position - share * depth * normal);
+    }
+    return glm::dot(sum, glm::vec3(0.2126f, 0.7152f, 0.0722f)) / kDepths.size();
+}
+
 void add_walked_row(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
                     std::span<float> rgbx) {
     if (stage.rows.blocks.empty()) {
         return;
     }
     std::vector<SiteWeight> weights;
-    stage.field.weigh(position, normal, weights);
+    stage.field.weigh(position, normal, weights, stage.tint(position, normal));
     for (const SiteWeight& w : weights) {
         add_site_row(stage.rows, w.site, 0, scale * w.weight, rgbx);
     }

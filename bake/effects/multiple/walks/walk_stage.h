@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,11 @@ struct WalkStage {
     SiteRows rows;
     ViewFit view_fit;  ///< of the boundary
     WalkCounts counts;
+    std::optional<MediumField> medium;  ///< where it varies
+    float depth = 0;                    ///< [m] to which its tint is looked for
+
+    /// How bright the medium is below a point of the surface, in [0, 1]; 1 where it is homogeneous.
+    float tint(glm::vec3 position, glm::vec3 normal) const;
 };
 
 struct WalkStageOptions {
