@@ -44,9 +44,11 @@ struct MultipleOptions {
     std::uint32_t bands = 3;  ///< or 1, where those of the medium coincide
     MultipleModel model = MultipleModel::dipole;
     WalkBudget walks;
-    double tolerance = 1e-3;  ///< GatherOptions, of the dipole at sites
-    bool by_view = false;     ///< walks also say how the light changes with the view
-    bool all_orders = false;  ///< walks also count light that scatters once
+    double tolerance = 1e-3;             ///< GatherOptions, of the dipole at sites
+    bool by_view = false;                ///< walks also say how the light changes with the view
+    bool all_orders = false;             ///< walks also count light that scatters once
+    std::vector<std::uint32_t> inner{};  ///< materials of other media inside, for walks
+    bool layered = false;  ///< and these matter: the dipole tells nothing of the light
 };
 
 /// Samples the surface of the material's medium with profile `medium`, traces the entering light,

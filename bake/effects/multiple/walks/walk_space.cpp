@@ -133,4 +133,13 @@ double transport_mean_free_path(const formats::Medium& medium) {
     return densest > 0 ? 1 / densest : 0;
 }
 
+double shortest_transport_path(std::span<const formats::Medium* const> media) {
+    double least = 0;
+    for (const formats::Medium* medium : media) {
+        const double path = transport_mean_free_path(*medium);
+        least = path > 0 && (least == 0 || path < least) ? path : least;
+    }
+    return least;
+}
+
 }  // namespace opaline::bake

@@ -47,5 +47,7 @@ int count_shells(const WalkSpace& space, glm::vec3 point, glm::vec3 direction);
 /// The mean free path [m] between effectively isotropic events, 1 / (sigma_t - g sigma_s), of the
 /// densest band that scatters; 0: nothing scatters.
 double transport_mean_free_path(const formats::Medium& medium);
+/// The least of several media; 0: nothing scatters in any.
+double shortest_transport_path(std::span<const formats::Medium* const> media);
 
 }  // namespace opaline::bake
