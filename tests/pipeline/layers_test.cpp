@@ -4,6 +4,7 @@
 
 #include "bake/accuracy/check_model.h"
 #include "bake/effects/multiple/rule_layers.h"
+#include "bake/reference/terms.h"
 #include "bake/scene/inspect_scene.h"
 #include "tests/bake/walks/nested_bodies.h"
 #include "tests/support/effects.h"
@@ -127,9 +128,11 @@ BakeOptions layered_bake(double walks) {
     return options;
 }
 
-void expect_true_light(std::vector<Part> parts, double most, const char* what) {
+// Rows are linear in the view and noisy: both err by 7 % (white) and 13 % (studio) at a third of
+// these walks, by some 2 % on average. The coat alone would show 2.4 times the light, or none.
+void expect_true_light(std::vector<Part> parts, const char* what) {
     const tests::Scene scene = tests::make_nested_scene(std::move(parts));
-    const BakeResult baked = tests::bake_scene(scene, layered_bake(150000));
+    const BakeResult baked = tests::bake_scene(scene, layered_bake(400000));
     EXPECT_EQ(entry_of(baked, "multiple.model").choice, "walks");
     EXPECT_TRUE(baked.warnings.empty()) << what;
     EXPECT_TRUE(tests::all_finite(baked.asset));
@@ -138,23 +141,24 @@ void expect_true_light(std::vector<Part> parts, double most, const char* what) {
     }
     ModelCheckOptions wanted;
     wanted.simulated = TermSet::single | TermSet::multiple;
-    wanted.noise = 0.02;
+    wanted.noise = 0.03;
     const auto report = check_model(scene, baked.asset.view(), wanted, {}).value();
     EXPECT_GT(report.receivers_checked, 10u);
     for (const char* soft : {"white", "studio"}) {
         const auto light = std::ranges::find(report.by_light, soft, &ModelErrorReport::Part::name);
         ASSERT_NE(light, report.by_light.end()) << soft;
-        EXPECT_LT(light->rms_relative, most + light->noise) << what << ", " << soft;
+        EXPECT_LT(light->rms_relative, 0.12 + light->noise) << what << ", " << soft;
+        EXPECT_LT(std::abs(light->bias), 0.04 + light->noise / 3) << what << ", " << soft;
     }
 }
 
 TEST(Layers, FilesOfCoatsOverCoresShowWhatTheMonteCarloReferenceShows) {
     expect_true_light({{make_sphere(3), make_forward_medium(4, 0.95f, 0, 1.3f)},
                        {make_sphere(3, 0.8f), make_forward_medium(20, 0.7f, 0.3f, 1.5f)}},
-                      0.04, "dark core");
+                      "dark core");
     expect_true_light({{make_sphere(3), tests::make_grey_medium(0, 0.8f, 1.4f)},
                        {make_sphere(3, 0.9f), make_forward_medium(20, 0.98f, 0, 1.4f)}},
-                      0.04, "varnish");
+                      "varnish");
 }
 
 TEST(Layers, DipoleWarnsThatItIgnoresTheMediaInside) {
@@ -163,7 +167,7 @@ TEST(Layers, DipoleWarnsThatItIgnoresTheMediaInside) {
     const auto warnings_of = [](const std::vector<Part>& bodies, double model) {
         std::string all;
         for (const formats::Diagnostic& w :
-             tests::bake_scene(tests::make_nested_scene(bodies), bake_by(model, 20000)).warnings) {
+             tests::bake_scene(tests::make_nested_scene(bodies), bake_by(model, 5000)).warnings) {
             all += w.fault + "\n";
         }
         return all;

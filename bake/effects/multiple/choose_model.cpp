@@ -128,7 +128,9 @@ PlanEntry decide_model(const PlanInput& input) {
         entry.on = true;
         entry.choice = kMultipleModel.words[static_cast<std::size_t>(MultipleModel::walks)];
         entry.reason = "walks: it contains other media";
-    } else if (error <= allowed || !effect.on) {
+    } else if (!effect.on) {
+        entry.reason = "dipole: no light that scatters many times is simulated";
+    } else if (error <= allowed) {
         entry.reason = "dipole: the body is so thick that it errs by some " + percent(error);
     } else if (measures_models(input.knobs)) {
         entry.on = true;
