@@ -30,7 +30,7 @@ bool is_buried(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
     return true;
 }
 
-// Another surface lies close behind it in its own body, such as a floor that the body has sunk
+// An opaque surface lies close behind it in its own body, such as a floor that the body has sunk
 // into. There the bake's empty body differs from the reference's.
 bool is_pierced(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
     if (receiver.medium == formats::kNone) {
@@ -42,7 +42,7 @@ bool is_pierced(const ReferenceScene& scene, const ReferenceReceiver& receiver) 
         {receiver.inside}, -receiver.normal,
         kClose / std::max(std::min({sigma_t.x, sigma_t.y, sigma_t.z}), 1e-30f));
     const formats::Scene& input = scene.surfaces.scene();
-    return hit && scene.medium_of[input.primitives[hit->primitive].material] != receiver.medium;
+    return hit && scene.medium_of[input.primitives[hit->primitive].material] == formats::kNone;
 }
 
 // Its body ends just behind it and begins again: a fold of the mesh that lies on itself. Hardly

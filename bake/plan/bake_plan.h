@@ -30,6 +30,7 @@ struct PlanEntry {
     bool as_surface = false;   ///< it shows a medium as a surface: nothing enters, nothing mirrors
     /// On: its rows can hold light of all orders of scattering. Off: left to such rows.
     bool all_orders = false;
+    bool layered = false;  ///< on: light goes through other media inside; straight paths do not
     std::string_view choice{};  ///< on or off: the way it takes of several; empty: none or unknown
     std::string reason;         ///< the rule in words
     double bound = 0;           ///< largest radiance it can contribute under `white`

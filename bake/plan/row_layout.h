@@ -19,6 +19,7 @@ struct RowLayout {
     std::uint32_t harmonics = 0;  ///< rows that are seen through spherical harmonics: 0, 1, 4 … 25
     std::uint32_t view_harmonics = 0;  ///< of these, filled by what `constant` says: 0, 4 or 9
     bool all_orders = false;           ///< `constant` holds light of all orders of scattering
+    bool layered = false;              ///< light goes through other media inside its own
     bool at_entry = false;             ///< light leaves the medium where it entered
     bool separate = false;             ///< the row for all views stands apart from the harmonics
     bool sheet = false;                ///< a row for each side that it may be seen from

@@ -14,12 +14,13 @@ struct PathState {
         camera,    ///< nothing: what it sees is background
         diffuse,   ///< one opaque surface
         mirrored,  ///< the outside of one body, or the specular lobe of one opaque surface
-        inside,    ///< in the first body
+        inside,    ///< in the first body, or in media inside it
         left,      ///< out of the first body
         other      ///< more
     } stage = Stage::camera;
-    std::uint8_t scatterings = 0;  ///< in the first body, at most 2
+    std::uint8_t scatterings = 0;  ///< since it entered the first body, at most 2
     bool reflected_inside = false;
+    bool changed_medium = false;  ///< went from one medium to another without leaving them
 };
 
 /// Transitions.
@@ -55,11 +56,18 @@ constexpr PathState after_mirror(PathState s) {
 constexpr PathState after_crossing(PathState s, bool out) {
     if (s.stage == PathState::Stage::camera && !out) {
         s.stage = PathState::Stage::inside;
+    } else if (s.stage == PathState::Stage::inside && !out) {
+        s.changed_medium = true;
     } else {
         s.stage = s.stage == PathState::Stage::inside && out ? PathState::Stage::left
                                                              : PathState::Stage::other;
     }
     return s;
+}
+
+/// Between entry, scattering events and exit: neither reflected inside nor in more than one medium.
+constexpr bool takes_straight_paths(PathState s) {
+    return !s.reflected_inside && !s.changed_medium;
 }
 
 /// The term of a path that reaches the sky here; a direct view of the sky counts as all terms.
@@ -74,9 +82,9 @@ constexpr TermSet term_of(PathState s) {
         case PathState::Stage::inside:  // the body is open: such light is not counted
             return TermSet::none;
         case PathState::Stage::left:
-            return s.scatterings == 0                          ? TermSet::unscattered
-                   : s.scatterings == 1 && !s.reflected_inside ? TermSet::single
-                                                               : TermSet::multiple;
+            return s.scatterings == 0                              ? TermSet::unscattered
+                   : s.scatterings == 1 && takes_straight_paths(s) ? TermSet::single
+                                                                   : TermSet::multiple;
         case PathState::Stage::other:
             break;
     }
@@ -93,7 +101,7 @@ constexpr TermSet reachable_terms(PathState s) {
             if (s.scatterings == 0) {
                 terms |= TermSet::unscattered;
             }
-            if (s.scatterings < 2 && !s.reflected_inside) {
+            if (s.scatterings < 2 && takes_straight_paths(s)) {
                 terms |= TermSet::single;
             }
             return terms;

@@ -10,6 +10,7 @@
 #include "bake/scene/color_contrast.h"
 #include "bake/scene/horizon.h"
 #include "bake/scene/medium_field.h"
+#include "bake/scene/nested_media.h"
 
 namespace opaline::bake {
 namespace {
@@ -198,6 +199,7 @@ SceneFacts inspect_scene(const Scene& scene) {
             largest = glm::max(largest, glm::max(glm::abs(own.low), glm::abs(own.high)));
         }
     }
+    find_nested_media(scene, facts);
     constexpr float kRoundings = 4 * 0x1p-23f;
     Searches searches{
         static_cast<double>(kRoundings * std::max({largest.x, largest.y, largest.z}))};

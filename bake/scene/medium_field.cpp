@@ -145,6 +145,20 @@ glm::vec4 MediumField::grid(glm::vec3 position) const {
     return mix(along_y(0), along_y(1), share.z) / kCodes;
 }
 
+float MediumField::mean_density(glm::vec3 from, glm::vec3 to) const {
+    if (!has_density_ || grid_.empty()) {
+        return 1;
+    }
+    constexpr float kStepsPerCell = 2, kMostSteps = 512;
+    const float steps =
+        std::clamp(std::ceil(kStepsPerCell * per_cell_ * glm::distance(from, to)), 1.0f, kMostSteps);
+    double sum = 0;
+    for (float i = 0.5f; i < steps; ++i) {
+        sum += static_cast<double>(density(from + i / steps * (to - from)));
+    }
+    return static_cast<float>(sum / static_cast<double>(steps));
+}
+
 glm::vec3 MediumField::color(glm::vec3 position) const {
     const glm::vec3 textures = grid_.empty() ? glm::vec3(1) : glm::vec3(grid(position));
     return marble_ ? textures * to_vec(marble_color(*marble_, origin_ + glm::dvec3(position)))

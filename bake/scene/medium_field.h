@@ -28,6 +28,9 @@ class MediumField {
     /// Both coefficients over the stated ones, in (0, 1]. 1 everywhere unless has_density().
     float density(glm::vec3 position) const { return has_density_ ? grid(position).w : 1.0f; }
     bool has_density() const { return has_density_; }
+    /// Mean of the density from one point to another, by the midpoint rule with steps of half a
+    /// node's distance, at most 512. Exact where nothing varies.
+    float mean_density(glm::vec3 from, glm::vec3 to) const;
 
   private:
     using Codes = std::array<std::uint16_t, 4>;  // colour and density times 65535

@@ -4,6 +4,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "formats/scene.h"
+
 namespace opaline::bake {
 
 /// Surfaces above the horizons of a material's receivers.
@@ -15,6 +17,14 @@ struct Horizon {
     /// Largest share of the irradiance above a shading normal that comes from behind the facet, (1
     /// - n.n_f) / 2: the light that facets of a coarse body block at their own points.
     double behind_facets = 0;
+};
+
+/// Another medium inside a body.
+struct InnerMedium {
+    std::uint32_t material = 0;
+    /// Lower bound [m], at least half, of the distance between both surfaces; 0: they meet.
+    double depth = 0;
+    formats::Medium medium;
 };
 
 /// Facts about the surfaces of one material, over all its primitives.
@@ -38,8 +48,11 @@ struct MaterialFacts {
     float brightest_vertex = 0;  ///< largest component of its vertex colours; 1 without any
     float color_contrast = 0;    ///< ColorRange::contrast; 0: its colour is constant
 
-    bool is_grey = false;  ///< a medium or sheet whose numbers are the same in all three bands,
-                           ///< everywhere
+    std::vector<InnerMedium> inner;  ///< of a medium: others that lie inside it
+    bool is_buried = false;          ///< a medium all of whose surface lies inside others
+
+    bool is_grey = false;  ///< a medium or sheet whose numbers, and those of media inside it, are
+                           ///< the same in all three bands, everywhere
     bool mirrors = false;  ///< a medium with a boundary: eta is not 1
     bool varies = false;   ///< a medium that differs from point to point
 };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/rule_layers.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/walk_costs.h"
 #include "formats/media/mean_cosine.h"
@@ -58,11 +59,12 @@ bool measures_models(const Knobs& knobs) {
     return knobs.error_target > 0 || knobs.quality >= Quality::production;
 }
 
-bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
+bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, bool layered,
+                   const Knobs& knobs) {
     const auto asked = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
     return asked == MultipleModel::automatic
                ? body.varies || (!is_fixed(medium) &&
-                                 expected_error(medium, body) > allowed_model_error(knobs))
+                                 (layered || expected_error(medium, body) > allowed_model_error(knobs)))
                : asked != MultipleModel::dipole;
 }
 
@@ -71,14 +73,15 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
     const auto asked = static_cast<MultipleModel>(whole(inputs.knobs, kMultipleModel));
     const MaterialFacts& body = inputs.bake.facts.material[inputs.material];
     const bool is_auto = asked == MultipleModel::automatic;
-    const bool may_hold = hold_all_orders(inputs.medium(), body, inputs.knobs);
+    const bool layered = inputs.layout.layered;
+    const bool may_hold = layered || hold_all_orders(inputs.medium(), body, inputs.knobs);
     const double allowed = allowed_model_error(inputs.knobs);
     ModelChoice choice;
     choice.model = is_auto ? MultipleModel::dipole : asked;
     choice.all_orders = may_hold && !inputs.layout.at_entry;
     choice.dipole_error = expected_error(inputs.medium(), body);
     // Peaked media may leave this layout once light scattered once has terms of its own.
-    const bool may_walk = is_auto && expects_walks(inputs.medium(), body, inputs.knobs) &&
+    const bool may_walk = is_auto && expects_walks(inputs.medium(), body, layered, inputs.knobs) &&
                           (may_hold || !inputs.layout.at_entry);
     const bool is_doubted = inputs.knobs.error_target > 0 && !is_fixed(inputs.medium()) &&
                             (asked == MultipleModel::scaled || asked == MultipleModel::dipole) &&
@@ -88,6 +91,10 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
         return choice;
     }
     const bool is_measured = is_doubted || (may_walk && measures_models(inputs.knobs));
+    if (layered && may_walk) {
+        choice.model = MultipleModel::walks;
+        return choice;
+    }
     if (is_measured) {
         choice.errors = measure_models(inputs, profile, traced);
     } else if (may_walk && !body.has_thickness()) {
@@ -110,8 +117,9 @@ PlanEntry decide_model(const PlanInput& input) {
     PlanEntry entry;
     entry.alternative = true;
     const double error = expected_error(medium, input.subject);
-    // The rule before this one is the effect's own.
-    const PlanEntry& effect = input.earlier.back();
+    const PlanEntry& effect = *earlier_entry(input, "multiple");
+    const PlanEntry* const layers = earlier_entry(input, "multiple.layers");
+    const bool layered = layers != nullptr && layers->on;
     entry.bound = effect.on ? error * effect.bound : 0;
     const auto asked = static_cast<MultipleModel>(whole(input.knobs, kMultipleModel));
     const double allowed = allowed_model_error(input.knobs);
@@ -125,7 +133,13 @@ PlanEntry decide_model(const PlanInput& input) {
         entry.reason = "walks: the medium varies in space, which other models do not know";
     } else if (is_fixed(medium)) {
         entry.reason = "dipole: the medium names its profile";
-    } else if (error <= allowed || !effect.on) {
+    } else if (layered) {
+        entry.on = true;
+        entry.choice = kMultipleModel.words[static_cast<std::size_t>(MultipleModel::walks)];
+        entry.reason = "walks: it contains other media";
+    } else if (!effect.on) {
+        entry.reason = "dipole: no light that scatters many times is simulated";
+    } else if (error <= allowed) {
         entry.reason = "dipole: the body is so thick that it errs by some " + percent(error);
     } else if (measures_models(input.knobs)) {
         entry.on = true;
@@ -155,7 +169,7 @@ PlanEntry decide_model(const PlanInput& input) {
     }
     entry.model_error = effect.on && !entry.on ? error : 0;
     entry.all_orders = effect.on && entry.on && asked != MultipleModel::scaled &&
-                       hold_all_orders(medium, input.subject, input.knobs);
+                       (layered || hold_all_orders(medium, input.subject, input.knobs));
     return entry;
 }
 

@@ -20,8 +20,9 @@ double allowed_model_error(const Knobs& knobs);
 bool measures_models(const Knobs& knobs);
 
 /// Whether random walks are expected: asked for, or the dipole errs by more than is allowed, by
-/// estimate. choose_model may find otherwise.
-bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs);
+/// estimate, or light goes through other media inside (`layered`). choose_model may find otherwise.
+bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, bool layered,
+                   const Knobs& knobs);
 
 /// The model of a body's multiple scattering.
 struct ModelChoice {

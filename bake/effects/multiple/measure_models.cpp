@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/effects/multiple/rule_layers.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/true_multiple.h"
 #include "bake/effects/multiple/walks/true_walks.h"
@@ -67,8 +68,9 @@ ModelErrors measure_models(const EffectInputs& inputs, const MediumProfile& prof
     const std::vector<TestLight> lights = make_pilot_lights();
     const SunRays suns = make_sun_rays(lights, kRaysPerSun);
     const SmoothLights smooth = make_smooth_lights(lights);
-    const WalkSpace space = make_walk_space(inputs.bake.scene, inputs.bake.rays.hierarchy(),
-                                            inputs.material, inputs.layout.bands() == 1);
+    const WalkSpace space =
+        make_walk_space(inputs.bake.scene, inputs.bake.rays.hierarchy(), inputs.material,
+                        inputs.layout.bands() == 1, inner_materials(inputs));
     const WalkLight walk_light{inputs.outside(), suns,     smooth, make_exit_lobe(profile.eta),
                                profile.exit,     kFromEach};
     const SurfaceIntegral integral =

@@ -11,6 +11,7 @@
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_rates.h"
 #include "bake/effects/multiple/multiple_stage.h"
+#include "bake/effects/multiple/rule_layers.h"
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/true_multiple.h"
@@ -29,6 +30,10 @@ void lay_out(const PlanEntry& entry, RowLayout& layout) {
     layout.constant = layout.constant || entry.on;
 }
 
+void lay_out_layers(const PlanEntry& entry, RowLayout& layout) {
+    layout.layered = entry.on;
+}
+
 // Another model fills the same rows.
 void lay_out_model(const PlanEntry&, RowLayout&) {}
 
@@ -36,8 +41,9 @@ void lay_out_views(const PlanEntry& entry, RowLayout& layout) {
     layout.view_harmonics = entry.on ? entry.terms : 0;
 }
 
-constexpr std::array<DecisionRule, 3> kRules{
+constexpr std::array<DecisionRule, 4> kRules{
     {{"multiple", has_medium, decide_multiple, lay_out},
+     {"multiple.layers", has_inner_media, decide_layers, lay_out_layers},
      {"multiple.model", has_medium, decide_model, lay_out_model},
      {"multiple.view", has_medium, decide_views, lay_out_views}}};
 constexpr std::array<const KnobSpec*, 8> kKnobs{&kMultipleModel,  &kViewTerms,   &kSamples,
@@ -118,7 +124,9 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        {knobs[kWalksAround], knobs[kWalks], whole(knobs, kSites)},
                                        knobs[kEpsilon],
                                        std::max(1u, inputs.layout.view_harmonics),
-                                       inputs.layout.all_orders},
+                                       inputs.layout.all_orders,
+                                       inner_materials(inputs),
+                                       inputs.layout.layered},
                                       inputs.context);
     rays += samples->stage.rays;
     return samples;
@@ -223,8 +231,9 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
             make_surface_integral(inputs.bake.scene, inputs.material, profile_of(inputs.own));
     }
     if (model != MultipleModel::dipole) {
-        truth->space = make_walk_space(inputs.bake.scene, inputs.bake.rays.hierarchy(),
-                                       inputs.material, inputs.layout.bands() == 1);
+        truth->space =
+            make_walk_space(inputs.bake.scene, inputs.bake.rays.hierarchy(), inputs.material,
+                            inputs.layout.bands() == 1, inner_materials(inputs));
         truth->lobe = make_exit_lobe(profile_of(inputs.own).eta);
     }
     truth->suns = make_sun_rays(lights, kRaysPerSun);
@@ -264,13 +273,16 @@ bool takes_even_media(const Knobs& knobs) {
 }
 
 void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>& warnings) {
+    if (inputs.layout.layered && model_of(inputs.own) != MultipleModel::walks) {
+        warn_of_layers(inputs, warnings);
+    }
     if (model_of(inputs.own) == MultipleModel::dipole) {
         warn_of_thin_parts(inputs, profile_of(inputs.own), warnings);
     }
 }
 
 void amend(const EffectInputs& inputs, PlanEntry& entry) {
-    if (entry.name == kRules[1].name) {
+    if (entry.name == "multiple.model") {
         describe_choice(static_cast<const Studied&>(*inputs.own.study).choice, entry);
     }
 }

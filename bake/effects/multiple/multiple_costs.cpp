@@ -132,7 +132,7 @@ Work samples_work(const SubjectCost& cost) {
     const double nodes = 2 * samples / kSamplesPerLeaf;
     work.shared += samples * levels * kept_by_samples(knobs) * rates.sum_entry +
                    nodes * own * rates.truncate_texel;
-    if (expects_walks(cost.medium(), cost.facts, knobs)) {
+    if (expects_walks(cost.medium(), cost.facts, cost.layout.layered, knobs)) {
         work += walks_work(cost);
     }
     return work;
@@ -142,7 +142,7 @@ Work multiple_rows_work(const SubjectCost& cost) {
     const Knobs& knobs = cost.input.knobs;
     const double samples = expected_samples(cost.medium(), cost.facts.area, knobs);
     const double weights = count_weights(cost.medium(), cost.facts, samples, knobs[kEpsilon]);
-    if (expects_walks(cost.medium(), cost.facts, knobs)) {
+    if (expects_walks(cost.medium(), cost.facts, cost.layout.layered, knobs)) {
         return walked_rows_work(cost);
     }
     const double entry =

@@ -83,6 +83,17 @@ glm::vec3 ratio_at(const MultipleStage& stage, glm::vec3 position, glm::vec3 nor
     return ratio;
 }
 
+// Of the body's medium and, where they matter, of those inside [m].
+double shortest_path(const formats::Scene& scene, std::uint32_t material,
+                     const MultipleOptions& options) {
+    std::vector<const formats::Medium*> media{&*scene.materials[material].medium};
+    for (const std::uint32_t inner :
+         options.layered ? options.inner : std::vector<std::uint32_t>{}) {
+        media.push_back(&*scene.materials[inner].medium);
+    }
+    return shortest_transport_path(media);
+}
+
 // Light that enters through the samples.
 struct EnteringLight {
     std::span<const SurfaceSample> samples;
@@ -143,10 +154,15 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     }
     MultipleStage stage;
     stage.medium = medium;
+    const double path = shortest_path(scene, material, options);
+    MediumProfile finest = medium;
+    if (options.layered && path > 0) {
+        finest.smallest = medium.smallest > 0 ? std::min(medium.smallest, path) : path;
+    }
     const std::uint32_t count =
         options.exact_samples
             ? options.samples
-            : count_samples(area, stage.medium, options.samples_per_path, options.samples);
+            : count_samples(area, finest, options.samples_per_path, options.samples);
     const std::vector<SurfaceSample> samples =
         sample_surface(scene, primitives, count, options.seed, context);
     const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
@@ -163,9 +179,8 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     stage.rays = transport.rays;
     SitePlan plan;
     if (walks) {
-        plan =
-            plan_sites(area, scene_diagonal(scene, primitives),
-                       transport_mean_free_path(*scene.materials[material].medium), options.walks);
+        plan = plan_sites(area, scene_diagonal(scene, primitives), path, options.walks);
+        plan.is_residual = plan.is_residual && !options.layered;
     }
     const std::array<SparseVectors, 3> moments = std::move(transport.moments);
     SparseVectors light;
@@ -177,7 +192,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     }
     if (walks && !context.cancelled()) {
         const WalkSpace space =
-            make_walk_space(scene, bodies.hierarchy(), material, options.bands == 1);
+            make_walk_space(scene, bodies.hierarchy(), material, options.bands == 1, options.inner);
         const bool has_tree = !stage.tree.nodes.empty();
         walk(space, plan, {samples, has_tree ? stage.tree.samples : light, moments},
              count_walks(plan, area, options.walks), options, context, stage);

@@ -47,7 +47,9 @@ struct MultipleOptions {
     double tolerance = 1e-3;  ///< GatherOptions, of the dipole at sites
     /// 4 or 9: walks also say how the light changes with the view (SiteRows).
     std::uint32_t views = 1;
-    bool all_orders = false;  ///< walks also count light that scatters once
+    bool all_orders = false;             ///< walks also count light that scatters once
+    std::vector<std::uint32_t> inner{};  ///< materials of other media inside, for walks
+    bool layered = false;  ///< and these matter: the dipole tells nothing of the light
 };
 
 /// Samples the surface of the material's medium with profile `medium`, traces the entering light,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bake/effects/multiple/multiple_costs.h"
+#include "bake/effects/multiple/rule_layers.h"
 #include "bake/scattering/dipole.h"
 #include "formats/media/mean_cosine.h"
 
@@ -74,13 +75,19 @@ PlanEntry decide_multiple(const PlanInput& input) {
             entry.bound = std::max(entry.bound, once);
         }
     }
+    // What goes through media inside is at most the light that reaches them.
+    entry.bound =
+        std::min(std::max(entry.bound, 1.0), entry.bound + layer_bound(medium, input.subject));
+    entry.bound = input.subject.is_buried ? 0 : entry.bound;
     if (!is_wanted(input.knobs, "multiple")) {
         entry.reason = "left out by --effects";
         return entry;
     }
     entry.on = is_worth(entry.bound, input, entry.forced);
     if (!entry.on) {
-        entry.reason = entry.bound < of_half_space
+        entry.reason = input.subject.is_buried
+                           ? "its surface lies inside other media and is not seen"
+                       : entry.bound < of_half_space
                            ? "the body is so small that light hardly scatters twice in it"
                            : "the medium absorbs nearly all that it scatters";
         return entry;

@@ -9,6 +9,7 @@
 
 #include "bake/effects/multiple/choose_model.h"
 #include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/rule_layers.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/walks/exit_light.h"
 #include "bake/effects/multiple/walks/view_fit.h"
@@ -159,7 +160,7 @@ double four_views_error(const formats::Medium& medium, const MaterialFacts& body
 PlanEntry decide_views(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
     const PlanEntry& model = input.earlier.back();
-    const PlanEntry& effect = input.earlier[input.earlier.size() - 2];
+    const PlanEntry& effect = *earlier_entry(input, "multiple");
     const auto given = whole(input.knobs, kViewTerms);
     const double error = one_view_error(medium, input.subject);
     const double curved = four_views_error(medium, input.subject);

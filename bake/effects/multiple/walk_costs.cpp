@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/plan/plan_input.h"
@@ -29,6 +30,15 @@ double rows_by_view(const RowLayout& layout) {
     return layout.view_harmonics > 0 ? layout.view_harmonics - 1.0 : 0.0;
 }
 
+// Of the media inside as well [m].
+double shortest_path(const formats::Medium& medium, const MaterialFacts& body) {
+    std::vector<const formats::Medium*> media{&medium};
+    for (const InnerMedium& inner : body.inner) {
+        media.push_back(&inner.medium);
+    }
+    return shortest_transport_path(media);
+}
+
 SitePlan plan_of(const SubjectCost& cost) {
     return expected_sites(cost.medium(), cost.facts, cost.input.knobs);
 }
@@ -38,7 +48,7 @@ SitePlan plan_of(const SubjectCost& cost) {
 SitePlan expected_sites(const formats::Medium& medium, const MaterialFacts& body,
                         const Knobs& knobs) {
     const auto diagonal = static_cast<double>(glm::length(body.high - body.low));
-    return plan_sites(body.area, diagonal, transport_mean_free_path(medium), budget_of(knobs));
+    return plan_sites(body.area, diagonal, shortest_path(medium, body), budget_of(knobs));
 }
 
 double count_body_events(const formats::Medium& medium, const MaterialFacts& body) {
@@ -62,7 +72,7 @@ double count_body_events(const formats::Medium& medium, const MaterialFacts& bod
 Work walks_work(const SubjectCost& cost) {
     const Rates& rates = cost.input.rates;
     const Knobs& knobs = cost.input.knobs;
-    if (!(transport_mean_free_path(cost.medium()) > 0)) {
+    if (!(shortest_path(cost.medium(), cost.facts) > 0)) {
         return {};
     }
     const SitePlan plan = plan_of(cost);
@@ -79,7 +89,7 @@ Work walks_work(const SubjectCost& cost) {
 }
 
 Work walked_rows_work(const SubjectCost& cost) {
-    if (!(transport_mean_free_path(cost.medium()) > 0)) {
+    if (!(shortest_path(cost.medium(), cost.facts) > 0)) {
         return {};
     }
     const SitePlan plan = plan_of(cost);

@@ -38,6 +38,12 @@ bool holds_all_orders(const PlanInput& input) {
                                [](const PlanEntry& e) { return e.on && e.all_orders; });
 }
 
+// Whether light goes through other media inside, which straight paths do not.
+bool is_layered(const PlanInput& input) {
+    return std::ranges::any_of(input.earlier,
+                               [](const PlanEntry& e) { return e.on && e.layered; });
+}
+
 std::string percent(double share) {
     char text[32];
     std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
@@ -60,7 +66,10 @@ PlanEntry decide_single(const PlanInput& input) {
         largest_scattered_share(input) * std::min(1.0, 4 * std::numbers::pi * peak / (eta * eta));
     if (!is_wanted(input.knobs, "single")) {
         entry.reason = "left out by --effects";
-    } else if (!input.knobs.separate_terms && holds_all_orders(input)) {
+    } else if (input.subject.is_buried && !input.knobs.simulate_all) {
+        entry.bound = 0;
+        entry.reason = "its surface lies inside other media and is not seen";
+    } else if ((!input.knobs.separate_terms || is_layered(input)) && holds_all_orders(input)) {
         entry.alternative = entry.all_orders = true;
         entry.reason =
             "random walks follow light that scatters once together with the rest, along its true "

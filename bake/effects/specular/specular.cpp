@@ -10,7 +10,8 @@ PlanEntry decide(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
     PlanEntry entry;
     // At grazing angles everything is mirrored, where there is a boundary at all.
-    entry.bound = medium.eta == 1 ? 0 : 1;
+    const bool is_buried = input.subject.is_buried;
+    entry.bound = medium.eta == 1 || is_buried ? 0 : 1;
     const bool is_surface = std::any_of(input.earlier.begin(), input.earlier.end(),
                                         [](const PlanEntry& e) { return e.as_surface; });
     if (!is_wanted(input.knobs, "specular")) {
@@ -18,7 +19,9 @@ PlanEntry decide(const PlanInput& input) {
     } else if (is_surface) {
         entry.reason = "the medium is shown as a diffuse surface, for comparison";
     } else if (!(entry.on = is_worth(entry.bound, input, entry.forced))) {
-        entry.reason = "the index of refraction is that of the air: nothing is mirrored";
+        entry.reason = is_buried
+                           ? "its surface lies inside other media and is not seen"
+                           : "the index of refraction is that of the air: nothing is mirrored";
     } else {
         entry.reason = "the boundary of the medium mirrors its surroundings";
     }

@@ -86,9 +86,11 @@ PlanEntry decide_transmission(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
     PlanEntry entry;
     entry.has_bands = true;
-    entry.bound = std::min(1.0, thin_share(medium, input.subject) +
-                                    share_past_facets(static_cast<double>(medium.eta),
-                                                      input.subject.horizon.behind_facets));
+    const bool is_unknown = medium.variation && medium.variation->density.image != formats::kNone;
+    const double share =
+        thin_share(medium, input.subject) +
+        share_past_facets(static_cast<double>(medium.eta), input.subject.horizon.behind_facets);
+    entry.bound = is_unknown ? 1 : std::min(1.0, share);
     if (!is_wanted(input.knobs, "transmission")) {
         entry.reason = "left out by --effects";
     } else if (medium.fidelity == formats::Medium::Fidelity::paper &&
@@ -96,6 +98,8 @@ PlanEntry decide_transmission(const PlanInput& input) {
         entry.reason = "the paper has no light that crosses a body unscattered";
     } else if (!(entry.on = is_worth(entry.bound, input, entry.forced))) {
         entry.reason = "the medium is so dense that hardly any light crosses it unscattered";
+    } else if (is_unknown) {
+        entry.reason = "light may cross the body unscattered: its density varies";
     } else {
         entry.reason = input.subject.has_thickness()
                            ? "light crosses thin parts of the body unscattered"

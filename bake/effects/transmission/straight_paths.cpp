@@ -62,6 +62,7 @@ class Follower {
         for (std::size_t b = 1; b < body.bands; ++b) {
             clearest_ = std::min(clearest_, body.sigma_t[b]);
         }
+        clearest_ = body.field ? 0 : clearest_;  // how clear it is on the way is not known
     }
 
     void follow(const StraightStart& start, std::span<const glm::vec3> seen, std::uint32_t first) {
@@ -121,8 +122,13 @@ class Follower {
 
     // False: nothing of the view goes on.
     bool arrive(Lane& lane, const PacketHits& hits, std::uint32_t i, std::uint32_t view) {
+        float length = hits.distance[i];
+        if (body_.field) {
+            length *= body_.field->mean_density(lane.position,
+                                                lane.position + length * lane.direction);
+        }
         for (std::size_t b = 0; b < body_.bands; ++b) {
-            lane.weight[b] *= exp_of_negative(-body_.sigma_t[b] * hits.distance[i]);
+            lane.weight[b] *= exp_of_negative(-body_.sigma_t[b] * length);
         }
         const float cosine = hits.cosine[i];
         if (cosine == 0) {  // without area, or edge-on: as if it were not there
@@ -224,6 +230,9 @@ StraightBody make_straight_body(const EffectInputs& inputs) {
     const formats::Rgb sigma_t = medium.sigma_s + medium.sigma_a;
     body.sigma_t = {sigma_t.r, sigma_t.g, sigma_t.b};
     body.bands = inputs.layout.bands();
+    if (medium.variation && medium.variation->density.image != formats::kNone) {
+        body.field.emplace(inputs.bake.scene, inputs.material);
+    }
     return body;
 }
 

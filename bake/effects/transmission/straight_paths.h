@@ -3,10 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "bake/plan/effect.h"
+#include "bake/scene/medium_field.h"
 #include "bake/transport/ray_scene.h"
 #include "formats/scene.h"
 
@@ -21,6 +23,7 @@ struct StraightBody {
     double eta = 1;
     std::array<float, 3> sigma_t{};  ///< [1/m]; scattering included: it takes light away too
     std::uint32_t bands = 3;         ///< 1: the first stands for all
+    std::optional<MediumField> field{};  ///< where its density varies: scales sigma_t
 };
 
 /// All must outlive the result.

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "bake/effects/multiple/walks/walk.h"
+#include "bake/scattering/gauss_legendre.h"
 #include "tests/support/media.h"
 
 namespace opaline::tests {
@@ -46,6 +48,23 @@ inline Primitive make_wide_slab(float thickness) {
 
 inline bake::WalkStart start_below(glm::vec3 point, glm::vec3 normal) {
     return {point - 1e-5f * normal, normal, normal, 1};
+}
+
+/// Chandrasekhar's H function of isotropic scatterers at the cosines of a Gauss-Legendre rule, by
+/// its integral equation.
+inline std::vector<double> chandrasekhar_h(double albedo, const bake::GaussLegendre& rule) {
+    const double root = std::sqrt(1 - albedo);
+    std::vector<double> h(rule.node.size(), 1.0);
+    for (int pass = 0; pass < 2000; ++pass) {
+        for (std::size_t i = 0; i < h.size(); ++i) {
+            double sum = 0;
+            for (std::size_t j = 0; j < h.size(); ++j) {
+                sum += rule.weight[j] * rule.node[j] * h[j] / (rule.node[i] + rule.node[j]);
+            }
+            h[i] = 1 / (root + 0.5 * albedo * sum);
+        }
+    }
+    return h;
 }
 
 /// What leaves per walk: means over walks, with the standard error of the first.

@@ -10,7 +10,6 @@
 #include "bake/effects/multiple/walks/find_hit.h"
 #include "bake/effects/multiple/walks/view_fit.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/scattering/gauss_legendre.h"
 #include "bake/scattering/half_space_once.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "tests/bake/walks/body_walks.h"
@@ -20,23 +19,13 @@ namespace opaline::tests {
 namespace {
 
 // What a half space of isotropic scatterers, index 1, shows of uniform light at the cosines of a
-// Gauss-Legendre rule: 1 - sqrt(1 - a) H(mu), H by Chandrasekhar's integral equation.
+// Gauss-Legendre rule: 1 - sqrt(1 - a) H(mu).
 std::vector<double> half_space_by_view(double albedo, const bake::GaussLegendre& rule) {
-    const double root = std::sqrt(1 - albedo);
-    std::vector<double> h(rule.node.size(), 1.0);
-    for (int pass = 0; pass < 2000; ++pass) {
-        for (std::size_t i = 0; i < h.size(); ++i) {
-            double sum = 0;
-            for (std::size_t j = 0; j < h.size(); ++j) {
-                sum += rule.weight[j] * rule.node[j] * h[j] / (rule.node[i] + rule.node[j]);
-            }
-            h[i] = 1 / (root + 0.5 * albedo * sum);
-        }
+    std::vector<double> radiance = chandrasekhar_h(albedo, rule);
+    for (double& value : radiance) {
+        value = 1 - std::sqrt(1 - albedo) * value;
     }
-    for (double& value : h) {
-        value = 1 - root * value;
-    }
-    return h;
+    return radiance;
 }
 
 // The mean of that over views, weighted by the cosine: the reflectance.

@@ -19,25 +19,40 @@ float crossing_chance(float sigma_t, float distance) {
 }  // namespace
 
 BandWeights::BandWeights(const WalkSpace& space, const WalkGroup& group)
-    : space_(space), flies_as_(group.flies_as), sigma_t_(space.bands[group.flies_as].sigma_t) {
-    for (std::size_t g = 0; g < space.bands.size(); ++g) {
-        const WalkBands& bands = space.bands[g];
+    : space_(space), groups_(space.bands.size()), flies_as_(group.flies_as) {
+    enter(0);
+    bool may_split = true;
+    for (std::size_t g = 0; g < groups_; ++g) {
+        const float sigma_t = medium_->sigma_t[g];
         all_walks_ += group.walks[g];
-        first_reach_ = std::max(first_reach_, kThin / bands.sigma_t);
-        log_ratio_[g] = std::log(bands.sigma_t) - std::log(sigma_t_);
+        may_split = may_split && sigma_t > 0;
+        first_reach_ = std::max(first_reach_, kThin / sigma_t);
         for (std::size_t b = 0; b < 3; ++b) {
-            if (bands.member[b]) {
+            if (space.bands[g].member[b]) {
                 group_[b] = g;
-                albedo_[b] = bands.albedo[b];
+                has_light_[b] = std::ranges::any_of(
+                    space.media, [b](const WalkMedium& medium) { return medium.albedo[b] > 0; });
             }
         }
     }
-    for (std::size_t g = 0; g < space.bands.size(); ++g) {
+    first_reach_ = may_split ? first_reach_ : 0;
+    for (std::size_t g = 0; g < groups_; ++g) {
         density_[g] = group.walks[g] / all_walks_;
     }
     for (std::size_t b = 0; b < 3; ++b) {
-        own_[b] = albedo_[b] > 0 ? 1 : 0;
+        own_[b] = has_light_[b] ? 1 : 0;
         value_[b] = own_[b] / all_walks_;
+    }
+}
+
+void BandWeights::enter(std::uint8_t medium) {
+    medium_ = &space_.media[medium];
+    sigma_t_ = medium_->sigma_t[flies_as_];
+    if (groups_ > 1) {
+        for (std::size_t g = 0; g < groups_; ++g) {
+            // Without extinction no flight is drawn that ends in a collision.
+            log_ratio_[g] = sigma_t_ > 0 ? std::log(medium_->sigma_t[g]) - std::log(sigma_t_) : 0;
+        }
     }
 }
 
@@ -45,7 +60,7 @@ double BandWeights::left() const {
     double sum = 0, bands = 0;
     for (std::size_t b = 0; b < 3; ++b) {
         sum += static_cast<double>(value_[b]);
-        bands += albedo_[b] > 0 ? 1 : 0;
+        bands += has_light_[b] ? 1 : 0;
     }
     return static_cast<double>(all_walks_) * sum / std::max(1.0, bands);
 }
@@ -56,8 +71,8 @@ BandWeights::PerGroup BandWeights::flight_factors(float length, bool collides, f
     constexpr float kMost = 80;  // e to that is finite
     const float log_scale = std::log(scale);
     PerGroup factors{1, 1, 1};
-    for (std::size_t g = 0; g < space_.bands.size(); ++g) {
-        const float exponent = (sigma_t_ - space_.bands[g].sigma_t) * length + log_scale;
+    for (std::size_t g = 0; g < groups_; ++g) {
+        const float exponent = (sigma_t_ - medium_->sigma_t[g]) * length + log_scale;
         factors[g] = std::exp(std::min(kMost, collides ? exponent + log_ratio_[g] : exponent));
     }
     return factors;
@@ -65,7 +80,7 @@ BandWeights::PerGroup BandWeights::flight_factors(float length, bool collides, f
 
 bool BandWeights::reweigh(const PerGroup& light, const PerGroup& density) {
     float sum = 0;
-    for (std::size_t g = 0; g < space_.bands.size(); ++g) {
+    for (std::size_t g = 0; g < groups_; ++g) {
         density_[g] *= density[g];
         sum += density_[g];
     }
@@ -83,11 +98,23 @@ bool BandWeights::reweigh(const PerGroup& light, const PerGroup& density) {
 }
 
 bool BandWeights::fly(float length, bool collides) {
-    if (space_.bands.size() == 1) {
-        return true;
+    if (groups_ > 1) {
+        const PerGroup factors = flight_factors(length, collides, 1);
+        if (!reweigh(factors, factors)) {
+            return false;
+        }
     }
-    const PerGroup factors = flight_factors(length, collides, 1);
-    return reweigh(factors, factors);
+    return !medium_->absorbs_in_flight || absorb_in_flight(length);
+}
+
+// Bands that are not scattered here.
+bool BandWeights::absorb_in_flight(float length) {
+    for (std::size_t b = 0; b < 3; ++b) {
+        const float passed = std::exp(-medium_->absorption[b] * length);
+        value_[b] *= passed;
+        own_[b] *= passed;
+    }
+    return left() > 0;
 }
 
 float BandWeights::first_crossing_chance(float distance) const {
@@ -97,8 +124,8 @@ float BandWeights::first_crossing_chance(float distance) const {
 bool BandWeights::cross_first(float distance) {
     const float chance = crossing_chance(sigma_t_, distance);
     PerGroup light{}, density{};
-    for (std::size_t g = 0; g < space_.bands.size(); ++g) {
-        const float sigma_t = space_.bands[g].sigma_t, crossing = std::exp(-sigma_t * distance);
+    for (std::size_t g = 0; g < groups_; ++g) {
+        const float sigma_t = medium_->sigma_t[g], crossing = std::exp(-sigma_t * distance);
         light[g] = crossing / chance;
         density[g] = crossing_chance(sigma_t, distance) / chance;
         own_full_[g] = is_split(sigma_t, distance) ? 2 * crossing : 1;
@@ -113,8 +140,8 @@ bool BandWeights::collide_first(float length, float distance) {
     };
     const PerGroup light = flight_factors(length, true, scattered(sigma_t_) / chance(sigma_t_));
     PerGroup density{};
-    for (std::size_t g = 0; g < space_.bands.size(); ++g) {
-        const float sigma_t = space_.bands[g].sigma_t;
+    for (std::size_t g = 0; g < groups_; ++g) {
+        const float sigma_t = medium_->sigma_t[g];
         own_full_[g] = scattered(sigma_t) / chance(sigma_t);
         density[g] = own_full_[g] > 0 ? light[g] / own_full_[g] : 0;
     }
@@ -158,7 +185,7 @@ float BandWeights::survival_chance(std::size_t group) const {
 bool BandWeights::survives(float u) {
     PerGroup chance{}, light{}, density{};
     bool risks = false;
-    for (std::size_t g = 0; g < space_.bands.size(); ++g) {
+    for (std::size_t g = 0; g < groups_; ++g) {
         chance[g] = survival_chance(g);
         risks |= chance[g] < 1;
     }
@@ -169,7 +196,7 @@ bool BandWeights::survives(float u) {
     if (!(u < own)) {
         return false;
     }
-    for (std::size_t g = 0; g < space_.bands.size(); ++g) {
+    for (std::size_t g = 0; g < groups_; ++g) {
         light[g] = 1 / own;
         density[g] = chance[g] / own;
     }

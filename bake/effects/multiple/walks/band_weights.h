@@ -24,10 +24,13 @@ class BandWeights {
     /// Precondition: the space has bands, and group.flies_as is one of them.
     BandWeights(const WalkSpace& space, const WalkGroup& group);
 
-    float sigma_t() const { return sigma_t_; }                    ///< [1/m] of the flights
+    float sigma_t() const { return sigma_t_; }  ///< [1/m] of flights here; 0: to the next surface
     const std::array<float, 3>& value() const { return value_; }  ///< 0 in bands without light
     /// What is left of one walk: 1 at first, on average over all groups' walks.
     double left() const;
+
+    /// The walk goes on in another of the space's media. It starts in the first.
+    void enter(std::uint8_t medium);
 
     /// A flight of `length` [m] that ended in a collision, or at a surface. This and the following
     /// return false where no weight is left.
@@ -35,7 +38,8 @@ class BandWeights {
 
     /// The first flight, toward a surface at `distance` [m]. In a group for which nearly all light
     /// would cross that, half of the walks collide before, with a density in proportion to light's.
-    /// No first flight is changed where no surface is nearer than first_reach() [m].
+    /// No first flight is changed where no surface is nearer than first_reach() [m]; none at all
+    /// where a group's light is not scattered in the first medium.
     float first_reach() const { return first_reach_; }
     float first_crossing_chance(float distance) const;
     bool cross_first(float distance);
@@ -56,13 +60,15 @@ class BandWeights {
     bool begin(const PerGroup& light, const PerGroup& density);
     float survival_chance(std::size_t group) const;
     bool reweigh(const PerGroup& light, const PerGroup& density);
+    bool absorb_in_flight(float length);
 
     const WalkSpace& space_;
-    std::size_t flies_as_;
-    float sigma_t_, first_reach_ = 0;
+    const WalkMedium* medium_;  // around the walk
+    std::size_t groups_, flies_as_;
+    float sigma_t_ = 0, first_reach_ = 0;
     PerGroup log_ratio_{};                // of the groups' extinction to that of the flights
     std::array<std::size_t, 3> group_{};  // of each band
-    std::array<float, 3> albedo_{};       // of each band
+    std::array<bool, 3> has_light_{};     // each band
     std::array<float, 3> value_{};
     PerGroup density_{};  // of the walk so far, times the group's walks; their sum is 1
     /// What walks of a band's own group would weigh that had come this way, and without absorption.

@@ -30,6 +30,7 @@ bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, flo
     hit.first_index = 3 * ray.hit.primID;
     hit.u = ray.hit.u, hit.v = ray.hit.v;
     hit.is_own = geometry.material == space.material;
+    hit.medium = space.medium_of[geometry.material];
     const formats::Primitive& p = space.scene->primitives[hit.primitive];
     const std::uint32_t* corner = &p.index[hit.first_index];
     const glm::vec3 a = (1 - hit.u - hit.v) * p.position[corner[0]];

@@ -7,12 +7,14 @@
 
 #include "bake/base/frame.h"
 #include "bake/effects/multiple/walks/find_hit.h"
+#include "bake/effects/multiple/walks/medium_stack.h"
 #include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kForever = std::numeric_limits<float>::infinity();
 
 float transmittance(float cosine, float eta) {
     return static_cast<float>(
@@ -44,8 +46,8 @@ glm::vec3 start_direction(const WalkSpace& space, const WalkStart& start, WalkRa
                                                : make_frame(start.flat).to_world(tilted);
 }
 
-glm::vec3 scatter(const WalkSpace& space, glm::vec3 direction, WalkRandom& random) {
-    const float cosine = sample_cosine(space.phase, random.next());
+glm::vec3 scatter(const PhaseTable& phase, glm::vec3 direction, WalkRandom& random) {
+    const float cosine = sample_cosine(phase, random.next());
     const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
     const float azimuth = 2 * kPi * random.next();
     const glm::vec3 turned = make_frame(direction).to_world(
@@ -53,21 +55,27 @@ glm::vec3 scatter(const WalkSpace& space, glm::vec3 direction, WalkRandom& rando
     return glm::normalize(turned);  // thousands of turns would add up their rounding
 }
 
+// Two indices of refraction between which light neither bends nor is reflected.
+bool is_matched(float ratio) {
+    return std::abs(ratio - 1) < 1e-5f;
+}
+
 class Walk {
   public:
-    Walk(const WalkSpace& space, const WalkGroup& group, const WalkOrders& orders,
-         WalkRandom& random, std::vector<WalkExit>& exits, WalkCounts& counts)
+    Walk(const WalkSpace& space, const WalkGroup& group, const WalkStart& start,
+         const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
+         WalkCounts& counts)
         : space_(space),
           weight_(space, group),
           orders_(orders),
           random_(random),
           exits_(exits),
-          counts_(counts) {}
+          counts_(counts),
+          bodies_(0, start.shells) {}
 
     glm::vec3 follow(const WalkStart& start) {
         ++counts_.walks;
         position_ = start_ = start.position;
-        shells_ = start.shells;
         direction_ = start_direction(space_, start, random_);
         const glm::vec3 seen = -direction_;
         for (std::uint32_t i = 0; i < space_.most_events; ++i) {
@@ -76,13 +84,21 @@ class Walk {
                 return seen;
             }
         }
-        ++counts_.endless;
-        counts_.unfinished += weight_.left();
+        give_up(counts_.endless);
         return seen;
     }
 
   private:
-    float flight_length() { return -std::log(1 - random_.next()) / weight_.sigma_t(); }
+    float flight_length() {
+        const float depth = -std::log(1 - random_.next());
+        return weight_.sigma_t() > 0 ? depth / weight_.sigma_t() : kForever;
+    }
+
+    bool give_up(std::uint64_t& count) {
+        ++count;
+        counts_.unfinished += weight_.left();
+        return false;
+    }
 
     // A flight from the start. Where a body is thin, nearly all light crosses it unscattered and is
     // not counted: half of the walks scatter before the first surface (BandWeights).
@@ -93,7 +109,8 @@ class Walk {
         }
         WalkHit hit;
         ++counts_.rays;
-        if (!find_hit(space_, position_, direction_, reach, hit)) {
+        // Beyond another medium's surface the walk may still scatter.
+        if (!find_hit(space_, position_, direction_, reach, hit) || is_entered(hit)) {
             return fly(flight_length());
         }
         const float distance = glm::length(hit.position - position_);
@@ -115,6 +132,9 @@ class Walk {
                 return weight_.fly(glm::distance(hit.position, position_), false) && arrive(hit);
             }
         }
+        if (!(length < kForever)) {
+            return give_up(counts_.lost);
+        }
         return weight_.fly(length, true) && collide(length);
     }
 
@@ -123,15 +143,13 @@ class Walk {
         length_ += length;
         if (glm::any(glm::lessThan(position_, space_.low)) ||
             glm::any(glm::greaterThan(position_, space_.high))) {
-            ++counts_.lost;
-            counts_.unfinished += weight_.left();
-            return false;
+            return give_up(counts_.lost);
         }
-        if (space_.field) {
-            return collide_in(*space_.field);
+        if (const auto& field = medium().field) {
+            return collide_in(*field);
         }
         ++scatterings_;
-        direction_ = scatter(space_, direction_, random_);
+        direction_ = scatter(medium().phase, direction_, random_);
         return weight_.absorb() && survives();
     }
 
@@ -143,22 +161,85 @@ class Walk {
             return true;
         }
         ++scatterings_;
-        direction_ = scatter(space_, direction_, random_);
+        direction_ = scatter(medium().phase, direction_, random_);
         const glm::vec3 albedo = field.albedo(position_);
         return weight_.absorb({albedo.x, albedo.y, albedo.z}) && survives();
     }
 
+    const WalkMedium& medium() const { return space_.media[bodies_.top()]; }
+
+    // Of another medium that walks go into.
+    bool is_entered(const WalkHit& hit) const {
+        return hit.medium != 0 && hit.medium != kNoWalkMedium;
+    }
+
     bool arrive(const WalkHit& hit) {
-        if (!hit.is_own) {
+        if (hit.medium == kNoWalkMedium) {
             return false;
         }
         length_ += glm::distance(hit.position, position_);
-        const bool leaves = glm::dot(direction_, hit.flat) > 0;
-        if (!leaves || shells_ > 1) {
-            shells_ += leaves ? -1 : 1;
-            position_ = hit.position + (leaves ? 2 : -2) * hit.error * hit.flat;
-            return true;
+        const float side = glm::dot(direction_, hit.flat) > 0 ? 1.0f : -1.0f;
+        MediumStack beyond = bodies_;
+        if (side > 0) {
+            beyond.leave(hit.medium);
+        } else if (!beyond.enter(hit.medium)) {
+            return give_up(counts_.buried);
         }
+        if (beyond.empty()) {
+            return hit.is_own && arrive_at_boundary(hit);
+        }
+        return beyond.top() == bodies_.top() ? pass(hit, side, beyond)
+                                             : change_medium(hit, side, beyond);
+    }
+
+    bool pass(const WalkHit& hit, float side, const MediumStack& beyond) {
+        bodies_ = beyond;
+        position_ = hit.position + side * 2 * hit.error * hit.flat;
+        return true;
+    }
+
+    // `side`: 1 where the triangle's normal points along the walk, else -1. Light of one surface is
+    // either reflected or refracted, as Fresnel's reflectance says, with unchanged weights.
+    bool change_medium(const WalkHit& hit, float side, const MediumStack& beyond) {
+        const float ratio = space_.media[beyond.top()].eta / medium().eta;
+        if (!is_matched(ratio)) {
+            const glm::vec3 flat = side * hit.flat;
+            glm::vec3 refracted;
+            const auto bend = [&](glm::vec3 normal, float cosine) {
+                const auto beyond_cosine = static_cast<float>(
+                    refracted_cosine(static_cast<double>(cosine), static_cast<double>(ratio)));
+                refracted =
+                    glm::normalize((direction_ - cosine * normal) / ratio + beyond_cosine * normal);
+            };
+            // The smooth normal, unless it sends light to the wrong side of the triangle.
+            glm::vec3 normal = side * smooth_normal(space_, hit);
+            float cosine = glm::dot(direction_, normal);
+            const auto reflect_at = [&](glm::vec3 n) {
+                return direction_ - 2 * glm::dot(direction_, n) * n;
+            };
+            if (cosine > 0) {
+                bend(normal, std::min(1.0f, cosine));
+            }
+            if (!(cosine > 0) || glm::dot(reflect_at(normal), flat) >= 0 ||
+                glm::dot(refracted, flat) <= 0) {
+                normal = flat;
+                cosine = glm::dot(direction_, flat);
+                bend(normal, std::min(1.0f, cosine));
+            }
+            if (!(random_.next() < transmittance(std::min(1.0f, cosine), ratio))) {
+                is_reflected_ = true;
+                position_ = hit.position - 2 * hit.error * flat;
+                direction_ = glm::normalize(reflect_at(normal));
+                return true;
+            }
+            direction_ = refracted;
+        }
+        has_changed_ = true;
+        weight_.enter(beyond.top());
+        return pass(hit, side, beyond);
+    }
+
+    bool arrive_at_boundary(const WalkHit& hit) {
         // The smooth normal, unless it faces away or reflects to behind the triangle.
         glm::vec3 normal = smooth_normal(space_, hit);
         const auto reflect_at = [&](glm::vec3 n) {
@@ -169,7 +250,8 @@ class Walk {
         }
         const float cosine = std::min(1.0f, glm::dot(direction_, normal));
         const float passed = transmittance(cosine, 1 / space_.eta);
-        const bool counts = scatterings_ >= orders_.least || (scatterings_ > 0 && is_reflected_);
+        const bool counts =
+            scatterings_ >= orders_.least || (scatterings_ > 0 && (is_reflected_ || has_changed_));
         if (passed > 0 && counts) {
             leave(hit, normal, cosine, passed);
         }
@@ -211,8 +293,8 @@ class Walk {
     glm::vec3 start_{0}, position_{0}, direction_{0};
     float length_ = 0;  // of the walk so far
     std::uint32_t scatterings_ = 0;
-    bool is_reflected_ = false;
-    int shells_ = 1;
+    bool is_reflected_ = false, has_changed_ = false;  // inside; medium
+    MediumStack bodies_;
 };
 
 }  // namespace
@@ -223,6 +305,7 @@ WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
     rays += other.rays;
     lost += other.lost;
     endless += other.endless;
+    buried += other.buried;
     unfinished += other.unfinished;
     return *this;
 }
@@ -230,7 +313,7 @@ WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
 glm::vec3 follow_walk(const WalkSpace& space, const WalkGroup& group, const WalkStart& start,
                       const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
                       WalkCounts& counts) {
-    return Walk(space, group, orders, random, exits, counts).follow(start);
+    return Walk(space, group, start, orders, random, exits, counts).follow(start);
 }
 
 }  // namespace opaline::bake

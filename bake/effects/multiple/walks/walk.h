@@ -92,7 +92,9 @@ struct WalkCounts {
     std::uint64_t rays = 0;
     std::uint64_t lost = 0;     ///< left the body's box: through a hole, or past an edge
     std::uint64_t endless = 0;  ///< given up after WalkSpace::most_events
-    double unfinished = 0;      ///< weight that lost and endless walks still had, in walks
+    std::uint64_t buried =
+        0;                  ///< given up where more media lie in each other than MediumStack holds
+    double unfinished = 0;  ///< weight that lost, endless and buried walks still had, in walks
 
     /// The factor by which the walks that ended stand for those that did not (README.md, "The
     /// estimator").
@@ -106,8 +108,9 @@ struct WalkCounts {
 
 /// Which light counts.
 struct WalkOrders {
-    /// Light scattered this often at least; less often, if it was also reflected at the boundary
-    /// inside, but not without any scattering. 2: what is not single scattering; 1: all.
+    /// Light scattered this often at least; less often, if it was also reflected at a boundary
+    /// inside or went through another medium, but not without any scattering. 2: what is not single
+    /// scattering; 1: all.
     std::uint32_t least = 2;
 };
 
@@ -117,9 +120,10 @@ struct WalkOrders {
 ///     T_0 = E[sum of weight V L],    L_o = F_t <T_0, L>,
 /// without energy added or lost: albedo 1 gives 1, less what never scatters. E is over the walks of
 /// all groups of bands together (band_weights.h). The walk passes through inner shells of its own
-/// medium; where it meets another material it ends, because such light has met a second surface. At
-/// every arrival at the boundary the transmitted part is an exit and the reflected part goes on.
-/// `exits` are appended. Returns the direction inside, away from the body, in which the walk is
+/// medium, and into the space's other media and out again (README.md, "Media inside"); where it
+/// meets another material it ends, because such light has met a second surface. At every arrival at
+/// the boundary the transmitted part is an exit and the reflected part goes on. `exits` are
+/// appended. Returns the direction inside, away from the body, in which the walk is
 /// seen.
 glm::vec3 follow_walk(const WalkSpace& space, const WalkGroup& group, const WalkStart& start,
                       const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,

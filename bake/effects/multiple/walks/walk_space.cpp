@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "bake/effects/multiple/walks/find_hit.h"
 #include "bake/scattering/fresnel.h"
@@ -12,27 +13,20 @@
 namespace opaline::bake {
 namespace {
 
-std::vector<WalkBands> group_bands(const formats::Medium& medium, bool grey) {
-    // Walks of media whose extinctions differ by less are the same to rounding.
-    constexpr float kSame = 1e-5f;
-    const std::array<float, 3> sigma_s{medium.sigma_s.r, medium.sigma_s.g, medium.sigma_s.b};
-    const std::array<float, 3> sigma_a{medium.sigma_a.r, medium.sigma_a.g, medium.sigma_a.b};
-    std::vector<WalkBands> groups;
-    for (std::size_t b = 0; b < (grey ? 1 : 3); ++b) {
-        const float sigma_t = sigma_s[b] + sigma_a[b];
-        if (!(sigma_s[b] > 0)) {
-            continue;
-        }
-        auto group = std::find_if(groups.begin(), groups.end(), [&](const WalkBands& g) {
-            return std::abs(g.sigma_t - sigma_t) <= kSame * sigma_t;
-        });
-        if (group == groups.end()) {
-            group = groups.insert(groups.end(), {sigma_t, {}, {}});
-        }
-        group->albedo[b] = sigma_s[b] / sigma_t;
-        group->member[b] = true;
+// The mean number of events in a cube of that diagonal as the albedo tends to 1 is
+// eta^2 4 V / (S mean_free_path escape) (README.md, "The estimator"); a hundred times that is no
+// walk that goes on for good.
+std::uint32_t most_events(std::span<const WalkMedium> media, float diagonal) {
+    float densest = 0;
+    double escape = 1, eta = 0;
+    for (const WalkMedium& medium : media) {
+        densest = std::max({densest, medium.sigma_t[0], medium.sigma_t[1], medium.sigma_t[2]});
+        eta = std::max(eta, static_cast<double>(medium.eta));
+        escape = std::min(escape, 1 - fresnel_moments(static_cast<double>(medium.eta)).external);
     }
-    return groups;
+    const double mean =
+        std::max(1.0, eta * eta) * static_cast<double>(diagonal * densest) / std::max(1e-3, escape);
+    return static_cast<std::uint32_t>(std::min(1000 + 100 * mean, 200000.0));
 }
 
 int count_along(const WalkSpace& space, glm::vec3 point, glm::vec3 direction) {
@@ -54,26 +48,41 @@ int count_along(const WalkSpace& space, glm::vec3 point, glm::vec3 direction) {
 }  // namespace
 
 WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triangles,
-                          std::uint32_t material, bool grey) {
-    const formats::Medium& medium = *scene.materials[material].medium;
+                          std::uint32_t material, bool grey, std::span<const std::uint32_t> inner) {
+    std::vector<std::uint32_t> materials{material};
+    materials.insert(materials.end(), inner.begin(), inner.end());
+    std::vector<const formats::Medium*> given;
+    for (const std::uint32_t m : materials) {
+        given.push_back(&*scene.materials[m].medium);
+    }
+    WalkMedia media = make_walk_media(given, grey);
     WalkSpace space;
     space.scene = &scene;
     space.triangles = &triangles;
     space.material = material;
-    space.eta = medium.eta;
+    space.eta = given.front()->eta;
     space.is_grey = grey;
-    space.phase = make_phase_table(medium.phase);
-    space.bands = group_bands(medium, grey);
-    if (medium.variation && !space.bands.empty()) {
-        space.field.emplace(scene, material);
+    space.bands = std::move(media.bands);
+    space.media = std::move(media.media);
+    space.medium_of.assign(scene.materials.size(), kNoWalkMedium);
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+        const std::uint8_t place = media.place[m];
+        space.medium_of[materials[m]] = place;
+        if (given[m]->variation && place != kNoWalkMedium && !space.bands.empty()) {
+            space.media[place].field.emplace(scene, materials[m]);
+        }
     }
-    // Three that are effectively isotropic (README.md, "The light at an exit").
-    space.diffuse_after = static_cast<std::uint32_t>(
-        std::ceil(3 / (1 - std::min(0.999, std::abs(formats::mean_cosine(medium.phase))))));
+    // Three that are effectively isotropic (README.md, "The light at an exit"). How far a walk has
+    // come says nothing of its direction where media follow one another.
+    space.diffuse_after =
+        space.media.size() > 1
+            ? std::numeric_limits<std::uint32_t>::max()
+            : static_cast<std::uint32_t>(std::ceil(
+                  3 / (1 - std::min(0.999, std::abs(formats::mean_cosine(given.front()->phase))))));
     space.low = glm::vec3(std::numeric_limits<float>::max());
     space.high = glm::vec3(std::numeric_limits<float>::lowest());
     for (const formats::Primitive& p : scene.primitives) {
-        if (p.material == material) {
+        if (space.medium_of[p.material] != kNoWalkMedium) {
             for (const std::uint32_t i : p.index) {
                 space.low = glm::min(space.low, p.position[i]);
                 space.high = glm::max(space.high, p.position[i]);
@@ -91,17 +100,7 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
     constexpr float kCell = 0.01f;  // of the diagonal
     space.clearance = ClearanceGrid(scene, 0.5f * (space.low + space.high),
                                     0.5f * (space.high - space.low), kCell * diagonal);
-    // The mean number of events in a cube of that diagonal as the albedo tends to 1 is
-    // eta^2 4 V / (S mean_free_path escape) (README.md, "The estimator"); a hundred times that is
-    // no walk that goes on for good.
-    float densest = 0;
-    for (const WalkBands& group : space.bands) {
-        densest = std::max(densest, group.sigma_t);
-    }
-    const auto eta = static_cast<double>(medium.eta);
-    const double escape = std::max(1e-3, 1 - fresnel_moments(eta).external);
-    const double mean = std::max(1.0, eta * eta) * static_cast<double>(diagonal * densest) / escape;
-    space.most_events = static_cast<std::uint32_t>(std::min(1000 + 100 * mean, 200000.0));
+    space.most_events = most_events(space.media, diagonal);
     return space;
 }
 
@@ -136,6 +135,15 @@ double transport_mean_free_path(const formats::Medium& medium) {
     visit(medium.sigma_s.g, medium.sigma_a.g);
     visit(medium.sigma_s.b, medium.sigma_a.b);
     return densest > 0 ? 1 / densest : 0;
+}
+
+double shortest_transport_path(std::span<const formats::Medium* const> media) {
+    double least = 0;
+    for (const formats::Medium* medium : media) {
+        const double path = transport_mean_free_path(*medium);
+        least = path > 0 && (least == 0 || path < least) ? path : least;
+    }
+    return least;
 }
 
 }  // namespace opaline::bake

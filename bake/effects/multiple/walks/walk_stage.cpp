@@ -62,8 +62,8 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
         static_cast<std::uint32_t>(std::clamp(std::round(options.walks / runs), 1.0, 1e6));
     stage.rows = walk_from_sites(space, starts, light, rows, subtract, context, stage.counts);
     std::vector<float> tints;
-    if (space.field) {
-        stage.medium = space.field;
+    if (space.media.front().field) {
+        stage.medium = space.media.front().field;
         stage.depth = static_cast<float>(
             transport_mean_free_path(*space.scene->materials[space.material].medium));
         for (const SurfaceSample& s : sites) {

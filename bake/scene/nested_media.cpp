@@ -1,0 +1,251 @@
+#include "bake/scene/nested_media.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "bake/scene/body_shells.h"
+#include "bake/scene/horizon.h"
+#include "bake/scene/triangle.h"
+
+namespace opaline::bake {
+namespace {
+
+using Triangle = HorizonTree::Triangle;
+using Node = HorizonTree::Node;
+
+// Visits the triangles of all nodes for which `enters(node)`.
+template <class Enters, class Visit>
+void walk_tree(const HorizonTree& tree, const Enters& enters, const Visit& visit) {
+    if (tree.node.empty()) {
+        return;
+    }
+    std::array<std::uint32_t, 64> open;  // as deep as look_over_horizon's
+    std::size_t count = 0;
+    open[count++] = 0;
+    while (count > 0) {
+        const std::uint32_t at = open[--count];
+        const Node& node = tree.node[at];
+        if (!enters(node)) {
+            continue;
+        }
+        if (node.right != 0) {
+            open[count++] = node.right;
+            open[count++] = at + 1;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            visit(tree.triangle[i]);
+        }
+    }
+}
+
+// Distance [m] of the nearest triangle, if it is below `most`; else `most`.
+double distance_within(const HorizonTree& tree, glm::dvec3 point, double most) {
+    walk_tree(
+        tree,
+        [&](const Node& node) { return glm::distance(node.centre, point) - node.radius < most; },
+        [&](const Triangle& t) {
+            most = std::min(most,
+                            distance_to_triangle(glm::dvec3(t[0]) - point, glm::dvec3(t[1]) - point,
+                                                 glm::dvec3(t[2]) - point));
+        });
+    return most;
+}
+
+// How often a line from the point leaves the surface, less how often it enters. `along` is unit.
+int count_leaving(const HorizonTree& tree, glm::dvec3 point, glm::dvec3 along) {
+    int leaving = 0;
+    walk_tree(
+        tree,
+        [&](const Node& node) {
+            const glm::dvec3 to = node.centre - point;
+            const double ahead = glm::dot(to, along);
+            return ahead > -node.radius &&
+                   glm::dot(to, to) - ahead * ahead <= node.radius * node.radius * (1 + 1e-9);
+        },
+        [&](const Triangle& t) {
+            const glm::dvec3 a = glm::dvec3(t[0]) - point, b = glm::dvec3(t[1]) - point,
+                             c = glm::dvec3(t[2]) - point;
+            const double u = glm::dot(along, glm::cross(b, c)),
+                         v = glm::dot(along, glm::cross(c, a)),
+                         w = glm::dot(along, glm::cross(a, b));
+            const bool leaves = u > 0 && v > 0 && w > 0, enters = u < 0 && v < 0 && w < 0;
+            // In front of the point: its volume with the triangle has the sign of the crossing.
+            if ((leaves || enters) && (glm::dot(a, glm::cross(b, c)) > 0) == leaves) {
+                leaving += leaves ? 1 : -1;
+            }
+        });
+    return leaving;
+}
+
+bool is_inside(const HorizonTree& tree, glm::dvec3 point) {
+    // Along no axis, edge or diagonal of common models.
+    static const std::array<glm::dvec3, 3> kLines{
+        glm::normalize(glm::dvec3(0.3617, 0.4803, 0.7991)),
+        glm::normalize(glm::dvec3(-0.8011, 0.3589, -0.4794)),
+        glm::normalize(glm::dvec3(0.4823, -0.7979, 0.3607))};
+    int votes = 0;
+    for (const glm::dvec3& line : kLines) {
+        votes += count_leaving(tree, point, line) > 0 ? 1 : 0;
+    }
+    return votes >= 2;
+}
+
+std::array<Triangle, 4> quarter(const Triangle& t) {
+    const glm::vec3 ab = 0.5f * (t[0] + t[1]), bc = 0.5f * (t[1] + t[2]), ca = 0.5f * (t[2] + t[0]);
+    return {{{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}}};
+}
+
+// A bound on the work for a scene: about a second.
+constexpr int kMostLooks = 1'000'000;
+
+// Lowers `least` [m] to a lower bound of the distance between a triangle and the surface, at least
+// half of it; to 0 where they are so near that they may meet. Keeps it where it is lower already.
+void lower_to_gap(const HorizonTree& surface, const Triangle& triangle, int depth, int& looks,
+                  double& least) {
+    constexpr int kDeepest = 8;
+    const glm::dvec3 middle =
+        (glm::dvec3(triangle[0]) + glm::dvec3(triangle[1]) + glm::dvec3(triangle[2])) / 3.0;
+    double radius = 0;
+    for (const glm::vec3 corner : triangle) {
+        radius = std::max(radius, glm::distance(middle, glm::dvec3(corner)));
+    }
+    if (--looks < 0) {
+        least = 0;
+        return;
+    }
+    const double reach = least + radius, distance = distance_within(surface, middle, reach);
+    if (!(distance < reach)) {
+        return;
+    }
+    if (distance - radius >= 0.5 * distance) {
+        least = distance - radius;
+    } else if (depth == kDeepest || !(radius > 0)) {
+        least = 0;
+    } else {
+        for (const Triangle& part : quarter(triangle)) {
+            if (least > 0) {
+                lower_to_gap(surface, part, depth + 1, looks, least);
+            }
+        }
+    }
+}
+
+// The surface of one material, for comparison with others.
+struct Surface {
+    BodyShells body;
+    HorizonTree tree;
+    std::vector<bool> is_buried;  // of each shell
+
+    Triangle triangle(std::uint32_t i) const {
+        const auto& point = body.triangle[body.order[i]].point;
+        return {body.position[point[0]], body.position[point[1]], body.position[point[2]]};
+    }
+};
+
+Surface make_surface(const formats::Scene& scene, std::uint32_t material) {
+    Surface surface;
+    surface.body = make_body_shells(scene, material);
+    std::vector<Triangle> triangles;
+    for (const formats::Primitive& p : scene.primitives) {
+        for (std::size_t i = 0; p.material == material && i + 2 < p.index.size(); i += 3) {
+            triangles.push_back(
+                {p.position[p.index[i]], p.position[p.index[i + 1]], p.position[p.index[i + 2]]});
+        }
+    }
+    surface.tree = make_horizon_tree(std::move(triangles));
+    surface.is_buried.resize(surface.body.shell.size());
+    return surface;
+}
+
+// Whether some of the shell's middles of triangles lie inside of `outer`.
+bool reaches_into(const HorizonTree& outer, const Surface& of, const BodyShell& shell) {
+    constexpr std::uint32_t kMostPoints = 64;
+    const std::uint32_t step = std::max(1u, shell.count / kMostPoints);
+    for (std::uint32_t i = 0; i < shell.count; i += step) {
+        const Triangle t = of.triangle(shell.first + i);
+        if (is_inside(outer, (glm::dvec3(t[0]) + glm::dvec3(t[1]) + glm::dvec3(t[2])) / 3.0)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool reaches_into(const HorizonTree& outer, const Surface& of) {
+    return std::ranges::any_of(
+        of.body.shell, [&](const BodyShell& shell) { return reaches_into(outer, of, shell); });
+}
+
+// How deep [m] any of the inner surface lies inside the outer one; infinity: none does. Marks
+// shells that lie inside altogether.
+double find_depth(const Surface& outer, Surface& inner, int& looks) {
+    double least = std::numeric_limits<double>::infinity();
+    bool is_met = false;
+    for (std::size_t s = 0; s < inner.body.shell.size(); ++s) {
+        const BodyShell& shell = inner.body.shell[s];
+        double gap = std::numeric_limits<double>::infinity();
+        for (std::uint32_t i = shell.first; i < shell.first + shell.count && gap > 0; ++i) {
+            lower_to_gap(outer.tree, inner.triangle(i), 0, looks, gap);
+        }
+        const bool is_in = reaches_into(outer.tree, inner, shell);
+        is_met = is_met || gap == 0;
+        if (is_in) {
+            least = std::min(least, gap);
+        }
+        inner.is_buried[s] = inner.is_buried[s] || (is_in && gap > 0);
+    }
+    return is_met && least > 0 && reaches_into(inner.tree, outer) ? 0 : least;
+}
+
+bool boxes_meet(const MaterialFacts& a, const MaterialFacts& b) {
+    return glm::all(glm::lessThanEqual(a.low, b.high)) &&
+           glm::all(glm::lessThanEqual(b.low, a.high));
+}
+
+}  // namespace
+
+void find_nested_media(const formats::Scene& scene, SceneFacts& facts) {
+    const auto count = static_cast<std::uint32_t>(scene.materials.size());
+    const auto is_body = [&](std::uint32_t m) {
+        return scene.materials[m].medium && facts.material[m].triangles > 0;
+    };
+    int looks = kMostLooks;
+    std::vector<Surface> surfaces(count);
+    const auto surface_of = [&](std::uint32_t m) -> Surface& {
+        if (surfaces[m].tree.node.empty()) {
+            surfaces[m] = make_surface(scene, m);
+        }
+        return surfaces[m];
+    };
+    for (std::uint32_t outer = 0; outer < count; ++outer) {
+        MaterialFacts& own = facts.material[outer];
+        for (std::uint32_t inner = 0; inner < count; ++inner) {
+            if (inner == outer || !is_body(outer) || !is_body(inner) ||
+                !boxes_meet(own, facts.material[inner])) {
+                continue;
+            }
+            const double depth = find_depth(surface_of(outer), surface_of(inner), looks);
+            if (std::isfinite(depth)) {
+                own.inner.push_back({inner, depth, *scene.materials[inner].medium});
+            }
+        }
+    }
+    for (std::uint32_t m = 0; m < count; ++m) {
+        MaterialFacts& own = facts.material[m];
+        const std::vector<bool>& is_buried = surfaces[m].is_buried;
+        own.is_buried = !is_buried.empty() &&
+                        std::ranges::all_of(is_buried, [](bool buried) { return buried; });
+        own.is_grey =
+            own.is_grey && std::ranges::all_of(own.inner, [](const InnerMedium& inner) {
+                const auto same = [](const formats::Rgb& c) { return c.r == c.g && c.g == c.b; };
+                return same(inner.medium.sigma_s) && same(inner.medium.sigma_a);
+            });
+    }
+}
+
+}  // namespace opaline::bake

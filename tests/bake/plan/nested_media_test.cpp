@@ -1,0 +1,106 @@
+// Which media lie inside which, and how deep.
+
+#include <gtest/gtest.h>
+
+#include "bake/scene/inspect_scene.h"
+#include "tests/bake/walks/nested_bodies.h"
+
+namespace opaline::tests {
+namespace {
+
+formats::Medium coat() {
+    return make_grey_medium(4, 1);
+}
+
+formats::Medium core() {
+    return make_grey_medium(9, 1, 1.5f);
+}
+
+std::vector<bake::MaterialFacts> inspect(std::vector<Part> parts) {
+    return bake::inspect_scene(make_nested_scene(std::move(parts))).material;
+}
+
+TEST(NestedMedia, CoreInACoatIsFoundWithALowerBoundOfItsDepthThatIsAtLeastHalfOfIt) {
+    for (const float radius : {0.3f, 0.9f, 0.98f}) {
+        const auto facts = inspect({{make_sphere(3), coat()}, {make_sphere(2, radius), core()}});
+        ASSERT_EQ(facts[0].inner.size(), 1u) << radius;
+        EXPECT_EQ(facts[0].inner[0].material, 1u);
+        EXPECT_EQ(facts[0].inner[0].medium.eta, 1.5f);
+        // Facets of the outer ball are up to 0.5 % of its radius below it.
+        EXPECT_LE(facts[0].inner[0].depth, 1 - static_cast<double>(radius));
+        EXPECT_GE(facts[0].inner[0].depth, 0.5 * (0.99 - static_cast<double>(radius)) - 1e-6);
+        EXPECT_TRUE(facts[1].is_buried);
+        EXPECT_FALSE(facts[0].is_buried);
+        EXPECT_TRUE(facts[1].inner.empty());
+    }
+}
+
+TEST(NestedMedia, BodiesBesideEachOtherContainNothing) {
+    for (const float distance : {1.6f, 2.0f, 3.0f}) {  // boxes overlap, or touch, or do not
+        const glm::vec3 centre = distance / std::sqrt(2.0f) * glm::vec3(1, 1, 0) * 1.3f;
+        const auto facts = inspect({{make_sphere(3), coat()}, {make_sphere(3, 1, centre), core()}});
+        EXPECT_TRUE(facts[0].inner.empty() && facts[1].inner.empty()) << distance;
+        EXPECT_FALSE(facts[0].is_buried || facts[1].is_buried) << distance;
+    }
+    Primitive beside = make_cube(2, false);
+    for (glm::vec3& p : beside.position) {
+        p.x += 2;  // one face in common
+    }
+    const auto facts = inspect({{make_cube(2, false), coat()}, {beside, core()}});
+    EXPECT_TRUE(facts[0].inner.empty() && facts[1].inner.empty());
+}
+
+TEST(NestedMedia, ABodyInACavityOfAnotherIsNotInIt) {
+    Scene scene = make_nested_scene({{make_sphere(3), coat()}, {make_sphere(3, 0.3f), core()}});
+    Primitive cavity = turned_inside_out(make_sphere(3, 0.6f));
+    cavity.material = 0;
+    scene.primitives.push_back(cavity);
+    const auto facts = bake::inspect_scene(scene).material;
+    EXPECT_TRUE(facts[0].inner.empty());
+    EXPECT_FALSE(facts[1].is_buried);
+}
+
+TEST(NestedMedia, OverlappingBodiesContainEachOtherAtNoDepthAndBothAreSeen) {
+    const auto facts =
+        inspect({{make_sphere(3), coat()}, {make_sphere(3, 0.5f, {0.9f, 0, 0}), core()}});
+    ASSERT_EQ(facts[0].inner.size(), 1u);
+    EXPECT_EQ(facts[0].inner[0].depth, 0);
+    ASSERT_EQ(facts[1].inner.size(), 1u);
+    EXPECT_FALSE(facts[0].is_buried || facts[1].is_buried);
+}
+
+TEST(NestedMedia, HolesDoNotHideWhatLiesInside) {
+    Primitive holed = make_sphere(3);
+    holed.index.resize(holed.index.size() - 30);
+    const auto facts = inspect({{holed, coat()}, {make_sphere(3, 0.5f), core()}});
+    EXPECT_EQ(facts[0].inner.size(), 1u);
+}
+
+TEST(NestedMedia, EveryMediumOfAChainContainsAllThatFollow) {
+    const auto facts = inspect(
+        {{make_sphere(3), coat()}, {make_sphere(3, 0.7f), core()}, {make_sphere(3, 0.4f), coat()}});
+    EXPECT_EQ(facts[0].inner.size(), 2u);
+    EXPECT_EQ(facts[1].inner.size(), 1u);
+    EXPECT_TRUE(facts[1].is_buried && facts[2].is_buried);
+}
+
+TEST(NestedMedia, ABodyIsGreyOnlyIfAllMediaInsideAre) {
+    formats::Medium red = core();
+    red.sigma_a.r = 0;
+    EXPECT_TRUE(inspect({{make_sphere(2), coat()}, {make_sphere(2, 0.5f), core()}})[0].is_grey);
+    EXPECT_FALSE(inspect({{make_sphere(2), coat()}, {make_sphere(2, 0.5f), red}})[0].is_grey);
+    EXPECT_TRUE(
+        inspect({{make_sphere(2), coat()}, {make_sphere(2, 0.5f, {3, 0, 0}), red}})[0].is_grey);
+}
+
+TEST(NestedMedia, ManyPartsThatTouchAreInspectedInBoundedTime) {
+    std::vector<Part> parts;
+    for (int i = 0; i < 12; ++i) {
+        parts.push_back({make_sphere(4, 1 - 1e-5f * static_cast<float>(i)), coat()});
+    }
+    const auto facts = inspect(std::move(parts));
+    EXPECT_FALSE(facts[0].inner.empty());
+}
+
+}  // namespace
+}  // namespace opaline::tests

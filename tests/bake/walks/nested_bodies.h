@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bake/effects/multiple/walks/find_hit.h"
+#include "tests/bake/walks/body_walks.h"
+
+namespace opaline::tests {
+
+/// A body's surface and what fills it.
+using Part = std::pair<Primitive, formats::Medium>;
+
+/// One material for each part.
+inline Scene make_nested_scene(std::vector<Part> parts) {
+    std::vector<Primitive> surfaces;
+    for (std::uint32_t m = 0; m < parts.size(); ++m) {
+        surfaces.push_back(std::move(parts[m].first));
+        surfaces.back().material = m;
+    }
+    Scene scene = make_scene(std::move(surfaces));
+    scene.materials.resize(parts.size(), scene.materials[0]);
+    for (std::size_t m = 0; m < parts.size(); ++m) {
+        scene.materials[m].name = "Part " + std::to_string(m);
+        scene.materials[m].medium = parts[m].second;
+    }
+    return scene;
+}
+
+/// The first part, for walks that pass through all others.
+inline std::unique_ptr<WalkedBody> make_nested_body(std::vector<Part> parts, bool grey = true) {
+    auto body = std::make_unique<WalkedBody>();
+    body->scene = make_nested_scene(std::move(parts));
+    body->triangles.emplace(bake::EmbreeScene::build(body->scene, 1).value());
+    std::vector<std::uint32_t> inner;
+    for (std::uint32_t m = 1; m < body->scene.materials.size(); ++m) {
+        inner.push_back(m);
+    }
+    body->space = bake::make_walk_space(body->scene, *body->triangles, 0, grey, inner);
+    return body;
+}
+
+/// Where a line from outside first meets the body.
+inline bake::WalkStart start_at(const bake::WalkSpace& space, glm::vec3 from, glm::vec3 along) {
+    bake::WalkHit hit;
+    EXPECT_TRUE(bake::find_hit(space, from, along, 1e30f, hit));
+    return {hit.position - 2 * hit.error * hit.flat, bake::smooth_normal(space, hit), hit.flat, 1};
+}
+
+}  // namespace opaline::tests
