@@ -150,8 +150,8 @@ float MediumField::mean_density(glm::vec3 from, glm::vec3 to) const {
         return 1;
     }
     constexpr float kStepsPerCell = 2, kMostSteps = 512;
-    const float steps =
-        std::clamp(std::ceil(kStepsPerCell * per_cell_ * glm::distance(from, to)), 1.0f, kMostSteps);
+    const float steps = std::clamp(std::ceil(kStepsPerCell * per_cell_ * glm::distance(from, to)),
+                                   1.0f, kMostSteps);
     double sum = 0;
     for (float i = 0.5f; i < steps; ++i) {
         sum += static_cast<double>(density(from + i / steps * (to - from)));

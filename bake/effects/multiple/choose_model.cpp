@@ -63,8 +63,8 @@ bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, boo
                    const Knobs& knobs) {
     const auto asked = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
     return asked == MultipleModel::automatic
-               ? body.varies || (!is_fixed(medium) &&
-                                 (layered || expected_error(medium, body) > allowed_model_error(knobs)))
+               ? body.varies || (!is_fixed(medium) && (layered || expected_error(medium, body) >
+                                                                      allowed_model_error(knobs)))
                : asked != MultipleModel::dipole;
 }
 

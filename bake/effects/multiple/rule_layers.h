@@ -13,9 +13,9 @@ namespace opaline::bake {
 /// shorter, and of
 ///     (1 + kappa/sigma_t') / alpha' (kappa depth) / sinh(kappa depth) / (1 - F_dr),
 /// with 1 / kappa the diffusion length of the similar isotropic medium by transport theory
-/// [CaseZweifel1967]: e^(kappa n . x) psi(n . w), psi the eigenfunction, summed over all n, is what walks
-/// keep on average, and at a distance it is at least that much larger than at the start. The last
-/// factor counts walks that the boundary sends back in. 1 where nothing is absorbed.
+/// [CaseZweifel1967]: e^(kappa n . x) psi(n . w), psi the eigenfunction, summed over all n, is what
+/// walks keep on average, and at a distance it is at least that much larger than at the start. The
+/// last factor counts walks that the boundary sends back in. 1 where nothing is absorbed.
 double share_that_reaches(const formats::Medium& medium, double depth);
 
 /// Bound on what other media inside a body change of its light under `white`: the share of light

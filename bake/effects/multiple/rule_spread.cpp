@@ -78,9 +78,8 @@ PlanEntry decide_spread(const PlanInput& input) {
         entry.reason = "the rows depend on the view";
     } else if (medium.sigma_s == formats::Rgb{}) {
         entry.reason = "nothing scatters";
-    } else if (std::any_of(input.earlier.begin(), input.earlier.end(), [](const PlanEntry& e) {
-                   return e.on && e.layered;
-               })) {
+    } else if (std::any_of(input.earlier.begin(), input.earlier.end(),
+                           [](const PlanEntry& e) { return e.on && e.layered; })) {
         entry.reason = "light goes through other media inside";
     } else if (!is_worth(entry.bound, input, entry.forced)) {
         entry.on = false;

@@ -40,8 +40,7 @@ bool holds_all_orders(const PlanInput& input) {
 
 // Whether light goes through other media inside, which straight paths do not.
 bool is_layered(const PlanInput& input) {
-    return std::ranges::any_of(input.earlier,
-                               [](const PlanEntry& e) { return e.on && e.layered; });
+    return std::ranges::any_of(input.earlier, [](const PlanEntry& e) { return e.on && e.layered; });
 }
 
 std::string percent(double share) {

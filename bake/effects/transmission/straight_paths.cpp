@@ -124,8 +124,8 @@ class Follower {
     bool arrive(Lane& lane, const PacketHits& hits, std::uint32_t i, std::uint32_t view) {
         float length = hits.distance[i];
         if (body_.field) {
-            length *= body_.field->mean_density(lane.position,
-                                                lane.position + length * lane.direction);
+            length *=
+                body_.field->mean_density(lane.position, lane.position + length * lane.direction);
         }
         for (std::size_t b = 0; b < body_.bands; ++b) {
             lane.weight[b] *= exp_of_negative(-body_.sigma_t[b] * length);

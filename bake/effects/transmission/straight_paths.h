@@ -21,8 +21,8 @@ struct StraightBody {
     const RayScene* sky = nullptr;   ///< what stands before the light that leaves the body
     std::uint32_t material = 0;
     double eta = 1;
-    std::array<float, 3> sigma_t{};  ///< [1/m]; scattering included: it takes light away too
-    std::uint32_t bands = 3;         ///< 1: the first stands for all
+    std::array<float, 3> sigma_t{};      ///< [1/m]; scattering included: it takes light away too
+    std::uint32_t bands = 3;             ///< 1: the first stands for all
     std::optional<MediumField> field{};  ///< where its density varies: scales sigma_t
 };
 

@@ -66,10 +66,10 @@ bool is_same_medium(const formats::Medium& a, const formats::Medium& b) {
     const auto same = [](const formats::Rgb& x, const formats::Rgb& y) {
         return x.r == y.r && x.g == y.g && x.b == y.b;
     };
-    return !a.variation && !b.variation && same(a.sigma_s, b.sigma_s) && same(a.sigma_a, b.sigma_a) && a.eta == b.eta &&
-           a.phase.type == b.phase.type && a.phase.g == b.phase.g &&
-           a.phase.rms_angle == b.phase.rms_angle && a.phase.cosine == b.phase.cosine &&
-           a.phase.value == b.phase.value;
+    return !a.variation && !b.variation && same(a.sigma_s, b.sigma_s) &&
+           same(a.sigma_a, b.sigma_a) && a.eta == b.eta && a.phase.type == b.phase.type &&
+           a.phase.g == b.phase.g && a.phase.rms_angle == b.phase.rms_angle &&
+           a.phase.cosine == b.phase.cosine && a.phase.value == b.phase.value;
 }
 
 WalkMedia make_walk_media(std::span<const formats::Medium* const> given, bool grey) {

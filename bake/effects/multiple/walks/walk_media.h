@@ -28,9 +28,9 @@ struct WalkMedium {
     /// [1/m], of the flights of each group of bands. 0 where its bands are not scattered: they
     /// fly on to the next surface and are absorbed on the way.
     std::array<float, 3> sigma_t{};
-    std::array<float, 3> albedo{};      ///< of each band, at the end of a flight in the medium
-    std::array<float, 3> absorption{};  ///< [1/m] of each band that is not scattered here
-    bool absorbs_in_flight = false;     ///< some absorption is not 0
+    std::array<float, 3> albedo{};       ///< of each band, at the end of a flight in the medium
+    std::array<float, 3> absorption{};   ///< [1/m] of each band that is not scattered here
+    bool absorbs_in_flight = false;      ///< some absorption is not 0
     std::optional<MediumField> field{};  ///< none: it is homogeneous, or not made here
 };
 
@@ -46,8 +46,8 @@ struct WalkMedia {
 /// At most this many different media of one space.
 inline constexpr std::size_t kMostWalkMedia = 255;
 
-/// Without `field`. `given`: the body's own medium, then those inside it; not empty. `grey`: the first band stands
-/// for all three. Media beyond kMostWalkMedia have the place kNoWalkMedium.
+/// Without `field`. `given`: the body's own medium, then those inside it; not empty. `grey`: the
+/// first band stands for all three. Media beyond kMostWalkMedia have the place kNoWalkMedium.
 WalkMedia make_walk_media(std::span<const formats::Medium* const> given, bool grey);
 inline constexpr std::uint8_t kNoWalkMedium = 255;
 
