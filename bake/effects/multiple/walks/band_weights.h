@@ -45,7 +45,7 @@ class BandWeights {
     bool cross_first(float distance);
     bool collide_first(float length, float distance);
 
-    bool absorb() { return absorb(albedo_); }
+    bool absorb() { return absorb(medium_->albedo); }
     /// An event where the albedos of the bands are not the stated ones, of which each is >= it.
     bool absorb(const std::array<float, 3>& albedo);
     bool scale(float factor);
