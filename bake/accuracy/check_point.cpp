@@ -1,5 +1,7 @@
 #include "bake/accuracy/check_point.h"
 
+#include <bit>
+
 namespace opaline::bake {
 
 std::vector<CheckPoint> make_check_points(std::span<const ReceiverSet> sets,
@@ -18,6 +20,13 @@ std::vector<CheckPoint> make_check_points(std::span<const ReceiverSet> sets,
         checked.push_back(point);
     }
     return checked;
+}
+
+void turn_thin_walled(const formats::Scene& scene, std::span<CheckPoint> points) {
+    for (CheckPoint& point : points) {
+        point.behind =
+            scene.materials[point.material].sheet.has_value() && std::popcount(point.key) % 2 == 1;
+    }
 }
 
 }  // namespace opaline::bake

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/receivers/receiver.h"
+#include "formats/scene.h"
 
 namespace opaline::bake {
 
@@ -26,5 +27,8 @@ struct CheckPoint {
 /// The receivers `drawn` as points: running numbers of the sets.
 std::vector<CheckPoint> make_check_points(std::span<const ReceiverSet> sets,
                                           std::span<const std::uint32_t> drawn);
+
+/// Sets `behind` of about half of the points of thin-walled surfaces, by their keys.
+void turn_thin_walled(const formats::Scene& scene, std::span<CheckPoint> points);
 
 }  // namespace opaline::bake

@@ -1,7 +1,5 @@
 #include "bake/accuracy/check_rows.h"
 
-#include <bit>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,14 +50,6 @@ std::vector<std::uint32_t> find_lit_primitives(const FinishedBake& bake) {
         }
     }
     return lit;
-}
-
-// Half of the points of thin-walled surfaces are seen from behind.
-void turn_thin_walled(const formats::Scene& scene, std::span<CheckPoint> points) {
-    for (CheckPoint& point : points) {
-        point.behind =
-            scene.materials[point.material].sheet.has_value() && std::popcount(point.key) % 2 == 1;
-    }
 }
 
 }  // namespace

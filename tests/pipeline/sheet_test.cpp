@@ -119,21 +119,6 @@ TEST(Sheet, ThatTransmitsTooMuchIsFoundByTheModelCheckFromBehind) {
     EXPECT_NEAR(sun->rms_relative, 0.83, 0.1);
 }
 
-// It only reflects; hard shadows lie on its lower side alone.
-TEST(Sheet, IsCheckedFromBehindAsWell) {
-    tests::Primitive box = tests::make_cube(2, false);
-    for (glm::vec3& p : box.position) {
-        p = glm::vec3(0.4f, 0.1f, 0.4f) * p - glm::vec3(0, 0.2f, 0);
-    }
-    box.material = 1;
-    const auto error = [&](std::vector<tests::Primitive> primitives) {
-        return tests::bake_scene(make_sheet_scene(std::move(primitives), {1, 1, 1}, {0, 0, 0}),
-                                 tests::small_bake())
-            .error.at_receivers.rms_relative;
-    };
-    EXPECT_GT(error({make_leaf(), box}), 2 * error({make_leaf()}));
-}
-
 // Under even light, the mean over views of a real slab of index 1, far from its rim.
 TEST(Sheet, OfAMediumIsAsBrightAsAPathTracedSlabInTheMean) {
     formats::Medium medium = tests::make_grey_medium(300, 30, 1);

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "bake/accuracy/check_point.h"
 #include "tests/support/media.h"
 #include "tests/support/media_bake.h"
 
@@ -37,6 +39,25 @@ TEST(ModelReceivers, LeaveOutAFoldThatLiesOnItsOwnBody) {
     EXPECT_EQ(count_chosen_on_plate(0.002f, 0.002f), 0u);
     EXPECT_GT(count_chosen_on_plate(0.002f, 0.5f), 0u) << "the gap is wide";
     EXPECT_GT(count_chosen_on_plate(0.5f, 0.002f), 0u) << "what lies there scatters";
+}
+
+TEST(CheckPoints, SeeHalfOfAThinWalledSurfaceFromBehindAndNothingElse) {
+    formats::Scene scene = tests::make_scene({});
+    scene.materials.resize(2);
+    scene.materials[1].sheet = formats::Sheet{};
+    constexpr std::uint32_t kPoints = 1000;
+    std::vector<CheckPoint> points(2 * kPoints);
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        points[i].key = i / 2;
+        points[i].material = i % 2;
+    }
+    turn_thin_walled(scene, points);
+    std::array<std::uint32_t, 2> behind{};
+    for (const CheckPoint& point : points) {
+        behind[point.material] += point.behind ? 1 : 0;
+    }
+    EXPECT_EQ(behind[0], 0u);
+    EXPECT_NEAR(behind[1], kPoints / 2.0, kPoints / 20.0);
 }
 
 }  // namespace

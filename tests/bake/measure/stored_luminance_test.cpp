@@ -19,6 +19,10 @@ TEST(ViewOfRows, HasOneFactorForEachRowWhateverTheLayout) {
     constexpr float kY0 = 0.2820948f, kY1 = 0.4886025f;
     const glm::vec3 up(0, 1, 0);
     EXPECT_EQ(view_of_rows(make_layout(0, false), up), std::vector<float>({1}));
+    RowLayout sheet;
+    sheet.sheet = true;
+    EXPECT_EQ(view_of_rows(sheet, up), std::vector<float>({1, 0}));
+    EXPECT_EQ(view_of_rows(sheet, up, true), std::vector<float>({0, 1})) << "from behind";
     EXPECT_EQ(view_of_rows(make_layout(0, true), up), std::vector<float>({1}));
     EXPECT_EQ(view_of_rows(make_layout(1, true), up).size(), 2u);
     const std::vector<float> apart = view_of_rows(make_layout(4, true), up);
