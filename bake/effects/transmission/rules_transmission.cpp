@@ -129,10 +129,6 @@ PlanEntry decide_straight_views(const PlanInput& input) {
         entry.terms = is_fine && share > kMuch ? 9 : 4;
         entry.reason = std::to_string(entry.terms) + " rows: about " + percent(share) +
                        " of even light crosses the body, and views differ";
-    } else if (input.knobs.simulate_all) {
-        entry.forced = true;
-        entry.terms = 4;
-        entry.reason = "4 rows, though little light crosses the body";
     } else {
         entry.reason = input.subject.has_thickness()
                            ? "one row for all views: about " + percent(share) +
