@@ -103,6 +103,13 @@ TEST(StraightRows, LightOfAViewIsSpreadOverADiscAroundItsExitAndKeepsItsEnergy) 
     EXPECT_NEAR(seen_along(values, 1, {0, 1, 0}, [](glm::vec3 w) { return w.y < 0.3f; }), 1, 0.01);
 }
 
+// A matched ball so dense that only views past the facets of its own vertex could bring light.
+TEST(StraightRows, OfADenseFacetedBallHoldNoLightPastTheFacetsOfTheVertex) {
+    const auto ball = tests::make_crossed({tests::make_sphere(2)}, 1, 1000);
+    const auto values = rows_of(*ball, 17, 1, 1024);
+    EXPECT_LT(seen_along(values, 1, {0, 1, 0}, kAll), 1e-4);
+}
+
 TEST(ViewFit, HoldsWhatIsLinearInTheViewWithinItsSmoothing) {
     const glm::vec3 normal = glm::normalize(glm::vec3(0.3f, 0.9f, -0.2f));
     const ViewSet views = spread_views(normal, 1, 256, {0.5f, 0});
