@@ -155,8 +155,8 @@ TEST(Grey, ColouredSurfaceOfAGreyMediumKeepsItsColourWithOneBand) {
 
 TEST(Grey, MediumThatLetsNothingOutHasNoColour) {
     Medium black;
-    black.sigma_s = {0.01f, 0.01f, 0.005f};
-    black.sigma_a = {10, 11, 12};
+    black.sigma_s = {0.1f, 0.1f, 0.05f};
+    black.sigma_a = {100, 110, 120};
     const BakeResult result = bake(make_ball_on_floor(black), false);
     ASSERT_FALSE(find_entry(result.plan, "single", 0)->on);
     ASSERT_FALSE(find_entry(result.plan, "multiple", 0)->on);

@@ -138,6 +138,7 @@ TEST(ModelError, AgainstTruthTracedBeforeTheBakeIsTheSame) {
     const tests::Scene scene = tests::make_ball_on_floor(tests::make_grey_medium(2, 0.1f));
     const BakeResult baked = tests::bake_scene(scene, tests::small_bake());
     ModelCheckOptions options;
+    options.simulated = held_light(all_effects(), baked.plan);
     options.receivers = 16;
     options.max_events = 1;
     options.noise_share = 0;  // of a file to come nothing is known

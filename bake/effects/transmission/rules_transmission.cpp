@@ -21,15 +21,6 @@ double largest_share(const formats::Medium& medium, double diameter) {
     return share;
 }
 
-// Of even light that views see past the facets of their own vertex, whose smooth normal is tilted
-// against them by up to `tilt`. Inside, views stand at least the complement of the critical angle
-// above the smooth surface.
-double share_past_facets(double eta, double behind_facets) {
-    const double tilt = std::acos(std::clamp(1 - 2 * behind_facets, -1.0, 1.0));
-    const double lowest = eta > 1 ? std::acos(1 / eta) : 0;
-    return tilt > lowest ? behind_facets / (1 - fresnel_moments(eta).external) : 0;
-}
-
 double mean_thickness(const MaterialFacts& body) {
     return body.has_thickness() ? 2 * std::abs(body.volume) / body.area : 0;
 }
@@ -87,10 +78,7 @@ PlanEntry decide_transmission(const PlanInput& input) {
     PlanEntry entry;
     entry.has_bands = true;
     const bool is_unknown = medium.variation && medium.variation->density.image != formats::kNone;
-    const double share =
-        thin_share(medium, input.subject) +
-        share_past_facets(static_cast<double>(medium.eta), input.subject.horizon.behind_facets);
-    entry.bound = is_unknown ? 1 : std::min(1.0, share);
+    entry.bound = is_unknown ? 1 : thin_share(medium, input.subject);
     if (!is_wanted(input.knobs, "transmission")) {
         entry.reason = "left out by --effects";
     } else if (medium.fidelity == formats::Medium::Fidelity::paper &&
@@ -133,10 +121,6 @@ PlanEntry decide_straight_views(const PlanInput& input) {
         entry.terms = is_fine && share > kMuch ? 9 : 4;
         entry.reason = std::to_string(entry.terms) + " rows: about " + percent(share) +
                        " of even light crosses the body, and views differ";
-    } else if (input.knobs.simulate_all) {
-        entry.forced = true;
-        entry.terms = 4;
-        entry.reason = "4 rows, though little light crosses the body";
     } else {
         entry.reason = input.subject.has_thickness()
                            ? "one row for all views: about " + percent(share) +

@@ -14,7 +14,7 @@ double straight_share(double eta, double depth);
 /// not known.
 double typical_share(const formats::Medium& medium, const MaterialFacts& body);
 
-/// The same of thin parts: the bound of the rule, but for facets.
+/// The same of thin parts: the bound of the rule.
 double thin_share(const formats::Medium& medium, const MaterialFacts& body);
 
 /// The rules `transmission` and, after it, `transmission.view`.

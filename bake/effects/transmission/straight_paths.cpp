@@ -57,8 +57,9 @@ struct Escape {
 
 class Follower {
   public:
-    Follower(const StraightBody& body, std::vector<StraightExit>& exits)
-        : body_(body), exits_(exits), clearest_(body.sigma_t[0]) {
+    Follower(const StraightBody& body, std::vector<StraightExit>& exits,
+             std::vector<std::uint32_t>& past)
+        : body_(body), exits_(exits), past_(past), clearest_(body.sigma_t[0]) {
         for (std::size_t b = 1; b < body.bands; ++b) {
             clearest_ = std::min(clearest_, body.sigma_t[b]);
         }
@@ -71,7 +72,10 @@ class Follower {
             lane = {start.position, {}, {1, 1, 1}, start.shells, i < seen.size()};
             lane.direction = i < seen.size() ? -seen[i] : glm::vec3(0, 1, 0);
         }
+        vertex_ = start.vertex;
+        is_first_ = true;
         for (int arrival = 0; arrival < kMostArrivals && advance(first); ++arrival) {
+            is_first_ = false;
         }
         look_out();
     }
@@ -143,7 +147,18 @@ class Follower {
             lane.position = at.position + (cosine > 0 ? 2 : -2) * at.error * at.flat;
             return largest(lane) >= kLeastStraightWeight;
         }
+        if (is_first_ && is_around_vertex(hits, i)) {
+            past_.push_back(view);
+            return false;
+        }
         return leave(lane, at, view);
+    }
+
+    bool is_around_vertex(const PacketHits& hits, std::uint32_t i) const {
+        const formats::Primitive& p = body_.scene->primitives[hits.primitive[i]];
+        const std::uint32_t* corner = &p.index[hits.first_index[i]];
+        return std::any_of(corner, corner + 3,
+                           [&](std::uint32_t v) { return p.position[v] == vertex_; });
     }
 
     bool leave(Lane& lane, const Arrival& at, std::uint32_t view) {
@@ -211,7 +226,10 @@ class Follower {
 
     const StraightBody& body_;
     std::vector<StraightExit>& exits_;
+    std::vector<std::uint32_t>& past_;
     float clearest_;
+    glm::vec3 vertex_{0};
+    bool is_first_ = true;
     std::array<Lane, kLanes> lanes_;
     std::vector<Escape> escapes_;
     std::uint64_t traced_ = 0;
@@ -240,12 +258,13 @@ StraightStart make_straight_start(const StraightBody& body, const BodyPoint& poi
                                   std::uint64_t& rays) {
     const InwardPath path = trace_inward_path(*body.rays, point, kInfinity);
     rays += path.steps.size();
-    return {point.inner, std::max(1, shells_at(path, 0))};
+    return {point.inner, std::max(1, shells_at(path, 0)), point.position};
 }
 
 std::uint64_t follow_straight(const StraightBody& body, const StraightStart& start,
-                              std::span<const glm::vec3> seen, std::vector<StraightExit>& exits) {
-    Follower follower(body, exits);
+                              std::span<const glm::vec3> seen, std::vector<StraightExit>& exits,
+                              std::vector<std::uint32_t>& past) {
+    Follower follower(body, exits, past);
     for (std::size_t first = 0; first < seen.size(); first += kLanes) {
         follower.follow(start,
                         seen.subspan(first, std::min<std::size_t>(kLanes, seen.size() - first)),

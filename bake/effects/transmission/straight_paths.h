@@ -33,6 +33,7 @@ StraightBody make_straight_body(const EffectInputs& inputs);
 struct StraightStart {
     glm::vec3 position{0};    ///< [m], just inside
     std::int32_t shells = 1;  ///< of the medium, around the point: >= 1
+    glm::vec3 vertex{0};      ///< [m], on the boundary: corner of the triangles around it
 };
 
 /// The start of a receiver's views. `rays` counts up.
@@ -53,8 +54,11 @@ inline constexpr float kLeastStraightWeight = 0x1p-12f;
 /// arrival at the boundary the transmitted share is an exit, unless something stands before it, and
 /// the reflected share goes on. `seen`: unit directions inside, away from the body, toward the eye.
 /// Light from other materials inside is another effect's, and light through a hole is none. Appends
-/// to `exits`, not in the order of the views. Returns the rays traced. Any thread.
+/// to `exits`, not in the order of the views, and to `past` the views that leave at once through a
+/// triangle of their own vertex: a smooth surface has none of these. Returns the rays traced. Any
+/// thread.
 std::uint64_t follow_straight(const StraightBody& body, const StraightStart& start,
-                              std::span<const glm::vec3> seen, std::vector<StraightExit>& exits);
+                              std::span<const glm::vec3> seen, std::vector<StraightExit>& exits,
+                              std::vector<std::uint32_t>& past);
 
 }  // namespace opaline::bake

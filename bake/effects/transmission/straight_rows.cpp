@@ -110,11 +110,13 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         return 0;
     }
     const std::array<float, 4> u = random_at(seed, point.position);
-    const ViewSet set = spread_views(point.normal, body.eta, views, {u[0], u[1]});
+    ViewSet set = spread_views(point.normal, body.eta, views, {u[0], u[1]});
     std::uint64_t rays = 0;
     const StraightStart start = make_straight_start(body, point, rays);
     std::vector<StraightExit> exits;
-    rays += follow_straight(body, start, set.seen, exits);
+    std::vector<std::uint32_t> past;
+    rays += follow_straight(body, start, set.seen, exits, past);
+    leave_out(set, past);
     if (exits.empty()) {
         return rays;
     }

@@ -47,11 +47,12 @@ void calibrate_transmission(const CalibrationBench& bench, Rates& rates) {
     const auto count = static_cast<double>(points.size());
     Stopwatch watch;
     std::vector<StraightExit> exits;
+    std::vector<std::uint32_t> past;
     for (const BodyPoint& point : points) {
         const ViewSet views = spread_views(point.normal, body.eta, kViews, {0.5f, 0.5f});
         std::uint64_t traced = 0;
         exits.clear();
-        follow_straight(body, make_straight_start(body, point, traced), views.seen, exits);
+        follow_straight(body, make_straight_start(body, point, traced), views.seen, exits, past);
     }
     const double views = watch.seconds() / count;
     bench.side_of(rates.straight_view) = views / kViews;

@@ -66,10 +66,12 @@ TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& t
     std::vector<glm::vec3> seen;
     std::vector<double> weight;
     std::vector<std::array<float, 4>> random;
+    std::vector<double> share;
     std::vector<StraightExit> exits;
+    std::vector<std::uint32_t> past;
     std::uint32_t number = 0;
     for (Luminance* estimate : {&estimates.first, &estimates.second}) {
-        seen.clear(), weight.clear(), random.clear(), exits.clear();
+        seen.clear(), weight.clear(), random.clear(), exits.clear(), share.clear(), past.clear();
         for (std::uint32_t i = 0; i < truth.views; ++i, ++number) {
             // Cosine-distributed, c^2 stratified.
             const auto u = random_uniform(seed, RandomStage::true_straight_views, key, number);
@@ -83,13 +85,22 @@ TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& t
             const double azimuth = 2 * std::numbers::pi * static_cast<double>(u[1]);
             seen.push_back(glm::normalize(frame.to_world(glm::vec3(
                 glm::dvec3(sine * std::cos(azimuth), sine * std::sin(azimuth), inside)))));
-            weight.push_back(passed / (mean * truth.views) * kernel(seen.back()));
+            share.push_back(passed / (mean * truth.views));
+            weight.push_back(share.back() * kernel(seen.back()));
             random.push_back(u);
         }
-        traced += follow_straight(body, start, seen, exits);
+        traced += follow_straight(body, start, seen, exits, past);
+        double left = 1;
+        for (const std::uint32_t i : past) {
+            left -= share[i];
+        }
+        if (!(left > 0)) {
+            continue;
+        }
         for (const StraightExit& exit : exits) {
-            add_light(truth, exit.direction, weight[exit.view] * luminance_of(exit, body.bands),
-                      random[exit.view], *estimate);
+            add_light(truth, exit.direction,
+                      weight[exit.view] / left * luminance_of(exit, body.bands), random[exit.view],
+                      *estimate);
         }
     }
     return estimates;

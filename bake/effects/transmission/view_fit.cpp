@@ -119,6 +119,18 @@ ViewSet spread_views(glm::vec3 normal, double eta, std::uint32_t count, glm::vec
     return views;
 }
 
+void leave_out(ViewSet& views, std::span<const std::uint32_t> some) {
+    double left = 1;
+    for (const std::uint32_t i : some) {
+        left -= views.weight[i];
+        views.weight[i] = 0;
+    }
+    constexpr double kRounding = 1e-9;
+    for (double& weight : views.weight) {
+        weight = left > kRounding ? weight / left : 0;
+    }
+}
+
 std::vector<float> fit_views(const ViewSet& views, std::uint32_t terms) {
     std::vector<float> factors;
     factors.reserve(views.seen.size() * terms);

@@ -19,6 +19,9 @@ struct ViewSet {
 /// nothing enters at all.
 ViewSet spread_views(glm::vec3 normal, double eta, std::uint32_t count, glm::vec2 shift);
 
+/// Gives the weight of some views to the others; of all of them, to none.
+void leave_out(ViewSet& views, std::span<const std::uint32_t> some);
+
 /// How a function of the view inside, known at a set of views, becomes harmonics: the row k is the
 /// sum over views i of factor[i * terms + k] times its value there (README.md, "Views").
 /// `terms` 1: their mean; 4, 9 …: weighted least squares, smoothed.

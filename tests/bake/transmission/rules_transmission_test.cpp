@@ -23,7 +23,8 @@ TEST(StraightShare, IsNoLessThanWhatABallShowsAndLittleMore) {
             const glm::vec3 normal = ball->scene.primitives[0].normal[17];
             const ViewSet views = spread_views(normal, eta, 256, {0.5f, 0.3f});
             std::vector<StraightExit> exits;
-            follow_straight(ball->body, {0.9999f * normal, 1}, views.seen, exits);
+            std::vector<std::uint32_t> past;
+            follow_straight(ball->body, {0.9999f * normal, 1, {}}, views.seen, exits, past);
             double shown = 0;
             for (const StraightExit& exit : exits) {
                 shown += views.weight[exit.view] * double{exit.weight[0]};

@@ -52,7 +52,8 @@ inline Primitive make_crossed_slab(float thickness) {
 inline std::vector<bake::StraightExit> look(const CrossedBody& crossed, glm::vec3 from,
                                             glm::vec3 seen) {
     std::vector<bake::StraightExit> exits;
-    bake::follow_straight(crossed.body, {from, 1}, {&seen, 1}, exits);
+    std::vector<std::uint32_t> past;
+    bake::follow_straight(crossed.body, {from, 1, from}, {&seen, 1}, exits, past);
     return exits;
 }
 
