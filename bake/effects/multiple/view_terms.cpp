@@ -102,6 +102,9 @@ double mean_chord(const formats::Medium& medium, const MaterialFacts& body) {
     return length > 0 && chord > 0 ? chord / length : HUGE_VAL;
 }
 
+// Of bodies whose thickness is not known: as thin as a line over the view errs most by.
+constexpr double kThinChord = 2;
+
 // 36 pi V^2 / S^3: 1 of a ball, 0.08 of a square plate ten times as wide as thick.
 bool is_flat(const MaterialFacts& body) {
     constexpr double kPlate = 0.08;
@@ -128,33 +131,30 @@ double one_view_error(const formats::Medium& medium, const MaterialFacts& body) 
 double four_views_error(const formats::Medium& medium, const MaterialFacts& body) {
     const auto eta = static_cast<double>(medium.eta);
     const ViewFit fit = make_view_fit(eta);
-    const double chord = mean_chord(medium, body);
+    const bool is_known = std::isfinite(mean_chord(medium, body));
+    const double chord = is_known ? mean_chord(medium, body) : kThinChord;
     double flat = 0, round = 0, sum = 0;
     for (const HalfSpace& space : half_spaces(medium)) {
         const auto half = [&](double c) { return space.radiance(c); };
-        const double own = space.left(medium, fit.mean) * space.peak * curvature(eta, fit, half);
+        const double all = curvature(eta, fit, half),
+                     own = space.left(medium, fit.mean) * space.peak * all;
         // A ball shows less toward its edge, where the way through it, 3/2 of the mean chord along
         // the normal, is short.
         const auto ball = [&](double c) { return -half(c) * std::expm1(-1.5 * chord * c); };
         flat += space.weight * own;
-        round += space.weight * (own + (std::isfinite(chord)
-                                            ? curvature(eta, fit, ball) - curvature(eta, fit, half)
-                                            : 0));
+        round += space.weight * (own + curvature(eta, fit, ball) - all);
         sum += space.weight;
     }
     if (!(sum > 0)) {
         return 0;
     }
-    if (std::isfinite(chord)) {
-        // A slab that absorbs nothing shows 1 - e^(-x / c') under even light, x its thickness in
-        // mean free paths. Lit from one side it bends by more, within 20 % of doubling at x = .5 to
-        // 5 and index 1.
-        const double x = 0.5 * chord, narrow = fit.bend / make_view_fit(1).bend;
-        const double slab = curvature(eta, fit, [x](double c) { return -std::expm1(-x / c); });
-        flat = std::hypot(flat / sum, slab, 0.12 * std::sqrt(narrow) * x * std::exp(-x)) * sum;
-    }
-    flat = std::abs(flat / sum);
-    return is_flat(body) ? flat : std::min(flat, std::abs(round / sum));
+    // A slab that absorbs nothing shows 1 - e^(-x / c') under even light, x its thickness in mean
+    // free paths. Lit from one side it bends by more, within 20 % of doubling at x = .5 to 5 and
+    // index 1.
+    const double x = 0.5 * chord, narrow = std::sqrt(fit.bend / make_view_fit(1).bend);
+    const double slab = curvature(eta, fit, [x](double c) { return -std::expm1(-x / c); });
+    const double plate = std::hypot(flat / sum, slab, 0.12 * narrow * x * std::exp(-x));
+    return is_known && !is_flat(body) ? std::min(plate, std::abs(round / sum)) : plate;
 }
 
 PlanEntry decide_views(const PlanInput& input) {

@@ -10,7 +10,8 @@ double one_view_error(const formats::Medium& medium, const MaterialFacts& body);
 
 /// The same of four rows, linear in the view: the part of degree two of what a plate or a ball of
 /// the same mean chord shows. Of bodies that are no plates the lesser of both: which of their parts
-/// are round is not known.
+/// are round is not known. Open bodies, whose thickness is not known, count as plates of one mean
+/// free path.
 double four_views_error(const formats::Medium& medium, const MaterialFacts& body);
 
 /// The rule `multiple.view`: rows where random walks that hold light of all orders are expected, 4
