@@ -100,7 +100,7 @@ TEST(ReferenceInVariedMedium, FurnaceOfAlbedoOneIsWhiteWhateverTheDensity) {
             look(*ball, {0.3f, 2, 0.2f}, {0, -1, 0}, bake::TermSet::all, eta == 1 ? 160000 : 40000);
         for (int band = 0; band < 3; ++band) {
             EXPECT_NEAR(seen.mean[band], 1, 4 * std::sqrt(seen.variance_of_mean()[band]) + 1e-5);
-            EXPECT_LT(std::sqrt(seen.variance_of_mean()[band]), 0.004);
+            EXPECT_LT(std::sqrt(seen.variance_of_mean()[band]), 0.007);
         }
     }
 }

@@ -58,6 +58,31 @@ TEST(SiteField, ReproducesLinearFunctionsOfThePlaceAndIgnoresTheOtherSide) {
     }
 }
 
+// Stripes much narrower than the radius: rows that follow them do so between sites as well.
+TEST(SiteField, FollowsTheTintWhereItChangesWithinTheRadius) {
+    const auto sites = make_sheet(0.02f);
+    const auto stripes = [](float x) { return 0.5f + 0.4f * std::sin(25 * x); };
+    std::vector<float> tints;
+    for (const SurfaceSample& s : sites) {
+        tints.push_back(stripes(s.position.x));
+    }
+    const SiteField field(sites, 0.35f, tints), plain(sites, 0.35f);
+    for (const glm::vec3 at : {glm::vec3(0.03f, 0, 0.02f), glm::vec3(0.33f, 0, -0.51f)}) {
+        const auto value = [&](const SurfaceSample& s) {
+            return static_cast<double>(2 + 3 * stripes(s.position.x) + 0.5f * s.position.z);
+        };
+        const auto expected = static_cast<double>(2 + 3 * stripes(at.x) + 0.5f * at.z);
+        std::vector<SiteWeight> weights;
+        field.weigh(at, {0, 1, 0}, weights, stripes(at.x));
+        double sum = 0;
+        for (const SiteWeight& w : weights) {
+            sum += static_cast<double>(w.weight) * value(sites[w.site]);
+        }
+        EXPECT_NEAR(sum, expected, 0.1);
+        EXPECT_GT(std::abs(weighted(plain, sites, at, {0, 1, 0}, value) - expected), 0.3);
+    }
+}
+
 TEST(SiteField, FollowsTheNormalOnABall) {
     std::vector<SurfaceSample> sites;
     for (int i = 0; i < 3000; ++i) {
