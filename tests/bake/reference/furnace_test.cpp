@@ -163,8 +163,9 @@ TEST(ReferenceFurnace, LightOfACoreInACoatCountsAsTheCoats) {
         bake::PathOptions paths;
         paths.terms = terms;
         bake::Moments all;
-        for (const bake::Moments& m :
-             bake::estimate_receivers(body->space(paths), chosen, options, {}).value().pixel) {
+        const bake::Estimate found =
+            bake::estimate_receivers(body->space(paths), chosen, options, {}).value();
+        for (const bake::Moments& m : found.pixel) {
             all.merge(m);
         }
         return all;
