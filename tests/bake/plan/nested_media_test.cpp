@@ -95,6 +95,7 @@ TEST(NestedMedia, ABodyIsGreyOnlyIfAllMediaInsideAre) {
 
 TEST(NestedMedia, ManyPartsThatTouchAreInspectedInBoundedTime) {
     std::vector<Part> parts;
+    parts.reserve(12);
     for (int i = 0; i < 12; ++i) {
         parts.push_back({make_sphere(4, 1 - 1e-5f * static_cast<float>(i)), coat()});
     }

@@ -146,6 +146,39 @@ TEST(ReferenceFurnace, ShellsOfOneMediumInEachOtherAreOneBody) {
     EXPECT_EQ(both.lost, 0u);
 }
 
+// Light that goes into a core and out again through its coat is the coat's: none is left for
+// `interreflection`.
+TEST(ReferenceFurnace, LightOfACoreInACoatCountsAsTheCoats) {
+    Scene input = make_scene({make_sphere(2), make_sphere(2, 0.7f)});
+    input.materials.push_back(input.materials[0]);
+    input.materials[0].medium = make_medium(2, 1, 0, 1.3f);
+    input.materials[1].medium = make_medium(6, 1, 0.5f, 1.5f);
+    input.primitives[1].material = 1;
+    const auto body = make_fixture(std::move(input), make_white_sky());
+    auto chosen = bake::choose_receivers(body->scene, 1000000, 3, kAlongNormals);
+    chosen.resize(8);
+    bake::EstimateOptions options;
+    options.samples = 4000;
+    const auto mean_of = [&](formats::TermSet terms) {
+        bake::PathOptions paths;
+        paths.terms = terms;
+        bake::Moments all;
+        const bake::Estimate found =
+            bake::estimate_receivers(body->space(paths), chosen, options, {}).value();
+        for (const bake::Moments& m : found.pixel) {
+            all.merge(m);
+        }
+        return all;
+    };
+    using formats::TermSet;
+    EXPECT_EQ(mean_of(TermSet::interreflection).mean.y, 0);
+    const bake::Moments own =
+        mean_of(TermSet::single | TermSet::multiple | TermSet::unscattered | TermSet::specular);
+    EXPECT_NEAR(own.mean.y, 1, 4 * standard_error(own) + 1e-3);
+    EXPECT_LT(standard_error(own), 0.005);
+    EXPECT_GT(mean_of(TermSet::unscattered).mean.y, 0.001);
+}
+
 TEST(ReferenceFurnace, OpaqueVerticesInsideABodySeeTheSkyThroughItOnly) {
     // A white plate in a ball: all its light crosses the boundary; none of it is `diffuse`.
     Scene input =

@@ -286,6 +286,7 @@ TEST(NestedWalk, TouchingOverlappingOpenAndTurnedBodiesEndAllWalksWithFiniteWeig
 TEST(NestedWalk, FortyBodiesInEachOtherAreFollowedWhereTheirMediaAlternateFewTimes) {
     const auto nest = [](const auto& medium_of) {
         std::vector<Part> parts;
+        parts.reserve(40);
         for (int i = 0; i < 40; ++i) {
             parts.push_back({make_sphere(2, 1 - 0.02f * static_cast<float>(i)), medium_of(i)});
         }
