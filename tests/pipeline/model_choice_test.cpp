@@ -316,6 +316,7 @@ TEST(ModelChoice, MoreRowsByViewAreTakenWhereFlatBodiesAbsorbOrAreThin) {
     EXPECT_EQ(rows(plate, 100, 0.5f, 1.5f, 0, kBest), 4u) << "views inside lie close";
     EXPECT_EQ(rows(ball, 5, 0.5f, 1, 0, kBest), 4u) << "its edge is bright and then dark";
     EXPECT_EQ(rows(ball, 30, 0.5f, 1, 0.9f, kBest), 9u) << "a forward peak";
+    EXPECT_EQ(rows(ball, 30, 0.5f, 1.3f, 0.9f, kBest), 4u) << "nine did not help";
     EXPECT_EQ(rows(tests::make_sheet(0.05f), 100, 0.99f, 1, 0, kBest), 9u)
         << "open: how thick it is, is not known";
 }
