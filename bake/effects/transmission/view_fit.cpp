@@ -156,6 +156,40 @@ std::vector<float> fit_views(const ViewSet& views, std::uint32_t terms) {
     return factors;
 }
 
+void limit_fit(const ViewSet& views, std::uint32_t terms, std::span<const double> even,
+               std::span<float> factors) {
+    std::vector<double> rows(terms), value(terms);
+    double mean = 0;
+    for (std::size_t i = 0; i < even.size(); ++i) {
+        mean += views.weight[i] * even[i];
+        for (std::size_t k = 0; k < terms; ++k) {
+            rows[k] += static_cast<double>(factors[i * terms + k]) * even[i];
+        }
+    }
+    double darkest = mean;
+    for (const glm::vec3& seen : views.seen) {
+        eval_harmonics(seen, value);
+        double sum = 0;
+        for (std::size_t k = 0; k < terms; ++k) {
+            sum += rows[k] * value[k];
+        }
+        darkest = std::min(darkest, sum);
+    }
+    if (darkest >= 0) {
+        return;
+    }
+    const auto scale = static_cast<float>(mean / (mean - darkest));
+    const double first = 0.5 * std::numbers::inv_sqrtpi;
+    for (std::size_t i = 0; i < even.size(); ++i) {
+        const auto constant = static_cast<float>(views.weight[i] / first);
+        float* const own = &factors[i * terms];
+        own[0] = constant + scale * (own[0] - constant);
+        for (std::size_t k = 1; k < terms; ++k) {
+            own[k] *= scale;
+        }
+    }
+}
+
 ViewKernel::ViewKernel(glm::vec3 normal, double eta, std::uint32_t terms, glm::vec3 seen) {
     if (terms == 1) {
         return;
