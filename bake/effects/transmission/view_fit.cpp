@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "bake/base/frame.h"
@@ -159,8 +160,9 @@ std::vector<float> fit_views(const ViewSet& views, std::uint32_t terms) {
 void limit_fit(const ViewSet& views, std::uint32_t terms, std::span<const double> even,
                std::span<float> factors) {
     std::vector<double> rows(terms), value(terms);
-    double mean = 0;
+    double mean = 0, floor = std::numeric_limits<double>::max();
     for (std::size_t i = 0; i < even.size(); ++i) {
+        floor = views.weight[i] > 0 ? std::min(floor, even[i]) : floor;
         mean += views.weight[i] * even[i];
         for (std::size_t k = 0; k < terms; ++k) {
             rows[k] += static_cast<double>(factors[i * terms + k]) * even[i];
@@ -175,10 +177,12 @@ void limit_fit(const ViewSet& views, std::uint32_t terms, std::span<const double
         }
         darkest = std::min(darkest, sum);
     }
-    if (darkest >= 0) {
+    constexpr double kRounding = 0.01;  // of the mean
+    floor = std::min(floor, mean) - kRounding * mean;
+    if (darkest >= floor) {
         return;
     }
-    const auto scale = static_cast<float>(mean / (mean - darkest));
+    const auto scale = static_cast<float>((mean - floor) / (mean - darkest));
     const double first = 0.5 * std::numbers::inv_sqrtpi;
     for (std::size_t i = 0; i < even.size(); ++i) {
         const auto constant = static_cast<float>(views.weight[i] / first);
