@@ -126,6 +126,14 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         for (float& factor : factors) {
             factor /= static_cast<float>(layout.view_of_constant());
         }
+    } else {
+        std::vector<double> even(set.seen.size());
+        for (const StraightExit& exit : exits) {
+            even[exit.view] += static_cast<double>(
+                body.bands == 1 ? exit.weight[0]
+                                : exit.weight[0] + exit.weight[1] + exit.weight[2]);
+        }
+        limit_fit(set, terms, even, factors);
     }
     Splat splat(row, terms, spread_cosine(views));
     for (const StraightExit& exit : exits) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "bake/base/frame.h"
@@ -154,6 +155,43 @@ std::vector<float> fit_views(const ViewSet& views, std::uint32_t terms) {
         factors.insert(factors.end(), rows.begin(), rows.end());
     }
     return factors;
+}
+
+void limit_fit(const ViewSet& views, std::uint32_t terms, std::span<const double> even,
+               std::span<float> factors) {
+    std::vector<double> rows(terms), value(terms);
+    double mean = 0, floor = std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < even.size(); ++i) {
+        floor = views.weight[i] > 0 ? std::min(floor, even[i]) : floor;
+        mean += views.weight[i] * even[i];
+        for (std::size_t k = 0; k < terms; ++k) {
+            rows[k] += static_cast<double>(factors[i * terms + k]) * even[i];
+        }
+    }
+    double darkest = mean;
+    for (const glm::vec3& seen : views.seen) {
+        eval_harmonics(seen, value);
+        double sum = 0;
+        for (std::size_t k = 0; k < terms; ++k) {
+            sum += rows[k] * value[k];
+        }
+        darkest = std::min(darkest, sum);
+    }
+    constexpr double kRounding = 0.01;  // of the mean
+    floor = std::min(floor, mean) - kRounding * mean;
+    if (darkest >= floor) {
+        return;
+    }
+    const auto scale = static_cast<float>((mean - floor) / (mean - darkest));
+    const double first = 0.5 * std::numbers::inv_sqrtpi;
+    for (std::size_t i = 0; i < even.size(); ++i) {
+        const auto constant = static_cast<float>(views.weight[i] / first);
+        float* const own = &factors[i * terms];
+        own[0] = constant + scale * (own[0] - constant);
+        for (std::size_t k = 1; k < terms; ++k) {
+            own[k] *= scale;
+        }
+    }
 }
 
 ViewKernel::ViewKernel(glm::vec3 normal, double eta, std::uint32_t terms, glm::vec3 seen) {

@@ -27,6 +27,12 @@ void leave_out(ViewSet& views, std::span<const std::uint32_t> some);
 /// `terms` 1: their mean; 4, 9 …: weighted least squares, smoothed.
 std::vector<float> fit_views(const ViewSet& views, std::uint32_t terms);
 
+/// Scales the rows by view until under even light no view of the set is darker than the darkest, as
+/// a fit of the lowest degrees to light that falls fast with the cosine would be. `even`: what each
+/// view shows of even light, >= 0. `terms` > 1.
+void limit_fit(const ViewSet& views, std::uint32_t terms, std::span<const double> even,
+               std::span<float> factors);
+
 /// That fit, over all views there are, seen along `seen`: the mean over views w' of k(w') times
 /// the function. Immutable once made.
 class ViewKernel {
