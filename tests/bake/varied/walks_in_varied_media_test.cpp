@@ -16,8 +16,8 @@ TEST(WalkInVariedMedium, AWhiteFieldKeepsTheBitsOfTheHomogeneousMedium) {
     variation_of(scene).marble = formats::Marble{0.2f, {{1, 1, 1}, {1, 1, 1}}};
     const auto varied = make_walked_scene(std::move(scene));
     const auto plain = make_walked_body(make_sphere(3), medium);
-    ASSERT_TRUE(varied->space.field);
-    ASSERT_FALSE(plain->space.field);
+    ASSERT_TRUE(varied->space.media.front().field);
+    ASSERT_FALSE(plain->space.media.front().field);
     const Leaving a = walk_from(varied->space, kTop, 1, 2000);
     const Leaving b = walk_from(plain->space, kTop, 1, 2000);
     EXPECT_EQ(a.all, b.all);
