@@ -302,7 +302,8 @@ TEST(TranslucentPipeline, SelfCheckNamesEffectsAndLights) {
         }
         return list;
     };
-    EXPECT_EQ(names(error.at_receivers.by_effect), (Names{"multiple+single", "direct"}));
+    EXPECT_EQ(names(error.at_receivers.by_effect),
+              (Names{"multiple+single+transmission", "direct"}));
     EXPECT_EQ(names(error.at_receivers.by_light),
               (Names{"white", "sun:30,60", "sun:150,35", "sun:270,15", "studio", "sky:3,35"}));
     EXPECT_GT(error.rms_relative, 0);
