@@ -64,7 +64,8 @@ TEST(Coefficients, WithoutScatteringTheMirrorIsLeftAndWhatHardlyCrosses) {
 // Readers refuse such a medium (MediaErrors.MediumWithoutAnyCoefficientIsRefused).
 TEST(Coefficients, WithoutAnyMediumAllLightCrossesAndNothingIsNan) {
     const auto ball = make_ball_on_floor(make_grey_medium(0, 0));
-    expect_sound(bake_scene(ball, small_bake()), {0.1, 1}, "clear");
+    // 1 but for codes of 8 bits, few coefficients and views between those of the fit.
+    expect_sound(bake_scene(ball, small_bake()), {0.1, 1.02}, "clear");
     expect_sound(bake_scene(ball, only({"multiple", "single"})), {0, 0}, "nothing scatters");
 }
 
