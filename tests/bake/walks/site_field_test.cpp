@@ -99,6 +99,28 @@ TEST(SiteField, FollowsTheNormalOnABall) {
                 static_cast<double>(glm::dot(at, glm::vec3(0.6f, 0, 0.8f))), 0.01);
 }
 
+// A rounded ridge narrower than the radius, such as the rim of a feather: its crest is symmetric,
+// so that nothing linear in offsets and coordinates across the normal tells it from its flanks.
+TEST(SiteField, TellsTheCrestOfARidgeFromItsFlanks) {
+    constexpr float kRidge = 0.15f;
+    std::vector<SurfaceSample> sites;
+    for (int i = -15; i <= 15; ++i) {
+        for (int k = -20; k <= 20; ++k) {
+            const float angle = 0.1f * static_cast<float>(i);
+            const glm::vec3 n(std::sin(angle), std::cos(angle), 0);
+            sites.push_back(
+                make_site(kRidge * n + glm::vec3(0, 0, 0.05f * static_cast<float>(k)), n));
+        }
+    }
+    const SiteField field(sites, 0.35f);
+    const auto light = [](const SurfaceSample& s) { return static_cast<double>(s.normal.y); };
+    for (const float angle : {0.0f, 0.4f, -0.8f}) {
+        const glm::vec3 n(std::sin(angle), std::cos(angle), 0);
+        EXPECT_NEAR(weighted(field, sites, kRidge * n, n, light), static_cast<double>(n.y), 0.03)
+            << angle;
+    }
+}
+
 TEST(SiteField, FarAwayOrFacingNoSiteTheNearestStandIn) {
     const std::vector<SurfaceSample> one{make_site({0, 0, 0}, {0, 1, 0})};
     const SiteField field(one, 0.1f);

@@ -209,8 +209,11 @@ TEST(SitePlan, SitesStandAsTheMeanFreePathAsksUpToTheirNumber) {
     EXPECT_NEAR(bake::count_walks(wide, 4, {1000, 1e9, 100000}),
                 1000 * 4 / (std::numbers::pi * wide.radius * wide.radius), 1);
     EXPECT_EQ(bake::count_walks(wide, 4, {1000, 5000, 100000}), 5000);
-    EXPECT_LE(bake::plan_sites(4, 2, 100, {1000, 1e9, 20000}).radius, 0.1 + 1e-9)
+    EXPECT_NEAR(bake::plan_sites(4, 2, 100, {1000, 1e9, 20000}).radius, 0.06, 1e-9)
         << "no wider than features";
+    const bake::SitePlan few = bake::plan_sites(4, 2, 100, {1000, 1e4, 20000});
+    EXPECT_NEAR(few.radius, 0.1, 1e-9) << "unless walks are few";
+    EXPECT_FALSE(few.is_residual) << "transport itself is wider";
 }
 
 TEST(SitePlan, FewWalksAreCountedFartherAroundSoThatNoiseStaysTheSame) {

@@ -19,7 +19,7 @@ std::vector<SurfacePoint> points_of(std::span<const SurfaceSample> samples) {
     return points;
 }
 
-// Fewer are too few for a function of five or six coefficients.
+// Fewer are too few for a function of six or seven coefficients.
 constexpr std::size_t kFewest = 8;
 
 }  // namespace
@@ -63,11 +63,12 @@ std::vector<SiteField::Neighbour> SiteField::collect(glm::vec3 position, glm::ve
 }
 
 // A site's place relative to a receiver: 1, two offsets in radii, two coordinates of the normal,
-// and the difference of tints where there are some.
+// the cosine between both normals less 1, which tells the crest of a ridge from its flanks, and the
+// difference of tints where there are some.
 template <int kCoefficients>
 void SiteField::fit(std::span<const Neighbour> neighbours, glm::vec3 normal, float tint,
                     std::vector<SiteWeight>& weights) const {
-    constexpr float kTintScale = 2;
+    constexpr float kFacingScale = 2, kTintScale = 2;
     using Coordinates = Eigen::Matrix<double, kCoefficients, 1>;
     using Matrix = Eigen::Matrix<double, kCoefficients, kCoefficients>;
     const Frame frame = make_frame(normal);
@@ -78,8 +79,9 @@ void SiteField::fit(std::span<const Neighbour> neighbours, glm::vec3 normal, flo
         at(2) = static_cast<double>(glm::dot(frame.v, n.offset));
         at(3) = static_cast<double>(glm::dot(frame.u, normal_[n.site]));
         at(4) = static_cast<double>(glm::dot(frame.v, normal_[n.site]));
-        if constexpr (kCoefficients > 5) {
-            at(5) = static_cast<double>(kTintScale * (tint_[n.site] - tint));
+        at(5) = static_cast<double>(kFacingScale * (glm::dot(normal, normal_[n.site]) - 1));
+        if constexpr (kCoefficients > 6) {
+            at(6) = static_cast<double>(kTintScale * (tint_[n.site] - tint));
         }
         return at;
     };
@@ -117,8 +119,8 @@ void SiteField::weigh(glm::vec3 position, glm::vec3 normal, std::vector<SiteWeig
         }
         return;
     }
-    tint_.empty() ? fit<5>(neighbours, normal, tint, weights)
-                  : fit<6>(neighbours, normal, tint, weights);
+    tint_.empty() ? fit<6>(neighbours, normal, tint, weights)
+                  : fit<7>(neighbours, normal, tint, weights);
 }
 
 }  // namespace opaline::bake

@@ -52,6 +52,7 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
     std::vector<std::uint32_t> materials{material};
     materials.insert(materials.end(), inner.begin(), inner.end());
     std::vector<const formats::Medium*> given;
+    given.reserve(materials.size());
     for (const std::uint32_t m : materials) {
         given.push_back(&*scene.materials[m].medium);
     }

@@ -11,21 +11,24 @@
 namespace opaline::bake {
 
 SitePlan plan_sites(double area, double diagonal, double mean_free_path, const WalkBudget& budget) {
-    // In mean free paths, but never wider than the body's own features (RESULTS.md, "Walks").
-    constexpr double kRadius = 1.5, kWidest = 0.05, kSpacing = 0.3, kFewestSites = 500;
+    // In mean free paths, but not wider than the body's own features, unless walks are too few for
+    // that (RESULTS.md, "Walks").
+    constexpr double kRadius = 1.5, kWide = 0.03, kWidest = 0.05;
+    constexpr double kSpacing = 0.3, kFewestSites = 500;
     constexpr double kLeastRadius = 1.8;  // spacings: ten sites
     const double widest = kWidest * diagonal;
-    const double wanted = std::min(kRadius * mean_free_path, widest);
+    const double carried = std::min(kRadius * mean_free_path, widest);
     const double for_walks =
         std::sqrt(budget.around * area / (std::numbers::pi * std::max(budget.most, 1.0)));
-    const double radius = std::max(wanted, std::min(for_walks, widest));
+    const double radius =
+        std::max(std::min(carried, kWide * diagonal), std::min(for_walks, widest));
     const double spacing = kSpacing * radius;
     const double count = std::clamp(area / (spacing * spacing), kFewestSites,
                                     std::max(kFewestSites, static_cast<double>(budget.sites)));
     SitePlan plan;
     plan.sites = static_cast<std::uint32_t>(count);
     plan.radius = std::max(radius, kLeastRadius * std::sqrt(area / count));
-    plan.is_residual = plan.radius > 1.5 * wanted;
+    plan.is_residual = plan.radius > 1.5 * carried;
     return plan;
 }
 
