@@ -49,13 +49,13 @@ struct ModelErrorReport {
 /// Effort of the check. It counts events, not seconds, so the result does not depend on the
 /// machine.
 struct ModelCheckOptions {
-    std::uint32_t receivers = 48;  ///< to check; fewer if the scene has fewer
+    std::uint32_t receivers = 192;  ///< to check; fewer if the scene has fewer
     std::uint64_t seed = 0;
     /// The terms that correspond to the file's effects.
     TermSet simulated = TermSet::diffuse | TermSet::single | TermSet::multiple;
     double noise = 0.01;                  ///< relative to the RMS of the truth: enough for any file
     double noise_share = 0.25;            ///< relative to the difference: enough for this file
-    std::uint64_t max_events = 10000000;  ///< most scatterings and surfaces met, for each light
+    std::uint64_t max_events = 20000000;  ///< most scatterings and surfaces met, for each light
 };
 
 /// The terms of the reference that the files of a plan hold, without mirror reflection.

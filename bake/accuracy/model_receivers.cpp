@@ -52,7 +52,7 @@ bool is_folded(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
     if (receiver.medium == formats::kNone) {
         return false;
     }
-    constexpr float kThin = 0.1f;  // mean free paths, in the clearest channel
+    constexpr float kThin = 1;  // mean free paths, in the clearest channel
     const glm::vec3 sigma_t = scene.media[receiver.medium].sigma_t;
     float reach = kThin / std::max(std::min({sigma_t.x, sigma_t.y, sigma_t.z}), 1e-30f);
     const glm::vec3 down = -receiver.normal;

@@ -43,9 +43,9 @@ TEST(ModelError, UnderWhiteIsZeroWithinItsIntervalHoweverMuchNoiseThereIs) {
         share_of_noise += white.rms_relative / white.noise / kSeeds;
         bias += white.bias / kSeeds;
     }
-    // 48 receivers: the sum of squares is off by sqrt(2 / 48) of the variance, either way.
+    // 192 receivers: the sum of squares is off by sqrt(2 / 192) of the variance, either way.
     EXPECT_LT(share_of_noise, 0.5);
-    EXPECT_LT(std::abs(bias), 0.0125) << "4 standard errors of 192 means";
+    EXPECT_LT(std::abs(bias), 0.0125) << "8 standard errors of 768 means";
 }
 
 TEST(ModelError, WeighsInterreflectionButDoesNotCountIt) {

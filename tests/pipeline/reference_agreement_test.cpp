@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
@@ -14,6 +15,19 @@
 namespace opaline::bake {
 namespace {
 
+// Of the self-checks of several seeds: one has 32 receivers, and in two of twelve none of them is
+// at an edge of a shadow, where most of the error is.
+double stated_error(const tests::Scene& scene, BakeOptions options) {
+    constexpr int kSeeds = 8;
+    double squares = 0;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+        options.seed = static_cast<std::uint64_t>(seed);
+        squares +=
+            std::pow(tests::bake_scene(scene, options).error.at_receivers.rms_relative, 2) / kSeeds;
+    }
+    return std::sqrt(squares);
+}
+
 // Direct light on opaque surfaces: the file's own numerical error, measured by itself, is all.
 TEST(ReferenceAgreement, DirectLightOnConvexAndConcaveOpaqueBodies) {
     BakeOptions options = tests::small_bake();
@@ -25,8 +39,9 @@ TEST(ReferenceAgreement, DirectLightOnConvexAndConcaveOpaqueBodies) {
         EXPECT_TRUE(report.left_out.empty());
         ASSERT_EQ(report.by_light.size(), 6u) << "nothing refracts: every test light";
         // Both measure one error, at receivers of their own.
-        EXPECT_LE(report.ci95[0], baked.error.at_receivers.ci95[1]);
-        EXPECT_LE(baked.error.at_receivers.ci95[0], report.ci95[1]);
+        const double stated = stated_error(scene, options);
+        EXPECT_GE(stated, report.ci95[0]);
+        EXPECT_LE(stated, report.ci95[1]);
         for (std::size_t l = 0; l < 6; ++l) {
             const ModelErrorReport::Part& model = report.by_light[l];
             const ErrorReport::Part& numerical = baked.error.at_receivers.by_light[l];
