@@ -136,6 +136,15 @@ class Documents(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("bake/low/b.cpp:2: names theory.md", output)
 
+    def test_a_test_that_is_none_is_found(self):
+        tests = {**self.TREE, "tests/a_test.cpp": "TEST(Body, IsRound) {\n}\nTEST_F(Body,\n       IsDense) {"}
+        good = {**tests, "tests/README.md": "| Body.IsRound, low: Body.Is*, Body.* | Body.IsDense, Body.IsRound; see README.md |"}
+        self.assertEqual(run("check_documents.py", good)[0], 0)
+        for name in ["Body.WasRound", "Ball.IsRound", "Body.IsRou", "Body.Was*"]:
+            code, output = run("check_documents.py", {**tests, "tests/README.md": f"one\n| {name} |"})
+            self.assertEqual(code, 1, name)
+            self.assertIn("tests/README.md:2: names " + name.rstrip("*"), output)
+
 
 if __name__ == "__main__":
     unittest.main()
