@@ -143,15 +143,11 @@ void add_sums(std::span<const float> sums, float factor, std::uint32_t row, cons
     }
 }
 
-// Rows by view as harmonics of the view w'. `sums`: T_d / scale.
-void add_views(const MultipleStage& stage, const GatherReceiver& receiver,
-               std::span<const float> sums, float scale, const RowLayout& layout,
+// `rows` by view as harmonics of the view w'. `sums`: T_d / scale.
+void add_views(const ViewFit& fit, glm::vec3 normal, std::span<const float> sums,
+               std::span<const float> rows, float scale, const RowLayout& layout,
                const DenseRow& row) {
-    const glm::vec3 normal = receiver.inside.normal;
-    const ViewFit& fit = stage.walks.view_fit;
     const std::uint32_t count = layout.view_harmonics - 1;
-    std::vector<float> rows(std::size_t{count} * sums.size());
-    gather_views(stage, receiver.inside.position, normal, rows);
     const ViewLimit limit = limit_views(sums, rows, row.bands == 1 ? 1 : 4, normal, fit);
     const ViewMatrix matrix = to_harmonics(fit, normal);
     for (std::uint32_t k = 0; k < layout.view_harmonics; ++k) {
@@ -161,7 +157,7 @@ void add_views(const MultipleStage& stage, const GatherReceiver& receiver,
             const float factor =
                 scale * (r < kFirstDegree ? limit.first : limit.second) * matrix[k][r];
             if (factor != 0) {
-                add_sums(std::span(rows).subspan(r * sums.size(), sums.size()), factor, to, row);
+                add_sums(rows.subspan(r * sums.size(), sums.size()), factor, to, row);
             }
         }
     }
@@ -172,11 +168,13 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
     const MultipleStage& stage = static_cast<const Samples&>(*inputs.own.samples).stage;
     const double scale = 1 / (std::numbers::pi * stage.medium.exit);
     std::vector<float> sums((row.bands == 1 ? 1 : 4) * row.size());
-    gather_multiple_row(stage, receiver.inside.position, receiver.inside.normal,
-                        inputs.knobs[kEpsilon], row.bands, sums);
+    const std::uint32_t by_view = std::max(1u, inputs.layout.view_harmonics) - 1;
+    std::vector<float> views(by_view * sums.size());
+    gather_multiple_rows(stage, receiver.inside, inputs.knobs[kEpsilon], row.bands, sums, views);
     add_sums(sums, static_cast<float>(scale / inputs.layout.view_of_constant()), 0, row);
-    if (inputs.layout.view_harmonics > 0) {
-        add_views(stage, receiver, sums, static_cast<float>(scale), inputs.layout, row);
+    if (by_view > 0) {
+        add_views(stage.walks.view_fit, receiver.inside.normal, sums, views,
+                  static_cast<float>(scale), inputs.layout, row);
     }
     return 0;
 }

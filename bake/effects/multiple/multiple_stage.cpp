@@ -106,14 +106,17 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
     const bool scales = options.model == MultipleModel::scaled;
     const ExitLight light(entering.samples, entering.rows, scales ? nullptr : &entering.moments,
                           stage.medium.eta, stage.medium.exit);
-    const WalkStageOptions wanted{plan.radius,
-                                  walks,
-                                  {.cubemap_size = options.cubemap_size,
-                                   .kept = scales ? 6 : options.kept,
-                                   .views = scales ? 1 : options.views,
-                                   .bands = options.bands,
-                                   .seed = options.seed,
-                                   .orders = {options.all_orders ? 1u : 2u}}};
+    const bool is_inside = !scales && !plan.is_residual && options.all_orders &&
+                           space.media.size() == 1 && !space.media.front().field;
+    const WalkStageOptions wanted{.radius = plan.radius,
+                                  .walks = walks,
+                                  .is_inside = is_inside,
+                                  .views = scales ? 1 : options.views,
+                                  .rows = {.cubemap_size = options.cubemap_size,
+                                           .kept = scales ? 6 : options.kept,
+                                           .bands = options.bands,
+                                           .seed = options.seed,
+                                           .orders = {options.all_orders ? 1u : 2u}}};
     const std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
     const std::size_t step = options.bands == 1 ? 1 : 4;
     const glm::vec3 scale(static_cast<float>(1 / (std::numbers::pi * stage.medium.exit)));
@@ -200,27 +203,19 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     return stage;
 }
 
-void gather_multiple_row(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
-                         double tolerance, std::uint32_t bands, std::span<float> rgbx) {
+void gather_multiple_rows(const MultipleStage& stage, const BodyPoint& point, double tolerance,
+                          std::uint32_t bands, std::span<float> rgbx, std::span<float> views) {
     if (stage.tree.nodes.empty()) {
         std::ranges::fill(rgbx, 0.0f);
     } else {
-        gather_dipole_row(stage, position, normal, tolerance, ratio_at(stage, position, normal),
-                          bands, rgbx);
+        gather_dipole_row(stage, point.position, point.normal, tolerance,
+                          ratio_at(stage, point.position, point.normal), bands, rgbx);
     }
+    std::ranges::fill(views, 0.0f);
     if (stage.model == MultipleModel::walks) {
         // A walked row is T_d / (pi c_exit).
-        add_walked_row(stage.walks, position, normal,
-                       static_cast<float>(std::numbers::pi * stage.medium.exit), rgbx);
-    }
-}
-
-void gather_views(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
-                  std::span<float> rows) {
-    std::ranges::fill(rows, 0.0f);
-    if (stage.model == MultipleModel::walks) {
-        add_walked_views(stage.walks, position, normal,
-                         static_cast<float>(std::numbers::pi * stage.medium.exit), rows);
+        add_walked_rows(stage.walks, point,
+                        static_cast<float>(std::numbers::pi * stage.medium.exit), rgbx, views);
     }
 }
 

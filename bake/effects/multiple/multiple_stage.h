@@ -61,14 +61,10 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
                                const MediumProfile& medium, const MultipleOptions& options,
                                const Context& context);
 
-/// T_d, the row of multiple scattering at a point with unit normal: four floats per texel (one with
-/// one band), overwritten.
-void gather_multiple_row(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
-                         double tolerance, std::uint32_t bands, std::span<float> rgbx);
-
-/// How T_d changes with the view, as walks found it: rows by view (walks/view_fit.h), 3 or 8, one
-/// after the other, overwritten.
-void gather_views(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
-                  std::span<float> rows);
+/// T_d, the row of multiple scattering at a point: four floats per texel (one with one band). And
+/// how it changes with the view, as walks found it: rows by view (walks/view_fit.h), none, 3 or 8,
+/// one after the other. Both overwritten.
+void gather_multiple_rows(const MultipleStage& stage, const BodyPoint& point, double tolerance,
+                          std::uint32_t bands, std::span<float> rgbx, std::span<float> views);
 
 }  // namespace opaline::bake

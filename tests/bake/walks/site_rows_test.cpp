@@ -19,6 +19,7 @@ namespace {
 using bake::SurfaceSample;
 
 constexpr std::uint32_t kCubemap = 8;
+constexpr std::uint32_t kAll = formats::cubemap_texels(kCubemap);
 
 struct WalkedBall {
     std::unique_ptr<WalkedBody> body;
@@ -57,42 +58,49 @@ double white(std::span<const float> haar_row) {
     return sum;
 }
 
-bake::WalkStage walk(const WalkedBall& ball, unsigned threads, std::uint32_t views = 1) {
+bake::WalkStage walk(const WalkedBall& ball, unsigned threads, bool inside,
+                     std::uint32_t views = 1) {
     const bake::ExitLight light(ball.samples, ball.transport.rows, &ball.transport.moments,
                                 ball.eta, ball.escape);
     bake::Context context;
     context.threads = threads;
     const auto sites = bake::place_sites(ball.body->space, {300, 0.4, false}, 0, context);
     return bake::take_walks(ball.body->space, light, sites,
-                            {0.4,
-                             30000,
-                             {.cubemap_size = kCubemap,
-                              .kept = 200,
-                              .views = views,
-                              .bands = 1,
-                              .walks_per_site = 1,
-                              .seed = 0,
-                              .orders = {1}}},
+                            {.radius = 0.4,
+                             .walks = 30000,
+                             .is_inside = inside,
+                             .views = views,
+                             .rows = {.cubemap_size = kCubemap,
+                                      .kept = 200,
+                                      .bands = 1,
+                                      .seed = 0,
+                                      .orders = {1}}},
                             {}, context);
+}
+
+bake::BodyPoint body_point(const SurfaceSample& at) {
+    return {at.position, at.normal, at.position - 1e-5f * at.geometric_normal, 0};
 }
 
 // A ball of albedo 1 in an even sky shows the sky's radiance, whatever row it is.
 TEST(SiteRows, BallOfAlbedoOneInAnEvenSkyShowsTheSky) {
     const WalkedBall ball = make_ball(20, 1, true);
-    const bake::WalkStage stage = walk(ball, 2);
-    double sum = 0;
-    constexpr int kPoints = 50;
-    for (int i = 0; i < kPoints; ++i) {
-        const SurfaceSample& at = ball.samples[static_cast<std::size_t>(i * 29)];
-        std::vector<float> row(formats::cubemap_texels(kCubemap));
-        bake::add_walked_row(stage, at.position, at.normal, 1, row);
-        sum += 4 * std::numbers::pi * white(row) / kPoints;
+    for (const bool inside : {false, true}) {
+        const bake::WalkStage stage = walk(ball, 2, inside);
+        double sum = 0;
+        constexpr int kPoints = 50;
+        for (int i = 0; i < kPoints; ++i) {
+            std::vector<float> row(kAll);
+            bake::add_walked_rows(
+                stage, body_point(ball.samples[static_cast<std::size_t>(i * 29)]), 1, row, {});
+            sum += 4 * std::numbers::pi * white(row) / kPoints;
+        }
+        // An even cube is no even sky, and light-free rows err by the truncated entries: a few per
+        // cent.
+        EXPECT_NEAR(sum, 1, 0.03) << inside;
+        EXPECT_EQ(stage.counts.walks, 30000u);
+        EXPECT_LT(stage.counts.lost, 3u);
     }
-    // An even cube is no even sky, and light-free rows err by the truncated entries: a few per
-    // cent.
-    EXPECT_NEAR(sum, 1, 0.03);
-    EXPECT_EQ(stage.counts.walks, 30000u);
-    EXPECT_LT(stage.counts.lost, 3u);
 }
 
 // Where light is the same everywhere no view differs, however few the walks: without the mean of
@@ -103,22 +111,21 @@ TEST(SiteRows, NoViewDiffersInAnEvenSkyWhereNothingIsAbsorbed) {
     constexpr std::size_t kSites = 100;
     const auto sites = bake::place_sites(ball.body->space, {kSites, 0.4, false}, 0, {});
     const bake::WalkStage stage = bake::take_walks(ball.body->space, light, sites,
-                                                   {0.4,
-                                                    16 * kSites,
-                                                    {.cubemap_size = kCubemap,
-                                                     .kept = formats::cubemap_texels(kCubemap),
-                                                     .views = 9,
-                                                     .bands = 1,
-                                                     .walks_per_site = 1,
-                                                     .seed = 0,
-                                                     .orders = {1}}},
+                                                   {.radius = 0.4,
+                                                    .walks = 16 * kSites,
+                                                    .views = 9,
+                                                    .rows = {.cubemap_size = kCubemap,
+                                                             .kept = kAll,
+                                                             .bands = 1,
+                                                             .seed = 0,
+                                                             .orders = {1}}},
                                                    {}, {});
     const auto rms = [&](std::uint32_t first, std::uint32_t end) {
         double sum = 0;
         for (std::size_t site = 0; site < kSites; ++site) {
             for (std::uint32_t view = first; view < end; ++view) {
                 std::vector<float> row(formats::cubemap_texels(kCubemap));
-                bake::add_site_row(stage.rows, site, view, 1, row);
+                bake::add_site_row(stage.rows, site, view, glm::vec3(1), row);
                 sum += std::pow(4 * std::numbers::pi * white(row), 2) / kSites;
             }
         }
@@ -136,19 +143,18 @@ TEST(SiteRows, OfWalksThatAreSpreadEvenlyHaveLessNoise) {
     constexpr std::size_t kSites = 200;
     const auto sites = bake::place_sites(ball.body->space, {kSites, 0.4, false}, 0, {});
     const bake::WalkStage stage = bake::take_walks(ball.body->space, light, sites,
-                                                   {0.4,
-                                                    16 * kSites,
-                                                    {.cubemap_size = kCubemap,
-                                                     .kept = formats::cubemap_texels(kCubemap),
-                                                     .bands = 1,
-                                                     .walks_per_site = 1,
-                                                     .seed = 0,
-                                                     .orders = {1}}},
+                                                   {.radius = 0.4,
+                                                    .walks = 16 * kSites,
+                                                    .rows = {.cubemap_size = kCubemap,
+                                                             .kept = kAll,
+                                                             .bands = 1,
+                                                             .seed = 0,
+                                                             .orders = {1}}},
                                                    {}, {});
     double sum = 0, squares = 0;
     for (std::size_t site = 0; site < kSites; ++site) {
         std::vector<float> row(formats::cubemap_texels(kCubemap));
-        bake::add_site_row(stage.rows, site, 0, 1, row);
+        bake::add_site_row(stage.rows, site, 0, glm::vec3(1), row);
         const double radiance = 4 * std::numbers::pi * white(row);
         sum += radiance / kSites;
         squares += radiance * radiance / kSites;
@@ -158,13 +164,77 @@ TEST(SiteRows, OfWalksThatAreSpreadEvenlyHaveLessNoise) {
 
 TEST(SiteRows, HaveTheSameBitsForAnyNumberOfThreads) {
     const WalkedBall ball = make_ball(5, 0.9f, true);
-    const bake::WalkStage one = walk(ball, 1, 9), three = walk(ball, 3, 9);
-    ASSERT_EQ(one.rows.blocks.size(), three.rows.blocks.size());
-    for (std::size_t b = 0; b < one.rows.blocks.size(); ++b) {
-        EXPECT_EQ(one.rows.blocks[b].index, three.rows.blocks[b].index);
-        EXPECT_EQ(one.rows.blocks[b].value, three.rows.blocks[b].value);
+    for (const bool inside : {false, true}) {
+        const bake::WalkStage one = walk(ball, 1, inside, 9), three = walk(ball, 3, inside, 9);
+        ASSERT_EQ(one.rows.blocks.size(), three.rows.blocks.size());
+        for (std::size_t b = 0; b < one.rows.blocks.size(); ++b) {
+            EXPECT_EQ(one.rows.blocks[b].index, three.rows.blocks[b].index);
+            EXPECT_EQ(one.rows.blocks[b].value, three.rows.blocks[b].value);
+        }
+        EXPECT_EQ(one.counts.events, three.counts.events);
     }
-    EXPECT_EQ(one.counts.events, three.counts.events);
+}
+
+// A blade .4 mean free paths thick: its edge shows light that was scattered along the blade, its
+// sides light that crossed it. Rows shared over the surface mix both; flights of the receiver's own
+// tell them apart. Views along the normal come from the same rows.
+TEST(SiteRows, OfSitesInsideShowTheEdgeOfAThinBladeAsItsOwnWalksDo) {
+    constexpr float kThickness = 0.4f;
+    Primitive blade = make_cube(8, false);
+    for (glm::vec3& p : blade.position) {
+        p *= glm::vec3(0.5f * kThickness, 3, 3);
+    }
+    WalkedBall body;
+    body.body = make_walked_body(std::move(blade), make_forward_medium(1, 0.95f, 0, 1.3f));
+    body.eta = static_cast<double>(body.body->space.eta);
+    body.samples = bake::sample_surface(body.body->scene, {0}, 4000, 0, {});
+    const auto sky = bake::RayScene::build({}, 1).value();
+    body.transport =
+        bake::bake_sample_transport(sky, body.samples, {kCubemap, kAll, body.eta, true, 0}, {});
+    body.escape = 1 - bake::fresnel_moments(body.eta).external;
+    const bake::ExitLight light(body.samples, body.transport.rows, nullptr, body.eta, body.escape);
+    const auto sites = bake::place_sites(body.body->space, {1500, 1, false}, 0, {});
+    const bake::WalkStage stage = bake::take_walks(
+        body.body->space, light, sites,
+        {.radius = 1,
+         .walks = 1.5e6,
+         .is_inside = true,
+         .views = 4,
+         .rows = {.cubemap_size = kCubemap, .kept = 6, .bands = 1, .seed = 0, .orders = {1}}},
+        {}, {});
+    // The cube map's own error: what an exit's light is under white, instead of 1.
+    double unit = 0;
+    for (std::uint32_t j = 0; j < body.samples.size(); ++j) {
+        std::vector<float> rgbx(4 * kAll), row(kAll);
+        const glm::vec4 factors = light.factors(j, {});
+        light.add(j, {factors, factors, factors}, rgbx);
+        for (std::size_t k = 0; k < row.size(); ++k) {
+            row[k] = rgbx[4 * k];
+        }
+        unit += 4 * std::numbers::pi * white(row) / static_cast<double>(body.samples.size());
+    }
+    EXPECT_NEAR(unit, 1, 0.05);
+    for (const glm::vec3 normal : {glm::vec3(0, 1, 0), glm::vec3(1, 0, 0)}) {
+        const glm::vec3 at = normal * glm::vec3(0.5f * kThickness, 3, 3);
+        const bake::WalkStart start = start_below(at, normal);
+        std::vector<float> row(kAll), views(3 * kAll);
+        bake::add_walked_rows(stage, {at, normal, start.position, 0}, 1, row, views);
+        constexpr std::uint32_t kWalks = 200000;
+        const Leaving truth = walk_from(body.body->space, start, 1, kWalks);
+        const double mean = 4 * std::numbers::pi * white(row) / unit;
+        EXPECT_NEAR(mean / truth.all, 1, 0.025) << normal.y;
+        // Seen along the normal: T_0 + (1 - m) n . R.
+        double along = mean;
+        for (int axis = 0; axis < 3; ++axis) {
+            along += 4 * std::numbers::pi / unit * (1 - stage.view_fit.mean) *
+                     static_cast<double>(normal[axis]) *
+                     white(std::span(views).subspan(static_cast<std::size_t>(axis) * kAll, kAll));
+        }
+        bake::WalkStart straight = start;
+        straight.is_along_normal = true;
+        const Leaving seen = walk_from(body.body->space, straight, 1, kWalks);
+        EXPECT_NEAR(along / seen.all, 1, 0.03) << normal.y;
+    }
 }
 
 // What is subtracted before truncation is missing from the rows.
@@ -174,14 +244,13 @@ TEST(SiteRows, SubtractedRowsAreLeftOut) {
     const auto sites = bake::place_sites(ball.body->space, {50, 0.4, false}, 0, {});
     const auto take = [&](float share) {
         return bake::take_walks(ball.body->space, light, sites,
-                                {0.4,
-                                 500,
-                                 {.cubemap_size = kCubemap,
-                                  .kept = 400,
-                                  .bands = 1,
-                                  .walks_per_site = 1,
-                                  .seed = 0,
-                                  .orders = {}}},
+                                {.radius = 0.4,
+                                 .walks = 500,
+                                 .rows = {.cubemap_size = kCubemap,
+                                          .kept = 400,
+                                          .bands = 1,
+                                          .seed = 0,
+                                          .orders = {}}},
                                 [share](std::size_t, std::span<float> rgbx) {
                                     for (float& value : rgbx) {
                                         value *= share;
@@ -192,8 +261,8 @@ TEST(SiteRows, SubtractedRowsAreLeftOut) {
     const bake::WalkStage whole = take(1), half = take(0.5f);
     ASSERT_FALSE(whole.rows.blocks.empty());
     std::vector<float> a(formats::cubemap_texels(kCubemap)), b(a.size());
-    bake::add_site_row(whole.rows, 7, 0, 0.5f, a);
-    bake::add_site_row(half.rows, 7, 0, 1, b);
+    bake::add_site_row(whole.rows, 7, 0, glm::vec3(0.5f), a);
+    bake::add_site_row(half.rows, 7, 0, glm::vec3(1), b);
     EXPECT_EQ(a, b);
 }
 

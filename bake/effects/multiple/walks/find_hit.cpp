@@ -54,4 +54,11 @@ glm::vec3 smooth_normal(const WalkSpace& space, const WalkHit& hit) {
     return length > 0 && glm::dot(sum, hit.flat) > 0 ? sum / length : hit.flat;
 }
 
+glm::vec3 inner_boundary_normal(const WalkSpace& space, const WalkHit& hit, glm::vec3 direction) {
+    const glm::vec3 normal = smooth_normal(space, hit);
+    const glm::vec3 reflected = direction - 2 * glm::dot(direction, normal) * normal;
+    return glm::dot(direction, normal) <= 0 || glm::dot(reflected, hit.flat) >= 0 ? hit.flat
+                                                                                 : normal;
+}
+
 }  // namespace opaline::bake

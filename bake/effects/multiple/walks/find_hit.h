@@ -25,4 +25,8 @@ bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, flo
 /// The interpolated normal, unit; the triangle's own where that faces away from it.
 glm::vec3 smooth_normal(const WalkSpace& space, const WalkHit& hit);
 
+/// The normal at which a boundary reflects what arrives from inside along `direction`: the smooth
+/// one, unless it faces away or reflects to behind the triangle; then the triangle's own.
+glm::vec3 inner_boundary_normal(const WalkSpace& space, const WalkHit& hit, glm::vec3 direction);
+
 }  // namespace opaline::bake

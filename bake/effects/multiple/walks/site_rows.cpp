@@ -211,20 +211,20 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
     return rows;
 }
 
-void add_site_row(const SiteRows& rows, std::size_t site, std::uint32_t view, float weight,
+void add_site_row(const SiteRows& rows, std::size_t site, std::uint32_t view, glm::vec3 weight,
                   std::span<float> rgbx) {
     const SiteRows::Block& block = rows.blocks[site / SiteRows::kPerBlock];
     const std::size_t i = site % SiteRows::kPerBlock * rows.views + view;
     for (std::size_t k = block.offset[i]; k < block.offset[i + 1]; ++k) {
         if (rows.bands == 1) {
-            rgbx[block.index[k]] += weight * block.value[k];
+            rgbx[block.index[k]] += weight.x * block.value[k];
             continue;
         }
         float* const to = &rgbx[4 * std::size_t{block.index[k]}];
         const float* const from = &block.value[3 * k];
-        to[0] += weight * from[0];
-        to[1] += weight * from[1];
-        to[2] += weight * from[2];
+        to[0] += weight.x * from[0];
+        to[1] += weight.y * from[1];
+        to[2] += weight.z * from[2];
     }
 }
 

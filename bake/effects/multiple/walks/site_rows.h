@@ -51,9 +51,9 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
                          const std::function<void(std::size_t, std::span<float>)>& subtract,
                          const Context& context, WalkCounts& counts);
 
-/// Adds weight * row of a site to `rgbx`, four floats per texel (one with bands = 1). `view` <
-/// rows.views.
-void add_site_row(const SiteRows& rows, std::size_t site, std::uint32_t view, float weight,
+/// Adds weight * row of a site, weighted band by band, to `rgbx`, four floats per texel (one with
+/// bands = 1). `view` < rows.views.
+void add_site_row(const SiteRows& rows, std::size_t site, std::uint32_t view, glm::vec3 weight,
                   std::span<float> rgbx);
 
 }  // namespace opaline::bake

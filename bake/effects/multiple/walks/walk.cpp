@@ -76,19 +76,33 @@ class Walk {
     glm::vec3 follow(const WalkStart& start) {
         ++counts_.walks;
         position_ = start_ = start.position;
+        if (start.arrival != glm::vec3(0)) {
+            direction_ = start.arrival;
+            if (collide(0)) {
+                go_on(1);
+            }
+            return -start.arrival;
+        }
         direction_ = start_direction(space_, start, random_);
         const glm::vec3 seen = -direction_;
-        for (std::uint32_t i = 0; i < space_.most_events; ++i) {
-            ++counts_.events;
-            if (!(i == 0 ? fly_first() : fly(flight_length()))) {
-                return seen;
-            }
+        ++counts_.events;
+        if (fly_first()) {
+            go_on(1);
         }
-        give_up(counts_.endless);
         return seen;
     }
 
   private:
+    void go_on(std::uint32_t event) {
+        for (; event < space_.most_events; ++event) {
+            ++counts_.events;
+            if (!fly(flight_length())) {
+                return;
+            }
+        }
+        give_up(counts_.endless);
+    }
+
     float flight_length() {
         const float depth = -std::log(1 - random_.next());
         return weight_.sigma_t() > 0 ? depth / weight_.sigma_t() : kForever;
@@ -240,14 +254,7 @@ class Walk {
     }
 
     bool arrive_at_boundary(const WalkHit& hit) {
-        // The smooth normal, unless it faces away or reflects to behind the triangle.
-        glm::vec3 normal = smooth_normal(space_, hit);
-        const auto reflect_at = [&](glm::vec3 n) {
-            return direction_ - 2 * glm::dot(direction_, n) * n;
-        };
-        if (glm::dot(direction_, normal) <= 0 || glm::dot(reflect_at(normal), hit.flat) >= 0) {
-            normal = hit.flat;
-        }
+        const glm::vec3 normal = inner_boundary_normal(space_, hit, direction_);
         const float cosine = std::min(1.0f, glm::dot(direction_, normal));
         const float passed = transmittance(cosine, 1 / space_.eta);
         const bool counts =
@@ -257,7 +264,7 @@ class Walk {
         }
         is_reflected_ = true;
         position_ = hit.position - 2 * hit.error * hit.flat;
-        direction_ = glm::normalize(reflect_at(normal));
+        direction_ = glm::normalize(direction_ - 2 * glm::dot(direction_, normal) * normal);
         return weight_.scale(1 - passed) && survives();
     }
 

@@ -68,6 +68,9 @@ struct WalkStart {
     glm::vec3 flat{0};             ///< unit, outward, of the facet: walks start below it
     int shells = 1;                ///< of the medium, around the point
     bool is_along_normal = false;  ///< seen along the normal, instead of from everywhere
+    /// Of walks that begin with a scattering at `position`: the way that they came, away from the
+    /// eye. 0 of those that begin at the surface.
+    glm::vec3 arrival{0};
 };
 
 /// Light that a walk finds: what arrives at `position` from outside along `direction` is seen at

@@ -6,7 +6,9 @@
 #include <numbers>
 #include <utility>
 
+#include "bake/effects/multiple/walks/inner_sites.h"
 #include "bake/receivers/surface_samples.h"
+#include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {
 
@@ -58,12 +60,25 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
     if (space.bands.empty() || sites.empty()) {
         return stage;
     }
-    const std::vector<WalkStart> starts = make_walk_starts(space, sites, context);
+    const std::vector<WalkStart> starts = options.is_inside
+                                              ? make_inner_starts(space, sites, context)
+                                              : make_walk_starts(space, sites, context);
     SiteRowOptions rows = options.rows;
+    rows.views = options.is_inside ? 1 : options.views;
     const double runs = static_cast<double>(sites.size()) * static_cast<double>(space.bands.size());
     rows.walks_per_site =
         static_cast<std::uint32_t>(std::clamp(std::round(options.walks / runs), 1.0, 1e6));
     stage.rows = walk_from_sites(space, starts, light, rows, subtract, context, stage.counts);
+    stage.view_fit = make_view_fit(static_cast<double>(space.eta));
+    if (options.is_inside) {
+        // Light inside varies less from place to place than that which leaves (RESULTS.md, "Walks").
+        constexpr double kWider = 2;
+        const auto& phase = space.scene->materials[space.material].medium->phase;
+        stage.inner = InnerField(starts, static_cast<float>(kWider * options.radius),
+                                 formats::mean_cosine(phase) == 0);
+        stage.space = space;
+        return stage;
+    }
     std::vector<float> tints;
     if (space.media.front().field) {
         stage.medium = space.media.front().field;
@@ -74,9 +89,8 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
         }
     }
     stage.field = SiteField(sites, static_cast<float>(options.radius), std::move(tints));
-    if (options.rows.views > 1) {
+    if (options.views > 1) {
         constexpr double kWider = 2;
-        stage.view_fit = make_view_fit(static_cast<double>(space.eta));
         stage.view_field = SiteField(sites, static_cast<float>(kWider * options.radius));
     }
     return stage;
@@ -95,31 +109,62 @@ float WalkStage::tint(glm::vec3 position, glm::vec3 normal) const {
     return glm::dot(sum, glm::vec3(0.2126f, 0.7152f, 0.0722f)) / kDepths.size();
 }
 
-void add_walked_row(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
-                    std::span<float> rgbx) {
-    if (stage.rows.blocks.empty()) {
+namespace {
+
+void add_outer_rows(const WalkStage& stage, const BodyPoint& point, float scale,
+                    std::span<float> rgbx, std::span<float> views) {
+    std::vector<SiteWeight> weights;
+    stage.field.weigh(point.position, point.normal, weights,
+                      stage.tint(point.position, point.normal));
+    for (const SiteWeight& w : weights) {
+        add_site_row(stage.rows, w.site, 0, glm::vec3(scale * w.weight), rgbx);
+    }
+    if (views.empty()) {
         return;
     }
-    std::vector<SiteWeight> weights;
-    stage.field.weigh(position, normal, weights, stage.tint(position, normal));
+    stage.view_field.weigh(point.position, point.normal, weights);
     for (const SiteWeight& w : weights) {
-        add_site_row(stage.rows, w.site, 0, scale * w.weight, rgbx);
+        for (std::uint32_t k = 1; k < stage.rows.views; ++k) {
+            add_site_row(stage.rows, w.site, k, glm::vec3(scale * w.weight),
+                         views.subspan((k - 1) * rgbx.size(), rgbx.size()));
+        }
     }
 }
 
-void add_walked_views(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
-                      std::span<float> rows) {
-    if (stage.rows.blocks.empty()) {
+void add_inner_rows(const WalkStage& stage, const BodyPoint& point, float scale,
+                    std::span<float> rgbx, std::span<float> views) {
+    if (point.normal == glm::vec3(0)) {
         return;
     }
-    std::vector<SiteWeight> weights;
-    stage.view_field.weigh(position, normal, weights);
-    const std::uint32_t count = stage.rows.views - 1;
-    const std::size_t size = rows.size() / count;
-    for (const SiteWeight& w : weights) {
-        for (std::uint32_t k = 0; k < count; ++k) {
-            add_site_row(stage.rows, w.site, k + 1, scale * w.weight, rows.subspan(k * size, size));
+    const WalkSpace& space = *stage.space;
+    const auto rows = static_cast<std::uint32_t>(1 + views.size() / rgbx.size());
+    const ViewSet seen =
+        make_view_set(stage.view_fit, static_cast<double>(space.eta), point.normal, rows);
+    const FirstFlight flight = trace_first_flight(space, seen, point);
+    std::vector<InnerWeight> weights;
+    stage.inner.weigh(space, point, seen, flight, rows, weights);
+    for (const InnerWeight& w : weights) {
+        for (std::uint32_t r = 0; r < rows; ++r) {
+            glm::vec3 weight(0);
+            for (std::size_t g = 0; g < space.bands.size(); ++g) {
+                for (std::size_t b = 0; b < 3; ++b) {
+                    if (space.bands[g].member[b]) {
+                        weight[static_cast<int>(b)] = scale * w.row[r][g];
+                    }
+                }
+            }
+            add_site_row(stage.rows, w.site, 0, weight,
+                         r == 0 ? rgbx : views.subspan((r - 1) * rgbx.size(), rgbx.size()));
         }
+    }
+}
+
+}  // namespace
+
+void add_walked_rows(const WalkStage& stage, const BodyPoint& point, float scale,
+                     std::span<float> rgbx, std::span<float> views) {
+    if (!stage.rows.blocks.empty()) {
+        (stage.inner.empty() ? add_outer_rows : add_inner_rows)(stage, point, scale, rgbx, views);
     }
 }
 

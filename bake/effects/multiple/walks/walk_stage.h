@@ -8,6 +8,7 @@
 
 #include "bake/base/context.h"
 #include "bake/effects/multiple/walks/exit_light.h"
+#include "bake/effects/multiple/walks/inner_field.h"
 #include "bake/effects/multiple/walks/site_field.h"
 #include "bake/effects/multiple/walks/site_rows.h"
 #include "bake/effects/multiple/walks/view_fit.h"
@@ -40,6 +41,8 @@ double count_walks(const SitePlan& plan, double area, const WalkBudget& budget);
 /// Rows at sites, from which those of receivers follow.
 struct WalkStage {
     SiteField field, view_field;  ///< the latter of rows by view: they vary less and are noisier
+    InnerField inner;             ///< instead of both, where sites are inside
+    std::optional<WalkSpace> space;  ///< of the inner field
     SiteRows rows;
     ViewFit view_fit;  ///< of the boundary
     WalkCounts counts;
@@ -53,26 +56,26 @@ struct WalkStage {
 struct WalkStageOptions {
     double radius = 0;    ///< [m] around a receiver
     double walks = 1e6;   ///< in all; at least one from each site for each group of bands
-    SiteRowOptions rows;  ///< but for the number of walks
+    bool is_inside = false;  ///< walks begin with a scattering inside, below the sites
+    std::uint32_t views = 1; ///< rows of a receiver: 1, 4 or 9
+    SiteRowOptions rows;     ///< but for the numbers of walks and views
 };
 
 /// Sites on the surface of the space's material, between its samples.
 std::vector<SurfaceSample> place_sites(const WalkSpace& space, const SitePlan& plan,
                                        std::uint64_t seed, const Context& context);
 
-/// Walks from sites. `subtract`: as for walk_from_sites. Incomplete if the context is cancelled.
+/// Walks from sites. `subtract`: as for walk_from_sites. Precondition of `is_inside`: one medium
+/// that does not vary. Incomplete if the context is cancelled.
 WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
                      std::span<const SurfaceSample> sites, const WalkStageOptions& options,
                      const std::function<void(std::size_t, std::span<float>)>& subtract,
                      const Context& context);
 
-/// Adds the row of a receiver, T_0, times `scale`, to four floats per texel (one with one band).
-void add_walked_row(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
-                    std::span<float> rgbx);
-
-/// Adds the rows of a receiver that say how T_0 changes with the view (SiteRows), times `scale`, to
-/// 3 or 8 rows that stand one after the other. Precondition: the sites have as many.
-void add_walked_views(const WalkStage& stage, glm::vec3 position, glm::vec3 normal, float scale,
-                      std::span<float> rows);
+/// Adds the row of a receiver, T_0, times `scale`, to four floats per texel (one with one band), and
+/// those that say how it changes with the view (SiteRows) to `views`: none, 3 or 8, one after the
+/// other. Precondition: the stage has as many.
+void add_walked_rows(const WalkStage& stage, const BodyPoint& point, float scale,
+                     std::span<float> rgbx, std::span<float> views);
 
 }  // namespace opaline::bake

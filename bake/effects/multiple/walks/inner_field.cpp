@@ -1,0 +1,171 @@
+#include "bake/effects/multiple/walks/inner_field.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "bake/effects/multiple/walks/find_hit.h"
+
+namespace opaline::bake {
+namespace {
+
+std::vector<SurfacePoint> points_of(std::span<const WalkStart> starts) {
+    std::vector<SurfacePoint> points;
+    points.reserve(starts.size());
+    for (const WalkStart& s : starts) {
+        points.push_back({.position = s.position, .normal = s.normal});
+    }
+    return points;
+}
+
+constexpr std::size_t kFewest = 12;  // sites of a fit
+
+}  // namespace
+
+InnerField::InnerField(std::span<const WalkStart> starts, float radius, bool is_isotropic)
+    : radius_(radius), is_isotropic_(is_isotropic), grid_(points_of(starts), radius) {
+    for (const WalkStart& s : starts) {
+        position_.push_back(s.position);
+        arrival_.push_back(s.arrival);
+    }
+}
+
+// Bounded, so that the few places far beyond the sites are not extrapolated to.
+InnerField::Functions InnerField::eval(const Centre& centre, glm::vec3 position,
+                                       glm::vec3 direction) const {
+    glm::dvec3 at = (position - centre.position) / radius_;
+    at /= std::sqrt(1 + glm::dot(at, at));
+    const glm::dvec3 squares = at * at, turn = direction - centre.direction;
+    if (is_isotropic_) {
+        return {1,         at.x,      at.y,        at.z,        squares.x,
+                squares.y, squares.z, at.x * at.y, at.y * at.z, at.z * at.x};
+    }
+    return {1,         at.x,      at.y,      at.z,        turn.x,      turn.y,     turn.z,
+            squares.x, squares.y, squares.z, at.x * at.y, at.y * at.z, at.z * at.x};
+}
+
+// Three sites a coefficient.
+std::size_t InnerField::count_functions(std::size_t sites) const {
+    const std::size_t linear = is_isotropic_ ? 4 : 7;
+    return sites >= 3 * (linear + 6) ? linear + 6 : sites >= 3 * linear ? linear : 1;
+}
+
+std::vector<InnerField::Neighbour> InnerField::collect(const WalkSpace& space,
+                                                       const BodyPoint& point,
+                                                       const Centre& centre) const {
+    const auto is_seen = [&](std::uint32_t site) {
+        constexpr float kBefore = 0.999f;
+        const glm::vec3 way = position_[site] - point.inner;
+        const float length = glm::length(way);
+        WalkHit hit;
+        return !(length > 0) ||
+               !find_hit(space, point.inner, way / length, kBefore * length, hit);
+    };
+    const glm::vec3 along = glm::normalize(centre.direction);
+    std::vector<std::uint32_t> around;
+    grid_.collect_around(grid_.cell_of(centre.position), around);
+    std::vector<Neighbour> neighbours;
+    for (const std::uint32_t s : around) {
+        const glm::vec3 d = (position_[s] - centre.position) / radius_;
+        float kernel = std::max(0.0f, 1 - glm::dot(d, d));
+        if (!is_isotropic_) {
+            kernel *= std::max(0.0f, glm::dot(arrival_[s], along));
+        }
+        if (kernel > 0 && is_seen(s)) {
+            neighbours.push_back({s, static_cast<double>(kernel * kernel)});
+        }
+    }
+    if (neighbours.size() >= std::min(kFewest, position_.size())) {
+        return neighbours;
+    }
+    // On a part smaller than sites are apart, or out of their sight: the nearest.
+    if (around.size() < kFewest) {
+        around.resize(position_.size());
+        for (std::uint32_t s = 0; s < around.size(); ++s) {
+            around[s] = s;
+        }
+    }
+    const auto distance = [&](std::uint32_t s) {
+        return glm::distance(position_[s], centre.position);
+    };
+    const std::size_t taken = std::min(kFewest, around.size());
+    std::partial_sort(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(taken),
+                      around.end(), [&](std::uint32_t a, std::uint32_t b) {
+                          const float to_a = distance(a), to_b = distance(b);
+                          return to_a < to_b || (to_a == to_b && a < b);
+                      });
+    neighbours.clear();
+    for (std::size_t i = 0; i < taken; ++i) {
+        neighbours.push_back({around[i], 1});
+    }
+    return neighbours;
+}
+
+void InnerField::weigh(const WalkSpace& space, const BodyPoint& point, const ViewSet& views,
+                       const FirstFlight& flight, std::uint32_t rows,
+                       std::vector<InnerWeight>& weights) const {
+    weights.clear();
+    Centre centre;
+    float sum = 0;
+    for (const FlightNode& node : flight) {
+        const float weight = node.weight[0] * views.share[node.view][0];
+        centre.position += weight * node.position;
+        centre.direction += weight * node.direction;
+        sum += weight;
+    }
+    if (!(sum > 0) || empty()) {
+        return;
+    }
+    centre.position /= sum;
+    centre.direction /= sum;
+    const std::vector<Neighbour> neighbours = collect(space, point, centre);
+    const std::size_t functions = count_functions(neighbours.size());
+    const std::size_t groups = space.bands.size();
+
+    // What the flight makes of each function, column by column: rows of each group.
+    Eigen::MatrixXd moments =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(functions),
+                              static_cast<Eigen::Index>(groups * rows));
+    for (const FlightNode& node : flight) {
+        const Functions at = eval(centre, node.position, node.direction);
+        const auto& share = views.share[node.view];
+        for (std::size_t g = 0; g < groups; ++g) {
+            for (std::size_t r = 0; r < rows; ++r) {
+                const double weight = static_cast<double>(node.weight[g] * share[r]);
+                double* const to = &moments(0, static_cast<Eigen::Index>(g * rows + r));
+                for (std::size_t f = 0; f < functions; ++f) {
+                    to[f] += weight * at[f];
+                }
+            }
+        }
+    }
+    using Row = Eigen::Map<const Eigen::VectorXd>;
+    const auto size = static_cast<Eigen::Index>(functions);
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+    std::vector<Functions> at;
+    at.reserve(neighbours.size());
+    for (const Neighbour& n : neighbours) {
+        at.push_back(eval(centre, position_[n.site], arrival_[n.site]));
+        const Row row(at.back().data(), size);
+        matrix.noalias() += n.kernel * row * row.transpose();
+    }
+    // Slopes that no site tells about are 0.
+    constexpr double kRidge = 1e-4;
+    for (Eigen::Index i = 1; i < size; ++i) {
+        matrix(i, i) += kRidge * matrix(0, 0);
+    }
+    const Eigen::MatrixXd solved = matrix.ldlt().solve(moments);
+    for (std::size_t s = 0; s < neighbours.size(); ++s) {
+        const Eigen::RowVectorXd value =
+            neighbours[s].kernel * (Row(at[s].data(), size).transpose() * solved);
+        InnerWeight weight{neighbours[s].site, {}};
+        for (std::size_t g = 0; g < groups; ++g) {
+            for (std::size_t r = 0; r < rows; ++r) {
+                weight.row[r][g] = static_cast<float>(value(static_cast<Eigen::Index>(g * rows + r)));
+            }
+        }
+        weights.push_back(weight);
+    }
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/effects/multiple/walks/first_flight.h"
+#include "bake/effects/multiple/walks/walk.h"
+#include "bake/receivers/point_grid.h"
+#include "bake/receivers/receiver.h"
+
+namespace opaline::bake {
+
+/// A site's share of the rows of a receiver, for each group of bands.
+struct InnerWeight {
+    std::uint32_t site = 0;
+    std::array<std::array<float, 3>, 1 + kAllDegrees> row{};
+};
+
+/// Rows between sites inside a body (README.md, "From sites to receivers"): light scattered at a
+/// place is a quadratic function of the place, fitted to the sites around, and the row of a
+/// receiver is the mean of that function over the receiver's own first flight. In media with a mean
+/// cosine it is also linear in the direction of the flight.
+class InnerField {
+  public:
+    InnerField() : InnerField({}, 1, true) {}
+    /// Of walks that begin with a scattering. `radius` [m] > 0 of the fit.
+    InnerField(std::span<const WalkStart> starts, float radius, bool is_isotropic);
+
+    bool empty() const { return position_.empty(); }
+    std::size_t size() const { return position_.size(); }
+
+    /// Weights of sites for the first `rows` rows of `views`, 1, 4 or 9. Their sum is what the
+    /// flight scatters, in each row. Only sites in straight view of the point count, unless there
+    /// are too few. Overwrites `weights`; none where nothing is scattered or there is no site.
+    void weigh(const WalkSpace& space, const BodyPoint& point, const ViewSet& views,
+               const FirstFlight& flight, std::uint32_t rows,
+               std::vector<InnerWeight>& weights) const;
+
+  private:
+    struct Neighbour {
+        std::uint32_t site;
+        double kernel;
+    };
+    struct Centre {
+        glm::vec3 position{0}, direction{0};
+    };
+    /// Functions that are fitted: 1, place, direction, squares of the place.
+    static constexpr std::size_t kMostFunctions = 13;
+    using Functions = std::array<double, kMostFunctions>;
+
+    std::vector<Neighbour> collect(const WalkSpace& space, const BodyPoint& point,
+                                   const Centre& centre) const;
+    Functions eval(const Centre& centre, glm::vec3 position, glm::vec3 direction) const;
+    std::size_t count_functions(std::size_t sites) const;
+
+    std::vector<glm::vec3> position_, arrival_;
+    float radius_ = 1;
+    bool is_isotropic_ = true;
+    PointGrid grid_;
+};
+
+}  // namespace opaline::bake

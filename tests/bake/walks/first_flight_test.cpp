@@ -1,0 +1,109 @@
+#include "bake/effects/multiple/walks/first_flight.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bake/scattering/fresnel.h"
+#include "tests/bake/walks/body_walks.h"
+
+namespace opaline::tests {
+namespace {
+
+using bake::FlightNode;
+
+struct Straight {
+    std::array<double, 3> scattered{};  // of each group
+    double depth = 0;                   // mean, of the first group
+};
+
+// Along the normal, from the top of a slab.
+Straight look_down(const bake::WalkSpace& space) {
+    const glm::vec3 up(0, 1, 0);
+    const auto eta = static_cast<double>(space.eta);
+    const bake::ViewSet views = bake::make_view_set(bake::make_view_fit(eta), eta, up, 4);
+    const auto flight = bake::trace_first_flight(space, views, {{}, up, {0, -1e-5f, 0}, 0});
+    Straight seen;
+    for (const FlightNode& node : flight) {
+        if (node.view + 1 == views.into.size()) {
+            for (std::size_t g = 0; g < 3; ++g) {
+                seen.scattered[g] += static_cast<double>(node.weight[g]);
+            }
+            seen.depth += static_cast<double>(node.weight[0] * -node.position.y);
+        }
+    }
+    seen.depth /= seen.scattered[0];
+    return seen;
+}
+
+// Light that is reflected inside again and again: (1 - T) (1 + r T + ...), T = e^-x.
+TEST(FirstFlight, SlabScattersWhatDoesNotCrossItHoweverOftenItIsReflected) {
+    for (const float eta : {1.0f, 1.8f}) {
+        for (const float thickness : {0.05f, 1.0f, 5.0f}) {
+            const auto slab = make_walked_body(make_wide_slab(thickness),
+                                               make_forward_medium(1, 0.9f, 0, eta));
+            const double crosses = std::exp(-static_cast<double>(thickness));
+            const double reflects =
+                bake::fresnel_reflectance(1, 1 / static_cast<double>(eta));
+            EXPECT_NEAR(look_down(slab->space).scattered[0],
+                        (1 - crosses) / (1 - reflects * crosses), 1e-3)
+                << eta << ' ' << thickness;
+        }
+    }
+}
+
+// Mean depth of first scatterings in a slab: 1 - x / (e^x - 1) mean free paths.
+TEST(FirstFlight, DepthsAreThoseOfAnExponential) {
+    for (const float thickness : {0.05f, 1.0f, 5.0f}) {
+        const auto slab =
+            make_walked_body(make_wide_slab(thickness), make_forward_medium(1, 0.9f, 0, 1));
+        const double truth =
+            1 - static_cast<double>(thickness) / std::expm1(static_cast<double>(thickness));
+        EXPECT_NEAR(look_down(slab->space).depth / truth, 1, 1e-3) << thickness;
+    }
+}
+
+TEST(FirstFlight, EachGroupOfBandsHasItsOwnExtinction) {
+    formats::Medium medium = make_grey_medium(0.9f, 0.1f, 1);
+    medium.sigma_s = {0.9f, 1.9f, 3.9f};
+    WalkedBody slab;
+    slab.scene = make_translucent_scene({make_wide_slab(1)}, medium);
+    slab.triangles.emplace(bake::EmbreeScene::build(slab.scene, 1).value());
+    slab.space = bake::make_walk_space(slab.scene, *slab.triangles, 0, false);
+    ASSERT_EQ(slab.space.bands.size(), 3u);
+    const Straight seen = look_down(slab.space);
+    for (std::size_t g = 0; g < 3; ++g) {
+        EXPECT_NEAR(seen.scattered[g],
+                    -std::expm1(-static_cast<double>(slab.space.media[0].sigma_t[g])), 1e-4);
+    }
+}
+
+// Through a hole flights go on to the box; what is left there the others make up for.
+TEST(FirstFlight, HoleOfABallLosesNoLight) {
+    Primitive ball = make_sphere(3);
+    for (std::size_t i = ball.index.size() / 2; i < ball.index.size() / 2 + 3 * 12; ++i) {
+        ball.index[i] = 0;  // of no area
+    }
+    const auto whole = make_walked_body(make_sphere(3), make_forward_medium(0.5f, 0.9f, 0, 1.3f));
+    const auto holed = make_walked_body(std::move(ball), make_forward_medium(0.5f, 0.9f, 0, 1.3f));
+    const bake::ViewFit fit = bake::make_view_fit(1.3);
+    const auto scattered = [&](const bake::WalkSpace& space) {
+        double sum = 0;
+        constexpr std::size_t kPoints = 40;
+        const Primitive& points = whole->scene.primitives[0];
+        for (std::size_t i = 0; i < kPoints; ++i) {
+            const glm::vec3 normal = points.normal[7 * i];
+            const bake::ViewSet views = bake::make_view_set(fit, 1.3, normal, 1);
+            const glm::vec3 position = points.position[7 * i];
+            for (const FlightNode& node : bake::trace_first_flight(
+                     space, views, {position, normal, 0.999f * position, 0})) {
+                sum += static_cast<double>(node.weight[0] * views.share[node.view][0]) / kPoints;
+            }
+        }
+        return sum;
+    };
+    EXPECT_NEAR(scattered(holed->space) / scattered(whole->space), 1, 0.01);
+}
+
+}  // namespace
+}  // namespace opaline::tests
