@@ -45,6 +45,8 @@ struct Rates {
     CostBySize body_event;      ///< of a random walk through a body: a flight and what ends it
     double walk_exit = 0;       ///< the sample at a walk's exit
     double site_weight = 0;     ///< of a site around a receiver, the fit included
+    CostBySize first_flight;    ///< of a receiver, with all its views
+    CostBySize inner_site;      ///< of a site inside, in view of a receiver, the fit included
     // Single scattering.
     CostBySize body_triangle;  ///< of the mesh that light maps draw
     double draw_triangle = 0;  ///< into a light map
@@ -92,6 +94,8 @@ void visit_rates(AnyRates&& rates, Visit&& visit) {
     by_size("body_event_few", "body_event_many", rates.body_event);
     visit("walk_exit", rates.walk_exit);
     visit("site_weight", rates.site_weight);
+    by_size("first_flight_few", "first_flight_many", rates.first_flight);
+    by_size("inner_site_few", "inner_site_many", rates.inner_site);
     by_size("body_triangle_few", "body_triangle_many", rates.body_triangle);
     visit("draw_triangle", rates.draw_triangle);
     visit("draw_pixel", rates.draw_pixel);

@@ -30,6 +30,12 @@ double rows_by_view(const RowLayout& layout) {
     return layout.view_harmonics > 0 ? layout.view_harmonics - 1.0 : 0.0;
 }
 
+// Walks begin with a scattering inside (multiple_stage.cpp).
+bool are_inside(const SubjectCost& cost, const SitePlan& plan) {
+    return !plan.is_residual && cost.layout.all_orders && !cost.layout.layered &&
+           !cost.facts.varies;
+}
+
 // Of the media inside as well [m].
 double shortest_path(const formats::Medium& medium, const MaterialFacts& body) {
     std::vector<const formats::Medium*> media{&medium};
@@ -78,7 +84,7 @@ Work walks_work(const SubjectCost& cost) {
     const SitePlan plan = plan_of(cost);
     const double walks = std::max(count_walks(plan, cost.facts.area, budget_of(knobs)),
                                   static_cast<double>(plan.sites));
-    const double views = rows_by_view(cost.layout);
+    const double views = are_inside(cost, plan) ? 0 : rows_by_view(cost.layout);
     const double entries = kOwnSample * (kMomentEntries + views) * kept(knobs) * rates.gather_entry;
     const double dense = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     // Measured on Spot: an event with veins to evaluate takes as long as three without.
@@ -100,6 +106,14 @@ Work walked_rows_work(const SubjectCost& cost) {
                                       std::max(cost.facts.area, 1e-300),
                                   static_cast<double>(plan.sites));
     const Rates& rates = cost.input.rates;
+    if (are_inside(cost, plan)) {
+        constexpr double kWider = 4;  // square of the fit's radius over that of the plan
+        const double seen = std::min(kWider * sites, static_cast<double>(plan.sites));
+        return {0, cost.receivers * (rates.first_flight.at(cost.input.triangles) +
+                                     seen * (rates.inner_site.at(cost.input.triangles) +
+                                             (1 + rows_by_view(cost.layout)) *
+                                                 kept(cost.input.knobs) * rates.gather_entry))};
+    }
     // By view: four times as many sites, of each three or eight rows with a quarter of the entries.
     const double views = rows_by_view(cost.layout);
     return {0, cost.receivers * sites *

@@ -4,10 +4,46 @@
 #include <vector>
 
 #include "bake/calibration/bench/stopwatch.h"
+#include "bake/effects/multiple/walks/inner_field.h"
+#include "bake/effects/multiple/walks/inner_sites.h"
 #include "bake/effects/multiple/walks/site_field.h"
 #include "bake/effects/multiple/walks/site_rows.h"
 
 namespace opaline::bake {
+namespace {
+
+// Rows of receivers from sites inside.
+void calibrate_inner_rows(const CalibrationBench& bench, const WalkSpace& space,
+                          std::span<const SurfaceSample> samples, Rates& rates) {
+    constexpr std::size_t kSites = 4000, kReceivers = 64;
+    constexpr std::uint32_t kRows = 4;
+    const InnerField field(make_inner_starts(space, thinned(samples, kSites), one_thread()), 0.25f,
+                           true);  // of a ball of radius 1 m: some sixty sites
+    const auto eta = static_cast<double>(space.eta);
+    const ViewFit fit = make_view_fit(eta);
+    const auto points = bench.neighbours_together();
+    const std::vector<BodyPoint> receivers =
+        thinned(std::span<const BodyPoint>(points), kReceivers);
+    std::vector<ViewSet> views;
+    std::vector<FirstFlight> flights;
+    Stopwatch watch;
+    for (const BodyPoint& point : receivers) {
+        views.push_back(make_view_set(fit, eta, point.normal, kRows));
+        flights.push_back(trace_first_flight(space, views.back(), point));
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(1, receivers.size()));
+    bench.side_of(rates.first_flight) = watch.seconds() / count;
+    std::vector<InnerWeight> weights;
+    double weighed = 0;
+    watch.restart();
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        field.weigh(space, receivers[i], views[i], flights[i], kRows, weights);
+        weighed += static_cast<double>(weights.size());
+    }
+    bench.side_of(rates.inner_site) = watch.seconds() / std::max(1.0, weighed);
+}
+
+}  // namespace
 
 void calibrate_walks(const CalibrationBench& bench, std::span<const SurfaceSample> samples,
                      Rates& rates) {
@@ -27,6 +63,7 @@ void calibrate_walks(const CalibrationBench& bench, std::span<const SurfaceSampl
     }
     bench.side_of(rates.body_event) =
         watch.seconds() / static_cast<double>(std::max<std::uint64_t>(1, counts.events));
+    calibrate_inner_rows(bench, space, samples, rates);
     if (!bench.is_many || exits.empty()) {
         return;
     }

@@ -40,11 +40,10 @@ Straight look_down(const bake::WalkSpace& space) {
 TEST(FirstFlight, SlabScattersWhatDoesNotCrossItHoweverOftenItIsReflected) {
     for (const float eta : {1.0f, 1.8f}) {
         for (const float thickness : {0.05f, 1.0f, 5.0f}) {
-            const auto slab = make_walked_body(make_wide_slab(thickness),
-                                               make_forward_medium(1, 0.9f, 0, eta));
+            const auto slab =
+                make_walked_body(make_wide_slab(thickness), make_forward_medium(1, 0.9f, 0, eta));
             const double crosses = std::exp(-static_cast<double>(thickness));
-            const double reflects =
-                bake::fresnel_reflectance(1, 1 / static_cast<double>(eta));
+            const double reflects = bake::fresnel_reflectance(1, 1 / static_cast<double>(eta));
             EXPECT_NEAR(look_down(slab->space).scattered[0],
                         (1 - crosses) / (1 - reflects * crosses), 1e-3)
                 << eta << ' ' << thickness;
@@ -95,8 +94,8 @@ TEST(FirstFlight, HoleOfABallLosesNoLight) {
             const glm::vec3 normal = points.normal[7 * i];
             const bake::ViewSet views = bake::make_view_set(fit, 1.3, normal, 1);
             const glm::vec3 position = points.position[7 * i];
-            for (const FlightNode& node : bake::trace_first_flight(
-                     space, views, {position, normal, 0.999f * position, 0})) {
+            for (const FlightNode& node :
+                 bake::trace_first_flight(space, views, {position, normal, 0.999f * position, 0})) {
                 sum += static_cast<double>(node.weight[0] * views.share[node.view][0]) / kPoints;
             }
         }

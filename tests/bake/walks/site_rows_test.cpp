@@ -65,17 +65,14 @@ bake::WalkStage walk(const WalkedBall& ball, unsigned threads, bool inside,
     bake::Context context;
     context.threads = threads;
     const auto sites = bake::place_sites(ball.body->space, {300, 0.4, false}, 0, context);
-    return bake::take_walks(ball.body->space, light, sites,
-                            {.radius = 0.4,
-                             .walks = 30000,
-                             .is_inside = inside,
-                             .views = views,
-                             .rows = {.cubemap_size = kCubemap,
-                                      .kept = 200,
-                                      .bands = 1,
-                                      .seed = 0,
-                                      .orders = {1}}},
-                            {}, context);
+    return bake::take_walks(
+        ball.body->space, light, sites,
+        {.radius = 0.4,
+         .walks = 30000,
+         .is_inside = inside,
+         .views = views,
+         .rows = {.cubemap_size = kCubemap, .kept = 200, .bands = 1, .seed = 0, .orders = {1}}},
+        {}, context);
 }
 
 bake::BodyPoint body_point(const SurfaceSample& at) {
@@ -91,8 +88,8 @@ TEST(SiteRows, BallOfAlbedoOneInAnEvenSkyShowsTheSky) {
         constexpr int kPoints = 50;
         for (int i = 0; i < kPoints; ++i) {
             std::vector<float> row(kAll);
-            bake::add_walked_rows(
-                stage, body_point(ball.samples[static_cast<std::size_t>(i * 29)]), 1, row, {});
+            bake::add_walked_rows(stage, body_point(ball.samples[static_cast<std::size_t>(i * 29)]),
+                                  1, row, {});
             sum += 4 * std::numbers::pi * white(row) / kPoints;
         }
         // An even cube is no even sky, and light-free rows err by the truncated entries: a few per
@@ -110,16 +107,13 @@ TEST(SiteRows, NoViewDiffersInAnEvenSkyWhereNothingIsAbsorbed) {
     const bake::ExitLight light(ball.samples, ball.transport.rows, nullptr, ball.eta, ball.escape);
     constexpr std::size_t kSites = 100;
     const auto sites = bake::place_sites(ball.body->space, {kSites, 0.4, false}, 0, {});
-    const bake::WalkStage stage = bake::take_walks(ball.body->space, light, sites,
-                                                   {.radius = 0.4,
-                                                    .walks = 16 * kSites,
-                                                    .views = 9,
-                                                    .rows = {.cubemap_size = kCubemap,
-                                                             .kept = kAll,
-                                                             .bands = 1,
-                                                             .seed = 0,
-                                                             .orders = {1}}},
-                                                   {}, {});
+    const bake::WalkStage stage = bake::take_walks(
+        ball.body->space, light, sites,
+        {.radius = 0.4,
+         .walks = 16 * kSites,
+         .views = 9,
+         .rows = {.cubemap_size = kCubemap, .kept = kAll, .bands = 1, .seed = 0, .orders = {1}}},
+        {}, {});
     const auto rms = [&](std::uint32_t first, std::uint32_t end) {
         double sum = 0;
         for (std::size_t site = 0; site < kSites; ++site) {
@@ -142,15 +136,12 @@ TEST(SiteRows, OfWalksThatAreSpreadEvenlyHaveLessNoise) {
     const bake::ExitLight light(ball.samples, ball.transport.rows, nullptr, ball.eta, ball.escape);
     constexpr std::size_t kSites = 200;
     const auto sites = bake::place_sites(ball.body->space, {kSites, 0.4, false}, 0, {});
-    const bake::WalkStage stage = bake::take_walks(ball.body->space, light, sites,
-                                                   {.radius = 0.4,
-                                                    .walks = 16 * kSites,
-                                                    .rows = {.cubemap_size = kCubemap,
-                                                             .kept = kAll,
-                                                             .bands = 1,
-                                                             .seed = 0,
-                                                             .orders = {1}}},
-                                                   {}, {});
+    const bake::WalkStage stage = bake::take_walks(
+        ball.body->space, light, sites,
+        {.radius = 0.4,
+         .walks = 16 * kSites,
+         .rows = {.cubemap_size = kCubemap, .kept = kAll, .bands = 1, .seed = 0, .orders = {1}}},
+        {}, {});
     double sum = 0, squares = 0;
     for (std::size_t site = 0; site < kSites; ++site) {
         std::vector<float> row(formats::cubemap_texels(kCubemap));
@@ -243,20 +234,17 @@ TEST(SiteRows, SubtractedRowsAreLeftOut) {
     const bake::ExitLight light(ball.samples, ball.transport.rows, nullptr, ball.eta, ball.escape);
     const auto sites = bake::place_sites(ball.body->space, {50, 0.4, false}, 0, {});
     const auto take = [&](float share) {
-        return bake::take_walks(ball.body->space, light, sites,
-                                {.radius = 0.4,
-                                 .walks = 500,
-                                 .rows = {.cubemap_size = kCubemap,
-                                          .kept = 400,
-                                          .bands = 1,
-                                          .seed = 0,
-                                          .orders = {}}},
-                                [share](std::size_t, std::span<float> rgbx) {
-                                    for (float& value : rgbx) {
-                                        value *= share;
-                                    }
-                                },
-                                {});
+        return bake::take_walks(
+            ball.body->space, light, sites,
+            {.radius = 0.4,
+             .walks = 500,
+             .rows = {.cubemap_size = kCubemap, .kept = 400, .bands = 1, .seed = 0, .orders = {}}},
+            [share](std::size_t, std::span<float> rgbx) {
+                for (float& value : rgbx) {
+                    value *= share;
+                }
+            },
+            {});
     };
     const bake::WalkStage whole = take(1), half = take(0.5f);
     ASSERT_FALSE(whole.rows.blocks.empty());

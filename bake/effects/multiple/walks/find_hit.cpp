@@ -58,7 +58,7 @@ glm::vec3 inner_boundary_normal(const WalkSpace& space, const WalkHit& hit, glm:
     const glm::vec3 normal = smooth_normal(space, hit);
     const glm::vec3 reflected = direction - 2 * glm::dot(direction, normal) * normal;
     return glm::dot(direction, normal) <= 0 || glm::dot(reflected, hit.flat) >= 0 ? hit.flat
-                                                                                 : normal;
+                                                                                  : normal;
 }
 
 }  // namespace opaline::bake

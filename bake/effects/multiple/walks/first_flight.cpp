@@ -83,10 +83,8 @@ class FlightTracer {
             const float share = scattered * static_cast<float>(i) / kDepths;
             const float to =
                 i < kDepths ? std::min(distance, -std::log1p(-share) / sigma_t_) : distance;
-            FlightNode node{position + (from + mean_depth(to - from)) * direction,
-                            direction,
-                            {},
-                            view};
+            FlightNode node{
+                position + (from + mean_depth(to - from)) * direction, direction, {}, view};
             for (std::size_t g = 0; g < groups_; ++g) {
                 node.weight[g] = left[g] * std::exp(-medium.sigma_t[g] * from) *
                                  -std::expm1(-medium.sigma_t[g] * (to - from));
@@ -111,8 +109,8 @@ class FlightTracer {
                  PerGroup& left) const {
         const glm::vec3 normal = inner_boundary_normal(space_, hit, direction);
         const float cosine = std::min(1.0f, glm::dot(direction, normal));
-        const auto reflected = static_cast<float>(fresnel_reflectance(
-            static_cast<double>(cosine), 1 / static_cast<double>(space_.eta)));
+        const auto reflected = static_cast<float>(
+            fresnel_reflectance(static_cast<double>(cosine), 1 / static_cast<double>(space_.eta)));
         for (float& value : left) {
             value *= reflected;
         }

@@ -58,8 +58,7 @@ std::vector<InnerField::Neighbour> InnerField::collect(const WalkSpace& space,
         const glm::vec3 way = position_[site] - point.inner;
         const float length = glm::length(way);
         WalkHit hit;
-        return !(length > 0) ||
-               !find_hit(space, point.inner, way / length, kBefore * length, hit);
+        return !(length > 0) || !find_hit(space, point.inner, way / length, kBefore * length, hit);
     };
     const glm::vec3 along = glm::normalize(centre.direction);
     std::vector<std::uint32_t> around;
@@ -123,9 +122,8 @@ void InnerField::weigh(const WalkSpace& space, const BodyPoint& point, const Vie
     const std::size_t groups = space.bands.size();
 
     // What the flight makes of each function, column by column: rows of each group.
-    Eigen::MatrixXd moments =
-        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(functions),
-                              static_cast<Eigen::Index>(groups * rows));
+    Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(functions),
+                                                    static_cast<Eigen::Index>(groups * rows));
     for (const FlightNode& node : flight) {
         const Functions at = eval(centre, node.position, node.direction);
         const auto& share = views.share[node.view];
@@ -161,7 +159,8 @@ void InnerField::weigh(const WalkSpace& space, const BodyPoint& point, const Vie
         InnerWeight weight{neighbours[s].site, {}};
         for (std::size_t g = 0; g < groups; ++g) {
             for (std::size_t r = 0; r < rows; ++r) {
-                weight.row[r][g] = static_cast<float>(value(static_cast<Eigen::Index>(g * rows + r)));
+                weight.row[r][g] =
+                    static_cast<float>(value(static_cast<Eigen::Index>(g * rows + r)));
             }
         }
         weights.push_back(weight);

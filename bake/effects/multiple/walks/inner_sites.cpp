@@ -24,8 +24,8 @@ float lattice(std::size_t i, std::size_t dimension) {
 
 // Below the facet.
 glm::vec3 entering_direction(const WalkSpace& space, const WalkStart& start, float u, float v) {
-    const auto inside = static_cast<float>(refracted_cosine(
-        std::sqrt(1 - static_cast<double>(u)), static_cast<double>(space.eta)));
+    const auto inside = static_cast<float>(
+        refracted_cosine(std::sqrt(1 - static_cast<double>(u)), static_cast<double>(space.eta)));
     const float sine = std::sqrt(std::max(0.0f, 1 - inside * inside));
     const float azimuth = 2 * std::numbers::pi_v<float> * v;
     const glm::vec3 tilted(sine * std::cos(azimuth), sine * std::sin(azimuth), -inside);
@@ -54,8 +54,7 @@ std::vector<WalkStart> make_inner_starts(const WalkSpace& space,
                                         std::numeric_limits<float>::infinity(), hit)
                                    ? glm::distance(hit.position, start.position)
                                    : 1 / sigma_t;
-        const float length =
-            -std::log1p(std::expm1(-sigma_t * distance) * lattice(i, 2)) / sigma_t;
+        const float length = -std::log1p(std::expm1(-sigma_t * distance) * lattice(i, 2)) / sigma_t;
         start.position += std::min(length, kBeforeSurface * distance) * start.arrival;
     }
     return starts;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "bake/base/largest.h"
@@ -11,6 +12,8 @@
 
 namespace opaline::bake {
 namespace {
+
+using Float4 = float __attribute__((vector_size(16)));
 
 // An exit as light of a sample.
 struct SampleExit {
@@ -225,6 +228,46 @@ void add_site_row(const SiteRows& rows, std::size_t site, std::uint32_t view, gl
         to[0] += weight.x * from[0];
         to[1] += weight.y * from[1];
         to[2] += weight.z * from[2];
+    }
+}
+
+SiteRowSum::SiteRowSum(std::size_t texels, std::uint32_t rows, std::uint32_t bands)
+    : rows_(rows),
+      bands_(bands),
+      lanes_(bands == 1 ? 4 * std::size_t{(rows + 3) / 4} : 4 * std::size_t{rows}),
+      sum_(texels * lanes_) {}
+
+void SiteRowSum::add(const SiteRows& from, std::size_t site, const Weights& weights) {
+    constexpr std::size_t kMostLanes = 36;
+    std::array<float, kMostLanes> factor{};
+    for (std::uint32_t r = 0; r < rows_; ++r) {
+        for (std::uint32_t b = 0; b < bands_; ++b) {
+            factor[bands_ == 1 ? r : 4 * r + b] = weights[r][b];
+        }
+    }
+    const SiteRows::Block& block = from.blocks[site / SiteRows::kPerBlock];
+    const std::size_t i = site % SiteRows::kPerBlock;
+    for (std::size_t k = block.offset[i]; k < block.offset[i + 1]; ++k) {
+        const float* const value = &block.value[bands_ * k];
+        const Float4 v = bands_ == 1 ? Float4{value[0], value[0], value[0], value[0]}
+                                     : Float4{value[0], value[1], value[2], 0};
+        float* const to = &sum_[lanes_ * block.index[k]];
+        for (std::size_t lane = 0; lane < lanes_; lane += 4) {
+            Float4 sum, f;
+            std::memcpy(&sum, to + lane, sizeof sum);
+            std::memcpy(&f, &factor[lane], sizeof f);
+            sum += f * v;
+            std::memcpy(to + lane, &sum, sizeof sum);
+        }
+    }
+}
+
+void SiteRowSum::add_to(std::uint32_t row, std::span<float> rgbx) const {
+    const std::size_t step = bands_ == 1 ? 1 : 4;
+    for (std::size_t k = 0; k < sum_.size() / lanes_; ++k) {
+        for (std::size_t b = 0; b < step; ++b) {
+            rgbx[step * k + b] += sum_[lanes_ * k + step * row + b];
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -55,5 +56,22 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
 /// bands = 1). `view` < rows.views.
 void add_site_row(const SiteRows& rows, std::size_t site, std::uint32_t view, glm::vec3 weight,
                   std::span<float> rgbx);
+
+/// Adds up rows of sites with one row, weighted for several rows of a receiver at once.
+class SiteRowSum {
+  public:
+    /// `texels` of a row; `rows` of the receiver, at most 9; `bands` as of the sites.
+    SiteRowSum(std::size_t texels, std::uint32_t rows, std::uint32_t bands);
+
+    using Weights = std::array<std::array<float, 3>, 9>;  ///< of each row, per band
+    void add(const SiteRows& from, std::size_t site, const Weights& weights);
+    /// Adds row `row` to four floats per texel (one with one band).
+    void add_to(std::uint32_t row, std::span<float> rgbx) const;
+
+  private:
+    std::uint32_t rows_, bands_;
+    std::size_t lanes_;  // of a texel: its rows side by side, four floats each (one with one band)
+    std::vector<float> sum_;
+};
 
 }  // namespace opaline::bake

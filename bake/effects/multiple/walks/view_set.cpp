@@ -27,8 +27,8 @@ void add_entering(double eta, glm::vec3 normal, ViewSet& views) {
         const double azimuth = 2 * std::numbers::pi * place / std::numbers::phi;
         const double inside = refracted_cosine(cosine, eta);
         const double sine = std::sqrt(std::max(0.0, 1 - inside * inside));
-        views.into.push_back(frame.to_world(glm::vec3(
-            glm::dvec3(sine * std::cos(azimuth), sine * std::sin(azimuth), -inside))));
+        views.into.push_back(frame.to_world(
+            glm::vec3(glm::dvec3(sine * std::cos(azimuth), sine * std::sin(azimuth), -inside))));
         const double passed = fresnel_transmittance(cosine, eta);
         views.share.push_back({static_cast<float>(passed)});
         sum += passed;
@@ -76,7 +76,8 @@ ViewSet make_view_set(const ViewFit& fit, double eta, glm::vec3 normal, std::uin
     const auto count = static_cast<Eigen::Index>(views.into.size());
     Eigen::VectorXd weight(count);
     for (Eigen::Index v = 0; v < count; ++v) {
-        weight(v) = (1 - kNormal) * static_cast<double>(views.share[static_cast<std::size_t>(v)][0]);
+        weight(v) =
+            (1 - kNormal) * static_cast<double>(views.share[static_cast<std::size_t>(v)][0]);
     }
     weight(count - 1) = kNormal;
     Square gram = functions * weight.asDiagonal() * functions.transpose();

@@ -71,7 +71,8 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
     stage.rows = walk_from_sites(space, starts, light, rows, subtract, context, stage.counts);
     stage.view_fit = make_view_fit(static_cast<double>(space.eta));
     if (options.is_inside) {
-        // Light inside varies less from place to place than that which leaves (RESULTS.md, "Walks").
+        // Light inside varies less from place to place than that which leaves (RESULTS.md,
+        // "Walks").
         constexpr double kWider = 2;
         const auto& phase = space.scene->materials[space.material].medium->phase;
         stage.inner = InnerField(starts, static_cast<float>(kWider * options.radius),
@@ -143,19 +144,22 @@ void add_inner_rows(const WalkStage& stage, const BodyPoint& point, float scale,
     const FirstFlight flight = trace_first_flight(space, seen, point);
     std::vector<InnerWeight> weights;
     stage.inner.weigh(space, point, seen, flight, rows, weights);
+    SiteRowSum sum(rgbx.size() / (stage.rows.bands == 1 ? 1 : 4), rows, stage.rows.bands);
     for (const InnerWeight& w : weights) {
+        SiteRowSum::Weights by_band{};
         for (std::uint32_t r = 0; r < rows; ++r) {
-            glm::vec3 weight(0);
             for (std::size_t g = 0; g < space.bands.size(); ++g) {
                 for (std::size_t b = 0; b < 3; ++b) {
                     if (space.bands[g].member[b]) {
-                        weight[static_cast<int>(b)] = scale * w.row[r][g];
+                        by_band[r][b] = scale * w.row[r][g];
                     }
                 }
             }
-            add_site_row(stage.rows, w.site, 0, weight,
-                         r == 0 ? rgbx : views.subspan((r - 1) * rgbx.size(), rgbx.size()));
         }
+        sum.add(stage.rows, w.site, by_band);
+    }
+    for (std::uint32_t r = 0; r < rows; ++r) {
+        sum.add_to(r, r == 0 ? rgbx : views.subspan((r - 1) * rgbx.size(), rgbx.size()));
     }
 }
 

@@ -40,8 +40,8 @@ double count_walks(const SitePlan& plan, double area, const WalkBudget& budget);
 
 /// Rows at sites, from which those of receivers follow.
 struct WalkStage {
-    SiteField field, view_field;  ///< the latter of rows by view: they vary less and are noisier
-    InnerField inner;             ///< instead of both, where sites are inside
+    SiteField field, view_field;     ///< the latter of rows by view: they vary less and are noisier
+    InnerField inner;                ///< instead of both, where sites are inside
     std::optional<WalkSpace> space;  ///< of the inner field
     SiteRows rows;
     ViewFit view_fit;  ///< of the boundary
@@ -54,11 +54,11 @@ struct WalkStage {
 };
 
 struct WalkStageOptions {
-    double radius = 0;    ///< [m] around a receiver
-    double walks = 1e6;   ///< in all; at least one from each site for each group of bands
-    bool is_inside = false;  ///< walks begin with a scattering inside, below the sites
-    std::uint32_t views = 1; ///< rows of a receiver: 1, 4 or 9
-    SiteRowOptions rows;     ///< but for the numbers of walks and views
+    double radius = 0;        ///< [m] around a receiver
+    double walks = 1e6;       ///< in all; at least one from each site for each group of bands
+    bool is_inside = false;   ///< walks begin with a scattering inside, below the sites
+    std::uint32_t views = 1;  ///< rows of a receiver: 1, 4 or 9
+    SiteRowOptions rows;      ///< but for the numbers of walks and views
 };
 
 /// Sites on the surface of the space's material, between its samples.
@@ -72,9 +72,9 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
                      const std::function<void(std::size_t, std::span<float>)>& subtract,
                      const Context& context);
 
-/// Adds the row of a receiver, T_0, times `scale`, to four floats per texel (one with one band), and
-/// those that say how it changes with the view (SiteRows) to `views`: none, 3 or 8, one after the
-/// other. Precondition: the stage has as many.
+/// Adds the row of a receiver, T_0, times `scale`, to four floats per texel (one with one band),
+/// and those that say how it changes with the view (SiteRows) to `views`: none, 3 or 8, one after
+/// the other. Precondition: the stage has as many.
 void add_walked_rows(const WalkStage& stage, const BodyPoint& point, float scale,
                      std::span<float> rgbx, std::span<float> views);
 
