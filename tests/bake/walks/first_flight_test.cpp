@@ -58,7 +58,7 @@ TEST(FirstFlight, DepthsAreThoseOfAnExponential) {
             make_walked_body(make_wide_slab(thickness), make_forward_medium(1, 0.9f, 0, 1));
         const double truth =
             1 - static_cast<double>(thickness) / std::expm1(static_cast<double>(thickness));
-        EXPECT_NEAR(look_down(slab->space).depth / truth, 1, 1e-3) << thickness;
+        EXPECT_NEAR(look_down(slab->space).depth / truth, 1, 5e-3) << thickness;  // four depths
     }
 }
 

@@ -24,7 +24,7 @@ InnerBody make_inner_body(Primitive shape, float sigma_t, std::uint32_t sites, f
     inner.body = make_walked_body(std::move(shape), make_forward_medium(sigma_t, 0.9f, g, 1.3f));
     const auto surface = bake::sample_surface(inner.body->scene, {0}, sites, 0, {});
     inner.starts = bake::make_inner_starts(inner.body->space, surface, {});
-    inner.field = bake::InnerField(inner.starts, 3 / sigma_t, g == 0);
+    inner.field = bake::InnerField(inner.starts, 3 / sigma_t, 1 / sigma_t, g == 0);
     inner.fit = bake::make_view_fit(1.3);
     return inner;
 }
@@ -92,12 +92,13 @@ TEST(InnerField, EvenLightIsWhatTheFlightScattersInEveryRow) {
 
 TEST(InnerField, LightThatVariesWithThePlaceIsSeenWhereTheFlightGoes) {
     const InnerBody ball = make_inner_body(make_sphere(4), 4, 4000);
-    // As it decays toward the middle of an absorbing body, and along a slope.
-    const Light light = [](glm::vec3 x, glm::vec3) {
-        return std::exp(2 * (static_cast<double>(glm::length(x)) - 1)) +
-               0.5 * static_cast<double>(x.y);
-    };
     for (const glm::vec3 normal : {glm::vec3(0, 1, 0), glm::vec3(1, -1, 2)}) {
+        // As it decays below the surface of an absorbing body, and along a slope.
+        const glm::vec3 up = glm::normalize(normal);
+        const Light light = [up](glm::vec3 x, glm::vec3) {
+            return std::exp(4 * (static_cast<double>(glm::dot(x, up)) - 1)) +
+                   0.5 * static_cast<double>(x.y);
+        };
         const bake::BodyPoint point = point_on_ball(normal);
         const Weighed seen = weigh(ball, point, light);
         EXPECT_NEAR(seen.rows[0], seen.truth[0], 0.01);

@@ -71,37 +71,36 @@ class FlightTracer {
         return std::max(0.0f, distance);
     }
 
-    // Nodes that share what light of the mean extinction scatters up to `distance` evenly, each at
-    // the mean depth of its share.
+    // Collisions up to `distance`: Gauss's rule over v = e^(-sigma_t s / 2), which holds light that
+    // grows with the depth s as well as light that decays.
     void scatter_along(glm::vec3 position, glm::vec3 direction, float distance, std::uint32_t view,
                        PerGroup& left) {
-        constexpr int kDepths = 4;
+        constexpr std::array<float, 4> kNode{0.0694318442f, 0.3300094782f, 0.6699905218f,
+                                             0.9305681558f};
+        constexpr std::array<float, 4> kWeight{0.1739274226f, 0.3260725774f, 0.3260725774f,
+                                               0.1739274226f};
         const WalkMedium& medium = space_.media.front();
-        const float scattered = -std::expm1(-sigma_t_ * distance);
-        float from = 0;
-        for (int i = 1; i <= kDepths; ++i) {
-            const float share = scattered * static_cast<float>(i) / kDepths;
-            const float to =
-                i < kDepths ? std::min(distance, -std::log1p(-share) / sigma_t_) : distance;
-            FlightNode node{
-                position + (from + mean_depth(to - from)) * direction, direction, {}, view};
+        const float range = -std::expm1(-0.5f * sigma_t_ * distance);  // of v: 1 - range to 1
+        std::array<FlightNode, kNode.size()> nodes;
+        PerGroup sum{};
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const float depth = -2 * std::log1p(-range * kNode[i]) / sigma_t_;
+            nodes[i] = {position + std::min(depth, distance) * direction, direction, {}, view};
             for (std::size_t g = 0; g < groups_; ++g) {
-                node.weight[g] = left[g] * std::exp(-medium.sigma_t[g] * from) *
-                                 -std::expm1(-medium.sigma_t[g] * (to - from));
+                // sigma_t e^(-sigma_t s) ds in proportion
+                nodes[i].weight[g] =
+                    kWeight[i] * std::exp((0.5f * sigma_t_ - medium.sigma_t[g]) * depth);
+                sum[g] += nodes[i].weight[g];
             }
-            nodes_.push_back(node);
-            from = to;
         }
         for (std::size_t g = 0; g < groups_; ++g) {
-            left[g] *= std::exp(-medium.sigma_t[g] * distance);
+            const float scattered = -std::expm1(-medium.sigma_t[g] * distance);
+            for (FlightNode& node : nodes) {
+                node.weight[g] *= sum[g] > 0 ? left[g] * scattered / sum[g] : 0;
+            }
+            left[g] *= 1 - scattered;
         }
-    }
-
-    // Of collisions within `length`: 1 / sigma_t - length / (e^x - 1), x its optical depth.
-    float mean_depth(float length) const {
-        constexpr float kThin = 1e-2f;
-        const float x = sigma_t_ * length;
-        return x < kThin ? length * (0.5f - x / 12) : 1 / sigma_t_ - length / std::expm1(x);
+        nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
     }
 
     // At the boundary, from inside, as walks are.

@@ -74,9 +74,10 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
         // Light inside varies less from place to place than that which leaves (RESULTS.md,
         // "Walks").
         constexpr double kWider = 2;
-        const auto& phase = space.scene->materials[space.material].medium->phase;
+        const formats::Medium& medium = *space.scene->materials[space.material].medium;
         stage.inner = InnerField(starts, static_cast<float>(kWider * options.radius),
-                                 formats::mean_cosine(phase) == 0);
+                                 static_cast<float>(transport_mean_free_path(medium)),
+                                 formats::mean_cosine(medium.phase) == 0);
         stage.space = space;
         return stage;
     }
