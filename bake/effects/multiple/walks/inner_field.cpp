@@ -22,9 +22,8 @@ constexpr std::size_t kFewest = 12;  // sites of a fit
 
 }  // namespace
 
-InnerField::InnerField(std::span<const WalkStart> starts, float radius, float path,
-                       bool is_isotropic)
-    : radius_(radius), path_(path), is_isotropic_(is_isotropic), grid_(points_of(starts), radius) {
+InnerField::InnerField(std::span<const WalkStart> starts, float radius, bool is_isotropic)
+    : radius_(radius), is_isotropic_(is_isotropic), grid_(points_of(starts), radius) {
     for (const WalkStart& s : starts) {
         position_.push_back(s.position);
         arrival_.push_back(s.arrival);
@@ -37,21 +36,17 @@ InnerField::Functions InnerField::eval(const Centre& centre, glm::vec3 position,
     glm::dvec3 at = (position - centre.position) / radius_;
     at /= std::sqrt(1 + glm::dot(at, at));
     const glm::dvec3 squares = at * at, turn = direction - centre.direction;
-    // As light decays from the surface of an absorbing half space.
-    constexpr float kAbove = -1;
-    const float depth = glm::dot(centre.normal, centre.surface - position) / path_;
-    const auto decay = static_cast<double>(std::exp(-std::max(kAbove, depth)));
     if (is_isotropic_) {
-        return {1,         at.x,      at.y,        at.z,        decay,      squares.x,
+        return {1,         at.x,      at.y,        at.z,        squares.x,
                 squares.y, squares.z, at.x * at.y, at.y * at.z, at.z * at.x};
     }
-    return {1,     at.x,      at.y,      at.z,      turn.x,      turn.y,      turn.z,
-            decay, squares.x, squares.y, squares.z, at.x * at.y, at.y * at.z, at.z * at.x};
+    return {1,         at.x,      at.y,      at.z,        turn.x,      turn.y,     turn.z,
+            squares.x, squares.y, squares.z, at.x * at.y, at.y * at.z, at.z * at.x};
 }
 
 // Three sites a coefficient.
 std::size_t InnerField::count_functions(std::size_t sites) const {
-    const std::size_t linear = is_isotropic_ ? 5 : 8;
+    const std::size_t linear = is_isotropic_ ? 4 : 7;
     return sites >= 3 * (linear + 6) ? linear + 6 : sites >= 3 * linear ? linear : 1;
 }
 
@@ -109,7 +104,7 @@ void InnerField::weigh(const WalkSpace& space, const BodyPoint& point, const Vie
                        const FirstFlight& flight, std::uint32_t rows,
                        std::vector<InnerWeight>& weights) const {
     weights.clear();
-    Centre centre{{}, {}, point.position, point.normal};
+    Centre centre;
     float sum = 0;
     for (const FlightNode& node : flight) {
         const float weight = node.weight[0] * views.share[node.view][0];

@@ -25,10 +25,9 @@ struct InnerWeight {
 /// cosine it is also linear in the direction of the flight.
 class InnerField {
   public:
-    InnerField() : InnerField({}, 1, 1, true) {}
-    /// Of walks that begin with a scattering. `radius` [m] > 0 of the fit; `path` [m] > 0, the
-    /// transport mean free path.
-    InnerField(std::span<const WalkStart> starts, float radius, float path, bool is_isotropic);
+    InnerField() : InnerField({}, 1, true) {}
+    /// Of walks that begin with a scattering. `radius` [m] > 0 of the fit.
+    InnerField(std::span<const WalkStart> starts, float radius, bool is_isotropic);
 
     bool empty() const { return position_.empty(); }
     std::size_t size() const { return position_.size(); }
@@ -47,10 +46,9 @@ class InnerField {
     };
     struct Centre {
         glm::vec3 position{0}, direction{0};
-        glm::vec3 surface{0}, normal{0};  // of the receiver
     };
-    /// Functions that are fitted: 1, place, direction, e^-depth, squares of the place.
-    static constexpr std::size_t kMostFunctions = 14;
+    /// Functions that are fitted: 1, place, direction, squares of the place.
+    static constexpr std::size_t kMostFunctions = 13;
     using Functions = std::array<double, kMostFunctions>;
 
     std::vector<Neighbour> collect(const WalkSpace& space, const BodyPoint& point,
@@ -59,7 +57,7 @@ class InnerField {
     std::size_t count_functions(std::size_t sites) const;
 
     std::vector<glm::vec3> position_, arrival_;
-    float radius_ = 1, path_ = 1;
+    float radius_ = 1;
     bool is_isotropic_ = true;
     PointGrid grid_;
 };

@@ -71,13 +71,14 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
     stage.rows = walk_from_sites(space, starts, light, rows, subtract, context, stage.counts);
     stage.view_fit = make_view_fit(static_cast<double>(space.eta));
     if (options.is_inside) {
-        // Light inside varies less from place to place than that which leaves (RESULTS.md,
-        // "Walks").
-        constexpr double kWider = 2;
+        // Light inside varies over mean free paths, whatever the surface (README.md, "From sites to
+        // receivers"). A wider fit has less noise and costs more.
+        constexpr double kWider = 2, kWidest = 3, kPaths = 2;
         const formats::Medium& medium = *space.scene->materials[space.material].medium;
-        stage.inner = InnerField(starts, static_cast<float>(kWider * options.radius),
-                                 static_cast<float>(transport_mean_free_path(medium)),
-                                 formats::mean_cosine(medium.phase) == 0);
+        const double radius = std::clamp(kPaths * transport_mean_free_path(medium),
+                                         kWider * options.radius, kWidest * options.radius);
+        stage.inner =
+            InnerField(starts, static_cast<float>(radius), formats::mean_cosine(medium.phase) == 0);
         stage.space = space;
         return stage;
     }
