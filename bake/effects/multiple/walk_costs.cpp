@@ -107,8 +107,9 @@ Work walked_rows_work(const SubjectCost& cost) {
                                   static_cast<double>(plan.sites));
     const Rates& rates = cost.input.rates;
     if (are_inside(cost, plan)) {
-        constexpr double kWider = 4;  // square of the fit's radius over that of the plan
-        const double seen = std::min(kWider * sites, static_cast<double>(plan.sites));
+        const double wider =
+            inner_radius(plan, shortest_path(cost.medium(), cost.facts)) / plan.radius;
+        const double seen = std::min(wider * wider * sites, static_cast<double>(plan.sites));
         return {0, cost.receivers * (rates.first_flight.at(cost.input.triangles) +
                                      seen * (rates.inner_site.at(cost.input.triangles) +
                                              (1 + rows_by_view(cost.layout)) *

@@ -40,6 +40,13 @@ double count_walks(const SitePlan& plan, double area, const WalkBudget& budget) 
                     : budget.most;
 }
 
+// Light inside varies over mean free paths, whatever the surface (README.md, "From sites to
+// receivers"). A wider fit has less noise and costs more.
+double inner_radius(const SitePlan& plan, double mean_free_path) {
+    constexpr double kWider = 2, kWidest = 3, kPaths = 2;
+    return std::clamp(kPaths * mean_free_path, kWider * plan.radius, kWidest * plan.radius);
+}
+
 std::vector<SurfaceSample> place_sites(const WalkSpace& space, const SitePlan& plan,
                                        std::uint64_t seed, const Context& context) {
     std::vector<std::uint32_t> primitives;
@@ -71,12 +78,9 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
     stage.rows = walk_from_sites(space, starts, light, rows, subtract, context, stage.counts);
     stage.view_fit = make_view_fit(static_cast<double>(space.eta));
     if (options.is_inside) {
-        // Light inside varies over mean free paths, whatever the surface (README.md, "From sites to
-        // receivers"). A wider fit has less noise and costs more.
-        constexpr double kWider = 2, kWidest = 3, kPaths = 2;
         const formats::Medium& medium = *space.scene->materials[space.material].medium;
-        const double radius = std::clamp(kPaths * transport_mean_free_path(medium),
-                                         kWider * options.radius, kWidest * options.radius);
+        const double radius =
+            inner_radius({.radius = options.radius}, transport_mean_free_path(medium));
         stage.inner =
             InnerField(starts, static_cast<float>(radius), formats::mean_cosine(medium.phase) == 0);
         stage.space = space;

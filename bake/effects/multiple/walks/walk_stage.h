@@ -38,6 +38,9 @@ SitePlan plan_sites(double area, double diagonal, double mean_free_path, const W
 /// Walks in all. `area` [m^2] of the body.
 double count_walks(const SitePlan& plan, double area, const WalkBudget& budget);
 
+/// How far around a receiver's flight sites inside count [m]. `mean_free_path` [m] > 0.
+double inner_radius(const SitePlan& plan, double mean_free_path);
+
 /// Rows at sites, from which those of receivers follow.
 struct WalkStage {
     SiteField field, view_field;     ///< the latter of rows by view: they vary less and are noisier
