@@ -45,6 +45,20 @@ bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, flo
     return true;
 }
 
+bool sees(const WalkSpace& space, glm::vec3 from, glm::vec3 to) {
+    constexpr float kBefore = 0.999f;
+    const glm::vec3 way = to - from;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray{};
+    ray.org_x = from.x, ray.org_y = from.y, ray.org_z = from.z;
+    ray.dir_x = way.x, ray.dir_y = way.y, ray.dir_z = way.z;
+    ray.tfar = kBefore;
+    ray.mask = 0xffffffffu;
+    rtcOccluded1(space.triangles->handle(), &context, &ray);
+    return ray.tfar >= 0;  // -inf where something was hit
+}
+
 glm::vec3 smooth_normal(const WalkSpace& space, const WalkHit& hit) {
     const formats::Primitive& p = space.scene->primitives[hit.primitive];
     const std::uint32_t* corner = &p.index[hit.first_index];

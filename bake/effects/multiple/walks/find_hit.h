@@ -22,6 +22,9 @@ struct WalkHit {
 bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, float reach,
               WalkHit& hit);
 
+/// No triangle lies between two points, but for the last thousandth of the way.
+bool sees(const WalkSpace& space, glm::vec3 from, glm::vec3 to);
+
 /// The interpolated normal, unit; the triangle's own where that faces away from it.
 glm::vec3 smooth_normal(const WalkSpace& space, const WalkHit& hit);
 

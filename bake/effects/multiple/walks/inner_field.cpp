@@ -53,13 +53,6 @@ std::size_t InnerField::count_functions(std::size_t sites) const {
 std::vector<InnerField::Neighbour> InnerField::collect(const WalkSpace& space,
                                                        const BodyPoint& point,
                                                        const Centre& centre) const {
-    const auto is_seen = [&](std::uint32_t site) {
-        constexpr float kBefore = 0.999f;
-        const glm::vec3 way = position_[site] - point.inner;
-        const float length = glm::length(way);
-        WalkHit hit;
-        return !(length > 0) || !find_hit(space, point.inner, way / length, kBefore * length, hit);
-    };
     const glm::vec3 along = glm::normalize(centre.direction);
     std::vector<std::uint32_t> around;
     grid_.collect_around(grid_.cell_of(centre.position), around);
@@ -70,8 +63,8 @@ std::vector<InnerField::Neighbour> InnerField::collect(const WalkSpace& space,
         if (!is_isotropic_) {
             kernel *= std::max(0.0f, glm::dot(arrival_[s], along));
         }
-        if (kernel > 0 && is_seen(s)) {
-            neighbours.push_back({s, static_cast<double>(kernel * kernel)});
+        if (kernel > 0 && sees(space, point.inner, position_[s])) {
+            neighbours.push_back({s, static_cast<double>(kernel)});
         }
     }
     if (neighbours.size() >= std::min(kFewest, position_.size())) {

@@ -24,11 +24,12 @@ struct SampleExit {
 
 class SiteWalker {
   public:
-    SiteWalker(const WalkSpace& space, const ExitLight& light, const SiteRowOptions& options)
+    SiteWalker(const WalkSpace& space, const ExitLight& light, const ViewFit& view_fit,
+               const SiteRowOptions& options)
         : space_(space),
           light_(light),
           options_(options),
-          view_fit_(make_view_fit(static_cast<double>(space.eta))),
+          view_fit_(view_fit),
           dense_(4 * options.views * std::size_t{formats::cubemap_texels(options.cubemap_size)}) {}
 
     // The dense rows of one site.
@@ -114,7 +115,7 @@ class SiteWalker {
     const WalkSpace& space_;
     const ExitLight& light_;
     const SiteRowOptions& options_;
-    ViewFit view_fit_;
+    const ViewFit& view_fit_;
     std::vector<float> dense_;
     std::vector<WalkExit> exits_;
     std::vector<ViewLobe> seen_;  // of each exit, what its walk's view adds to the rows by view
@@ -179,6 +180,7 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
     SiteRows rows;
     rows.bands = options.bands;
     rows.views = options.views;
+    const ViewFit view_fit = make_view_fit(static_cast<double>(space.eta));
     struct Part {
         SiteRows::Block block;
         WalkCounts counts;
@@ -187,7 +189,7 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
         starts.size(), SiteRows::kPerBlock, context,
         [&](Range range) {
             Part part;
-            SiteWalker walker(space, light, options);
+            SiteWalker walker(space, light, view_fit, options);
             for (std::size_t site = range.begin; site < range.end; ++site) {
                 const std::span<float> own =
                     walker.walk(starts[site], static_cast<std::uint32_t>(site), part.counts);
@@ -237,6 +239,30 @@ SiteRowSum::SiteRowSum(std::size_t texels, std::uint32_t rows, std::uint32_t ban
       lanes_(bands == 1 ? 4 * std::size_t{(rows + 3) / 4} : 4 * std::size_t{rows}),
       sum_(texels * lanes_) {}
 
+namespace {
+
+// sum[lanes * index[k] + lane] += factor[lane] * value of k. `kLanes` 0: known at run time alone.
+template <std::size_t kLanes>
+void add_entries(std::span<const std::uint32_t> index, const float* value, std::uint32_t bands,
+                 const float* factor, std::size_t lanes, float* sum) {
+    lanes = kLanes > 0 ? kLanes : lanes;
+    for (const std::uint32_t texel : index) {
+        const Float4 v = bands == 1 ? Float4{value[0], value[0], value[0], value[0]}
+                                    : Float4{value[0], value[1], value[2], 0};
+        value += bands;
+        float* const to = sum + lanes * texel;
+        for (std::size_t lane = 0; lane < lanes; lane += 4) {
+            Float4 all, f;
+            std::memcpy(&all, to + lane, sizeof all);
+            std::memcpy(&f, factor + lane, sizeof f);
+            all += f * v;
+            std::memcpy(to + lane, &all, sizeof all);
+        }
+    }
+}
+
+}  // namespace
+
 void SiteRowSum::add(const SiteRows& from, std::size_t site, const Weights& weights) {
     constexpr std::size_t kMostLanes = 36;
     std::array<float, kMostLanes> factor{};
@@ -246,20 +272,10 @@ void SiteRowSum::add(const SiteRows& from, std::size_t site, const Weights& weig
         }
     }
     const SiteRows::Block& block = from.blocks[site / SiteRows::kPerBlock];
-    const std::size_t i = site % SiteRows::kPerBlock;
-    for (std::size_t k = block.offset[i]; k < block.offset[i + 1]; ++k) {
-        const float* const value = &block.value[bands_ * k];
-        const Float4 v = bands_ == 1 ? Float4{value[0], value[0], value[0], value[0]}
-                                     : Float4{value[0], value[1], value[2], 0};
-        float* const to = &sum_[lanes_ * block.index[k]];
-        for (std::size_t lane = 0; lane < lanes_; lane += 4) {
-            Float4 sum, f;
-            std::memcpy(&sum, to + lane, sizeof sum);
-            std::memcpy(&f, &factor[lane], sizeof f);
-            sum += f * v;
-            std::memcpy(to + lane, &sum, sizeof sum);
-        }
-    }
+    const std::size_t i = site % SiteRows::kPerBlock, first = block.offset[i];
+    const auto add = lanes_ == 4 ? add_entries<4> : lanes_ == 16 ? add_entries<16> : add_entries<0>;
+    add(std::span(block.index).subspan(first, block.offset[i + 1] - first),
+        block.value.data() + bands_ * first, bands_, factor.data(), lanes_, sum_.data());
 }
 
 void SiteRowSum::add_to(std::uint32_t row, std::span<float> rgbx) const {

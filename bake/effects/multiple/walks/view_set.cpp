@@ -6,30 +6,34 @@
 
 #include "bake/base/frame.h"
 #include "bake/scattering/fresnel.h"
+#include "bake/scattering/gauss_legendre.h"
 #include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kViews = 64;
+constexpr std::uint32_t kRings = 4, kAzimuths = 8, kViews = kRings * kAzimuths;
 
 using Functions = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kAllDegrees, kViews + 1>;
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kAllDegrees, kAllDegrees>;
 
-// Light of density F_t(c) c that enters: c^2 and the azimuth uniform on a lattice of golden turns,
-// with weight F_t(c).
+// Light of density F_t(c) c that enters: Gauss's rule over c^2 with weight F_t(c), eight azimuths
+// each, turned by a golden part of their distance from ring to ring.
 void add_entering(double eta, glm::vec3 normal, ViewSet& views) {
+    static const GaussLegendre rule = make_gauss_legendre(kRings);
     const Frame frame = make_frame(normal);
+    const double least = std::max(0.0, 1 - eta * eta);  // of c^2: below, all is reflected
     double sum = 0;
     for (std::uint32_t i = 0; i < kViews; ++i) {
-        const double place = static_cast<double>(i) + 0.5;
-        const double cosine = std::sqrt(1 - place / kViews);
-        const double azimuth = 2 * std::numbers::pi * place / std::numbers::phi;
+        const std::uint32_t ring = i / kAzimuths;
+        const double cosine = std::sqrt(least + (1 - least) * rule.node[ring]);
+        const double azimuth =
+            2 * std::numbers::pi * (i % kAzimuths + ring * std::numbers::phi) / kAzimuths;
         const double inside = refracted_cosine(cosine, eta);
         const double sine = std::sqrt(std::max(0.0, 1 - inside * inside));
         views.into.push_back(frame.to_world(
             glm::vec3(glm::dvec3(sine * std::cos(azimuth), sine * std::sin(azimuth), -inside))));
-        const double passed = fresnel_transmittance(cosine, eta);
+        const double passed = rule.weight[ring] * fresnel_transmittance(cosine, eta);
         views.share.push_back({static_cast<float>(passed)});
         sum += passed;
     }
