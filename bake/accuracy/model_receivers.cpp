@@ -1,8 +1,10 @@
 #include "bake/accuracy/model_receivers.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace opaline::bake {
 namespace {
@@ -80,16 +82,42 @@ bool is_on_edge(const ReferenceReceiver& receiver) {
            glm::dot(glm::normalize(receiver.outside - receiver.inside), receiver.normal) < kSharp;
 }
 
+// Of each primitive, the vertices whose triangles face both ways as seen along the normal: folds at
+// which no normal is right.
+std::vector<std::vector<bool>> find_creases(const formats::Scene& scene) {
+    std::vector<std::vector<bool>> creased;
+    for (const formats::Primitive& p : scene.primitives) {
+        std::vector<bool> up(p.position.size()), down(p.position.size());
+        for (std::size_t i = 0; i + 2 < p.index.size(); i += 3) {
+            const std::uint32_t* const corner = &p.index[i];
+            const glm::vec3 a = p.position[corner[0]];
+            const glm::vec3 flat = glm::cross(p.position[corner[1]] - a, p.position[corner[2]] - a);
+            for (int c = 0; c < 3; ++c) {
+                const float cosine = glm::dot(flat, p.normal[corner[c]]);
+                up[corner[c]] = up[corner[c]] || cosine > 0;
+                down[corner[c]] = down[corner[c]] || cosine < 0;
+            }
+        }
+        for (std::size_t v = 0; v < up.size(); ++v) {
+            up[v] = up[v] && down[v];
+        }
+        creased.push_back(std::move(up));
+    }
+    return creased;
+}
+
 }  // namespace
 
 std::vector<ReferenceReceiver> choose_model_receivers(const ReferenceScene& scene,
                                                       std::uint32_t wanted, std::uint64_t seed) {
     std::vector<ReferenceReceiver> receivers = choose_receivers(scene, wanted, seed, std::nullopt);
+    const formats::Scene& input = scene.surfaces.scene();
+    const std::vector<std::vector<bool>> creased = find_creases(input);
     std::erase_if(receivers, [&](const ReferenceReceiver& r) {
         return r.normal == glm::vec3(0) || is_buried(scene, r) || is_pierced(scene, r) ||
-               is_folded(scene, r) || is_on_edge(r);
+               is_folded(scene, r) || is_on_edge(r) ||
+               (r.medium != formats::kNone && creased[r.primitive][r.vertex]);
     });
-    const formats::Scene& input = scene.surfaces.scene();
     bool turn = false;
     for (ReferenceReceiver& r : receivers) {
         if (input.materials[input.primitives[r.primitive].material].sheet) {

@@ -1,9 +1,8 @@
 // How far files of `production` are from path tracing, and whether the interval that --check-model
 // states holds it. Each cell is a scene in a grey medium: transport mean free path without
-// absorption in percent of the diagonal, albedo, mean cosine, index 1.4. Prints the check's
-// statement, then what other vertices say: four times as many, without those that the check leaves
-// out too, and with five times the paths. `suns`: instead, twelve suns 5 degrees across at 192
-// vertices. Rows of RESULTS.md's tables:
+// absorption in percent of the diagonal, albedo, mean cosine, index 1.4. Prints what the check
+// states and what four times as many other vertices say, without those that the check leaves out.
+// `suns`: instead, the error under twelve suns 5 degrees across. Rows of RESULTS.md's tables:
 // opaline_error_matrix [suns] SCENE LENGTH,ALBEDO,G...; a minute a cell, suns four.
 #include <array>
 #include <cmath>
@@ -69,7 +68,7 @@ ModelErrorReport at_other_vertices(const formats::Scene& scene, const formats::A
     options.simulated = TermSet::single | TermSet::multiple;
     options.seed = 1;
     options.receivers *= 4;
-    options.max_events *= 20;
+    options.max_events *= 4;
     const ModelProbes probes =
         choose_model_probes(scene, options.receivers, options.seed, {}).value();
     const auto truth = trace_model_truth(scene, probes, options, {}).value();

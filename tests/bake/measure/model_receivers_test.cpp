@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "bake/accuracy/check_point.h"
@@ -39,6 +40,21 @@ TEST(ModelReceivers, LeaveOutAFoldThatLiesOnItsOwnBody) {
     EXPECT_EQ(count_chosen_on_plate(0.002f, 0.002f), 0u);
     EXPECT_GT(count_chosen_on_plate(0.002f, 0.5f), 0u) << "the gap is wide";
     EXPECT_GT(count_chosen_on_plate(0.5f, 0.002f), 0u) << "what lies there scatters";
+}
+
+// A ball with one face turned over: its corners have triangles on both sides.
+TEST(ModelReceivers, LeaveOutVerticesWhoseTrianglesFaceBothWays) {
+    tests::Primitive ball = tests::make_sphere(3);
+    const auto count_chosen = [](const tests::Primitive& body) {
+        const formats::Scene scene =
+            tests::make_translucent_scene({body}, tests::make_grey_medium(10, 0));
+        const auto reference = make_reference_scene(scene, 1).value();
+        return choose_model_receivers(reference, 1u << 20, 0).size();
+    };
+    const std::size_t whole = count_chosen(ball);
+    EXPECT_EQ(whole, ball.position.size());
+    std::swap(ball.index[1], ball.index[2]);
+    EXPECT_EQ(count_chosen(ball), whole - 3);
 }
 
 TEST(CheckPoints, SeeHalfOfAThinWalledSurfaceFromBehindAndNothingElse) {
