@@ -82,26 +82,28 @@ bool is_on_edge(const ReferenceReceiver& receiver) {
            glm::dot(glm::normalize(receiver.outside - receiver.inside), receiver.normal) < kSharp;
 }
 
-// Of each primitive, the vertices whose triangles face both ways as seen along the normal: folds at
-// which no normal is right.
+// Of each primitive, the vertices with triangles that turn more than 60 degrees from their normal
+// and others that do not: ends and folds of the mesh at which no normal is right.
 std::vector<std::vector<bool>> find_creases(const formats::Scene& scene) {
+    constexpr float kSharp = 0.5f;
     std::vector<std::vector<bool>> creased;
     for (const formats::Primitive& p : scene.primitives) {
-        std::vector<bool> up(p.position.size()), down(p.position.size());
+        std::vector<bool> facing(p.position.size()), turned(p.position.size());
         for (std::size_t i = 0; i + 2 < p.index.size(); i += 3) {
             const std::uint32_t* const corner = &p.index[i];
             const glm::vec3 a = p.position[corner[0]];
             const glm::vec3 flat = glm::cross(p.position[corner[1]] - a, p.position[corner[2]] - a);
             for (int c = 0; c < 3; ++c) {
                 const float cosine = glm::dot(flat, p.normal[corner[c]]);
-                up[corner[c]] = up[corner[c]] || cosine > 0;
-                down[corner[c]] = down[corner[c]] || cosine < 0;
+                const float sharp = kSharp * glm::length(flat);
+                facing[corner[c]] = facing[corner[c]] || cosine > sharp;
+                turned[corner[c]] = turned[corner[c]] || cosine < sharp;
             }
         }
-        for (std::size_t v = 0; v < up.size(); ++v) {
-            up[v] = up[v] && down[v];
+        for (std::size_t v = 0; v < facing.size(); ++v) {
+            facing[v] = facing[v] && turned[v];
         }
-        creased.push_back(std::move(up));
+        creased.push_back(std::move(facing));
     }
     return creased;
 }

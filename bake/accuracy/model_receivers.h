@@ -11,7 +11,7 @@ namespace opaline::bake {
 /// other one from behind, without those where bake and reference
 /// model different geometry: inside bodies, on sharp edges, less than three mean free paths above
 /// another surface inside their own body, on folds thinner than a mean free path that lie on their
-/// own body, or with triangles on both sides of their normal's plane.
+/// own body, or with triangles that turn more than 60 degrees from their normal.
 std::vector<ReferenceReceiver> choose_model_receivers(const ReferenceScene& scene,
                                                       std::uint32_t wanted, std::uint64_t seed);
 

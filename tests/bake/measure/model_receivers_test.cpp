@@ -42,8 +42,8 @@ TEST(ModelReceivers, LeaveOutAFoldThatLiesOnItsOwnBody) {
     EXPECT_GT(count_chosen_on_plate(0.5f, 0.002f), 0u) << "what lies there scatters";
 }
 
-// A ball with one face turned over: its corners have triangles on both sides.
-TEST(ModelReceivers, LeaveOutVerticesWhoseTrianglesFaceBothWays) {
+// A ball with one face turned over.
+TEST(ModelReceivers, LeaveOutVerticesWhoseTrianglesTurnFarFromTheirNormal) {
     tests::Primitive ball = tests::make_sphere(3);
     const auto count_chosen = [](const tests::Primitive& body) {
         const formats::Scene scene =
