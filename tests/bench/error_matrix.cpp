@@ -3,7 +3,7 @@
 // absorption in percent of the diagonal, albedo, mean cosine, index 1.4. Prints what the check
 // states and what four times as many other vertices say, without those that the check leaves out.
 // `suns`: instead, the error under twelve suns 5 degrees across. Rows of RESULTS.md's tables:
-// opaline_error_matrix [suns] SCENE LENGTH,ALBEDO,G...; a minute a cell, suns four.
+// opaline_error_matrix [suns] SCENE LENGTH,ALBEDO,G...; a minute a cell, suns two.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -119,7 +119,7 @@ formats::Environment make_suns(int first, int count) {
 // Paths meet a sun behind the boundary by chance: there are many of them.
 void print_suns(const formats::Scene& scene) {
     constexpr int kSuns = 12;
-    constexpr double kEvents = 4e8;
+    constexpr double kEvents = 2e8;
     const BakeResult baked = bake(scene, false);
     const formats::AssetView asset = baked.asset.view();
     const ReferenceScene walked = make_reference_scene(scene, 0).value();

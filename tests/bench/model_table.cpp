@@ -1,7 +1,7 @@
 // How far the model is from the Monte Carlo reference, as the table of RESULTS.md states it: light
 // that files of three seeds show over light that there is, along the normals of some receivers side
 // by side, with the standard error of both. `opaline_model_table [ETA [K]]`
-// prints it as markdown, of one index and with K rows by view where they are given; about 20
+// prints it as markdown, of one index and with K rows by view where they are given; about 60
 // minutes.
 #include <algorithm>
 #include <array>
@@ -104,7 +104,7 @@ Mean shown_light(const Body& body, const formats::Scene& scene, const formats::E
     return {sum, std::sqrt(std::max(0.0, squares - sum * sum) / (kSeeds - 1))};
 }
 
-// The light that there is: path tracing to a standard error of 0.7 %, for 30 s at most.
+// The light that there is: path tracing to a standard error of 0.7 %, for 8 s at most.
 Mean true_light(const Body& body, const formats::Scene& scene, const formats::Environment& light) {
     const ReferenceScene walked = make_reference_scene(scene, 0).value();
     const LightSampler sampler = make_light_sampler(light, glm::mat3(1.0f));
@@ -119,7 +119,7 @@ Mean true_light(const Body& body, const formats::Scene& scene, const formats::En
     Mean mean{0, 1};
     EstimateOptions wanted;
     wanted.samples = 4096 / static_cast<std::uint32_t>(receivers.size());
-    for (double seconds = 0; mean.error > 0.007 * mean.value && seconds < 30;) {
+    for (double seconds = 0; mean.error > 0.007 * mean.value && seconds < 8;) {
         const Estimate part =
             estimate_receivers({walked, sampler, paths}, receivers, wanted, {}).value();
         seconds += part.seconds;

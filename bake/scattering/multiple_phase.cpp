@@ -1,0 +1,72 @@
+#include "bake/scattering/multiple_phase.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace opaline::bake {
+namespace {
+
+// (e^(ell lambda) - 1) e^-ell without overflow.
+double scattered_moment(double lambda, double ell) {
+    return lambda < 0 ? std::exp(-ell) * std::expm1(ell * lambda)
+                      : -std::exp(-ell * (1 - lambda)) * std::expm1(-ell * lambda);
+}
+
+// (e^x - 1 - x) / x, without cancellation.
+double second_order(double x) {
+    constexpr double kSmall = 1e-2;
+    if (std::abs(x) > kSmall) {
+        return std::expm1(x) / x - 1;
+    }
+    return x / 2 * (1 + x / 3 * (1 + x / 4 * (1 + x / 5 * (1 + x / 6))));
+}
+
+}  // namespace
+
+double scattered_share(double absorption, double ell) {
+    return std::exp(-absorption) * -std::expm1(-ell);
+}
+
+double moment_after_many(double lambda, double ell) {
+    return ell > 0 ? scattered_moment(lambda, ell) / -std::expm1(-ell) : lambda;
+}
+
+double moment_of_ray(double lambda, double ell) {
+    return lambda * scattered_moment(lambda, ell);
+}
+
+double moment_of_source(double lambda, double ell) {
+    return lambda * lambda * std::exp(-ell * (1 - lambda));
+}
+
+double eval_zonal(std::span<const double> moment, double cosine) {
+    double sum = 0, before = 0, legendre = 1;
+    for (std::size_t l = 0; l < moment.size(); ++l) {
+        const auto degree = static_cast<double>(l);
+        sum += (2 * degree + 1) * moment[l] * legendre;
+        const double next = ((2 * degree + 1) * cosine * legendre - degree * before) / (degree + 1);
+        before = legendre;
+        legendre = next;
+    }
+    return sum / (4 * std::numbers::pi);
+}
+
+double eval_after_many(const PhaseDensity& density, const PhaseSeries& series, double ell,
+                       double cosine) {
+    if (!(ell > 0)) {
+        return eval_phase(density, cosine);
+    }
+    // Of those scattered at all, the share that is scattered once: its series converges slowest.
+    const double once = ell * std::exp(-ell) / -std::expm1(-ell);
+    std::vector<double> rest;
+    rest.reserve(series.lambda.size());
+    for (const double lambda : series.lambda) {
+        const double x = ell * lambda;
+        rest.push_back(x < 1 ? once * lambda * second_order(x)
+                             : moment_after_many(lambda, ell) - once * lambda);
+    }
+    return once * eval_phase(density, cosine) + eval_zonal(rest, cosine);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+
+#include "bake/scattering/phase.h"
+#include "bake/scattering/phase_series.h"
+
+namespace opaline::bake {
+
+/// Light along a path in a medium of constant albedo and phase function is scattered a Poisson
+/// number of times, with mean `ell` = int b ds [Premoze2003]. What follows is exact for given `ell`
+/// [Goudsmit1940], where that paper's equation 12 takes a power of the phase function instead.
+/// All need `ell` >= 0 and finite; none overflows or cancels for any such.
+
+/// Share of light that is scattered at least once and not absorbed: e^-absorption (1 - e^-ell),
+/// in [0, 1] (Premoze et al., equations 14 and 19). `absorption` = int a ds >= 0.
+double scattered_share(double absorption, double ell);
+
+/// Of light that was scattered at least once, the moment of one degree:
+/// (e^(ell lambda) - 1) / (e^ell - 1). `lambda` of the phase function, in [-1, 1].
+double moment_after_many(double lambda, double ell);
+
+/// lambda (e^(ell lambda) - 1) e^-ell: any number of scatterings but 0 along the path, one more at
+/// its end; not divided by their probability.
+double moment_of_ray(double lambda, double ell);
+
+/// lambda^2 e^(-ell (1 - lambda)): a scattering at both ends, any number between.
+double moment_of_source(double lambda, double ell);
+
+/// Density [1/sr] over directions of light that was scattered at least once, >= 0 but for rounding.
+/// The first order is that of `density`, exactly; `series` of the same phase function needs as many
+/// degrees as its square has: ln(1e-12) / (2 ln g) for Henyey-Greenstein. `cosine` in [-1, 1].
+double eval_after_many(const PhaseDensity& density, const PhaseSeries& series, double ell,
+                       double cosine);
+
+/// Sum over degrees of (2 l + 1) / (4 pi) moment[l] P_l(cosine) [1/sr].
+double eval_zonal(std::span<const double> moment, double cosine);
+
+}  // namespace opaline::bake

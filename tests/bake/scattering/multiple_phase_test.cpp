@@ -1,0 +1,159 @@
+#include "bake/scattering/multiple_phase.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "bake/scattering/gauss_legendre.h"
+#include "tests/bake/scattering/phase_support.h"
+#include "tests/support/volume_table.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+struct Henyey {
+    PhaseDensity density;
+    PhaseSeries series;
+};
+
+Henyey henyey(double g) {
+    return {make_phase_density(tests::hg(static_cast<float>(g))),
+            expand_henyey_greenstein(g, 1024)};
+}
+
+TEST(MultiplePhase, ShareThatIsScatteredIsThatOfTheTable) {
+    OPALINE_VOLUME_ROWS(rows, "w_ms");
+    for (const auto& row : rows) {
+        const double share = scattered_share(row.number("sigma_t"), row.number("arg"));
+        EXPECT_NEAR(share, row.value(), 1e-11 * row.value() + 1e-12 * 1e-12) << row.id();
+    }
+}
+
+TEST(MultiplePhase, ShareGrowsWithDepthAndStaysBetween0And1) {
+    double last = 0;
+    for (double ell = 1e-12; ell < 1e9; ell *= 1.7) {
+        const double share = scattered_share(0, ell);
+        EXPECT_GE(share, last);
+        EXPECT_LE(share, 1);
+        last = share;
+    }
+    EXPECT_EQ(scattered_share(0, 0), 0);
+}
+
+TEST(MultiplePhase, MeanCosinesAreThoseOfTheTable) {
+    OPALINE_VOLUME_ROWS(rows, "gs_mean_cos");
+    for (const auto& row : rows) {
+        const double mean = moment_after_many(row.number("g"), row.number("arg"));
+        EXPECT_NEAR(mean, row.value(), 1e-10 * std::abs(row.value())) << row.id();
+    }
+}
+
+// The table's g are decimal fractions, a medium's are floats: orders beyond the first come from the
+// series alone.
+TEST(MultiplePhase, DensitiesAreThoseOfTheTable) {
+    OPALINE_VOLUME_ROWS(rows, "gs_value_at_lx");
+    const PhaseDensity other = make_phase_density(tests::hg(0.5f));
+    for (const auto& row : rows) {
+        const double g = row.number("g"), ell = row.number("arg"), cosine = row.number("lx");
+        if (g < 0) {
+            continue;
+        }
+        const double once = ell * std::exp(-ell) / -std::expm1(-ell);
+        const double value =
+            eval_after_many(other, expand_henyey_greenstein(g, 1024), ell, cosine) +
+            once * (henyey_greenstein(cosine, g) - eval_phase(other, cosine));
+        EXPECT_NEAR(value, row.value(), 1e-10 * row.value()) << row.id();
+    }
+}
+
+// The table's rows of g = -0.3 are the series cut after eight degrees, and wrong in the fourth
+// digit.
+TEST(MultiplePhase, OfBackwardScatteringTheTableHasEightDegrees) {
+    OPALINE_VOLUME_ROWS(rows, "gs_value_at_lx");
+    int count = 0;
+    for (const auto& row : rows) {
+        const double g = row.number("g"), ell = row.number("arg"), cosine = row.number("lx");
+        if (g >= 0) {
+            continue;
+        }
+        const auto sum = [&](unsigned degrees) {
+            std::vector<double> moments;
+            for (const double lambda : expand_henyey_greenstein(g, degrees).lambda) {
+                moments.push_back(moment_after_many(lambda, ell));
+            }
+            return eval_zonal(moments, cosine);
+        };
+        EXPECT_NEAR(sum(8), row.value(), 1e-10) << row.id();
+        EXPECT_GT(std::abs(sum(64) - row.value()), 1e-7) << row.id();
+        EXPECT_NEAR(sum(64), sum(1024), 1e-14) << row.id();
+        const PhaseDensity phase = make_phase_density(tests::hg(static_cast<float>(g)));
+        EXPECT_NEAR(eval_after_many(phase, expand_henyey_greenstein(g, 64), ell, cosine), sum(64),
+                    1e-7)
+            << row.id();
+        ++count;
+    }
+    EXPECT_EQ(count, 3);
+}
+
+TEST(MultiplePhase, IntegralIs1AndNoDirectionIsDark) {
+    const GaussLegendre rule = make_gauss_legendre(400);
+    for (const double g : {-0.7, 0.0, 0.5, 0.9}) {
+        const Henyey phase = henyey(g);
+        for (const double ell : {1e-6, 1e-2, 1.0, 30.0, 1e3}) {
+            double sum = 0;
+            for (std::size_t i = 0; i < rule.node.size(); ++i) {
+                const double value =
+                    eval_after_many(phase.density, phase.series, ell, 2 * rule.node[i] - 1);
+                EXPECT_GT(value, -1e-12) << g << ' ' << ell;
+                sum += 4 * kPi * rule.weight[i] * value;
+            }
+            EXPECT_NEAR(sum, 1, 1e-9) << g << ' ' << ell;
+        }
+    }
+}
+
+TEST(MultiplePhase, IsThePhaseFunctionOfAThinMediumAndEvenInADeepOne) {
+    const Henyey phase = henyey(0.75);
+    for (const double cosine : {-1.0, -0.2, 0.6, 1.0}) {
+        const double once = eval_phase(phase.density, cosine);
+        EXPECT_NEAR(eval_after_many(phase.density, phase.series, 1e-6, cosine) / once, 1, 1e-5);
+        EXPECT_EQ(eval_after_many(phase.density, phase.series, 0, cosine), once);
+        EXPECT_NEAR(eval_after_many(phase.density, phase.series, 130, cosine), 1 / (4 * kPi),
+                    1e-10);
+    }
+}
+
+// A ray is a free flight before it scatters for the first time (math: Duhamel's integral).
+TEST(MultiplePhase, MomentsOfARayAreThoseOfSourcesAlongIt) {
+    const GaussLegendre rule = make_gauss_legendre(64);
+    for (const double lambda : {-0.9, -0.3, 0.2, 0.75, 0.99}) {
+        for (const double ell : {1e-9, 0.1, 3.0, 20.0}) {
+            double sum = 0;
+            for (std::size_t i = 0; i < rule.node.size(); ++i) {
+                const double t = ell * rule.node[i];
+                sum += ell * rule.weight[i] * std::exp(-t) * moment_of_source(lambda, ell - t);
+            }
+            EXPECT_NEAR(moment_of_ray(lambda, ell), sum, 1e-12 * std::abs(sum) + 1e-18)
+                << lambda << ' ' << ell;
+        }
+    }
+}
+
+TEST(MultiplePhase, IsFiniteForEveryDepth) {
+    for (const double lambda : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+        for (const double ell : {0.0, 1e-300, 1e-10, 1.0, 88.0, 710.0, 1e9}) {
+            for (const double moment : {moment_after_many(lambda, ell), moment_of_ray(lambda, ell),
+                                        moment_of_source(lambda, ell)}) {
+                EXPECT_TRUE(std::isfinite(moment)) << lambda << ' ' << ell;
+                EXPECT_LE(std::abs(moment), 1) << lambda << ' ' << ell;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace opaline::bake
