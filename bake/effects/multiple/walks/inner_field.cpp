@@ -64,7 +64,7 @@ std::vector<InnerField::Neighbour> InnerField::collect(const WalkSpace& space,
             kernel *= std::max(0.0f, glm::dot(arrival_[s], along));
         }
         if (kernel > 0 && sees(space, point.inner, position_[s])) {
-            neighbours.push_back({s, static_cast<double>(kernel)});
+            neighbours.push_back({s, static_cast<double>(kernel * kernel)});
         }
     }
     if (neighbours.size() >= std::min(kFewest, position_.size())) {

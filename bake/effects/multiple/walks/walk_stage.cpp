@@ -43,7 +43,7 @@ double count_walks(const SitePlan& plan, double area, const WalkBudget& budget) 
 // Light inside varies over mean free paths, whatever the surface (README.md, "From sites to
 // receivers"). A wider fit has less noise and costs more.
 double inner_radius(const SitePlan& plan, double mean_free_path) {
-    constexpr double kWider = 1.7, kWidest = 2.55, kPaths = 1.7;
+    constexpr double kWider = 2, kWidest = 3, kPaths = 2;
     return std::clamp(kPaths * mean_free_path, kWider * plan.radius, kWidest * plan.radius);
 }
 
