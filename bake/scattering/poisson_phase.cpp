@@ -1,4 +1,4 @@
-#include "bake/scattering/multiple_phase.h"
+#include "bake/scattering/poisson_phase.h"
 
 #include <cmath>
 #include <numbers>

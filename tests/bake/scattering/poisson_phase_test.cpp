@@ -1,4 +1,4 @@
-#include "bake/scattering/multiple_phase.h"
+#include "bake/scattering/poisson_phase.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ Henyey henyey(double g) {
             expand_henyey_greenstein(g, 1024)};
 }
 
-TEST(MultiplePhase, ShareThatIsScatteredIsThatOfTheTable) {
+TEST(PoissonPhase, ShareThatIsScatteredIsThatOfTheTable) {
     OPALINE_VOLUME_ROWS(rows, "w_ms");
     for (const auto& row : rows) {
         const double share = scattered_share(row.number("sigma_t"), row.number("arg"));
@@ -33,7 +33,7 @@ TEST(MultiplePhase, ShareThatIsScatteredIsThatOfTheTable) {
     }
 }
 
-TEST(MultiplePhase, ShareGrowsWithDepthAndStaysBetween0And1) {
+TEST(PoissonPhase, ShareGrowsWithDepthAndStaysBetween0And1) {
     double last = 0;
     for (double ell = 1e-12; ell < 1e9; ell *= 1.7) {
         const double share = scattered_share(0, ell);
@@ -44,7 +44,7 @@ TEST(MultiplePhase, ShareGrowsWithDepthAndStaysBetween0And1) {
     EXPECT_EQ(scattered_share(0, 0), 0);
 }
 
-TEST(MultiplePhase, MeanCosinesAreThoseOfTheTable) {
+TEST(PoissonPhase, MeanCosinesAreThoseOfTheTable) {
     OPALINE_VOLUME_ROWS(rows, "gs_mean_cos");
     for (const auto& row : rows) {
         const double mean = moment_after_many(row.number("g"), row.number("arg"));
@@ -54,7 +54,7 @@ TEST(MultiplePhase, MeanCosinesAreThoseOfTheTable) {
 
 // The table's g are decimal fractions, a medium's are floats: orders beyond the first come from the
 // series alone.
-TEST(MultiplePhase, DensitiesAreThoseOfTheTable) {
+TEST(PoissonPhase, DensitiesAreThoseOfTheTable) {
     OPALINE_VOLUME_ROWS(rows, "gs_value_at_lx");
     const PhaseDensity other = make_phase_density(tests::hg(0.5f));
     for (const auto& row : rows) {
@@ -72,7 +72,7 @@ TEST(MultiplePhase, DensitiesAreThoseOfTheTable) {
 
 // The table's rows of g = -0.3 are the series cut after eight degrees, and wrong in the fourth
 // digit.
-TEST(MultiplePhase, OfBackwardScatteringTheTableHasEightDegrees) {
+TEST(PoissonPhase, OfBackwardScatteringTheTableHasEightDegrees) {
     OPALINE_VOLUME_ROWS(rows, "gs_value_at_lx");
     int count = 0;
     for (const auto& row : rows) {
@@ -99,7 +99,7 @@ TEST(MultiplePhase, OfBackwardScatteringTheTableHasEightDegrees) {
     EXPECT_EQ(count, 3);
 }
 
-TEST(MultiplePhase, IntegralIs1AndNoDirectionIsDark) {
+TEST(PoissonPhase, IntegralIs1AndNoDirectionIsDark) {
     const GaussLegendre rule = make_gauss_legendre(400);
     for (const double g : {-0.7, 0.0, 0.5, 0.9}) {
         const Henyey phase = henyey(g);
@@ -116,7 +116,7 @@ TEST(MultiplePhase, IntegralIs1AndNoDirectionIsDark) {
     }
 }
 
-TEST(MultiplePhase, IsThePhaseFunctionOfAThinMediumAndEvenInADeepOne) {
+TEST(PoissonPhase, IsThePhaseFunctionOfAThinMediumAndEvenInADeepOne) {
     const Henyey phase = henyey(0.75);
     for (const double cosine : {-1.0, -0.2, 0.6, 1.0}) {
         const double once = eval_phase(phase.density, cosine);
@@ -128,7 +128,7 @@ TEST(MultiplePhase, IsThePhaseFunctionOfAThinMediumAndEvenInADeepOne) {
 }
 
 // A ray is a free flight before it scatters for the first time (math: Duhamel's integral).
-TEST(MultiplePhase, MomentsOfARayAreThoseOfSourcesAlongIt) {
+TEST(PoissonPhase, MomentsOfARayAreThoseOfSourcesAlongIt) {
     const GaussLegendre rule = make_gauss_legendre(64);
     for (const double lambda : {-0.9, -0.3, 0.2, 0.75, 0.99}) {
         for (const double ell : {1e-9, 0.1, 3.0, 20.0}) {
@@ -143,7 +143,7 @@ TEST(MultiplePhase, MomentsOfARayAreThoseOfSourcesAlongIt) {
     }
 }
 
-TEST(MultiplePhase, IsFiniteForEveryDepth) {
+TEST(PoissonPhase, IsFiniteForEveryDepth) {
     for (const double lambda : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         for (const double ell : {0.0, 1e-300, 1e-10, 1.0, 88.0, 710.0, 1e9}) {
             for (const double moment : {moment_after_many(lambda, ell), moment_of_ray(lambda, ell),
