@@ -21,8 +21,7 @@ struct Henyey {
 };
 
 Henyey henyey(double g) {
-    return {make_phase_density(tests::hg(static_cast<float>(g))),
-            expand_henyey_greenstein(g, 1024)};
+    return {make_phase_density(tests::hg(g)), expand_henyey_greenstein(g, 1024)};
 }
 
 TEST(PoissonPhase, ShareThatIsScatteredIsThatOfTheTable) {
@@ -56,7 +55,7 @@ TEST(PoissonPhase, MeanCosinesAreThoseOfTheTable) {
 // series alone.
 TEST(PoissonPhase, DensitiesAreThoseOfTheTable) {
     OPALINE_VOLUME_ROWS(rows, "gs_value_at_lx");
-    const PhaseDensity other = make_phase_density(tests::hg(0.5f));
+    const PhaseDensity other = make_phase_density(tests::hg(0.5));
     for (const auto& row : rows) {
         const double g = row.number("g"), ell = row.number("arg"), cosine = row.number("lx");
         if (g < 0) {
@@ -90,7 +89,7 @@ TEST(PoissonPhase, OfBackwardScatteringTheTableHasEightDegrees) {
         EXPECT_NEAR(sum(8), row.value(), 1e-10) << row.id();
         EXPECT_GT(std::abs(sum(64) - row.value()), 1e-7) << row.id();
         EXPECT_NEAR(sum(64), sum(1024), 1e-14) << row.id();
-        const PhaseDensity phase = make_phase_density(tests::hg(static_cast<float>(g)));
+        const PhaseDensity phase = make_phase_density(tests::hg(g));
         EXPECT_NEAR(eval_after_many(phase, expand_henyey_greenstein(g, 64), ell, cosine), sum(64),
                     1e-7)
             << row.id();
