@@ -19,6 +19,7 @@
 #include "bake/accuracy/model_truth.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/reference/reference_image.h"
+#include "bake/scene/orient_bodies.h"
 #include "formats/gltf/import_gltf.h"
 #include "runtime/light_vector.h"
 #include "runtime/shade.h"
@@ -122,7 +123,9 @@ void print_suns(const formats::Scene& scene) {
     constexpr double kEvents = 2e8;
     const BakeResult baked = bake(scene, false);
     const formats::AssetView asset = baked.asset.view();
-    const ReferenceScene walked = make_reference_scene(scene, 0).value();
+    const OrientedBodies bodies = orient_bodies(scene);  // as --check-model has it
+    const ReferenceScene walked =
+        make_reference_scene(bodies.scene ? *bodies.scene : scene, 0).value();
     const auto receivers = choose_model_receivers(walked, 192, 2);
     std::vector<ModelPair> pairs;
     for (int first = 0; first < kSuns; first += 3) {

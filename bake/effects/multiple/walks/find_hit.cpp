@@ -48,12 +48,17 @@ bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, flo
 bool sees(const WalkSpace& space, glm::vec3 from, glm::vec3 to) {
     constexpr float kBefore = 0.999f;
     const glm::vec3 way = to - from;
+    const float length = glm::length(way);
+    if (!(length > 0)) {
+        return true;
+    }
+    const glm::vec3 direction = way / length;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray{};
     ray.org_x = from.x, ray.org_y = from.y, ray.org_z = from.z;
-    ray.dir_x = way.x, ray.dir_y = way.y, ray.dir_z = way.z;
-    ray.tfar = kBefore;
+    ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+    ray.tfar = kBefore * length;
     ray.mask = 0xffffffffu;
     rtcOccluded1(space.triangles->handle(), &context, &ray);
     return ray.tfar >= 0;  // -inf where something was hit
