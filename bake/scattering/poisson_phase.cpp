@@ -13,15 +13,6 @@ double scattered_moment(double lambda, double ell) {
                       : -std::exp(-ell * (1 - lambda)) * std::expm1(-ell * lambda);
 }
 
-// (e^x - 1 - x) / x, without cancellation.
-double second_order(double x) {
-    constexpr double kSmall = 1e-2;
-    if (std::abs(x) > kSmall) {
-        return std::expm1(x) / x - 1;
-    }
-    return x / 2 * (1 + x / 3 * (1 + x / 4 * (1 + x / 5 * (1 + x / 6))));
-}
-
 }  // namespace
 
 double scattered_share(double absorption, double ell) {
@@ -62,9 +53,7 @@ double eval_after_many(const PhaseDensity& density, const PhaseSeries& series, d
     std::vector<double> rest;
     rest.reserve(series.lambda.size());
     for (const double lambda : series.lambda) {
-        const double x = ell * lambda;
-        rest.push_back(x < 1 ? once * lambda * second_order(x)
-                             : moment_after_many(lambda, ell) - once * lambda);
+        rest.push_back(moment_after_many(lambda, ell) - once * lambda);
     }
     return once * eval_phase(density, cosine) + eval_zonal(rest, cosine);
 }

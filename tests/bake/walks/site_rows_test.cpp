@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/receivers/surface_samples.h"
@@ -281,6 +282,44 @@ TEST(SitePlan, FewWalksAreCountedFartherAroundSoThatNoiseStaysTheSame) {
     EXPECT_NEAR(bake::count_walks(plan, kArea, budget) * std::numbers::pi * plan.radius *
                     plan.radius / kArea,
                 kAround, 0.01 * kAround);
+}
+
+TEST(SiteRows, SumsOfSeveralRowsAreThoseOfEachRowByItself) {
+    constexpr std::size_t kTexels = 12;
+    for (const std::uint32_t bands : {1u, 3u}) {
+        bake::SiteRows rows;
+        rows.bands = bands;
+        bake::SiteRows::Block block;
+        for (std::uint32_t site = 0; site < 3; ++site) {
+            for (std::uint32_t k = site; k < kTexels; k += 2 + site) {
+                block.index.push_back(k);
+                for (std::uint32_t b = 0; b < bands; ++b) {
+                    block.value.push_back(static_cast<float>(1 + k + 20 * b + 100 * site));
+                }
+            }
+            block.offset.push_back(static_cast<std::uint32_t>(block.index.size()));
+        }
+        rows.blocks.push_back(block);
+        const std::size_t step = bands == 1 ? 1 : 4;
+        for (const std::uint32_t count : {1u, 4u, 9u}) {
+            bake::SiteRowSum sum(kTexels, count, bands);
+            std::vector<std::vector<float>> alone(count, std::vector<float>(step * kTexels));
+            for (std::uint32_t site = 0; site < 3; ++site) {
+                bake::SiteRowSum::Weights weights{};
+                for (std::uint32_t r = 0; r < count; ++r) {
+                    weights[r] = {0.5f + static_cast<float>(r), static_cast<float>(site), 2};
+                    bake::add_site_row(rows, site, 0, {weights[r][0], weights[r][1], weights[r][2]},
+                                       alone[r]);
+                }
+                sum.add(rows, site, weights);
+            }
+            for (std::uint32_t r = 0; r < count; ++r) {
+                std::vector<float> row(step * kTexels);
+                sum.add_to(r, row);
+                EXPECT_EQ(row, alone[r]) << bands << " bands, row " << r << " of " << count;
+            }
+        }
+    }
 }
 
 }  // namespace
