@@ -11,6 +11,7 @@
 #include "formats/image/image.h"
 #include "formats/opal/result.h"
 #include "formats/opal/rgb.h"
+#include "formats/sparse_grid.h"
 
 namespace opaline::formats {
 
@@ -133,6 +134,16 @@ inline float diffuse_share(const Material& material) {
     return material.gloss.image == kNone ? 1 - material.gloss.metallic : 1.0f;
 }
 
+/// A medium that fills no closed surface: smoke, fog, a cloud. Its extinction at a point is
+/// density * sigma_t, and its albedo is the same everywhere. Overlapping volumes add up.
+struct Volume {
+    std::string name;           ///< "volume 1 (smoke.vdb)", for messages
+    SparseGrid<float> density;  ///< >= 0, of some unit; at least one voxel is > 0
+    Rgb sigma_t{1, 1, 1};       ///< extinction [1/m] where the density is 1, finite, >= 0
+    Rgb albedo{1, 1, 1};        ///< single-scattering albedo, in [0, 1]
+    PhaseFunction phase;
+};
+
 /// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.
 /// Vertices keep the original order and count: receivers and output rows use this numbering.
 struct Primitive {
@@ -170,6 +181,7 @@ struct Scene {
     std::vector<Primitive> primitives;  ///< scene nodes depth-first, then the mesh's primitives:
                                         ///< a primitive's position here is its running number
     std::vector<Material> materials;    ///< never empty
+    std::vector<Volume> volumes;
     /// World position [m] of the origin of the scene's frame: world = origin + position. The
     /// frame's axes are parallel to those of the world. All stages compute in the frame, so float
     /// precision does not depend on the distance between the scene and the world's origin.
