@@ -7,6 +7,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/reference/glossy_brdf.h"
+#include "bake/reference/volume_flight.h"
 
 namespace opaline::bake {
 namespace {
@@ -53,18 +54,22 @@ glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction, M
                   PathState state, RandomStream& random) {
     const ReferenceScene& scene = space.scene;
     const HitScene& surfaces = scene.surfaces;
+    const auto pass_volumes = [&](glm::vec3 start, float reach) {
+        return scene.volumes.empty()
+                   ? glm::vec3(1)
+                   : estimate_transmittance(scene.volumes, start, direction, reach, random);
+    };
     if (!scene.has_matched_boundary) {
         return stack.empty() && has_any(term_of(state), space.options.terms) &&
                        !surfaces.is_blocked(from, direction)
-                   ? glm::vec3(1)
+                   ? pass_volumes(from.position, kForever)
                    : glm::vec3(0);
     }
     glm::vec3 passing(1);
     while (const auto hit = surfaces.closest_hit(from, direction, kForever)) {
-        if (!stack.empty()) {
-            passing *= transmittance(scene.media[stack.top()], from.position, direction,
-                                     hit->distance, random);
-        }
+        passing *= stack.empty() ? pass_volumes(from.position, hit->distance)
+                                 : transmittance(scene.media[stack.top()], from.position, direction,
+                                                 hit->distance, random);
         const std::uint32_t material = surfaces.scene().primitives[hit->primitive].material;
         const std::uint32_t medium = scene.medium_of[material];
         if (medium == formats::kNone) {
@@ -86,7 +91,9 @@ glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction, M
         }
         from = leave_surface(*hit, direction);
     }
-    return stack.empty() && has_any(term_of(state), space.options.terms) ? passing : glm::vec3(0);
+    return stack.empty() && has_any(term_of(state), space.options.terms)
+               ? passing * pass_volumes(from.position, kForever)
+               : glm::vec3(0);
 }
 
 /// An event that is sampled in proportion to its response for unit throughput.
@@ -203,6 +210,25 @@ bool scatter_diffusely(const PathSpace& space, Path& path, const OpaquePoint& po
                : reflect_diffusely(space, path, turned(point), transmitted / chance, random);
 }
 
+// A new direction by a phase function. `sees_sky`: straight lines from here may reach the light, so
+// that it is sampled too.
+void turn(const PathSpace& space, Path& path, glm::vec3 at, const PhaseSampler& phase,
+          bool sees_sky, RandomStream& random) {
+    path.origin = {at};
+    path.pdf = 0;
+    const glm::vec3 before = path.direction;
+    if (sees_sky) {
+        gather_light(space, path, path.origin, random, [&](glm::vec3 d) {
+            return even_response(pdf_phase(phase, glm::dot(before, d)));
+        });
+    }
+    const float cosine = sample_phase_cosine(phase, [&] { return random.next(); });
+    path.direction = direction_about(before, cosine, random.next());
+    if (sees_sky) {
+        path.pdf = pdf_phase(phase, cosine);
+    }
+}
+
 }  // namespace
 
 bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& point,
@@ -270,20 +296,18 @@ bool scatter(const PathSpace& space, Path& path, glm::vec3 at, RandomStream& ran
     if (!count_event(space, path) || path.beta == glm::vec3(0) || !is_wanted(space, path.state)) {
         return false;
     }
-    path.origin = {at};
-    path.pdf = 0;
-    const glm::vec3 before = path.direction;
-    if (space.scene.has_matched_boundary) {
-        gather_light(space, path, path.origin, random, [&](glm::vec3 d) {
-            return even_response(pdf_phase(phase, glm::dot(before, d)));
-        });
-    }
-    const float cosine = sample_phase_cosine(phase, [&] { return random.next(); });
-    path.direction = direction_about(before, cosine, random.next());
-    if (space.scene.has_matched_boundary) {
-        path.pdf = pdf_phase(phase, cosine);
-    }
+    turn(space, path, at, phase, space.scene.has_matched_boundary, random);
     return survives(path, kInBodies, random);
+}
+
+bool scatter_in_volume(const PathSpace& space, Path& path, glm::vec3 at, std::uint32_t volume,
+                       RandomStream& random) {
+    path.state = after_volume(path.state);
+    if (!count_event(space, path) || path.beta == glm::vec3(0) || !is_wanted(space, path.state)) {
+        return false;
+    }
+    turn(space, path, at, space.scene.volumes.volumes[volume].phase, true, random);
+    return survives(path, kAtSurfaces, random);
 }
 
 }  // namespace opaline::bake

@@ -65,4 +65,8 @@ bool reflect_or_refract(const PathSpace& space, Path& path, const Crossing& cros
 /// A scattering event at a point of the medium around. False: the path ends.
 bool scatter(const PathSpace& space, Path& path, glm::vec3 at, RandomStream& random);
 
+/// A scattering event in a volume, outside of all bodies. False: the path ends.
+bool scatter_in_volume(const PathSpace& space, Path& path, glm::vec3 at, std::uint32_t volume,
+                       RandomStream& random);
+
 }  // namespace opaline::bake

@@ -7,6 +7,7 @@
 
 #include "bake/reference/boundary.h"
 #include "bake/reference/events.h"
+#include "bake/reference/volume_flight.h"
 
 namespace opaline::bake {
 namespace {
@@ -86,6 +87,17 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
     std::optional<SurfaceHit> hit;
     if (path.stack.empty()) {
         hit = surfaces.closest_hit(path.origin, path.direction, kForever);
+        if (!space.scene.volumes.empty()) {
+            const VolumeFlight flight =
+                sample_volume_flight(space.scene.volumes, path.origin.position, path.direction,
+                                     hit ? hit->distance : kForever, path.beta, random);
+            path.beta *= flight.weight;
+            if (flight.collides) {
+                return scatter_in_volume(space, path,
+                                         path.origin.position + flight.distance * path.direction,
+                                         flight.volume, random);
+            }
+        }
     } else {
         // Rounding must not move a scattering point beyond the boundary.
         const float margin = surfaces.rounding();

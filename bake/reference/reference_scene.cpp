@@ -14,7 +14,7 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
     if (!surfaces) {
         return std::move(surfaces).error();
     }
-    ReferenceScene result{std::move(*surfaces), {}, {}, false, {}};
+    ReferenceScene result{std::move(*surfaces), {}, {}, false, make_volume_space(scene), {}};
     float densest = 0;
     for (const formats::Material& material : scene.materials) {
         result.medium_of.push_back(formats::kNone);

@@ -5,6 +5,7 @@
 
 #include "bake/reference/free_flight.h"
 #include "bake/reference/hit_scene.h"
+#include "bake/reference/volume_space.h"
 #include "bake/transport/clearance_grid.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
@@ -17,6 +18,7 @@ struct ReferenceScene {
     std::vector<ReferenceMedium> media;    ///< of the materials that have one
     std::vector<std::uint32_t> medium_of;  ///< by material; formats::kNone: opaque
     bool has_matched_boundary = false;     ///< some medium has an index of 1
+    VolumeSpace volumes;                   ///< they fill the space outside of bodies
     ClearanceGrid clearance;               ///< trivial if there are no media
 };
 

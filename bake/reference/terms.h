@@ -16,9 +16,10 @@ struct PathState {
         mirrored,  ///< the outside of one body, or the specular lobe of one opaque surface
         inside,    ///< in the first body, or in media inside it
         left,      ///< out of the first body
+        volume,    ///< volumes alone
         other      ///< more
     } stage = Stage::camera;
-    std::uint8_t scatterings = 0;  ///< since it entered the first body, at most 2
+    std::uint8_t scatterings = 0;  ///< since it entered the first body, or in volumes; at most 2
     bool reflected_inside = false;
     bool changed_medium = false;  ///< went from one medium to another without leaving them
 };
@@ -31,6 +32,16 @@ constexpr PathState after_diffuse(PathState s) {
 }
 constexpr PathState after_scattering(PathState s) {
     if (s.stage == PathState::Stage::inside) {
+        s.scatterings = static_cast<std::uint8_t>(s.scatterings < 2 ? s.scatterings + 1 : 2);
+    } else {
+        s.stage = PathState::Stage::other;
+    }
+    return s;
+}
+/// In a volume, outside of all bodies.
+constexpr PathState after_volume(PathState s) {
+    if (s.stage == PathState::Stage::camera || s.stage == PathState::Stage::volume) {
+        s.stage = PathState::Stage::volume;
         s.scatterings = static_cast<std::uint8_t>(s.scatterings < 2 ? s.scatterings + 1 : 2);
     } else {
         s.stage = PathState::Stage::other;
@@ -85,6 +96,8 @@ constexpr TermSet term_of(PathState s) {
             return s.scatterings == 0                              ? TermSet::unscattered
                    : s.scatterings == 1 && takes_straight_paths(s) ? TermSet::single
                                                                    : TermSet::multiple;
+        case PathState::Stage::volume:
+            return s.scatterings == 1 ? TermSet::volume_single : TermSet::volume_multiple;
         case PathState::Stage::other:
             break;
     }
@@ -106,6 +119,8 @@ constexpr TermSet reachable_terms(PathState s) {
             }
             return terms;
         }
+        case PathState::Stage::volume:
+            return term_of(s) | TermSet::volume_multiple | TermSet::interreflection;
         default:
             return term_of(s) | TermSet::interreflection;
     }

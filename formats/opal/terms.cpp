@@ -17,7 +17,9 @@ constexpr std::array kNamedTerms{NamedTerm{TermSet::multiple, "multiple"},
                                  NamedTerm{TermSet::specular, "specular"},
                                  NamedTerm{TermSet::diffuse, "diffuse"},
                                  NamedTerm{TermSet::unscattered, "unscattered"},
-                                 NamedTerm{TermSet::interreflection, "interreflection"}};
+                                 NamedTerm{TermSet::interreflection, "interreflection"},
+                                 NamedTerm{TermSet::volume_single, "volume-single"},
+                                 NamedTerm{TermSet::volume_multiple, "volume-multiple"}};
 
 }  // namespace
 

@@ -19,11 +19,13 @@ enum class TermSet : std::uint32_t {
     specular = 4,  ///< reflected once by a glossy surface: the specular lobe, opaque or translucent
     diffuse = 8,   ///< reflected once by an opaque surface: the diffuse lobe; or transmitted once
                    ///< by a thin-walled one
-    unscattered = 16,      ///< through a body without being scattered
-    interreflection = 32,  ///< everything that met a second body or surface
-    baked = 15,            ///< what `.opal` files hold: multiple, single, specular, diffuse
-    separable = 3,         ///< what a body's rows hold as one or, if asked for, apart
-    all = 63
+    unscattered = 16,       ///< through a body without being scattered
+    interreflection = 32,   ///< everything that met a second body or surface
+    volume_single = 64,     ///< scattered once in a volume (smoke, a cloud) and met nothing else
+    volume_multiple = 128,  ///< scattered more than once in volumes and met nothing else
+    baked = 15,             ///< what `.opal` files hold: multiple, single, specular, diffuse
+    separable = 3,          ///< what a body's rows hold as one or, if asked for, apart
+    all = 255
 };
 
 constexpr TermSet operator|(TermSet a, TermSet b) {

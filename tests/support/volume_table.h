@@ -16,12 +16,16 @@ struct VolumeRow {
     std::map<std::string, std::string> cell;  ///< by column
 
     double number(const std::string& column) const { return std::stod(cell.at(column)); }
+    /// 0 where the cell is empty.
+    double number_or_zero(const std::string& column) const {
+        return cell.at(column).empty() ? 0 : number(column);
+    }
     double value() const { return number("value"); }
     const std::string& id() const { return cell.at("id"); }
 };
 
-/// All rows whose quantity is `quantity`. Empty if the table is not there.
-inline std::vector<VolumeRow> read_volume_rows(const std::string& quantity) {
+/// All rows of the table. Empty if it is not there.
+inline std::vector<VolumeRow> read_volume_table() {
     std::ifstream file(reference_folder() / "volumes.csv");
     const auto split = [](const std::string& line) {
         std::stringstream cells(line);
@@ -40,13 +44,18 @@ inline std::vector<VolumeRow> read_volume_rows(const std::string& quantity) {
             continue;
         }
         VolumeRow row;
-        for (std::size_t i = 0; i < parts.size() && i < columns.size(); ++i) {
-            row.cell[columns[i]] = parts[i];
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            row.cell[columns[i]] = i < parts.size() ? parts[i] : "";
         }
-        if (row.cell["quantity"] == quantity) {
-            rows.push_back(row);
-        }
+        rows.push_back(row);
     }
+    return rows;
+}
+
+/// Those whose quantity is `quantity`.
+inline std::vector<VolumeRow> read_volume_rows(const std::string& quantity) {
+    std::vector<VolumeRow> rows = read_volume_table();
+    std::erase_if(rows, [&](const VolumeRow& r) { return r.cell.at("quantity") != quantity; });
     return rows;
 }
 

@@ -38,7 +38,8 @@ TEST(TermSets, OtherNamesAreRefusedWithTheOptionAndTheNames) {
 
 TEST(TermSets, ComplementsStayWithinAllTerms) {
     EXPECT_EQ(~TermSet::none, TermSet::all);
-    EXPECT_EQ(~TermSet::baked, TermSet::unscattered | TermSet::interreflection);
+    EXPECT_EQ(~TermSet::baked, TermSet::unscattered | TermSet::interreflection |
+                                   TermSet::volume_single | TermSet::volume_multiple);
 }
 
 }  // namespace

@@ -1,0 +1,296 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bake/reference/volume_flight.h"
+#include "tests/bake/reference/reference_support.h"
+#include "tests/bake/reference/transport_rows.h"
+#include "tests/support/volumes.h"
+
+namespace opaline::tests {
+namespace {
+
+using formats::TermSet;
+
+std::unique_ptr<ReferenceFixture> make_volume_fixture(std::vector<formats::Volume> volumes,
+                                                      formats::Environment sky) {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.volumes = std::move(volumes);
+    return make_fixture(std::move(scene), std::move(sky));
+}
+
+bake::Moments look(const ReferenceFixture& fixture, glm::vec3 from, glm::vec3 direction,
+                   bake::PathOptions options, std::uint32_t samples) {
+    const bake::PathSpace space = fixture.space(options);
+    bake::EstimateOptions wanted;
+    wanted.samples = samples / 16;
+    const auto estimate =
+        bake::estimate_pixels(16, wanted, {}, [&](std::uint32_t, bake::RandomStream& random) {
+            return bake::trace_ray(space, from, direction, random);
+        });
+    EXPECT_TRUE(estimate);
+    EXPECT_EQ(estimate->lost, 0u);
+    bake::Moments all;
+    for (const bake::Moments& m : estimate->pixel) {
+        all.merge(m);
+    }
+    return all;
+}
+
+// The blobs and balls of the table as grids; what voxels of a 16th or 32nd leave is below the
+// noise.
+std::vector<TransportRow> read_volume_transport(const std::string& group) {
+    std::vector<TransportRow> rows = read_transport_rows(group);
+    std::erase_if(
+        rows, [](const TransportRow& r) { return r.geometry != "blob" && r.geometry != "sphere"; });
+    return rows;
+}
+
+std::unique_ptr<ReferenceFixture> make_row_fixture(const TransportRow& row,
+                                                   formats::Environment sky) {
+    auto grid = row.geometry == "blob" ? make_blob(row.size, row.size / 16)
+                                       : make_ball_grid(row.size, row.size / 32);
+    return make_volume_fixture({make_volume(std::move(grid), row.sigma_t, row.albedo, row.g)},
+                               std::move(sky));
+}
+
+bake::Moments march(const ReferenceFixture& fixture, const TransportRow& row,
+                    bake::PathOptions options, std::uint32_t samples) {
+    // From outside: the grid is not cut as sharply as the ball.
+    return look(fixture, row.start - row.size * row.march, row.march, options, samples);
+}
+
+TEST(ReferenceVolume, ScattersADistantLightOnceTwiceAndOften) {
+    OPALINE_NEEDS_REFERENCE("volumes.csv");
+    const auto rows = read_volume_transport("radiance");
+    ASSERT_FALSE(rows.empty());
+    for (const TransportRow& row : rows) {
+        const auto fixture = make_row_fixture(row, make_distant_light(row.light));
+        bake::PathOptions options;
+        options.terms =
+            row.quantity == "order1" ? TermSet::volume_single : TermSet::volume_multiple;
+        options.max_depth = row.quantity == "order2" ? 2 : options.max_depth;
+        expect_within(row, march(*fixture, row, options, 128000), limit_for(rows.size()));
+    }
+}
+
+TEST(ReferenceVolume, LetsABeamOutWhereItIsKnownTo) {
+    OPALINE_NEEDS_REFERENCE("volumes.csv");
+    const auto rows = read_volume_transport("escape");
+    ASSERT_FALSE(rows.empty());
+    for (const TransportRow& row : rows) {
+        bake::PathOptions options;
+        const auto see = [&](formats::Environment sky) {
+            return march(*make_row_fixture(row, std::move(sky)), row, options, 64000);
+        };
+        ASSERT_EQ(row.march, glm::vec3(0, 1, 0)) << row.name();
+        bake::Moments m;
+        if (row.quantity == "exit_unscattered") {
+            // The only randomness is whether a path passes: rarely, where that is unlikely.
+            options.max_depth = 0;
+            m = see(make_white_sky());
+            EXPECT_NEAR(m.mean.x, row.value, 4 * std::sqrt(row.value / 64000) + 2e-6) << row.name();
+            continue;
+        }
+        if (row.quantity == "exit_mean_cos") {
+            m = see(make_cosine_sky(row.march));
+            const bake::Moments back = see(make_cosine_sky(-row.march));
+            m.mean -= back.mean;
+            m.squares += back.squares;  // of as many samples
+        } else {
+            m = see(make_half_sky(row.quantity == "exit_forward"));
+        }
+        expect_within(row, m, limit_for(rows.size()));
+    }
+}
+
+// Bounds of cells, empty space, the way in and out: all must leave the integral as it is.
+TEST(ReferenceVolume, TransmitsByBeersLawAlongAnyRay) {
+    const auto fixture =
+        make_volume_fixture({make_volume(make_blob(0.5, 0.0625), 4, 0.5f, 0)}, make_white_sky());
+    const bake::VolumeSpace& space = fixture->scene.volumes;
+    bake::RandomStream turn(5, 0, 0);
+    for (std::uint32_t ray = 0; ray < 12; ++ray) {
+        const auto u = [&] { return 2 * turn.next() - 1; };
+        glm::vec3 direction = glm::normalize(glm::vec3(u(), u(), u()));
+        glm::vec3 from = glm::vec3(u(), u(), u()) - 2.5f * direction;
+        if (ray < 3) {  // along the faces of cells, and from a corner of one
+            direction = glm::vec3(ray == 0, ray == 1, ray == 2);
+            from = glm::vec3(0.5f) - 3.5f * direction;
+        }
+        double depth = 0;
+        constexpr int kSteps = 20000;
+        for (int i = 0; i < kSteps; ++i) {
+            const float t = 6 * (static_cast<float>(i) + 0.5f) / kSteps;
+            depth += 6.0 / kSteps * space.volumes[0].density(from + t * direction) * 4;
+        }
+        bake::Moments flights, lines;
+        for (std::uint32_t i = 0; i < 20000; ++i) {
+            bake::RandomStream random(7, ray, i);
+            const auto flight =
+                bake::sample_volume_flight(space, from, direction, 6, glm::vec3(1), random);
+            flights.add(glm::dvec3(flight.collides ? 0.0 : 1.0));
+            lines.add(bake::estimate_transmittance(space, from, direction, 6, random));
+        }
+        EXPECT_NEAR(flights.mean.x, std::exp(-depth), 4 * standard_error(flights)) << ray;
+        EXPECT_NEAR(lines.mean.x, std::exp(-depth), 4 * standard_error(lines)) << ray;
+        EXPECT_LT(standard_error(lines), 0.004);
+    }
+}
+
+// Segments follow one another, cover what is dense, and their bounds hold.
+TEST(ReferenceVolume, BoundsOfCellsAreNeverExceeded) {
+    auto second = make_volume(make_ball_grid(0.7, 0.05), 3, 1, 0);
+    second.density.to_scene[3] = glm::dvec4(0.31, -0.2, 0.4, 1);
+    second.density.to_scene[1] *= 1.7;  // anisotropic voxels
+    const auto fixture = make_volume_fixture(
+        {make_volume(make_blob(0.3, 0.07), 4, 0.5f, 0), second}, make_white_sky());
+    const bake::VolumeSpace& space = fixture->scene.volumes;
+    bake::RandomStream random(11, 0, 0);
+    const auto u = [&] { return 2 * random.next() - 1; };
+    int dense = 0;
+    for (int ray = 0; ray < 200; ++ray) {
+        const glm::vec3 from(3 * u(), 3 * u(), 3 * u());
+        const glm::vec3 direction =
+            glm::normalize(glm::vec3(0.5f * u(), 0.5f * u(), 0.5f * u()) - from);
+        bake::VolumeMarch march(space, from, direction, 9);
+        auto segment = march.next();
+        for (int i = 0; i < 3000; ++i) {
+            const float t = 9 * (static_cast<float>(i) + 0.5f) / 3000;
+            while (segment && segment->end < t) {
+                const float end = segment->end;
+                segment = march.next();
+                ASSERT_TRUE(!segment || segment->begin >= end);
+            }
+            for (std::size_t v = 0; v < 2; ++v) {
+                const float density = space.volumes[v].density(from + t * direction);
+                const float bound = segment && segment->begin <= t ? segment->bound[v] : 0;
+                // A point at a cell's face may round to its other side.
+                if (density > bound * 1.0001f && segment && std::abs(segment->end - t) > 1e-5f &&
+                    std::abs(segment->begin - t) > 1e-5f) {
+                    ADD_FAILURE() << "ray " << ray << " at " << t << ": " << density << " > "
+                                  << bound;
+                }
+                EXPECT_TRUE(segment || density == 0);
+                dense += density > 0;
+            }
+        }
+    }
+    EXPECT_GT(dense, 10000);
+}
+
+TEST(ReferenceVolume, InAFurnaceIsInvisibleWhereNothingIsAbsorbed) {
+    auto volume = make_volume(make_blob(0.5, 0.125), 6, 1, 0.8f);
+    volume.sigma_t = {0.5f, 6, 20};
+    const auto fixture = make_volume_fixture({volume}, make_white_sky());
+    const bake::Moments m = look(*fixture, {0.1f, 0.2f, -3}, {0, 0, 1}, {}, 40000);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(m.mean[c], 1, 4 * std::sqrt(m.variance_of_mean()[c]) + 1e-5) << c;
+        EXPECT_LT(m.variance_of_mean()[c], 1e-4);
+    }
+}
+
+// A channel's light knows nothing of the other channels.
+TEST(ReferenceVolume, ChannelsAreThoseOfGreyMedia) {
+    auto colored = make_volume(make_blob(0.5, 0.125), 1, 0.9f, 0.5f);
+    colored.sigma_t = {1, 4, 8};
+    colored.albedo = {0.95f, 0.8f, 0.99f};
+    const formats::Environment light = make_distant_light(glm::normalize(glm::vec3(1, 1, 0)));
+    const bake::Moments all =
+        look(*make_volume_fixture({colored}, light), {0.3f, 0, -3}, {0, 0, 1}, {}, 100000);
+    const float sigma[3] = {1, 4, 8}, albedo[3] = {0.95f, 0.8f, 0.99f};
+    for (int c = 0; c < 3; ++c) {
+        const bake::Moments one =
+            look(*make_volume_fixture(
+                     {make_volume(make_blob(0.5, 0.125), sigma[c], albedo[c], 0.5f)}, light),
+                 {0.3f, 0, -3}, {0, 0, 1}, {}, 100000);
+        const double error = std::sqrt(all.variance_of_mean()[c] + one.variance_of_mean().x);
+        EXPECT_NEAR(all.mean[c], one.mean.x, 4 * error);
+        EXPECT_LT(error, 0.03 * one.mean.x);
+    }
+}
+
+TEST(ReferenceVolume, OverlappingVolumesAddUp) {
+    const formats::Environment light = make_distant_light({0, 1, 0});
+    const auto whole = make_volume(make_blob(0.5, 0.125), 5, 0.9f, 0.6f);
+    auto part = whole, rest = whole;
+    part.sigma_t = {1.5f, 1.5f, 1.5f};
+    rest.sigma_t = {3.5f, 3.5f, 3.5f};
+    // The rest on another lattice: twice as fine, and turned by a quarter.
+    rest.density = make_blob(0.5, 0.0625);
+    rest.density.to_scene = glm::dmat4(glm::dvec4(0, 0.0625, 0, 0), glm::dvec4(-0.0625, 0, 0, 0),
+                                       glm::dvec4(0, 0, 0.0625, 0), glm::dvec4(0, 0, 0, 1));
+    const bake::Moments one =
+        look(*make_volume_fixture({whole}, light), {0.2f, 0, -3}, {0, 0, 1}, {}, 100000);
+    const bake::Moments two =
+        look(*make_volume_fixture({part, rest}, light), {0.2f, 0, -3}, {0, 0, 1}, {}, 100000);
+    const double error = std::hypot(standard_error(one), standard_error(two));
+    // The voxels of one are coarser: .26 % of density in the middle.
+    EXPECT_NEAR(two.mean.x, one.mean.x, 4 * error + 0.003 * one.mean.x);
+    EXPECT_LT(error, 0.02 * one.mean.x);
+}
+
+// Light of a sun that falls through smoke onto a white floor, and what is seen of the floor.
+TEST(ReferenceVolume, ShadowsSurfacesAndHidesThemByBeersLaw) {
+    const auto black = make_volume(make_ball_grid(0.5, 0.02), 2, 0, 0);
+    Scene scene = make_scene({make_cube(1, false)});
+    for (glm::vec3& p : scene.primitives[0].position) {
+        p = p * glm::vec3(20, 0.1f, 20) - glm::vec3(0, 2, 0);
+    }
+    Scene with = scene;
+    with.volumes = {black};
+    const formats::Environment sun = make_distant_light({0, 1, 0});
+    const auto clear = make_fixture(scene, sun), smoky = make_fixture(with, sun);
+    const double through = std::exp(-2.0);  // 2 per metre, a metre
+    bake::PathOptions options;
+    options.terms = TermSet::diffuse;
+    const glm::vec3 aside = glm::normalize(glm::vec3(-3, -2, 0));
+    const double lit =
+        look(*clear, glm::vec3(0.01f, -1.9f, 0.02f) - 4.0f * aside, aside, options, 16).mean.x;
+    ASSERT_GT(lit, 0.05);
+    // From the side, the view passes below the ball: the shadow alone.
+    const bake::Moments shadow =
+        look(*smoky, glm::vec3(0.01f, -1.9f, 0.02f) - 4.0f * aside, aside, options, 40000);
+    EXPECT_NEAR(shadow.mean.x / lit, through, 4 * standard_error(shadow) / lit + 0.002);
+    // From above, both the light and the view pass the ball.
+    const bake::Moments both = look(*smoky, {0.01f, 3, 0.02f}, {0, -1, 0}, options, 160000);
+    EXPECT_NEAR(both.mean.x / lit, through * through, 4 * standard_error(both) / lit + 0.001);
+}
+
+// Smoke fills what no body does.
+TEST(ReferenceVolume, IsNotInsideOfBodies) {
+    Scene scene = make_slab(make_medium(1, 0.5f, 0, 1), 1);
+    Scene smoky = scene;
+    smoky.volumes = {
+        make_volume(sample_grid(glm::dvec3(0.35), 0.05, [](auto) { return 1.0; }), 50, 0.5f, 0)};
+    bake::PathOptions options;
+    options.terms = TermSet::unscattered;
+    for (const Scene& s : {scene, smoky}) {
+        const auto fixture = make_fixture(s, make_white_sky());
+        const bake::Moments m = look(*fixture, {0.11f, 3, 0.07f}, {0, -1, 0}, options, 40000);
+        EXPECT_NEAR(m.mean.x, std::exp(-1.0), 4 * standard_error(m));
+    }
+}
+
+// Up to a million mean free paths a voxel: finite, and right at both ends.
+TEST(ReferenceVolume, HoldsAtAnyDensity) {
+    for (const float sigma : {0.0f, 1e-12f, 1e-3f, 1e5f, 1e7f}) {
+        const auto fixture = make_volume_fixture(
+            {make_volume(make_ball_grid(1, 0.1), sigma, 0.5f, 0.9f)}, make_white_sky());
+        const bake::Moments m = look(*fixture, {0.05f, 0, -3}, {0, 0, 1}, {}, 3200);
+        EXPECT_TRUE(std::isfinite(m.mean.x));
+        EXPECT_GE(m.mean.x, 0);
+        EXPECT_LE(m.mean.x, 1 + 4 * standard_error(m));
+        if (sigma <= 1e-12f) {
+            EXPECT_NEAR(m.mean.x, 1, 1e-6);
+        }
+        // A half space of this medium shows 4 to 6 percent (albedo .5, g .9), once it is seen.
+        if (sigma >= 1e5f) {
+            EXPECT_LT(m.mean.x, 0.2);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace opaline::tests
