@@ -1,9 +1,9 @@
 #include "formats/vdb/parse_reply.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "formats/vdb/check_transform.h"
@@ -54,15 +54,23 @@ bool is_allowed(const GridHead& head, Budget& budget) {
     return true;
 }
 
-bool is_usable(std::span<const float> values) {
-    return std::all_of(values.begin(), values.end(),
-                       [](float v) { return std::isfinite(v) && v >= 0; }) &&
-           std::any_of(values.begin(), values.end(), [](float v) { return v > 0; });
+bool is_valid(float value) {
+    return std::isfinite(value) && value >= 0;
+}
+bool is_valid(const glm::vec3& value) {
+    return is_valid(value.x) && is_valid(value.y) && is_valid(value.z);
+}
+
+template <class T>
+bool is_usable(std::span<const T> values) {
+    return std::all_of(values.begin(), values.end(), [](const T& v) { return is_valid(v); }) &&
+           std::any_of(values.begin(), values.end(), [](const T& v) { return v != T(0); });
 }
 
 template <class T>
 bool read_bricks(const ByteSource& source, const GridHead& head, SparseGrid<T>& grid) {
-    constexpr std::size_t kFloats = sizeof(T) / sizeof(float) * SparseGrid<T>::kBrickVoxels;
+    constexpr std::size_t kVoxels = SparseGrid<T>::kBrickVoxels;
+    static_assert(sizeof(T) % sizeof(float) == 0 && std::is_trivially_copyable_v<T>);
     grid.first_brick = {head.first_brick[0], head.first_brick[1], head.first_brick[2]};
     grid.extent = {head.extent[0], head.extent[1], head.extent[2]};
     for (int i = 0; i < 16; ++i) {
@@ -74,23 +82,19 @@ bool read_bricks(const ByteSource& source, const GridHead& head, SparseGrid<T>& 
                           static_cast<std::size_t>(head.extent[2]),
                       SparseGrid<T>::kEmpty);
     // Address space at once, memory as bricks come.
-    grid.value.reserve(head.bricks * SparseGrid<T>::kBrickVoxels);
-    std::array<float, kFloats> values;
+    grid.value.reserve(head.bricks * kVoxels);
     std::uint32_t least_place = 0;
     for (std::uint32_t brick = 0; brick < head.bricks; ++brick) {
         std::uint32_t place = 0;
-        if (!read_value(source, place) || place < least_place || place >= grid.table.size() ||
-            !source(std::as_writable_bytes(std::span(values))) || !is_usable(values)) {
+        if (!read_value(source, place) || place < least_place || place >= grid.table.size()) {
             return false;
         }
         grid.table[place] = brick;
         least_place = place + 1;
-        for (std::size_t i = 0; i < kFloats; i += kFloats / SparseGrid<T>::kBrickVoxels) {
-            if constexpr (std::is_same_v<T, float>) {
-                grid.value.push_back(values[i]);
-            } else {
-                grid.value.emplace_back(values[i], values[i + 1], values[i + 2]);
-            }
+        grid.value.resize(grid.value.size() + kVoxels);
+        const std::span<T> values = std::span(grid.value).last(kVoxels);
+        if (!source(std::as_writable_bytes(values)) || !is_usable<T>(values)) {
+            return false;
         }
     }
     return true;

@@ -92,9 +92,10 @@ void fill_tree(const SparseGrid<float>& grid, openvdb::FloatTree& tree) {
     }
 }
 
-// The simplest map that there is for the matrix. openvdb::math::simplify takes the scale from the
-// difference of two points and so loses digits far from the origin.
-openvdb::math::MapBase::Ptr to_map(const glm::dmat4& matrix) {
+// A transform made of a map or a matrix takes the scale from the difference of two points, and so
+// loses digits far from the origin: where there is nothing but scale and translation, it is made in
+// these steps.
+openvdb::math::Transform::Ptr to_transform(const glm::dmat4& matrix) {
     openvdb::Mat4d rows;  // it multiplies rows
     openvdb::Vec3d scale, translation;
     bool is_diagonal = true;
@@ -105,16 +106,16 @@ openvdb::math::MapBase::Ptr to_map(const glm::dmat4& matrix) {
         }
     }
     if (!is_diagonal) {
-        return std::make_shared<openvdb::math::AffineMap>(rows);
+        return openvdb::math::Transform::createLinearTransform(rows);
     }
     for (int axis = 0; axis < 3; ++axis) {
         scale[axis] = matrix[axis][axis];
         translation[axis] = matrix[3][axis];
     }
-    if (scale[0] == scale[1] && scale[0] == scale[2]) {
-        return std::make_shared<openvdb::math::UniformScaleTranslateMap>(scale[0], translation);
-    }
-    return std::make_shared<openvdb::math::ScaleTranslateMap>(scale, translation);
+    auto transform = openvdb::math::Transform::createLinearTransform(1.0);
+    transform->preScale(scale);
+    transform->postTranslate(translation);
+    return transform;
 }
 
 openvdb::FloatGrid::Ptr to_openvdb(const VdbOutputGrid& output) {
@@ -122,7 +123,7 @@ openvdb::FloatGrid::Ptr to_openvdb(const VdbOutputGrid& output) {
     grid->setName(output.name);
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     grid->setSaveFloatAsHalf(output.is_half);
-    grid->setTransform(std::make_shared<openvdb::math::Transform>(to_map(output.grid->to_scene)));
+    grid->setTransform(to_transform(output.grid->to_scene));
     fill_tree(*output.grid, grid->tree());
     return grid;
 }
