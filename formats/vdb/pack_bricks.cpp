@@ -138,11 +138,10 @@ class Packer {
                    std::array<std::int64_t, 3> offset = {}) {
         if (is_past_limit()) return;
         Brick brick{{}, leaf, tile};
-        for (int axis = 0; axis < 3; ++axis) {
-            const std::int64_t voxel =
-                std::int64_t{origin[axis]} + offset[static_cast<std::size_t>(axis)];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::int64_t voxel = std::int64_t{origin[axis]} + offset[axis];
             is_far_ = is_far_ || voxel < -kMaxIndex || voxel > kMaxIndex - kSide;
-            brick.at[static_cast<std::size_t>(2 - axis)] = static_cast<std::int32_t>(voxel >> 3);
+            brick.at[2 - axis] = static_cast<std::int32_t>(voxel >> 3);
         }
         bricks_.push_back(brick);
     }
