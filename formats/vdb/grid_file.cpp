@@ -110,7 +110,7 @@ GridBase::Ptr GridFile::load_tree(const ListedGrid& listed) {
     if (!inputHasGridOffsets()) {
         return owner->grid;
     }
-    const GridBase::Ptr grid = GridBase::createGrid(owner->descriptor.gridType());
+    GridBase::Ptr grid = GridBase::createGrid(owner->descriptor.gridType());
     grid->setSaveFloatAsHalf(owner->descriptor.saveFloatAsHalf());
     owner->descriptor.seekToGrid(stream_);
     readGrid(grid, owner->descriptor, stream_);
