@@ -12,6 +12,7 @@
 #include "bake/cli/usage_errors.h"
 #include "bake/transport/embree_scene.h"
 #include "formats/opal/asset.h"
+#include "formats/vdb/answer_vdb_request.h"
 
 namespace opaline::cli {
 namespace {
@@ -95,6 +96,9 @@ int run_program(int argc, char** argv) {
 }  // namespace opaline::cli
 
 int main(int argc, char** argv) {
+    if (opaline::formats::is_vdb_request(argc, argv)) {
+        opaline::formats::answer_vdb_request(argc, argv);
+    }
     try {
         return opaline::cli::run_program(argc, argv);
     } catch (const std::bad_alloc&) {
