@@ -16,6 +16,7 @@
 namespace opaline::formats {
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
+inline constexpr std::size_t kMaxVolumes = 16;       ///< of a scene
 
 /// Angular distribution of light after one scattering event; int p dw = 1 over the sphere. All are
 /// functions of the cosine between propagation directions.
@@ -181,7 +182,7 @@ struct Scene {
     std::vector<Primitive> primitives;  ///< scene nodes depth-first, then the mesh's primitives:
                                         ///< a primitive's position here is its running number
     std::vector<Material> materials;    ///< never empty
-    std::vector<Volume> volumes;
+    std::vector<Volume> volumes;        ///< at most kMaxVolumes
     /// World position [m] of the origin of the scene's frame: world = origin + position. The
     /// frame's axes are parallel to those of the world. All stages compute in the frame, so float
     /// precision does not depend on the distance between the scene and the world's origin.

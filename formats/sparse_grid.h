@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cmath>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -44,6 +44,20 @@ struct SparseGrid {
     /// The values of a brick. Precondition: brick < brick_count().
     std::span<const T> brick(std::uint32_t number) const {
         return std::span<const T>(value).subspan(number * kBrickVoxels, kBrickVoxels);
+    }
+
+    /// Corners [m] of the box around the table, in which every value that is not 0 lies, those
+    /// between voxels included.
+    std::array<glm::dvec3, 8> corners() const {
+        const glm::dvec3 low = glm::dvec3(kSide * first_brick) - 1.0;
+        const glm::dvec3 high = glm::dvec3(kSide * (first_brick + extent));
+        std::array<glm::dvec3, 8> corner;
+        for (unsigned c = 0; c < 8; ++c) {
+            corner[c] =
+                glm::dvec3(to_scene * glm::dvec4(c & 1 ? high.x : low.x, c & 2 ? high.y : low.y,
+                                                 c & 4 ? high.z : low.z, 1));
+        }
+        return corner;
     }
 
     /// The value of a voxel.
@@ -94,7 +108,8 @@ struct SparseGrid {
     }
     static std::size_t offset_in_brick(glm::ivec3 voxel) {
         const glm::ivec3 p = voxel & (kSide - 1);
-        return static_cast<std::size_t>((p.z * kSide + p.y) * kSide + p.x);
+        const int offset = (p.z * kSide + p.y) * kSide + p.x;
+        return static_cast<std::size_t>(offset);
     }
 };
 

@@ -11,6 +11,7 @@
 #include "bake/environment/builtin_environment.h"
 #include "bake/scene/flatten_slabs.h"
 #include "formats/media/apply_media.h"
+#include "formats/media/load_volumes.h"
 #include "formats/media/read_media.h"
 
 namespace opaline::cli {
@@ -20,13 +21,98 @@ using formats::make_error;
 
 namespace {
 
+void join(const std::vector<formats::Diagnostic>& more, formats::ImportedScene& imported) {
+    imported.warnings.insert(imported.warnings.end(), more.begin(), more.end());
+}
+
 formats::Status fill_materials(const formats::MediaFile& media, formats::ImportedScene& imported) {
     const auto warnings = formats::apply_media(media, imported.scene);
     if (!warnings) {
         return warnings.error();
     }
-    imported.warnings.insert(imported.warnings.end(), warnings->begin(), warnings->end());
+    join(*warnings, imported);
     return formats::ok_status();
+}
+
+formats::Status add_media(const formats::MediaFile& media, double metres_per_unit,
+                          formats::ImportedScene& imported) {
+    if (auto status = fill_materials(media, imported); !status) {
+        return status;
+    }
+    const auto warnings = formats::load_volumes(media, metres_per_unit, imported.scene);
+    if (!warnings) {
+        return warnings.error();
+    }
+    join(*warnings, imported);
+    return formats::ok_status();
+}
+
+// A volume alone, with what the media file says of it.
+formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& path,
+                                                 double metres_per_unit,
+                                                 const std::filesystem::path& media) {
+    formats::MediaFile none;
+    none.file = path.string();
+    auto file = media.empty() ? std::move(none) : formats::read_media(media);
+    if (!file) {
+        return std::move(file).error();
+    }
+    auto imported = formats::import_vdb(path, *file, metres_per_unit);
+    if (imported) {
+        if (auto status = fill_materials(*file, *imported); !status) {
+            return std::move(status).error();
+        }
+    }
+    return imported;
+}
+
+// The volumes of a media file, without any surface.
+formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::path& path,
+                                                         double metres_per_unit) {
+    const auto file = formats::read_media(path);
+    if (!file) {
+        return file.error();
+    }
+    if (file->volumes.empty()) {
+        return make_error(ErrorKind::bad_input, path.string(), "volumes", "there are none",
+                          "a media file alone is a scene if it places a volume");
+    }
+    formats::ImportedScene imported;
+    imported.scene.source = path.string();
+    imported.scene.materials.resize(1);
+    if (auto status = add_media(*file, metres_per_unit, imported); !status) {
+        return std::move(status).error();
+    }
+    return imported;
+}
+
+formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& path,
+                                                  const formats::ImportOptions& options,
+                                                  const std::filesystem::path& media) {
+    auto imported = formats::import_gltf(path, options);
+    if (!imported) {
+        return imported;
+    }
+    // The file on the command line comes last and overrides the scene's media.
+    if (!imported->media.empty()) {
+        const auto own = formats::parse_media(imported->media, path, "extensions > OPALINE_media");
+        if (!own) {
+            return own.error();
+        }
+        if (auto status = add_media(*own, options.metres_per_unit, *imported); !status) {
+            return std::move(status).error();
+        }
+    }
+    if (!media.empty()) {
+        const auto file = formats::read_media(media);
+        if (!file) {
+            return file.error();
+        }
+        if (auto status = add_media(*file, options.metres_per_unit, *imported); !status) {
+            return std::move(status).error();
+        }
+    }
+    return imported;
 }
 
 }  // namespace
@@ -46,32 +132,16 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
                                                    const formats::ImportOptions& options,
                                                    const std::filesystem::path& media) {
-    if (path.extension() == ".vdb") {
-        return make_error(ErrorKind::bad_input, path.string(), "", "volumes are not supported yet",
-                          "give a .gltf or .glb file");
+    const std::filesystem::path ending = path.extension();
+    if (ending == ".json" && !media.empty()) {
+        return make_error(ErrorKind::usage, media.string(), "--media",
+                          "the scene is a media file itself", "join both in one file");
     }
-    auto imported = formats::import_gltf(path, options);
+    auto imported = ending == ".vdb"    ? open_vdb(path, options.metres_per_unit, media)
+                    : ending == ".json" ? open_media_scene(path, options.metres_per_unit)
+                                        : open_gltf(path, options, media);
     if (!imported) {
         return imported;
-    }
-    // The file on the command line comes last and overrides the scene's media.
-    if (!imported->media.empty()) {
-        const auto own = formats::parse_media(imported->media, path, "extensions > OPALINE_media");
-        if (!own) {
-            return own.error();
-        }
-        if (auto status = fill_materials(*own, *imported); !status) {
-            return std::move(status).error();
-        }
-    }
-    if (!media.empty()) {
-        const auto file = formats::read_media(media);
-        if (!file) {
-            return file.error();
-        }
-        if (auto status = fill_materials(*file, *imported); !status) {
-            return std::move(status).error();
-        }
     }
     const auto flattened = bake::flatten_slabs(imported->scene, {});
     imported->warnings.insert(imported->warnings.end(), flattened.begin(), flattened.end());

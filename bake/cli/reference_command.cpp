@@ -73,7 +73,7 @@ Status try_to_create(const std::string& path) {
     return file ? formats::ok_status() : Status(file.error());
 }
 
-/// The scene's surface as far as a camera is placed by it.
+/// The scene's surfaces and volumes as far as a camera is placed by them.
 formats::Asset make_stand_in(const formats::Scene& scene) {
     formats::Asset asset;
     for (const formats::Primitive& p : scene.primitives) {
@@ -88,6 +88,17 @@ formats::Asset make_stand_in(const formats::Scene& scene) {
             asset.position.push_back({world.x, world.y, world.z});
         }
         asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
+    }
+    for (const formats::Volume& volume : scene.volumes) {
+        formats::PrimitiveRecord record;
+        record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
+        for (const glm::dvec3& corner : volume.density.corners()) {
+            const glm::vec3 world(scene.origin + corner);
+            asset.position.push_back({world.x, world.y, world.z});
+        }
+        record.vertex_count =
+            static_cast<std::uint32_t>(asset.position.size()) - record.first_vertex;
+        asset.primitives.push_back(record);
     }
     return asset;
 }
@@ -230,6 +241,11 @@ int run(const Options& options) {
     if (auto status = check_threads(options.threads); !status) {
         return report_error(status.error());
     }
+    if (options.receivers > 0 && imported->scene.primitives.empty()) {
+        return report_error(make_error(ErrorKind::usage, options.scene, "--receivers",
+                                       "the scene has no vertices to choose from",
+                                       "make a picture: end the name in .exr or .png"));
+    }
     const auto bodies = close_bodies(imported->scene);
     if (!bodies) {
         return report_error(bodies.error());
@@ -282,8 +298,10 @@ void add_estimate_options(CLI::App& command, Options& options) {
         .add_option(
             "--terms", options.terms,
             "count only some of the light: " + formats::term_names(formats::TermSet::baked, ", ") +
-                " as in `opaline relight`, unscattered (straight through a body), interreflection "
-                "(paths that meet a second surface or body)")
+                " as in `opaline relight`, unscattered (straight through a body), volume-single "
+                "and "
+                "volume-multiple (scattered once or more often in volumes), interreflection (paths "
+                "that meet a second surface or body, or a volume and a surface)")
         ->option_text("all|LIST [all]");
     command.add_option("--seed", options.seed, "another one gives other noise")
         ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
@@ -301,7 +319,11 @@ void add_reference_command(CLI::App& app, Job& job) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
         "reference", "Ground truth of a scene by Monte Carlo: a picture, or radiance at vertices");
-    command->add_option("scene", options->scene, "the scene, .gltf or .glb")
+    command
+        ->add_option(
+            "scene", options->scene,
+            "the scene: .gltf or .glb; .vdb for a volume alone; .json for the volumes of a media "
+            "file alone")
         ->required()
         ->option_text("SCENE");
     command->add_option("--light", options->light, light_help())->required()->option_text("ENV");
@@ -313,7 +335,9 @@ void add_reference_command(CLI::App& app, Job& job) {
         ->required()
         ->check(file_name())
         ->option_text("OUT.exr|.png|.csv");
-    command->add_option("--media", options->media, "what translucent materials are made of")
+    command
+        ->add_option("--media", options->media,
+                     "what translucent materials are made of; volumes of smoke or cloud")
         ->option_text("FILE.json");
     command
         ->add_option("--metres-per-unit", options->metres_per_unit,

@@ -180,6 +180,11 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
     if (!imported) {
         return imported;
     }
+    if (!imported->scene.volumes.empty()) {
+        return formats::make_error(formats::ErrorKind::bad_input, options.scene, "volumes",
+                                   "this version does not bake volumes",
+                                   "leave them out, or render them by `opaline reference`");
+    }
     if (auto status = check(bake::count_memory(bake::all_effects(), imported->scene, knobs));
         !status) {
         return std::move(status).error();

@@ -1,11 +1,15 @@
 #include "bake/example/example_scenes.h"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "bake/example/contact.h"
+#include "bake/example/density_fields.h"
 #include "bake/example/floor.h"
 #include "bake/example/knot.h"
 #include "bake/example/leaves.h"
@@ -13,15 +17,25 @@
 #include "bake/example/remesh.h"
 #include "bake/example/sphere.h"
 #include "bake/example/swan_field.h"
+#include "formats/opal/atomic_file.h"
+#include "formats/vdb/write_vdb.h"
 
 namespace opaline::bake {
 namespace {
 
 constexpr double kMetresPerMillimetre = 1e-3;
 
+// A volume, and what it is made of.
+struct Smoke {
+    formats::SparseGrid<float> (*make)() = nullptr;
+    double sigma_t = 0;  // [1/m] where the density is 1
+    double albedo = 0, g = 0;
+};
+
 struct Example {
     ExampleInfo info;
-    std::vector<GltfObject> (*make)();
+    std::vector<GltfObject> (*make)() = nullptr;  // null: a volume alone
+    Smoke volume = {};                            // make null: there is none
 };
 
 TriangleMesh in_metres(TriangleMesh mesh) {
@@ -83,6 +97,22 @@ std::vector<GltfObject> make_plant() {
                 make_floor({.finest = 4.0, .fine_radius = 110.0, .growth = 0.15, .levels = 7}))};
 }
 
+constexpr double kBallRadius = 40;  // [mm]
+
+// What smoulders, and a floor for the shadow.
+std::vector<GltfObject> make_smouldering_ball() {
+    return {{"Ember",
+             "Ember",
+             {0.11, 0.10, 0.09},
+             in_metres(make_sphere(glm::dvec3(0, kBallRadius - kSink, 0), kBallRadius, 4))},
+            floor_object(
+                make_floor({.finest = 6.0, .fine_radius = 150.0, .growth = 0.15, .levels = 7}))};
+}
+
+formats::SparseGrid<float> make_smoke() {
+    return make_smoke_density((2 * kBallRadius - 10) * kMetresPerMillimetre);
+}
+
 constexpr Example kExamples[] = {
     {{"statue", "a resting swan with thin lifted wings, the showpiece for translucent media"},
      make_statue},
@@ -92,7 +122,43 @@ constexpr Example kExamples[] = {
      make_glossy},
     {{"leaves", "a plant of eleven arched leaves: thin-walled surfaces that transmit light"},
      make_plant},
+    {{"smoke", "a plume that rises from a ball and widens as it curls: a volume beside meshes"},
+     make_smouldering_ball,
+     {.make = make_smoke, .sigma_t = 60, .albedo = 0.92, .g = 0.5}},
+    {{"cumulus", "a fair-weather cloud, 860 m wide: a volume alone"},
+     nullptr,
+     {.make = make_cumulus_density, .sigma_t = 0.06, .albedo = 0.999, .g = 0.85}},
 };
+
+const Example* find_example(std::string_view name) {
+    const Example* const found =
+        std::find_if(std::begin(kExamples), std::end(kExamples),
+                     [&](const Example& example) { return example.info.name == name; });
+    return found == std::end(kExamples) ? nullptr : found;
+}
+
+formats::Error no_such_example(std::string_view name) {
+    std::string known;
+    for (const Example& example : kExamples) {
+        known += (known.empty() ? "" : ", ") + std::string(example.info.name);
+    }
+    return formats::make_error(formats::ErrorKind::usage, "", "",
+                               "there is no example '" + std::string(name) + "'",
+                               "choose one of: " + known);
+}
+
+// The media file of a scene with a volume.
+std::string describe_volume(const Smoke& volume, const std::string& file) {
+    const nlohmann::ordered_json entry = {
+        {"file", file},
+        {"density", "density"},
+        {"sigma_t", {volume.sigma_t, volume.sigma_t, volume.sigma_t}},
+        {"unit", "1/m"},
+        {"albedo", {volume.albedo, volume.albedo, volume.albedo}},
+        {"phase", {{"type", "hg"}, {"g", volume.g}}}};
+    return nlohmann::ordered_json{{"volumes", nlohmann::ordered_json::array({entry})}}.dump(2) +
+           "\n";
+}
 
 }  // namespace
 
@@ -108,20 +174,15 @@ std::span<const ExampleInfo> list_examples() {
 }
 
 formats::Result<std::vector<GltfObject>> make_example(std::string_view name) {
-    std::string known;
-    for (const Example& example : kExamples) {
-        if (example.info.name == name) return example.make();
-        known += (known.empty() ? "" : ", ") + std::string(example.info.name);
-    }
-    return formats::make_error(formats::ErrorKind::usage, "", "",
-                               "there is no example '" + std::string(name) + "'",
-                               "choose one of: " + known);
+    const Example* const example = find_example(name);
+    if (example == nullptr) return no_such_example(name);
+    return example->make == nullptr ? std::vector<GltfObject>{} : example->make();
 }
 
 formats::Result<std::vector<std::filesystem::path>> write_example(
     std::string_view name, const std::filesystem::path& folder) {
-    formats::Result<std::vector<GltfObject>> objects = make_example(name);
-    if (!objects) return std::move(objects).error();
+    const Example* const example = find_example(name);
+    if (example == nullptr) return no_such_example(name);
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) {
@@ -129,7 +190,31 @@ formats::Result<std::vector<std::filesystem::path>> write_example(
                                    "cannot create the folder: " + failure.message(),
                                    "choose a folder you may write to");
     }
-    return write_gltf(folder, std::string(name), *objects);
+    const std::string stem(name);
+    std::vector<std::filesystem::path> volume_files;
+    std::string media;
+    if (example->volume.make != nullptr) {
+        const formats::SparseGrid<float> density = example->volume.make();
+        const std::filesystem::path file = folder / (stem + ".vdb");
+        const formats::VdbOutputGrid grid{"density", &density, true};
+        if (auto status = formats::write_vdb(file, {&grid, 1}); !status) {
+            return std::move(status).error();
+        }
+        volume_files.push_back(file);
+        media = describe_volume(example->volume, stem + ".vdb");
+    }
+    if (example->make == nullptr) {
+        const std::filesystem::path file = folder / (stem + ".json");
+        if (auto status = formats::write_file_atomically(file, media); !status) {
+            return std::move(status).error();
+        }
+        return std::vector{file, volume_files.front()};
+    }
+    auto files = write_gltf(folder, stem, example->make(), media);
+    if (files) {
+        files->insert(files->end(), volume_files.begin(), volume_files.end());
+    }
+    return files;
 }
 
 }  // namespace opaline::bake

@@ -88,7 +88,7 @@ std::size_t add_indices(Draft& draft, const TriangleMesh& mesh) {
 
 formats::Result<std::vector<std::filesystem::path>> write_gltf(
     const std::filesystem::path& folder, const std::string& name,
-    const std::vector<GltfObject>& objects) {
+    const std::vector<GltfObject>& objects, const std::string& media) {
     Draft draft;
     Json nodes = Json::array(), roots = Json::array();
     Json meshes = Json::array(), materials = Json::array();
@@ -125,7 +125,7 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
             }
         }
     }
-    const Json document = {
+    Json document = {
         {"asset", {{"version", "2.0"}, {"generator", "Opaline"}}},
         {"extensionsUsed", extensions},
         {"scene", 0},
@@ -137,6 +137,10 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
         {"bufferViews", draft.views},
         {"buffers", Json::array({{{"uri", name + ".bin"}, {"byteLength", draft.bytes.size()}}})}};
 
+    if (!media.empty()) {
+        document["extensionsUsed"].push_back("OPALINE_media");
+        document["extensions"]["OPALINE_media"] = Json::parse(media);
+    }
     const std::vector<std::filesystem::path> files = {folder / (name + ".bin"),
                                                       folder / (name + ".gltf")};
     const std::string contents[] = {std::move(draft.bytes), document.dump(2) + "\n"};

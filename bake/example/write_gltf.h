@@ -35,10 +35,11 @@ struct GltfObject {
 
 /// Writes FOLDER/NAME.gltf and its buffer FOLDER/NAME.bin as glTF 2.0 and returns both paths; the
 /// buffer appears first, so that the .gltf never refers to a missing file. The bytes depend on the
-/// objects only. Errors: resource, if either file cannot be written. Precondition: every object has
-/// a vertex, a triangle, and as many normals as positions.
+/// arguments only. `media`: a media file (formats/media/README.md) for the extension OPALINE_media,
+/// or nothing. Errors: resource, if either file cannot be written. Precondition: every object has a
+/// vertex, a triangle, and as many normals as positions.
 formats::Result<std::vector<std::filesystem::path>> write_gltf(
     const std::filesystem::path& folder, const std::string& name,
-    const std::vector<GltfObject>& objects);
+    const std::vector<GltfObject>& objects, const std::string& media = {});
 
 }  // namespace opaline::bake

@@ -63,7 +63,7 @@ void bound_density(TrackedVolume& v) {
 }  // namespace
 
 VolumeSpace make_volume_space(const formats::Scene& scene) {
-    assert(scene.volumes.size() <= kMostVolumes);
+    assert(scene.volumes.size() <= formats::kMaxVolumes);
     VolumeSpace space;
     for (const formats::Volume& volume : scene.volumes) {
         TrackedVolume v;

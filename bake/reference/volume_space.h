@@ -12,9 +12,6 @@
 
 namespace opaline::bake {
 
-/// The most volumes of a scene.
-inline constexpr std::size_t kMostVolumes = 16;
-
 /// A volume with bounds of its density, cell by cell. A cell is 8 voxels wide and begins, as a
 /// brick does, at index coordinates that are multiples of 8.
 struct TrackedVolume {
@@ -31,8 +28,7 @@ struct TrackedVolume {
     }
 };
 
-/// All volumes of a scene, for flights of light. Precondition of everything below: at most
-/// kMostVolumes of them.
+/// All volumes of a scene, for flights of light.
 struct VolumeSpace {
     std::vector<TrackedVolume> volumes;
 
@@ -44,9 +40,9 @@ VolumeSpace make_volume_space(const formats::Scene& scene);
 
 /// Part of a ray along which no bound of a density changes.
 struct VolumeSegment {
-    float begin = 0, end = 0;                 ///< [m] along the ray
-    std::array<float, kMostVolumes> bound{};  ///< of the density of each volume
-    glm::vec3 sigma_t{0};                     ///< [1/m] sum over volumes of bound * sigma_t
+    float begin = 0, end = 0;                         ///< [m] along the ray
+    std::array<float, formats::kMaxVolumes> bound{};  ///< of the density of each volume
+    glm::vec3 sigma_t{0};                             ///< [1/m] sum over volumes of bound * sigma_t
 };
 
 /// A ray through a lattice of cubes, cube by cube.
@@ -96,7 +92,7 @@ class VolumeMarch {
 
     const VolumeSpace& space_;
     float reach_, at_ = 0;
-    std::array<Cursor, kMostVolumes> cursor_;
+    std::array<Cursor, formats::kMaxVolumes> cursor_;
 };
 
 }  // namespace opaline::bake

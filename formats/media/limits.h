@@ -14,5 +14,10 @@ inline constexpr std::size_t kMaxTableRows = 65536;
 inline constexpr double kMinThickness = 1e-9, kMaxThickness = 1e3;      ///< [m]
 inline constexpr double kMinMarbleScale = 1e-6, kMaxMarbleScale = 1e6;  ///< [m]
 inline constexpr std::size_t kMaxMarbleColors = 16;
+inline constexpr double kMaxVolumeCoordinate = 1e9;  ///< of a corner of a volume [m]
+inline constexpr double kMinDensityScale = 1e-12, kMaxDensityScale = 1e12;
+/// Through a voxel along its longest edge; beyond, a volume is a surface, and walks through it take
+/// ever more steps (bake/reference/README.md, "Volumes").
+inline constexpr double kMaxVoxelDepth = 1e6;
 
 }  // namespace opaline::formats::media

@@ -21,10 +21,23 @@ struct MaterialMedium {
     std::optional<Image8> scatter, density;
 };
 
+/// A volume that a media file places.
+struct VolumeEntry {
+    std::string where;           ///< in the media file, for messages: "volumes > 0"
+    std::filesystem::path file;  ///< OpenVDB; empty: the scene itself is such a file
+    std::string density;         ///< name of the grid; empty: "density", or the only one there is
+    Rgb sigma_t{1, 1, 1};        ///< [1/m] where the density, times scale, is 1
+    Rgb albedo{0.99f, 0.99f, 0.99f};
+    double scale = 1;  ///< of the density
+    PhaseFunction phase;
+    glm::dmat4 transform{1};  ///< affine: the file's world to the scene's, in units of the scene
+};
+
 /// A media file, checked.
 struct MediaFile {
-    std::string file;                           ///< for messages
-    std::vector<MaterialMedium> materials;      ///< no name stands twice
+    std::string file;                       ///< for messages
+    std::vector<MaterialMedium> materials;  ///< no name stands twice
+    std::vector<VolumeEntry> volumes;
     std::vector<std::filesystem::path> inputs;  ///< files read
     std::string sha256;                         ///< of their bytes, in reading order
 };

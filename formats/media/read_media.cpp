@@ -11,6 +11,7 @@
 #include "formats/gltf/resources.h"
 #include "formats/media/fields.h"
 #include "formats/media/read_material.h"
+#include "formats/media/read_volume.h"
 
 namespace opaline::formats {
 
@@ -55,6 +56,31 @@ std::optional<Json> parse_strict(std::string_view text, Report& report) {
     }
 }
 
+void read_volumes(const Json& root, const std::string& where, Resources& resources,
+                  MediaFile& media, Report& report) {
+    const auto volumes = root.find("volumes");
+    if (volumes == root.end()) {
+        return;
+    }
+    const std::string at = media::place(where, "volumes");
+    if (!volumes->is_array()) {
+        report.error(at, "it is not an array", "give {\"volumes\": [{\"file\": \"NAME.vdb\"}]}");
+        return;
+    }
+    if (volumes->size() > kMaxVolumes) {
+        report.error(at, "there are more than " + std::to_string(kMaxVolumes),
+                     "join grids that lie beside each other in one file");
+        return;
+    }
+    for (std::size_t i = 0; i < volumes->size(); ++i) {
+        auto volume = media::read_volume((*volumes)[i], media::place(at, std::to_string(i)),
+                                         resources, report);
+        if (volume) {
+            media.volumes.push_back(std::move(*volume));
+        }
+    }
+}
+
 void read_root(const Json& root, const std::string& where, Resources& resources, MediaFile& media,
                Report& report) {
     if (!root.is_object()) {
@@ -62,13 +88,15 @@ void read_root(const Json& root, const std::string& where, Resources& resources,
         return;
     }
     media::refuse_unknown_keys({root, where, report}, {"materials", "volumes", "clouds"});
-    for (const char* key : {"volumes", "clouds"}) {
-        if (root.contains(key)) {
-            report.error(media::place(where, key), "they are not supported yet", "leave them out");
-        }
+    if (root.contains("clouds")) {
+        report.error(media::place(where, "clouds"), "they are not supported yet", "leave them out");
     }
+    read_volumes(root, where, resources, media, report);
     const std::string at = media::place(where, "materials");
     const auto materials = root.find("materials");
+    if (materials == root.end() && root.contains("volumes")) {
+        return;
+    }
     if (materials == root.end() || !materials->is_object()) {
         report.error(at, materials == root.end() ? "it is missing" : "it is not an object",
                      "give {\"materials\": {\"NAME\": {...}}}");

@@ -4,42 +4,18 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "formats/fill_grid.h"
 #include "formats/scene.h"
 
 namespace opaline::tests {
 
 /// A grid whose voxels have the value density(position of their centre [m]), over a box about the
-/// scene's origin. `voxel` [m]. Bricks without a value are left out.
+/// scene's origin. `voxel` [m].
 template <class Density>
 formats::SparseGrid<float> sample_grid(glm::dvec3 half_size, double voxel, Density&& density) {
-    using Grid = formats::SparseGrid<float>;
-    Grid grid;
-    grid.to_scene = glm::dmat4(voxel);
-    grid.to_scene[3] = glm::dvec4(0, 0, 0, 1);
-    const glm::ivec3 low(glm::floor(-half_size / voxel)), high(glm::ceil(half_size / voxel));
-    grid.first_brick = Grid::brick_of(low);
-    grid.extent = Grid::brick_of(high) - grid.first_brick + 1;
-    glm::ivec3 b;
-    for (b.z = 0; b.z < grid.extent.z; ++b.z) {
-        for (b.y = 0; b.y < grid.extent.y; ++b.y) {
-            for (b.x = 0; b.x < grid.extent.x; ++b.x) {
-                std::vector<float> brick;
-                for (int i = 0; i < static_cast<int>(Grid::kBrickVoxels); ++i) {
-                    const glm::ivec3 voxel_in(i % Grid::kSide, i / Grid::kSide % Grid::kSide,
-                                              i / (Grid::kSide * Grid::kSide));
-                    const glm::ivec3 at = (grid.first_brick + b) * Grid::kSide + voxel_in;
-                    brick.push_back(static_cast<float>(density(voxel * glm::dvec3(at))));
-                }
-                const bool is_empty = *std::max_element(brick.begin(), brick.end()) <= 0;
-                grid.table.push_back(is_empty ? Grid::kEmpty
-                                              : static_cast<std::uint32_t>(grid.brick_count()));
-                if (!is_empty) {
-                    grid.value.insert(grid.value.end(), brick.begin(), brick.end());
-                }
-            }
-        }
-    }
-    return grid;
+    const glm::ivec3 half(glm::ceil(half_size / voxel));
+    return formats::fill_grid(-half, half, voxel,
+                              [&](glm::ivec3 at) { return density(voxel * glm::dvec3(at)); });
 }
 
 /// exp(-r^2 / (2 size^2)), cut to zero at 4 sizes.

@@ -161,10 +161,8 @@ TEST(MediaErrors, MediumWithoutAnyCoefficientIsRefused) {
 }
 
 TEST(MediaErrors, WhatIsNotSupportedYetIsNotPassedOver) {
-    for (const char* key : {"volumes", "clouds"}) {
-        EXPECT_THAT(refuse_file(std::string(R"({"materials": {}, ")") + key + "\": []}"),
-                    AllOf(HasSubstr(key), HasSubstr("not supported yet")));
-    }
+    EXPECT_THAT(refuse_file(R"({"materials": {}, "clouds": []})"),
+                AllOf(HasSubstr("clouds"), HasSubstr("not supported yet")));
 }
 
 TEST(MediaErrors, MarbleNeedsPositiveScaleAndColoursThatReflectNoMoreThanAll) {

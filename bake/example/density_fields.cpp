@@ -1,0 +1,128 @@
+#include "bake/example/density_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/noise.hpp>
+#include <numbers>
+#include <vector>
+
+#include "formats/fill_grid.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// Gradient noise repeats after 289 units; no field here is so wide. Offsets keep the zeros of the
+// octaves apart.
+double fractal_noise(glm::dvec3 p, int octaves) {
+    double sum = 0, weight = 0.5;
+    for (int i = 0; i < octaves; ++i) {
+        sum += weight * glm::perlin(p + glm::dvec3(17.3 * i + 100, 31.7 * i + 50, 11.9 * i + 80));
+        p *= 2.03;
+        weight *= 0.5;
+    }
+    return sum;
+}
+
+// The same of absolute values: round bulges that meet in creases.
+double billows(glm::dvec3 p, int octaves) {
+    double sum = 0, weight = 0.5;
+    for (int i = 0; i < octaves; ++i) {
+        sum += weight *
+               std::abs(glm::perlin(p + glm::dvec3(23.1 * i + 90, 7.7 * i + 60, 41.3 * i + 70)));
+        p *= 2.1;
+        weight *= 0.5;
+    }
+    return sum;
+}
+
+double smooth_step(double from, double to, double x) {
+    const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
+struct Puff {
+    glm::dvec3 centre;
+    double radius;
+};
+
+// The heap's puffs: large ones in the middle, small ones on its slopes and around its foot.
+std::vector<Puff> make_puffs() {
+    constexpr double kRadius = 330, kHeight = 230;
+    std::vector<Puff> puffs;
+    constexpr int kCount = 90;
+    for (int i = 0; i < kCount; ++i) {
+        // Evenly spread, yet without a pattern: multiples of irrational numbers [Roberts2018].
+        const auto spread = [i](double step) { return std::fmod(0.5 + step * i, 1.0); };
+        const double share = std::sqrt((i + 0.5) / kCount);
+        const double turn = 2 * kPi * spread(0.6180339887);
+        // Wider than deep, and higher on one side.
+        const double x = kRadius * share * std::cos(turn),
+                     z = 0.75 * kRadius * share * std::sin(turn);
+        const double dome = (1 - share * share) * (1 + 0.35 * std::cos(turn - 0.6) * share);
+        const double radius = (45 + 60 * (1 - share)) * (0.75 + 0.5 * spread(0.7548776662));
+        const double y = 40 + kHeight * dome * std::sqrt(spread(0.5698402910));
+        puffs.push_back({{x, y, z}, radius});
+    }
+    return puffs;
+}
+
+// Distance [m] outside of all puffs, which run into one another; negative inside.
+double distance_to(const std::vector<Puff>& puffs, glm::dvec3 p) {
+    double nearest = 1e9;
+    for (const Puff& puff : puffs) {
+        nearest = std::min(nearest, glm::length(p - puff.centre) - puff.radius);
+    }
+    return nearest;
+}
+
+}  // namespace
+
+formats::SparseGrid<float> make_smoke_density(double base) {
+    constexpr double kVoxel = 0.004, kHeight = 0.5;
+    const auto density = [base](glm::ivec3 voxel) {
+        glm::dvec3 p = kVoxel * glm::dvec3(voxel) - glm::dvec3(0, base, 0);
+        const double h = p.y / kHeight;
+        if (h < 0 || h > 1) {
+            return 0.0;
+        }
+        // The column sways, and eddies pull it apart the more the higher it has come.
+        p.x -= 0.05 * h * std::sin(2.2 * kPi * h + 0.4);
+        p.z -= 0.04 * h * std::sin(1.7 * kPi * h + 1.9);
+        const glm::dvec3 q = p / 0.05;
+        const double strength = 0.075 * smooth_step(0, 0.8, h);
+        p.x += strength * fractal_noise(q, 4);
+        p.z += strength * fractal_noise(q + glm::dvec3(40, 13, 7), 4);
+        const double radius = 0.012 + 0.075 * std::pow(h, 0.8);
+        const double r = std::hypot(p.x, p.z) / radius;
+        const double body = std::max(0.0, 1 - smooth_step(0.35, 1.0, r));
+        const double wisps =
+            std::clamp(1 - 1.8 * smooth_step(0, 0.6, h) * billows(1.3 * q, 3), 0.0, 1.0);
+        const double fade = smooth_step(0, 0.03, h) * (1 - smooth_step(0.75, 1.0, h));
+        // The same smoke in a wider column is thinner.
+        return body * wisps * fade * std::min(1.0, 0.03 / radius);
+    };
+    const int top = static_cast<int>((base + kHeight) / kVoxel) + 1;
+    return formats::fill_grid({-50, static_cast<int>(base / kVoxel) - 1, -50}, {50, top, 50},
+                              kVoxel, density);
+}
+
+formats::SparseGrid<float> make_cumulus_density() {
+    constexpr double kVoxel = 6, kBulge = 60;
+    const std::vector<Puff> puffs = make_puffs();
+    const auto density = [&](glm::ivec3 voxel) {
+        const glm::dvec3 p = kVoxel * glm::dvec3(voxel);
+        const double plain = distance_to(puffs, p);
+        if (plain > 0.4 * kBulge) {
+            return 0.0;
+        }
+        const double d =
+            plain + kBulge * (0.5 - 1.4 * billows(p / 110.0, 4)) + 10 * fractal_noise(p / 25.0, 2);
+        const double base = smooth_step(-4, 14, p.y - 8 * fractal_noise(p / 90.0, 2));
+        return (1 - smooth_step(-14, 6, d)) * base * (0.45 + 0.55 * std::min(1.0, p.y / 350));
+    };
+    return formats::fill_grid({-75, 0, -60}, {75, 75, 60}, kVoxel, density);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,243 @@
+#include "formats/media/load_volumes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "formats/gltf/container.h"
+#include "formats/gltf/report.h"
+#include "formats/gltf/sha256.h"
+#include "formats/media/limits.h"
+#include "formats/vdb/read_vdb.h"
+
+namespace opaline::formats {
+namespace {
+
+using gltf::in_quotes;
+
+struct Bounds {
+    glm::dvec3 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
+};
+
+void include(Bounds& bounds, const SparseGrid<float>& grid) {
+    for (const glm::dvec3& corner : grid.corners()) {
+        bounds.low = glm::min(bounds.low, corner);
+        bounds.high = glm::max(bounds.high, corner);
+    }
+}
+
+// The grid that holds an entry's density.
+Result<VdbGrid> read_density(const VolumeEntry& entry, const std::filesystem::path& file,
+                             const VdbReadOptions& reader) {
+    std::vector<std::string> names;
+    if (!entry.density.empty()) {
+        names.push_back(entry.density);
+    }
+    auto grids = read_vdb(file, names, reader);
+    if (!grids) {
+        return std::move(grids).error();
+    }
+    std::erase_if(*grids, [](const VdbGrid& g) { return g.is_color; });
+    const auto usual = std::find_if(grids->begin(), grids->end(),
+                                    [](const VdbGrid& g) { return g.name == "density"; });
+    if (grids->empty()) {
+        return make_error(ErrorKind::bad_input, file.string(), in_quotes(entry.density),
+                          "it holds colours, not a density", "name a grid of one float a voxel");
+    }
+    if (names.empty() && usual == grids->end() && grids->size() > 1) {
+        std::string list;
+        for (const VdbGrid& g : *grids) {
+            list += (list.empty() ? "" : ", ") + in_quotes(g.name);
+        }
+        return make_error(ErrorKind::bad_input, file.string(), "",
+                          "it is not said which of its grids is the density: " + list,
+                          "name one in a media file: {\"volumes\": [{\"density\": \"NAME\"}]}");
+    }
+    return std::move(usual == grids->end() ? grids->front() : *usual);
+}
+
+Result<Volume> load_volume(const VolumeEntry& entry, const std::filesystem::path& file,
+                           double metres_per_unit, const VdbReadOptions& reader,
+                           std::vector<Diagnostic>& warnings) {
+    auto read = read_density(entry, file, reader);
+    if (!read) {
+        return std::move(read).error();
+    }
+    if (read->not_a_number + read->negative > 0) {
+        warnings.push_back(
+            make_warning(file.string(), "grid " + in_quotes(read->name),
+                         std::to_string(read->not_a_number) + " voxels are not a number and " +
+                             std::to_string(read->negative) + " are negative, of " +
+                             std::to_string(read->active_voxels) + ": they count as 0",
+                         "export it again if they should not be"));
+    }
+    Volume volume;
+    volume.name = "volume " + in_quotes(file.filename().string());
+    volume.density = std::move(read->scalar);
+    SparseGrid<float>& grid = volume.density;
+    const glm::dmat4 placed = entry.transform * grid.to_scene;
+    for (int column = 0; column < 4; ++column) {
+        grid.to_scene[column] =
+            glm::dvec4(metres_per_unit * glm::dvec3(placed[column]), column == 3 ? 1 : 0);
+    }
+    float densest = 0;
+    for (float& value : grid.value) {
+        value = static_cast<float>(static_cast<double>(value) * entry.scale);
+        densest = std::max(densest, value);
+    }
+    volume.sigma_t = entry.sigma_t;
+    volume.albedo = entry.albedo;
+    volume.phase = entry.phase;
+    Bounds bounds;
+    include(bounds, grid);
+    const glm::dvec3 farthest = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
+    if (!(std::max({farthest.x, farthest.y, farthest.z}) <= media::kMaxVolumeCoordinate)) {
+        return make_error(ErrorKind::bad_input, file.string(), "",
+                          "it reaches beyond 1e9 m from the origin",
+                          "check its transform and --metres-per-unit");
+    }
+    const double edge = std::max({glm::length(grid.to_scene[0]), glm::length(grid.to_scene[1]),
+                                  glm::length(grid.to_scene[2])});
+    const double extinction =
+        static_cast<double>(std::max({entry.sigma_t.r, entry.sigma_t.g, entry.sigma_t.b})) *
+        static_cast<double>(densest);
+    if (!(extinction * edge <= media::kMaxVoxelDepth)) {
+        return make_error(ErrorKind::bad_input, file.string(), "",
+                          "a voxel of it holds more than a million mean free paths",
+                          "lower sigma_t or scale, check the unit, or model it as a mesh");
+    }
+    return volume;
+}
+
+// The middle where that is far from the world's origin, so that floats are precise there.
+glm::dvec3 choose_origin(const std::vector<Volume>& volumes) {
+    Bounds all;
+    for (const Volume& volume : volumes) {
+        include(all, volume.density);
+    }
+    constexpr double kNear = 16;  // radii: four bits of precision
+    const glm::dvec3 middle = 0.5 * all.low + 0.5 * all.high;
+    const double radius = 0.5 * glm::length(all.high - all.low);
+    glm::dvec3 origin(0);
+    for (int a = 0; a < 3; ++a) {
+        origin[a] = std::abs(middle[a]) > kNear * radius ? middle[a] : 0;
+    }
+    return origin;
+}
+
+void move(std::vector<Volume>& volumes, glm::dvec3 origin) {
+    for (Volume& volume : volumes) {
+        volume.density.to_scene[3] -= glm::dvec4(origin, 0);
+    }
+}
+
+struct LoadedVolumes {
+    std::vector<Volume> volumes;
+    std::vector<Diagnostic> warnings;
+};
+
+// In world space. `own`: the file of entries that name none.
+Result<LoadedVolumes> load_all(const std::vector<VolumeEntry>& entries,
+                               const std::filesystem::path& own, double metres_per_unit,
+                               const VdbReadOptions& reader) {
+    LoadedVolumes loaded;
+    for (const VolumeEntry& entry : entries) {
+        auto volume = load_volume(entry, entry.file.empty() ? own : entry.file, metres_per_unit,
+                                  reader, loaded.warnings);
+        if (!volume) {
+            return std::move(volume).error();
+        }
+        loaded.volumes.push_back(std::move(*volume));
+    }
+    return loaded;
+}
+
+Error too_many(const std::string& file) {
+    return make_error(ErrorKind::resource, file, "volumes",
+                      "the scene has more than " + std::to_string(kMaxVolumes) + " in all",
+                      "join grids that lie beside each other in one file");
+}
+
+}  // namespace
+
+Result<std::vector<Diagnostic>> load_volumes(const MediaFile& media, double metres_per_unit,
+                                             Scene& scene, const VdbReadOptions& reader) {
+    if (scene.volumes.size() + media.volumes.size() > kMaxVolumes) {
+        return too_many(media.file);
+    }
+    for (const VolumeEntry& entry : media.volumes) {
+        if (entry.file.empty()) {
+            return make_error(ErrorKind::bad_input, media.file, entry.where, "it names no file",
+                              "give file, the OpenVDB file that holds the volume");
+        }
+    }
+    auto loaded = load_all(media.volumes, {}, metres_per_unit, reader);
+    if (!loaded) {
+        return std::move(loaded).error();
+    }
+    const bool is_bare = scene.primitives.empty() && scene.volumes.empty();
+    if (is_bare && !loaded->volumes.empty()) {
+        scene.origin = choose_origin(loaded->volumes);
+    }
+    move(loaded->volumes, scene.origin);
+    for (Volume& volume : loaded->volumes) {
+        scene.volumes.push_back(std::move(volume));
+    }
+    return std::move(loaded->warnings);
+}
+
+Result<ImportedScene> import_vdb(const std::filesystem::path& path, const MediaFile& media,
+                                 double metres_per_unit, const VdbReadOptions& reader) {
+    gltf::Report report;
+    report.file = path.string();
+    std::vector<VolumeEntry> entries = media.volumes;
+    const bool is_described =
+        std::any_of(entries.begin(), entries.end(), [&](const VolumeEntry& e) {
+            std::error_code none;
+            return e.file.empty() || std::filesystem::equivalent(e.file, path, none);
+        });
+    ImportedScene imported;
+    if (!is_described) {
+        entries.insert(entries.begin(), VolumeEntry{});
+        imported.warnings.push_back(make_warning(
+            path.string(), "",
+            "nothing says what it is made of: its density counts as extinction in 1/m, with an "
+            "albedo of 0.99 and an isotropic phase function",
+            "give --media with {\"volumes\": [{\"sigma_t\": [...], \"unit\": \"1/m\"}]}"));
+    }
+    if (entries.size() > kMaxVolumes) {
+        return too_many(media.file);
+    }
+    Scene& scene = imported.scene;
+    try {
+        auto bytes = gltf::read_whole_file(path, "", report);
+        if (!bytes) {
+            return report.take_error();
+        }
+        gltf::Sha256 hash;
+        hash.add(*bytes);
+        scene.sha256 = hash.finish();
+    } catch (const std::bad_alloc&) {
+        return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
+                          "make it smaller");
+    }
+    auto loaded = load_all(entries, path, metres_per_unit, reader);
+    if (!loaded) {
+        return std::move(loaded).error();
+    }
+    scene.source = path.string();
+    scene.inputs = {path};
+    scene.materials.resize(1);
+    scene.origin = choose_origin(loaded->volumes);
+    scene.volumes = std::move(loaded->volumes);
+    move(scene.volumes, scene.origin);
+    imported.warnings.insert(imported.warnings.end(), loaded->warnings.begin(),
+                             loaded->warnings.end());
+    return imported;
+}
+
+}  // namespace opaline::formats

@@ -1,0 +1,93 @@
+#include "formats/media/read_volume.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "formats/media/fields.h"
+#include "formats/media/limits.h"
+#include "formats/media/read_phase.h"
+
+namespace opaline::formats::media {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Sixteen numbers, column by column as in glTF, that keep volumes volumes.
+std::optional<glm::dmat4> read_transform(const Fields& fields) {
+    const auto found = fields.object.find("transform");
+    if (found == fields.object.end()) {
+        return glm::dmat4(1);
+    }
+    const std::string where = place(fields.where, "transform");
+    const char* const example =
+        "give 16 numbers, column by column, of an affine transform as glTF's `matrix` has them";
+    glm::dmat4 matrix(0);
+    bool is_right = found->is_array() && found->size() == 16;
+    for (int i = 0; is_right && i < 16; ++i) {
+        const Json& number = (*found)[static_cast<std::size_t>(i)];
+        is_right = number.is_number() && std::abs(number.get<double>()) <= kMaxVolumeCoordinate;
+        matrix[i / 4][i % 4] = is_right ? number.get<double>() : 0;
+    }
+    if (!is_right) {
+        fields.report.error(where, "it is not 16 numbers, each at most 1e9", example);
+        return std::nullopt;
+    }
+    // Relative to its columns, so that neither a tiny nor a huge volume counts as flat.
+    const double size = glm::length(matrix[0]) * glm::length(matrix[1]) * glm::length(matrix[2]);
+    const bool is_affine =
+        matrix[0][3] == 0 && matrix[1][3] == 0 && matrix[2][3] == 0 && matrix[3][3] == 1;
+    if (!is_affine || !(std::abs(glm::determinant(glm::dmat3(matrix))) > 1e-9 * size)) {
+        fields.report.error(
+            where, is_affine ? "it makes the volume flat" : "its last row is not 0 0 0 1", example);
+        return std::nullopt;
+    }
+    return matrix;
+}
+
+}  // namespace
+
+std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& where,
+                                       gltf::Resources& resources, gltf::Report& report) {
+    if (!entry.is_object()) {
+        report.error(where, "it is not an object",
+                     "give an object such as {\"file\": \"smoke.vdb\", \"sigma_t\": [2, 2, 2], "
+                     "\"unit\": \"1/m\"}");
+        return std::nullopt;
+    }
+    const Fields fields{entry, where, report};
+    refuse_unknown_keys(
+        fields, {"file", "density", "sigma_t", "albedo", "unit", "scale", "phase", "transform"});
+    VolumeEntry volume;
+    volume.where = where;
+    if (has(fields, "file")) {
+        const auto name = text(fields, "file");
+        if (!name || !gltf::read_inside(resources, *name, place(where, "file"), report)) {
+            return std::nullopt;
+        }
+        volume.file = resources.folder / *name;
+    }
+    volume.density = text(fields, "density").value_or("");
+    const double per_metre = choice(fields, "unit", {"1/mm", "1/m"}).value_or(0) == 0 ? 1000 : 1;
+    if (has(fields, "unit") && !has(fields, "sigma_t")) {
+        report.error(place(where, "unit"), "there is no sigma_t for it",
+                     "give sigma_t, or leave unit out");
+    }
+    volume.sigma_t = rgb(fields, "sigma_t", 0, kMaxCoefficientPerM / per_metre, per_metre)
+                         .value_or(volume.sigma_t);
+    volume.albedo = rgb(fields, "albedo", 0, 1).value_or(volume.albedo);
+    volume.scale = number(fields, "scale", kMinDensityScale, kMaxDensityScale).value_or(1);
+    if (const auto phase = entry.find("phase"); phase != entry.end()) {
+        if (phase->is_object()) {
+            volume.phase = read_phase({*phase, place(where, "phase"), report}, resources)
+                               .value_or(PhaseFunction{});
+        } else {
+            report.error(place(where, "phase"), "it is not an object",
+                         "give an object such as {\"type\": \"hg\", \"g\": 0.6}");
+        }
+    }
+    volume.transform = read_transform(fields).value_or(glm::dmat4(1));
+    return volume;
+}
+
+}  // namespace opaline::formats::media
