@@ -1,0 +1,144 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+
+#include "bake/path_integral/coefficients.h"
+#include "bake/path_integral/turn.h"
+#include "bake/path_integral/volume_box.h"
+
+namespace opaline::bake {
+
+/// The most probable path between two directions in a medium of constant albedo, for a given
+/// scattering depth ell = int b ds: it turns uniformly in ell, then it is straight [Premoze2003]
+/// (9) to (11).
+struct QuasiPath {
+    glm::dvec3 start{0};   ///< [m]
+    Turn turn;             ///< from the first direction to the last
+    double ell_total = 1;  ///< scattering depth at which the turn is complete, >= kShortestTurn
+};
+
+/// Smallest scattering depth of a turn. A path that starts where it leaves the medium has none to
+/// turn in: it turns at once.
+inline constexpr double kShortestTurn = 1e-6;
+
+/// Where a march ends, and its longest step.
+struct MarchLimits {
+    VolumeBox box;    ///< holds the start
+    double step = 1;  ///< [m], > 0: the edge of a voxel. The error falls with its square
+    double length = std::numeric_limits<double>::infinity();  ///< of the path [m], > 0
+};
+
+/// One step of a march, at its middle.
+struct PathStep {
+    glm::dvec3 position{0};  ///< [m]
+    double ell = 0;          ///< scattering depth of the path up to here
+    double absorption = 0;   ///< absorption depth A = int a ds of the path up to here
+    double depth = 0;        ///< scattering depth b ds of the step
+    double length = 0;       ///< ds [m]
+};
+
+/// The end of a march.
+struct PathEnd {
+    glm::dvec3 position{0};   ///< [m]
+    glm::dvec3 direction{0};  ///< unit
+    double ell = 0, absorption = 0;
+    double length = 0;  ///< of the path [m]
+};
+
+/// The direction of a path, turned by small amounts without trigonometric functions.
+class Heading {
+  public:
+    explicit Heading(const QuasiPath& path)
+        : turn_(path.turn),
+          ell_total_(path.ell_total),
+          rate_(path.turn.angle / path.ell_total),
+          direction_(path.turn.from) {}
+
+    const glm::dvec3& direction() const { return direction_; }
+
+    /// Turns from the scattering depth `ell` - `by` to `ell`.
+    void advance(double ell, double by) {
+        if (ell >= ell_total_) {
+            direction_ = turn_.to;
+            return;
+        }
+        const double delta = rate_ * by;
+        if (delta < kSmall) {
+            rotate(delta);
+        } else {
+            cosine_ = std::cos(rate_ * ell);
+            sine_ = std::sin(rate_ * ell);
+        }
+        direction_ = cosine_ * turn_.from + sine_ * turn_.aside;
+    }
+
+  private:
+    static constexpr double kSmall = 0.25;  ///< [rad]; the series below end at 1e-14 of it
+
+    void rotate(double delta) {
+        const double d = delta * delta;
+        const double s = delta * (1 - d / 6 * (1 - d / 20 * (1 - d / 42 * (1 - d / 72))));
+        const double c = 1 - d / 2 * (1 - d / 12 * (1 - d / 30 * (1 - d / 56 * (1 - d / 90))));
+        const double turned = cosine_ * c - sine_ * s;
+        sine_ = sine_ * c + cosine_ * s;
+        cosine_ = turned;
+    }
+
+    const Turn& turn_;
+    double ell_total_, rate_;
+    double cosine_ = 1, sine_ = 0;  ///< of the angle turned so far
+    glm::dvec3 direction_;
+};
+
+/// Marches along a path and calls `bool visit(const PathStep&)` in the middle of every step; the
+/// march ends after the step for which that is false, where the path leaves the box, or at the
+/// longest length. The rule is the midpoint rule in arc length, of second order: integrals are sums
+/// of f(step) step.length. Steps are so short that b ds <= max(1, ell) / 4, or twice that where the
+/// medium becomes denser, and finite in empty space, unlike steps in ell.
+template <class Medium, class Visit>
+PathEnd march_quasi_path(const QuasiPath& path, const Medium& medium, const MarchLimits& limits,
+                         Visit&& visit) {
+    Heading heading(path);
+    PathEnd at{path.start, path.turn.from};
+    double scattering = Coefficients(medium(path.start)).scattering;
+    bool on = true;
+    while (on && at.length < limits.length && limits.box.contains(at.position)) {
+        const double deepest = 0.25 * std::max(1.0, at.ell);
+        double ds = std::min(limits.step, limits.length - at.length);
+        if (scattering * ds > deepest) {
+            ds = deepest / scattering;
+        }
+        const glm::dvec3 direction = heading.direction();
+        if (!limits.box.contains(at.position + ds * direction)) {
+            ds = std::min(ds, exit_distance(limits.box, at.position, direction));
+            if (ds <= 1e-12 * limits.step) {
+                break;
+            }
+        }
+        glm::dvec3 middle = at.position + 0.5 * ds * direction;
+        Coefficients here = medium(middle);
+        while (here.scattering * ds > 2 * deepest) {
+            ds = deepest / here.scattering;
+            middle = at.position + 0.5 * ds * direction;
+            here = medium(middle);
+        }
+        scattering = here.scattering;
+
+        const double depth = scattering * ds, absorption = here.absorption * ds;
+        on = visit(
+            PathStep{middle, at.ell + 0.5 * depth, at.absorption + 0.5 * absorption, depth, ds});
+        heading.advance(at.ell + 0.5 * depth, 0.5 * depth);
+        at.position += ds * heading.direction();
+        at.ell += depth;
+        at.absorption += absorption;
+        at.length += ds;
+        heading.advance(at.ell, 0.5 * depth);
+    }
+    at.direction = heading.direction();
+    return at;
+}
+
+}  // namespace opaline::bake
