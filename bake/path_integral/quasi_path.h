@@ -21,8 +21,8 @@ struct QuasiPath {
 };
 
 /// Smallest scattering depth of a turn. A path that starts where it leaves the medium has none to
-/// turn in: it turns at once.
-inline constexpr double kShortestTurn = 1e-6;
+/// turn in: it turns at once. Far below the depth of any medium, so that thin ones are similar.
+inline constexpr double kShortestTurn = 1e-30;
 
 /// Where a march ends, and its longest step.
 struct MarchLimits {
@@ -51,37 +51,48 @@ struct PathEnd {
 /// The direction of a path, turned by small amounts without trigonometric functions.
 class Heading {
   public:
+    /// Refers to the path, which must stay.
     explicit Heading(const QuasiPath& path)
         : turn_(path.turn),
           ell_total_(path.ell_total),
           rate_(path.turn.angle / path.ell_total),
+          middle_(path.turn.from),
           direction_(path.turn.from) {}
 
     const glm::dvec3& direction() const { return direction_; }
+    /// The direction in the middle of the last step.
+    const glm::dvec3& middle() const { return middle_; }
 
-    /// Turns from the scattering depth `ell` - `by` to `ell`.
-    void advance(double ell, double by) {
-        if (ell >= ell_total_) {
+    /// Turns over a step from the scattering depth `ell`, where the last one ended, to `ell` +
+    /// `depth`.
+    void advance(double ell, double depth) {
+        const double angle = rate_ * ell, half = 0.5 * rate_ * depth;
+        if (ell + depth >= ell_total_) {
+            middle_ = ell + 0.5 * depth >= ell_total_ ? turn_.to : at_angle(angle + half);
             direction_ = turn_.to;
-            return;
-        }
-        const double delta = rate_ * by;
-        if (delta < kSmall) {
-            rotate(delta);
+        } else if (half < kSmall) {
+            const double d = half * half;
+            const double s = half * (1 - d * (1. / 6 - d * (1. / 120 - d * (1. / 5040))));
+            const double c = 1 - d * (1. / 2 - d * (1. / 24 - d * (1. / 720 - d * (1. / 40320))));
+            rotate(c, s);
+            middle_ = cosine_ * turn_.from + sine_ * turn_.aside;
+            rotate(c, s);
+            direction_ = cosine_ * turn_.from + sine_ * turn_.aside;
         } else {
-            cosine_ = std::cos(rate_ * ell);
-            sine_ = std::sin(rate_ * ell);
+            middle_ = at_angle(angle + half);
+            cosine_ = std::cos(angle + 2 * half);
+            sine_ = std::sin(angle + 2 * half);
+            direction_ = cosine_ * turn_.from + sine_ * turn_.aside;
         }
-        direction_ = cosine_ * turn_.from + sine_ * turn_.aside;
     }
 
   private:
-    static constexpr double kSmall = 0.25;  ///< [rad]; the series below end at 1e-14 of it
+    static constexpr double kSmall = 0.1;  ///< [rad]; the series end at 1e-15 of it
 
-    void rotate(double delta) {
-        const double d = delta * delta;
-        const double s = delta * (1 - d / 6 * (1 - d / 20 * (1 - d / 42 * (1 - d / 72))));
-        const double c = 1 - d / 2 * (1 - d / 12 * (1 - d / 30 * (1 - d / 56 * (1 - d / 90))));
+    glm::dvec3 at_angle(double angle) const {
+        return std::cos(angle) * turn_.from + std::sin(angle) * turn_.aside;
+    }
+    void rotate(double c, double s) {
         const double turned = cosine_ * c - sine_ * s;
         sine_ = sine_ * c + cosine_ * s;
         cosine_ = turned;
@@ -90,7 +101,7 @@ class Heading {
     const Turn& turn_;
     double ell_total_, rate_;
     double cosine_ = 1, sine_ = 0;  ///< of the angle turned so far
-    glm::dvec3 direction_;
+    glm::dvec3 middle_, direction_;
 };
 
 /// Marches along a path and calls `bool visit(const PathStep&)` in the middle of every step; the
@@ -130,12 +141,11 @@ PathEnd march_quasi_path(const QuasiPath& path, const Medium& medium, const Marc
         const double depth = scattering * ds, absorption = here.absorption * ds;
         on = visit(
             PathStep{middle, at.ell + 0.5 * depth, at.absorption + 0.5 * absorption, depth, ds});
-        heading.advance(at.ell + 0.5 * depth, 0.5 * depth);
-        at.position += ds * heading.direction();
+        heading.advance(at.ell, depth);
+        at.position += ds * heading.middle();
         at.ell += depth;
         at.absorption += absorption;
         at.length += ds;
-        heading.advance(at.ell, 0.5 * depth);
     }
     at.direction = heading.direction();
     return at;

@@ -35,22 +35,33 @@ double depth_through(const formats::SparseGrid<float>& grid, double distance, do
                        step);
 }
 
-TEST(ProbeDepth, BlobOnAGridIsAsDeepAsTheTableSaysAndConvergesWithTheSquareOfItsVoxels) {
+// Between voxels a trilinear function is above one that curves by h^2 / 12 of its Laplacian on
+// average. Along a line through a Gaussian the relative error is therefore, to second order,
+// h^2 / 12 (p^2 / s^4 - 2 / s^2): at voxels of s / 8 it is 2.6e-3 through the centre.
+TEST(ProbeDepth, BlobOnAGridIsAsDeepAsTheTableSaysButForTheSquareOfItsVoxels) {
     OPALINE_VOLUME_ROWS(rows, "tau_infinite_line");
     for (const auto& row : rows) {
         const tests::Blob blob{row.number("sigma_t"), row.number("size")};
-        double error[3];
-        for (int i = 0; i < 3; ++i) {
-            const double voxel = 0.5 / (1 << i);
+        const double distance = row.number("arg") / blob.size;
+        for (const double voxel : {0.5, 0.25, 0.125}) {
             const double depth = depth_through(blob_grid(blob, voxel), row.number("arg"), blob.size,
                                                blob.size * voxel / 2);
-            error[i] = std::abs(depth / row.value() - 1);
+            const double second_order = voxel * voxel / 12 * (distance * distance - 2);
+            EXPECT_NEAR(depth / row.value() - 1, second_order, 0.2 * std::pow(voxel, 4) + 2e-5)
+                << row.id() << ' ' << voxel;
         }
-        EXPECT_LT(error[2], 1e-3) << row.id();
-        EXPECT_NEAR(error[0] / error[1], 4, 1) << row.id();
-        EXPECT_NEAR(error[1] / error[2], 4, 1) << row.id();
-        RecordProperty(row.id(), std::to_string(error[2]));
     }
+}
+
+TEST(ProbeDepth, AlongACentreLineOfVoxelsTheGridIsExact) {
+    const tests::Blob blob{4, 0.5};
+    const formats::SparseGrid<float> grid = blob_grid(blob, 0.125);
+    const GridMedium medium(grid, {1, 0});
+    const auto extinction = [&](dvec3 x) { return medium(x).extinction(); };
+    const double half = 0.125 * blob.size / 2;
+    const dvec3 start(-2.9, half, half);
+    const double depth = probe_depth(extinction, grid_box(grid), start, {1, 0, 0}, half);
+    EXPECT_NEAR(depth / -std::log(blob.visibility(start, {1, 0, 0})), 1, 1e-5);
 }
 
 TEST(ProbeDepth, ConvergesWithTheSquareOfItsStep) {
@@ -81,7 +92,7 @@ TEST(ProbeDepth, IsTheSameFromTheOtherSideOfAMirror) {
     VolumeBox box = grid_box(grid);
     box.low = glm::max(box.low, -box.high);
     box.high = -box.low;
-    const dvec3 start(box.low.x, 0.3, -0.2), along(0.8, -0.36, 0.48);
+    const dvec3 start(box.low.x, 0.3, -0.2), along = glm::normalize(dvec3(0.2, 0, 0.1) - start);
     const double depth = probe_depth(extinction, box, start, along, 0.05);
     EXPECT_GT(depth, 1);
     for (int axis = 0; axis < 3; ++axis) {

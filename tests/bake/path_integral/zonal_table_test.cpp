@@ -64,23 +64,17 @@ TEST(ZonalTable, IsWithin1e4OfTheSeries) {
     for (const PathKernel kernel : kKernels) {
         for (const double g : {-0.9, -0.3, 0.0, 0.5, 0.75, 0.9, 0.99}) {
             const Errors errors = table_errors(kernel, expand_henyey_greenstein(g, 1500));
-            std::printf("%d g %5.2f relative %.2e of peak %.2e\n", static_cast<int>(kernel), g,
-                        errors.relative, errors.of_peak);
             EXPECT_LT(errors.relative, 1e-4) << g;
         }
         const formats::PhaseFunction phases[] = {tests::rayleigh(), tests::gaussian(0.11f),
                                                  tests::gaussian(0.5f)};
         for (const formats::PhaseFunction& phase : phases) {
             const Errors errors = table_errors(kernel, expand_phase(phase, 400));
-            std::printf("%d type %d relative %.2e of peak %.2e\n", static_cast<int>(kernel),
-                        static_cast<int>(phase.type), errors.relative, errors.of_peak);
             EXPECT_LT(errors.of_peak, 1e-4);
         }
         for (const double g : {0.9, 0.99}) {
             const Errors errors =
                 table_errors(kernel, split_forward_peak(expand_henyey_greenstein(g, 6), 4).rest);
-            std::printf("%d split %5.2f relative %.2e of peak %.2e\n", static_cast<int>(kernel), g,
-                        errors.relative, errors.of_peak);
             EXPECT_LT(errors.of_peak, 1e-4) << g;
         }
     }
