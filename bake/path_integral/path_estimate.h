@@ -56,12 +56,12 @@ double estimate_scattered(const ZonalTable& table, const PathQuery& query, const
     double sum = 0;
     for (const double length : lengths) {
         const double ell_total = std::max(length * onward, kShortestTurn);
-        for (const Turn& turn : turns.all()) {
+        for (const Turn& turn : turns) {
             sum += gather_along_path({query.position, turn, ell_total}, medium, limits, kernel,
                                      visibility);
         }
     }
-    return sum / static_cast<double>(lengths.size() * turns.all().size());
+    return sum / static_cast<double>(lengths.size() * turns.size());
 }
 
 }  // namespace opaline::bake

@@ -87,7 +87,7 @@ class Heading {
     }
 
   private:
-    static constexpr double kSmall = 0.1;  ///< [rad]; the series end at 1e-15 of it
+    static constexpr double kSmall = 0.1;  ///< [rad]; the series are exact to 3e-15
 
     glm::dvec3 at_angle(double angle) const {
         return std::cos(angle) * turn_.from + std::sin(angle) * turn_.aside;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <glm/glm.hpp>
-#include <span>
 
 namespace opaline::bake {
 
@@ -22,7 +22,10 @@ class Turns {
     /// right angles around `from`, and the mean over them stands for that over all planes.
     Turns(glm::dvec3 from, glm::dvec3 to);
 
-    std::span<const Turn> all() const { return std::span<const Turn>(turn_).first(count_); }
+    std::size_t size() const { return count_; }
+    const Turn& operator[](std::size_t i) const { return turn_[i]; }
+    const Turn* begin() const { return turn_.data(); }
+    const Turn* end() const { return turn_.data() + count_; }
 
   private:
     std::array<Turn, 4> turn_;

@@ -16,7 +16,7 @@ constexpr double kEven = 16;
 
 // Four nodes and their weights in the cubic through them.
 struct Cubic {
-    int first;
+    std::size_t first;
     std::array<float, 4> weight;
 };
 
@@ -25,7 +25,8 @@ Cubic place_cubic(float position, int count) {
     const int first = std::clamp(static_cast<int>(position) - 1, 0, count - 4);
     const float u = position - static_cast<float>(first);
     const float a = u - 1, b = u - 2, c = u - 3;
-    return {first, {-a * b * c / 6, u * b * c / 2, -u * a * c / 2, u * a * b / 6}};
+    return {static_cast<std::size_t>(first),
+            {-a * b * c * (1.0f / 6), u * b * c * 0.5f, -u * a * c * 0.5f, u * a * b * (1.0f / 6)}};
 }
 
 // Width of the peak at cosine 1, or -1, of a zonal function: of a Henyey-Greenstein function
@@ -86,13 +87,13 @@ ZonalTable make_zonal_table(PathKernel kernel, const PhaseSeries& series) {
 
     const double first = coordinate(table, 1), last = coordinate(table, -1);
     table.value.resize(std::size_t{ZonalTable::kCosines} * ZonalTable::kDepths);
-    for (int depth = 0; depth < ZonalTable::kDepths; ++depth) {
-        const std::vector<double> moment =
-            path_moments(kernel, series, std::expm1(depth * table.depth_spacing));
-        for (int i = 0; i < ZonalTable::kCosines; ++i) {
-            const double at = first + (last - first) * i / (ZonalTable::kCosines - 1);
-            table.value[static_cast<std::size_t>(i * ZonalTable::kDepths + depth)] =
-                static_cast<float>(eval_zonal(moment, cosine_of(table, at)));
+    for (std::size_t depth = 0; depth < ZonalTable::kDepths; ++depth) {
+        const std::vector<double> moment = path_moments(
+            kernel, series, std::expm1(static_cast<double>(depth) * table.depth_spacing));
+        for (std::size_t i = 0; i < ZonalTable::kCosines; ++i) {
+            const double share = static_cast<double>(i) / (ZonalTable::kCosines - 1);
+            table.value[i * ZonalTable::kDepths + depth] = static_cast<float>(
+                eval_zonal(moment, cosine_of(table, first + (last - first) * share)));
         }
     }
     return table;
@@ -117,11 +118,10 @@ ZonalRow interpolate_row(const ZonalTable& table, double cosine) {
     ZonalRow row;
     row.kernel = table.kernel;
     row.nodes_per_log = static_cast<float>(1 / table.depth_spacing);
-    for (int i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < 4; ++i) {
         const float* const node = table.value.data() + (cubic.first + i) * ZonalTable::kDepths;
-        for (int depth = 0; depth < ZonalTable::kDepths; ++depth) {
-            row.value[static_cast<std::size_t>(depth)] +=
-                cubic.weight[static_cast<std::size_t>(i)] * node[depth];
+        for (std::size_t depth = 0; depth < ZonalTable::kDepths; ++depth) {
+            row.value[depth] += cubic.weight[i] * node[depth];
         }
     }
     return row;

@@ -57,7 +57,7 @@ struct Bench {
         std::mt19937 generator(1);
         for (int i = 0; i < 64; ++i) {
             const dvec3 v = random_direction(generator), l = random_direction(generator);
-            paths.push_back({-1.5 * v, Turns(v, l).all()[0], 8});
+            paths.push_back({-1.5 * v, Turns(v, l)[0], 8});
         }
     }
 };

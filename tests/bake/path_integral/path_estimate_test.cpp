@@ -158,7 +158,7 @@ TEST(PathEstimate, BallInAWhiteFurnaceIsWhiteWithin15Percent) {
             const dvec3 light(std::sqrt(1 - cosine * cosine), 0, cosine);
             const double solid_angle = 4 * kPi * rule.weight[i];
             more += solid_angle * estimate(table, {{0, 0, -1}, {0, 0, 1}, light}, ball, limits);
-            const Turn straight = Turns({0, 0, 1}, {0, 0, 1}).all()[0];
+            const Turn straight = Turns({0, 0, 1}, {0, 0, 1})[0];
             const double phase = henyey_greenstein(cosine, g);
             const auto at_once = [&](double ell) { return std::exp(-ell) * phase; };
             once +=

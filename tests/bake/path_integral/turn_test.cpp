@@ -17,8 +17,8 @@ constexpr double kPi = std::numbers::pi;
 
 Turn only_turn(dvec3 from, dvec3 to) {
     const Turns turns(from, to);
-    EXPECT_EQ(turns.all().size(), 1u);
-    return turns.all()[0];
+    EXPECT_EQ(turns.size(), 1u);
+    return turns[0];
 }
 
 dvec3 in_plane(double angle) {
@@ -53,7 +53,7 @@ TEST(Turn, EndsInTheLastDirection) {
     const dvec3 side = glm::normalize(glm::cross(from, dvec3(1, 0, 0)));
     for (const double angle : {1e-13, 1e-9, 1e-4, 1.0, 2.0, kPi - 1e-4, kPi - 1e-9, kPi}) {
         const dvec3 to = std::cos(angle) * from + std::sin(angle) * side;
-        for (const Turn& turn : Turns(from, to).all()) {
+        for (const Turn& turn : Turns(from, to)) {
             const dvec3 end = std::cos(turn.angle) * turn.from + std::sin(turn.angle) * turn.aside;
             EXPECT_LT(glm::length(end - to), 2e-12) << angle;
             EXPECT_NEAR(glm::length(turn.aside), 1, 1e-15) << angle;
@@ -72,10 +72,10 @@ TEST(Turn, BetweenEqualDirectionsIsNone) {
 TEST(Turn, BetweenOppositeDirectionsStandsForAllPlanes) {
     for (const dvec3 v : {dvec3(0, 0, 1), dvec3(0, 0, -1), glm::normalize(dvec3(1, -2, 0.1))}) {
         const Turns turns(v, -v);
-        ASSERT_EQ(turns.all().size(), 4u);
+        ASSERT_EQ(turns.size(), 4u);
         glm::dmat3 sum(0);
         dvec3 mean(0);
-        for (const Turn& turn : turns.all()) {
+        for (const Turn& turn : turns) {
             EXPECT_EQ(turn.angle, kPi);
             mean += turn.aside;
             sum += glm::outerProduct(turn.aside, turn.aside);
