@@ -18,7 +18,7 @@ void calibrate_inner_rows(const CalibrationBench& bench, const WalkSpace& space,
     constexpr std::size_t kSites = 4000, kReceivers = 64;
     constexpr std::uint32_t kRows = 4;
     const InnerField field(make_inner_starts(space, thinned(samples, kSites), one_thread()), 0.25f,
-                           true);  // of a ball of radius 1 m: some sixty sites
+                           0.25f, true);  // of a ball of radius 1 m: some sixty sites
     const auto eta = static_cast<double>(space.eta);
     const ViewFit fit = make_view_fit(eta);
     const auto points = bench.neighbours_together();

@@ -19,14 +19,31 @@ std::vector<SurfacePoint> points_of(std::span<const WalkStart> starts) {
 }
 
 constexpr std::size_t kFewest = 12;  // sites of a fit
+constexpr float kCell = 1.12f;       // of the grid, in radii: sqrt(1 + .5^2)
+
+// How deep flights go [m]: light from behind that an absorbing body dims hardly less than a flight
+// comes from everywhere along it.
+float reach_of(const WalkSpace& space) {
+    constexpr float kPaths = 6;
+    float sigma_t = 0;
+    for (std::size_t g = 0; g < space.bands.size(); ++g) {
+        sigma_t += space.media.front().sigma_t[g] / static_cast<float>(space.bands.size());
+    }
+    return sigma_t > 0 ? kPaths / sigma_t : 0;
+}
 
 }  // namespace
 
-InnerField::InnerField(std::span<const WalkStart> starts, float radius, bool is_isotropic)
-    : radius_(radius), is_isotropic_(is_isotropic), grid_(points_of(starts), radius) {
+InnerField::InnerField(std::span<const WalkStart> starts, float radius, float path,
+                       bool is_isotropic)
+    : radius_(radius),
+      path_(path),
+      is_isotropic_(is_isotropic),
+      grid_(points_of(starts), kCell * radius) {
     for (const WalkStart& s : starts) {
         position_.push_back(s.position);
         arrival_.push_back(s.arrival);
+        depth_.push_back(s.depth);
     }
 }
 
@@ -50,27 +67,45 @@ std::size_t InnerField::count_functions(std::size_t sites) const {
     return sites >= 3 * (linear + 6) ? linear + 6 : sites >= 3 * linear ? linear : 1;
 }
 
+// Within the radius, and farther along the flight, where sites are few. Those below other surfaces
+// lie closer together there than flights scatter, and would outweigh all others.
 std::vector<InnerField::Neighbour> InnerField::collect(const WalkSpace& space,
                                                        const BodyPoint& point,
                                                        const Centre& centre) const {
     const glm::vec3 along = glm::normalize(centre.direction);
+    const float stretch = std::max(1.0f, reach_of(space) / radius_);
+    std::vector<std::uint32_t> around;
+    std::vector<Neighbour> neighbours;
+    const int steps = static_cast<int>(std::ceil(stretch - 0.5f));
+    for (int step = 0; step <= steps; ++step) {
+        const glm::vec3 below = static_cast<float>(step) * radius_ * point.normal;
+        grid_.collect_around(grid_.cell_of(centre.position - below), around);
+        for (const std::uint32_t s : around) {
+            const glm::vec3 d = (position_[s] - centre.position) / radius_;
+            const float down = -glm::dot(d, point.normal);
+            if (std::max(0.0f, std::round(down)) != static_cast<float>(step)) {
+                continue;  // of another step
+            }
+            const float square = glm::dot(d, d) - down * down;
+            const float deep = down > 0 ? down / stretch : down;
+            float kernel = std::max(0.0f, 1 - square - deep * deep);
+            if (!is_isotropic_) {
+                kernel *= std::max(0.0f, glm::dot(arrival_[s], along));
+            }
+            if (kernel > 0 && sees(space, point.inner, position_[s])) {
+                const float depth = glm::dot(point.position - position_[s], point.normal);
+                kernel *= kernel * std::exp(std::min(0.0f, (depth_[s] - depth) / path_));
+                neighbours.push_back({s, static_cast<double>(kernel)});
+            }
+        }
+    }
+    return neighbours.size() < std::min(kFewest, position_.size()) ? nearest(centre) : neighbours;
+}
+
+// On a part smaller than sites are apart, or out of their sight.
+std::vector<InnerField::Neighbour> InnerField::nearest(const Centre& centre) const {
     std::vector<std::uint32_t> around;
     grid_.collect_around(grid_.cell_of(centre.position), around);
-    std::vector<Neighbour> neighbours;
-    for (const std::uint32_t s : around) {
-        const glm::vec3 d = (position_[s] - centre.position) / radius_;
-        float kernel = std::max(0.0f, 1 - glm::dot(d, d));
-        if (!is_isotropic_) {
-            kernel *= std::max(0.0f, glm::dot(arrival_[s], along));
-        }
-        if (kernel > 0 && sees(space, point.inner, position_[s])) {
-            neighbours.push_back({s, static_cast<double>(kernel * kernel)});
-        }
-    }
-    if (neighbours.size() >= std::min(kFewest, position_.size())) {
-        return neighbours;
-    }
-    // On a part smaller than sites are apart, or out of their sight: the nearest.
     if (around.size() < kFewest) {
         around.resize(position_.size());
         for (std::uint32_t s = 0; s < around.size(); ++s) {
@@ -86,7 +121,7 @@ std::vector<InnerField::Neighbour> InnerField::collect(const WalkSpace& space,
                           const float to_a = distance(a), to_b = distance(b);
                           return to_a < to_b || (to_a == to_b && a < b);
                       });
-    neighbours.clear();
+    std::vector<Neighbour> neighbours;
     for (std::size_t i = 0; i < taken; ++i) {
         neighbours.push_back({around[i], 1});
     }

@@ -25,9 +25,10 @@ struct InnerWeight {
 /// cosine it is also linear in the direction of the flight.
 class InnerField {
   public:
-    InnerField() : InnerField({}, 1, true) {}
-    /// Of walks that begin with a scattering. `radius` [m] > 0 of the fit.
-    InnerField(std::span<const WalkStart> starts, float radius, bool is_isotropic);
+    InnerField() : InnerField({}, 1, 1, true) {}
+    /// Of walks that begin with a scattering. `radius` [m] > 0 of the fit; `path` [m] > 0, over
+    /// which light inside varies: the transport mean free path.
+    InnerField(std::span<const WalkStart> starts, float radius, float path, bool is_isotropic);
 
     bool empty() const { return position_.empty(); }
     std::size_t size() const { return position_.size(); }
@@ -53,11 +54,13 @@ class InnerField {
 
     std::vector<Neighbour> collect(const WalkSpace& space, const BodyPoint& point,
                                    const Centre& centre) const;
+    std::vector<Neighbour> nearest(const Centre& centre) const;
     Functions eval(const Centre& centre, glm::vec3 position, glm::vec3 direction) const;
     std::size_t count_functions(std::size_t sites) const;
 
     std::vector<glm::vec3> position_, arrival_;
-    float radius_ = 1;
+    std::vector<float> depth_;
+    float radius_ = 1, path_ = 1;
     bool is_isotropic_ = true;
     PointGrid grid_;
 };

@@ -55,7 +55,9 @@ std::vector<WalkStart> make_inner_starts(const WalkSpace& space,
                                    ? glm::distance(hit.position, start.position)
                                    : 1 / sigma_t;
         const float length = -std::log1p(std::expm1(-sigma_t * distance) * lattice(i, 2)) / sigma_t;
-        start.position += std::min(length, kBeforeSurface * distance) * start.arrival;
+        const glm::vec3 way = std::min(length, kBeforeSurface * distance) * start.arrival;
+        start.position += way;
+        start.depth = std::max(0.0f, -glm::dot(way, start.normal));
     }
     return starts;
 }

@@ -71,6 +71,7 @@ struct WalkStart {
     /// Of walks that begin with a scattering at `position`: the way that they came, away from the
     /// eye. 0 of those that begin at the surface.
     glm::vec3 arrival{0};
+    float depth = 0;  ///< [m] of `position` below the surface that the site lies on
 };
 
 /// Light that a walk finds: what arrives at `position` from outside along `direction` is seen at

@@ -79,10 +79,10 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
     stage.view_fit = make_view_fit(static_cast<double>(space.eta));
     if (options.is_inside) {
         const formats::Medium& medium = *space.scene->materials[space.material].medium;
-        const double radius =
-            inner_radius({.radius = options.radius}, transport_mean_free_path(medium));
-        stage.inner =
-            InnerField(starts, static_cast<float>(radius), formats::mean_cosine(medium.phase) == 0);
+        const double path = transport_mean_free_path(medium);
+        const double radius = inner_radius({.radius = options.radius}, path);
+        stage.inner = InnerField(starts, static_cast<float>(radius), static_cast<float>(path),
+                                 formats::mean_cosine(medium.phase) == 0);
         stage.space = space;
         return stage;
     }
