@@ -268,5 +268,59 @@ TEST(Reference, BadArgumentsAreRefusedBeforeAnyWork) {
         4);
 }
 
+// The mean of a picture's pixels.
+double mean_of(const std::string& path) {
+    const auto picture = formats::read_exr(path);
+    EXPECT_TRUE(picture) << path;
+    double sum = 0;
+    for (const formats::Rgb& pixel : picture->pixel) {
+        sum += formats::luminance(pixel) / static_cast<double>(picture->pixel.size());
+    }
+    return sum;
+}
+
+TEST(Reference, VolumesBesideMeshesAndAlone) {
+    const TemporaryFolder folder;
+    const std::string out = (folder / "out.exr").string();
+    for (const char* name : {"smoke", "cumulus"}) {
+        ASSERT_EQ(run_opaline({"example", name, "-o", folder.path().string()}).exit_code, 0);
+    }
+    const auto look = [&](const char* scene, const char* terms) {
+        const Outcome outcome =
+            run_opaline({"reference", (folder / scene).string(), "--light", "white", "--size",
+                         "24x24", "--spp", "32", "--terms", terms, "-o", out});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return mean_of(out);
+    };
+    // Under even light a cloud that absorbs nothing is as bright as the sky: here, a share of the
+    // picture.
+    const double cloud = look("cumulus.json", "volume-single,volume-multiple");
+    EXPECT_GT(cloud, 0.02);
+    EXPECT_LT(cloud, 0.5);
+    EXPECT_NEAR(look("cumulus.json", "all"), 1, 0.02);
+    // Without the media file it is a denser cloud of another colour.
+    EXPECT_GT(look("cumulus.vdb", "volume-multiple"), 0.02);
+    EXPECT_GT(look("smoke.gltf", "volume-single"), 1e-4);
+    EXPECT_GT(look("smoke.gltf", "diffuse"), 0.02);
+}
+
+TEST(Reference, WhatNeedsSurfacesSaysSoOfVolumes) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run_opaline({"example", "cumulus", "-o", folder.path().string()}).exit_code, 0);
+    const std::string scene = (folder / "cumulus.json").string();
+    const auto before = list_folder(folder.path());
+    const Outcome table = run_opaline({"reference", scene, "--light", "white", "--receivers", "5",
+                                       "-o", (folder / "out.csv").string()});
+    EXPECT_EQ(table.exit_code, 2);
+    EXPECT_THAT(table.err, HasSubstr("no vertices"));
+    const Outcome bake = run_opaline({"bake", scene, "-o", (folder / "out.opal").string()});
+    EXPECT_EQ(bake.exit_code, 3);
+    EXPECT_THAT(bake.err, HasSubstr("does not bake volumes"));
+    const Outcome twice = run_opaline({"reference", scene, "--media", scene, "--light", "white",
+                                       "-o", (folder / "out.exr").string()});
+    EXPECT_EQ(twice.exit_code, 2);
+    EXPECT_EQ(list_folder(folder.path()), before);
+}
+
 }  // namespace
 }  // namespace opaline::tests
