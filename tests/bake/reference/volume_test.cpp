@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "bake/base/frame.h"
 #include "bake/reference/volume_flight.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/reference/transport_rows.h"
@@ -102,6 +104,116 @@ TEST(ReferenceVolume, LetsABeamOutWhereItIsKnownTo) {
             m = see(make_half_sky(row.quantity == "exit_forward"));
         }
         expect_within(row, m, limit_for(rows.size()));
+    }
+}
+
+// Layers of sigma(z) = sigma_t (1 + 0.8 sin(6 pi z / size)): only the depth counts, whatever the
+// profile. Voxels are flat, so that the slab is wide and its layers are fine.
+TEST(ReferenceVolume, LayersLetABeamOutAsAnEvenSlabDoes) {
+    OPALINE_NEEDS_REFERENCE("volumes.csv");
+    auto rows = read_transport_rows("escape");
+    std::erase_if(rows, [](const TransportRow& r) { return r.geometry != "sine"; });
+    ASSERT_FALSE(rows.empty());
+    for (const TransportRow& row : rows) {
+        ASSERT_EQ(row.march, glm::vec3(0, -1, 0)) << row.name();
+        constexpr int kLayers = 96;
+        formats::Volume slab =
+            make_volume(formats::fill_grid({-12, 0, -12}, {12, kLayers - 1, 12}, 1,
+                                           [](glm::ivec3 v) {
+                                               const double z = (v.y + 0.5) / kLayers;
+                                               return 1 + 0.8 * std::sin(6 * std::numbers::pi * z);
+                                           }),
+                        row.sigma_t, row.albedo, row.g);
+        slab.density.to_scene =
+            glm::dmat4(glm::dvec4(4 * row.size, 0, 0, 0), glm::dvec4(0, row.size / kLayers, 0, 0),
+                       glm::dvec4(0, 0, 4 * row.size, 0), glm::dvec4(0, 0, 0, 1));
+        const auto see = [&](formats::Environment sky, std::uint32_t depth) {
+            bake::PathOptions options;
+            options.max_depth = depth;
+            return look(*make_volume_fixture({slab}, std::move(sky)),
+                        row.size * glm::vec3(0.3f, 2, 0.2f), {0, -1, 0}, options, 64000);
+        };
+        constexpr std::uint32_t kAll = 0xffffffffu;
+        bake::Moments m;
+        if (row.quantity == "exit_unscattered") {
+            m = see(make_white_sky(), 0);
+        } else if (row.quantity == "exit_mean_cos") {
+            m = see(make_cosine_sky({0, -1, 0}), kAll);
+            const bake::Moments back = see(make_cosine_sky({0, 1, 0}), kAll);
+            m.mean -= back.mean;
+            m.squares += back.squares;
+        } else {
+            m = see(make_half_sky(row.quantity == "exit_back"), kAll);
+        }
+        expect_within(row, m, limit_for(rows.size()));
+    }
+}
+
+TEST(ReferenceVolume, ABallLetsAParallelBeamThroughByBeersLaw) {
+    OPALINE_NEEDS_REFERENCE("volumes.csv");
+    auto rows = read_transport_rows("transmittance");
+    std::erase_if(rows, [](const TransportRow& r) { return r.geometry != "sphere"; });
+    ASSERT_FALSE(rows.empty());
+    for (const TransportRow& row : rows) {
+        const auto fixture = make_volume_fixture(
+            {make_volume(make_ball_grid(row.size, row.size / 32), row.sigma_t, 0, 0)},
+            make_white_sky());
+        bake::Moments passing;
+        for (std::uint32_t i = 0; i < 100000; ++i) {
+            bake::RandomStream random(3, 0, i);
+            const float r = row.size * std::sqrt(random.next());
+            const float turn = 2 * std::numbers::pi_v<float> * random.next();
+            passing.add(bake::estimate_transmittance(
+                fixture->scene.volumes, {r * std::cos(turn), r * std::sin(turn), -3 * row.size},
+                {0, 0, 1}, 6 * row.size, random));
+        }
+        // Voxels soften the rim, through which most passes where the ball is dense.
+        EXPECT_NEAR(passing.mean.x, row.value,
+                    4 * standard_error(passing) + 0.002 * (1 - row.value) * row.value + 2e-4)
+            << row.name() << " sigma_t " << row.sigma_t;
+    }
+}
+
+// Flights through an even medium, and directions by its phase function.
+TEST(ReferenceVolume, PathsOfALengthGoAsFarAsIsKnown) {
+    OPALINE_NEEDS_REFERENCE("volumes.csv");
+    std::vector<VolumeRow> rows = read_volume_table();
+    std::erase_if(rows, [](const VolumeRow& r) { return r.cell.at("group") != "moments"; });
+    ASSERT_FALSE(rows.empty());
+    for (const VolumeRow& row : rows) {
+        const double length = row.number("arg");
+        const auto even = [](auto) { return 1.0; };
+        const auto fixture = make_volume_fixture(
+            {make_volume(sample_grid(glm::dvec3(1.2 * length), length / 10, even),
+                         static_cast<float>(row.number("sigma_t")), 1,
+                         static_cast<float>(row.number("g")))},
+            make_white_sky());
+        const bake::VolumeSpace& space = fixture->scene.volumes;
+        bake::Moments moments;
+        for (std::uint32_t i = 0; i < 40000; ++i) {
+            bake::RandomStream random(9, 0, i);
+            glm::vec3 at(0), direction(0, 0, 1);
+            float left = static_cast<float>(length);
+            for (;;) {
+                const bake::VolumeFlight flight =
+                    bake::sample_volume_flight(space, at, direction, left, glm::vec3(1), random);
+                at += flight.distance * direction;
+                left -= flight.distance;
+                if (!flight.collides) break;
+                const float cosine = bake::sample_phase_cosine(space.volumes[0].phase,
+                                                               [&] { return random.next(); });
+                const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+                const float turn = 2 * std::numbers::pi_v<float> * random.next();
+                direction = glm::normalize(bake::make_frame(direction).to_world(
+                    {sine * std::cos(turn), sine * std::sin(turn), cosine}));
+            }
+            moments.add({direction.z, at.z, glm::dot(at, at)});
+        }
+        const std::string quantity = row.cell.at("quantity");
+        const int which = quantity == "mean_cos" ? 0 : quantity == "mean_z" ? 1 : 2;
+        EXPECT_NEAR(moments.mean[which], row.value(),
+                    limit_for(rows.size()) * std::sqrt(moments.variance_of_mean()[which]))
+            << row.id() << " " << quantity;
     }
 }
 

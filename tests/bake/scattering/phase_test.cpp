@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "bake/scattering/gauss_legendre.h"
-#include "tests/support/reference_table.h"
+#include "tests/support/volume_table.h"
 
 namespace opaline::bake {
 namespace {
@@ -17,6 +17,22 @@ TEST(HenyeyGreenstein, ValuesAreThoseOfTheTable) {
         EXPECT_NEAR(henyey_greenstein(row.number("cos"), row.number("g")), row.expected,
                     row.tolerance())
             << row.name();
+    }
+}
+
+// Over theta = pi x^4, which spreads the forward peak.
+TEST(HenyeyGreenstein, MeanSquareAngleIsThatOfTheTable) {
+    OPALINE_VOLUME_ROWS(rows, "hg_mean_square_angle");
+    const GaussLegendre rule = make_gauss_legendre(600);
+    for (const auto& row : rows) {
+        double mean = 0;
+        for (std::size_t i = 0; i < rule.node.size(); ++i) {
+            const double x = rule.node[i], theta = std::numbers::pi * x * x * x * x;
+            mean += rule.weight[i] * 4 * std::numbers::pi * x * x * x * 2 * std::numbers::pi *
+                    std::sin(theta) * theta * theta *
+                    henyey_greenstein(std::cos(theta), row.number("g"));
+        }
+        EXPECT_NEAR(mean, row.value(), 1e-9) << row.id();
     }
 }
 
