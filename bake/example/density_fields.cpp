@@ -47,23 +47,29 @@ struct Puff {
     double radius;
 };
 
-// The heap's puffs: large ones in the middle, small ones on its slopes and around its foot.
+// Three heaps of puffs that stand together, the tallest off the middle: large puffs inside, small
+// ones on the slopes and around the foot.
 std::vector<Puff> make_puffs() {
-    constexpr double kRadius = 330, kHeight = 230;
+    struct Heap {
+        double x, z, radius, height;
+    };
+    constexpr Heap kHeaps[] = {{-40, 0, 230, 300}, {190, 60, 180, 170}, {-250, -30, 150, 110}};
+    constexpr int kCount = 56;  // of each
     std::vector<Puff> puffs;
-    constexpr int kCount = 90;
-    for (int i = 0; i < kCount; ++i) {
-        // Evenly spread, yet without a pattern: multiples of irrational numbers [Roberts2018].
-        const auto spread = [i](double step) { return std::fmod(0.5 + step * i, 1.0); };
-        const double share = std::sqrt((i + 0.5) / kCount);
-        const double turn = 2 * kPi * spread(0.6180339887);
-        // Wider than deep, and higher on one side.
-        const double x = kRadius * share * std::cos(turn),
-                     z = 0.75 * kRadius * share * std::sin(turn);
-        const double dome = (1 - share * share) * (1 + 0.35 * std::cos(turn - 0.6) * share);
-        const double radius = (45 + 60 * (1 - share)) * (0.75 + 0.5 * spread(0.7548776662));
-        const double y = 40 + kHeight * dome * std::sqrt(spread(0.5698402910));
-        puffs.push_back({{x, y, z}, radius});
+    for (const Heap& heap : kHeaps) {
+        for (int i = 0; i < kCount; ++i) {
+            // Evenly spread, yet without a pattern: multiples of irrational numbers [Roberts2018].
+            const auto spread = [i](double step) { return std::fmod(0.5 + step * i, 1.0); };
+            const double share = std::sqrt((i + 0.5) / kCount);
+            const double turn = 2 * kPi * spread(0.6180339887) + heap.x;
+            const double radius =
+                heap.radius * (0.17 + 0.18 * (1 - share)) * (0.8 + 0.4 * spread(0.7548776662));
+            const double dome = std::sqrt(1 - share * share);
+            const double y = 0.6 * radius + heap.height * dome * std::sqrt(spread(0.5698402910));
+            puffs.push_back({{heap.x + heap.radius * share * std::cos(turn), y,
+                              heap.z + heap.radius * share * std::sin(turn)},
+                             radius});
+        }
     }
     return puffs;
 }
@@ -122,7 +128,7 @@ formats::SparseGrid<float> make_cumulus_density() {
         const double base = smooth_step(-4, 14, p.y - 8 * fractal_noise(p / 90.0, 2));
         return (1 - smooth_step(-14, 6, d)) * base * (0.45 + 0.55 * std::min(1.0, p.y / 350));
     };
-    return formats::fill_grid({-75, 0, -60}, {75, 75, 60}, kVoxel, density);
+    return formats::fill_grid({-80, 0, -60}, {80, 75, 60}, kVoxel, density);
 }
 
 }  // namespace opaline::bake

@@ -125,7 +125,7 @@ constexpr Example kExamples[] = {
     {{"smoke", "a plume that rises from a ball and widens as it curls: a volume beside meshes"},
      make_smouldering_ball,
      {.make = make_smoke, .sigma_t = 60, .albedo = 0.92, .g = 0.5}},
-    {{"cumulus", "a fair-weather cloud, 860 m wide: a volume alone"},
+    {{"cumulus", "a fair-weather cloud, 820 m wide: a volume alone"},
      nullptr,
      {.make = make_cumulus_density, .sigma_t = 0.06, .albedo = 0.999, .g = 0.85}},
 };
