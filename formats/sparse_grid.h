@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <climits>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -46,16 +47,36 @@ struct SparseGrid {
         return std::span<const T>(value).subspan(number * kBrickVoxels, kBrickVoxels);
     }
 
-    /// Corners [m] of the box around the table, in which every value that is not 0 lies, those
-    /// between voxels included.
+    /// Corners [m] of the smallest box along the grid's axes in which every value that is not 0
+    /// lies, those between voxels included; empty grids have a box of no size. Looks at all values.
     std::array<glm::dvec3, 8> corners() const {
-        const glm::dvec3 low = glm::dvec3(kSide * first_brick) - 1.0;
-        const glm::dvec3 high = glm::dvec3(kSide * (first_brick + extent));
+        glm::ivec3 low(INT_MAX), high(INT_MIN);
+        std::size_t cell = 0;
+        glm::ivec3 b;
+        for (b.z = 0; b.z < extent.z; ++b.z) {
+            for (b.y = 0; b.y < extent.y; ++b.y) {
+                for (b.x = 0; b.x < extent.x; ++b.x) {
+                    const std::uint32_t number = table[cell++];
+                    for (int i = 0; number != kEmpty && i < static_cast<int>(kBrickVoxels); ++i) {
+                        if (value[number * kBrickVoxels + static_cast<std::size_t>(i)] != T(0)) {
+                            const glm::ivec3 at =
+                                kSide * (first_brick + b) +
+                                glm::ivec3(i % kSide, i / kSide % kSide, i / (kSide * kSide));
+                            low = glm::min(low, at);
+                            high = glm::max(high, at);
+                        }
+                    }
+                }
+            }
+        }
+        const bool is_empty = low.x > high.x;
+        const glm::dvec3 from = is_empty ? glm::dvec3(0) : glm::dvec3(low) - 1.0;
+        const glm::dvec3 to = is_empty ? glm::dvec3(0) : glm::dvec3(high) + 1.0;
         std::array<glm::dvec3, 8> corner;
         for (unsigned c = 0; c < 8; ++c) {
             corner[c] =
-                glm::dvec3(to_scene * glm::dvec4(c & 1 ? high.x : low.x, c & 2 ? high.y : low.y,
-                                                 c & 4 ? high.z : low.z, 1));
+                glm::dvec3(to_scene * glm::dvec4(c & 1 ? to.x : from.x, c & 2 ? to.y : from.y,
+                                                 c & 4 ? to.z : from.z, 1));
         }
         return corner;
     }

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -13,6 +15,8 @@ namespace {
 
 // Fixed size: reporting that memory ran out must not need memory.
 thread_local char last_error[512] = "";
+
+std::atomic<std::uint64_t> last_asset_id{0};
 
 formats::TermSet terms_of(std::uint32_t flags) {
     const auto keep = [flags](std::uint32_t without, formats::TermSet term) {
@@ -57,6 +61,16 @@ opaline_status fail(const formats::Error& error) {
         default:
             return OPALINE_BAD_FILE;
     }
+}
+
+std::optional<formats::Vec3> unit_vector(const float v[3]) {
+    // In double precision, where no length of three floats overflows or vanishes.
+    const auto x = static_cast<double>(v[0]), y = static_cast<double>(v[1]),
+               z = static_cast<double>(v[2]);
+    const double norm = std::hypot(x, y, z);
+    if (!(norm > 0) || !std::isfinite(norm)) return std::nullopt;
+    return formats::Vec3{static_cast<float>(x / norm), static_cast<float>(y / norm),
+                         static_cast<float>(z / norm)};
 }
 
 }  // namespace opaline::runtime::api
@@ -104,7 +118,7 @@ opaline_status opaline_asset_load(const void* bytes, size_t size, opaline_asset*
         if (!loaded) {
             return fail(loaded.error());
         }
-        *out = new opaline_asset{std::move(*loaded)};
+        *out = new opaline_asset{std::move(*loaded), ++last_asset_id};
         return OPALINE_OK;
     });
 }

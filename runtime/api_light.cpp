@@ -157,11 +157,8 @@ opaline_status opaline_light_add_sun(opaline_light* light, const float direction
     if (light == nullptr || direction == nullptr || radiance == nullptr) {
         return null_argument();
     }
-    // In double precision, where no length of three floats overflows or vanishes.
-    const double norm =
-        std::hypot(static_cast<double>(direction[0]), static_cast<double>(direction[1]),
-                   static_cast<double>(direction[2]));
-    if (!(norm > 0) || !std::isfinite(norm)) {
+    const auto toward = unit_vector(direction);
+    if (!toward) {
         return fail(OPALINE_INVALID_ARGUMENT, "the sun's direction must be finite and not zero");
     }
     // Below 1e-6 rad the squared radius would leave the range in which its solid angle is exact.
@@ -173,12 +170,8 @@ opaline_status opaline_light_add_sun(opaline_light* light, const float direction
     }
     return guarded([&] {
         opaline_light changed = *light;
-        const auto along = [&](int i) {
-            return static_cast<float>(static_cast<double>(direction[i]) / norm);
-        };
-        changed.environment.discs.push_back({{along(0), along(1), along(2)},
-                                             angular_radius,
-                                             {radiance[0], radiance[1], radiance[2]}});
+        changed.environment.discs.push_back(
+            {*toward, angular_radius, {radiance[0], radiance[1], radiance[2]}});
         project(changed);
         prefilter(changed);
         *light = std::move(changed);

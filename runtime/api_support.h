@@ -2,19 +2,24 @@
 
 #include <cstdint>
 #include <exception>
+#include <optional>
 #include <vector>
 
 #include "formats/opal/environment.h"
 #include "formats/opal/read_opal.h"
 #include "formats/opal/result.h"
+#include "formats/opal/vec3.h"
 #include "runtime/light_vector.h"
 #include "runtime/opaline.h"
 #include "runtime/specular.h"
+#include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/volume_march.h"
 
 // What the files of the C interface share.
 
 struct opaline_asset {
     opaline::formats::LoadedAsset loaded;
+    std::uint64_t id = 0;  // unlike its address, never that of another one
 };
 
 struct opaline_light {
@@ -28,11 +33,21 @@ struct opaline_light {
     opaline::runtime::SpecularLight specular;
 };
 
+struct opaline_volume_light {
+    std::uint64_t asset_id = 0;
+    opaline::runtime::VolumeLight light;
+    // Refers to `light` and to the asset's arrays: to be used with an asset of that id alone.
+    opaline::runtime::LitVolumes lit;
+};
+
 namespace opaline::runtime::api {
 
 /// Notes the text for opaline_last_error of this thread and gives the status back.
 opaline_status fail(opaline_status status, const char* text);
 opaline_status fail(const formats::Error& error);
+
+/// The direction of three floats of any length; nothing where they are not finite or all zero.
+std::optional<formats::Vec3> unit_vector(const float v[3]);
 
 /// Nothing is thrown across the boundary. All work is done on copies that `work` moves into place
 /// at its end, so a failure leaves things as they were.

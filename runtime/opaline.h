@@ -2,8 +2,9 @@
 
    Rules: the caller owns every array; nothing prints, exits or throws. A function that fails
    returns a status other than OPALINE_OK, changes nothing it was given, and leaves an English
-   sentence in opaline_last_error. Structs begin with struct_size, set by the caller to sizeof.
-   Enum values and functions are never changed or reused, only added. */
+   sentence in opaline_last_error. Structs begin with struct_size, set by the caller to sizeof;
+   those that arrays are made of do not, and never change. Enum values and functions are never
+   changed or reused, only added. */
 #ifndef OPALINE_H
 #define OPALINE_H
 
@@ -23,8 +24,9 @@ extern "C" {
 #define OPALINE_VERSION \
     100 /* major * 10000 + minor * 100 + patch; the file's version is separate */
 
-typedef struct opaline_asset opaline_asset; /* immutable once loaded */
-typedef struct opaline_light opaline_light; /* distant light in one asset's basis */
+typedef struct opaline_asset opaline_asset;               /* immutable once loaded */
+typedef struct opaline_light opaline_light;               /* distant light in one asset's basis */
+typedef struct opaline_volume_light opaline_volume_light; /* what its volumes scatter of one */
 
 typedef enum opaline_status {
     OPALINE_OK = 0,
@@ -152,7 +154,7 @@ typedef enum opaline_shade_flags {
     OPALINE_SHADE_WITHOUT_FRESNEL = 2,
     /* Components left out. An asset that was not baked with separate terms holds multiple and
        single scattering as one: leave out both or none. */
-    OPALINE_SHADE_WITHOUT_MULTIPLE = 4,  /* scattered often inside a translucent body */
+    OPALINE_SHADE_WITHOUT_MULTIPLE = 4,  /* scattered often, in a translucent body or a volume */
     OPALINE_SHADE_WITHOUT_SINGLE = 8,    /* scattered once */
     OPALINE_SHADE_WITHOUT_SPECULAR = 16, /* mirrored by glossy surfaces, translucent or opaque */
     OPALINE_SHADE_WITHOUT_DIFFUSE = 32   /* by opaque surfaces; by thin-walled ones, both ways */
@@ -184,6 +186,100 @@ OPALINE_API opaline_status opaline_shade_from(const opaline_asset* asset,
                                               const opaline_light* light, uint32_t flags,
                                               const float eye[3], uint32_t first, uint32_t count,
                                               float* out_rgb, size_t out_count);
+
+/* --- Volumes ------------------------------------------------------------------------------ */
+
+/* Smoke and clouds. Relight them once for each light, then march as many rays as are needed: the
+   eye may move freely. An asset may have volumes and no receivers. Radiance is linear Rec. 709
+   [W m^-2 sr^-1], lengths are metres in the world, as the mesh is. */
+
+/* 0 for NULL. Any thread, concurrently. */
+OPALINE_API uint32_t opaline_asset_volume_count(const opaline_asset* asset);
+
+typedef struct opaline_volume_info {
+    size_t struct_size;  /* in: sizeof(opaline_volume_info) */
+    float corner[8][3];  /* [m] of the smallest box around the density, turned and sheared as the
+                            volume is: corner x + 2 y + 4 z, x, y and z 0 or 1; all 0: no density */
+    uint32_t bricks;     /* of 8 x 8 x 8 voxels of density */
+    uint32_t nodes;      /* points at which light is known */
+    uint32_t node_terms; /* dot products per node when it is relit */
+    uint32_t bands;      /* 1: grey transport, 3: RGB */
+} opaline_volume_info;
+
+/* Fills `info`; reads all density of the volume. Any thread, concurrently. */
+OPALINE_API opaline_status opaline_asset_volume(const opaline_asset* asset, uint32_t index,
+                                                opaline_volume_info* info);
+
+/* A volume light starts black: volumes absorb and scatter nothing. It belongs to this handle of the
+   asset, and to no other one even of the same file. One thread at a time may update it, and none
+   may read it meanwhile; different ones are independent. */
+OPALINE_API opaline_status opaline_volume_light_create(const opaline_asset* asset,
+                                                       opaline_volume_light** out);
+
+/* NULL is fine, and so is an asset that is released already. No other thread may be using the
+   volume light. */
+OPALINE_API void opaline_volume_light_release(opaline_volume_light* volume_light);
+
+/* Relights every node: `light`, made for an asset of the same cube map size, is copied from and may
+   change afterwards. `flags`: OPALINE_SHADE_DEFAULT, or OPALINE_SHADE_WITHOUT_SINGLE or
+   _WITHOUT_MULTIPLE, which every volume can show apart. Costs nodes times node_terms dot products
+   on up to `threads` threads, 1 to 256, or 0: one per core; the result has the same bits for any
+   number. One writer; the light must not change meanwhile. */
+OPALINE_API opaline_status opaline_volume_light_update(opaline_volume_light* volume_light,
+                                                       const opaline_asset* asset,
+                                                       const opaline_light* light, uint32_t flags,
+                                                       uint32_t threads);
+
+typedef struct opaline_march_ray {
+    float origin[3];    /* finite [m] */
+    float direction[3]; /* finite, any length but 0 */
+    float begin;        /* distance from the origin [m], finite, not negative */
+    float end;          /* [m], may be INFINITY; up to `begin` or before it nothing is met */
+} opaline_march_ray;
+
+typedef struct opaline_march_result {
+    float radiance[3];      /* what the volumes scatter toward the origin */
+    float transmittance[3]; /* the share of light from behind `end` that comes through */
+} opaline_march_result;
+
+typedef struct opaline_march_options {
+    size_t struct_size;        /* in: sizeof(opaline_march_options) */
+    float step;                /* longest step, in voxels, 1/64 ... 8; without options 0.5 */
+    float least_transmittance; /* in [0, 1): once all bands are below, nothing comes through;
+                                  without options 1e-3 */
+    uint32_t threads;          /* as for updates, but without options 1: none is started */
+} opaline_march_options;
+
+/* What all volumes together add to each ray and leave of the light behind it: a pixel shows
+   radiance + transmittance * (radiance of the surface at `end`, or of the sky). results[i] is of
+   rays[i], finite and not negative. `options` may be NULL. Allocates; costs in proportion to the
+   steps within bricks of density. Any thread, concurrently; the volume light must not be updated
+   meanwhile. */
+OPALINE_API opaline_status opaline_volumes_march(const opaline_asset* asset,
+                                                 const opaline_volume_light* volume_light,
+                                                 const opaline_march_options* options,
+                                                 const opaline_march_ray* rays, uint32_t count,
+                                                 opaline_march_result* results);
+
+typedef struct opaline_sample_point {
+    float position[3]; /* finite [m] */
+    float to_eye[3];   /* from the position toward the eye: finite, any length but 0 */
+} opaline_sample_point;
+
+typedef struct opaline_sample_result {
+    float extinction[3]; /* sigma_t [1/m] */
+    float scattered[3];  /* radiance toward the eye added per metre [W m^-3 sr^-1] */
+} opaline_sample_result;
+
+/* The integrands of opaline_volumes_march, for hosts that march by themselves or fill a grid in
+   front of the camera: along a ray dL/dt = -extinction L + scattered, t toward the eye. results[i]
+   is of points[i], all volumes added up, finite and not negative. Runs on the calling thread and
+   never allocates: give each of your threads points of its own. Any thread, concurrently; the
+   volume light must not be updated meanwhile. */
+OPALINE_API opaline_status opaline_volumes_sample(const opaline_asset* asset,
+                                                  const opaline_volume_light* volume_light,
+                                                  const opaline_sample_point* points,
+                                                  uint32_t count, opaline_sample_result* results);
 
 #ifdef __cplusplus
 }

@@ -17,10 +17,14 @@ namespace opaline {
 struct Releaser {
     void operator()(opaline_asset* asset) const noexcept { opaline_asset_release(asset); }
     void operator()(opaline_light* light) const noexcept { opaline_light_release(light); }
+    void operator()(opaline_volume_light* light) const noexcept {
+        opaline_volume_light_release(light);
+    }
 };
 
 using AssetHandle = std::unique_ptr<opaline_asset, Releaser>;
 using LightHandle = std::unique_ptr<opaline_light, Releaser>;
+using VolumeLightHandle = std::unique_ptr<opaline_volume_light, Releaser>;
 
 /// A handle or, where it is empty, the reason.
 template <class Handle>
@@ -42,6 +46,14 @@ struct Made {
     opaline_light* light = nullptr;
     const opaline_status status = opaline_light_create(asset.get(), &light);
     return {LightHandle(light), status};
+}
+
+/// See opaline_volume_light_create.
+[[nodiscard]] inline Made<VolumeLightHandle> create_volume_light(
+    const AssetHandle& asset) noexcept {
+    opaline_volume_light* light = nullptr;
+    const opaline_status status = opaline_volume_light_create(asset.get(), &light);
+    return {VolumeLightHandle(light), status};
 }
 
 }  // namespace opaline

@@ -22,7 +22,8 @@ enum class RandomStage : std::uint32_t {
     body_walk = 10,
     true_body_walk = 11,
     straight_views = 12,
-    true_straight_views = 13
+    true_straight_views = 13,
+    volume_walk = 14
 };
 
 /// Four uniform numbers in [0, 1), a pure function of the arguments. There is no state, so results

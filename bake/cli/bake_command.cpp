@@ -34,13 +34,18 @@ struct Options {
 
 void print_summary(const Options& options, const bake::BakeResult& result, std::uint64_t bytes,
                    std::size_t warnings) {
+    const std::size_t nodes = result.asset.volumes.node.size();
     std::string line = fmt::format(
-        "{}: {} receivers, {}, {}; measured error {:.2f} % (95 %: {:.2f} to {:.2f}; {:.2f} % at "
-        "vertices, {:.2f} % between)",
-        printable(options.output), result.asset.position.size(),
-        format_seconds(result.seconds_total), format_bytes(static_cast<double>(bytes)),
-        100 * result.error.rms_relative, 100 * result.error.ci95[0], 100 * result.error.ci95[1],
-        100 * result.error.at_receivers.rms_relative, 100 * result.error.between.rms_relative);
+        "{}: {} receivers, {}{}, {}", printable(options.output), result.asset.position.size(),
+        nodes > 0 ? fmt::format("{} nodes in volumes, ", nodes) : "",
+        format_seconds(result.seconds_total), format_bytes(static_cast<double>(bytes)));
+    if (result.error.receivers_checked > 0) {
+        line += fmt::format(
+            "; measured error {:.2f} % (95 %: {:.2f} to {:.2f}; {:.2f} % at vertices, {:.2f} % "
+            "between)",
+            100 * result.error.rms_relative, 100 * result.error.ci95[0], 100 * result.error.ci95[1],
+            100 * result.error.at_receivers.rms_relative, 100 * result.error.between.rms_relative);
+    }
     if (const auto& names = result.error.not_measured; !names.empty()) {
         line += fmt::format("; not measured: {}", fmt::join(names, ", "));
     }
@@ -69,9 +74,11 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
 }
 
 void print_stages(const bake::BakeResult& result) {
-    for (const bake::PlanEntry& entry : result.plan) {
-        print_note(fmt::format("{} {} for {}: {}", entry.name, entry.on ? "on" : "off",
-                               printable(entry.subject.name), printable(entry.reason)));
+    for (const auto* plan : {&result.plan, &result.volume_plan}) {
+        for (const bake::PlanEntry& entry : *plan) {
+            print_note(fmt::format("{} {} for {}: {}", entry.name, entry.on ? "on" : "off",
+                                   printable(entry.subject.name), printable(entry.reason)));
+        }
     }
     for (const bake::StageReport& stage : result.stages) {
         print_note(fmt::format("{:<32} {:>10}  {:>12} rays  peak {}", printable(stage.name),
@@ -167,9 +174,10 @@ int run(const Options& options) {
     if (!result) {
         return report_error(result.error());
     }
-    for (formats::Diagnostic& unmet : bake::describe_unmet(
-             {bake::all_effects(), imported->scene, result->facts, result->knobs, result->plan},
-             *wanted)) {
+    for (formats::Diagnostic& unmet :
+         bake::describe_unmet({bake::all_effects(), imported->scene, result->facts, result->knobs,
+                               result->plan, result->volume_plan},
+                              *wanted)) {
         result->warnings.push_back(std::move(unmet));
     }
     std::vector<formats::Diagnostic> warnings = imported->warnings;

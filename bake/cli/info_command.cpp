@@ -9,6 +9,7 @@
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/volume_facts.h"
 #include "formats/opal/terms.h"
 
 namespace opaline::cli {
@@ -60,6 +61,19 @@ Json describe(const OpenedAsset& asset) {
             entry["roughness"] = is_glossy(view, i) ? Json(view.roughness[i]) : Json(nullptr);
         }
     }
+    info["volumes"] = Json::array();
+    for (const formats::VolumeRecord& record : view.volumes.records) {
+        const VolumeFacts facts = volume_facts(view.volumes, record);
+        info["volumes"].push_back({{"bricks", record.brick_count},
+                                   {"active_voxels", facts.active_voxels},
+                                   {"nodes", record.node_count},
+                                   {"spacing", record.spacing},
+                                   {"single_terms", record.single_terms},
+                                   {"multiple_terms", record.multiple_terms},
+                                   {"bands", record.bands},
+                                   {"bytes", facts.bytes},
+                                   {"bytes_per_active_voxel", facts.bytes_per_active_voxel()}});
+    }
     info["sections"] = Json::array();
     for (const formats::SectionEntry& section : asset.loaded.sections) {
         info["sections"].push_back({{"id", formats::section_name(section.id)},
@@ -104,10 +118,16 @@ void print_provenance(const Json& provenance) {
         provenance["error"].contains("rms_relative") &&
         provenance["error"]["rms_relative"].is_number()) {
         const Json& error = provenance["error"];
-        fmt::print("measured error {:.2f} % RMS", 100 * error["rms_relative"].get<double>());
+        const bool is_checked = text_of(error, "receivers_checked") != "0";
+        fmt::print("measured error ");
+        if (is_checked) {
+            fmt::print("{:.2f} % RMS", 100 * error["rms_relative"].get<double>());
+        } else {
+            fmt::print("none");
+        }
         for (const auto& [key, place] :
              {std::pair{"at_receivers", "at receivers"}, {"between", "between them"}}) {
-            if (error.contains(key) && error[key].is_object() &&
+            if (is_checked && error.contains(key) && error[key].is_object() &&
                 error[key].contains("rms_relative") && error[key]["rms_relative"].is_number()) {
                 fmt::print(", {:.2f} % {}", 100 * error[key]["rms_relative"].get<double>(), place);
             }
@@ -143,6 +163,22 @@ void print_provenance(const Json& provenance) {
     }
 }
 
+void print_volumes(const formats::VolumesView& volumes) {
+    if (!volumes.empty()) {
+        fmt::print("volumes\n");
+    }
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        const formats::VolumeRecord& record = volumes.records[v];
+        const VolumeFacts facts = volume_facts(volumes, record);
+        fmt::print(
+            "  {:>3}  {:>8} bricks, {} active voxels, {} nodes every {} voxel(s)\n"
+            "       terms: {} single, {} multiple, {}; {:.1f} bytes per active voxel\n",
+            v, record.brick_count, facts.active_voxels, record.node_count, record.spacing,
+            record.single_terms, record.multiple_terms, record.bands == 1 ? "grey" : "RGB",
+            facts.bytes_per_active_voxel());
+    }
+}
+
 int run(const Options& options) {
     const auto asset = open_asset(options.path);
     if (!asset) {
@@ -164,6 +200,7 @@ int run(const Options& options) {
                    : static_cast<double>(view.transport.row_offset.back()) / view.transport.rows(),
                view.transport.code_bits);
     print_provenance(info["provenance"]);
+    print_volumes(view.volumes);
     fmt::print("primitives\n");
     for (std::size_t i = 0; i < view.primitives.size(); ++i) {
         const formats::PrimitiveRecord& p = view.primitives[i];

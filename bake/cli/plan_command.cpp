@@ -10,6 +10,7 @@
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
+#include "bake/volumes/plan_volumes.h"
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/cancel_flaps.h"
@@ -63,12 +64,13 @@ int run(const Options& options) {
     const formats::Scene& scene = evened ? evened->scene : imported->scene;
     const bake::SceneFacts facts = bake::inspect_scene(scene);
     auto plan = bake::plan_bake(effects, scene, facts, *knobs);
+    const std::vector<bake::PlanEntry> volumes = bake::plan_volumes(scene, *knobs).entries;
     std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, facts);
     if (evened) {
         warnings.insert(warnings.end(), evened->warnings.begin(), evened->warnings.end());
     }
     for (formats::Diagnostic& unmet :
-         bake::describe_unmet({effects, scene, facts, *knobs, plan}, *wanted)) {
+         bake::describe_unmet({effects, scene, facts, *knobs, plan, volumes}, *wanted)) {
         warnings.push_back(std::move(unmet));
     }
     if (auto status = report_warnings(warnings); !status) {
@@ -80,6 +82,7 @@ int run(const Options& options) {
     const bake::CostRequest request{effects, scene, facts, budget, rates, threads};
     const bake::CostPrediction cost = bake::predict_costs(request, plan);
     bake::predict_savings(request, plan);
+    plan.insert(plan.end(), volumes.begin(), volumes.end());
     fmt::print("{}", options.json ? make_plan_json(budget, plan, cost)
                                   : make_plan_table(budget, plan, cost, threads));
     return kExitSuccess;

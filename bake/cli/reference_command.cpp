@@ -298,10 +298,9 @@ void add_estimate_options(CLI::App& command, Options& options) {
         .add_option(
             "--terms", options.terms,
             "count only some of the light: " + formats::term_names(formats::TermSet::baked, ", ") +
-                " as in `opaline relight`, unscattered (straight through a body), volume-single "
-                "and "
-                "volume-multiple (scattered once or more often in volumes), interreflection (paths "
-                "that meet a second surface or body, or a volume and a surface)")
+                " (scattered once or more often in volumes) as in `opaline relight`, unscattered "
+                "(straight through a body), interreflection (paths that meet a second surface or "
+                "body, or a volume and a surface)")
         ->option_text("all|LIST [all]");
     command.add_option("--seed", options.seed, "another one gives other noise")
         ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))

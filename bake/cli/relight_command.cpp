@@ -12,6 +12,7 @@
 #include "bake/compare/relight_table.h"
 #include "formats/opal/terms.h"
 #include "runtime/shade.h"
+#include "runtime/volumes/relight_volumes.h"
 
 namespace opaline::cli {
 namespace {
@@ -37,6 +38,7 @@ void print_json(const Options& options, const formats::AssetView& view,
     fmt::print("{}", json_text({{"output", options.output},
                                 {"primitives", view.primitives.size()},
                                 {"receivers", radiance.size()},
+                                {"volume_nodes", view.volumes.node.size()},
                                 {"mean", {mean[0], mean[1], mean[2]}},
                                 {"maximum", most}}));
 }
@@ -64,10 +66,55 @@ std::vector<formats::Vec3> row_positions(const formats::AssetView& view) {
     return positions;
 }
 
+// Of OUT.csv: OUT-volumes.csv.
+std::filesystem::path volumes_path(const std::filesystem::path& output) {
+    return output.parent_path() /
+           (output.stem().string() + "-volumes" + output.extension().string());
+}
+
+// Every output, whether the file has volumes or not.
+std::vector<OutputFile> list_outputs(const Options& options) {
+    std::vector<OutputFile> outputs{{"--output", options.output, {".csv", ".ply", ".exr"}}};
+    if (ending_of(options.output) == ".csv") {
+        outputs.push_back({"the table of volumes", volumes_path(options.output), {}});
+    }
+    return outputs;
+}
+
+// One row per node, in file order.
+std::vector<bake::VolumeRow> make_volume_rows(const formats::VolumesView& volumes,
+                                              const runtime::VolumeLight& light,
+                                              const std::optional<formats::Vec3>& eye) {
+    std::vector<bake::VolumeRow> rows;
+    rows.reserve(volumes.node.size());
+    for (std::uint32_t v = 0; v < volumes.records.size(); ++v) {
+        const std::vector<formats::Rgb> radiance = runtime::node_radiance(volumes, light, v, eye);
+        for (std::uint32_t i = 0; i < radiance.size(); ++i) {
+            rows.push_back({v, volumes.node[volumes.records[v].first_node + i], radiance[i]});
+        }
+    }
+    return rows;
+}
+
+formats::Status write_volumes(const Options& options, const formats::VolumesView& volumes,
+                              const runtime::LightVector& light,
+                              const runtime::ShadeOptions& shading) {
+    if (volumes.empty()) {
+        return formats::ok_status();
+    }
+    if (ending_of(options.output) != ".csv") {
+        print_note("opaline: the file has volumes, which only .csv outputs show");
+        return formats::ok_status();
+    }
+    const runtime::VolumeLight lit = runtime::relight_volumes(
+        volumes, light, {.terms = shading.terms, .threads = shading.threads});
+    return bake::write_volume_csv(volumes_path(options.output),
+                                  make_volume_rows(volumes, lit, shading.eye));
+}
+
 int run(const Options& options) {
-    const OutputFile output{"--output", options.output, {".csv", ".ply", ".exr"}};
     const std::filesystem::path inputs[] = {options.path, options.light};
-    if (auto status = check_outputs({&output, 1}, inputs); !status) {
+    if (auto status = check_outputs(list_outputs(options), inputs); !status) {
         return report_error(status.error());
     }
     runtime::ShadeOptions shading;
@@ -101,10 +148,12 @@ int run(const Options& options) {
     shading.terms = *terms;
     shading.specular = needs.any() ? &specular : nullptr;
     std::vector<formats::Rgb> radiance(view.receivers());
-    runtime::shade(view,
-                   runtime::project_environment(light->environment, view.cubemap_size,
-                                                light->rotation, options.threads),
-                   radiance, shading);
+    const runtime::LightVector vector = runtime::project_environment(
+        light->environment, view.cubemap_size, light->rotation, options.threads);
+    runtime::shade(view, vector, radiance, shading);
+    if (auto status = write_volumes(options, view.volumes, vector, shading); !status) {
+        return report_error(status.error());
+    }
     const std::vector<bake::RelightRow> rows = make_rows(view, radiance);
     const std::string ending = ending_of(options.output);
     const formats::Status status =
@@ -132,15 +181,19 @@ void add_relight_command(CLI::App& app, Job& job) {
     command->add_option("--light", options->light, light_help())->required()->option_text("ENV");
     command
         ->add_option("-o,--output", options->output,
-                     ".csv: primitive,vertex,r,g,b; .ply: points with colours; .exr: one pixel per "
+                     ".csv: primitive,vertex,r,g,b, and where the file has volumes "
+                     "OUT-volumes.csv: volume,i,j,k,r,g,b of every node; .ply: points with "
+                     "colours; .exr: one pixel per "
                      "receiver, 1024 a row")
         ->required()
         ->check(file_name())
         ->option_text("OUT.csv|.ply|.exr");
     command
-        ->add_option("--eye", options->eye,
-                     "the point everything is seen from [m]; default: each receiver along its own "
-                     "normal. Only translucent, thin-walled and glossy surfaces depend on it")
+        ->add_option(
+            "--eye", options->eye,
+            "the point everything is seen from [m]; default: each receiver along its own "
+            "normal, and nodes of volumes in the mean of all directions. Only translucent, "
+            "thin-walled and glossy surfaces and volumes depend on it")
         ->option_text("X,Y,Z");
     command
         ->add_option("--terms", options->terms,

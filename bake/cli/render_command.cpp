@@ -17,6 +17,7 @@
 #include "runtime/picture/camera.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/shade.h"
+#include "runtime/volumes/relight_volumes.h"
 #ifdef OPALINE_HAS_GL
 #include "runtime/gl/gl_renderer.h"
 #endif
@@ -47,8 +48,17 @@ struct Options {
 // Parts of the picture to show.
 struct Shown {
     formats::TermSet terms = formats::TermSet::baked;
-    bool background() const { return has_all(terms, formats::TermSet::baked); }
+    bool background = true;
 };
+
+// The background belongs to the whole light: to all components that the file may have.
+Shown show(formats::TermSet terms, const formats::AssetView& view) {
+    constexpr formats::TermSet kOfVolumes =
+        formats::TermSet::volume_single | formats::TermSet::volume_multiple;
+    const formats::TermSet possible =
+        view.volumes.empty() ? formats::TermSet::baked & ~kOfVolumes : formats::TermSet::baked;
+    return {terms, has_all(terms, possible)};
+}
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -107,10 +117,13 @@ int render_on_cpu(const Options& options, const formats::AssetView& view, const 
     auto start = Clock::now();
     std::vector<formats::Rgb> radiance =
         runtime::shade_for_picture(view, vector, shaded_for, shown.terms, options.threads);
+    const runtime::VolumeLight volumes = runtime::relight_volumes(
+        view.volumes, vector, {.terms = shown.terms, .threads = options.threads});
     print_stat(options, "dot products", seconds_since(start));
     runtime::SoftwareOptions software;
+    software.volumes = &volumes;
     software.threads = options.threads;
-    software.background = shown.background();
+    software.background = shown.background;
     runtime::SpecularLight specular;
     if (const runtime::SpecularNeeds needs = runtime::specular_needs(view);
         needs.any() && has_any(shown.terms, formats::TermSet::specular)) {
@@ -163,7 +176,7 @@ int render_on_gpu([[maybe_unused]] const Options& options,
     print_stat(options, "dot products", renderer->stats().dot_seconds);
     runtime::GlRenderOptions drawing;
     drawing.terms = shown.terms;
-    drawing.background = shown.background();
+    drawing.background = shown.background;
     return render_frames(options, camera,
                          [&](const runtime::Camera& at) { return renderer->render(at, drawing); });
 #else
@@ -209,7 +222,7 @@ int run(const Options& options) {
         light->environment, view.cubemap_size, light->rotation, options.threads);
     print_stat(options, "light vector", seconds_since(start));
     return (options.backend == Backend::cpu ? render_on_cpu : render_on_gpu)(
-        options, view, *light, vector, *camera, Shown{*terms});
+        options, view, *light, vector, *camera, show(*terms, view));
 }
 
 }  // namespace

@@ -14,8 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json plan_array(const std::vector<bake::PlanEntry>& plan) {
-    Json array = Json::array();
+void append_plan(Json& array, const std::vector<bake::PlanEntry>& plan) {
     for (const bake::PlanEntry& entry : plan) {
         array.push_back({{"effect", entry.name},
                          {"subject", entry.subject.name},
@@ -29,6 +28,11 @@ Json plan_array(const std::vector<bake::PlanEntry>& plan) {
                          {"saved_seconds", entry.saved_seconds},
                          {"saved_bytes", entry.saved_bytes}});
     }
+}
+
+Json plan_array(const std::vector<bake::PlanEntry>& plan) {
+    Json array = Json::array();
+    append_plan(array, plan);
     return array;
 }
 
@@ -101,6 +105,7 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     report["threads"] = result.threads;
     report["knobs"] = bake::knobs_json(result.knobs);
     report["plan"] = plan_array(result.plan);
+    append_plan(report["plan"], result.volume_plan);
     report["stages"] = Json::array();
     std::vector<bake::StageCost> costs = expected.cost.stages;
     for (const bake::StageReport& stage : result.stages) {

@@ -180,11 +180,6 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
     if (!imported) {
         return imported;
     }
-    if (!imported->scene.volumes.empty()) {
-        return formats::make_error(formats::ErrorKind::bad_input, options.scene, "volumes",
-                                   "this version does not bake volumes",
-                                   "leave them out, or render them by `opaline reference`");
-    }
     if (auto status = check(bake::count_memory(bake::all_effects(), imported->scene, knobs));
         !status) {
         return std::move(status).error();
@@ -197,9 +192,8 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
 
 formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
     // Of later versions; whoever names one should not take it for a slip of the pen.
-    constexpr std::array<std::string_view, 7> kLater{
-        "interreflection", "emitters", "filtering", "volume-single",
-        "volume-multiple", "cloud",    "radiosity"};
+    constexpr std::array<std::string_view, 5> kLater{"interreflection", "emitters", "filtering",
+                                                     "cloud", "radiosity"};
     bake::BakeOptions wanted = options.bake;
     if (options.effects == "auto") {
         return wanted;

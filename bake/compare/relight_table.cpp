@@ -24,6 +24,7 @@ using formats::Status;
 using formats::Vec3;
 
 constexpr std::string_view kHeader = "primitive,vertex,r,g,b";
+constexpr std::string_view kVolumeHeader = "volume,i,j,k,r,g,b";
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
 std::string_view take_line(std::string_view& rest) {
@@ -88,6 +89,15 @@ void append_number(std::string& text, float value) {
     const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value,
                                             std::chars_format::general, 9);
     text.append(digits.data(), end);
+}
+
+/// Ends a line: ",r,g,b".
+void append_color(std::string& text, Rgb color) {
+    for (const float v : {color.r, color.g, color.b}) {
+        text += ',';
+        append_number(text, v);
+    }
+    text += '\n';
 }
 
 void append_bytes(std::string& bytes, std::array<float, 6> values) {
@@ -157,18 +167,27 @@ Result<std::vector<RelightRow>> read_relight_csv(const std::filesystem::path& pa
 }
 
 Status write_relight_csv(const std::filesystem::path& path, std::span<const RelightRow> rows) {
-    return write_records(
-        path, std::string(kHeader) + "\n", rows.size(), [&](std::string& text, std::size_t i) {
-            const RelightRow& row = rows[i];
-            text += std::to_string(row.primitive);
-            text += ',';
-            text += std::to_string(row.vertex);
-            for (const float v : {row.radiance.r, row.radiance.g, row.radiance.b}) {
-                text += ',';
-                append_number(text, v);
-            }
-            text += '\n';
-        });
+    return write_records(path, std::string(kHeader) + "\n", rows.size(),
+                         [&](std::string& text, std::size_t i) {
+                             const RelightRow& row = rows[i];
+                             text += std::to_string(row.primitive);
+                             text += ',';
+                             text += std::to_string(row.vertex);
+                             append_color(text, row.radiance);
+                         });
+}
+
+Status write_volume_csv(const std::filesystem::path& path, std::span<const VolumeRow> rows) {
+    return write_records(path, std::string(kVolumeHeader) + "\n", rows.size(),
+                         [&](std::string& text, std::size_t i) {
+                             const VolumeRow& row = rows[i];
+                             text += std::to_string(row.volume);
+                             for (const std::int32_t v : row.voxel) {
+                                 text += ',';
+                                 text += std::to_string(v);
+                             }
+                             append_color(text, row.radiance);
+                         });
 }
 
 Status write_relight_ply(const std::filesystem::path& path, std::span<const Vec3> positions,

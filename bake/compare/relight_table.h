@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -19,6 +20,13 @@ struct RelightRow {
     formats::Rgb radiance;                    ///< [W m^-2 sr^-1], linear Rec. 709
 };
 
+/// One row of a table of volumes: what a node scatters.
+struct VolumeRow {
+    std::uint32_t volume = 0;
+    std::array<std::int32_t, 3> voxel{};  ///< of the node
+    formats::Rgb radiance;                ///< source radiance [W m^-2 sr^-1]
+};
+
 /// Reads a table: a first line starting with `primitive,vertex,r,g,b`, further columns ignored, one
 /// row per receiver. Rows keep their order. Untrusted bytes are safe; `name` is for messages.
 /// Errors: bad_input naming the line: wrong header, wrong number of fields, malformed, NaN or
@@ -33,6 +41,10 @@ formats::Result<std::vector<RelightRow>> read_relight_csv(const std::filesystem:
 /// float survives the round trip). Errors: resource.
 formats::Status write_relight_csv(const std::filesystem::path& path,
                                   std::span<const RelightRow> rows);
+
+/// The same of `volume,i,j,k,r,g,b`. Errors: resource.
+formats::Status write_volume_csv(const std::filesystem::path& path,
+                                 std::span<const VolumeRow> rows);
 
 /// Writes a point cloud: binary little-endian PLY, float x y z red green blue per receiver.
 /// Precondition: one position [m] per row. Errors: resource.

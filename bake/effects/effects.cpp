@@ -12,6 +12,7 @@
 #include "bake/effects/single/single.h"
 #include "bake/effects/specular/specular.h"
 #include "bake/effects/transmission/transmission.h"
+#include "bake/volumes/describe_volumes.h"
 
 namespace opaline::bake {
 
@@ -24,6 +25,8 @@ const EffectTable& all_effects() {
                                          describe_local(Effect::local, spread_rules()),
                                          describe_specular(Effect::specular),
                                          describe_gloss(Effect::gloss),
+                                         describe_scattered_once(Effect::volume_single),
+                                         describe_scattered_often(Effect::volume_multiple),
                                          describe_incident(Effect::incident)};
     static const EffectTable kTable{kDescriptors};
     return kTable;

@@ -15,7 +15,8 @@ struct BakeResult {
     formats::Asset asset;
     Knobs knobs;           ///< as used
     unsigned threads = 1;  ///< as used
-    std::vector<PlanEntry> plan;
+    std::vector<PlanEntry> plan;         ///< of materials
+    std::vector<PlanEntry> volume_plan;  ///< of volumes
     SceneFacts facts;  ///< that the plan was decided from
     StageLog stages;
     ErrorReport error;

@@ -102,12 +102,14 @@ std::string make_provenance(const formats::Scene& scene, const BakeRecord& recor
     }
     root["knobs"] = knobs_json(knobs);
     root["plan"] = Json::array();
-    for (const PlanEntry& entry : record.plan) {
-        root["plan"].push_back({{"effect", entry.name},
-                                {"subject", entry.subject.name},
-                                {"decision", entry.on ? "on" : "off"},
-                                {"reason", entry.reason},
-                                {"bound", entry.bound}});
+    for (const auto& plan : {record.plan, record.volume_plan}) {
+        for (const PlanEntry& entry : plan) {
+            root["plan"].push_back({{"effect", entry.name},
+                                    {"subject", entry.subject.name},
+                                    {"decision", entry.on ? "on" : "off"},
+                                    {"reason", entry.reason},
+                                    {"bound", entry.bound}});
+        }
     }
     root["error"] = error_json(record.error);
     root["error"]["model_estimate"] = knobs.model_error;

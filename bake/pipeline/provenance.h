@@ -20,7 +20,7 @@ nlohmann::ordered_json model_error_json(const ModelErrorReport& error);
 /// What became of a bake.
 struct BakeRecord {
     const Knobs& knobs;
-    std::span<const PlanEntry> plan;
+    std::span<const PlanEntry> plan, volume_plan;
     const ErrorReport& error;
     const ModelErrorReport* model_error = nullptr;  ///< null: not measured
 };

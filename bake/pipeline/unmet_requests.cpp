@@ -13,6 +13,12 @@ using formats::make_warning;
 
 bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const Knobs& knobs,
                   std::string_view name) {
+    const auto& all = effects.effects;
+    if (!scene.volumes.empty() && std::ranges::any_of(all, [&](const EffectDescriptor& effect) {
+            return effect.name == name && effect.concerns_volumes;
+        })) {
+        return true;
+    }
     const MaterialFacts unknown;  // placeholder: concerns() reads the material only
     return std::any_of(
         scene.primitives.begin(), scene.primitives.end(), [&](const formats::Primitive& p) {
@@ -26,7 +32,7 @@ bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const
 }
 
 std::string concerns_nothing(const std::string& effect) {
-    return "'" + effect + "' concerns nothing in the scene: no material is of its kind";
+    return "'" + effect + "' concerns nothing in the scene: no material or volume is of its kind";
 }
 
 // Effects that were named, and that no subject has.
@@ -34,10 +40,12 @@ void describe_effects(const DecidedBake& decided, std::vector<Diagnostic>& warni
     for (const std::string& effect : decided.knobs.effects) {
         const PlanEntry* left_out = nullptr;
         bool is_on = false;
-        for (const PlanEntry& entry : decided.plan) {
-            if (entry.name == effect) {
-                is_on = is_on || entry.on || entry.all_orders;  // another effect has its light
-                left_out = &entry;
+        for (const auto& plan : {decided.plan, decided.volume_plan}) {
+            for (const PlanEntry& entry : plan) {
+                if (entry.name == effect) {
+                    is_on = is_on || entry.on || entry.all_orders;  // another effect has its light
+                    left_out = &entry;
+                }
             }
         }
         if (is_on) {
@@ -74,7 +82,7 @@ void describe_options(const DecidedBake& decided, const BakeOptions& options,
                 return true;
             }
         }
-        return false;
+        return knob.matters({}, decided.volume_plan);
     };
     for (const auto& [knob, value] : options.given.values) {
         // The least that an `auto` knob may be is what idle subjects get anyway.
@@ -114,6 +122,12 @@ std::vector<Diagnostic> describe_unmet(const DecidedBake& decided, const BakeOpt
     std::vector<Diagnostic> warnings;
     describe_effects(decided, warnings);
     describe_options(decided, options, warnings);
+    if (options.error > 0 && !decided.volume_plan.empty()) {
+        warnings.push_back(make_warning("", "--error",
+                                        "light in volumes is not measured: they are baked in "
+                                        "preview quality, whatever their error",
+                                        "give --volume-walks and --volume-spacing"));
+    }
     for (const PlanEntry& entry : decided.plan) {
         const EffectDescriptor& effect = decided.effects[entry.effect];
         const std::uint32_t m = entry.subject.index;

@@ -22,6 +22,7 @@ AssetView Asset::view() const {
     view.roughness = roughness;
     view.openness = openness;
     view.gloss = gloss;
+    view.volumes = volumes.view();
     return view;
 }
 

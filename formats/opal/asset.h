@@ -14,6 +14,7 @@
 #include "formats/opal/rgb.h"
 #include "formats/opal/sparse_rows.h"
 #include "formats/opal/vec3.h"
+#include "formats/opal/volumes.h"
 
 namespace opaline::formats {
 
@@ -104,6 +105,7 @@ struct AssetView {
     std::span<const Openness> openness;
     /// Gloss of opaque primitives: empty (none), or one per primitive; needs `openness`.
     std::span<const GlossRecord> gloss;
+    VolumesView volumes;  ///< smoke, clouds; empty without any
 
     std::uint32_t receivers() const { return static_cast<std::uint32_t>(position.size()); }
 };
@@ -124,6 +126,7 @@ struct Asset {
     std::vector<float> roughness;    ///< empty, or one per primitive; kNotGlossy for opaque ones
     std::vector<Openness> openness;  ///< empty, or one per vertex; where `roughness` is not empty
     std::vector<GlossRecord> gloss;  ///< empty, or one per primitive; kNotGlossy if translucent
+    Volumes volumes;                 ///< empty without any
 
     AssetView view() const;
 };

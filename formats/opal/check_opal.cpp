@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "formats/opal/check_rows.h"
+#include "formats/opal/check_volumes.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/spherical_harmonics.h"
 
@@ -12,34 +14,6 @@ namespace {
 
 std::string primitive_name(std::size_t i) {
     return "section PRIM, primitive " + std::to_string(i);
-}
-
-bool inside(std::uint64_t first, std::uint64_t count, std::uint64_t size) {
-    return first <= size && count <= size - first;
-}
-
-template <class T>
-bool all_below(std::span<const T> values, std::uint32_t limit) {
-    return std::all_of(values.begin(), values.end(), [limit](T v) { return v < limit; });
-}
-
-Fault find_transport_fault(const AssetView& asset) {
-    const SparseRowsView& rows = asset.transport;
-    const std::string where = "section TRAN";
-    const std::uint32_t coefficients = cubemap_texels(asset.cubemap_size);
-    if (rows.index_bytes == 2 && coefficients > 65536) {
-        return {where,
-                "2-byte indices cannot address " + std::to_string(coefficients) + " coefficients"};
-    }
-    if (rows.row_offset.front() != 0 ||
-        rows.row_offset.back() != rows.index16.size() + rows.index32.size() ||
-        !std::is_sorted(rows.row_offset.begin(), rows.row_offset.end())) {
-        return {where, "row offsets are not ascending from 0 to the number of details"};
-    }
-    if (!all_below(rows.index16, coefficients) || !all_below(rows.index32, coefficients)) {
-        return {where, "a coefficient index is not below " + std::to_string(coefficients)};
-    }
-    return {};
 }
 
 bool has_possible_terms(const PrimitiveRecord& p) {
@@ -93,18 +67,19 @@ Fault find_primitive_fault(const AssetView& asset, std::size_t i) {
         return {primitive_name(i), std::move(fault)};
     }
     const std::uint64_t row_count = std::uint64_t{p.vertex_count} * p.terms;
-    if (!inside(p.first_vertex, p.vertex_count, asset.position.size()) ||
-        !inside(p.first_index, p.index_count, asset.index.size()) || p.index_count % 3 != 0 ||
-        !inside(p.first_row, row_count, rows.rows()) ||
-        !inside(p.first_band_row, row_count * p.bands, rows.detail_scale.size())) {
+    if (!lies_inside(p.first_vertex, p.vertex_count, asset.position.size()) ||
+        !lies_inside(p.first_index, p.index_count, asset.index.size()) || p.index_count % 3 != 0 ||
+        !lies_inside(p.first_row, row_count, rows.rows()) ||
+        !lies_inside(p.first_band_row, row_count * p.bands, rows.detail_scale.size())) {
         return {primitive_name(i), "its vertices, indices or rows lie outside their arrays"};
     }
-    const std::uint64_t details =
-        rows.row_offset[p.first_row + row_count] - rows.row_offset[p.first_row];
-    if (!inside(p.first_code, details * p.bands, rows.code8.size() + rows.code16.size())) {
+    if (!lies_inside(p.first_code, codes_of_rows(rows, p.first_row, row_count, p.bands),
+                     rows.code8.size() + rows.code16.size())) {
         return {primitive_name(i), "its codes lie outside their array"};
     }
-    if (!all_below(asset.index.subspan(p.first_index, p.index_count), p.vertex_count)) {
+    const auto triangles = asset.index.subspan(p.first_index, p.index_count);
+    if (std::any_of(triangles.begin(), triangles.end(),
+                    [&p](std::uint32_t v) { return v >= p.vertex_count; })) {
         return {primitive_name(i), "a triangle refers to a vertex it does not have"};
     }
     if (p.base_color_image != kNoImage &&
@@ -193,21 +168,21 @@ Fault find_structure_fault(const AssetView& asset) {
     if (!asset.texcoord.empty() && asset.texcoord.size() != asset.position.size()) {
         return {"section MESH", "texture coordinates and positions differ in number"};
     }
-    if (const Fault fault = find_transport_fault(asset); !fault.what.empty()) {
+    if (Fault fault = find_rows_fault(asset.transport, "section TRAN"); !fault.what.empty()) {
         return fault;
     }
-    if (const Fault fault = find_specular_fault(asset); !fault.what.empty()) {
+    if (Fault fault = find_specular_fault(asset); !fault.what.empty()) {
         return fault;
     }
-    if (const Fault fault = find_gloss_fault(asset); !fault.what.empty()) {
+    if (Fault fault = find_gloss_fault(asset); !fault.what.empty()) {
         return fault;
     }
     for (std::size_t i = 0; i < asset.primitives.size(); ++i) {
-        if (const Fault fault = find_primitive_fault(asset, i); !fault.what.empty()) {
+        if (Fault fault = find_primitive_fault(asset, i); !fault.what.empty()) {
             return fault;
         }
     }
-    return {};
+    return find_volumes_fault(asset.volumes);
 }
 
 Fault find_value_fault(const AssetView& asset) {
@@ -230,25 +205,10 @@ Fault find_value_fault(const AssetView& asset) {
             return {"section MESH", "a texture coordinate is not finite"};
         }
     }
-    const SparseRowsView& rows = asset.transport;
-    const auto sound = [](float scale) { return scale >= 0 && std::isfinite(scale); };
-    if (!std::all_of(rows.average_scale.begin(), rows.average_scale.end(), sound) ||
-        !std::all_of(rows.detail_scale.begin(), rows.detail_scale.end(), sound)) {
-        return {"section TRAN", "a scale is below zero or not finite"};
+    if (Fault fault = find_row_value_fault(asset.transport, "section TRAN"); !fault.what.empty()) {
+        return fault;
     }
-    const std::uint32_t face_size = asset.cubemap_size * asset.cubemap_size;
-    for (std::uint32_t r = 0; r < rows.rows(); ++r) {
-        std::int64_t previous = -1;
-        for (std::uint32_t i = rows.row_offset[r]; i < rows.row_offset[r + 1]; ++i) {
-            const std::uint32_t index = rows.index_bytes == 2 ? rows.index16[i] : rows.index32[i];
-            if (index <= previous || index % face_size == 0) {
-                return {"section TRAN, row " + std::to_string(r),
-                        "its indices are not ascending details"};
-            }
-            previous = index;
-        }
-    }
-    return {};
+    return find_volume_value_fault(asset.volumes);
 }
 
 }  // namespace opaline::formats

@@ -1,15 +1,9 @@
 #pragma once
 
-#include <string>
-
 #include "formats/opal/asset.h"
+#include "formats/opal/fault.h"
 
 namespace opaline::formats {
-
-/// What is wrong with an asset; `what` is empty where nothing is.
-struct Fault {
-    std::string where, what;
-};
 
 /// Every count, offset and index that the runtime relies on without further checks: indices below
 /// the number of coefficients, vertices, images and rows they refer to; ranges inside their arrays.

@@ -68,6 +68,13 @@ struct TransportHead {
 };
 static_assert(sizeof(TransportHead) == 48);
 
+/// Density codes: kBrickVoxels a brick.
+struct VolumesHead {
+    std::uint32_t count = 0, record_size = 0;
+    std::uint64_t cells = 0, bricks = 0, corners = 0, nodes = 0, reserved = 0;
+};
+static_assert(sizeof(VolumesHead) == 48);
+
 /// Largest ratio of decoded to stored size that a reader accepts and a writer makes: bounds what a
 /// hostile file can make a reader allocate.
 inline constexpr std::uint64_t kMaxCompressionRatio = 1024;

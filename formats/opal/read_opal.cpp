@@ -2,52 +2,18 @@
 
 #include <zstd.h>
 
-#include <cstring>
 #include <new>
 
 #include "formats/opal/check_opal.h"
 #include "formats/opal/layout.h"
+#include "formats/opal/row_arrays.h"
+#include "formats/opal/section_cursor.h"
+#include "formats/opal/volume_arrays.h"
 
 namespace opaline::formats {
 namespace {
 
-// Hands out arrays of a section one after the other; every size is checked before it is believed.
-class Cursor {
-  public:
-    explicit Cursor(std::span<const std::byte> bytes) : rest_(bytes) {}
-
-    template <class T>
-    bool take(std::uint64_t count, std::span<const T>& out) {
-        if (count > rest_.size() / sizeof(T)) {
-            return false;
-        }
-        const std::size_t size = static_cast<std::size_t>(count) * sizeof(T);
-        const std::size_t padded = (size + kArrayAlignment - 1) / kArrayAlignment * kArrayAlignment;
-        if (padded > rest_.size()) {
-            return false;
-        }
-        out = {reinterpret_cast<const T*>(rest_.data()), static_cast<std::size_t>(count)};
-        rest_ = rest_.subspan(padded);
-        return true;
-    }
-
-    template <class T>
-    bool take_one(T& out) {
-        std::span<const T> one;
-        if (!take(1, one)) {
-            return false;
-        }
-        std::memcpy(&out, one.data(), sizeof out);
-        return true;
-    }
-
-    bool at_end() const { return rest_.empty(); }
-
-  private:
-    std::span<const std::byte> rest_;
-};
-
-bool read_basis(Cursor cursor, AssetView& view) {
+bool read_basis(SectionCursor cursor, AssetView& view) {
     BasisHead head;
     if (!cursor.take_one(head) || head.kind != 1 ||
         head.pairing != static_cast<std::uint32_t>(Pairing::light_carries_solid_angle)) {
@@ -58,13 +24,13 @@ bool read_basis(Cursor cursor, AssetView& view) {
     return true;
 }
 
-bool read_primitives(Cursor cursor, AssetView& view) {
+bool read_primitives(SectionCursor cursor, AssetView& view) {
     PrimitivesHead head;
     return cursor.take_one(head) && head.record_size == sizeof(PrimitiveRecord) &&
            cursor.take(head.count, view.primitives) && cursor.at_end();
 }
 
-bool read_mesh(Cursor cursor, AssetView& view) {
+bool read_mesh(SectionCursor cursor, AssetView& view) {
     MeshHead head;
     return cursor.take_one(head) && cursor.take(head.vertices, view.position) &&
            cursor.take(head.vertices, view.normal) && cursor.take(head.vertices, view.base_color) &&
@@ -72,7 +38,7 @@ bool read_mesh(Cursor cursor, AssetView& view) {
            cursor.at_end();
 }
 
-bool read_images(Cursor cursor, AssetView& view) {
+bool read_images(SectionCursor cursor, AssetView& view) {
     ImagesHead head;
     std::span<const ImageSize> sizes;
     if (!cursor.take_one(head) || !cursor.take(head.count, sizes)) {
@@ -90,36 +56,24 @@ bool read_images(Cursor cursor, AssetView& view) {
     return cursor.at_end();
 }
 
-bool read_specular(Cursor cursor, AssetView& view) {
+bool read_specular(SectionCursor cursor, AssetView& view) {
     SpecularHead head;
     return cursor.take_one(head) && cursor.take(head.primitives, view.roughness) &&
            cursor.take(head.vertices, view.openness) && cursor.at_end();
 }
 
-bool read_gloss(Cursor cursor, AssetView& view) {
+bool read_gloss(SectionCursor cursor, AssetView& view) {
     GlossHead head;
     return cursor.take_one(head) && head.record_size == sizeof(GlossRecord) &&
            cursor.take(head.primitives, view.gloss) && cursor.at_end();
 }
 
-bool read_transport(Cursor cursor, AssetView& view) {
-    TransportHead head;
-    if (!cursor.take_one(head) || (head.code_bits != 8 && head.code_bits != 16) ||
-        (head.index_bytes != 2 && head.index_bytes != 4) || head.band_rows > UINT64_MAX / 6) {
-        return false;
-    }
-    SparseRowsView& rows = view.transport;
-    rows.code_bits = head.code_bits;
-    rows.index_bytes = head.index_bytes;
-    return cursor.take(std::uint64_t{head.rows} + 1, rows.row_offset) &&
-           cursor.take(head.band_rows, rows.average_scale) &&
-           cursor.take(head.band_rows, rows.detail_scale) &&
-           cursor.take(head.band_rows * 6, rows.average_code) &&
-           (head.index_bytes == 2 ? cursor.take(head.details, rows.index16)
-                                  : cursor.take(head.details, rows.index32)) &&
-           (head.code_bits == 8 ? cursor.take(head.codes, rows.code8)
-                                : cursor.take(head.codes, rows.code16)) &&
-           cursor.at_end();
+bool read_transport(SectionCursor cursor, AssetView& view) {
+    return take_rows(cursor, view.transport) && cursor.at_end();
+}
+
+bool read_volumes(SectionCursor cursor, AssetView& view) {
+    return take_volumes(cursor, view.volumes) && cursor.at_end();
 }
 
 }  // namespace
@@ -144,7 +98,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
         if (checks == Checks::full && checksum(content) != entry.checksum) {
             return damaged(where, "its checksum does not match");
         }
-        bool (*read)(Cursor, AssetView&) = nullptr;
+        bool (*read)(SectionCursor, AssetView&) = nullptr;
         unsigned bit = 0;
         std::uint32_t earliest = 1, latest = 1;
         switch (entry.id) {
@@ -168,6 +122,9 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 break;
             case kGlosSection:
                 read = read_gloss;
+                break;
+            case kVoluSection:
+                read = read_volumes;
                 break;
             case kProvSection:
                 break;
@@ -212,7 +169,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
         if (entry.id == kProvSection) {
             loaded.view.provenance = {reinterpret_cast<const char*>(content.data()),
                                       content.size()};
-        } else if (!read(Cursor(content), loaded.view)) {
+        } else if (!read(SectionCursor(content), loaded.view)) {
             return damaged(where, "its counts do not agree with its size");
         }
         found |= bit;
@@ -221,6 +178,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
         return damaged("section table", "BASI, PRIM, TRAN and MESH must all be there");
     }
     loaded.view.transport.cubemap_size = loaded.view.cubemap_size;
+    loaded.view.volumes.rows.cubemap_size = loaded.view.cubemap_size;
     if (const Fault fault = find_structure_fault(loaded.view); !fault.what.empty()) {
         return damaged(fault.where, fault.what);
     }

@@ -23,8 +23,9 @@ enum class TermSet : std::uint32_t {
     interreflection = 32,   ///< everything that met a second body or surface
     volume_single = 64,     ///< scattered once in a volume (smoke, a cloud) and met nothing else
     volume_multiple = 128,  ///< scattered more than once in volumes and met nothing else
-    baked = 15,             ///< what `.opal` files hold: multiple, single, specular, diffuse
-    separable = 3,          ///< what a body's rows hold as one or, if asked for, apart
+    /// What `.opal` files hold: multiple, single, specular, diffuse, and both of volumes.
+    baked = 15 | volume_single | volume_multiple,
+    separable = 3,  ///< what a body's rows hold as one or, if asked for, apart
     all = 255
 };
 

@@ -4,12 +4,15 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <memory>
 #include <string>
 
 #include "formats/opal/layout.h"
+#include "formats/opal/row_arrays.h"
 #include "formats/opal/section.h"
+#include "formats/opal/volume_arrays.h"
 
 namespace opaline::formats {
 namespace {
@@ -187,36 +190,22 @@ Status write_parts(const AssetView& asset, Write write) {
     const BasisHead basis{1, asset.cubemap_size, static_cast<std::uint32_t>(asset.pairing), 0};
     const PrimitivesHead primitives{static_cast<std::uint32_t>(asset.primitives.size()),
                                     sizeof(PrimitiveRecord), 0};
-    const SparseRowsView& rows = asset.transport;
-    const TransportHead transport{rows.rows(),
-                                  rows.code_bits,
-                                  rows.index_bytes,
-                                  0,
-                                  rows.detail_scale.size(),
-                                  rows.index16.size() + rows.index32.size(),
-                                  rows.code8.size() + rows.code16.size(),
-                                  0};
+    const TransportHead transport = rows_head(asset.transport);
     const std::span<const std::byte> basis_arrays[] = {bytes_of(basis)};
     const std::span<const std::byte> primitive_arrays[] = {bytes_of(primitives),
                                                            std::as_bytes(asset.primitives)};
-    const std::span<const std::byte> transport_arrays[] = {
-        bytes_of(transport),
-        std::as_bytes(rows.row_offset),
-        std::as_bytes(rows.average_scale),
-        std::as_bytes(rows.detail_scale),
-        std::as_bytes(rows.average_code),
-        rows.index_bytes == 2 ? std::as_bytes(rows.index16) : std::as_bytes(rows.index32),
-        rows.code_bits == 8 ? std::as_bytes(rows.code8) : std::as_bytes(rows.code16)};
+    const VolumesHead volumes = volumes_head(asset.volumes);
+    const TransportHead volume_rows = rows_head(asset.volumes.rows);
 
     std::vector<Stored> sections;
-    sections.reserve(8);
+    sections.reserve(9);
     if (!asset.provenance.empty()) {
         sections.push_back(store_provenance(asset));
     }
     sections.push_back(store(kBasiSection, Codec::none, basis_arrays));
     sections.push_back(store(kPrimSection, Codec::none, primitive_arrays));
     sections.back().entry.version = version_of(asset.primitives);
-    sections.push_back(store(kTranSection, Codec::none, transport_arrays));
+    sections.push_back(store(kTranSection, Codec::none, row_arrays(transport, asset.transport)));
     sections.back().entry.version = kTransportVersion;
     sections.push_back(store_mesh(asset));
     if (!asset.images.empty()) {
@@ -227,6 +216,11 @@ Status write_parts(const AssetView& asset, Write write) {
     }
     if (!asset.gloss.empty()) {
         sections.push_back(store_gloss(asset));
+    }
+    if (!asset.volumes.empty()) {
+        assert(asset.volumes.rows.cubemap_size == asset.cubemap_size);
+        sections.push_back(
+            store(kVoluSection, Codec::none, volume_arrays(volumes, asset.volumes, volume_rows)));
     }
 
     std::vector<SectionEntry> table;

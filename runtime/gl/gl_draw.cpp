@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "runtime/gl/gl_volume_pass.h"
 #include "runtime/picture/passes.h"
 #include "shader_text.h"
 
@@ -64,6 +65,8 @@ void draw_pass(PicturePass pass, const DrawScene& scene, const DrawPrograms& pro
     switch (pass) {
         case PicturePass::surfaces:
             return draw_surfaces(scene, programs.surfaces, view);
+        case PicturePass::volumes:
+            return;  // the box filter composes them, often once for a whole pixel
         case PicturePass::background:
             return draw_background(scene, programs, view);
     }
@@ -71,11 +74,16 @@ void draw_pass(PicturePass pass, const DrawScene& scene, const DrawPrograms& pro
 
 }  // namespace
 
-formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset) {
+formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlVolumes& volumes) {
     DrawPrograms programs;
     auto surfaces = make_surface_programs(asset);
     if (!surfaces) return surfaces.error();
     programs.surfaces = std::move(surfaces).value();
+    if (!volumes.empty()) {
+        auto made = make_volume_program(volumes);
+        if (!made) return made.error();
+        programs.volumes = std::move(made).value();
+    }
     struct Job {
         GlProgram& program;
         const char *name, *include, *fragment;
@@ -136,17 +144,21 @@ void draw_tile(const DrawScene& scene, const DrawPrograms& programs, const DrawT
     glClearNamedFramebufferfv(target.sample_frame.name(), GL_DEPTH, 0, &infinitely_far);
     const std::array<float, 4> black{0, 0, 0, 1};
     glClearNamedFramebufferfv(target.sample_frame.name(), GL_COLOR, 0, black.data());
-    for (const PicturePass pass : list_passes(scene.background)) {
+    for (const PicturePass pass : list_passes(scene.background, !scene.volumes.empty())) {
         draw_pass(pass, scene, programs, view);
     }
 
     glBindFramebuffer(GL_FRAMEBUFFER, target.pixel_frame.name());
     glViewport(0, 0, static_cast<GLsizei>(tile.width), static_cast<GLsizei>(tile.height));
     glDisable(GL_DEPTH_TEST);
-    glUseProgram(programs.resolve.name());
-    glUniform1i(0, static_cast<GLint>(scene.supersampling));
     glBindTextureUnit(0, target.samples.name());
     glBindVertexArray(programs.nothing.name());
+    if (!scene.volumes.empty()) {
+        glBindTextureUnit(1, target.depth.name());
+        return draw_volumes_filtered(scene, programs.volumes, view);
+    }
+    glUseProgram(programs.resolve.name());
+    glUniform1i(0, static_cast<GLint>(scene.supersampling));
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 

@@ -14,10 +14,11 @@ namespace opaline::runtime {
 struct DrawPrograms {
     SurfacePrograms surfaces;
     GlProgram background, resolve;
+    GlProgram volumes;      ///< in place of `resolve`, where there are volumes
     GlVertexArray nothing;  ///< for passes without vertex data
 };
-/// Only those that the asset has surfaces for. Errors: resource.
-formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset);
+/// Only those that the asset has surfaces and volumes for. Errors: resource.
+formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlVolumes& volumes);
 
 /// Where a tile is drawn: samples with depth, and the box-filtered pixels.
 struct DrawTarget {
@@ -33,7 +34,8 @@ struct Tile {
     std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
-/// The passes of the picture (passes.h), then the box filter.
+/// The passes of the picture (passes.h), then the box filter. The two of volumes are one:
+/// gl_volume_pass.h.
 void draw_tile(const DrawScene& scene, const DrawPrograms& programs, const DrawTarget& target,
                const Tile& tile);
 

@@ -11,6 +11,7 @@
 #include "runtime/gl/gl_draw.h"
 #include "runtime/gl/gl_environment.h"
 #include "runtime/gl/gl_view.h"
+#include "runtime/gl/gl_volumes.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/specular.h"
 
@@ -38,6 +39,7 @@ struct Resources {
     GlAsset asset;
     GlEnvironment environment;
     GlSpecular specular;
+    GlVolumes volumes;
     DotPrograms dot_programs;
     ViewPrograms view_programs;
     DrawPrograms draw_programs;
@@ -93,8 +95,11 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     const std::uint32_t lanes = options.lanes_per_row != 0     ? options.lanes_per_row
                                 : state->context.is_software() ? 8
                                                                : 16;
-    auto gl_asset = upload_asset(asset, query_dot_limits(options.max_block_bytes, lanes));
+    const DotLimits limits = query_dot_limits(options.max_block_bytes, lanes);
+    auto gl_asset = upload_asset(asset, limits);
     if (!gl_asset) return gl_asset.error();
+    auto gl_volumes = upload_volumes(asset.volumes, limits.max_block_bytes);
+    if (!gl_volumes) return gl_volumes.error();
     auto gl_environment = upload_environment(environment);
     if (!gl_environment) return gl_environment.error();
     state->stats.upload_seconds = clock.lap();
@@ -107,20 +112,22 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     if (!dot_programs) return dot_programs.error();
     auto view_programs = make_view_programs(*gl_asset);
     if (!view_programs) return view_programs.error();
-    auto draw_programs = make_draw_programs(*gl_asset);
+    auto draw_programs = make_draw_programs(*gl_asset, *gl_volumes);
     if (!draw_programs) return draw_programs.error();
-    state->stats.gpu_bytes = gl_asset->resident + gl_environment->resident + gl_specular->resident;
+    state->stats.gpu_bytes = gl_asset->resident + gl_environment->resident + gl_specular->resident +
+                             gl_volumes->resident;
     state->stats.dispatches = static_cast<std::uint32_t>(gl_asset->batches.size());
     state->stats.lanes_per_row = lanes;
     state->stats.device = state->context.description();
     state->resources.emplace(Resources{std::move(*gl_asset), std::move(*gl_environment),
-                                       std::move(*gl_specular), std::move(*dot_programs),
-                                       std::move(*view_programs), std::move(*draw_programs)});
+                                       std::move(*gl_specular), std::move(*gl_volumes),
+                                       std::move(*dot_programs), std::move(*view_programs),
+                                       std::move(*draw_programs)});
     return GlRenderer(std::move(state));
 }
 
 formats::Status GlRenderer::set_light(const LightVector& light, const Rotation& rotation) {
-    const Resources& resources = *state_->resources;
+    Resources& resources = *state_->resources;
     const std::size_t expected = std::size_t{24} * light.n * light.n;
     if (light.n != resources.asset.cubemap_size || light.rgba.size() != expected) {
         return make_error(ErrorKind::usage, {}, "light vector",
@@ -140,6 +147,10 @@ formats::Status GlRenderer::set_light(const LightVector& light, const Rotation& 
     if (auto status = dispatch_dots(resources.asset, resources.dot_programs, buffer); !status) {
         return status;
     }
+    if (auto status = relight_gl_volumes(resources.volumes, light, formats::TermSet::all);
+        !status) {
+        return status;
+    }
     state_->stats.dot_seconds = clock.lap();
     state_->rotation = rotation;
     return check_gl("computing dot products");
@@ -152,7 +163,7 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
 
     GlClock clock;
     state_->stats.draw_seconds = state_->stats.readback_seconds = 0;
-    const Resources& resources = *state_->resources;
+    Resources& resources = *state_->resources;
     const std::uint32_t s = options.supersampling;
     const std::uint32_t side =
         std::max(1u, std::min(options.max_tile_samples, largest_target()) / s);
@@ -167,9 +178,18 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
         !status) {
         return status.error();
     }
-    const DrawScene scene{
-        resources.asset, resources.environment, resources.specular, state_->rotation, camera, s,
-        options.terms,   options.background};
+    if (auto status = show_volume_terms(resources.volumes, options.terms); !status) {
+        return status.error();
+    }
+    const DrawScene scene{resources.asset,
+                          resources.environment,
+                          resources.specular,
+                          resources.volumes,
+                          state_->rotation,
+                          camera,
+                          s,
+                          options.terms,
+                          options.background};
     for (std::uint32_t y = 0; y < camera.height; y += side) {
         for (std::uint32_t x = 0; x < camera.width; x += side) {
             const Tile tile{x, y, std::min(side, camera.width - x),

@@ -28,7 +28,7 @@ struct GlRenderOptions {
     std::uint32_t supersampling = 3;        ///< S: S x S samples a pixel, box filter; in [1, 8]
     std::uint32_t max_tile_samples = 2048;  ///< side of the tiles drawn at once, >= S
     formats::TermSet terms = formats::TermSet::all;  ///< components to add up; see check_terms
-    bool background = true;                          ///< false: black where no triangle is seen
+    bool background = true;                          ///< false: black behind the asset
 };
 
 /// Wall-clock seconds of the last upload, set_light and render; each ends with glFinish.
@@ -53,7 +53,8 @@ struct GlStats {
 /// `create`.
 class GlRenderer {
   public:
-    /// Uploads. Errors: resource (no EGL or GL, memory, or size limits, with the driver's name).
+    /// Uploads. Errors: resource (no EGL or GL, memory, or size limits, with the driver's name;
+    /// more than kMaxGlVolumes volumes).
     static formats::Result<GlRenderer> create(const formats::AssetView& asset,
                                               const formats::Environment& environment,
                                               const GlOptions& options = {});
@@ -62,13 +63,14 @@ class GlRenderer {
     GlRenderer& operator=(GlRenderer&& other) noexcept;
     ~GlRenderer();
 
-    /// Computes <T_k, L> of every vertex in a compute shader. `rotation` turns the background; the
+    /// Computes <T_k, L> of every vertex in a compute shader, and those of the nodes of volumes on
+    /// the CPU, from a copy of their rows. `rotation` turns the background; the
     /// light vector must have been made with the same one. Errors: usage (another cube map size
     /// than the asset's), resource.
     formats::Status set_light(const LightVector& light, const Rotation& rotation);
 
-    /// Draws and reads back; black surfaces before the first set_light. Errors: as check_camera;
-    /// resource.
+    /// Draws and reads back; before the first set_light surfaces and volumes are black. Errors: as
+    /// check_camera; resource.
     formats::Result<Picture> render(const Camera& camera, const GlRenderOptions& options = {});
 
     /// Reads back <T_0, L> of every vertex, as the last set_light left it; of vertices with several

@@ -6,6 +6,7 @@
 #include "formats/opal/vec3.h"
 #include "runtime/gl/gl_asset.h"
 #include "runtime/gl/gl_environment.h"
+#include "runtime/gl/gl_volumes.h"
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
 
@@ -16,6 +17,7 @@ struct DrawScene {
     const GlAsset& asset;
     const GlEnvironment& environment;
     const GlSpecular& specular;
+    const GlVolumes& volumes;
     const Rotation& rotation;
     const Camera& camera;
     std::uint32_t supersampling = 1;

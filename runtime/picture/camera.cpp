@@ -5,6 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "runtime/volumes/volume_bounds.h"
+
 namespace opaline::runtime {
 namespace {
 
@@ -85,8 +87,10 @@ bool is_flat(const AssetView& asset, const PrimitiveRecord& primitive, const Box
     return thickness < 0.05 * norm(size) || sheet_coherence(asset, primitive) > 0.98;
 }
 
-BoundingSphere bound_primitives(const AssetView& asset, std::span<const std::size_t> chosen) {
-    Box all;
+// Around these primitives and all volumes.
+BoundingSphere bound_parts(const AssetView& asset, std::span<const std::size_t> chosen) {
+    const std::vector<Vec3> corners = volume_corners(asset.volumes);
+    Box all = box_of(corners);
     for (const std::size_t p : chosen) {
         const Box box = box_of(positions_of(asset, asset.primitives[p]));
         if (!box.is_empty()) {
@@ -98,10 +102,14 @@ BoundingSphere bound_primitives(const AssetView& asset, std::span<const std::siz
     const Double3 centre{0.5 * (all.low.x + all.high.x), 0.5 * (all.low.y + all.high.y),
                          0.5 * (all.low.z + all.high.z)};
     double radius = 0;
-    for (const std::size_t p : chosen) {
-        for (const Vec3 v : positions_of(asset, asset.primitives[p])) {
+    const auto enclose = [&](std::span<const Vec3> positions) {
+        for (const Vec3 v : positions) {
             if (is_finite(v)) radius = std::max(radius, norm(minus(widen(v), centre)));
         }
+    };
+    enclose(corners);
+    for (const std::size_t p : chosen) {
+        enclose(positions_of(asset, asset.primitives[p]));
     }
     return {centre.x, centre.y, centre.z, radius};
 }
@@ -156,7 +164,7 @@ Vec3 view_ray(const Camera& camera, const CameraFrame& frame, double x, double y
 }
 
 BoundingSphere bound_asset(const AssetView& asset) {
-    return bound_primitives(asset, all_primitives(asset));
+    return bound_parts(asset, all_primitives(asset));
 }
 
 BoundingSphere bound_object(const AssetView& asset) {
@@ -172,13 +180,13 @@ BoundingSphere bound_object(const AssetView& asset) {
             largest = p;
         }
     }
-    const BoundingSphere all = bound_primitives(asset, chosen);
-    if (chosen.size() < 2) return all;
+    const BoundingSphere all = bound_parts(asset, chosen);
+    if (chosen.size() + asset.volumes.records.size() < 2 || chosen.empty()) return all;
     const PrimitiveRecord& primitive = asset.primitives[largest];
     if (!is_flat(asset, primitive, box_of(positions_of(asset, primitive)))) return all;
     constexpr double kDwarfs = 3;
     std::erase(chosen, largest);
-    const BoundingSphere rest = bound_primitives(asset, chosen);
+    const BoundingSphere rest = bound_parts(asset, chosen);
     return all.radius >= kDwarfs * rest.radius ? rest : all;
 }
 

@@ -35,7 +35,7 @@ struct BoundingSphere {
     double x = 0, y = 0, z = 0, radius = 0;
 };
 
-/// Around all vertices of the asset.
+/// Around all vertices of the asset and all bricks of its volumes.
 BoundingSphere bound_asset(const formats::AssetView& asset);
 
 /// Around what a picture is about: everything, but for a ground that would dwarf it. The largest

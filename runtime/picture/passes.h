@@ -7,11 +7,11 @@ namespace opaline::runtime {
 /// What a picture is made of. Both renderers run the same list on the same samples: each sample has
 /// a colour and a depth (1 / distance along the view axis; 0: nothing there yet), and every pass
 /// composes what it adds with both. Surfaces write colour and depth where they are nearest; the
-/// background fills what is left at depth 0. A pass that scatters light between the eye and the
-/// depth comes after them: it attenuates the colour and adds its own.
-enum class PicturePass { surfaces, background };
+/// background fills what is left at depth 0. Volumes scatter light between the eye and the depth
+/// and come after them: they attenuate the colour and add their own.
+enum class PicturePass { surfaces, background, volumes };
 
-/// The passes of a picture, in order.
-std::vector<PicturePass> list_passes(bool background);
+/// The passes of a picture, in order, by what it has besides surfaces.
+std::vector<PicturePass> list_passes(bool background, bool volumes);
 
 }  // namespace opaline::runtime

@@ -7,6 +7,7 @@
 #include "runtime/parallel.h"
 #include "runtime/picture/band.h"
 #include "runtime/picture/passes.h"
+#include "runtime/picture/volume_pass.h"
 #include "runtime/surface.h"
 #include "runtime/texture.h"
 
@@ -35,6 +36,7 @@ struct Job {
     std::vector<GridTriangle> triangles;
     std::vector<std::vector<std::uint32_t>> triangles_of_band;
     std::vector<SurfaceMaterial> materials;  // of each primitive
+    LitVolumes volumes;
 };
 
 // The limit keeps sums of samples finite.
@@ -168,6 +170,9 @@ void draw_pass(PicturePass pass, const Job& job, std::uint32_t number, Samples& 
             return draw_surfaces(job, number, samples);
         case PicturePass::background:
             return draw_background(job, samples);
+        case PicturePass::volumes:
+            return draw_volumes({job.volumes, job.camera, job.frame, job.supersampling},
+                                samples.band, samples.color);
     }
 }
 
@@ -268,6 +273,13 @@ formats::Result<Picture> render_software(const AssetView& asset, std::span<const
                                        " values, expected one for each of " +
                                        std::to_string(asset.position.size()) + " vertices");
     }
+    const bool has_volumes = options.volumes != nullptr && !asset.volumes.empty();
+    if (has_volumes && options.volumes->part.size() != asset.volumes.records.size()) {
+        return formats::make_error(ErrorKind::usage, {}, "light of volumes",
+                                   "found " + std::to_string(options.volumes->part.size()) +
+                                       ", expected one for each of " +
+                                       std::to_string(asset.volumes.records.size()) + " volumes");
+    }
     auto picture = make_picture(camera.width, camera.height);
     if (!picture) return picture;
     const std::uint32_t s = options.supersampling;
@@ -282,11 +294,13 @@ formats::Result<Picture> render_software(const AssetView& asset, std::span<const
             .grid = grid,
             .supersampling = s,
             .band_rows = rows_of_band(grid, s),
-            .passes = list_passes(options.background),
+            .passes = list_passes(options.background, has_volumes),
             .vertices = {},
             .triangles = {},
             .triangles_of_band = {},
-            .materials = {}};
+            .materials = {},
+            .volumes = {}};
+    if (has_volumes) job.volumes = light_volumes(asset.volumes, *options.volumes);
     for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
         job.materials.push_back(
             surface_material(asset, p, formats::TermSet::all, options.specular));

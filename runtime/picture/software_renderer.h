@@ -11,6 +11,7 @@
 #include "runtime/picture/camera.h"
 #include "runtime/picture/picture.h"
 #include "runtime/specular.h"
+#include "runtime/volumes/relight_volumes.h"
 
 namespace opaline::runtime {
 
@@ -20,6 +21,8 @@ struct SoftwareOptions {
     /// Light for specular reflections, of the same environment and rotation; nothing: none.
     const SpecularLight* specular = nullptr;
     bool background = true;  ///< false: black where no triangle is seen
+    /// The asset's volumes under the light (relight_volumes); nothing: none are drawn.
+    const VolumeLight* volumes = nullptr;
 };
 
 /// A picture of the asset in front of its environment, on the CPU.
@@ -30,10 +33,11 @@ struct SoftwareOptions {
 /// colour, normal and openness; each sample is then shaded as surface.h says, with images sampled
 /// bilinearly. Triangles show from both sides; diffuse ones are shaded alike, translucent and
 /// glossy ones face away with one of them unless they are double-sided. Where no triangle is seen
-/// stands the radiance of the environment, turned by `rotation` like the light. Depth and clipping:
+/// stands the radiance of the environment, turned by `rotation` like the light. Volumes are marched
+/// up to what a sample sees (volume_pass.h), before a black background too. Depth and clipping:
 /// what is nearest, from the near plane on. Passes: passes.h.
 ///
-/// Errors: usage (see check_camera; not one value per vertex), resource (memory).
+/// Errors: usage (see check_camera; not one value per vertex or volume), resource (memory).
 formats::Result<Picture> render_software(const formats::AssetView& asset,
                                          std::span<const formats::Rgb> radiance,
                                          const formats::Environment& environment,

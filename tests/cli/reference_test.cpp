@@ -313,9 +313,9 @@ TEST(Reference, WhatNeedsSurfacesSaysSoOfVolumes) {
                                        "-o", (folder / "out.csv").string()});
     EXPECT_EQ(table.exit_code, 2);
     EXPECT_THAT(table.err, HasSubstr("no vertices"));
-    const Outcome bake = run_opaline({"bake", scene, "-o", (folder / "out.opal").string()});
-    EXPECT_EQ(bake.exit_code, 3);
-    EXPECT_THAT(bake.err, HasSubstr("does not bake volumes"));
+    const Outcome sweep = run_opaline({"sweep", scene, "-o", (folder / "sweep").string()});
+    EXPECT_EQ(sweep.exit_code, 3);
+    EXPECT_THAT(sweep.err, HasSubstr("does not measure the error of volumes"));
     const Outcome twice = run_opaline({"reference", scene, "--media", scene, "--light", "white",
                                        "-o", (folder / "out.exr").string()});
     EXPECT_EQ(twice.exit_code, 2);

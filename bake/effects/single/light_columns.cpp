@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/effects/single/vector8.h"
+#include "bake/base/vector8.h"
 
 namespace opaline::bake {
 

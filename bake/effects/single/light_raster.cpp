@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "bake/effects/single/light_view.h"
-#include "bake/effects/single/vector8.h"
+#include "bake/base/vector8.h"
 
 namespace opaline::bake {
 namespace {

@@ -12,13 +12,25 @@
 namespace opaline::formats {
 namespace {
 
-// The sum of a primitive's last row in one band, and its sum weighted with the coefficient's number
-// modulo 17.
+// The sum of a primitive's or a volume's last row in one band, and its sum weighted with the
+// coefficient's number modulo 17.
 struct RowSum {
-    std::size_t primitive;
+    std::size_t primitive;  // or volume
     std::uint32_t band;
     double sum, weighted;
 };
+
+void expect_sums(const SparseRowsView& rows, const RowRange& range, const RowSum& row) {
+    std::vector<float> dense(cubemap_texels(rows.cubemap_size));
+    decode_row(rows, range, range.rows - 1, row.band, dense);
+    double sum = 0, weighted = 0;
+    for (std::size_t i = 0; i < dense.size(); ++i) {
+        sum += dense[i];
+        weighted += dense[i] * static_cast<double>(i % 17);
+    }
+    EXPECT_NEAR(sum, row.sum, 1e-5) << row.primitive << ' ' << row.band;
+    EXPECT_NEAR(weighted, row.weighted, 1e-4) << row.primitive << ' ' << row.band;
+}
 
 struct Golden {
     const char* name;
@@ -72,17 +84,8 @@ TEST_F(GoldenFile, TransportHasTheValuesItHadWhenItWasWritten) {
         EXPECT_EQ(version_of(kPrimSection), golden.prim);
         EXPECT_EQ(version_of(kTranSection), golden.tran);
         ASSERT_EQ(asset.receivers(), golden.receivers);
-        std::vector<float> dense(cubemap_texels(asset.cubemap_size));
         for (const RowSum& row : golden.rows) {
-            const RowRange range = asset.primitives[row.primitive].rows();
-            decode_row(asset.transport, range, range.rows - 1, row.band, dense);
-            double sum = 0, weighted = 0;
-            for (std::size_t i = 0; i < dense.size(); ++i) {
-                sum += dense[i];
-                weighted += dense[i] * static_cast<double>(i % 17);
-            }
-            EXPECT_NEAR(sum, row.sum, 1e-5) << row.primitive << ' ' << row.band;
-            EXPECT_NEAR(weighted, row.weighted, 1e-4) << row.primitive << ' ' << row.band;
+            expect_sums(asset.transport, asset.primitives[row.primitive].rows(), row);
         }
     }
 }
@@ -130,6 +133,30 @@ TEST_F(GoldenFile, SpecularReflectionToo) {
     EXPECT_EQ(plastic.f0, (Rgb{0.04f, 0.05f, 0.06f}));
     EXPECT_EQ(plastic.f90, 0.5f);
     EXPECT_EQ(plastic.image, kNoImage);
+}
+
+TEST_F(GoldenFile, VolumesToo) {
+    const AssetView& asset = read("volu1.opal");
+    EXPECT_EQ(version_of(kVoluSection), 1u);
+    EXPECT_TRUE(asset.primitives.empty() && asset.position.empty());
+    const VolumesView& volumes = asset.volumes;
+    ASSERT_EQ(volumes.records.size(), 2u);
+    EXPECT_EQ(volumes.records[0].spacing, 4u);
+    EXPECT_EQ(volumes.records[0].to_world[6], -0.2f);
+    EXPECT_EQ(volumes.records[0].moment[1], 0.6f);
+    EXPECT_EQ(volumes.records[1].first_brick, (std::array<std::int32_t, 3>{-1, 0, 2}));
+    EXPECT_EQ(volumes.records[1].bands, 3u);
+    EXPECT_EQ(volumes.records[1].sigma_t, (Rgb{1, 2, 3.5f}));
+    EXPECT_EQ(volumes.table[1], 0u);
+    EXPECT_EQ(volumes.table[2], kNoBrick);
+    EXPECT_FLOAT_EQ(volumes.density_scale[2], 1.8026969e-05f);
+    EXPECT_EQ(volumes.density[2 * kBrickVoxels + 511], 32910);
+    EXPECT_EQ(volumes.corner[2], kNoNode);
+    EXPECT_EQ(volumes.node[1], (NodeVoxel{4, 0, 16}));
+    for (const RowSum& row : {RowSum{0, 0, 2.964527, 24.95635}, RowSum{1, 0, 2.465866, 10.08604},
+                              RowSum{1, 2, 3.55175, 17.96101}}) {
+        expect_sums(volumes.rows, volumes.records[row.primitive].rows(), row);
+    }
 }
 
 }  // namespace

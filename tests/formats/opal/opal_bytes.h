@@ -48,4 +48,27 @@ inline std::vector<std::byte> encode(const formats::Asset& asset) {
     return {mapped->bytes().begin(), mapped->bytes().end()};
 }
 
+/// The section of a table with this id. Precondition: it is there.
+inline const formats::SectionEntry& section_of(std::span<const formats::SectionEntry> table,
+                                               std::uint32_t id) {
+    return *std::find_if(table.begin(), table.end(), [id](const auto& s) { return s.id == id; });
+}
+
+/// Makes the checksums of a section and of the section table right again, as a hostile writer does.
+/// Precondition: header and table are whole.
+inline void repair_checksums(std::span<std::byte> file, std::uint32_t id) {
+    formats::FileHeader header;
+    std::memcpy(&header, file.data(), sizeof header);
+    std::vector<formats::SectionEntry> table(header.section_count);
+    const auto stored = file.subspan(sizeof header, table.size() * sizeof table[0]);
+    std::memcpy(table.data(), stored.data(), stored.size());
+    for (formats::SectionEntry& section : table) {
+        if (section.id != id) continue;
+        section.checksum = formats::checksum(file.subspan(section.offset, section.stored_size));
+    }
+    std::memcpy(stored.data(), table.data(), stored.size());
+    header.table_checksum = formats::checksum(stored);
+    std::memcpy(file.data(), &header, sizeof header);
+}
+
 }  // namespace opaline::tests

@@ -80,7 +80,7 @@ TEST_F(GlPrograms, OpaqueSurfacesHaveNoCodeForMedia) {
     EXPECT_TRUE(make_view_programs(asset)->sums.empty());
     const auto dots = make_dot_programs(asset, 8);
     EXPECT_EQ(made(dots->program), 1u);
-    const auto draws = make_draw_programs(asset);
+    const auto draws = make_draw_programs(asset, {});
     ASSERT_EQ(made(draws->surfaces.program), 1u);
     EXPECT_EQ(active(draws->surfaces.program[0], GL_UNIFORM), kPlainUniforms);
     EXPECT_EQ(active(draws->surfaces.program[0], GL_PROGRAM_INPUT),
@@ -91,7 +91,7 @@ TEST_F(GlPrograms, MediaWithOneTermHaveNoViewMaps) {
     const GlAsset asset = upload(make_sheet_of({.bands = 3, .eta = 1.3f}));
     EXPECT_EQ(asset.product.name(), 0u);
     EXPECT_TRUE(make_view_programs(asset)->sums.empty());
-    const auto draws = make_draw_programs(asset);
+    const auto draws = make_draw_programs(asset, {});
     ASSERT_EQ(made(draws->surfaces.program), 1u);
     Names uniforms = kPlainUniforms;
     uniforms.insert({"eta", "is_double_sided"});
@@ -134,7 +134,7 @@ TEST_F(GlPrograms, GlossHasAProgramOfItsOwnAndMattSurfacesNothingOfIt) {
     scene.openness.resize(scene.position.size());
     scene.gloss.resize(2);
     scene.gloss[1].roughness = 0.4f;
-    const auto draws = make_draw_programs(upload(scene));
+    const auto draws = make_draw_programs(upload(scene), {});
     ASSERT_EQ(made(draws->surfaces.program), 2u);
     EXPECT_EQ(active(draws->surfaces.program[0], GL_UNIFORM), kPlainUniforms);
     Names uniforms = kPlainUniforms;
@@ -146,7 +146,7 @@ TEST_F(GlPrograms, GlossHasAProgramOfItsOwnAndMattSurfacesNothingOfIt) {
 TEST_F(GlPrograms, ImagesAreReadOnlyWhereThereAreImages) {
     formats::Asset scene = make_sheet_of({.image = 0});
     scene.images.push_back(test::make_noise_image(3, 3));
-    const auto draws = make_draw_programs(upload(scene));
+    const auto draws = make_draw_programs(upload(scene), {});
     ASSERT_EQ(made(draws->surfaces.program), 1u);
     Names uniforms = kPlainUniforms;
     uniforms.insert({"base_color_image", "wrap"});

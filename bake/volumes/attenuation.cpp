@@ -1,0 +1,72 @@
+#include "bake/volumes/attenuation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace opaline::bake {
+namespace {
+
+// Sets V to 0 toward cells that a surface hides.
+std::uint64_t hide_behind_surfaces(const RayScene& rays, const LightCells& cells,
+                                   glm::vec3 position, std::size_t bands, std::span<float> out) {
+    std::uint64_t traced = 0;
+    for (std::size_t first = 0; first < cells.size(); first += RayPacket::kSize) {
+        RayPacket packet = rays_from(position);
+        LaneMask lanes{};
+        const std::size_t count = std::min<std::size_t>(RayPacket::kSize, cells.size() - first);
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            packet.dir_x[lane] = cells.x[first + lane];
+            packet.dir_y[lane] = cells.y[first + lane];
+            packet.dir_z[lane] = cells.z[first + lane];
+            packet.tfar[lane] = std::numeric_limits<float>::infinity();
+            lanes[lane] = -1;
+        }
+        rays.occluded(lanes, packet);
+        traced += count;
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            if (packet.tfar[lane] < 0) {
+                for (std::size_t band = 0; band < bands; ++band) {
+                    out[band * cells.size() + first + lane] = 0;
+                }
+            }
+        }
+    }
+    return traced;
+}
+
+}  // namespace
+
+std::uint64_t gather_attenuation(const DensitySpace& space, const RayScene& rays,
+                                 const LightCells& cells, glm::vec3 position,
+                                 std::span<float> out) {
+    const std::size_t bands = space.extinction_bands();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const std::array<float, 3> depth = optical_depth(space, position, cells.direction(i));
+        for (std::size_t band = 0; band < bands; ++band) {
+            out[band * cells.size() + i] = std::exp(-depth[band]);
+        }
+    }
+    return rays.is_empty() ? 0 : hide_behind_surfaces(rays, cells, position, bands, out);
+}
+
+DepthTable make_depth_table(std::size_t points, std::size_t cells, std::size_t bands) {
+    DepthTable table;
+    table.cells = cells;
+    table.bands = bands;
+    table.code.resize(points * bands * cells);
+    table.is_dark.resize(points);
+    return table;
+}
+
+void set_depths(DepthTable& table, std::size_t point, std::size_t band,
+                std::span<const float> attenuation) {
+    std::uint16_t* const code = table.code.data() + (point * table.bands + band) * table.cells;
+    for (std::size_t i = 0; i < attenuation.size(); ++i) {
+        const float depth = attenuation[i] > 0 ? -std::log(attenuation[i]) : DepthTable::kLargest;
+        code[i] = static_cast<std::uint16_t>(
+            std::lround(std::clamp(depth, 0.0f, DepthTable::kLargest) / DepthTable::kStep));
+    }
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,313 @@
+#include "bake/volumes/bake_volumes.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/volumes/attenuation.h"
+#include "bake/volumes/density_space.h"
+#include "bake/volumes/light_cells.h"
+#include "bake/volumes/node_lattice.h"
+#include "bake/volumes/node_rows.h"
+#include "bake/volumes/pack_density.h"
+#include "bake/volumes/volume_knobs.h"
+#include "bake/volumes/volume_walks.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::ErrorKind;
+using formats::make_error;
+using formats::SparseRow;
+
+constexpr std::size_t kBlock = 16;  // nodes that a thread takes at once
+
+// All that is known before light is followed.
+struct Nodes {
+    DensitySpace space;
+    std::vector<NodeLattice> lattices;  // of each volume of the scene; empty where nothing is baked
+    std::vector<std::size_t> first;     // node of each volume, among all
+    std::size_t count = 0;
+    LightCells fine;    // of single scattering
+    LightCells coarse;  // of multiple scattering, which is smoother
+    NodeEncoder encoder;
+};
+
+Nodes place_nodes(const VolumeJob& job) {
+    Nodes nodes;
+    nodes.space = make_density_space(job.scene);
+    nodes.lattices.resize(job.scene.volumes.size());
+    nodes.first.resize(job.scene.volumes.size());
+    // Walks collide in all volumes; one without nodes reflects nothing.
+    for (const VolumeLayout& layout : job.layouts) {
+        NodeLattice& lattice = nodes.lattices[layout.volume];
+        lattice = make_node_lattice(job.scene.volumes[layout.volume].density, layout.spacing);
+        if (!layout.has_nodes()) {
+            lattice.node.clear();
+            std::ranges::fill(lattice.corner, formats::kNoNode);
+        }
+    }
+    for (std::size_t v = 0; v < nodes.lattices.size(); ++v) {
+        nodes.first[v] = nodes.count;
+        nodes.count += nodes.lattices[v].node.size();
+    }
+    // Light changes little within 5 degrees, light that is scattered often within 11.
+    const std::uint32_t n = job.knobs.cubemap_size;
+    const bool is_exact = job.knobs.quality == Quality::reference;
+    nodes.fine = make_light_cells(is_exact ? std::min(n, 32u) : std::min(n, 16u));
+    nodes.coarse = make_light_cells(is_exact ? std::min(n, 16u) : std::min(n, 8u));
+    constexpr std::array<double, 4> kTolerance{0.03, 0.015, 0.005, 0.0};
+    nodes.encoder = {make_selector(n, whole(job.knobs, kVolumeCoefficients)),
+                     kTolerance[static_cast<std::size_t>(job.knobs.quality)]};
+    return nodes;
+}
+
+glm::vec3 position_of(const VolumeJob& job, const Nodes& nodes, std::uint32_t volume,
+                      std::size_t node) {
+    return glm::vec3(job.scene.volumes[volume].density.to_scene *
+                     glm::dvec4(glm::dvec3(nodes.lattices[volume].node[node]), 1.0));
+}
+
+// The layout that a node among all belongs to, and its number there.
+struct Place {
+    const VolumeLayout* layout = nullptr;
+    std::size_t node = 0;
+};
+
+Place find_place(const VolumeJob& job, const Nodes& nodes, std::size_t number) {
+    for (const VolumeLayout& layout : job.layouts) {
+        const std::size_t first = nodes.first[layout.volume];
+        if (number >= first && number - first < nodes.lattices[layout.volume].node.size()) {
+            return {&layout, number - first};
+        }
+    }
+    return {};
+}
+
+// V of a node: its row, and its depths toward the coarse cells.
+struct Lit {
+    SparseRow row;
+    double energy = 0;
+    std::vector<float> coarse;  // band after band
+};
+
+Lit light_node(const VolumeJob& job, const Nodes& nodes, const Place& place, std::uint64_t& rays) {
+    const std::size_t bands = nodes.space.extinction_bands(), cells = nodes.fine.size();
+    std::vector<float> fine(bands * cells);
+    rays += gather_attenuation(nodes.space, job.rays, nodes.fine,
+                               position_of(job, nodes, place.layout->volume, place.node), fine);
+    Lit lit;
+    for (std::size_t band = 0; band < bands; ++band) {
+        const std::vector<float> own(
+            fine.begin() + static_cast<std::ptrdiff_t>(band * cells),
+            fine.begin() + static_cast<std::ptrdiff_t>((band + 1) * cells));
+        const std::vector<float> reduced = reduce_cells(own, nodes.fine.n, nodes.coarse.n);
+        lit.coarse.insert(lit.coarse.end(), reduced.begin(), reduced.end());
+    }
+    // The rows of a node have as many bands as any of them needs.
+    while (fine.size() < nodes.space.bands() * cells) {
+        fine.insert(fine.end(), fine.begin(), fine.begin() + static_cast<std::ptrdiff_t>(cells));
+    }
+    const auto row_bands = static_cast<std::uint32_t>(nodes.space.bands());
+    lit.energy = row_energy(fine, nodes.fine.n, job.knobs.cubemap_size) / row_bands;
+    lit.row = encode_node_row(nodes.encoder, fine, nodes.fine.n, row_bands, lit.energy);
+    return lit;
+}
+
+// The attenuated light of all nodes, as rows and for walks.
+struct LitNodes {
+    std::vector<SparseRow> row;
+    DepthTable depths;
+};
+
+LitNodes light_nodes(const VolumeJob& job, const Nodes& nodes, const Context& context,
+                     std::uint64_t& rays) {
+    LitNodes lit;
+    lit.depths = make_depth_table(nodes.count, nodes.coarse.size(), nodes.space.extinction_bands());
+    struct Block {
+        std::vector<Lit> nodes;
+        std::uint64_t rays = 0;
+    };
+    for_each_block_in_order(
+        nodes.count, kBlock, context,
+        [&](Range range) {
+            Block block;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                block.nodes.push_back(
+                    light_node(job, nodes, find_place(job, nodes, i), block.rays));
+            }
+            return block;
+        },
+        [&](Range range, Block&& block) {
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                Lit& own = block.nodes[i - range.begin];
+                const std::size_t cells = nodes.coarse.size();
+                float most = 0;
+                for (std::size_t band = 0; band < lit.depths.bands; ++band) {
+                    const auto values = std::span(own.coarse).subspan(band * cells, cells);
+                    set_depths(lit.depths, i, band, values);
+                    most = std::max(most, *std::ranges::max_element(values));
+                }
+                lit.depths.is_dark[i] = most < 1e-6f;
+                lit.row.push_back(std::move(own.row));
+            }
+            rays += block.rays;
+            if (context.on_progress) {
+                context.on_progress({"light in volumes", range.end, nodes.count});
+            }
+        });
+    return lit;
+}
+
+// The rows of a node: V, then T_k.
+std::vector<SparseRow> walk_node(const VolumeJob& job, const Nodes& nodes, const WalkSpace& space,
+                                 std::size_t number, std::uint64_t& rays) {
+    const Place place = find_place(job, nodes, number);
+    const std::uint32_t terms = place.layout->often_terms;
+    std::vector<SparseRow> rows;
+    if (terms == 0) {
+        return rows;
+    }
+    const auto bands = static_cast<std::uint32_t>(nodes.space.bands());
+    const std::size_t size = bands * nodes.coarse.size();
+    std::vector<float> dense(terms * size);
+    rays += gather_walks(
+        space,
+        {place.layout->volume, number, position_of(job, nodes, place.layout->volume, place.node),
+         whole(job.knobs, kVolumeWalks), terms},
+        dense);
+    const double energy = row_energy(dense, nodes.coarse.n, job.knobs.cubemap_size) / bands;
+    for (std::uint32_t k = 0; k < terms; ++k) {
+        rows.push_back(encode_node_row(nodes.encoder, std::span(dense).subspan(k * size, size),
+                                       nodes.coarse.n, bands, energy / terms));
+    }
+    return rows;
+}
+
+formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& job, const Nodes& nodes,
+                                                      LitNodes lit, const Context& context,
+                                                      std::uint64_t& rays) {
+    const WalkSpace space{nodes.space, job.rays,     nodes.lattices, nodes.first,
+                          lit.depths,  nodes.coarse, job.knobs.seed};
+    formats::SparseRows rows =
+        formats::make_sparse_rows(job.knobs.cubemap_size, job.knobs.code_bits);
+    bool fits = true;
+    struct Block {
+        std::vector<std::vector<SparseRow>> rows;
+        std::uint64_t rays = 0;
+    };
+    for_each_block_in_order(
+        nodes.count, kBlock, context,
+        [&](Range range) {
+            Block block;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                block.rows.push_back(walk_node(job, nodes, space, i, block.rays));
+            }
+            return block;
+        },
+        [&](Range range, Block&& block) {
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                fits = fits && formats::append_row(rows, lit.row[i]);
+                lit.row[i] = {};
+                for (const SparseRow& row : block.rows[i - range.begin]) {
+                    fits = fits && formats::append_row(rows, row);
+                }
+            }
+            rays += block.rays;
+            if (context.on_progress) {
+                context.on_progress({"walks through volumes", range.end, nodes.count});
+            }
+        });
+    if (!fits) {
+        return make_error(ErrorKind::resource, "", "volumes",
+                          "more than 2^32 coefficients do not fit into one file",
+                          "raise --volume-spacing, or lower --volume-coefficients");
+    }
+    return rows;
+}
+
+// Where each volume's rows stand, now that they are there.
+void number_rows(const VolumeJob& job, const Nodes& nodes, formats::Volumes& volumes) {
+    std::uint32_t row = 0, band_row = 0;
+    std::uint64_t code = 0;
+    for (std::size_t i = 0; i < job.layouts.size(); ++i) {
+        formats::VolumeRecord& record = volumes.records[i];
+        record.single_terms = job.layouts[i].once_terms;
+        record.multiple_terms = job.layouts[i].often_terms;
+        record.bands = static_cast<std::uint32_t>(nodes.space.bands());
+        record.first_row = row;
+        record.first_band_row = band_row;
+        record.first_code = code;
+        const std::uint32_t count = record.node_count * record.terms();
+        code += std::uint64_t{volumes.rows.row_offset[row + count] - volumes.rows.row_offset[row]} *
+                record.bands;
+        row += count;
+        band_row += count * record.bands;
+    }
+}
+
+formats::Rgb rgb(const std::array<float, 3>& band) {
+    return {band[0], band[1], band[2]};
+}
+
+}  // namespace
+
+formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Context& context,
+                                               StageLog& log) {
+    formats::Volumes volumes;
+    const Nodes nodes = place_nodes(job);
+    const double bytes = 2.0 * static_cast<double>(nodes.count) *
+                         static_cast<double>(nodes.space.extinction_bands()) *
+                         static_cast<double>(nodes.coarse.size());
+    if (bytes > kDepthBytes) {
+        return make_error(ErrorKind::resource, "", "volumes",
+                          "light at " + std::to_string(nodes.count) + " points takes " +
+                              std::to_string(static_cast<std::uint64_t>(bytes / 1e9)) +
+                              " GB of memory",
+                          "raise --volume-spacing, or bake in a lower quality");
+    }
+    for (const VolumeLayout& layout : job.layouts) {
+        formats::VolumeRecord record;
+        const DensityVolume& own = nodes.space.volumes[layout.volume];
+        record.sigma_t = rgb(own.sigma_t);
+        record.albedo = rgb(own.albedo);
+        for (std::size_t l = 0; l < record.moment.size(); ++l) {
+            record.moment[l] = static_cast<float>(own.phase.lambda[l]);
+        }
+        if (auto status =
+                pack_density(job.scene.volumes[layout.volume], nodes.lattices[layout.volume],
+                             job.scene.origin, record, volumes);
+            !status) {
+            return std::move(status).error();
+        }
+        volumes.records.push_back(record);
+    }
+    LitNodes lit =
+        run_stage(log, "light in volumes", "volume-single: rows",
+                  [&](std::uint64_t& rays) { return light_nodes(job, nodes, context, rays); });
+    if (context.cancelled()) {
+        return formats::Volumes{};
+    }
+    auto rows =
+        run_stage(log, "walks through volumes", "volume-multiple: rows", [&](std::uint64_t& rays) {
+            return gather_node_rows(job, nodes, std::move(lit), context, rays);
+        });
+    if (!rows) {
+        return std::move(rows).error();
+    }
+    if (context.cancelled()) {
+        return formats::Volumes{};
+    }
+    volumes.rows = std::move(*rows);
+    number_rows(job, nodes, volumes);
+    if (formats::find_faulty_row(volumes.rows, static_cast<std::uint32_t>(nodes.space.bands()))) {
+        return make_error(ErrorKind::bad_input, "", "volumes",
+                          "light in a volume is not a finite number",
+                          "look for extreme numbers in its density and its medium");
+    }
+    return volumes;
+}
+
+}  // namespace opaline::bake

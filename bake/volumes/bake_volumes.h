@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "bake/base/context.h"
+#include "bake/base/stage_log.h"
+#include "bake/transport/ray_scene.h"
+#include "bake/volumes/plan_volumes.h"
+#include "formats/opal/result.h"
+#include "formats/opal/volumes.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// What volumes are baked from.
+struct VolumeJob {
+    const formats::Scene& scene;
+    const RayScene& rays;  ///< surfaces that stand before the light; may be empty
+    std::span<const VolumeLayout> layouts;
+    const Knobs& knobs;
+};
+
+/// Memory [bytes] that the attenuated light of all nodes may take while walks look it up.
+inline constexpr double kDepthBytes = 4e9;
+
+/// The volumes of a file: density, nodes and their rows; two stages in the log. The same bits for
+/// any number of threads. Empty once the context is cancelled. Errors: resource (more nodes,
+/// bricks or coefficients than fit), bad_input (a row that is not finite).
+formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Context& context,
+                                               StageLog& log);
+
+}  // namespace opaline::bake

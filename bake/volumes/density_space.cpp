@@ -1,0 +1,119 @@
+#include "bake/volumes/density_space.h"
+
+namespace opaline::bake {
+namespace {
+
+using Grid = formats::SparseGrid<float>;
+
+// The largest voxel of a brick whose coordinates are at most `last` along each axis.
+float largest_up_to(const Grid& grid, glm::ivec3 brick, glm::ivec3 last) {
+    const std::uint32_t number = grid.brick_at(brick);
+    if (number == Grid::kEmpty) {
+        return 0;
+    }
+    const std::span<const float> value = grid.brick(number);
+    float most = 0;
+    for (int z = 0; z <= last.z; ++z) {
+        for (int y = 0; y <= last.y; ++y) {
+            for (int x = 0; x <= last.x; ++x) {
+                most = std::max(most, value[Grid::offset_in_brick({x, y, z})]);
+            }
+        }
+    }
+    return most;
+}
+
+// Of the density between voxels 8 b and 8 b + 8: the largest of these voxels.
+float bound_of_cell(const Grid& grid, glm::ivec3 cell) {
+    float most = 0;
+    for (int c = 0; c < 8; ++c) {
+        const glm::ivec3 above(c & 1, c >> 1 & 1, c >> 2);
+        const glm::ivec3 last = glm::ivec3(Grid::kSide - 1) * (1 - above);
+        most = std::max(most, largest_up_to(grid, cell + above, last));
+    }
+    return most;
+}
+
+// The forward peak counts as not scattered: c' = c - f b.
+void scale_coefficients(const formats::Volume& volume, DensityVolume& own) {
+    own.phase = scale_phase(volume.phase);
+    const std::array<float, 3> sigma_t{volume.sigma_t.r, volume.sigma_t.g, volume.sigma_t.b};
+    const std::array<float, 3> albedo{volume.albedo.r, volume.albedo.g, volume.albedo.b};
+    const auto peak = static_cast<float>(own.phase.peak);
+    for (std::size_t band = 0; band < 3; ++band) {
+        own.sigma_t[band] = sigma_t[band] * (1 - peak * albedo[band]);
+        own.albedo[band] = albedo[band] * (1 - peak) / (1 - peak * albedo[band]);
+    }
+}
+
+float densest_followed(const Grid& grid, const std::array<float, 3>& sigma_t) {
+    const float most = std::max({sigma_t[0], sigma_t[1], sigma_t[2]});
+    const double edge = std::min({glm::length(glm::dvec3(grid.to_scene[0])),
+                                  glm::length(glm::dvec3(grid.to_scene[1])),
+                                  glm::length(glm::dvec3(grid.to_scene[2]))});
+    const double density = static_cast<double>(kMostDepth) / (static_cast<double>(most) * edge);
+    return static_cast<float>(std::min(density, 1e30));
+}
+
+DensityVolume make_volume(const formats::Volume& volume) {
+    DensityVolume own;
+    own.grid = &volume.density;
+    const glm::dmat4 to_index = glm::inverse(volume.density.to_scene);
+    own.to_index = glm::mat3(to_index);
+    own.offset = glm::vec3(to_index[3]);
+    own.first_cell = volume.density.first_brick - 1;
+    own.extent = volume.density.extent + 1;
+    scale_coefficients(volume, own);
+    own.densest = densest_followed(volume.density, own.sigma_t);
+    glm::ivec3 c;
+    for (c.z = 0; c.z < own.extent.z; ++c.z) {
+        for (c.y = 0; c.y < own.extent.y; ++c.y) {
+            for (c.x = 0; c.x < own.extent.x; ++c.x) {
+                own.bound.push_back(
+                    std::min(bound_of_cell(volume.density, own.first_cell + c), own.densest));
+            }
+        }
+    }
+    return own;
+}
+
+bool is_grey(const std::array<float, 3>& band) {
+    return band[0] == band[1] && band[1] == band[2];
+}
+
+}  // namespace
+
+DensitySpace make_density_space(const formats::Scene& scene) {
+    DensitySpace space;
+    for (const formats::Volume& volume : scene.volumes) {
+        space.volumes.push_back(make_volume(volume));
+        space.is_grey = space.is_grey && is_grey(space.volumes.back().sigma_t);
+        space.albedo_grey = space.albedo_grey && is_grey(space.volumes.back().albedo);
+    }
+    return space;
+}
+
+std::array<float, 3> optical_depth(const DensitySpace& space, glm::vec3 from, glm::vec3 direction) {
+    std::array<float, 3> depth{};
+    for (const DensityVolume& volume : space.volumes) {
+        const float voxels_per_metre = glm::length(volume.to_index * direction);
+        float column = 0;
+        visit_cells(volume, from, direction, std::numeric_limits<float>::infinity(),
+                    [&](float, float begin, float end) {
+                        const float steps = std::ceil((end - begin) * voxels_per_metre);
+                        const float ds = (end - begin) / std::max(steps, 1.0f);
+                        float sum = 0;
+                        for (float i = 0; i < steps; ++i) {
+                            sum += volume.density(from + (begin + (i + 0.5f) * ds) * direction);
+                        }
+                        column += sum * ds;
+                        return true;
+                    });
+        for (std::size_t band = 0; band < 3; ++band) {
+            depth[band] += volume.sigma_t[band] * column;
+        }
+    }
+    return depth;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "bake/volumes/scaled_phase.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Optical depth of a voxel beyond which light is followed as if it were this: what happens then
+/// within a hundredth of a voxel no grid can show, and flights would never end.
+inline constexpr float kMostDepth = 64;
+
+/// A volume as light is followed through it. Coefficients are those without the forward peak.
+struct DensityVolume {
+    const formats::SparseGrid<float>* grid = nullptr;
+    glm::mat3 to_index{1};  ///< index = to_index * position + offset
+    glm::vec3 offset{0};
+    /// Cells: the points [8 b, 8 b + 8) of brick b. A cell below a brick has density without a
+    /// brick of its own: between its last voxels and the brick's first ones.
+    glm::ivec3 first_cell{0}, extent{0};
+    std::vector<float> bound;      ///< of the density in each cell, x fastest
+    std::array<float, 3> sigma_t;  ///< c' [1/m] where the density is 1, by band
+    std::array<float, 3> albedo;   ///< of c', by band
+    ScaledPhase phase;
+
+    float densest = 0;  ///< kMostDepth of extinction in a voxel: more looks alike
+
+    float density(glm::vec3 position) const {
+        return std::min(grid->sample(to_index * position + offset), densest);
+    }
+};
+
+/// All volumes of a scene, which must outlive it.
+struct DensitySpace {
+    std::vector<DensityVolume> volumes;
+    bool is_grey = true;      ///< extinctions of all bands coincide
+    bool albedo_grey = true;  ///< albedos too
+
+    std::size_t extinction_bands() const { return is_grey ? 1 : 3; }
+    std::size_t bands() const { return is_grey && albedo_grey ? 1 : 3; }
+};
+DensitySpace make_density_space(const formats::Scene& scene);
+
+/// Optical depth [1] of each band from a point along a unit direction to where no volume is, by the
+/// midpoint rule in steps of at most a voxel.
+std::array<float, 3> optical_depth(const DensitySpace& space, glm::vec3 from, glm::vec3 direction);
+
+/// Where a flight ends.
+struct Collision {
+    bool happens = false;
+    float distance = 0;        ///< [m]
+    std::uint32_t volume = 0;  ///< that scatters
+};
+
+/// Calls visit(bound, begin, end) for the cells with density that the ray crosses in [0, reach], in
+/// order, distances in metres; ends early where that is false.
+template <class Visit>
+void visit_cells(const DensityVolume& volume, glm::vec3 from, glm::vec3 direction, float reach,
+                 Visit&& visit);
+
+/// A flight over at most `reach` [m] by delta tracking [Woodcock1965] in one band, unbiased.
+/// Collisions with several volumes are independent: the nearest one counts. `random`: float() in
+/// [0, 1).
+template <class Random>
+Collision sample_flight(const DensitySpace& space, std::size_t band, glm::vec3 from,
+                        glm::vec3 direction, float reach, Random&& random);
+
+}  // namespace opaline::bake
+
+#include "bake/volumes/density_space_inline.h"

@@ -1,0 +1,31 @@
+#include "bake/volumes/describe_volumes.h"
+
+#include <array>
+
+#include "bake/volumes/volume_knobs.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::array<const KnobSpec*, 2> kKnobsOnce{&kVolumeSpacing, &kVolumeCoefficients};
+constexpr std::array<const KnobSpec*, 2> kKnobsOften{&kVolumeWalks, &kVolumeTerms};
+
+}  // namespace
+
+EffectDescriptor describe_scattered_once(Effect id) {
+    return {.id = id,
+            .name = "volume-single",
+            .help = "light scattered once in smoke or clouds",
+            .knobs = kKnobsOnce,
+            .concerns_volumes = true};
+}
+
+EffectDescriptor describe_scattered_often(Effect id) {
+    return {.id = id,
+            .name = "volume-multiple",
+            .help = "light scattered more than once in smoke or clouds",
+            .knobs = kKnobsOften,
+            .concerns_volumes = true};
+}
+
+}  // namespace opaline::bake

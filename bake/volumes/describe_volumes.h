@@ -1,0 +1,14 @@
+#pragma once
+
+#include "bake/plan/effect.h"
+
+namespace opaline::bake {
+
+/// Light scattered once in volumes such as smoke or clouds. Volumes are no materials: the effect
+/// has no rules of theirs and fills no rows of vertices (plan_volumes.h, bake_volumes.h).
+EffectDescriptor describe_scattered_once(Effect id);
+
+/// Light scattered more than once in volumes.
+EffectDescriptor describe_scattered_often(Effect id);
+
+}  // namespace opaline::bake

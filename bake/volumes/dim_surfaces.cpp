@@ -1,0 +1,147 @@
+#include "bake/volumes/dim_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/encode/select_coefficients.h"
+#include "bake/volumes/density_space.h"
+#include "bake/volumes/light_cells.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::size_t kBlock = 16;                  // vertices that a thread takes at once
+constexpr std::uint32_t kFinestTransmittance = 16;  // texels along an edge of a face
+
+// Of one vertex toward each texel of the file's cube map, band after band.
+std::vector<float> transmittance(const DensitySpace& space, const LightCells& cells,
+                                 glm::vec3 position, std::uint32_t n) {
+    const std::size_t bands = space.extinction_bands(), texels = formats::cubemap_texels(n);
+    std::vector<float> coarse(bands * cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const std::array<float, 3> depth = optical_depth(space, position, cells.direction(i));
+        for (std::size_t band = 0; band < bands; ++band) {
+            coarse[band * cells.size() + i] = std::exp(-depth[band]);
+        }
+    }
+    const std::size_t block = n / cells.n, m = cells.n;
+    std::vector<float> fine(bands * texels);
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+        const std::size_t column = i % n, row = i / n % n, face = i / n / n;  // of all bands
+        fine[i] = coarse[(face * m + row / block) * m + column / block];
+    }
+    return fine;
+}
+
+// Texel values of one band of one row.
+std::vector<float> decode_texels(const formats::SparseRowsView& rows,
+                                 const formats::RowRange& range, std::uint32_t row,
+                                 std::uint32_t band) {
+    const std::uint32_t n = rows.cubemap_size;
+    std::vector<float> dense(formats::cubemap_texels(n)), scratch(std::size_t{n} * n);
+    formats::decode_row(rows, range, row, band, dense);
+    for (std::size_t face = 0; face < formats::kCubeFaces; ++face) {
+        formats::haar_inverse(std::span(dense).subspan(face * n * n, std::size_t{n} * n), n,
+                              scratch);
+    }
+    return dense;
+}
+
+struct DimJob {
+    const DensitySpace& space;
+    const LightCells& cells;
+    const Selector& selector;
+    const formats::SparseRowsView& rows;
+    const formats::PrimitiveRecord& record;
+    const formats::Primitive& primitive;
+    std::uint32_t bands;  // of the result
+};
+
+std::vector<formats::SparseRow> dim_vertex(const DimJob& job, std::size_t vertex) {
+    const std::uint32_t n = job.rows.cubemap_size;
+    const std::size_t texels = formats::cubemap_texels(n);
+    const std::vector<float> through =
+        transmittance(job.space, job.cells, job.primitive.position[vertex], n);
+    const formats::RowRange range = job.record.rows();
+    std::vector<formats::SparseRow> dimmed;
+    for (std::uint32_t k = 0; k < job.record.terms; ++k) {
+        const auto row = static_cast<std::uint32_t>(vertex) * job.record.terms + k;
+        std::vector<float> values(job.bands * texels);
+        for (std::uint32_t band = 0; band < job.bands; ++band) {
+            const std::uint32_t from = job.record.bands == 1 ? 0 : band;
+            std::vector<float> dense = decode_texels(job.rows, range, row, from);
+            const float* const share =
+                through.data() + (through.size() == texels ? 0 : band * texels);
+            for (std::size_t i = 0; i < texels; ++i) {
+                dense[i] *= share[i];
+            }
+            formats::haar_forward_cube(std::span<float>(dense), n);
+            std::ranges::copy(dense, values.begin() + static_cast<std::ptrdiff_t>(band * texels));
+        }
+        dimmed.push_back(select_coefficients(job.selector, values, job.bands));
+    }
+    return dimmed;
+}
+
+}  // namespace
+
+formats::Status dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
+                             const Context& context, formats::Asset& asset) {
+    const DensitySpace space = make_density_space(scene);
+    const std::uint32_t n = knobs.cubemap_size;
+    const LightCells cells = make_light_cells(std::min(n, kFinestTransmittance));
+    const Selector selector = make_selector(n, knobs.coefficients);
+    formats::SparseRows rows = formats::make_sparse_rows(n, knobs.code_bits);
+    const formats::SparseRowsView given = asset.transport.view();
+    std::vector<formats::PrimitiveRecord> records = asset.primitives;
+    std::uint32_t band_rows = 0;
+    std::uint64_t codes = 0, done = 0;
+    bool fits = true;
+    for (std::size_t p = 0; p < records.size(); ++p) {
+        formats::PrimitiveRecord& record = records[p];
+        record.bands = space.is_grey ? record.bands : 3;
+        record.first_band_row = band_rows;
+        record.first_code = codes;
+        const std::size_t before = rows.row_offset.back();
+        const DimJob job{
+            space, cells, selector, given, asset.primitives[p], scene.primitives[p], record.bands};
+        for_each_block_in_order(
+            record.vertex_count, kBlock, context,
+            [&](Range range) {
+                std::vector<std::vector<formats::SparseRow>> block;
+                for (std::size_t v = range.begin; v < range.end; ++v) {
+                    block.push_back(dim_vertex(job, v));
+                }
+                return block;
+            },
+            [&](Range range, std::vector<std::vector<formats::SparseRow>>&& block) {
+                for (const auto& vertex : block) {
+                    for (const formats::SparseRow& row : vertex) {
+                        fits = fits && formats::append_row(rows, row);
+                    }
+                }
+                done += range.end - range.begin;
+                if (context.on_progress) {
+                    context.on_progress({"shadows of volumes", done, asset.position.size()});
+                }
+            });
+        band_rows += record.vertex_count * record.terms * record.bands;
+        codes += (rows.row_offset.back() - before) * record.bands;
+    }
+    if (!fits) {
+        return formats::make_error(formats::ErrorKind::resource, "", "transport",
+                                   "more than 2^32 coefficients do not fit into one file",
+                                   "lower --coefficients, or split the scene");
+    }
+    asset.primitives = std::move(records);
+    asset.transport = std::move(rows);
+    return formats::ok_status();
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "formats/sparse_grid.h"
+
+namespace opaline::bake {
+
+/// Where the light of one volume is baked: nodes on the voxels whose coordinates are multiples of
+/// `spacing`, wherever there is density in one of the eight cells of the lattice around them.
+/// Bricks and corners are as in formats/opal/volumes.h.
+struct NodeLattice {
+    std::uint32_t spacing = 1;          ///< voxels: 1, 2, 4 or 8
+    glm::ivec3 first_brick{0};          ///< lowest corner of the table
+    glm::ivec3 extent{0};               ///< bricks along each axis
+    std::vector<std::uint32_t> table;   ///< numbers of bricks, or formats::kNoBrick; x fastest
+    std::vector<glm::ivec3> brick;      ///< coordinates of each brick, in the order of the table
+    std::vector<std::uint32_t> corner;  ///< nodes at the (8 / spacing + 1)^3 corners of each brick,
+                                        ///< or formats::kNoNode; x fastest
+    std::vector<glm::ivec3> node;       ///< voxel of each node, neighbours together
+};
+
+/// Bricks are those of the grid, and the ones below them into which density between voxels reaches.
+/// `spacing`: 1, 2, 4 or 8.
+NodeLattice make_node_lattice(const formats::SparseGrid<float>& grid, std::uint32_t spacing);
+
+/// The eight nodes around a point, with trilinear weights.
+struct NodesAround {
+    std::array<std::uint32_t, 8> node{};  ///< kNoNode where there is no density near it
+    std::array<float, 8> weight{};        ///< sum 1
+    bool found = false;                   ///< whether a brick is there at all
+};
+
+/// `index`: in index coordinates. Where there is density all eight nodes are there.
+NodesAround nodes_around(const NodeLattice& lattice, glm::vec3 index);
+
+/// The largest spacing of 1, 2, 4 and 8 at which the typical extinction, weighted by itself, times
+/// the distance between nodes is at most `depth` [1]; `spacing` 1 if there is none.
+std::uint32_t choose_spacing(const formats::SparseGrid<float>& grid, double sigma_t, double depth);
+
+}  // namespace opaline::bake

@@ -1,0 +1,148 @@
+#include "bake/volumes/plan_volumes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bake/plan/plan_input.h"
+#include "bake/volumes/node_lattice.h"
+#include "bake/volumes/scaled_phase.h"
+#include "bake/volumes/volume_knobs.h"
+
+namespace opaline::bake {
+namespace {
+
+std::array<double, 3> bands(formats::Rgb c) {
+    return {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)};
+}
+
+// Radiance below which an effect is left out: two rows a volume share a quarter of the error.
+double least_bound(const Knobs& knobs) {
+    return knobs.error_target > 0 ? std::min(kLeastBound, knobs.error_target / 8) : kLeastBound;
+}
+
+// Bands of multiple scattering above degree n add at most lambda^2 of what degree 0 does.
+std::uint32_t choose_terms(const ScaledPhase& phase, const Knobs& knobs) {
+    if (const double given = knobs[kVolumeTerms]; given > 0) {
+        return std::min(static_cast<std::uint32_t>(given), phase.harmonics());
+    }
+    constexpr std::array<double, 4> kTolerance{0.2, 0.1, 0.05, 0.0};
+    const double tolerance = kTolerance[static_cast<std::size_t>(knobs.quality)];
+    std::uint32_t degree = 0;
+    for (unsigned l = 1; l <= phase.degree; ++l) {
+        degree = phase.lambda[l] * phase.lambda[l] > tolerance ? l : degree;
+    }
+    return (degree + 1) * (degree + 1);
+}
+
+std::uint32_t spacing_of(const formats::Volume& volume, const Knobs& knobs) {
+    if (const double given = knobs[kVolumeSpacing]; given > 0) {
+        return static_cast<std::uint32_t>(given);
+    }
+    constexpr std::array<double, 4> kDepth{2, 1, 0.5, 0.25};
+    const formats::Rgb s = volume.sigma_t;
+    return choose_spacing(volume.density, static_cast<double>(std::max({s.r, s.g, s.b})),
+                          kDepth[static_cast<std::size_t>(knobs.quality)]);
+}
+
+PlanEntry decide(std::string_view name, const Subject& subject, double bound, const Knobs& knobs) {
+    PlanEntry entry;
+    entry.name = name;
+    entry.subject = subject;
+    entry.bound = bound;
+    if (!is_wanted(knobs, name)) {
+        entry.reason = "left out by --effects";
+        return entry;
+    }
+    entry.on = bound >= least_bound(knobs);
+    if (!entry.on && knobs.simulate_all && bound > 0) {
+        entry.on = entry.forced = true;
+    }
+    return entry;
+}
+
+// Upper bounds under light of radiance 1, over all bands.
+struct Brightness {
+    double seen = 0;    // share of light that a line loses
+    double albedo = 0;  // largest
+    double once = 0;    // light scattered once or more
+};
+
+Brightness brightest(const formats::Volume& volume) {
+    const std::array<double, 3> depth = largest_depth(volume), albedo = bands(volume.albedo);
+    Brightness most;
+    for (std::size_t band = 0; band < 3; ++band) {
+        const double share = -std::expm1(-depth[band]);
+        most.seen = std::max(most.seen, share);
+        most.albedo = std::max(most.albedo, albedo[band]);
+        most.once = std::max(most.once, albedo[band] * share);
+    }
+    return most;
+}
+
+std::string why_dark(const Brightness& most) {
+    return most.albedo <= 0          ? "the volume absorbs and does not scatter"
+           : most.seen < kLeastBound ? "the volume is so thin that it is not seen"
+                                     : "hardly any light is scattered: thin, or its albedo is low";
+}
+
+}  // namespace
+
+std::array<double, 3> largest_depth(const formats::Volume& volume) {
+    // The longest line through the bricks, as dense as the densest voxel of all.
+    const auto corners = volume.density.corners();
+    const double diagonal =
+        std::max({glm::length(corners[7] - corners[0]), glm::length(corners[6] - corners[1]),
+                  glm::length(corners[5] - corners[2]), glm::length(corners[3] - corners[4])});
+    const double densest =
+        volume.density.empty()
+            ? 0
+            : static_cast<double>(*std::ranges::max_element(volume.density.value));
+    std::array<double, 3> depth = bands(volume.sigma_t);
+    for (double& d : depth) {
+        d *= densest * diagonal;
+    }
+    return depth;
+}
+
+VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
+    VolumePlan plan;
+    for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
+        const formats::Volume& volume = scene.volumes[v];
+        const Brightness most = brightest(volume);
+        const Subject subject{Subject::Kind::volume, v, volume.name};
+        const ScaledPhase phase = scale_phase(volume.phase);
+        PlanEntry once = decide("volume-single", subject, most.once, knobs);
+        PlanEntry often = decide("volume-multiple", subject, most.once * most.once, knobs);
+        VolumeLayout layout{v, 0, 0, spacing_of(volume, knobs)};
+        if (once.on) {
+            layout.once_terms = once.terms = phase.harmonics();
+            once.reason =
+                once.terms == 1
+                    ? "light is scattered alike in all directions: one view term"
+                    : "light is scattered once: " + std::to_string(once.terms) + " view terms";
+        } else if (once.reason.empty()) {
+            once.reason = why_dark(most);
+        }
+        if (often.on) {
+            layout.often_terms = often.terms = choose_terms(phase, knobs);
+            often.choice = "walks";
+            often.reason = "light is scattered more than once: random walks, " +
+                           std::to_string(often.terms) +
+                           (often.terms == 1 ? " row a node" : " rows a node");
+        } else if (often.reason.empty()) {
+            often.reason =
+                once.on ? "so thin or dark that light is scattered once at most" : why_dark(most);
+        }
+        for (PlanEntry* const entry : {&once, &often}) {
+            entry->reason += entry->forced ? "; forced: by its bound it would be left out" : "";
+            plan.entries.push_back(std::move(*entry));
+        }
+        if (most.seen >= kLeastBound || layout.has_nodes()) {
+            plan.layouts.push_back(layout);
+        }
+    }
+    return plan;
+}
+
+}  // namespace opaline::bake

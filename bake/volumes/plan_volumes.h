@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bake/plan/bake_plan.h"
+#include "bake/plan/knobs.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// What is baked of one volume.
+struct VolumeLayout {
+    std::uint32_t volume = 0;       ///< index into Scene::volumes
+    std::uint32_t once_terms = 0;   ///< K_s; 0: no light that was scattered once
+    std::uint32_t often_terms = 0;  ///< K_m; 0: none that was scattered more often
+    std::uint32_t spacing = 1;      ///< voxels between nodes
+
+    bool has_nodes() const { return once_terms > 0 || often_terms > 0; }
+};
+
+struct VolumePlan {
+    std::vector<PlanEntry> entries;     ///< two a volume, in order; they belong to no rule
+    std::vector<VolumeLayout> layouts;  ///< of volumes that are seen at all
+};
+
+/// Decides from densities, coefficients and phase functions what to bake; traces nothing. With
+/// d = 1 - e^-tau, tau an upper bound on the optical depth of any straight line through the volume,
+/// alpha the largest albedo, under light of radiance 1: light scattered once or more is at most
+/// alpha d, light scattered more than once at most (alpha d)^2 (README.md, "Bounds").
+VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs);
+
+/// An upper bound [1] on the optical depth of any straight line through a volume, by band.
+std::array<double, 3> largest_depth(const formats::Volume& volume);
+
+}  // namespace opaline::bake

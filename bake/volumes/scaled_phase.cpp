@@ -1,0 +1,91 @@
+#include "bake/volumes/scaled_phase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bake/path_integral/forward_split.h"
+#include "bake/scattering/phase_series.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr unsigned kDegrees = 64;  // looked at, to find the last one that matters
+constexpr std::size_t kSteps = 256;
+
+// Coefficients of c^0 ... c^4 of the Legendre polynomials.
+constexpr double kLegendre[5][5] = {{1, 0, 0, 0, 0},
+                                    {0, 1, 0, 0, 0},
+                                    {-0.5, 0, 1.5, 0, 0},
+                                    {0, -1.5, 0, 2.5, 0},
+                                    {0.375, 0, -3.75, 0, 4.375}};
+
+unsigned last_degree(const PhaseSeries& series) {
+    unsigned last = 0;
+    for (unsigned l = 1; l < series.lambda.size(); ++l) {
+        last = std::abs(series.lambda[l]) > kLeastMoment ? l : last;
+    }
+    return last;
+}
+
+std::vector<float> make_cumulative(const ScaledPhase& phase) {
+    std::vector<double> sum(kSteps + 1, 0.0);
+    for (std::size_t i = 0; i < kSteps; ++i) {
+        const double middle = -1 + (static_cast<double>(i) + 0.5) * 2 / kSteps;
+        // A floor, so that every cosine may be drawn: p' crosses 0 within a step.
+        const double p =
+            std::abs(static_cast<double>(eval_scaled(phase, static_cast<float>(middle)))) + 1e-3;
+        sum[i + 1] = sum[i] + p;
+    }
+    std::vector<float> cumulative;
+    for (const double s : sum) {
+        cumulative.push_back(static_cast<float>(s / sum.back()));
+    }
+    cumulative.back() = 1;
+    return cumulative;
+}
+
+}  // namespace
+
+ScaledPhase scale_phase(const formats::PhaseFunction& phase) {
+    const PhaseSeries series = expand_phase(phase, kDegrees);
+    ScaledPhase scaled;
+    scaled.degree = std::min(last_degree(series), ScaledPhase::kHighestDegree);
+    const bool is_cut = last_degree(series) > scaled.degree;
+    scaled.lambda[0] = 1;
+    if (is_cut) {
+        const ForwardSplit split = split_forward_peak(series, scaled.degree);
+        scaled.peak = split.share;
+        std::copy(split.rest.lambda.begin(), split.rest.lambda.begin() + scaled.degree + 1,
+                  scaled.lambda.begin());
+    } else {
+        std::copy(series.lambda.begin(), series.lambda.begin() + scaled.degree + 1,
+                  scaled.lambda.begin());
+    }
+    for (unsigned l = 0; l <= scaled.degree; ++l) {
+        const double weight = (2 * l + 1) / (4 * std::numbers::pi) * scaled.lambda[l];
+        for (std::size_t i = 0; i < scaled.monomial.size(); ++i) {
+            scaled.monomial[i] += static_cast<float>(weight * kLegendre[l][i]);
+        }
+    }
+    scaled.cumulative = make_cumulative(scaled);
+    return scaled;
+}
+
+SampledCosine sample_scaled(const ScaledPhase& phase, float u) {
+    const std::vector<float>& sum = phase.cumulative;
+    const auto above = std::upper_bound(sum.begin() + 1, sum.end() - 1, u);
+    const auto step = static_cast<std::size_t>(above - sum.begin()) - 1;
+    const float share = sum[step + 1] - sum[step];
+    constexpr float kWidth = 2.0f / static_cast<float>(kSteps);
+    const float within = share > 0 ? std::clamp((u - sum[step]) / share, 0.0f, 1.0f) : 0.5f;
+    SampledCosine sampled;
+    sampled.cosine = std::min(1.0f, -1 + (static_cast<float>(step) + within) * kWidth);
+    // Density over the sphere: share / (2 pi width).
+    sampled.weight = share > 0 ? eval_scaled(phase, sampled.cosine) * 2 *
+                                     std::numbers::pi_v<float> * kWidth / share
+                               : 0.0f;
+    return sampled;
+}
+
+}  // namespace opaline::bake

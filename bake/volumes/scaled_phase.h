@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// A phase function as volumes are baked with: a forward peak, which counts as light that was not
+/// scattered, and the rest as a polynomial of the cosine (README.md, "Phase functions").
+struct ScaledPhase {
+    static constexpr unsigned kHighestDegree = 4;
+
+    double peak = 0;                                   ///< share f of the peak, in [0, 1)
+    unsigned degree = 0;                               ///< N of the rest, at most kHighestDegree
+    std::array<double, kHighestDegree + 1> lambda{};   ///< its moments lambda'_l, 0 beyond N
+    std::array<float, kHighestDegree + 1> monomial{};  ///< p'(c) = sum_i monomial[i] c^i [1/sr];
+                                                       ///< may be negative somewhere
+    std::vector<float> cumulative;  ///< of |p'| in even steps of the cosine from -1 to 1; ends at 1
+
+    std::uint32_t harmonics() const { return (degree + 1) * (degree + 1); }
+};
+
+/// Moments above this one matter: a phase function is kept up to the last degree that exceeds it.
+inline constexpr double kLeastMoment = 0.01;
+
+/// The rest has the smallest degree N <= 4 with |lambda_l| <= kLeastMoment for all l > N; if there
+/// is none, N = 4 and the peak takes lambda_5 where that is positive [Wiscombe1977].
+ScaledPhase scale_phase(const formats::PhaseFunction& phase);
+
+/// p'(cosine) [1/sr].
+inline float eval_scaled(const ScaledPhase& phase, float cosine) {
+    float value = 0;
+    for (std::size_t i = phase.monomial.size(); i-- > 0;) {
+        value = value * cosine + phase.monomial[i];
+    }
+    return value;
+}
+
+/// A cosine between propagation directions, drawn in proportion to |p'|, and p' over its density.
+struct SampledCosine {
+    float cosine = 0;
+    float weight = 1;  ///< its mean is the integral of p' over the sphere, 1
+};
+
+/// `u` in [0, 1).
+SampledCosine sample_scaled(const ScaledPhase& phase, float u);
+
+}  // namespace opaline::bake

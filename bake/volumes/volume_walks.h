@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+
+#include "bake/transport/ray_scene.h"
+#include "bake/volumes/attenuation.h"
+#include "bake/volumes/density_space.h"
+#include "bake/volumes/light_cells.h"
+#include "bake/volumes/node_lattice.h"
+
+namespace opaline::bake {
+
+/// What all walks share, read-only.
+struct WalkSpace {
+    const DensitySpace& space;
+    const RayScene& rays;
+    std::span<const NodeLattice> lattices;  ///< one a volume
+    std::span<const std::size_t> first;     ///< number of each volume's first node in the table
+    const DepthTable& depths;               ///< of the nodes of all volumes
+    const LightCells& cells;                ///< of the table
+    std::uint64_t seed = 0;
+};
+
+/// A walk ends after so many scatterings: only in media thousands of mean free paths deep, where
+/// what is left is as dark as it is far.
+inline constexpr std::uint32_t kMostScatterings = 2048;
+
+/// Where multiple scattering is wanted.
+struct WalkReceiver {
+    std::uint32_t volume = 0;
+    std::size_t node = 0;      ///< of the table: the random numbers depend on it
+    glm::vec3 position{0};     ///< [m]
+    std::uint32_t walks = 64;  ///< W
+    std::uint32_t terms = 1;   ///< K: 1, 4, 9, 16 or 25
+};
+
+/// T_k toward every cell (README.md, "Walks"): in-scattered source radiance of light that was
+/// scattered at least once before [1/sr]. `out`: terms * bands * cells numbers, term after term and
+/// band after band, overwritten; bands as DensitySpace::bands. Returns the rays traced.
+std::uint64_t gather_walks(const WalkSpace& walk, const WalkReceiver& receiver,
+                           std::span<float> out);
+
+}  // namespace opaline::bake

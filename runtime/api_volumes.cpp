@@ -1,0 +1,258 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "runtime/api_support.h"
+#include "runtime/parallel.h"
+#include "runtime/volumes/volume_bounds.h"
+#include "runtime/volumes/volume_sample.h"
+
+namespace formats = opaline::formats;
+namespace runtime = opaline::runtime;
+using namespace opaline::runtime::api;
+
+namespace {
+
+constexpr std::uint32_t kRaysAtOnce = 64;  // for a thread: as wide as a row of a tile of pixels
+
+bool is_finite(const float p[3]) {
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+formats::Vec3 point(const float p[3]) {
+    return {p[0], p[1], p[2]};
+}
+
+// Of three floats that unit_vector has passed.
+formats::Vec3 direction(const float d[3]) {
+    return unit_vector(d).value_or(formats::Vec3{});
+}
+
+opaline_status fail_at(const char* what, std::uint32_t index, const char* fault) {
+    char text[128];
+    std::snprintf(text, sizeof text, "%s %lu: %s", what, static_cast<unsigned long>(index), fault);
+    return fail(OPALINE_INVALID_ARGUMENT, text);
+}
+
+opaline_status check_threads(std::uint32_t threads) {
+    return threads > runtime::kMaxThreads
+               ? fail(OPALINE_INVALID_ARGUMENT, "there may be 256 threads at most")
+               : OPALINE_OK;
+}
+
+opaline_status check_pair(const opaline_asset& asset, const opaline_volume_light& volume_light) {
+    return asset.id != volume_light.asset_id
+               ? fail(OPALINE_INVALID_ARGUMENT,
+                      "the volume light was made for another asset: make one for this handle")
+               : OPALINE_OK;
+}
+
+formats::TermSet terms_of(std::uint32_t flags) {
+    using formats::TermSet;
+    TermSet terms = TermSet::volume_single | TermSet::volume_multiple;
+    if ((flags & OPALINE_SHADE_WITHOUT_SINGLE) != 0) terms = terms & ~TermSet::volume_single;
+    if ((flags & OPALINE_SHADE_WITHOUT_MULTIPLE) != 0) terms = terms & ~TermSet::volume_multiple;
+    return terms;
+}
+
+opaline_status check_options(const opaline_march_options& options) {
+    if (options.struct_size != sizeof(opaline_march_options)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+    }
+    if (!(options.step >= 1.0f / 64 && options.step <= 8)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "the step must be 1/64 ... 8 voxels");
+    }
+    if (!(options.least_transmittance >= 0 && options.least_transmittance < 1)) {
+        return fail(OPALINE_INVALID_ARGUMENT,
+                    "the least transmittance must not be negative, and below 1");
+    }
+    return check_threads(options.threads);
+}
+
+// What is wrong with a ray; nullptr if nothing is.
+const char* ray_fault(const opaline_march_ray& ray) {
+    if (!is_finite(ray.origin)) return "the origin must be finite";
+    if (!unit_vector(ray.direction)) return "the direction must be finite and not zero";
+    if (!(ray.begin >= 0) || !std::isfinite(ray.begin)) {
+        return "the begin must be finite and not negative";
+    }
+    return std::isnan(ray.end) ? "the end is not a number" : nullptr;
+}
+
+const char* point_fault(const opaline_sample_point& point) {
+    if (!is_finite(point.position)) return "the position must be finite";
+    return unit_vector(point.to_eye) ? nullptr
+                                     : "the direction to the eye must be finite and not zero";
+}
+
+void store(formats::Rgb c, float out[3]) {
+    out[0] = c.r;
+    out[1] = c.g;
+    out[2] = c.b;
+}
+
+}  // namespace
+
+extern "C" {
+
+uint32_t opaline_asset_volume_count(const opaline_asset* asset) {
+    return asset == nullptr ? 0
+                            : static_cast<std::uint32_t>(asset->loaded.view.volumes.records.size());
+}
+
+opaline_status opaline_asset_volume(const opaline_asset* asset, uint32_t index,
+                                    opaline_volume_info* info) {
+    if (asset == nullptr || info == nullptr) {
+        return null_argument();
+    }
+    if (info->struct_size != sizeof(opaline_volume_info)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+    }
+    if (index >= opaline_asset_volume_count(asset)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "there is no volume of that index");
+    }
+    return guarded([&] {
+        formats::VolumesView only = asset->loaded.view.volumes;
+        only.records = only.records.subspan(index, 1);
+        const formats::VolumeRecord& record = only.records.front();
+        opaline_volume_info found{};
+        found.struct_size = sizeof found;
+        const std::vector<formats::Vec3> corners = runtime::volume_corners(only);
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const formats::Vec3 c = corners[i];
+            store({c.x, c.y, c.z}, found.corner[i]);
+        }
+        found.bricks = record.brick_count;
+        found.nodes = record.node_count;
+        found.node_terms = record.single_terms + record.multiple_terms;
+        found.bands = record.bands;
+        *info = found;
+        return OPALINE_OK;
+    });
+}
+
+opaline_status opaline_volume_light_create(const opaline_asset* asset, opaline_volume_light** out) {
+    if (asset == nullptr || out == nullptr) {
+        return null_argument();
+    }
+    return guarded([&] {
+        const formats::VolumesView& volumes = asset->loaded.view.volumes;
+        auto created = std::make_unique<opaline_volume_light>();
+        created->asset_id = asset->id;
+        created->light =
+            runtime::relight_volumes(volumes, {}, {.terms = formats::TermSet::none, .threads = 1});
+        created->lit = runtime::light_volumes(volumes, created->light);
+        *out = created.release();
+        return OPALINE_OK;
+    });
+}
+
+void opaline_volume_light_release(opaline_volume_light* volume_light) {
+    delete volume_light;
+}
+
+opaline_status opaline_volume_light_update(opaline_volume_light* volume_light,
+                                           const opaline_asset* asset, const opaline_light* light,
+                                           uint32_t flags, uint32_t threads) {
+    if (volume_light == nullptr || asset == nullptr || light == nullptr) {
+        return null_argument();
+    }
+    if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) {
+        return status;
+    }
+    if (light->n != asset->loaded.view.cubemap_size) {
+        return fail(OPALINE_INVALID_ARGUMENT,
+                    "the light was made for an asset of another cube map size");
+    }
+    constexpr std::uint32_t kKnown = OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE;
+    if ((flags & ~kKnown) != 0) {
+        return fail(OPALINE_INVALID_ARGUMENT, "flags that volumes do not have");
+    }
+    if (const auto status = check_threads(threads); status != OPALINE_OK) {
+        return status;
+    }
+    return guarded([&] {
+        // In place, so that volume_light->lit goes on referring to it.
+        volume_light->light =
+            runtime::relight_volumes(asset->loaded.view.volumes, light->vector,
+                                     {.terms = terms_of(flags), .threads = threads});
+        return OPALINE_OK;
+    });
+}
+
+opaline_status opaline_volumes_march(const opaline_asset* asset,
+                                     const opaline_volume_light* volume_light,
+                                     const opaline_march_options* options,
+                                     const opaline_march_ray* rays, uint32_t count,
+                                     opaline_march_result* results) {
+    if (asset == nullptr || volume_light == nullptr ||
+        (count > 0 && (rays == nullptr || results == nullptr))) {
+        return null_argument();
+    }
+    if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) {
+        return status;
+    }
+    runtime::MarchOptions march;
+    unsigned threads = 1;
+    if (options != nullptr) {
+        if (const auto status = check_options(*options); status != OPALINE_OK) {
+            return status;
+        }
+        march.step = options->step;
+        march.least_transmittance = options->least_transmittance;
+        threads = options->threads;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (const char* const fault = ray_fault(rays[i])) {
+            return fail_at("ray", i, fault);
+        }
+    }
+    return guarded([&] {
+        // Apart, because memory may run out half-way.
+        std::vector<runtime::MarchResult> found(count);
+        runtime::for_ranges(
+            count, kRaysAtOnce, threads, [&](std::uint32_t begin, std::uint32_t end) {
+                for (std::uint32_t i = begin; i < end; ++i) {
+                    const opaline_march_ray& ray = rays[i];
+                    found[i] = runtime::march_volumes(
+                        volume_light->lit,
+                        {point(ray.origin), direction(ray.direction),
+                         static_cast<double>(ray.begin), static_cast<double>(ray.end)},
+                        march);
+                }
+            });
+        for (std::uint32_t i = 0; i < count; ++i) {
+            store(found[i].radiance, results[i].radiance);
+            store(found[i].transmittance, results[i].transmittance);
+        }
+        return OPALINE_OK;
+    });
+}
+
+opaline_status opaline_volumes_sample(const opaline_asset* asset,
+                                      const opaline_volume_light* volume_light,
+                                      const opaline_sample_point* points, uint32_t count,
+                                      opaline_sample_result* results) {
+    if (asset == nullptr || volume_light == nullptr ||
+        (count > 0 && (points == nullptr || results == nullptr))) {
+        return null_argument();
+    }
+    if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) {
+        return status;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (const char* const fault = point_fault(points[i])) {
+            return fail_at("point", i, fault);
+        }
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const runtime::VolumeSample sample = runtime::sample_volumes(
+            volume_light->lit, point(points[i].position), direction(points[i].to_eye));
+        store(sample.extinction, results[i].extinction);
+        store(sample.scattered, results[i].scattered);
+    }
+    return OPALINE_OK;
+}
+
+}  // extern "C"

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "formats/opal/result.h"
+#include "runtime/gl/gl_objects.h"
+#include "runtime/gl/gl_scene.h"
+#include "runtime/gl/gl_volumes.h"
+
+namespace opaline::runtime {
+
+/// Errors: resource. Precondition: there are some.
+formats::Result<GlProgram> make_volume_program(const GlVolumes& volumes);
+
+/// The box filter for a picture with volumes: composes them with the colour and depth of the
+/// samples as draw_volumes (picture/volume_pass.h) does, and filters, in one go. The samples and
+/// their depth are bound as texture units 0 and 1, the pixels as the frame, and a vertex array.
+void draw_volumes_filtered(const DrawScene& scene, const GlProgram& program, const TileView& view);
+
+}  // namespace opaline::runtime

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "formats/opal/result.h"
+#include "formats/opal/terms.h"
+#include "formats/opal/volumes.h"
+#include "runtime/gl/gl_objects.h"
+#include "runtime/light_vector.h"
+#include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/volume_lattice.h"
+
+namespace opaline::runtime {
+
+/// Every pixel keeps the registers of all of them, and the first picture waits for the driver to
+/// compile: on llvmpipe 1.5 s for one, 5 s for four, 50 s for sixteen.
+inline constexpr std::size_t kMaxGlVolumes = 4;
+
+/// An asset's volumes on the GPU. Their dot products stay on the CPU, which keeps the rows.
+struct GlVolumes {
+    struct Entry {
+        VolumeLattice lattice;   ///< without its arrays: those are on the GPU
+        std::size_t volume = 0;  ///< its number in the asset
+    };
+    std::vector<Entry> entry;  ///< those that a ray can meet
+    formats::Volumes kept;     ///< records and rows
+
+    GlBuffer table, corner;
+    GlBuffer density;  ///< kGlBrickWords a brick
+    GlBuffer coefficient;
+    VolumeLight light;            ///< its coefficients are on the GPU
+    std::uint32_t harmonics = 1;  ///< the most terms of a node
+    std::size_t resident = 0;     ///< [bytes], most coefficients included
+
+    LightVector lit_by;  ///< the last light; n = 0 before there is one
+    formats::TermSet lit_terms = formats::TermSet::none;  ///< components in `coefficient`
+
+    bool empty() const { return entry.empty(); }
+};
+
+/// Of a brick: the scale of its codes as the bits of a float (density = scale * code / 65535), then
+/// 8 x 9 x 9 words, x fastest: the code of a voxel in the lower half, of the next along x in the
+/// upper. The ninth layers are those of the neighbours, so that a lookup stays in its brick.
+inline constexpr std::size_t kGlBrickWords = 1 + std::size_t{8} * 9 * 9;
+
+/// Uploads; nothing where there are none. Errors: resource (memory; more than kMaxGlVolumes; a
+/// buffer beyond `max_block_bytes`). Precondition: the asset passed read_opal's checks.
+formats::Result<GlVolumes> upload_volumes(const formats::VolumesView& volumes,
+                                          std::size_t max_block_bytes);
+
+/// Computes the nodes' coefficients (relight_volumes) on the CPU and uploads them, `terms` of them;
+/// without a light the volumes only absorb. Does nothing where there are no volumes. Errors:
+/// resource. Precondition: light.n is the asset's cube map size, or 0.
+formats::Status relight_gl_volumes(GlVolumes& volumes, const LightVector& light,
+                                   formats::TermSet terms);
+
+/// The same light with other components, if they are others for volumes.
+formats::Status show_volume_terms(GlVolumes& volumes, formats::TermSet terms);
+
+}  // namespace opaline::runtime

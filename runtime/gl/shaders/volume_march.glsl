@@ -1,0 +1,255 @@
+// The integral along a ray through all volumes, the same steps as runtime/volumes/volume_march.cpp.
+// Specialised by VOLUMES, their number, and HARMONICS, the most terms that a node may have.
+// Distances are in units of the scene (view_unit), positions in bricks from a table's lowest corner.
+
+struct Volume {
+    vec4 to_bricks[3];   // rows: direction to bricks a unit; w: the eye's place
+    uvec4 extent_first;  // bricks along each axis of the table; its first cell
+    uvec4 numbers;       // first brick, first corner, boxes of nodes along a brick's edge, terms
+    vec4 extinction;     // where the density is 1 [1 / unit]
+    vec4 albedo;
+    uvec4 coefficient;  // the first
+};
+layout(std430, binding = 0) readonly buffer Volumes { Volume volumes[]; };
+layout(std430, binding = 1) readonly buffer Table { uint brick_table[]; };
+// Of each brick the scale, then 8 x 9 x 9 pairs of codes: of a voxel and of the next along x.
+layout(std430, binding = 2) readonly buffer Density { uint density_words[]; };
+layout(std430, binding = 3) readonly buffer Corners { uint corner_nodes[]; };
+layout(std430, binding = 4) readonly buffer Coefficients { float coefficients[]; };  // R, G, B
+
+const uint kNone = 0xffffffffu;  // no brick, no node
+const float kNever = 1e30;       // a distance
+const float kStep = 0.5;         // as MarchOptions
+const float kLeastTransmittance = 1e-3;
+
+// Sets of volumes have a bit for each: what a ray does not meet costs it nothing, and no driver
+// unrolls a loop over bits, which would take it many seconds.
+const uint kAllVolumes = (2u << (VOLUMES - 1)) - 1u;
+
+struct Ray {
+    vec3 direction;  // unit; from the eye
+    float begin, end;
+};
+
+// A volume on the ray's way, with the brick where it is or comes to next.
+struct Traveller {
+    vec3 origin, direction;  // in bricks
+    ivec3 cell;              // to be visited next
+    float t, end;            // what is left of the table
+    float voxel;
+    vec3 corner;  // of the brick
+    float span_begin, span_end;
+    uint brick;  // kNone behind the last one
+    uint box;    // of the nodes whose radiance stands in `source`
+    vec3 source[8];
+};
+
+struct Seen {
+    vec3 radiance, transmittance;
+};
+
+// NaN fails the comparison and becomes 0.
+vec3 tame_to(vec3 value, float largest) {
+    return mix(vec3(0.0), min(value, largest), greaterThan(value, vec3(0.0)));
+}
+
+// Distances at which the ray meets planes across each axis; `else_at` where it runs along them.
+vec3 meet(Traveller traveller, vec3 planes, vec3 else_at) {
+    bvec3 stands = equal(traveller.direction, vec3(0.0));
+    vec3 d = mix(traveller.direction, vec3(1.0), stands);
+    return mix((planes - traveller.origin) / d, else_at, stands);
+}
+
+// The ray cut to the table: nothing is left of it if t >= end.
+Traveller enter_table(Volume volume, Ray ray) {
+    Traveller traveller;
+    for (int a = 0; a < 3; ++a) {
+        traveller.origin[a] = volume.to_bricks[a].w;
+        traveller.direction[a] = dot(volume.to_bricks[a].xyz, ray.direction);
+    }
+    vec3 extent = vec3(volume.extent_first.xyz), o = traveller.origin;
+    bvec3 outside = bvec3(uvec3(lessThan(o, vec3(0.0))) | uvec3(greaterThan(o, extent)));
+    vec3 low = meet(traveller, vec3(0.0), mix(vec3(-kNever), vec3(kNever), outside));
+    vec3 high = meet(traveller, extent, vec3(kNever));
+    vec3 near = min(low, high), far = max(low, high);
+    traveller.t = max(max(ray.begin, near.x), max(near.y, near.z));
+    traveller.end = min(min(ray.end, far.x), min(far.y, far.z));
+    vec3 at = o + traveller.t * traveller.direction;
+    traveller.cell = ivec3(clamp(floor(at), vec3(0.0), max(extent - 1.0, 0.0)));
+    traveller.voxel = 1.0 / max(8.0 * length(traveller.direction), 1e-30);
+    traveller.brick = kNone;
+    return traveller;
+}
+
+// On to the next brick that exists.
+void advance(Volume volume, inout Traveller traveller) {
+    ivec3 extent = ivec3(volume.extent_first.xyz);
+    vec3 upper = vec3(greaterThan(traveller.direction, vec3(0.0)));
+    ivec3 turn = ivec3(sign(traveller.direction));
+    traveller.brick = kNone;
+    while (traveller.t < traveller.end && traveller.brick == kNone) {
+        vec3 faces = meet(traveller, vec3(traveller.cell) + upper, vec3(kNever));
+        float leaves = min(faces.x, min(faces.y, faces.z));
+        traveller.span_begin = traveller.t;
+        traveller.span_end = min(leaves, traveller.end);
+        traveller.t = max(traveller.t, traveller.span_end);
+        if (traveller.span_begin < traveller.span_end) {
+            ivec3 c = traveller.cell;
+            traveller.corner = vec3(c);
+            traveller.brick = brick_table[volume.extent_first.w +
+                                          uint((c.z * extent.y + c.y) * extent.x + c.x)];
+        }
+        traveller.cell += turn * (leaves == faces.x   ? ivec3(1, 0, 0)
+                                  : leaves == faces.y ? ivec3(0, 1, 0)
+                                                      : ivec3(0, 0, 1));
+        if (any(lessThan(traveller.cell, ivec3(0))) ||
+            any(greaterThanEqual(traveller.cell, extent))) {
+            traveller.end = traveller.t;
+        }
+    }
+    traveller.box = kNone;
+}
+
+// Codes of a voxel and the next along x, mixed; in 1 / 65535.
+float mix_pair(uint word, float weight) {
+    vec2 pair = unpackUnorm2x16(density_words[word]);
+    return mix(pair.x, pair.y, weight);
+}
+
+// `at`: voxels from the brick's voxel (0, 0, 0), in [0, 8].
+float density_at(Volume volume, Traveller traveller, vec3 at) {
+    vec3 base = min(floor(at), 7.0), w = at - base;
+    uvec3 b = uvec3(base);
+    uint first = (volume.numbers.x + traveller.brick) * uint(BRICK_WORDS);
+    uint word = first + 1u + (b.z * 9u + b.y) * 8u + b.x;
+    float low = mix(mix_pair(word, w.x), mix_pair(word + 8u, w.x), w.y);
+    float high = mix(mix_pair(word + 72u, w.x), mix_pair(word + 80u, w.x), w.y);
+    return uintBitsToFloat(density_words[first]) * mix(low, high, w.z);
+}
+
+// Source radiance at the eight nodes of a box of the brick, in the order x + 2 y + 4 z.
+void light_box(Volume volume, inout Traveller traveller, uvec3 box, float harmonic[HARMONICS]) {
+    uint side = volume.numbers.z + 1u;
+    uint first = volume.numbers.y + traveller.brick * side * side * side +
+                 (box.z * side + box.y) * side + box.x;
+    uint terms = volume.numbers.w, at[8];
+    for (uint i = 0u; i < 8u; ++i) {
+        uint node = corner_nodes[first + ((i >> 2) * side + (i >> 1 & 1u)) * side + (i & 1u)];
+        at[i] = node == kNone ? kNone : volume.coefficient.x + node * terms * 3u;
+        traveller.source[i] = vec3(0.0);
+    }
+    for (uint k = 0u; k < terms; ++k) {
+        for (uint i = 0u; i < 8u; ++i) {
+            if (at[i] == kNone) continue;
+            uint c = at[i] + 3u * k;
+            traveller.source[i] += harmonic[k] * vec3(coefficients[c], coefficients[c + 1u],
+                                                      coefficients[c + 2u]);
+        }
+    }
+}
+
+// max(0, J), trilinear between nodes.
+vec3 source_at(Volume volume, inout Traveller traveller, vec3 at, float harmonic[HARMONICS]) {
+    float boxes = float(volume.numbers.z);
+    vec3 scaled = at * (boxes / 8.0), base = min(floor(scaled), boxes - 1.0), w = scaled - base;
+    uvec3 b = uvec3(base);
+    uint box = (b.z * volume.numbers.z + b.y) * volume.numbers.z + b.x;
+    if (traveller.box != box) {
+        traveller.box = box;
+        light_box(volume, traveller, b, harmonic);
+    }
+    vec3 low = mix(mix(traveller.source[0], traveller.source[1], w.x),
+                   mix(traveller.source[2], traveller.source[3], w.x), w.y);
+    vec3 high = mix(mix(traveller.source[4], traveller.source[5], w.x),
+                    mix(traveller.source[6], traveller.source[7], w.x), w.y);
+    return tame_to(mix(low, high, w.z), 1e20);
+}
+
+// 1 - exp(-x): where that would cancel, its Taylor series, whose first left-out term is below
+// 6e-8 x.
+vec3 absorbed_over(vec3 x) {
+    vec3 series = x * (1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0)));
+    return mix(series, 1.0 - exp(-x), greaterThan(x, vec3(0.05)));
+}
+
+void step_ray(vec3 c, vec3 b, float h, inout Seen seen) {
+    vec3 absorbed = absorbed_over(min(c * h, 1e4));
+    seen.radiance += seen.transmittance * (b / max(c, 1e-36)) * absorbed;
+    seen.transmittance *= 1.0 - absorbed;
+}
+
+bool is_opaque(Seen seen) {
+    vec3 t = seen.transmittance;
+    return max(t.r, max(t.g, t.b)) < kLeastTransmittance;
+}
+
+// From begin to end lies no face of a brick: the volumes `inside` all along.
+void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin, float end,
+                   float voxel, float harmonic[HARMONICS], inout Seen seen) {
+    float count = clamp(ceil((end - begin) / (kStep * voxel)), 1.0, ceil(14.0 / kStep));
+    float h = (end - begin) / count;
+    for (float i = 0.0; i < count && !is_opaque(seen); ++i) {
+        float t = begin + (i + 0.5) * h;
+        vec3 extinction = vec3(0.0), scattered = vec3(0.0);
+        for (uint left = inside; left != 0u; left &= left - 1u) {
+            int v = findLSB(left);
+            vec3 place = travellers[v].origin + t * travellers[v].direction;
+            vec3 at = clamp((place - travellers[v].corner) * 8.0, 0.0, 8.0);
+            float density = density_at(volumes[v], travellers[v], at);
+            if (!(density > 0.0)) continue;
+            vec3 c = tame_to(density * volumes[v].extinction.rgb, 1e15);
+            extinction += c;
+            scattered += c * volumes[v].albedo.rgb *
+                         source_at(volumes[v], travellers[v], at, harmonic);
+        }
+        step_ray(extinction, scattered, h, seen);
+    }
+}
+
+// What volumes add to a ray and what they leave of the light behind.
+Seen march(Ray ray, float harmonic[HARMONICS]) {
+    Seen seen = Seen(vec3(0.0), vec3(1.0));
+    Traveller travellers[VOLUMES];
+    uint ahead = 0u;  // those with a brick at t or further on
+    for (uint left = kAllVolumes; left != 0u; left &= left - 1u) {
+        int v = findLSB(left);
+        travellers[v] = enter_table(volumes[v], ray);
+        advance(volumes[v], travellers[v]);
+        ahead |= travellers[v].brick != kNone ? 1u << v : 0u;
+    }
+    for (float t = -kNever; ahead != 0u;) {
+        // The next stretch with at least one brick, up to where one of them ends or another begins.
+        float begin = kNever, end = kNever, voxel = kNever;
+        for (uint left = ahead; left != 0u; left &= left - 1u) {
+            begin = min(begin, max(t, travellers[findLSB(left)].span_begin));
+        }
+        uint inside = 0u;
+        for (uint left = ahead; left != 0u; left &= left - 1u) {
+            int v = findLSB(left);
+            bool is_inside = travellers[v].span_begin <= begin;
+            inside |= is_inside ? 1u << v : 0u;
+            end = min(end, is_inside ? travellers[v].span_end : travellers[v].span_begin);
+            voxel = is_inside ? min(voxel, travellers[v].voxel) : voxel;
+        }
+        march_segment(travellers, inside, begin, end, voxel, harmonic, seen);
+        if (is_opaque(seen)) return Seen(seen.radiance, vec3(0.0));
+        t = end;
+        for (uint left = inside; left != 0u; left &= left - 1u) {
+            int v = findLSB(left);
+            if (travellers[v].span_end > t) continue;
+            advance(volumes[v], travellers[v]);
+            ahead &= travellers[v].brick == kNone ? ~(1u << v) : kAllVolumes;
+        }
+    }
+    return seen;
+}
+
+// The distance at which the ray leaves the last table; ray.begin if it meets none.
+float volumes_end(Ray ray) {
+    float end = ray.begin;
+    for (uint left = kAllVolumes; left != 0u; left &= left - 1u) {
+        Traveller traveller = enter_table(volumes[findLSB(left)], ray);
+        if (traveller.t < traveller.end) end = max(end, traveller.end);
+    }
+    return end;
+}

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "formats/opal/rgb.h"
+#include "formats/opal/terms.h"
+#include "formats/opal/vec3.h"
+#include "formats/opal/volumes.h"
+#include "runtime/dot.h"
+#include "runtime/light_vector.h"
+
+namespace opaline::runtime {
+
+/// What volumes scatter under one light, toward any eye. Node i of volume v scatters toward the
+/// unit direction w_o the source radiance
+///
+///     J(w_o) = sum_{k < terms} c_k Y_k(w_o),   c_k = coefficients(v, i)[k],
+///
+/// before max(0, .), with, for k = l (l + 1) + m,
+///
+///     c_k = (-1)^l m_l <V, Y_k L> [k < K_s] + <T_k, L> [k < K_m],
+///
+/// m_l the moments of the phase function, V row 0 of the node and T_k row 1 + k. Where K_m = 1 its
+/// h_0 = 1 is taken as Y_0 / Y_0, so that all of J is in harmonics.
+struct VolumeLight {
+    struct Part {
+        std::uint32_t terms =
+            0;                  ///< K = max(K_s, K_m) of what is shown; 0: the volume only absorbs
+        std::size_t first = 0;  ///< of the volume's coefficients
+    };
+    std::vector<Part> part;                 ///< one for each volume
+    std::vector<formats::Rgb> coefficient;  ///< [W m^-2 sr^-1], finite; node after node
+
+    /// c_k of a node; `node` counts from the volume's first one.
+    std::span<const formats::Rgb> coefficients(std::size_t volume, std::uint32_t node) const {
+        const Part& p = part[volume];
+        return std::span(coefficient).subspan(p.first + std::size_t{node} * p.terms, p.terms);
+    }
+};
+
+struct RelightVolumesOptions {
+    /// Components to add up; only volume_single and volume_multiple matter. Every file can show
+    /// them apart.
+    formats::TermSet terms = formats::TermSet::all;
+    unsigned threads = 0;  ///< 0: all cores; the result has the same bits for any number
+    DotPath path = best_dot_path();
+};
+
+/// Preconditions: light.n == volumes.rows.cubemap_size where there are volumes; the asset passed
+/// read_opal's checks.
+VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVector& light,
+                            const RelightVolumesOptions& options = {});
+
+/// max(0, J) of every node of a volume toward the point `eye` [m, world]; without one the mean of J
+/// over all directions, c_0 Y_0, likewise not below 0.
+std::vector<formats::Rgb> node_radiance(const formats::VolumesView& volumes,
+                                        const VolumeLight& light, std::size_t volume,
+                                        const std::optional<formats::Vec3>& eye);
+
+}  // namespace opaline::runtime

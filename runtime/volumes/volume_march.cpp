@@ -1,0 +1,196 @@
+#include "runtime/volumes/volume_march.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "formats/opal/spherical_harmonics.h"
+#include "runtime/volumes/brick_walk.h"
+#include "runtime/volumes/volume_source.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Rgb;
+
+// A volume that the ray meets, with the brick where it is or comes to next.
+struct Traveller {
+    const LitVolumes::Entry* entry = nullptr;
+    BrickWalk walk;
+    double voxel = 0;  ///< distance in the world within which the ray crosses one voxel
+    BrickSpan span;
+    BrickBlock block;
+    bool is_left = true;  ///< behind its last brick
+
+    // Source radiance at the eight nodes around the last point, which many points share.
+    std::uint32_t cell = formats::kNoNode;
+    std::array<Rgb, 8> source{};
+};
+
+void advance(Traveller& traveller) {
+    const VolumeLattice& lattice = traveller.entry->lattice;
+    const auto span = next_brick(lattice, traveller.walk);
+    traveller.is_left = !span;
+    if (!span) return;
+    traveller.span = *span;
+    traveller.block = brick_block(lattice, span->cell);
+    traveller.cell = formats::kNoNode;
+}
+
+std::vector<Traveller> start(const LitVolumes& volumes, const MarchRay& ray) {
+    std::vector<Traveller> travellers;
+    for (const LitVolumes::Entry& entry : volumes.entry) {
+        Traveller traveller;
+        traveller.entry = &entry;
+        traveller.walk = start_walk(entry.lattice, ray.origin, ray.direction, ray.begin, ray.end);
+        if (!(traveller.walk.t < traveller.walk.end)) continue;
+        const auto& d = traveller.walk.direction;
+        traveller.voxel = 1 / (formats::kBrickSide * std::hypot(d[0], d[1], d[2]));
+        if (!(traveller.voxel > 0) || !std::isfinite(traveller.voxel)) continue;
+        advance(traveller);
+        if (!traveller.is_left) travellers.push_back(traveller);
+    }
+    return travellers;
+}
+
+// max(0, J) at a point of the brick, trilinear between nodes.
+Rgb source_at(Traveller& traveller, const VolumeLight& light, const Harmonics& harmonics,
+              const std::array<float, 3>& at) {
+    const LitVolumes::Entry& entry = *traveller.entry;
+    const NodeCell cell = node_cell(entry.lattice, at);
+    if (traveller.cell != cell.number) {
+        traveller.cell = cell.number;
+        const auto nodes = nodes_of_cell(entry.lattice, traveller.block.number[0], cell.number);
+        for (std::size_t i = 0; i < 8; ++i) {
+            traveller.source[i] = eval_node(light, entry.volume, nodes[i], harmonics);
+        }
+    }
+    return mix_nodes(traveller.source, cell.weight);
+}
+
+// Voxels from the brick's voxel (0, 0, 0), at distance t.
+std::array<float, 3> place_in_brick(const Traveller& traveller, double t) {
+    std::array<float, 3> at{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double p = traveller.walk.origin[a] + t * traveller.walk.direction[a];
+        const auto local = static_cast<float>((p - traveller.span.cell[a]) * formats::kBrickSide);
+        at[a] = tame(local, formats::kBrickSide);
+    }
+    return at;
+}
+
+// One step of one band: extinction c [1/m], scattering times source b, length h [m].
+void step_band(float c, float b, float h, float& radiance, float& transmittance) {
+    if (!(c > 0)) return;
+    const float absorbed = -std::expm1(-c * h);
+    radiance += transmittance * (b / c) * absorbed;
+    transmittance *= 1 - absorbed;
+}
+
+void step(Rgb extinction, Rgb scattered, float h, MarchResult& result) {
+    step_band(extinction.r, scattered.r, h, result.radiance.r, result.transmittance.r);
+    step_band(extinction.g, scattered.g, h, result.radiance.g, result.transmittance.g);
+    step_band(extinction.b, scattered.b, h, result.radiance.b, result.transmittance.b);
+}
+
+// Everything that the segments of a ray share.
+struct March {
+    const VolumeLight& light;
+    Harmonics harmonics{};
+    std::vector<Traveller> travellers;
+    double step = 0.5;
+    float least_transmittance = 0;
+    MarchResult result;
+
+    bool is_opaque() const {
+        const Rgb t = result.transmittance;
+        return std::max({t.r, t.g, t.b}) < least_transmittance;
+    }
+};
+
+// From begin to end lies no face of a brick: the same volumes all along.
+void march_segment(March& march, double begin, double end) {
+    double voxel = HUGE_VAL;
+    for (const Traveller& traveller : march.travellers) {
+        if (traveller.span.begin <= begin) voxel = std::min(voxel, traveller.voxel);
+    }
+    // A brick's diagonal is 8 sqrt(3) voxels; where distances are rounded to more, that is enough.
+    const double most = std::ceil(14 / march.step);
+    const double count = std::clamp(std::ceil((end - begin) / (march.step * voxel)), 1.0, most);
+    const double h = (end - begin) / count;
+    for (double i = 0; i < count && !march.is_opaque(); ++i) {
+        Rgb extinction, scattered;
+        for (Traveller& traveller : march.travellers) {
+            if (traveller.span.begin > begin) continue;
+            const VolumeLattice& lattice = traveller.entry->lattice;
+            const auto at = place_in_brick(traveller, begin + (i + 0.5) * h);
+            const float density = density_at(lattice, traveller.block, at);
+            if (!(density > 0)) continue;
+            const Rgb c = tame(density * lattice.record->sigma_t, kLargestExtinction);
+            extinction = extinction + c;
+            scattered = scattered + c * lattice.record->albedo *
+                                        source_at(traveller, march.light, march.harmonics, at);
+        }
+        step(extinction, scattered, static_cast<float>(std::min(h, 1e30)), march.result);
+    }
+}
+
+}  // namespace
+
+LitVolumes light_volumes(const formats::VolumesView& volumes, const VolumeLight& light) {
+    LitVolumes lit;
+    lit.light = &light;
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        if (const auto lattice = make_lattice(volumes, volumes.records[v])) {
+            lit.entry.push_back({*lattice, v});
+        }
+    }
+    return lit;
+}
+
+MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
+                          const MarchOptions& options) {
+    March march{.light = *volumes.light,
+                .harmonics = {},
+                .travellers = start(volumes, ray),
+                .step = static_cast<double>(std::clamp(options.step, 1.0f / 64, 8.0f)),
+                .least_transmittance = options.least_transmittance,
+                .result = {}};
+    if (march.travellers.empty()) return {};
+    formats::eval_spherical_harmonics(-1 * ray.direction, march.harmonics);
+    for (double t = -HUGE_VAL; !march.travellers.empty();) {
+        // The next stretch with at least one brick, up to where one of them ends or another begins.
+        double begin = HUGE_VAL, end = HUGE_VAL;
+        for (const Traveller& traveller : march.travellers) {
+            begin = std::min(begin, std::max(t, traveller.span.begin));
+        }
+        for (const Traveller& traveller : march.travellers) {
+            end = std::min(
+                end, traveller.span.begin <= begin ? traveller.span.end : traveller.span.begin);
+        }
+        march_segment(march, begin, end);
+        if (march.is_opaque()) {
+            march.result.transmittance = {};
+            break;
+        }
+        t = end;
+        for (Traveller& traveller : march.travellers) {
+            if (traveller.span.end <= t) advance(traveller);
+        }
+        std::erase_if(march.travellers, [](const Traveller& each) { return each.is_left; });
+    }
+    return march.result;
+}
+
+double volumes_end(const LitVolumes& volumes, const MarchRay& ray) {
+    double end = ray.begin;
+    for (const LitVolumes::Entry& entry : volumes.entry) {
+        const BrickWalk walk =
+            start_walk(entry.lattice, ray.origin, ray.direction, ray.begin, ray.end);
+        if (walk.t < walk.end) end = std::max(end, walk.end);
+    }
+    return end;
+}
+
+}  // namespace opaline::runtime

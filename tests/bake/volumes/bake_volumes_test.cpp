@@ -1,0 +1,131 @@
+#include "bake/volumes/bake_volumes.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "bake/volumes/volume_knobs.h"
+#include "tests/bake/volumes/volume_support.h"
+
+namespace opaline::bake {
+namespace {
+
+formats::Volumes bake(const formats::Scene& scene, const RayScene& rays, const Knobs& knobs,
+                      unsigned threads = 0) {
+    const VolumePlan plan = plan_volumes(scene, knobs);
+    StageLog log;
+    Context context;
+    context.threads = threads;
+    auto volumes = bake_volumes({scene, rays, plan.layouts, knobs}, context, log);
+    EXPECT_TRUE(volumes.has_value());
+    EXPECT_EQ(log.size(), 2u);
+    return std::move(*volumes);
+}
+
+Knobs coarse_knobs() {
+    Knobs knobs = tests::knobs_for(Quality::draft);
+    knobs.set(kVolumeWalks, 4);
+    knobs.set(kVolumeSpacing, 4);
+    return knobs;
+}
+
+TEST(BakeVolumes, AnyNumberOfThreadsGivesTheSameBits) {
+    const formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_blob(0.4, 0.1), 3, 0.9f, 0.4f));
+    const RayScene sky = tests::empty_space();
+    const formats::Volumes one = bake(scene, sky, coarse_knobs(), 1);
+    const formats::Volumes four = bake(scene, sky, coarse_knobs(), 4);
+    EXPECT_EQ(one.rows.row_offset, four.rows.row_offset);
+    EXPECT_EQ(one.rows.code8, four.rows.code8);
+    EXPECT_EQ(one.rows.average_code, four.rows.average_code);
+    EXPECT_EQ(one.rows.average_scale, four.rows.average_scale);
+    EXPECT_EQ(one.rows.detail_scale, four.rows.detail_scale);
+    EXPECT_EQ(one.rows.index16, four.rows.index16);
+}
+
+TEST(BakeVolumes, DensityIsKeptToAnEvenStepOfTheBrick) {
+    const formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_blob(0.4, 0.1), 3, 0.9f, 0.4f));
+    const formats::Volumes volumes = bake(scene, tests::empty_space(), coarse_knobs());
+    const formats::VolumeRecord& record = volumes.records.at(0);
+    const formats::SparseGrid<float>& grid = scene.volumes[0].density;
+    std::size_t found = 0;
+    for (std::size_t cell = 0; cell < volumes.table.size(); ++cell) {
+        if (volumes.table[cell] == formats::kNoBrick) {
+            continue;
+        }
+        const auto c = static_cast<std::uint32_t>(cell);
+        const glm::ivec3 brick =
+            glm::ivec3(record.first_brick[0], record.first_brick[1], record.first_brick[2]) +
+            glm::ivec3(c % record.extent[0], c / record.extent[0] % record.extent[1],
+                       c / record.extent[0] / record.extent[1]);
+        const float scale = volumes.density_scale[volumes.table[cell]];
+        for (int i = 0; i < 512; ++i) {
+            const glm::ivec3 voxel = 8 * brick + glm::ivec3(i % 8, i / 8 % 8, i / 64);
+            const float kept =
+                scale *
+                static_cast<float>(
+                    volumes.density[512 * volumes.table[cell] + static_cast<std::size_t>(i)]);
+            EXPECT_NEAR(kept, grid.at(voxel), 0.51 * static_cast<double>(scale) + 1e-12);
+            found += grid.at(voxel) > 0 ? 1 : 0;
+        }
+    }
+    std::size_t there = 0;
+    for (const float value : grid.value) {
+        there += value > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(found, there);
+}
+
+TEST(BakeVolumes, ASurfaceHidesTheLightBehindIt) {
+    formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_ball_grid(0.5, 0.1), 1e-3f, 1, 0));
+    scene.volumes.front().sigma_t = {0.5f, 0.5f, 0.5f};
+    // A ceiling far wider than the ball, just above it.
+    formats::Primitive ceiling;
+    ceiling.position = {{-50, 1.3f, -50}, {50, 1.3f, -50}, {50, 1.3f, 50}, {-50, 1.3f, 50}};
+    ceiling.normal.assign(4, glm::vec3(0, -1, 0));
+    ceiling.index = {0, 1, 2, 0, 2, 3};
+    scene.primitives.push_back(ceiling);
+    const auto rays = RayScene::build(scene, 1);
+    ASSERT_TRUE(rays.has_value());
+    const Knobs knobs = coarse_knobs();
+    const formats::Volumes below = bake(scene, *rays, knobs);
+    const formats::Volumes open = bake(scene, tests::empty_space(), knobs);
+    const formats::VolumeRecord& record = open.records.at(0);
+    double shares = 0;
+    for (std::uint32_t node = 0; node < record.node_count; ++node) {
+        shares += tests::integrate_row(below.rows, record, node * record.terms()) /
+                  tests::integrate_row(open.rows, record, node * record.terms());
+    }
+    EXPECT_NEAR(shares / record.node_count, 0.5, 0.03);
+}
+
+TEST(BakeVolumes, AVolumeThatOnlyAbsorbsHasDensityAndNoNodes) {
+    const formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_blob(0.4, 0.1), 3, 0, 0));
+    const formats::Volumes volumes = bake(scene, tests::empty_space(), coarse_knobs());
+    ASSERT_EQ(volumes.records.size(), 1u);
+    EXPECT_EQ(volumes.records[0].node_count, 0u);
+    EXPECT_EQ(volumes.records[0].single_terms, 0u);
+    EXPECT_GT(volumes.density.size(), 0u);
+    EXPECT_EQ(volumes.rows.row_offset.size(), 1u);
+}
+
+TEST(BakeVolumes, ACancelledBakeLeavesNothing) {
+    const formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_blob(0.4, 0.1), 3, 0.9f, 0.4f));
+    const std::atomic<bool> cancel = true;
+    Context context;
+    context.cancel = &cancel;
+    StageLog log;
+    const Knobs knobs = coarse_knobs();
+    const VolumePlan plan = plan_volumes(scene, knobs);
+    const RayScene sky = tests::empty_space();
+    const auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, context, log);
+    ASSERT_TRUE(volumes.has_value());
+    EXPECT_TRUE(volumes->records.empty());
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,94 @@
+#include "bake/volumes/plan_volumes.h"
+
+#include <gtest/gtest.h>
+
+#include "bake/volumes/volume_knobs.h"
+#include "tests/bake/volumes/volume_support.h"
+
+namespace opaline::bake {
+namespace {
+
+VolumePlan plan_of(float sigma_t, float albedo, float g, const Knobs& knobs) {
+    return plan_volumes(
+        tests::scene_of(tests::make_volume(tests::make_ball_grid(1, 0.25), sigma_t, albedo, g)),
+        knobs);
+}
+
+Knobs preview() {
+    return tests::knobs_for(Quality::preview);
+}
+
+TEST(PlanVolumes, AnOpticalDepthUnderTheBudgetIsNothing) {
+    const VolumePlan thin = plan_of(1e-4f, 1, 0, preview());
+    EXPECT_TRUE(thin.layouts.empty());
+    EXPECT_FALSE(thin.entries.at(0).on);
+    EXPECT_LT(thin.entries[0].bound, 1.0 / 512);
+    const VolumePlan seen = plan_of(1e-2f, 1, 0, preview());
+    EXPECT_EQ(seen.layouts.size(), 1u);
+    EXPECT_TRUE(seen.entries.at(0).on);
+}
+
+TEST(PlanVolumes, ThinVolumesScatterOnceAndDenseOnesMoreOften) {
+    const VolumePlan thin = plan_of(3e-3f, 1, 0, preview());
+    EXPECT_TRUE(thin.entries.at(0).on);
+    EXPECT_FALSE(thin.entries.at(1).on);
+    EXPECT_EQ(thin.layouts.at(0).often_terms, 0u);
+    EXPECT_NEAR(thin.entries[1].bound, thin.entries[0].bound * thin.entries[0].bound, 1e-12);
+    const VolumePlan dense = plan_of(3, 1, 0, preview());
+    EXPECT_TRUE(dense.entries.at(1).on);
+    EXPECT_EQ(dense.layouts.at(0).often_terms, 1u);
+}
+
+TEST(PlanVolumes, WithoutAlbedoThereIsAbsorptionAlone) {
+    const VolumePlan black = plan_of(3, 0, 0.5f, preview());
+    EXPECT_FALSE(black.entries.at(0).on);
+    EXPECT_FALSE(black.entries.at(1).on);
+    EXPECT_NE(black.entries[0].reason.find("absorbs"), std::string::npos);
+    ASSERT_EQ(black.layouts.size(), 1u);
+    EXPECT_FALSE(black.layouts[0].has_nodes());
+}
+
+TEST(PlanVolumes, IsotropicScatteringHasOneTermAndForwardScatteringMore) {
+    EXPECT_EQ(plan_of(3, 1, 0, preview()).layouts.at(0).once_terms, 1u);
+    EXPECT_EQ(plan_of(3, 1, 0.05f, preview()).layouts.at(0).once_terms, 4u);
+    const VolumePlan forward = plan_of(3, 1, 0.85f, preview());
+    EXPECT_EQ(forward.layouts.at(0).once_terms, 25u);
+    EXPECT_GT(forward.layouts[0].often_terms, 1u);
+    EXPECT_LT(forward.layouts[0].often_terms, 25u);
+}
+
+TEST(PlanVolumes, NamedEffectsAreAllThatIsBaked) {
+    Knobs knobs = preview();
+    knobs.effects = {"volume-multiple"};
+    const VolumePlan plan = plan_of(3, 1, 0, knobs);
+    EXPECT_FALSE(plan.entries.at(0).on);
+    EXPECT_TRUE(plan.entries.at(1).on);
+    EXPECT_EQ(plan.layouts.at(0).once_terms, 0u);
+    EXPECT_EQ(plan.layouts[0].often_terms, 1u);
+}
+
+TEST(PlanVolumes, EverythingIsSimulatedWhereThatIsAskedFor) {
+    Knobs knobs = preview();
+    knobs.simulate_all = true;
+    const VolumePlan thin = plan_of(1e-4f, 1, 0, knobs);
+    EXPECT_TRUE(thin.entries.at(0).on && thin.entries.at(1).on);
+    EXPECT_TRUE(thin.entries[0].forced);
+    EXPECT_EQ(thin.layouts.size(), 1u);
+}
+
+TEST(PlanVolumes, GivenKnobsAreTaken) {
+    Knobs knobs = preview();
+    knobs.set(kVolumeSpacing, 8);
+    knobs.set(kVolumeTerms, 4);
+    const VolumeLayout layout = plan_of(3, 1, 0.5f, knobs).layouts.at(0);
+    EXPECT_EQ(layout.spacing, 8u);
+    EXPECT_EQ(layout.often_terms, 4u);
+}
+
+TEST(PlanVolumes, TheDepthOfNoLineExceedsTheBound) {
+    const formats::Volume blob = tests::make_volume(tests::make_blob(0.4, 0.1), 3, 1, 0);
+    EXPECT_GT(largest_depth(blob)[0], 3 * 0.4 * 2.5066);
+}
+
+}  // namespace
+}  // namespace opaline::bake

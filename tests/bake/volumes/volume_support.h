@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <random>
+#include <vector>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/effects/effects.h"
+#include "bake/transport/ray_scene.h"
+#include "bake/volumes/bake_volumes.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+#include "tests/support/volumes.h"
+
+namespace opaline::tests {
+
+inline formats::Scene scene_of(formats::Volume volume) {
+    formats::Scene scene;
+    scene.materials.resize(1);
+    scene.volumes.push_back(std::move(volume));
+    return scene;
+}
+
+inline bake::RayScene empty_space() {
+    return std::move(*bake::RayScene::build({}, 1));
+}
+
+inline bake::Knobs knobs_for(bake::Quality quality) {
+    bake::BakeOptions options;
+    options.quality = quality;
+    return *bake::resolve_knobs(bake::all_effects(), options);
+}
+
+/// The integral of one band of a row over all directions.
+inline double integrate_row(const formats::SparseRows& rows, const formats::VolumeRecord& record,
+                            std::uint32_t row, std::uint32_t band = 0) {
+    const std::uint32_t n = rows.cubemap_size;
+    std::vector<float> dense(formats::cubemap_texels(n));
+    formats::decode_row(rows.view(), record.rows(), row, band, dense);
+    // Of even light L = 1 the vector is the transform of the texels' solid angles.
+    const std::vector<double> face = formats::texel_solid_angles(n);
+    std::vector<double> light;
+    for (std::uint32_t f = 0; f < formats::kCubeFaces; ++f) {
+        light.insert(light.end(), face.begin(), face.end());
+    }
+    formats::haar_forward_cube(std::span<double>(light), n);
+    double sum = 0;
+    for (std::size_t k = 0; k < dense.size(); ++k) {
+        sum += light[k] * static_cast<double>(dense[k]);
+    }
+    return sum;
+}
+
+}  // namespace opaline::tests

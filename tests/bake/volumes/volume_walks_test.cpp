@@ -1,0 +1,113 @@
+#include "bake/volumes/volume_walks.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "bake/volumes/volume_knobs.h"
+#include "tests/bake/volumes/volume_support.h"
+
+namespace opaline::bake {
+namespace {
+
+// Mean source radiance of all views at each node, and its parts, under even light L = 1.
+struct Furnace {
+    double once = 0, often = 0;  // means over nodes
+    double rms = 0;              // of the differences of their sum from 1
+};
+
+Furnace measure(const formats::Volumes& volumes) {
+    const formats::VolumeRecord& record = volumes.records.at(0);
+    Furnace furnace;
+    const double y0 = std::sqrt(1 / (4 * std::numbers::pi));
+    for (std::uint32_t node = 0; node < record.node_count; ++node) {
+        const double once =
+            tests::integrate_row(volumes.rows, record, node * record.terms()) * y0 * y0;
+        const double often =
+            record.multiple_terms == 0
+                ? 0
+                : tests::integrate_row(volumes.rows, record, node * record.terms() + 1) *
+                      (record.multiple_terms == 1 ? 1 : y0);
+        furnace.once += once / record.node_count;
+        furnace.often += often / record.node_count;
+        furnace.rms += (once + often - 1) * (once + often - 1) / record.node_count;
+    }
+    furnace.rms = std::sqrt(furnace.rms);
+    return furnace;
+}
+
+formats::Volumes bake(const formats::Volume& volume, Knobs knobs) {
+    const formats::Scene scene = tests::scene_of(volume);
+    const VolumePlan plan = plan_volumes(scene, knobs);
+    const RayScene sky = tests::empty_space();
+    StageLog log;
+    auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
+    EXPECT_TRUE(volumes.has_value());
+    return std::move(*volumes);
+}
+
+Knobs coarse_knobs(std::uint32_t walks) {
+    Knobs knobs = tests::knobs_for(Quality::preview);
+    knobs.cubemap_size = 8;
+    knobs.set(kVolumeWalks, walks);
+    knobs.set(kVolumeSpacing, 2);
+    return knobs;
+}
+
+class WhiteFurnace : public testing::TestWithParam<float> {};
+
+TEST_P(WhiteFurnace, AVolumeThatAbsorbsNothingCannotBeSeenUnderEvenLight) {
+    const float g = GetParam();
+    const Furnace ball =
+        measure(bake(tests::make_volume(tests::make_ball_grid(1, 0.1), 2, 1, g), coarse_knobs(64)));
+    EXPECT_NEAR(ball.once + ball.often, 1, 0.01);
+    EXPECT_GT(ball.often, 0.15);
+    EXPECT_LT(ball.rms, 0.11);
+}
+
+INSTANTIATE_TEST_SUITE_P(MeanCosines, WhiteFurnace, testing::Values(-0.3f, 0.0f, 0.5f, 0.9f));
+
+TEST(VolumeWalks, ThinMediaScatterTwiceInProportionToTheirDensity) {
+    const auto often = [](float sigma) {
+        return measure(bake(tests::make_volume(tests::make_ball_grid(1, 0.2), sigma, 1, 0),
+                            coarse_knobs(2048)))
+            .often;
+    };
+    EXPECT_NEAR(often(0.1f) / often(0.05f), 2, 0.12);
+}
+
+TEST(VolumeWalks, AbsorptionTakesFromEveryScattering) {
+    const auto often = [](float albedo) {
+        return measure(bake(tests::make_volume(tests::make_ball_grid(1, 0.2), 2, albedo, 0),
+                            coarse_knobs(64)))
+            .often;
+    };
+    const double white = often(1), half = often(0.5f);
+    EXPECT_LT(half, 0.5 * white);
+    EXPECT_GT(half, 0.2 * white);
+}
+
+TEST(VolumeWalks, AColouredVolumeIsThreeGreyOnesWithTheSameNoise) {
+    const formats::Volume grey = tests::make_volume(tests::make_ball_grid(1, 0.25), 2, 0.8f, 0.3f);
+    formats::Volume coloured = grey;
+    coloured.sigma_t = {2, 1, 3};
+    coloured.albedo = {0.8f, 0.4f, 0.9f};
+    const Knobs knobs = coarse_knobs(8);
+    const formats::Volumes one = bake(grey, knobs), three = bake(coloured, knobs);
+    const formats::VolumeRecord &a = one.records.at(0), &b = three.records.at(0);
+    ASSERT_EQ(a.bands, 1u);
+    ASSERT_EQ(b.bands, 3u);
+    ASSERT_EQ(a.node_count, b.node_count);
+    double difference = 0, size = 0;
+    for (std::uint32_t row = 0; row < a.node_count * a.terms(); ++row) {
+        const double grey_row = tests::integrate_row(one.rows, a, row);
+        const double red_row = tests::integrate_row(three.rows, b, row, 0);
+        difference += (grey_row - red_row) * (grey_row - red_row);
+        size += grey_row * grey_row;
+    }
+    // What is quantised differs, nothing else.
+    EXPECT_LT(std::sqrt(difference / size), 0.02);
+}
+
+}  // namespace
+}  // namespace opaline::bake

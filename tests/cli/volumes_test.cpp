@@ -1,0 +1,192 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "formats/image/exr.h"
+#include "formats/opal/write_opal.h"
+#include "tests/cli/small_scene.h"
+#include "tests/formats/opal/asset_fixture.h"
+#include "tests/formats/opal/volume_fixture.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::string write_asset(const SmallScene& small, const formats::Asset& asset) {
+    const std::string path = small.path("smoke.opal");
+    auto file = formats::AtomicFile::create(path);
+    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    return path;
+}
+
+std::size_t lines_of(const std::string& path) {
+    const std::string text = read_text(path);
+    return static_cast<std::size_t>(std::ranges::count(text, '\n'));
+}
+
+TEST(VolumeFiles, RelightWritesATableOfReceiversAndOneOfNodes) {
+    SmallScene small;
+    const formats::Asset asset = make_volume_asset();
+    const std::string file = write_asset(small, asset);
+    const std::string out = small.path("o.csv"), volumes = small.path("o-volumes.csv");
+    const Outcome mean = run_opaline({"relight", file, "--light", "studio", "--json", "-o", out});
+    ASSERT_EQ(mean.exit_code, 0) << mean.err;
+    EXPECT_EQ(read_text(out), "primitive,vertex,r,g,b\n");
+    EXPECT_THAT(read_text(volumes), StartsWith("volume,i,j,k,r,g,b\n0,"));
+    EXPECT_EQ(lines_of(volumes), asset.volumes.node.size() + 1);
+    EXPECT_EQ(nlohmann::json::parse(mean.out)["volume_nodes"], asset.volumes.node.size());
+
+    const std::string seen = small.path("seen.csv");
+    const Outcome from =
+        run_opaline({"relight", file, "--light", "studio", "--eye", "3,2,1", "-o", seen});
+    ASSERT_EQ(from.exit_code, 0) << from.err;
+    EXPECT_NE(read_text(small.path("seen-volumes.csv")), read_text(volumes));
+}
+
+TEST(VolumeFiles, TermsOfVolumesAreShownApart) {
+    SmallScene small;
+    const std::string file = write_asset(small, make_volume_asset());
+    for (const char* terms : {"volume-single", "volume-multiple", "diffuse"}) {
+        const Outcome outcome = run_opaline({"relight", file, "--light", "white", "--terms", terms,
+                                             "-o", small.path(terms + std::string(".csv"))});
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    }
+    const std::string single = read_text(small.path("volume-single-volumes.csv"));
+    EXPECT_NE(single, read_text(small.path("volume-multiple-volumes.csv")));
+    EXPECT_NE(single, read_text(small.path("diffuse-volumes.csv")));
+}
+
+TEST(VolumeFiles, OtherTablesSayThatVolumesAreMissing) {
+    SmallScene small;
+    formats::Asset asset = make_small_asset();
+    add_volume(asset, {});
+    const std::string file = write_asset(small, asset);
+    const Outcome outcome =
+        run_opaline({"relight", file, "--light", "white", "-o", small.path("o.ply")});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("only .csv"));
+}
+
+TEST(VolumeFiles, TheTableOfNodesDoesNotTakeTheOthersPlace) {
+    SmallScene small;
+    const std::string file = write_asset(small, make_volume_asset());
+    std::filesystem::create_symlink(small.path("o.csv"), small.path("o-volumes.csv"));
+    const Outcome outcome =
+        run_opaline({"relight", file, "--light", "white", "-o", small.path("o.csv")});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("the table of volumes"));
+}
+
+TEST(VolumeFiles, AreDrawnAlikeByOpenGlAndTheCpu) {
+    SmallScene small;
+    const std::string file = write_asset(small, make_volume_asset());
+    const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
+    for (const char* terms : {"all", "volume-multiple", "volume-single"}) {
+        for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
+            const Outcome drawn =
+                run_opaline({"render", file, "--light", "studio", "--terms", terms, "--backend",
+                             backend, "--size", "40x30", "-o", out});
+            ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+        }
+        const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "2e-3"});
+        EXPECT_EQ(same.exit_code, 0) << terms << "\n" << same.out;
+    }
+}
+
+TEST(VolumeFiles, InfoListsThem) {
+    SmallScene small;
+    const formats::Asset asset = make_volume_asset();
+    const std::string file = write_asset(small, asset);
+    const Outcome text = run_opaline({"info", file});
+    ASSERT_EQ(text.exit_code, 0) << text.err;
+    EXPECT_THAT(text.out, HasSubstr("active voxels"));
+    const auto info = nlohmann::json::parse(run_opaline({"info", file, "--json"}).out);
+    ASSERT_EQ(info["volumes"].size(), asset.volumes.records.size());
+    for (std::size_t v = 0; v < asset.volumes.records.size(); ++v) {
+        const formats::VolumeRecord& record = asset.volumes.records[v];
+        const auto& entry = info["volumes"][v];
+        EXPECT_EQ(entry["bricks"], record.brick_count);
+        EXPECT_EQ(entry["nodes"], record.node_count);
+        EXPECT_EQ(entry["spacing"], record.spacing);
+        EXPECT_EQ(entry["single_terms"], record.single_terms);
+        EXPECT_EQ(entry["multiple_terms"], record.multiple_terms);
+        EXPECT_EQ(entry["bands"], record.bands);
+        EXPECT_GT(entry["active_voxels"], 500 * record.brick_count);
+        EXPECT_GT(entry["bytes_per_active_voxel"], 2);
+    }
+}
+
+TEST(VolumeFiles, AnExampleIsBakedFromDensityToPicture) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run_opaline({"example", "cumulus", "-o", folder.path().string()}).exit_code, 0);
+    const std::string scene = (folder / "cumulus.json").string();
+    const std::string file = (folder / "c.opal").string(), again = (folder / "d.opal").string();
+    const std::string report = (folder / "report.json").string();
+    const Outcome bake = run_opaline({"bake", scene, "-o", file, "--quality", "draft",
+                                      "--volume-walks", "2", "--report", report});
+    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+    EXPECT_THAT(bake.err, HasSubstr("nodes in volumes"));
+    EXPECT_THAT(bake.err, HasSubstr("not measured: volume-single, volume-multiple"));
+    const auto json = nlohmann::json::parse(read_text(report));
+    ASSERT_EQ(json["plan"].size(), 2u);
+    EXPECT_EQ(json["plan"][1]["effect"], "volume-multiple");
+    EXPECT_EQ(json["plan"][1]["decision"], "on");
+    EXPECT_EQ(json["knobs"]["volume_walks"], 2);
+
+    ASSERT_EQ(run_opaline({"bake", scene, "-o", again, "--quality", "draft", "--volume-walks", "2",
+                           "--threads", "1"})
+                  .exit_code,
+              0);
+    EXPECT_EQ(read_text(file), read_text(again));
+    EXPECT_EQ(run_opaline({"verify", file}).exit_code, 0);
+
+    // Nothing is absorbed, or nearly: under even light the cloud is as bright as the sky.
+    const std::string picture = (folder / "p.exr").string();
+    const Outcome render = run_opaline(
+        {"render", file, "--light", "white", "--backend", "cpu", "--size", "32x24", "-o", picture});
+    ASSERT_EQ(render.exit_code, 0) << render.err;
+    const auto seen = formats::read_exr(picture);
+    ASSERT_TRUE(seen);
+    for (const formats::Rgb& pixel : seen->pixel) {
+        EXPECT_NEAR(pixel.g, 1, 0.12);
+    }
+}
+
+TEST(VolumeFiles, SmokeDimsWhatStandsBehindIt) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run_opaline({"example", "smoke", "-o", folder.path().string()}).exit_code, 0);
+    // The same scene without its volume, which stands in an extension.
+    std::string text = read_text((folder / "smoke.gltf").string());
+    for (auto at = text.find("OPALINE_media"); at != std::string::npos;
+         at = text.find("OPALINE_media")) {
+        text.replace(at, 13, "OPALINE_other");
+    }
+    std::ofstream(folder / "clear.gltf") << text;
+    const auto brightness = [&](const char* scene) {
+        const std::string file = (folder / "s.opal").string(), out = (folder / "s.csv").string();
+        const Outcome bake = run_opaline({"bake", (folder / scene).string(), "-o", file,
+                                          "--quality", "draft", "--volume-walks", "2"});
+        EXPECT_EQ(bake.exit_code, 0) << bake.err;
+        EXPECT_EQ(run_opaline({"relight", file, "--light", "white", "-o", out}).exit_code, 0);
+        double sum = 0;
+        std::stringstream lines(read_text(out));
+        std::string line;
+        std::getline(lines, line);
+        while (std::getline(lines, line)) {
+            sum += std::stod(line.substr(line.rfind(',') + 1));
+        }
+        return sum;
+    };
+    const double behind = brightness("smoke.gltf"), clear = brightness("clear.gltf");
+    EXPECT_LT(behind, 0.98 * clear);
+    EXPECT_GT(behind, 0.3 * clear);
+}
+
+}  // namespace
+}  // namespace opaline::tests

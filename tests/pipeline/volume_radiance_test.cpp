@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "bake/volumes/bake_volumes.h"
+#include "bake/volumes/volume_knobs.h"
+#include "formats/opal/cubemap.h"
+#include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/volume_march.h"
+#include "tests/bake/volumes/volume_support.h"
+#include "tests/support/volume_table.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Vec3;
+
+formats::Vec3 vector_of(const tests::VolumeRow& row, const char* x, const char* y, const char* z) {
+    return {static_cast<float>(row.number_or_zero(x)), static_cast<float>(row.number_or_zero(y)),
+            static_cast<float>(row.number_or_zero(z))};
+}
+
+// Light of unit irradiance from the texel around a direction.
+runtime::LightVector beam(Vec3 toward, std::uint32_t n) {
+    std::vector<double> integral(std::size_t{3} * formats::cubemap_texels(n));
+    const std::size_t texel = formats::texel_index(n, toward);
+    for (std::size_t band = 0; band < 3; ++band) {
+        integral[3 * texel + band] = 1;
+    }
+    return runtime::make_light_vector(integral, n);
+}
+
+// A volume of a row, its file and the ray of the row.
+struct BakedRow {
+    formats::Volumes volumes;
+    runtime::MarchRay ray;
+};
+
+BakedRow bake_row(const tests::VolumeRow& row, const Knobs& knobs) {
+    const double size = row.number("size");
+    const bool is_ball = row.cell.at("geometry") == "sphere";
+    const formats::Scene scene = tests::scene_of(tests::make_volume(
+        is_ball ? tests::make_ball_grid(size, size / 12) : tests::make_blob(size, size / 8),
+        static_cast<float>(row.number("sigma_t")), static_cast<float>(row.number("albedo")),
+        static_cast<float>(row.number("g"))));
+    const VolumePlan plan = plan_volumes(scene, knobs);
+    const RayScene sky = tests::empty_space();
+    StageLog log;
+    auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
+    EXPECT_TRUE(volumes.has_value());
+    BakedRow baked;
+    baked.volumes = std::move(*volumes);
+    // From well outside: an edge of a grid is a voxel wide.
+    const Vec3 along = vector_of(row, "vx", "vy", "vz");
+    baked.ray.direction = along;
+    baked.ray.origin = vector_of(row, "px", "py", "pz") - static_cast<float>(size) * along;
+    return baked;
+}
+
+Knobs fine_knobs() {
+    Knobs knobs = tests::knobs_for(Quality::production);
+    knobs.cubemap_size = 16;
+    knobs.set(kVolumeSpacing, 1);
+    knobs.set(kVolumeWalks, 16);  // a ray sees hundreds of nodes
+    knobs.set(kVolumeTerms, 25);
+    return knobs;
+}
+
+double march(const BakedRow& baked, const runtime::LightVector& light, bool with_sky) {
+    const runtime::VolumeLight lit = runtime::relight_volumes(baked.volumes.view(), light);
+    const runtime::LitVolumes volumes = runtime::light_volumes(baked.volumes.view(), lit);
+    const runtime::MarchResult seen = runtime::march_volumes(volumes, baked.ray);
+    return static_cast<double>(seen.radiance.g + (with_sky ? seen.transmittance.g : 0));
+}
+
+// Rows by geometry, medium and ray: the values that belong together, by quantity.
+struct Group {
+    tests::VolumeRow row;
+    std::map<std::string, double> value;
+};
+
+std::vector<Group> groups_of(const std::string& name) {
+    std::vector<Group> groups;
+    for (const tests::VolumeRow& row : tests::read_volume_table()) {
+        const std::string& geometry = row.cell.at("geometry");
+        if (row.cell.at("group") != name || (geometry != "sphere" && geometry != "blob")) {
+            continue;
+        }
+        const auto same = [&](const Group& group) {
+            for (const char* column : {"geometry", "g", "albedo", "sigma_t", "size", "px", "py",
+                                       "pz", "vx", "vy", "vz", "lx", "ly", "lz"}) {
+                if (group.row.cell.at(column) != row.cell.at(column)) {
+                    return false;
+                }
+            }
+            return true;
+        };
+        auto at = std::ranges::find_if(groups, same);
+        if (at == groups.end()) {
+            at = groups.insert(at, {row, {}});
+        }
+        at->value[row.cell.at("quantity")] = row.value();
+    }
+    return groups;
+}
+
+TEST(VolumeRadiance, BallsAndBlobsUnderEvenLightLetAsMuchThroughAsMonteCarloSays) {
+    const std::vector<Group> groups = groups_of("escape");
+    ASSERT_FALSE(groups.empty());
+    runtime::LightVector white = runtime::project_cubemap(
+        std::vector<formats::Rgb>(formats::cubemap_texels(16), {1, 1, 1}), 16);
+    for (const Group& group : groups) {
+        double expected = 0;
+        for (const auto& [quantity, value] : group.value) {
+            expected += quantity == "exit_back" || quantity == "exit_forward" ? value : 0;
+        }
+        const double found = march(bake_row(group.row, fine_knobs()), white, true);
+        EXPECT_NEAR(found, expected, 0.02) << group.row.id();
+    }
+}
+
+TEST(VolumeRadiance, ABeamIsScatteredAsMonteCarloSays) {
+    const std::vector<Group> groups = groups_of("radiance");
+    ASSERT_FALSE(groups.empty());
+    for (const Group& group : groups) {
+        const double expected = group.value.at("order1") + group.value.at("order2plus");
+        const double found = march(bake_row(group.row, fine_knobs()),
+                                   beam(vector_of(group.row, "lx", "ly", "lz"), 16), false);
+        // Beyond g = 0.75 a polynomial of degree 4 does not hold the phase function (README).
+        const double tolerance = group.row.number("g") > 0.75 ? 0.3 : 0.06;
+        EXPECT_NEAR(found, expected, tolerance * expected) << group.row.id();
+        std::printf("%s g %g: %.4f of %.4f\n", group.row.id().c_str(), group.row.number("g"), found,
+                    expected);
+    }
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,242 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runtime/gl/gl_renderer.h"
+#include "runtime/gl/gl_volumes.h"
+#include "runtime/picture/software_renderer.h"
+#include "runtime/shade.h"
+#include "tests/runtime/gl/gl_comparison.h"
+#include "tests/runtime/picture/synthetic_asset.h"
+#include "tests/runtime/volumes/synthetic_volume.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Asset;
+using formats::Rgb;
+using formats::TermSet;
+using test::Gl;
+using test::text_of;
+
+constexpr std::uint32_t kSize = 8;
+
+// Different at each node, in each direction and band.
+formats::SparseRow varied_row(formats::NodeVoxel node, std::uint32_t k, std::uint32_t bands) {
+    const float at = 0.3f * static_cast<float>(node[0]) + 0.2f * static_cast<float>(node[1]) -
+                     0.1f * static_cast<float>(node[2]) + static_cast<float>(k);
+    const float mean = (k < 2 ? 0.6f : 0.1f) + 0.2f * std::sin(at);
+    formats::SparseRow row = test::constant_row(kSize, mean, bands);
+    row.index = {1, 2 * kSize * kSize + 1, 5 * kSize * kSize + kSize};
+    for (std::size_t i = 0; i < row.index.size() * bands; ++i) {
+        row.value.push_back(0.8f * std::cos(at + static_cast<float>(i)));
+    }
+    return row;
+}
+
+// About 1.6 m wide around the origin, with hollows, a missing brick and one at a table's edge.
+test::TestVolume smoke(std::uint32_t spacing, std::uint32_t single, std::uint32_t multiple,
+                       std::uint32_t bands = 1) {
+    test::TestVolume volume;
+    volume.first_brick = {-2, -2, -2};
+    volume.extent = {4, 4, 4};
+    volume.to_world = {0.05f, 0, 0, 0, 0, 0.05f, 0, 0, 0, 0, 0.05f, 0};
+    volume.sigma_t = {1, 2, 4};
+    volume.albedo = {0.9f, 0.8f, 0.7f};
+    volume.spacing = spacing;
+    volume.single_terms = single;
+    volume.multiple_terms = multiple;
+    volume.bands = bands;
+    volume.moment = {1, 0.6f, 0.4f, 0.2f, 0.1f};
+    volume.density = [](float x, float y, float z) {
+        const float bumps = 1 + 0.4f * std::sin(0.7f * x) * std::cos(0.5f * y) * std::sin(0.6f * z);
+        const float ball = std::max(0.0f, 1 - (x * x + y * y + z * z) / 220);
+        return x > 0 && y < -4 && z > 4 ? 0 : bumps * ball;
+    };
+    volume.rows = [single, multiple, bands](formats::NodeVoxel node) {
+        std::vector<formats::SparseRow> rows;
+        for (std::uint32_t k = 0; k < 1 + multiple; ++k) {
+            rows.push_back(varied_row(node, k, bands));
+        }
+        return rows;
+    };
+    return volume;
+}
+
+// Sheared, stretched and moved.
+test::TestVolume slanted() {
+    test::TestVolume volume = smoke(4, 4, 1, 3);
+    volume.to_world = {0.06f, 0.02f, 0, 0.3f, 0, 0.03f, 0.01f, 0.1f, 0.01f, 0, -0.08f, -0.2f};
+    volume.sigma_t = {3, 2, 1};
+    return volume;
+}
+
+Asset volumes_alone(const std::vector<test::TestVolume>& volumes) {
+    Asset asset = test::make_asset(kSize, 16);
+    asset.volumes = test::make_volumes(kSize);
+    for (const test::TestVolume& volume : volumes) {
+        test::add_volume(asset.volumes, volume);
+    }
+    return asset;
+}
+
+// With a tilted sheet that cuts through the middle.
+Asset volumes_and_sheet(const std::vector<test::TestVolume>& volumes) {
+    Asset asset = volumes_alone(volumes);
+    test::add_primitive(asset,
+                        test::make_sheet({0, 0, 0.1f}, {0.5f, 0, 0.4f}, {0, 0.4f, 0.2f}, 2, 1),
+                        {.bands = 1, .details = 20});
+    return asset;
+}
+
+Camera camera() {
+    Camera at;
+    at.eye = {0.7f, 0.6f, 3.5f};
+    at.width = 90;
+    at.height = 70;
+    at.fov_y = 35;
+    at.near_plane = 0.1f;
+    return at;
+}
+
+const formats::Environment kSky = test::make_lat_long(64, 32, test::two_lights);
+
+Picture draw_on_cpu(const Asset& asset, const Camera& camera, const GlRenderOptions& options) {
+    const auto view = asset.view();
+    const LightVector light = project_environment(kSky, kSize);
+    formats::Vec3 eye = camera.eye;
+    const auto radiance = shade_for_picture(view, light, eye, options.terms, 0);
+    const VolumeLight volumes = relight_volumes(view.volumes, light, {.terms = options.terms});
+    SoftwareOptions software;
+    software.supersampling = options.supersampling;
+    software.background = options.background;
+    software.volumes = &volumes;
+    auto picture = render_software(view, radiance, kSky, {}, camera, software);
+    EXPECT_TRUE(picture.has_value());
+    return std::move(picture).value();
+}
+
+GlRenderer lit_renderer(const Asset& asset) {
+    auto renderer = GlRenderer::create(asset.view(), kSky);
+    EXPECT_TRUE(renderer.has_value()) << text_of(renderer.error());
+    EXPECT_TRUE(renderer->set_light(project_environment(kSky, kSize), {}));
+    return std::move(renderer).value();
+}
+
+void expect_agreement(const Asset& asset, const Camera& camera,
+                      const GlRenderOptions& options = {}) {
+    GlRenderer renderer = lit_renderer(asset);
+    const auto gl = renderer.render(camera, options);
+    ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
+    test::expect_same_picture(draw_on_cpu(asset, camera, options), *gl);
+}
+
+TEST_F(Gl, VolumesAloneAgreeForEverySpacingAndNumberOfTerms) {
+    for (const auto& volume :
+         {smoke(8, 25, 9), smoke(8, 16, 0, 3), smoke(4, 9, 16), smoke(2, 4, 4, 3), smoke(1, 1, 1),
+          smoke(8, 0, 25), smoke(4, 0, 0)}) {
+        SCOPED_TRACE(testing::Message() << "spacing " << volume.spacing << ", terms "
+                                        << volume.single_terms << " and " << volume.multiple_terms);
+        expect_agreement(volumes_alone({volume}), camera());
+    }
+}
+
+TEST_F(Gl, ASheetInsideAVolumeCutsItAsOnTheCpu) {
+    const Asset asset = volumes_and_sheet({smoke(4, 9, 4)});
+    for (const bool background : {true, false}) {
+        for (const std::uint32_t samples : {1u, 3u}) {
+            expect_agreement(asset, camera(), {.supersampling = samples, .background = background});
+        }
+    }
+}
+
+TEST_F(Gl, OverlappingAndSlantedVolumesAgree) {
+    expect_agreement(volumes_alone({slanted()}), camera());
+    expect_agreement(volumes_alone({smoke(8, 9, 4), slanted()}), camera(), {.background = false});
+    expect_agreement(volumes_and_sheet({slanted(), smoke(2, 1, 0), smoke(8, 4, 0, 3)}), camera());
+}
+
+TEST_F(Gl, VolumesAgreeFromInsideAndAtAnyScale) {
+    Camera inside = camera();
+    inside.eye = {0.1f, 0.05f, 0.2f};
+    inside.target = {-1, 0.3f, -0.4f};
+    inside.fov_y = 80;
+    inside.near_plane = 1e-3f;
+    expect_agreement(volumes_and_sheet({smoke(8, 9, 4)}), inside);
+    for (const float scale : {1e-9f, 1e9f}) {
+        test::TestVolume volume = slanted();
+        for (float& entry : volume.to_world) {
+            entry *= scale;
+        }
+        volume.sigma_t = 1 / scale * volume.sigma_t;
+        const Asset asset = volumes_alone({volume});
+        expect_agreement(asset, frame_asset(asset.view(), 40, 60, 50));
+    }
+}
+
+TEST_F(Gl, TermsOfVolumesAreShownApart) {
+    const Asset asset = volumes_and_sheet({smoke(8, 9, 4), slanted()});
+    GlRenderer renderer = lit_renderer(asset);
+    for (const TermSet terms : {TermSet::volume_single, TermSet::volume_multiple, TermSet::diffuse,
+                                TermSet::all, TermSet::volume_multiple | TermSet::diffuse}) {
+        const GlRenderOptions options{.terms = terms, .background = false};
+        const auto gl = renderer.render(camera(), options);
+        ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
+        test::expect_same_picture(draw_on_cpu(asset, camera(), options), *gl);
+    }
+}
+
+TEST_F(Gl, VolumesDoNotDependOnTiles) {
+    const Asset asset = volumes_and_sheet({smoke(8, 9, 4)});
+    GlRenderer renderer = lit_renderer(asset);
+    const auto whole = renderer.render(camera());
+    const auto tiles = renderer.render(camera(), {.max_tile_samples = 96});
+    ASSERT_TRUE(whole && tiles);
+    test::expect_same_picture(*whole, *tiles);
+}
+
+TEST_F(Gl, WithoutALightVolumesOnlyAbsorb) {
+    const Asset asset = volumes_alone({smoke(8, 4, 4)});
+    auto renderer = GlRenderer::create(asset.view(), kSky);
+    ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
+    const auto black = renderer->render(camera(), {.background = false});
+    const auto sky = renderer->render(camera());
+    ASSERT_TRUE(black && sky);
+    EXPECT_TRUE(std::ranges::all_of(black->pixel, [](Rgb c) { return c == Rgb{}; }));
+    EXPECT_LT(sky->pixel[sky->pixel.size() / 2 + 45].b, 0.3f * sky->pixel[0].b);
+}
+
+TEST_F(Gl, DamagedVolumesNeverReachThePicture) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    Asset asset = volumes_alone({smoke(8, 9, 4), slanted()});
+    asset.volumes.rows.average_scale[3] = nan;
+    asset.volumes.rows.average_scale[7] = 3e38f;
+    asset.volumes.density_scale[1] = 3e38f;
+    asset.volumes.density_scale[2] = nan;
+    asset.volumes.records[1].to_world = {1e-30f, 0, 0, 0, 0, 1e-30f, 0, 0, 0, 0, 1e-30f, 0};
+    GlRenderer renderer = lit_renderer(asset);
+    const auto picture = renderer.render(camera());
+    ASSERT_TRUE(picture.has_value());
+    for (const Rgb pixel : picture->pixel) {
+        for (const float value : {pixel.r, pixel.g, pixel.b}) {
+            EXPECT_TRUE(std::isfinite(value) && value >= 0);
+        }
+    }
+}
+
+TEST_F(Gl, VolumesBeyondTheLimitsAreRefusedWithTheReason) {
+    const Asset asset = volumes_alone({smoke(8, 4, 4)});
+    const auto too_small = GlRenderer::create(asset.view(), kSky, {.max_block_bytes = 4096});
+    ASSERT_FALSE(too_small.has_value());
+    EXPECT_EQ(too_small.error().kind, formats::ErrorKind::resource);
+    EXPECT_NE(text_of(too_small.error()).find("density"), std::string::npos);
+    const auto too_many = GlRenderer::create(
+        volumes_alone(std::vector(kMaxGlVolumes + 1, smoke(8, 0, 0))).view(), kSky);
+    ASSERT_FALSE(too_many.has_value());
+    EXPECT_EQ(too_many.error().kind, formats::ErrorKind::resource);
+}
+
+}  // namespace
+}  // namespace opaline::runtime

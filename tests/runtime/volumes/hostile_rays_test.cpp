@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "runtime/volumes/volume_bounds.h"
+#include "runtime/volumes/volume_march.h"
+#include "tests/runtime/volumes/synthetic_volume.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Rgb;
+using formats::Vec3;
+using test::TestVolume;
+
+constexpr std::uint32_t kSize = 8;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TestVolume full(std::array<float, 12> to_world) {
+    TestVolume volume;
+    volume.first_brick = {-2, -2, -2};
+    volume.extent = {4, 4, 4};
+    volume.single_terms = 4;
+    volume.moment = {1, 0.5f, 0, 0, 0};
+    volume.sigma_t = {0.1f, 3, 1e30f};
+    volume.to_world = to_world;
+    volume.density = [](float, float, float) { return 1.0f; };
+    return volume;
+}
+
+void expect_sound(const LitVolumes& lit, const MarchRay& ray) {
+    const MarchResult seen = march_volumes(lit, ray);
+    for (const Rgb c : {seen.radiance, seen.transmittance}) {
+        for (const float x : {c.r, c.g, c.b}) {
+            ASSERT_TRUE(std::isfinite(x) && x >= 0);
+        }
+    }
+    ASSERT_LE(seen.transmittance.r, 1);
+    ASSERT_FALSE(std::isnan(volumes_end(lit, ray)));
+}
+
+TEST(HostileRays, GiveFiniteValuesInNoTime) {
+    formats::Volumes volumes = test::make_volumes(kSize);
+    test::add_volume(volumes, full({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}));
+    test::add_volume(volumes, full({1e-30f, 0, 0, 0, 0, 1e-30f, 0, 0, 0, 0, 1e-30f, 0}));
+    test::add_volume(volumes, full({1e30f, 0, 0, 1e38f, 0, 1, 0, 0, 0, 0, 1e-30f, 3}));
+    test::add_volume(volumes, full({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+    test::add_volume(volumes, full({1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0}));
+    const auto view = volumes.view();
+    const VolumeLight light = relight_volumes(view, test::white_light(kSize));
+    const LitVolumes lit = light_volumes(view, light);
+    EXPECT_EQ(lit.entry.size(), 3u);  // two have no inverse
+
+    const auto start = std::chrono::steady_clock::now();
+    const float values[] = {0, -0.0f, 1, -16, 16, 1e-40f, 1e-30f, -1e20f, 3e38f, -3e38f};
+    const float directions[] = {0, -0.0f, 1, -1, 1e-40f, 0.6f};
+    std::mt19937 generator(3);
+    const auto pick = [&](const auto& from) { return from[generator() % std::size(from)]; };
+    const double ends[] = {0, -5, 1e-300, 3, 16, 1e30, 1e300, kInfinity};
+    for (int i = 0; i < 20000; ++i) {
+        expect_sound(lit, {{pick(values), pick(values), pick(values)},
+                           {pick(directions), pick(directions), pick(directions)},
+                           pick(ends),
+                           pick(ends)});
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    EXPECT_LT(seconds.count(), 20);
+}
+
+TEST(HostileRays, NothingIsMetBetweenAnEndBeforeItsBeginOrWithoutDirection) {
+    formats::Volumes volumes = test::make_volumes(kSize);
+    test::add_volume(volumes, full({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}));
+    const auto view = volumes.view();
+    const VolumeLight light = relight_volumes(view, test::white_light(kSize));
+    const LitVolumes lit = light_volumes(view, light);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const MarchRay& ray :
+         {MarchRay{{0, 0, 0}, {1, 0, 0}, 5, 3}, MarchRay{{0, 0, 0}, {1, 0, 0}, 5, 5},
+          MarchRay{{0, 0, 0}, {0, 0, 0}}, MarchRay{{0, 0, 0}, {1, 0, 0}, nan},
+          MarchRay{{0, 0, 0}, {1, 0, 0}, 0, nan}}) {
+        const MarchResult seen = march_volumes(lit, ray);
+        EXPECT_EQ(seen.radiance, Rgb{});
+        EXPECT_EQ(seen.transmittance, (Rgb{1, 1, 1}));
+    }
+}
+
+TEST(HostileRays, ABoxSeenAlongItsFacesAndEdges) {
+    formats::Volumes volumes = test::make_volumes(kSize);
+    test::add_volume(volumes, full({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}));
+    const auto view = volumes.view();
+    const VolumeLight light = relight_volumes(view, test::white_light(kSize));
+    const LitVolumes lit = light_volumes(view, light);
+    // Along faces between bricks the density is 1 all the same.
+    for (const float at : {-8.0f, 0.0f, 8.0f, 0.5f}) {
+        const MarchResult seen = march_volumes(lit, {{at, at, -100}, {0, 0, 1}, 0, 115});
+        EXPECT_NEAR(seen.transmittance.r, std::exp(-3.1), 1e-5);
+    }
+    const float d = 1 / std::sqrt(3.0f);
+    const MarchResult corner = march_volumes(lit, {{-116, -116, -116}, {d, d, d}});
+    EXPECT_LT(corner.transmittance.r, std::exp(-0.1 * 31 * std::sqrt(3.0)));
+}
+
+TEST(VolumeBounds, EncloseTheDensityAndNotTheTable) {
+    formats::Volumes volumes = test::make_volumes(kSize);
+    TestVolume volume = full({2, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0});
+    volume.density = [](float x, float y, float z) { return x > 0 && y < 0 && z < -8 ? 1.0f : 0; };
+    test::add_volume(volumes, volume);
+    const auto corners = volume_corners(volumes.view());
+    ASSERT_EQ(corners.size(), 8u);
+    EXPECT_EQ(corners.front(), (Vec3{1, -17, -17}));
+    EXPECT_EQ(corners.back(), (Vec3{33, 0, -8}));
+    EXPECT_TRUE(volume_corners({}).empty());
+}
+
+}  // namespace
+}  // namespace opaline::runtime

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "formats/opal/volumes.h"
+#include "runtime/light_vector.h"
+
+namespace opaline::test {
+
+/// How a volume is made for a test.
+struct TestVolume {
+    std::array<std::int32_t, 3> first_brick{};
+    std::array<std::uint32_t, 3> extent{1, 1, 1};
+    std::array<float, 12> to_world{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    formats::Rgb sigma_t{1, 1, 1}, albedo{1, 1, 1};
+    std::uint32_t spacing = 8;
+    std::uint32_t single_terms = 0, multiple_terms = 0, bands = 1;
+    std::array<float, formats::kMaxVolumeMoments> moment{1, 0, 0, 0, 0};
+    /// Density at index coordinates; bricks where it is 0 at every voxel are left out.
+    std::function<float(float, float, float)> density;
+    /// Rows of the node in a voxel, terms() of them; without it V = 1 and T_k = 0.
+    std::function<std::vector<formats::SparseRow>(formats::NodeVoxel)> rows;
+};
+
+/// No volumes yet, light on a cube map of n x n texels, 16-bit codes.
+formats::Volumes make_volumes(std::uint32_t n);
+
+void add_volume(formats::Volumes& volumes, const TestVolume& volume);
+
+/// A row that is the same value in each direction and band.
+formats::SparseRow constant_row(std::uint32_t n, float value, std::uint32_t bands = 1);
+
+/// Radiance 1 from everywhere.
+runtime::LightVector white_light(std::uint32_t n);
+
+/// One texel of radiance `radiance`, black elsewhere.
+runtime::LightVector texel_light(std::uint32_t n, std::uint32_t texel, formats::Rgb radiance);
+
+}  // namespace opaline::test
