@@ -21,16 +21,17 @@ double least_bound(const Knobs& knobs) {
     return knobs.error_target > 0 ? std::min(kLeastBound, knobs.error_target / 8) : kLeastBound;
 }
 
-// Bands of multiple scattering above degree n add at most lambda^2 of what degree 0 does.
+// Light that was scattered before reaches a node nearly from all around, but for its edge: degree l
+// of what it scatters is at most lambda_l of that.
 std::uint32_t choose_terms(const ScaledPhase& phase, const Knobs& knobs) {
     if (const double given = knobs[kVolumeTerms]; given > 0) {
         return std::min(static_cast<std::uint32_t>(given), phase.harmonics());
     }
-    constexpr std::array<double, 4> kTolerance{0.2, 0.1, 0.05, 0.0};
+    constexpr std::array<double, 4> kTolerance{0.3, 0.2, 0.05, 0.0};
     const double tolerance = kTolerance[static_cast<std::size_t>(knobs.quality)];
     std::uint32_t degree = 0;
     for (unsigned l = 1; l <= phase.degree; ++l) {
-        degree = phase.lambda[l] * phase.lambda[l] > tolerance ? l : degree;
+        degree = std::abs(phase.lambda[l]) > tolerance ? l : degree;
     }
     return (degree + 1) * (degree + 1);
 }
