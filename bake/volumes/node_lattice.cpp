@@ -55,7 +55,10 @@ bool touches_density(const std::vector<bool>& has, glm::ivec3 corner, int cells)
     for (int c = 0; c < 8; ++c) {
         const glm::ivec3 at = corner - glm::ivec3(c & 1, c >> 1 & 1, c >> 2);
         if (at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < cells && at.y < cells && at.z < cells &&
-            has[static_cast<std::size_t>((at.z * cells + at.y) * cells + at.x)]) {
+            has[(static_cast<std::size_t>(at.z) * static_cast<std::size_t>(cells) +
+                 static_cast<std::size_t>(at.y)) *
+                    static_cast<std::size_t>(cells) +
+                static_cast<std::size_t>(at.x)]) {
             return true;
         }
     }

@@ -38,6 +38,7 @@ std::vector<float> make_cumulative(const ScaledPhase& phase) {
         sum[i + 1] = sum[i] + p;
     }
     std::vector<float> cumulative;
+    cumulative.reserve(sum.size());
     for (const double s : sum) {
         cumulative.push_back(static_cast<float>(s / sum.back()));
     }

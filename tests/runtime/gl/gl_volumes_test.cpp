@@ -55,7 +55,7 @@ test::TestVolume smoke(std::uint32_t spacing, std::uint32_t single, std::uint32_
         const float ball = std::max(0.0f, 1 - (x * x + y * y + z * z) / 220);
         return x > 0 && y < -4 && z > 4 ? 0 : bumps * ball;
     };
-    volume.rows = [single, multiple, bands](formats::NodeVoxel node) {
+    volume.rows = [multiple, bands](formats::NodeVoxel node) {
         std::vector<formats::SparseRow> rows;
         for (std::uint32_t k = 0; k < 1 + multiple; ++k) {
             rows.push_back(varied_row(node, k, bands));
