@@ -15,7 +15,7 @@
 namespace opaline::runtime {
 
 /// Every pixel keeps the registers of all of them, and the first picture waits for the driver to
-/// compile: on llvmpipe 1.5 s for one, 5 s for four, 50 s for sixteen.
+/// compile: on llvmpipe some seconds for one, 5 to 12 s for four, 50 s for sixteen.
 inline constexpr std::size_t kMaxGlVolumes = 4;
 
 /// An asset's volumes on the GPU. Their dot products stay on the CPU, which keeps the rows.
