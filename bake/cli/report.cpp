@@ -198,10 +198,14 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
         }
         table += "\n";
     }
-    return table + fmt::format("predicted: {} on {}, {}, {} receivers, {} of memory\n",
+    const bool has_volumes = std::ranges::any_of(plan, [](const bake::PlanEntry& entry) {
+        return entry.on && entry.subject.kind == bake::Subject::Kind::volume;
+    });
+    return table + fmt::format("predicted: {} on {}, {}, {} receivers, {} of memory{}\n",
                                format_seconds(cost.seconds),
                                threads == 1 ? "1 thread" : fmt::format("{} threads", threads),
-                               bytes(cost.bytes), cost.receivers, bytes(cost.memory_bytes));
+                               bytes(cost.bytes), cost.receivers, bytes(cost.memory_bytes),
+                               has_volumes ? "; without the volumes, which are not predicted" : "");
 }
 
 std::string make_depfile(const std::filesystem::path& output,

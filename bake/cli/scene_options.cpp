@@ -84,7 +84,10 @@ void add_knob_option(CLI::App& command, const bake::KnobSpec& knob, bake::BakeOp
 }  // namespace
 
 void add_subject_options(CLI::App& command, SceneOptions& options) {
-    command.add_option("scene", options.scene, "the scene, .gltf or .glb")
+    command
+        .add_option("scene", options.scene,
+                    "the scene: .gltf or .glb; .vdb for a volume alone; .json for the volumes of a "
+                    "media file alone")
         ->required()
         ->option_text("SCENE");
     command

@@ -89,7 +89,6 @@ Place find_place(const VolumeJob& job, const Nodes& nodes, std::size_t number) {
 // V of a node: its row, and its depths toward the coarse cells.
 struct Lit {
     SparseRow row;
-    double energy = 0;
     std::vector<float> coarse;  // band after band
 };
 
@@ -111,8 +110,8 @@ Lit light_node(const VolumeJob& job, const Nodes& nodes, const Place& place, std
         fine.insert(fine.end(), fine.begin(), fine.begin() + static_cast<std::ptrdiff_t>(cells));
     }
     const auto row_bands = static_cast<std::uint32_t>(nodes.space.bands());
-    lit.energy = row_energy(fine, nodes.fine.n, job.knobs.cubemap_size) / row_bands;
-    lit.row = encode_node_row(nodes.encoder, fine, nodes.fine.n, row_bands, lit.energy);
+    const double energy = row_energy(fine, nodes.fine.n, job.knobs.cubemap_size) / row_bands;
+    lit.row = encode_node_row(nodes.encoder, fine, nodes.fine.n, row_bands, energy);
     return lit;
 }
 

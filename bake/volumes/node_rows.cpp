@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <limits>
 
 #include "bake/volumes/light_cells.h"
 #include "formats/opal/cubemap.h"
@@ -10,7 +10,8 @@
 namespace opaline::bake {
 namespace {
 
-// The smallest coefficient to keep, so that the squares of all smaller ones add up to `lost`.
+// The smallest coefficient to keep, so that the squares of all smaller ones add up to `lost` at
+// most; infinite if none need be kept.
 float find_threshold(std::span<const float> coefficients, double lost) {
     std::vector<float> size;
     for (const float c : coefficients) {
@@ -26,7 +27,7 @@ float find_threshold(std::span<const float> coefficients, double lost) {
             return s;
         }
     }
-    return 0;
+    return std::numeric_limits<float>::infinity();
 }
 
 }  // namespace
