@@ -51,7 +51,7 @@ inline constexpr KnobSpec kVolumeCoefficients{
         "included; default as the quality says",
     .lowest = 7,
     .highest = 1536,
-    .preset = {32, 48, 96, 1536},
+    .preset = {24, 32, 96, 1536},
     .matters = volume_knobs::is_lit,
     .why_idle = volume_knobs::kWhyDark};
 
