@@ -144,9 +144,9 @@ TEST(VolumePicture, AnAssetOfVolumesAloneIsFramedAndDrawn) {
     test::add_volume(asset.volumes, smoke());
     const auto view = asset.view();
     const BoundingSphere bound = bound_asset(view);
-    // From a voxel below the lowest one to a voxel above the highest.
-    EXPECT_NEAR(bound.x, -0.05, 1e-6);
-    EXPECT_NEAR(bound.radius, 0.85 * std::sqrt(3.0), 1e-5);
+    // Density stands at voxels 2 to 30; the box goes from voxel 1 to voxel 31.
+    EXPECT_NEAR(bound.x, 0, 1e-6);
+    EXPECT_NEAR(bound.radius, 0.75 * std::sqrt(3.0), 1e-5);
     EXPECT_EQ(bound_object(view).radius, bound.radius);
     const Camera framed = frame_asset(view, 40, kWidth, kHeight);
     const VolumeLight light = relight_volumes(view.volumes, test::white_light(kSize));
@@ -167,7 +167,7 @@ TEST(VolumePicture, AGroundThatDwarfsTheSmokeDoesNotCount) {
     test::add_bare_primitive(asset, test::make_sheet({0, -1, 0}, {0, 0, 20}, {20, 0, 0}, 1, 1));
     asset.volumes = test::make_volumes(kSize);
     test::add_volume(asset.volumes, smoke());
-    EXPECT_NEAR(bound_object(asset.view()).radius, 0.85 * std::sqrt(3.0), 1e-5);
+    EXPECT_NEAR(bound_object(asset.view()).radius, 0.75 * std::sqrt(3.0), 1e-5);
     EXPECT_GT(bound_asset(asset.view()).radius, 20);
 }
 
