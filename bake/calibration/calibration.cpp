@@ -8,6 +8,7 @@
 
 #include "bake/calibration/bench/calibration_bench.h"
 #include "bake/calibration/bench/stopwatch.h"
+#include "bake/calibration/traced_collision.h"
 #include "bake/encode/select_coefficients.h"
 #include "bake/plan/stage_work.h"
 #include "bake/scattering/half_space_medium.h"
@@ -128,6 +129,7 @@ Rates measure_all(const EffectTable& effects, std::span<const TestLight> lights,
             watch.restart();
             inspect_scene(bench.scene);
             rates.plan_triangle = watch.seconds() / bench.triangles;
+            rates.traced_collision = measure_traced_collision();
             rates.crowding = measure_crowding(bench, threads);
         }
     }

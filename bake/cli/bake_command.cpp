@@ -67,6 +67,16 @@ void print_summary(const Options& options, const bake::BakeResult& result, std::
                                 100 * mirrored->ci95[1]);
         }
     }
+    if (const auto& volumes = result.volume_error) {
+        line += fmt::format("; volumes err by {:.1f} % (95 %: {:.1f} to {:.1f}",
+                            100 * volumes->rms_relative, 100 * volumes->ci95[0],
+                            100 * volumes->ci95[1]);
+        for (const bake::VolumeErrorReport::Part& part : volumes->by_light) {
+            line += fmt::format("{} {} {:.1f} %", &part == &volumes->by_light.front() ? ";" : ",",
+                                part.name, 100 * part.rms_relative);
+        }
+        line += ")";
+    }
     line += warnings == 0   ? ""
             : warnings == 1 ? "; 1 warning"
                             : "; " + std::to_string(warnings) + " warnings";
@@ -122,7 +132,7 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
     const bake::EffectTable& effects = bake::all_effects();
     const bake::CostRequest used{effects,      scene,         result.facts,
                                  result.knobs, machine.rates, result.threads};
-    bake::predict_costs(used, result.plan);
+    bake::predict_costs(used, result.plan, result.volume_plan);
     bake::predict_savings(used, result.plan);
     std::vector<bake::PlanEntry> first = bake::plan_bake(effects, scene, result.facts, wanted);
     bake::Knobs budget = wanted;
@@ -222,9 +232,11 @@ void add_bake_command(CLI::App& app, Job& job) {
     CLI::App* command = app.add_subcommand("bake", "Bake a scene into an .opal file");
     add_scene_options(*command, options->scene);
     add_error_option(*command, options->scene);
-    command->add_flag("--check-model", options->scene.bake.check_model,
-                      "also measure how far the physical model is from a Monte Carlo reference "
-                      "(seconds to a minute); the report gets `model_error`");
+    command->add_flag(
+        "--check-model", options->scene.bake.check_model,
+        "also measure how far the physical model is from a Monte Carlo reference "
+        "(seconds to a minute); the report gets `model_error`. Volumes are measured in "
+        "every bake, and more closely with this");
     command->add_option("-o,--output", options->output, "the .opal file to write")
         ->required()
         ->check(file_name());

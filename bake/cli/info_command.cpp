@@ -98,6 +98,23 @@ std::string text_of(const Json& json, const char* key) {
                          : json[key].dump(-1, ' ', true, Json::error_handler_t::replace));
 }
 
+// A share of the provenance in percent; NaN where it is none.
+double percent_of(const Json& json, const char* key) {
+    return json.is_object() && json.contains(key) && json[key].is_number()
+               ? 100 * json[key].get<double>()
+               : std::nan("");
+}
+
+void print_volume_error(const Json& error) {
+    fmt::print("volumes err   {:.1f} % RMS", percent_of(error, "rms_relative"));
+    if (error.contains("by_light") && error["by_light"].is_object()) {
+        for (const auto& [name, part] : error["by_light"].items()) {
+            fmt::print(", {} {:.1f} %", printable(name), percent_of(part, "rms_relative"));
+        }
+    }
+    fmt::print(" ({} rays checked)\n", text_of(error, "rays_checked"));
+}
+
 void print_provenance(const Json& provenance) {
     if (!provenance.is_object()) {
         return;
@@ -147,12 +164,12 @@ void print_provenance(const Json& provenance) {
     }
     if (provenance.contains("model_error") && provenance["model_error"].is_object()) {
         const Json& model = provenance["model_error"];
-        const auto percent = [&](const char* key) {
-            return model.contains(key) && model[key].is_number() ? 100 * model[key].get<double>()
-                                                                 : std::nan("");
-        };
         fmt::print("model error   {:.1f} % RMS, {:+.1f} % in the mean, at {} receivers\n",
-                   percent("rms_relative"), percent("bias"), text_of(model, "receivers_checked"));
+                   percent_of(model, "rms_relative"), percent_of(model, "bias"),
+                   text_of(model, "receivers_checked"));
+    }
+    if (provenance.contains("volume_error") && provenance["volume_error"].is_object()) {
+        print_volume_error(provenance["volume_error"]);
     }
     if (provenance.contains("plan") && provenance["plan"].is_array()) {
         fmt::print("plan\n");

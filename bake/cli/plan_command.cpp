@@ -10,13 +10,13 @@
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
-#include "bake/volumes/plan_volumes.h"
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/cancel_flaps.h"
 #include "bake/scene/even_media.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"
+#include "bake/volumes/plan_volumes.h"
 
 namespace opaline::cli {
 namespace {
@@ -64,7 +64,7 @@ int run(const Options& options) {
     const formats::Scene& scene = evened ? evened->scene : imported->scene;
     const bake::SceneFacts facts = bake::inspect_scene(scene);
     auto plan = bake::plan_bake(effects, scene, facts, *knobs);
-    const std::vector<bake::PlanEntry> volumes = bake::plan_volumes(scene, *knobs).entries;
+    std::vector<bake::PlanEntry> volumes = bake::plan_volumes(scene, *knobs).entries;
     std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, facts);
     if (evened) {
         warnings.insert(warnings.end(), evened->warnings.begin(), evened->warnings.end());
@@ -80,7 +80,7 @@ int run(const Options& options) {
     bake::Knobs budget = *knobs;
     budget.model_error = bake::find_model_error(plan);
     const bake::CostRequest request{effects, scene, facts, budget, rates, threads};
-    const bake::CostPrediction cost = bake::predict_costs(request, plan);
+    const bake::CostPrediction cost = bake::predict_costs(request, plan, volumes);
     bake::predict_savings(request, plan);
     plan.insert(plan.end(), volumes.begin(), volumes.end());
     fmt::print("{}", options.json ? make_plan_json(budget, plan, cost)

@@ -127,6 +127,13 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
         report["model_error"] = bake::model_error_json(*result.model_error);
         report["model_error"]["seconds"] = result.model_error->seconds;
     }
+    if (result.volume_error) {
+        report["volume_error"] = bake::volume_error_json(*result.volume_error);
+    }
+    for (const bake::VolumeTrial& trial : result.volume_trials) {
+        report["volume_trials"].push_back(
+            {{"quality", bake::quality_name(trial.quality)}, {"error", trial.error}});
+    }
     report["output"] = {{"bytes", bytes},
                         {"receivers", result.asset.position.size()},
                         {"terms", most_terms(result.asset)},
@@ -198,14 +205,10 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
         }
         table += "\n";
     }
-    const bool has_volumes = std::ranges::any_of(plan, [](const bake::PlanEntry& entry) {
-        return entry.on && entry.subject.kind == bake::Subject::Kind::volume;
-    });
-    return table + fmt::format("predicted: {} on {}, {}, {} receivers, {} of memory{}\n",
+    return table + fmt::format("predicted: {} on {}, {}, {} receivers, {} of memory\n",
                                format_seconds(cost.seconds),
                                threads == 1 ? "1 thread" : fmt::format("{} threads", threads),
-                               bytes(cost.bytes), cost.receivers, bytes(cost.memory_bytes),
-                               has_volumes ? "; without the volumes, which are not predicted" : "");
+                               bytes(cost.bytes), cost.receivers, bytes(cost.memory_bytes));
 }
 
 std::string make_depfile(const std::filesystem::path& output,

@@ -84,11 +84,6 @@ int run(const Options& options) {
     if (!imported) {
         return report_error(imported.error());
     }
-    if (!imported->scene.volumes.empty()) {
-        return report_error(formats::make_error(
-            formats::ErrorKind::bad_input, options.scene.scene, "volumes",
-            "this version does not measure the error of volumes", "leave them out"));
-    }
     OutputFolder folder(options.folder);
     if (auto status = folder.create(); !status) {
         return report_error(status.error());

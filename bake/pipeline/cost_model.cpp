@@ -8,6 +8,7 @@
 #include "bake/pipeline/bill.h"
 #include "bake/pipeline/costed_bake.h"
 #include "bake/pipeline/predict_memory.h"
+#include "bake/pipeline/volume_costs.h"
 #include "bake/rows/subject_states.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/openness.h"
@@ -108,6 +109,15 @@ void bill_openness(const CostedBake& bake, Bill& bill) {
     }
 }
 
+double count_rows(const CostedBake& bake) {
+    double rows = 0;
+    for (const CostedSubject& subject : bake.subjects) {
+        rows += bake.request.facts.material[subject.material].receivers * subject.layout.terms() *
+                subject.layout.bands();
+    }
+    return rows;
+}
+
 }  // namespace
 
 std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t bands) {
@@ -120,9 +130,12 @@ std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t band
     return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
 }
 
-CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan) {
+CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan,
+                             std::span<PlanEntry> volume_plan) {
     Bill bill(request.rates, request.threads, plan);
-    const CostedBake bake = make_costed_bake(request, plan);
+    CostedBake bake = make_costed_bake(request, plan);
+    const CostedVolumes volumes = make_costed_volumes(request);
+    bake.traces_rays = bake.traces_rays || (!volumes.empty() && request.facts.triangles > 0);
     bill_placing(bake, bill);
     bill_step(bake, Step::study, bill);
     if (request.knobs.error_target > 0) {
@@ -137,6 +150,7 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bill_row_stages(bake, bill);
     bill_openness(bake, bill);
     bill_self_check(bake, bill);
+    bill_volumes(request, volumes, count_rows(bake), volume_plan, bill);
     bill.add_bytes(mesh_bytes(request.scene, request.facts));
     bill.cost.memory_bytes = static_cast<std::uint64_t>(
         predict_memory(request.effects, count_memory(request.effects, request.scene, request.knobs),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,10 @@ struct CostRequest {
 /// Counts follow from the numbers of triangles, receivers, samples and texels, and from the ratio
 /// of a medium's profile width to the sample spacing. The clutter of a scene is not known: rates
 /// are those of a dented ball, and scenes differ from it by a factor of up to 1.4.
-CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan);
+///
+/// Volumes cost what the layouts of plan_volumes ask for. `volume_plan`: their entries, which get
+/// predictions of their own; empty: the costs count as shared.
+CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan,
+                             std::span<PlanEntry> volume_plan = {});
 
 }  // namespace opaline::bake

@@ -9,12 +9,11 @@
 #include "bake/accuracy/check_rows.h"
 #include "bake/accuracy/error_warnings.h"
 #include "bake/base/ordered_parallel.h"
-#include "bake/volumes/bake_volumes.h"
-#include "bake/volumes/dim_surfaces.h"
-#include "bake/volumes/plan_volumes.h"
 #include "bake/encode/pack_asset.h"
 #include "bake/encode/row_sink.h"
 #include "bake/pipeline/provenance.h"
+#include "bake/pipeline/volume_stages.h"
+#include "bake/pipeline/volume_warnings.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/rows/gather_rows.h"
@@ -220,38 +219,6 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context, B
     return formats::ok_status();
 }
 
-// Volumes of the file, and what they take from the light of its surfaces.
-formats::Status add_volumes(const formats::Scene& scene, const RayScene& rays,
-                            std::span<const VolumeLayout> layouts, const Context& context,
-                            BakeResult& result) {
-    auto volumes = bake_volumes({scene, rays, layouts, result.knobs}, context, result.stages);
-    if (!volumes) {
-        return std::move(volumes).error();
-    }
-    if (context.cancelled()) {
-        return interrupted();
-    }
-    result.asset.volumes = std::move(*volumes);
-    if (!result.asset.position.empty()) {
-        const auto status = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t&) {
-            return dim_surfaces(scene, result.knobs, context, result.asset);
-        });
-        if (!status) {
-            return status;
-        }
-        if (context.cancelled()) {
-            return interrupted();
-        }
-    }
-    for (const PlanEntry& entry : result.volume_plan) {
-        auto& names = result.error.not_measured;
-        if (entry.on && std::ranges::find(names, entry.name) == names.end()) {
-            names.emplace_back(entry.name);
-        }
-    }
-    return formats::ok_status();
-}
-
 formats::Status check_model_of(const EffectTable& effects, const formats::Scene& scene,
                                const Context& context, BakeResult& result) {
     ModelCheckOptions options;
@@ -288,10 +255,10 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         std::ranges::copy(evened->warnings, std::back_inserter(result.warnings));
     }
     const formats::Scene& scene = evened ? evened->scene : facing;
-    std::vector<VolumeLayout> volumes;
+    bool has_volumes = false;
     result.plan = run_stage(log, "plan", [&](std::uint64_t&) {
         VolumePlan decided = plan_volumes(scene, wanted);
-        volumes = std::move(decided.layouts);
+        has_volumes = !decided.layouts.empty();
         result.volume_plan = std::move(decided.entries);
         result.facts = inspect_scene(scene);
         return plan_bake(effects, scene, result.facts, wanted);
@@ -302,7 +269,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     }
     std::optional<RayScene> hierarchy;
     if (needs_hierarchy(layout_rows(effects, scene, result.plan, wanted)) ||
-        (!volumes.empty() && !scene.primitives.empty())) {
+        (has_volumes && !scene.primitives.empty())) {
         formats::Result<RayScene> built = run_stage(log, "hierarchy", [&](std::uint64_t&) {
             return RayScene::build(scene, context.threads);
         });
@@ -318,19 +285,21 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     if (auto status = bake_inspected(bake, context, result); !status) {
         return std::move(status).error();
     }
-    if (!volumes.empty()) {
-        if (auto status = add_volumes(scene, rays, volumes, context, result); !status) {
+    if (has_volumes) {
+        if (auto status = add_volumes({effects, scene, rays}, context, result); !status) {
             return std::move(status).error();
         }
+        warn_of_volumes(result.knobs, result.volume_error, result.warnings);
     }
-    if (wanted.check_model) {
+    if (wanted.check_model && !scene.primitives.empty()) {
         if (auto status = check_model_of(effects, facing, context, result); !status) {
             return std::move(status).error();
         }
     }
     result.asset.provenance =
         make_provenance(scene, {result.knobs, result.plan, result.volume_plan, result.error,
-                                result.model_error ? &*result.model_error : nullptr});
+                                result.model_error ? &*result.model_error : nullptr,
+                                result.volume_error ? &*result.volume_error : nullptr});
     result.seconds_total = seconds_since(start);
     return result;
 }

@@ -6,22 +6,31 @@
 
 #include "bake/accuracy/check_model.h"
 #include "bake/accuracy/measure_error.h"
+#include "bake/accuracy/volumes/volume_error.h"
 #include "bake/pipeline/choose_knobs.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::bake {
 
+/// Volumes as one quality bakes them, and how far they err.
+struct VolumeTrial {
+    Quality quality = Quality::draft;
+    double error = 0;  ///< VolumeErrorReport::rms_relative
+};
+
 struct BakeResult {
     formats::Asset asset;
-    Knobs knobs;           ///< as used
-    unsigned threads = 1;  ///< as used
+    Knobs knobs;                         ///< as used
+    unsigned threads = 1;                ///< as used
     std::vector<PlanEntry> plan;         ///< of materials
     std::vector<PlanEntry> volume_plan;  ///< of volumes
-    SceneFacts facts;  ///< that the plan was decided from
+    SceneFacts facts;                    ///< that the plan was decided from
     StageLog stages;
     ErrorReport error;
-    std::optional<AccuracyReport> accuracy;       ///< where an error was asked for
-    std::optional<ModelErrorReport> model_error;  ///< where Knobs::check_model asks for it
+    std::optional<AccuracyReport> accuracy;         ///< where an error was asked for
+    std::optional<ModelErrorReport> model_error;    ///< where Knobs::check_model asks for it
+    std::optional<VolumeErrorReport> volume_error;  ///< nothing: no volume scatters light
+    std::vector<VolumeTrial> volume_trials;  ///< where an error was asked for, in their order
     std::vector<formats::Diagnostic> warnings;
     double seconds_total = 0;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bake/pipeline/cost_model.h"
+#include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
 namespace {
@@ -59,6 +60,10 @@ MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scen
         }
         counts.translucent_rows += vertices * (terms + (knobs.separate_terms ? 1 : 0));
     }
+    const std::vector<VolumeLayout> layouts = plan_volumes(scene, knobs).layouts;
+    for (const VolumeWork& work : count_volume_work(scene, layouts, knobs)) {
+        counts.volume_bytes += volume_memory(work, knobs);
+    }
     return counts;
 }
 
@@ -93,6 +98,7 @@ MemoryPrediction predict_memory(const EffectTable& effects, const MemoryCounts& 
              {"the ray hierarchy", triangles * std::max(kPlanTriangle, kHierarchyTriangle)},
              {"receivers", vertices * kReceiver},
              {"surface samples", counts.media * samples},
+             {"volumes", counts.volume_bytes},
              {"transport rows", kGrowth * (counts.opaque_rows * opaque_row +
                                            counts.translucent_rows * translucent_row)}}};
 }

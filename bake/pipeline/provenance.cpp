@@ -85,6 +85,19 @@ Json model_error_json(const ModelErrorReport& error) {
     return json;
 }
 
+Json volume_error_json(const VolumeErrorReport& error) {
+    Json json = {{"rms_relative", error.rms_relative}, {"ci95", {error.ci95[0], error.ci95[1]}},
+                 {"rays_checked", error.rays_checked}, {"samples", error.samples},
+                 {"reference", error.reference},       {"by_light", Json::object()}};
+    for (const VolumeErrorReport::Part& part : error.by_light) {
+        json["by_light"][part.name] = {{"rms_relative", part.rms_relative},
+                                       {"ci95", {part.ci95[0], part.ci95[1]}},
+                                       {"bias", part.bias},
+                                       {"noise", part.noise}};
+    }
+    return json;
+}
+
 std::string make_provenance(const formats::Scene& scene, const BakeRecord& record) {
     const Knobs& knobs = record.knobs;
     Json root;
@@ -115,6 +128,9 @@ std::string make_provenance(const formats::Scene& scene, const BakeRecord& recor
     root["error"]["model_estimate"] = knobs.model_error;
     if (record.model_error != nullptr) {
         root["model_error"] = model_error_json(*record.model_error);
+    }
+    if (record.volume_error != nullptr) {
+        root["volume_error"] = volume_error_json(*record.volume_error);
     }
     // Names come from the user's file: bytes that are not UTF-8 must not stop the bake.
     return root.dump(2, ' ', false, Json::error_handler_t::replace);

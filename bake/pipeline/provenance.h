@@ -6,6 +6,7 @@
 
 #include "bake/accuracy/check_model.h"
 #include "bake/accuracy/measure_error.h"
+#include "bake/accuracy/volumes/volume_error.h"
 #include "bake/plan/bake_plan.h"
 #include "formats/scene.h"
 
@@ -16,13 +17,15 @@ nlohmann::ordered_json knobs_json(const Knobs& knobs);
 nlohmann::ordered_json error_json(const ErrorReport& error);
 /// Without the seconds, which differ from run to run.
 nlohmann::ordered_json model_error_json(const ModelErrorReport& error);
+nlohmann::ordered_json volume_error_json(const VolumeErrorReport& error);
 
 /// What became of a bake.
 struct BakeRecord {
     const Knobs& knobs;
     std::span<const PlanEntry> plan, volume_plan;
     const ErrorReport& error;
-    const ModelErrorReport* model_error = nullptr;  ///< null: not measured
+    const ModelErrorReport* model_error = nullptr;    ///< null: not measured
+    const VolumeErrorReport* volume_error = nullptr;  ///< null: no volume scatters light
 };
 
 /// The PROV section as JSON: scene, knobs, plan and measured error. It contains nothing that

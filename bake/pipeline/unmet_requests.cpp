@@ -122,18 +122,6 @@ std::vector<Diagnostic> describe_unmet(const DecidedBake& decided, const BakeOpt
     std::vector<Diagnostic> warnings;
     describe_effects(decided, warnings);
     describe_options(decided, options, warnings);
-    if (options.check_model && !decided.volume_plan.empty()) {
-        warnings.push_back(make_warning("", "--check-model",
-                                        "compares surfaces with path tracing that has what volumes "
-                                        "scatter onto them, which no file holds",
-                                        "leave volumes out to learn how good the surfaces are"));
-    }
-    if (options.error > 0 && !decided.volume_plan.empty()) {
-        warnings.push_back(make_warning("", "--error",
-                                        "light in volumes is not measured: they are baked in "
-                                        "preview quality, whatever their error",
-                                        "give --volume-walks and --volume-spacing"));
-    }
     for (const PlanEntry& entry : decided.plan) {
         const EffectDescriptor& effect = decided.effects[entry.effect];
         const std::uint32_t m = entry.subject.index;

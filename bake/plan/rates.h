@@ -59,6 +59,12 @@ struct Rates {
     // Light that crosses bodies unscattered.
     CostBySize straight_view;  ///< a view through a body: its flights, and rays beyond its exits
     double straight_cell = 0;  ///< a texel of one row and band, and half an exit's share of one
+    // Volumes.
+    double density_step = 0;      ///< of an optical depth through one volume
+    double volume_flight = 0;     ///< of a walk: to a collision, and the direction after it
+    double scattered_cell = 0;    ///< light of one direction and band that joins a walk there
+    double node_texel = 0;        ///< of a node's row: transform, selection and quantising
+    double traced_collision = 0;  ///< of a path of the reference, its light included
     // The self-check.
     double split_triangle = 0;  ///< of the surface integral
     CostBySize surface_point;   ///< of the surface integral: its rays to all lights
@@ -106,6 +112,11 @@ void visit_rates(AnyRates&& rates, Visit&& visit) {
     by_size("entry_packet_few", "entry_packet_many", rates.entry_packet);
     by_size("straight_view_few", "straight_view_many", rates.straight_view);
     visit("straight_cell", rates.straight_cell);
+    visit("density_step", rates.density_step);
+    visit("volume_flight", rates.volume_flight);
+    visit("scattered_cell", rates.scattered_cell);
+    visit("node_texel", rates.node_texel);
+    visit("traced_collision", rates.traced_collision);
     visit("split_triangle", rates.split_triangle);
     by_size("surface_point_few", "surface_point_many", rates.surface_point);
     visit("crowding", rates.crowding);

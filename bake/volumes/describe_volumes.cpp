@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "bake/volumes/calibrate_volumes.h"
 #include "bake/volumes/volume_knobs.h"
 
 namespace opaline::bake {
@@ -17,7 +18,8 @@ EffectDescriptor describe_scattered_once(Effect id) {
             .name = "volume-single",
             .help = "light scattered once in smoke or clouds",
             .knobs = kKnobsOnce,
-            .concerns_volumes = true};
+            .concerns_volumes = true,
+            .calibrate = calibrate_volumes};
 }
 
 EffectDescriptor describe_scattered_often(Effect id) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/knob.h"
@@ -23,6 +24,21 @@ inline constexpr const char* kWhyDark = "no volume scatters light";
 inline constexpr const char* kWhyOnce = "no light is scattered more than once in a volume";
 inline constexpr std::array<double, 4> kSpacings{1, 2, 4, 8};
 inline constexpr std::array<double, 5> kTermCounts{1, 4, 9, 16, 25};
+// Of the sweep.
+inline constexpr std::array<double, 6> kSpacingTruths{1, 1, 1, 2, 2, 2};
+inline constexpr std::array<double, 6> kCoefficientLadder{12, 24, 48, 96, 192, 384};
+inline constexpr std::array<double, 5> kCoefficientDiagonal{24, 32, 48, 64, 96};
+inline constexpr std::array<double, 6> kCoefficientTruths{384, 384, 192, 192, 96, 96};
+inline constexpr std::array<double, 5> kWalkLadder{4, 16, 64, 256, 1024};
+inline constexpr std::array<double, 5> kWalkDiagonal{16, 32, 64, 128, 256};
+inline constexpr std::array<double, 6> kWalkTruths{1024, 512, 512, 256, 256, 128};
+// Degree l of 1, 4, 9, ... rows.
+inline double degree_of(double rows) {
+    return std::sqrt(rows) - 1;
+}
+inline double rate_of_degree(double mean_cosine) {
+    return mean_cosine == 0 ? 0 : std::log(std::abs(mean_cosine));
+}
 }  // namespace volume_knobs
 
 /// Voxels between the nodes at which the light in a volume is known; 0: by its density.
@@ -38,6 +54,13 @@ inline constexpr KnobSpec kVolumeSpacing{
     .zero_is_auto = true,
     .allowed = volume_knobs::kSpacings,
     .preset = {0, 0, 0, 0},
+    .label = "nodes every %g voxels",
+    .ladder = volume_knobs::kSpacings,
+    .truths = volume_knobs::kSpacingTruths,
+    .theory = {.label = "voxels between nodes",
+               .words = "square of the spacing, where light is smooth between nodes",
+               .rate = 2,
+               .fine_is_small = true},
     .matters = volume_knobs::is_lit,
     .why_idle = volume_knobs::kWhyDark};
 
@@ -52,6 +75,13 @@ inline constexpr KnobSpec kVolumeCoefficients{
     .lowest = 7,
     .highest = 1536,
     .preset = {24, 32, 96, 1536},
+    .label = "%g coefficients a row of volumes",
+    .ladder = volume_knobs::kCoefficientLadder,
+    .diagonal = volume_knobs::kCoefficientDiagonal,
+    .truths = volume_knobs::kCoefficientTruths,
+    .theory = {.label = "coefficients of a row of volumes",
+               .words = "edge of a texel, where light is a smooth function of its direction",
+               .rate = -0.5},
     .matters = volume_knobs::is_lit,
     .why_idle = volume_knobs::kWhyDark};
 
@@ -66,6 +96,11 @@ inline constexpr KnobSpec kVolumeWalks{
     .lowest = 1,
     .highest = 65536,
     .preset = {16, 64, 256, 1024},
+    .label = "%g walks from a node",
+    .ladder = volume_knobs::kWalkLadder,
+    .diagonal = volume_knobs::kWalkDiagonal,
+    .truths = volume_knobs::kWalkTruths,
+    .theory = {.label = "walks from a node", .words = "noise of independent walks", .rate = -0.5},
     .matters = volume_knobs::is_scattered_often,
     .why_idle = volume_knobs::kWhyOnce};
 
@@ -82,6 +117,12 @@ inline constexpr KnobSpec kVolumeTerms{
     .zero_is_auto = true,
     .allowed = volume_knobs::kTermCounts,
     .preset = {0, 0, 0, 0},
+    .label = "%g rows of multiple scattering",
+    .ladder = volume_knobs::kTermCounts,
+    .theory = {.label = "degree of the rows of multiple scattering",
+               .words = "moment g^l of Henyey and Greenstein's phase function",
+               .rate_by_cosine = volume_knobs::rate_of_degree,
+               .value = volume_knobs::degree_of},
     .matters = volume_knobs::is_scattered_often,
     .why_idle = volume_knobs::kWhyOnce};
 

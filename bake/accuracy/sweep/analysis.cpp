@@ -54,6 +54,13 @@ bool is_near(const Ladder& ladder, double value, double finest) {
            std::max(value, finest) <= near * std::min(value, finest);
 }
 
+// Of surfaces and volumes.
+std::vector<double> all_luminance(const PointRecord& record) {
+    std::vector<double> all = record.luminance;
+    all.insert(all.end(), record.volume_luminance.begin(), record.volume_luminance.end());
+    return all;
+}
+
 std::optional<LadderFit> fit_ladder(const SweepResult& result, const Ladder& ladder) {
     const auto theory = convergence_theory(ladder, result.mean_cosine);
     const std::vector<Member> members = members_of(result, ladder);
@@ -66,7 +73,7 @@ std::optional<LadderFit> fit_ladder(const SweepResult& result, const Ladder& lad
     for (std::size_t i = 0; i + 1 < members.size(); ++i) {
         const Convergence rung{
             members[i].value,
-            relative_difference(members[i].record->luminance, finest.record->luminance),
+            relative_difference(all_luminance(*members[i].record), all_luminance(*finest.record)),
             members[i].record->seconds};
         fit.rungs.push_back(rung);
         if (!is_near(ladder, rung.value, finest.value)) {

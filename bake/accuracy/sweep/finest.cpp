@@ -34,7 +34,8 @@ std::size_t find_finest(std::span<const PointRecord> points, std::string_view ch
 }
 
 void compare_with_finest(SweepResult& result, const EffectTable& effects,
-                         const formats::Scene& scene, std::span<const std::uint32_t> probes) {
+                         const formats::Scene& scene, std::span<const std::uint32_t> probes,
+                         std::span<const std::string> lights) {
     const std::vector<std::string> of_material = name_row_effects(result, effects, scene);
     std::vector<std::uint32_t> material;
     for (const formats::Primitive& p : scene.primitives) {
@@ -54,8 +55,14 @@ void compare_with_finest(SweepResult& result, const EffectTable& effects,
     result.truth = find_finest(result.points, most->first);
     for (PointRecord& record : result.points) {
         const PointRecord& finest = result.points[record.finest];
-        record.against_finest =
-            compare_probes(record.luminance, finest.luminance, effect, result.lights);
+        record.against_finest = compare_probes(record.luminance, finest.luminance, effect, lights);
+        if (!record.volume_luminance.empty()) {
+            const std::vector<std::string> of_volumes(record.volume_luminance.size() / kLightPlaces,
+                                                      "volumes");
+            take_larger(record.against_finest,
+                        compare_probes(record.volume_luminance, finest.volume_luminance, of_volumes,
+                                       volume_light_names()));
+        }
         add_error_of_truth(record.against_finest, finest.error);
     }
 }

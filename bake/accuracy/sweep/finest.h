@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,8 +16,10 @@ namespace opaline::bake {
 std::size_t find_finest(std::span<const PointRecord> points, std::string_view choices);
 
 /// Chooses the finest point of each way to choose, and compares the others with it. The truth is
-/// that of the choices that most points made.
+/// that of the choices that most points made. `lights`: names of those that the probes are relit
+/// under.
 void compare_with_finest(SweepResult& result, const EffectTable& effects,
-                         const formats::Scene& scene, std::span<const std::uint32_t> probes);
+                         const formats::Scene& scene, std::span<const std::uint32_t> probes,
+                         std::span<const std::string> lights);
 
 }  // namespace opaline::bake

@@ -187,8 +187,18 @@ bool SweepSubject::has(const KnobSpec& knob) const {
 }
 
 SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& scene,
-                           std::span<const PlanEntry> plan, const Knobs& knobs) {
+                           std::span<const PlanEntry> plan, const Knobs& knobs,
+                           std::span<const PlanEntry> volume_plan) {
     SweepSubject subject;
+    subject.has_surfaces = !scene.primitives.empty();
+    for (const EffectDescriptor& effect : effects.effects) {
+        for (const KnobSpec* knob : effect.knobs) {
+            if (effect.concerns_volumes && knob->matters({}, volume_plan)) {
+                subject.has_volumes = true;
+                subject.knobs.push_back(knob);
+            }
+        }
+    }
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         const auto decisions = entries_of(plan, m);
         if (decisions.empty()) {
@@ -231,12 +241,16 @@ std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base)
     }
     add_choices(points, request);
     const Knobs knobs = preset_knobs(request, base);
-    if (request.subject.in_media) {
+    if (request.subject.in_media || request.subject.has_volumes) {
         add_diagonal(points, knobs);
     }
-    add_transport_ladders(points, knobs);
+    if (request.subject.has_surfaces) {
+        add_transport_ladders(points, knobs);
+    }
     add_knob_ladders(points, knobs);
-    add_grid(points, knobs);
+    if (request.subject.has_surfaces) {
+        add_grid(points, knobs);
+    }
     return std::move(points.list);
 }
 
@@ -250,7 +264,8 @@ std::vector<SweepPoint> make_truths(const LadderRequest& request) {
             of = request.choices + ", ";
         }
     }
-    if (!request.subject.in_media) {
+    const bool is_opaque = !request.subject.in_media && !request.subject.has_volumes;
+    if (is_opaque) {
         Knobs finest = reference;
         finest.cubemap_size = 128;
         points.add("N = 128, all coefficients, 16 bits", Ladder::resolution, 128, finest);
@@ -270,7 +285,7 @@ std::vector<SweepPoint> make_truths(const LadderRequest& request) {
                                          {32, 1024},
                                          {32, 512},
                                          {16, kAllCoefficients}}};
-    for (std::size_t at = request.subject.in_media ? 0 : 1; at < kRows.size(); ++at) {
+    for (std::size_t at = is_opaque ? 1 : 0; at < kRows.size(); ++at) {
         Knobs knobs = with_truths(request, reference, at);
         knobs.exact_rays = false;
         knobs.cubemap_size = kRows[at].cubemap;

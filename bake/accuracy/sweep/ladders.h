@@ -64,11 +64,15 @@ struct SweepPoint {
 struct SweepSubject {
     std::vector<const KnobSpec*> knobs;  ///< of effects: those that some subject has use for
     bool in_media = false;               ///< light is simulated inside media
+    bool has_surfaces = true;            ///< there are vertices, whose rows other knobs concern
+    bool has_volumes = false;            ///< light is simulated in volumes
 
     bool has(const KnobSpec& knob) const;
 };
+/// `volume_plan`: of the scene's volumes.
 SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& scene,
-                           std::span<const PlanEntry> plan, const Knobs& knobs);
+                           std::span<const PlanEntry> plan, const Knobs& knobs,
+                           std::span<const PlanEntry> volume_plan = {});
 
 /// True if both give the same transport; knobs of effects that are not simulated do not count.
 bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject);

@@ -7,9 +7,11 @@
 #include <fstream>
 #include <utility>
 
+#include "bake/accuracy/volumes/volume_radiance.h"
 #include "formats/opal/write_opal.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/shade.h"
+#include "runtime/volumes/relight_volumes.h"
 
 namespace opaline::bake {
 namespace {
@@ -44,8 +46,11 @@ formats::Result<runtime::Picture> draw(const formats::AssetView& asset, const Sw
     const runtime::SpecularNeeds needs = runtime::specular_needs(asset);
     const runtime::SpecularLight specular =
         runtime::make_specular_light(view.picture_light, needs, {}, threads);
+    const runtime::VolumeLight volumes =
+        runtime::relight_volumes(asset.volumes, light, {.threads = threads});
     runtime::SoftwareOptions options;
     options.threads = threads;
+    options.volumes = &volumes;
     options.specular = needs.any() ? &specular : nullptr;
     return runtime::render_software(asset, radiance, view.picture_light, {}, camera, options);
 }
@@ -100,6 +105,13 @@ formats::Result<PointRecord> run_point(const EffectTable& effects, const formats
     record.error = bake->error;
     // Knobs are compared: what a mesh is too coarse for is the same for all of them.
     static_cast<MeasuredError&>(record.error) = bake->error.at_receivers;
+    if (!view.volumes.empty() && !asset.volumes.empty()) {
+        const std::vector<double> marched = march_probes(
+            asset.volumes, asset.cubemap_size, scene.origin, view.volumes.probes, context.threads);
+        record.volumes = compare_volumes(marched, view.volumes.truth, point.knobs.seed);
+        record.volume_luminance = relative_luminance(view.volumes, marched);
+        take_larger(record.error, as_error_report(record.volumes));
+    }
     record.choices = list_choices(bake->plan);
     record.luminance = relight_probes(asset, view.probes, lights.probes);
     for (const runtime::LightVector& light : lights.model) {

@@ -10,6 +10,7 @@
 #include "bake/accuracy/model_truth.h"
 #include "bake/accuracy/sweep/ladders.h"
 #include "bake/accuracy/sweep/probes.h"
+#include "bake/accuracy/sweep/sweep_volumes.h"
 #include "bake/base/context.h"
 #include "bake/pipeline/pipeline.h"
 #include "formats/opal/environment.h"
@@ -46,7 +47,9 @@ struct PointRecord {
     StageLog stages;
     std::uint64_t bytes = 0;       ///< of the file
     std::uint64_t peak_bytes = 0;  ///< largest resident memory during the bake
-    ErrorReport error;             ///< of the numbers, as the bake measured it
+    ErrorReport error;             ///< of the numbers, as the bake measured it; of volumes, if
+                                   ///< larger, against path tracing
+    VolumeErrorReport volumes;     ///< of volumes, against path tracing along SweepVolumes' rays
     std::string choices;         ///< of its plan (list_choices); only equal ones differ in numbers
                                  ///< alone
     std::size_t finest = 0;      ///< index of the finest point of the same choices
@@ -54,6 +57,7 @@ struct PointRecord {
                                  ///< squares
     ModelErrorReport total;      ///< of model and numbers, against path tracing
     std::vector<double> luminance;                     ///< relight_probes
+    std::vector<double> volume_luminance;              ///< relative_luminance
     std::vector<std::vector<double>> model_luminance;  ///< relight_receivers, light by light
     runtime::Picture picture;                          ///< empty where none was wanted
 };
@@ -62,6 +66,7 @@ struct PointRecord {
 struct SweepView {
     std::vector<std::uint32_t> probes;
     ModelProbes model;
+    SweepVolumes volumes;
     formats::Environment picture_light;
     std::uint32_t picture_width = 480, picture_height = 360;
 };

@@ -16,6 +16,7 @@
 #include "bake/environment/builtin_environment.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/scene/inspect_scene.h"
+#include "bake/volumes/plan_volumes.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {
@@ -182,6 +183,22 @@ int urgency(const SweepPoint& point) {
                                                                  : 2;
 }
 
+// Urgent points first, of those the cheap ones. Predictions look at all densities: once a point.
+void sort_points(const Sweep& sweep, std::vector<SweepPoint>& points) {
+    std::vector<std::pair<double, SweepPoint>> costed;
+    for (SweepPoint& point : points) {
+        const double seconds = sweep.predict_point(point.knobs).seconds;
+        costed.emplace_back(seconds, std::move(point));
+    }
+    std::ranges::stable_sort(costed, {}, [](const auto& one) {
+        return std::pair{urgency(one.second), one.first};
+    });
+    points.clear();
+    for (auto& [seconds, point] : costed) {
+        points.push_back(std::move(point));
+    }
+}
+
 // Bakes the finest setting that can be afforded. A point of the ladders keeps its label and rungs,
 // and leaves them.
 formats::Status bake_truth(Sweep& sweep, std::vector<SweepPoint>& points) {
@@ -234,6 +251,9 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
             result.mean_cosine = formats::mean_cosine(medium->phase);
         }
     }
+    if (!scene.volumes.empty() && result.mean_cosine == 0) {
+        result.mean_cosine = formats::mean_cosine(scene.volumes.front().phase);
+    }
     sweep.view.probes = choose_probes(result.receivers, options.probes);
     sweep.view.picture_light = std::move(picture_light->environment);
     constexpr std::uint32_t kModelReceivers = 96;
@@ -252,7 +272,17 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         return (draft ? preview : draft).error();
     }
     result.plan = plan_bake(effects, scene, facts, *preview);
-    result.subject = sweep_subject(effects, scene, result.plan, *preview);
+    result.volume_plan = plan_volumes(scene, *preview).entries;
+    result.subject = sweep_subject(effects, scene, result.plan, *preview, result.volume_plan);
+    constexpr double kShare = 1.0 / 20;
+    if (result.subject.has_volumes) {
+        auto volumes =
+            make_sweep_volumes(scene, kShare * options.seconds, options.bake.seed, context);
+        if (!volumes) {
+            return std::move(volumes).error();
+        }
+        sweep.view.volumes = std::move(*volumes);
+    }
     // A quick point measures the speed of this machine.
     const SweepPoint first{
         std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
@@ -264,7 +294,6 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
                                    "not even a draft fits: it " + result.skipped.front().reason,
                                    "give more seconds, or a smaller scene");
     }
-    constexpr double kShare = 1.0 / 20;
     ReferenceLadderOptions climb;
     climb.seconds = kShare * options.seconds;
     climb.seed = options.bake.seed;
@@ -284,6 +313,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     if (sweep.predict_point(*preview).seconds * sweep.scale() > kShare * options.seconds) {
         result.base = Quality::draft;
         result.plan = plan_bake(effects, scene, facts, *draft);
+        result.volume_plan = plan_volumes(scene, *draft).entries;
     }
     std::vector<SweepPoint> points = make_ladders(sweep.ladder_request(), result.base);
     result.points.front().point = points.front();  // with the rungs of a base, if it is one
@@ -292,12 +322,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     if (auto status = bake_truth(sweep, points); !status) {
         return std::move(status).error();
     }
-    std::stable_sort(points.begin(), points.end(), [&](const SweepPoint& a, const SweepPoint& b) {
-        if (urgency(a) != urgency(b)) {
-            return urgency(a) < urgency(b);
-        }
-        return sweep.predict_point(a.knobs).seconds < sweep.predict_point(b.knobs).seconds;
-    });
+    sort_points(sweep, points);
     for (const SweepPoint& point : points) {
         // One preset or choice must not take the time of all ladders.
         const double share = urgency(point) <= 1 ? 0.5 : 1.0;
@@ -305,11 +330,20 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
             return std::move(status).error();
         }
     }
-    result.lights = sweep.lights.begin()->second.probes.names;
-    compare_with_finest(result, effects, scene, sweep.view.probes);
+    const std::vector<std::string>& names = sweep.lights.begin()->second.probes.names;
+    compare_with_finest(result, effects, scene, sweep.view.probes, names);
+    if (result.subject.has_surfaces) {
+        result.lights = names;
+    }
+    if (!sweep.view.volumes.empty()) {
+        std::ranges::copy(volume_light_names(), std::back_inserter(result.lights));
+    }
     for (PointRecord& record : result.points) {
         record.total = compare_with_truth(record.model_luminance, *traced, sweep.view.model,
                                           options.bake.seed);
+        if (!record.volume_luminance.empty()) {
+            take_larger(record.total, record.volumes);
+        }
     }
     result.seconds = seconds_since(sweep.start);
     return std::move(sweep.result);

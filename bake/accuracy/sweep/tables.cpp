@@ -169,6 +169,9 @@ Json point_json(const SweepResult& result, const SweepAnalysis& analysis, std::s
                                {"ci95", {record.total.ci95[0], record.total.ci95[1]}},
                                {"bias", record.total.bias}};
     }
+    if (record.volumes.rays_checked > 0) {
+        json["volume_error"] = volume_error_json(record.volumes);
+    }
     const Standing& standing = analysis.standing[i];
     json["on_front_time"] = standing.on_front_time;
     json["on_front_bytes"] = standing.on_front_bytes;
@@ -288,6 +291,9 @@ Json make_sweep_json(const SweepResult& result, const SweepAnalysis& analysis) {
     }
     json["base"] = quality_name(result.base);
     json["plan"] = plan_json(result.plan);
+    for (Json& entry : plan_json(result.volume_plan)) {
+        json["plan"].push_back(std::move(entry));
+    }
     if (analysis.answer) {
         json["answer"] = {{"error", analysis.answer->error},
                           {"seconds", analysis.answer->seconds},

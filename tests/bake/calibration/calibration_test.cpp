@@ -14,9 +14,10 @@ namespace {
 
 // Differences of two measured times: on a busy machine the second may come out shorter.
 const std::set<std::string> kDifferences{
-    "shared_texel_few",  "shared_texel_many", "look_up_few",   "look_up_many",
-    "look_up_term",      "draw_pixel",        "draw_triangle", "sum_entry",
-    "surface_point_few", "surface_point_many"};
+    "shared_texel_few",  "shared_texel_many",  "look_up_few",   "look_up_many",
+    "look_up_term",      "draw_pixel",         "draw_triangle", "sum_entry",
+    "surface_point_few", "surface_point_many", "density_step",  "node_texel",
+    "scattered_cell"};
 
 // Seconds of one thread for one unit: more than a processor's cycle, less than the time in which a
 // whole scene of such units is measured. A rate that nobody measures stays 0 and is found here.

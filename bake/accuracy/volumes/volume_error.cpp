@@ -1,0 +1,134 @@
+#include "bake/accuracy/volumes/volume_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/accuracy/model_pairs.h"
+#include "bake/accuracy/volumes/volume_radiance.h"
+
+namespace opaline::bake {
+namespace {
+
+// As measure_error.cpp has it: the chance of an unseen share is e^-2.
+constexpr std::size_t kUnseen = 2;
+
+double squared_error(const ModelPair& pair) {
+    return pair.difference * pair.difference - pair.variance;
+}
+
+// `pairs`: place after place. The upper end allows for probes that err as the worst of these does.
+std::array<double, 2> stated_interval(std::span<const ModelPair> pairs, std::size_t probes,
+                                      std::uint64_t seed) {
+    std::array<double, 2> ends = model_interval(pairs, probes, seed);
+    std::size_t worst = 0;
+    double most = -1;
+    for (std::size_t p = 0; p < probes; ++p) {
+        double sum = 0;
+        for (std::size_t i = p; i < pairs.size(); i += probes) {
+            sum += squared_error(pairs[i]);
+        }
+        if (sum > most) {
+            most = sum;
+            worst = p;
+        }
+    }
+    std::vector<ModelPair> more;
+    for (std::size_t first = 0; first < pairs.size(); first += probes) {
+        const auto own = pairs.subspan(first, probes);
+        more.insert(more.end(), own.begin(), own.end());
+        more.insert(more.end(), kUnseen, own[worst]);
+    }
+    ends[1] = std::max(ends[1], model_interval(more, probes + kUnseen, seed)[1]);
+    return ends;
+}
+
+// Pairs of each place, relative to the RMS of its truth: all places count alike.
+std::vector<ModelPair> relative_pairs(std::span<const ModelPair> pairs, std::size_t probes) {
+    std::vector<ModelPair> relative;
+    for (std::size_t first = 0; first < pairs.size(); first += probes) {
+        const auto own = pairs.subspan(first, probes);
+        const double square = sum_up(own).truth / static_cast<double>(probes);
+        const double scale = square > 0 ? 1 / std::sqrt(square) : 0;
+        for (const ModelPair& pair : own) {
+            relative.push_back(
+                {scale * pair.difference, scale * pair.truth, scale * scale * pair.variance});
+        }
+    }
+    return relative;
+}
+
+std::vector<ModelPair> make_pairs(std::span<const double> luminance, const VolumeTruth& truth) {
+    std::vector<ModelPair> pairs;
+    for (std::size_t i = 0; i < luminance.size(); ++i) {
+        const double mean = truth.luminance[i].mean.x;
+        pairs.push_back({luminance[i] - mean, mean, truth.luminance[i].variance_of_mean().x});
+    }
+    return pairs;
+}
+
+// Relative to the truth: difference and noise, in squares the means over places.
+MeanSquares sum_up_places(std::span<const double> luminance, const VolumeTruth& truth) {
+    const std::vector<ModelPair> pairs = make_pairs(luminance, truth);
+    return sum_up(relative_pairs(pairs, pairs.size() / kLightPlaces));
+}
+
+}  // namespace
+
+VolumeErrorReport compare_volumes(std::span<const double> luminance, const VolumeTruth& truth,
+                                  std::uint64_t seed) {
+    VolumeErrorReport report;
+    const std::size_t probes = luminance.size() / kLightPlaces;
+    if (probes == 0) {
+        return report;
+    }
+    const std::vector<ModelPair> pairs = make_pairs(luminance, truth);
+    for (std::size_t place = 0; place < kLightPlaces; ++place) {
+        const auto own = std::span<const ModelPair>(pairs).subspan(place * probes, probes);
+        const MeanSquares sum = sum_up(own);
+        VolumeErrorReport::Part part{
+            std::string(kLightPlaceNames[place]), sum.rms_relative(), {}, sum.bias(), sum.noise()};
+        std::ranges::copy(stated_interval(own, probes, seed), part.ci95);
+        report.by_light.push_back(std::move(part));
+    }
+    const std::vector<ModelPair> relative = relative_pairs(pairs, probes);
+    report.rms_relative = sum_up(relative).rms_relative();
+    std::ranges::copy(stated_interval(relative, probes, seed), report.ci95);
+    report.rays_checked = static_cast<std::uint32_t>(luminance.size());
+    report.samples = std::uint64_t{truth.samples} * report.rays_checked;
+    report.events = truth.events;
+    report.reference =
+        "path tracing; luminance that volumes scatter along rays through points drawn in "
+        "proportion to extinction, under suns ahead of the eye, beside it and behind it, and "
+        "under even light";
+    return report;
+}
+
+formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
+                                                 const formats::AssetView& asset,
+                                                 const VolumeCheckOptions& options,
+                                                 const Context& context) {
+    const auto reference = make_reference_scene(scene, context.threads);
+    if (!reference) {
+        return reference.error();
+    }
+    const std::vector<VolumeProbe> probes =
+        choose_volume_probes(*reference, options.probes, options.seed);
+    if (probes.empty()) {
+        return VolumeErrorReport();
+    }
+    const std::vector<double> luminance =
+        march_probes(asset.volumes, asset.cubemap_size, scene.origin, probes, context.threads);
+    const auto truth = trace_volume_truth(
+        *reference, probes, options.seed, options.max_events,
+        [&](const VolumeTruth& so_far) {
+            const MeanSquares sum = sum_up_places(luminance, so_far);
+            return sum.noise() <= std::max(options.noise, options.noise_share * sum.rms_relative());
+        },
+        context);
+    if (!truth) {
+        return truth.error();
+    }
+    return compare_volumes(luminance, *truth, options.seed);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bake/accuracy/volumes/volume_truth.h"
+#include "bake/base/context.h"
+#include "formats/opal/asset.h"
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Error of a finished file's volumes: luminance that they scatter along rays, by the runtime's
+/// march, against path tracing. Model and numbers err together. The noise of the paths is
+/// subtracted.
+struct VolumeErrorReport {
+    /// RMS of the error over that of the truth; in squares the mean of the parts.
+    double rms_relative = 0;
+    double ci95[2] = {0, 0};  ///< bootstrap over probes, with two more that err as the worst does
+    std::uint32_t rays_checked = 0;
+    std::uint64_t samples = 0;  ///< paths traced, of all rays
+    std::uint64_t events = 0;   ///< scatterings and surfaces that they met
+    std::string reference;      ///< the reference, in words
+    /// Under lights of one LightPlace, relative to the RMS of the truth under these.
+    struct Part {
+        std::string name;
+        double rms_relative = 0;
+        double ci95[2] = {0, 0};
+        double bias = 0;   ///< mean difference over mean truth; > 0: the file is too bright
+        double noise = 0;  ///< RMS standard error of the truth
+    };
+    std::vector<Part> by_light;  ///< in the order of LightPlace; empty: nothing was checked
+};
+
+/// Effort of the check. It counts events, not seconds, so that the result does not depend on the
+/// machine.
+struct VolumeCheckOptions {
+    std::uint32_t probes = 32;
+    std::uint64_t seed = 0;
+    double noise = 0.01;                 ///< relative to the truth: enough for any file
+    double noise_share = 0.5;            ///< relative to the difference: enough for this file
+    std::uint64_t max_events = 1000000;  ///< scatterings and surfaces met, of all rays
+};
+
+/// Errors of `luminance` (march_probes) against a truth of the same probes.
+VolumeErrorReport compare_volumes(std::span<const double> luminance, const VolumeTruth& truth,
+                                  std::uint64_t seed);
+
+/// Compares the volumes of `asset`, baked from `scene`, with path tracing. Light that surfaces
+/// reflect onto volumes, or that reaches the eye from surfaces or unscattered, is on neither side.
+/// The same bits for any number of threads. Errors: resource, interrupted.
+formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
+                                                 const formats::AssetView& asset,
+                                                 const VolumeCheckOptions& options,
+                                                 const Context& context);
+
+}  // namespace opaline::bake

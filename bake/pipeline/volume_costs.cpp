@@ -1,0 +1,73 @@
+#include "bake/pipeline/volume_costs.h"
+
+#include <algorithm>
+
+#include "bake/pipeline/volume_stages.h"
+#include "bake/volumes/volume_knobs.h"
+
+namespace opaline::bake {
+namespace {
+
+// The entry of a volume with a name that is on; null where there is none.
+PlanEntry* payer_of(std::span<PlanEntry> plan, std::uint32_t volume, std::string_view name) {
+    const auto found = std::ranges::find_if(plan, [&](const PlanEntry& entry) {
+        return entry.on && entry.subject.index == volume && entry.name == name;
+    });
+    return found == plan.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+CostedVolumes make_costed_volumes(const CostRequest& request) {
+    CostedVolumes volumes;
+    volumes.layouts = plan_volumes(request.scene, request.knobs).layouts;
+    volumes.works = count_volume_work(request.scene, volumes.layouts, request.knobs);
+    return volumes;
+}
+
+void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, double row_count,
+                  std::span<PlanEntry> volume_plan, Bill& bill) {
+    for (PlanEntry& entry : volume_plan) {
+        entry.predicted_seconds = 0;
+        entry.predicted_bytes = 0;
+    }
+    if (volumes.empty()) {
+        return;
+    }
+    const CostInput input{request.rates, request.knobs, request.facts.triangles,
+                          request.facts.receivers};
+    const auto for_each = [&](std::string_view name, auto&& visit) {
+        for (std::size_t i = 0; i < volumes.works.size(); ++i) {
+            visit(volumes.works[i], payer_of(volume_plan, volumes.layouts[i].volume, name));
+        }
+    };
+    bill.open("light in volumes");
+    for_each("volume-single", [&](const VolumeWork& work, PlanEntry* payer) {
+        bill.add(single_volume_work(input, work), payer);
+        bill.add_bytes(volume_density_bytes(work));
+        bill.add_bytes(volume_row_bytes(work, request.knobs, work.nodes), payer);
+    });
+    bill.open("walks through volumes");
+    for_each("volume-multiple", [&](const VolumeWork& work, PlanEntry* payer) {
+        bill.add(multiple_volume_work(input, work), payer);
+        bill.add_bytes(volume_row_bytes(work, request.knobs, work.rows - work.nodes), payer);
+    });
+    if (std::ranges::any_of(volumes.layouts, &VolumeLayout::has_nodes)) {
+        const VolumeCheckOptions check =
+            volume_check_effort(request.scene, volumes.layouts, request.knobs);
+        double entries = 0;  // of all rows, once for each light
+        for (const VolumeWork& work : volumes.works) {
+            entries +=
+                work.rows * work.bands * request.knobs[kVolumeCoefficients] * (check.probes + 1);
+        }
+        bill.open("self-check of volumes");
+        bill.add({0, static_cast<double>(check.max_events) * request.rates.traced_collision +
+                         entries * request.rates.gather_entry});
+    }
+    if (request.facts.receivers > 0) {
+        bill.open("shadows of volumes");
+        bill.add(dimming_work(input, volumes.works, request.facts.receivers, row_count));
+    }
+}
+
+}  // namespace opaline::bake

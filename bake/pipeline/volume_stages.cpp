@@ -1,0 +1,159 @@
+#include "bake/pipeline/volume_stages.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bake/volumes/bake_volumes.h"
+#include "bake/volumes/dim_surfaces.h"
+#include "bake/volumes/volume_knobs.h"
+#include "bake/volumes/volume_work.h"
+
+namespace opaline::bake {
+namespace {
+
+formats::Error interrupted() {
+    return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
+                               "nothing was written");
+}
+
+// Volumes of one quality, and how far they err.
+struct BakedVolumes {
+    Knobs knobs;
+    VolumePlan plan;
+    formats::Volumes volumes;
+    std::optional<VolumeErrorReport> error;  // nothing: they scatter no light
+
+    double rms() const { return error ? error->rms_relative : 0; }
+};
+
+formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const Knobs& knobs,
+                                             const Context& context, BakeResult& result) {
+    BakedVolumes baked{knobs, plan_volumes(inputs.scene, knobs), {}, {}};
+    auto volumes = bake_volumes({inputs.scene, inputs.rays, baked.plan.layouts, knobs}, context,
+                                result.stages);
+    if (!volumes) {
+        return std::move(volumes).error();
+    }
+    if (context.cancelled()) {
+        return interrupted();
+    }
+    baked.volumes = std::move(*volumes);
+    if (std::ranges::none_of(baked.plan.layouts, &VolumeLayout::has_nodes)) {
+        return baked;
+    }
+    formats::AssetView view = result.asset.view();
+    view.volumes = baked.volumes.view();
+    auto error =
+        run_stage(result.stages, "self-check of volumes", "self-check", [&](std::uint64_t& traced) {
+            auto found = check_volumes(inputs.scene, view,
+                                       volume_check_effort(inputs.scene, baked.plan.layouts, knobs),
+                                       context);
+            traced += found ? found->events : 0;
+            return found;
+        });
+    if (!error) {
+        return std::move(error).error();
+    }
+    if (error->rays_checked > 0) {
+        baked.error = std::move(*error);
+    }
+    return baked;
+}
+
+// Quality after quality, until the error is low enough or hardly falls.
+formats::Result<BakedVolumes> bake_for_target(const VolumeStages& inputs, const Context& context,
+                                              BakeResult& result) {
+    constexpr double kLeastGain = 0.9;
+    std::optional<BakedVolumes> best;
+    for (const Quality quality :
+         {Quality::draft, Quality::preview, Quality::production, Quality::reference}) {
+        auto tried = bake_and_check(
+            inputs, with_volume_quality(inputs.effects, result.knobs, quality), context, result);
+        if (!tried) {
+            return std::move(tried).error();
+        }
+        result.volume_trials.push_back({quality, tried->rms()});
+        if (best && tried->rms() > kLeastGain * best->rms()) {
+            break;
+        }
+        best = std::move(*tried);
+        if (best->rms() <= result.knobs.error_target) {
+            break;
+        }
+    }
+    return std::move(*best);
+}
+
+// What was chosen, so that the same options give the same bake again.
+void keep_knobs(const EffectTable& effects, const BakedVolumes& baked, Knobs& knobs) {
+    for (const EffectDescriptor& effect : effects.effects) {
+        for (const KnobSpec* knob : effect.knobs) {
+            if (effect.concerns_volumes) {
+                knobs.set(*knob, baked.knobs[*knob]);
+            }
+        }
+    }
+    const auto& layouts = baked.plan.layouts;
+    if (!layouts.empty() && std::ranges::all_of(layouts, [&](const VolumeLayout& layout) {
+            return layout.spacing == layouts.front().spacing;
+        })) {
+        knobs.set(kVolumeSpacing, layouts.front().spacing);
+    }
+}
+
+}  // namespace
+
+VolumeCheckOptions volume_check_effort(const formats::Scene& scene,
+                                       std::span<const VolumeLayout> layouts, const Knobs& knobs) {
+    VolumeCheckOptions options;
+    options.seed = knobs.seed;
+    if (knobs.check_model) {
+        options.probes = 128;
+        options.noise_share = 0.25;
+        options.max_events = 20000000;
+        return options;
+    }
+    constexpr double kShare = 0.08, kLeast = 2e5, kMost = 2e7;
+    const double bake = count_in_scatterings(count_volume_work(scene, layouts, knobs));
+    options.max_events = static_cast<std::uint64_t>(std::clamp(kShare * bake, kLeast, kMost));
+    return options;
+}
+
+Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quality) {
+    knobs.quality = quality;
+    for (const EffectDescriptor& effect : effects.effects) {
+        for (const KnobSpec* knob : effect.knobs) {
+            if (effect.concerns_volumes && !knobs.is_given(*knob)) {
+                knobs.set(*knob, knob->preset[static_cast<std::size_t>(quality)]);
+            }
+        }
+    }
+    return knobs;
+}
+
+formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
+                            BakeResult& result) {
+    const bool has_target = result.knobs.error_target > 0;
+    auto baked = has_target ? bake_for_target(inputs, context, result)
+                            : bake_and_check(inputs, result.knobs, context, result);
+    if (!baked) {
+        return std::move(baked).error();
+    }
+    if (has_target) {
+        keep_knobs(inputs.effects, *baked, result.knobs);
+    }
+    result.asset.volumes = std::move(baked->volumes);
+    result.volume_plan = std::move(baked->plan.entries);
+    result.volume_error = std::move(baked->error);
+    if (result.asset.position.empty()) {
+        return formats::ok_status();
+    }
+    const auto status = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t&) {
+        return dim_surfaces(inputs.scene, result.knobs, context, result.asset);
+    });
+    return status && context.cancelled() ? interrupted() : status;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+
+#include "bake/pipeline/pipeline.h"
+#include "bake/transport/ray_scene.h"
+#include "bake/volumes/plan_volumes.h"
+
+namespace opaline::bake {
+
+/// What the stages of volumes work on.
+struct VolumeStages {
+    const EffectTable& effects;
+    const formats::Scene& scene;
+    const RayScene& rays;  ///< surfaces; may be empty
+};
+
+/// Effort of the check of a bake's volumes: with Knobs::check_model until the noise is small;
+/// otherwise as many events as take about a twelfth of the bake's time, at least 200 000.
+VolumeCheckOptions volume_check_effort(const formats::Scene& scene,
+                                       std::span<const VolumeLayout> layouts, const Knobs& knobs);
+
+/// The presets' values of all volumes' knobs that the user did not give, and the quality that
+/// their plan goes by.
+Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quality);
+
+/// Adds a file's volumes to `result`, measures them, and takes what they dim from the light of its
+/// surfaces. With Knobs::error_target they are baked in quality after quality, `draft` first, until
+/// the measured error is below the target or falls by less than a tenth; the best bake so far is
+/// kept, and `result.knobs` has its values. Errors: as bake_volumes and check_volumes; interrupted.
+formats::Status add_volumes(const VolumeStages& inputs, const Context& context, BakeResult& result);
+
+}  // namespace opaline::bake

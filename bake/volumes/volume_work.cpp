@@ -1,0 +1,164 @@
+#include "bake/volumes/volume_work.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bake/volumes/count_walk.h"
+#include "bake/volumes/density_space.h"
+#include "bake/volumes/node_lattice.h"
+#include "bake/volumes/volume_knobs.h"
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr float kForever = std::numeric_limits<float>::infinity();
+
+// Steps of an optical depth, as optical_depth takes them.
+double count_steps(const DensitySpace& space, glm::vec3 from, glm::vec3 direction) {
+    double steps = 0;
+    for (const DensityVolume& volume : space.volumes) {
+        const float voxels_per_metre = glm::length(volume.to_index * direction);
+        visit_cells(volume, from, direction, kForever, [&](float, float begin, float end) {
+            steps += static_cast<double>(std::ceil((end - begin) * voxels_per_metre));
+            return true;
+        });
+    }
+    return steps;
+}
+
+// Edges of the cube maps of light, as bake_volumes makes them.
+std::uint32_t fine_cells(const Knobs& knobs) {
+    return std::min(knobs.cubemap_size, knobs.quality == Quality::reference ? 32u : 16u);
+}
+std::uint32_t coarse_cells(const Knobs& knobs) {
+    return std::min(knobs.cubemap_size, knobs.quality == Quality::reference ? 16u : 8u);
+}
+
+double texels(std::uint32_t n) {
+    return static_cast<double>(formats::cubemap_texels(n));
+}
+
+// Steps and collisions, from some nodes of the volume.
+void count_by_samples(const DensitySpace& space, const formats::Volume& volume,
+                      const NodeLattice& lattice, double walks, VolumeWork& work) {
+    constexpr std::size_t kNodes = 48, kDirections = 8, kWalks = 4;
+    const std::size_t count = lattice.node.size(), drawn = std::min(count, kNodes);
+    double steps = 0;
+    WalkCount walked;
+    for (std::size_t i = 0; i < drawn; ++i) {
+        CostRandom random(i);
+        const glm::ivec3 node = lattice.node[(2 * i + 1) * count / (2 * drawn)];
+        const glm::vec3 at(volume.density.to_scene * glm::dvec4(glm::dvec3(node), 1.0));
+        for (std::size_t d = 0; d < kDirections; ++d) {
+            steps += count_steps(space, at, random.direction());
+        }
+        for (std::size_t w = 0; w < kWalks; ++w) {
+            const WalkCount one = count_walk(space, at, random);
+            walked.flights += one.flights;
+            walked.collisions += one.collisions;
+        }
+    }
+    if (drawn > 0) {
+        const auto nodes = static_cast<double>(drawn);
+        work.depth_steps = work.nodes * work.cells * steps / (nodes * kDirections);
+        work.flights = work.nodes * walks * walked.flights / (nodes * kWalks);
+        work.collisions = work.nodes * walks * walked.collisions / (nodes * kWalks);
+    }
+}
+
+}  // namespace
+
+std::vector<VolumeWork> count_volume_work(const formats::Scene& scene,
+                                          std::span<const VolumeLayout> layouts,
+                                          const Knobs& knobs) {
+    std::vector<VolumeWork> works;
+    if (layouts.empty()) {
+        return works;
+    }
+    const DensitySpace space = make_density_space(scene);
+    for (const VolumeLayout& layout : layouts) {
+        const formats::Volume& volume = scene.volumes[layout.volume];
+        VolumeWork work;
+        work.voxels = static_cast<double>(volume.density.value.size());
+        const NodeLattice lattice = make_node_lattice(volume.density, layout.spacing);
+        work.bricks = static_cast<double>(lattice.brick.size());
+        work.spacing = layout.spacing;
+        work.bands = static_cast<double>(space.bands());
+        work.tracks = static_cast<double>(space.extinction_bands());
+        work.cells = texels(fine_cells(knobs));
+        work.walk_cells = texels(coarse_cells(knobs)) *
+                          (space.is_grey ? work.bands : 1);  // a track of one band has one
+        if (layout.has_nodes()) {
+            work.nodes = static_cast<double>(lattice.node.size());
+            work.rows = work.nodes * (1 + layout.often_terms);
+            count_by_samples(space, volume, lattice,
+                             layout.often_terms > 0 ? knobs[kVolumeWalks] : 0, work);
+        }
+        works.push_back(work);
+    }
+    return works;
+}
+
+double count_in_scatterings(std::span<const VolumeWork> works) {
+    constexpr double kStep = 1.0 / 16, kCell = 1.0 / 180;
+    double sum = 0;
+    for (const VolumeWork& work : works) {
+        sum += kStep * work.depth_steps + kCell * work.tracks * work.collisions * work.walk_cells;
+    }
+    return sum;
+}
+
+Work single_volume_work(const CostInput& input, const VolumeWork& work) {
+    const double texel = texels(input.knobs.cubemap_size) * work.bands;
+    return {0, work.depth_steps * input.rates.density_step +
+                   work.nodes * texel * input.rates.node_texel};
+}
+
+Work multiple_volume_work(const CostInput& input, const VolumeWork& work) {
+    const double texel = texels(input.knobs.cubemap_size) * work.bands;
+    const double rows = work.rows - work.nodes;
+    return {0, work.tracks * (work.flights * input.rates.volume_flight +
+                              work.collisions * work.walk_cells * input.rates.scattered_cell) +
+                   rows * input.knobs[kVolumeWalks] * work.tracks * work.walk_cells *
+                       input.rates.gather_entry +
+                   rows * texel * input.rates.node_texel};
+}
+
+Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
+                  double rows) {
+    constexpr std::uint32_t kFinest = 16;  // dim_surfaces.cpp
+    const double cells = texels(std::min(input.knobs.cubemap_size, kFinest));
+    Work sum{0, rows * texels(input.knobs.cubemap_size) * input.rates.encode_grey};
+    for (const VolumeWork& work : works) {
+        // Outside of a volume a line meets it at most as long as from within.
+        const double steps =
+            work.nodes > 0 ? work.depth_steps / (work.nodes * work.cells) : std::cbrt(work.voxels);
+        sum.shared += receivers * cells * steps * input.rates.density_step;
+    }
+    return sum;
+}
+
+double volume_density_bytes(const VolumeWork& work) {
+    // Codes of 16 bits, half of which compression saves where bricks are half empty; positions.
+    constexpr double kCompressed = 0.5, kNode = 12;
+    return kCompressed * 2 * work.voxels + kCompressed * kNode * work.nodes;
+}
+
+double volume_row_bytes(const VolumeWork& work, const Knobs& knobs, double rows) {
+    const double details = std::min(knobs[kVolumeCoefficients], texels(knobs.cubemap_size)) - 6;
+    const double code = knobs.code_bits / 8.0;
+    return rows * (details * (2 + work.bands * code) + work.bands * (6 * 2 + 8) + 4);
+}
+
+double volume_memory(const VolumeWork& work, const Knobs& knobs) {
+    constexpr double kGrowth = 2;  // vectors that double
+    constexpr double kScene = 4, kCode = 2, kCorner = 4;
+    const double corners = std::pow(8 / work.spacing + 1, 3);
+    const double depths = 2 * work.nodes * work.tracks * texels(coarse_cells(knobs));
+    return work.voxels * (2 * kScene + kGrowth * kCode) + 2 * work.bricks * corners * kCorner +
+           depths + kGrowth * volume_row_bytes(work, knobs, work.rows);
+}
+
+}  // namespace opaline::bake

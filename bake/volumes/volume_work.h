@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "bake/plan/stage_work.h"
+#include "bake/volumes/plan_volumes.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// What a bake of one volume does, in counts; expected values where chance has a part.
+struct VolumeWork {
+    double voxels = 0;  ///< in bricks
+    double bricks = 0;
+    double spacing = 1;  ///< voxels between nodes
+    double nodes = 0;
+    double cells = 0;        ///< directions of light toward which a node is attenuated
+    double depth_steps = 0;  ///< of all optical depths: nodes, cells, and steps through each volume
+    double flights = 0;      ///< of all walks of one extinction, the last one of each included
+    double collisions = 0;   ///< of them
+    double walk_cells = 0;   ///< directions and bands of light that join a walk at a collision
+    double tracks = 1;       ///< walks that follow extinctions of their own: 1, or 3 by band
+    double rows = 0;         ///< of all nodes
+    double bands = 1;        ///< of a row
+};
+
+/// Counts the work of each layout, in order. Numbers of steps and collisions are means over some
+/// nodes, directions and walks through the densities; surfaces are not seen. A pure function of
+/// its arguments: milliseconds, as much as a pass over the densities.
+std::vector<VolumeWork> count_volume_work(const formats::Scene& scene,
+                                          std::span<const VolumeLayout> layouts,
+                                          const Knobs& knobs);
+
+/// The work of a bake in units of one scattering of the reference's paths, which takes as long as
+/// some 16 steps or as light from 180 directions that joins a walk, on any machine about.
+double count_in_scatterings(std::span<const VolumeWork> works);
+
+/// Light scattered once: attenuation and its rows. Light scattered more often: walks and rows.
+Work single_volume_work(const CostInput& input, const VolumeWork& work);
+Work multiple_volume_work(const CostInput& input, const VolumeWork& work);
+
+/// Optical depths of `receivers` vertices toward all texels through volumes of these, and their
+/// rows once more.
+Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
+                  double rows);
+
+/// Bytes in the file: of density and nodes; of all rows of one kind (`rows` of them) at most.
+double volume_density_bytes(const VolumeWork& work);
+double volume_row_bytes(const VolumeWork& work, const Knobs& knobs, double rows);
+
+/// Memory of one volume [bytes]: density, nodes, optical depths of walks, and rows.
+double volume_memory(const VolumeWork& work, const Knobs& knobs);
+
+}  // namespace opaline::bake

@@ -1,0 +1,153 @@
+#include "bake/accuracy/volumes/volume_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bake/accuracy/volumes/volume_radiance.h"
+#include "bake/volumes/volume_knobs.h"
+#include "tests/bake/volumes/volume_support.h"
+#include "tests/support/scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+Knobs small_knobs() {
+    Knobs knobs = tests::knobs_for(Quality::production);
+    knobs.cubemap_size = 8;
+    knobs.set(kVolumeSpacing, 2);
+    knobs.set(kVolumeWalks, 64);
+    return knobs;
+}
+
+// The volumes of a scene as a file holds them.
+formats::Asset bake(const formats::Scene& scene, const Knobs& knobs) {
+    const auto rays = RayScene::build(scene, 2);
+    const VolumePlan plan = plan_volumes(scene, knobs);
+    StageLog log;
+    formats::Asset asset;
+    asset.transport = formats::make_sparse_rows(knobs.cubemap_size, knobs.code_bits);
+    asset.volumes = std::move(*bake_volumes({scene, *rays, plan.layouts, knobs}, {}, log));
+    return asset;
+}
+
+VolumeErrorReport check(const formats::Scene& scene, const formats::Asset& asset,
+                        unsigned threads = 2) {
+    VolumeCheckOptions options;
+    options.noise_share = 0.3;
+    Context context;
+    context.threads = threads;
+    return *check_volumes(scene, asset.view(), options, context);
+}
+
+formats::Scene blob_scene(float albedo, float g) {
+    return tests::scene_of(tests::make_volume(tests::make_blob(0.5, 1.0 / 6), 4, albedo, g));
+}
+
+const VolumeErrorReport::Part& part(const VolumeErrorReport& report, LightPlace place) {
+    return report.by_light[static_cast<std::size_t>(place)];
+}
+
+TEST(VolumeError, OfABlobThatAbsorbsNothingIsAboutZeroUnderEvenLight) {
+    const formats::Scene scene = blob_scene(1, 0);
+    const VolumeErrorReport report = check(scene, bake(scene, small_knobs()));
+    ASSERT_EQ(report.by_light.size(), kLightPlaces);
+    EXPECT_LT(part(report, LightPlace::around).rms_relative, 0.03);
+    EXPECT_NEAR(part(report, LightPlace::around).bias, 0, 0.02);
+    EXPECT_LT(report.rms_relative, 0.2);
+    EXPECT_LE(report.ci95[0], report.rms_relative);
+    EXPECT_GE(report.ci95[1], report.rms_relative);
+}
+
+TEST(VolumeError, OfAFileThatScattersTooLittleRisesByWhatIsMissing) {
+    const formats::Scene scene = blob_scene(0.9f, 0);
+    formats::Asset asset = bake(scene, small_knobs());
+    const VolumeErrorReport whole = check(scene, asset);
+    for (formats::VolumeRecord& record : asset.volumes.records) {
+        record.albedo = 0.7f * record.albedo;
+    }
+    const VolumeErrorReport damaged = check(scene, asset);
+    EXPECT_GT(damaged.rms_relative, 0.25);
+    EXPECT_GT(damaged.rms_relative, 1.5 * whole.rms_relative);
+    for (std::size_t place = 0; place < kLightPlaces; ++place) {
+        EXPECT_NEAR(1 + damaged.by_light[place].bias, 0.7 * (1 + whole.by_light[place].bias), 0.05);
+    }
+}
+
+TEST(VolumeError, FallsWithFinerNodesAndMoreWalks) {
+    const formats::Scene scene = blob_scene(0.95f, 0.5f);
+    Knobs coarse = small_knobs();
+    coarse.set(kVolumeSpacing, 8);
+    coarse.set(kVolumeWalks, 4);
+    EXPECT_LT(check(scene, bake(scene, small_knobs())).rms_relative,
+              0.7 * check(scene, bake(scene, coarse)).rms_relative);
+}
+
+TEST(VolumeError, HasTheSameBitsForAnyNumberOfThreads) {
+    const formats::Scene scene = blob_scene(0.9f, 0.5f);
+    const formats::Asset asset = bake(scene, small_knobs());
+    const VolumeErrorReport one = check(scene, asset, 1), three = check(scene, asset, 3);
+    EXPECT_EQ(one.rms_relative, three.rms_relative);
+    EXPECT_EQ(one.ci95[0], three.ci95[0]);
+    EXPECT_EQ(one.ci95[1], three.ci95[1]);
+    EXPECT_EQ(one.samples, three.samples);
+    for (std::size_t place = 0; place < kLightPlaces; ++place) {
+        EXPECT_EQ(one.by_light[place].bias, three.by_light[place].bias);
+    }
+}
+
+// A floor ends rays, hides the sky from below and is not itself seen: what it reflects is on
+// neither side.
+TEST(VolumeError, IsSmallAboveAFloorToo) {
+    formats::Scene scene = blob_scene(0.9f, 0);
+    scene.primitives.push_back(tests::make_quad({-9, -0.6f, -9}, {0, 0, 18}, {18, 0, 0}, 1));
+    const VolumeErrorReport report = check(scene, bake(scene, small_knobs()));
+    EXPECT_GT(report.rays_checked, 100u);
+    EXPECT_LT(part(report, LightPlace::around).rms_relative, 0.06);
+    EXPECT_LT(report.rms_relative, 0.3);
+}
+
+// Pairs whose truth is known without noise: each class counts alike, however bright its light.
+TEST(VolumeError, TotalIsTheMeanSquareOfTheParts) {
+    constexpr std::size_t kProbes = 10;
+    VolumeTruth truth;
+    std::vector<double> luminance;
+    for (std::size_t place = 0; place < kLightPlaces; ++place) {
+        const double bright = std::pow(100.0, static_cast<double>(place));
+        for (std::size_t p = 0; p < kProbes; ++p) {
+            Moments m;
+            m.add(glm::dvec3(bright));
+            truth.luminance.push_back(m);
+            luminance.push_back(place == 0 ? 1.4 * bright : bright);
+        }
+    }
+    const VolumeErrorReport report = compare_volumes(luminance, truth, 0);
+    EXPECT_NEAR(report.rms_relative, 0.2, 1e-9);
+    EXPECT_NEAR(report.by_light[0].rms_relative, 0.4, 1e-9);
+    EXPECT_NEAR(report.by_light[0].bias, 0.4, 1e-9);
+    EXPECT_EQ(report.by_light[3].rms_relative, 0);
+}
+
+TEST(VolumeError, NoiseOfThePathsIsNoErrorOfTheFile) {
+    const formats::Scene scene = blob_scene(0.9f, 0);
+    const auto reference = make_reference_scene(scene, 1);
+    const std::vector<VolumeProbe> probes = choose_volume_probes(*reference, 64, 3);
+    const auto never = [](const VolumeTruth&) { return false; };
+    const auto few = trace_volume_truth(*reference, probes, 1, 20000, never, {});
+    const auto many = trace_volume_truth(*reference, probes, 2, 2000000, never, {});
+    ASSERT_GT(many->samples, 30 * few->samples);
+    std::vector<double> luminance;
+    for (const Moments& m : many->luminance) {
+        luminance.push_back(m.mean.x);
+    }
+    const VolumeErrorReport report = compare_volumes(luminance, *few, 0);
+    double noise = 0;
+    for (const VolumeErrorReport::Part& own : report.by_light) {
+        noise += own.noise * own.noise / kLightPlaces;
+    }
+    EXPECT_GT(std::sqrt(noise), 0.1);
+    EXPECT_LT(report.rms_relative, 0.6 * std::sqrt(noise));
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,120 @@
+#include "bake/volumes/volume_work.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "bake/volumes/density_space.h"
+#include "bake/volumes/light_cells.h"
+#include "bake/volumes/node_lattice.h"
+#include "bake/volumes/volume_knobs.h"
+#include "tests/bake/volumes/volume_support.h"
+#include "tests/support/rates.h"
+#include "tests/support/scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+formats::Scene scene_of_blob(float sigma_t, float albedo, float g) {
+    return tests::scene_of(tests::make_volume(tests::make_blob(0.5, 0.125), sigma_t, albedo, g));
+}
+
+Knobs knobs_of_draft() {
+    Knobs knobs = tests::knobs_for(Quality::draft);
+    knobs.cubemap_size = 8;
+    knobs.set(kVolumeSpacing, 4);
+    return knobs;
+}
+
+VolumeWork work_of(const formats::Scene& scene, const Knobs& knobs) {
+    return count_volume_work(scene, plan_volumes(scene, knobs).layouts, knobs).front();
+}
+
+void expect_within(double predicted, double counted, double factor) {
+    EXPECT_GT(predicted, counted / factor);
+    EXPECT_LT(predicted, counted * factor);
+}
+
+TEST(VolumeWork, NodesAndRowsAreThoseOfTheFile) {
+    const formats::Scene scene = scene_of_blob(4, 0.9f, 0.5f);
+    const Knobs knobs = knobs_of_draft();
+    const VolumeWork work = work_of(scene, knobs);
+    const VolumePlan plan = plan_volumes(scene, knobs);
+    const RayScene sky = tests::empty_space();
+    StageLog log;
+    const auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
+    ASSERT_TRUE(volumes.has_value());
+    EXPECT_EQ(work.nodes, static_cast<double>(volumes->node.size()));
+    EXPECT_EQ(work.rows, static_cast<double>(volumes->rows.row_offset.size() - 1));
+    EXPECT_EQ(work.bricks, static_cast<double>(volumes->records[0].brick_count));
+}
+
+// Surfaces that nothing meets make a bake count its rays: one a flight.
+TEST(VolumeWork, FlightsAreThoseOfTheBakeWithinAFactorOfTwo) {
+    for (const float sigma_t : {1.0f, 8.0f}) {
+        for (const float albedo : {0.5f, 0.99f}) {
+            for (const float g : {0.0f, 0.85f}) {
+                formats::Scene scene = scene_of_blob(sigma_t, albedo, g);
+                const Knobs knobs = knobs_of_draft();
+                const VolumeWork work = work_of(scene, knobs);
+                scene.primitives.push_back(
+                    tests::make_quad({900, 0, 0}, {0, 0, 0.01f}, {0.01f, 0, 0}, 1));
+                const auto rays = RayScene::build(scene, 2);
+                const VolumePlan plan = plan_volumes(scene, knobs);
+                StageLog log;
+                ASSERT_TRUE(bake_volumes({scene, *rays, plan.layouts, knobs}, {}, log));
+                const auto walks =
+                    std::ranges::find(log, "walks through volumes", &StageReport::name);
+                ASSERT_NE(walks, log.end());
+                SCOPED_TRACE(std::to_string(sigma_t) + " " + std::to_string(albedo) + " " +
+                             std::to_string(g));
+                expect_within(work.flights, static_cast<double>(walks->rays), 1.5);
+                EXPECT_LT(work.collisions, work.flights);
+            }
+        }
+    }
+}
+
+TEST(VolumeWork, StepsAreThoseOfAllNodesWithinAFactorOfTwo) {
+    const formats::Scene scene = scene_of_blob(4, 0.9f, 0);
+    const Knobs knobs = knobs_of_draft();
+    const VolumeWork work = work_of(scene, knobs);
+    const DensitySpace space = make_density_space(scene);
+    const formats::Volume& volume = scene.volumes[0];
+    const LightCells cells = make_light_cells(8);
+    double steps = 0;
+    for (const glm::ivec3 node : make_node_lattice(volume.density, 4).node) {
+        const glm::vec3 at(volume.density.to_scene * glm::dvec4(glm::dvec3(node), 1));
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const glm::vec3 direction = cells.direction(i);
+            const float pitch = glm::length(space.volumes[0].to_index * direction);
+            visit_cells(space.volumes[0], at, direction, 1e9f, [&](float, float begin, float end) {
+                steps += static_cast<double>(std::ceil((end - begin) * pitch));
+                return true;
+            });
+        }
+    }
+    expect_within(work.depth_steps, steps, 1.2);
+}
+
+TEST(VolumeWork, TimeGrowsWithWalksAndBytesWithCoefficients) {
+    const formats::Scene scene = scene_of_blob(4, 0.9f, 0.5f);
+    const Rates rates = tests::make_rates();
+    Knobs knobs = knobs_of_draft();
+    const VolumeWork few = work_of(scene, knobs);
+    const double seconds = multiple_volume_work({rates, knobs}, few).shared;
+    const double bytes = volume_row_bytes(few, knobs, few.rows);
+    Knobs more = knobs;
+    more.set(kVolumeWalks, 10 * knobs[kVolumeWalks]);
+    more.set(kVolumeCoefficients, 4 * knobs[kVolumeCoefficients]);
+    const VolumeWork many = work_of(scene, more);
+    EXPECT_NEAR(many.collisions, 10 * few.collisions, 1e-6 * many.collisions);
+    const double longer = multiple_volume_work({rates, more}, many).shared;
+    EXPECT_GT(longer, 5 * seconds);
+    EXPECT_LT(longer, 10.001 * seconds);
+    EXPECT_GT(volume_row_bytes(many, more, many.rows), 2.5 * bytes);
+    EXPECT_GT(volume_memory(many, more), volume_memory(few, knobs));
+}
+
+}  // namespace
+}  // namespace opaline::bake
