@@ -313,13 +313,61 @@ TEST(Reference, WhatNeedsSurfacesSaysSoOfVolumes) {
                                        "-o", (folder / "out.csv").string()});
     EXPECT_EQ(table.exit_code, 2);
     EXPECT_THAT(table.err, HasSubstr("no vertices"));
-    const Outcome sweep = run_opaline({"sweep", scene, "-o", (folder / "sweep").string()});
-    EXPECT_EQ(sweep.exit_code, 3);
-    EXPECT_THAT(sweep.err, HasSubstr("does not measure the error of volumes"));
     const Outcome twice = run_opaline({"reference", scene, "--media", scene, "--light", "white",
                                        "-o", (folder / "out.exr").string()});
     EXPECT_EQ(twice.exit_code, 2);
     EXPECT_EQ(list_folder(folder.path()), before);
+}
+
+TEST(Reference, PathIntegrationDrawsVolumesWithoutNoise) {
+    const TemporaryFolder folder;
+    const std::string out = (folder / "out.exr").string(), again = (folder / "again.exr").string();
+    ASSERT_EQ(run_opaline({"example", "milk", "-o", folder.path().string()}).exit_code, 0);
+    const auto draw = [&](const std::string& file, const char* threads) {
+        const Outcome outcome =
+            run_opaline({"reference", (folder / "milk.json").string(), "--light", "sun:60,35",
+                         "--method", "path-integration", "--renormalise", "off", "--size", "16x12",
+                         "--threads", threads, "-o", file});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_THAT(outcome.err, HasSubstr("path integration, 4 rays for each of 192 pixels"));
+    };
+    draw(out, "1");
+    draw(again, "2");
+    EXPECT_EQ(read_text(out), read_text(again));
+    EXPECT_GT(mean_of(out), 0.01);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.var.exr"));
+}
+
+TEST(Reference, PathIntegrationRefusesWhatItCannotDo) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run_opaline({"example", "milk", "-o", folder.path().string()}).exit_code, 0);
+    const std::string milk = (folder / "milk.json").string();
+    const auto try_with = [&](const std::string& scene, Arguments more) {
+        Arguments arguments = {"reference", scene, "--light",
+                               "white",     "-o",  (folder / "out.exr").string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_opaline(arguments);
+    };
+    const Arguments paths = {"--method", "path-integration"};
+    for (const Arguments& option :
+         {Arguments{"--seconds", "3"}, {"--max-depth", "2"}, {"--seed", "5"}}) {
+        Arguments more = paths;
+        more.insert(more.end(), option.begin(), option.end());
+        const Outcome outcome = try_with(milk, more);
+        EXPECT_EQ(outcome.exit_code, 2) << option[0];
+        EXPECT_THAT(outcome.err, HasSubstr(option[0]));
+    }
+    const Outcome terms =
+        try_with(milk, {"--method", "path-integration", "--terms", "interreflection"});
+    EXPECT_EQ(terms.exit_code, 2);
+    EXPECT_THAT(terms.err, HasSubstr("volume-single"));
+    EXPECT_EQ(try_with(milk, {"--renormalise", "on"}).exit_code, 2);
+    EXPECT_EQ(try_with(milk, {"--method", "guess"}).exit_code, 2);
+    SmallScene small;
+    const Outcome meshes = try_with(small.scene(), paths);
+    EXPECT_EQ(meshes.exit_code, 3);
+    EXPECT_THAT(meshes.err, HasSubstr("leave out --method"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.exr"));
 }
 
 }  // namespace

@@ -132,8 +132,17 @@ TEST(VolumeFiles, AnExampleIsBakedFromDensityToPicture) {
                                       "--volume-walks", "2", "--report", report});
     ASSERT_EQ(bake.exit_code, 0) << bake.err;
     EXPECT_THAT(bake.err, HasSubstr("nodes in volumes"));
-    EXPECT_THAT(bake.err, HasSubstr("not measured: volume-single, volume-multiple"));
+    EXPECT_THAT(bake.err, HasSubstr("volumes err by"));
+    EXPECT_THAT(run_opaline({"info", file}).out, HasSubstr("volumes err"));
     const auto json = nlohmann::json::parse(read_text(report));
+    EXPECT_EQ(json["volume_error"]["by_light"].size(), 4u);
+    EXPECT_TRUE(json["error"]["not_measured"].empty());
+    for (const auto& stage : json["stages"]) {
+        const std::string name = stage["name"];
+        if (name.ends_with("volumes")) {
+            EXPECT_GT(stage["predicted_seconds"], 0) << name;
+        }
+    }
     ASSERT_EQ(json["plan"].size(), 2u);
     EXPECT_EQ(json["plan"][1]["effect"], "volume-multiple");
     EXPECT_EQ(json["plan"][1]["decision"], "on");

@@ -6,9 +6,11 @@
 #include "bake/calibration/calibration.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/scene/inspect_scene.h"
+#include "bake/volumes/plan_volumes.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/rates.h"
+#include "tests/support/volumes.h"
 
 namespace opaline::tests {
 namespace {
@@ -74,6 +76,49 @@ TEST(Prediction, PilotHasTheStagesOfItsFirstRound) {
     bake::BakeOptions options = small_bake();
     options.error = 0.5;  // the first choice will do
     expect_stages_as_predicted(make_ball_on_floor(make_grey_medium(10, 1)), options);
+}
+
+TEST(Prediction, VolumesAboveAFloorHaveTheStagesThatWerePredicted) {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.volumes.push_back(make_volume(make_blob(0.5, 0.25), 2, 0.9f, 0));
+    expect_stages_as_predicted(scene, small_bake());
+    scene.primitives.push_back(make_quad({-3, -1.02f, -3}, {0, 0, 6}, {6, 0, 0}, 4));
+    expect_stages_as_predicted(scene, small_bake());
+    scene.volumes[0].albedo = {0, 0, 0};  // a shadow, and nothing to check
+    expect_stages_as_predicted(scene, small_bake());
+}
+
+TEST(Prediction, SecondsAndBytesOfVolumesBelongToTheirDecisions) {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.volumes.push_back(make_volume(make_blob(0.5, 0.25), 4, 0.9f, 0.5f));
+    const bake::Knobs knobs = *bake::resolve_knobs(small_bake());
+    const bake::SceneFacts facts = bake::inspect_scene(scene);
+    std::vector<bake::PlanEntry> plan, volumes = bake::plan_volumes(scene, knobs).entries;
+    const bake::Rates rates = make_rates();
+    const bake::CostPrediction cost =
+        bake::predict_costs({bake::all_effects(), scene, facts, knobs, rates, 2}, plan, volumes);
+    double seconds = cost.shared_seconds;
+    std::uint64_t bytes = cost.shared_bytes;
+    for (const bake::PlanEntry& entry : volumes) {
+        EXPECT_GT(entry.predicted_seconds, 0) << entry.name;
+        seconds += entry.predicted_seconds;
+        bytes += entry.predicted_bytes;
+    }
+    EXPECT_NEAR(seconds, cost.seconds, 1e-9 * cost.seconds);
+    EXPECT_EQ(bytes, cost.bytes);
+    const bake::BakeResult result = bake_scene(scene, small_bake());
+    const auto& rows = result.asset.volumes.rows;
+    const double stored =
+        4.0 * static_cast<double>(rows.row_offset.size()) +
+        4.0 * static_cast<double>(rows.average_scale.size() + rows.detail_scale.size()) +
+        2.0 * static_cast<double>(rows.average_code.size() + rows.index16.size()) +
+        static_cast<double>(rows.code8.size());
+    const auto predicted =
+        static_cast<double>(volumes[0].predicted_bytes + volumes[1].predicted_bytes);
+    EXPECT_GT(predicted, 0.99 * stored);
+    EXPECT_LT(predicted, 2 * stored);
 }
 
 // No assertion on time: on a machine that does other work as well it says nothing. The ratio stands

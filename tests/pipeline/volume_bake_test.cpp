@@ -1,0 +1,88 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "bake/volumes/volume_knobs.h"
+#include "tests/support/media_bake.h"
+#include "tests/support/volumes.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Scene make_cloud() {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.volumes.push_back(make_volume(make_blob(0.5, 0.25), 4, 0.9f, 0.3f));
+    return scene;
+}
+
+TEST(VolumeBake, FileStatesItsErrorByDirectionClass) {
+    const bake::BakeResult result = bake_scene(make_cloud(), small_bake());
+    ASSERT_TRUE(result.volume_error.has_value());
+    EXPECT_TRUE(result.error.not_measured.empty());
+    const auto json = nlohmann::json::parse(result.asset.provenance);
+    const auto& stated = json.at("volume_error");
+    EXPECT_EQ(stated.at("rms_relative"), result.volume_error->rms_relative);
+    EXPECT_GT(stated.at("rms_relative"), 0);
+    EXPECT_EQ(stated.at("rays_checked"), 128);
+    EXPECT_EQ(stated.at("by_light").size(), 4u);
+    for (const char* name : {"forward", "side", "back", "even"}) {
+        EXPECT_TRUE(stated.at("by_light").contains(name)) << name;
+    }
+}
+
+TEST(VolumeBake, ModelCheckTakesMoreRays) {
+    bake::BakeOptions options = small_bake();
+    options.check_model = true;
+    const bake::BakeResult result = bake_scene(make_cloud(), options);
+    ASSERT_TRUE(result.volume_error.has_value());
+    EXPECT_EQ(result.volume_error->rays_checked, 512u);
+    EXPECT_FALSE(result.model_error.has_value());  // there is no surface
+}
+
+TEST(VolumeBake, AVolumeThatOnlyAbsorbsHasNoErrorToMeasure) {
+    Scene scene = make_cloud();
+    scene.volumes[0].albedo = {0, 0, 0};
+    EXPECT_FALSE(bake_scene(scene, small_bake()).volume_error.has_value());
+}
+
+TEST(VolumeBake, TargetWithinReachIsMetByTheCheapestQualityThatReachesIt) {
+    bake::BakeOptions options = small_bake();
+    options.error = 0.9;
+    const bake::BakeResult easy = bake_scene(make_cloud(), options);
+    ASSERT_EQ(easy.volume_trials.size(), 1u);
+    EXPECT_EQ(easy.volume_trials[0].quality, bake::Quality::draft);
+    EXPECT_LE(easy.volume_error->rms_relative, 0.9);
+    EXPECT_EQ(easy.knobs[bake::kVolumeWalks], bake::kVolumeWalks.preset[0]);
+
+    options.error = 0.9 * easy.volume_error->rms_relative;
+    const bake::BakeResult harder = bake_scene(make_cloud(), options);
+    EXPECT_GT(harder.volume_trials.size(), 1u);
+    EXPECT_LT(harder.volume_error->rms_relative, easy.volume_error->rms_relative);
+    EXPECT_GT(harder.knobs[bake::kVolumeWalks], bake::kVolumeWalks.preset[0]);
+}
+
+// The knobs of volumes are given: no quality differs enough from another.
+TEST(VolumeBake, TargetOutOfReachIsMissedWithAWarningThatStatesTheError) {
+    bake::BakeOptions options = small_bake();
+    options.error = 0.001;
+    options.set(bake::kVolumeSpacing, 4);
+    options.set(bake::kVolumeWalks, 4);
+    options.set(bake::kVolumeCoefficients, 16);
+    options.set(bake::kVolumeTerms, 1);
+    const bake::BakeResult result = bake_scene(make_cloud(), options);
+    EXPECT_EQ(result.volume_trials.size(), 2u);
+    EXPECT_GT(result.volume_error->rms_relative, 0.001);
+    std::vector<std::string> texts;
+    for (const formats::Diagnostic& warning : result.warnings) {
+        texts.push_back(warning.fault);
+    }
+    EXPECT_THAT(texts, ::testing::Contains(HasSubstr("volumes err by")));
+    EXPECT_EQ(result.knobs[bake::kVolumeWalks], 4);
+}
+
+}  // namespace
+}  // namespace opaline::tests
