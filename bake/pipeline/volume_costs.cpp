@@ -43,13 +43,13 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
     };
     bill.open("light in volumes");
     for_each("volume-single", [&](const VolumeWork& work, PlanEntry* payer) {
-        bill.add(single_volume_work(input, work), payer);
+        bill.add(attenuation_work(input, work), payer);
         bill.add_bytes(volume_density_bytes(work));
         bill.add_bytes(volume_row_bytes(work, request.knobs, work.nodes), payer);
     });
     bill.open("walks through volumes");
     for_each("volume-multiple", [&](const VolumeWork& work, PlanEntry* payer) {
-        bill.add(multiple_volume_work(input, work), payer);
+        bill.add(walking_work(input, work), payer);
         bill.add_bytes(volume_row_bytes(work, request.knobs, work.rows - work.nodes), payer);
     });
     if (std::ranges::any_of(volumes.layouts, &VolumeLayout::has_nodes)) {

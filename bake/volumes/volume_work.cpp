@@ -110,13 +110,13 @@ double count_in_scatterings(std::span<const VolumeWork> works) {
     return sum;
 }
 
-Work single_volume_work(const CostInput& input, const VolumeWork& work) {
+Work attenuation_work(const CostInput& input, const VolumeWork& work) {
     const double texel = texels(input.knobs.cubemap_size) * work.bands;
     return {0, work.depth_steps * input.rates.density_step +
                    work.nodes * texel * input.rates.node_texel};
 }
 
-Work multiple_volume_work(const CostInput& input, const VolumeWork& work) {
+Work walking_work(const CostInput& input, const VolumeWork& work) {
     const double texel = texels(input.knobs.cubemap_size) * work.bands;
     const double rows = work.rows - work.nodes;
     return {0, work.tracks * (work.flights * input.rates.volume_flight +

@@ -38,8 +38,8 @@ std::vector<VolumeWork> count_volume_work(const formats::Scene& scene,
 double count_in_scatterings(std::span<const VolumeWork> works);
 
 /// Light scattered once: attenuation and its rows. Light scattered more often: walks and rows.
-Work single_volume_work(const CostInput& input, const VolumeWork& work);
-Work multiple_volume_work(const CostInput& input, const VolumeWork& work);
+Work attenuation_work(const CostInput& input, const VolumeWork& work);
+Work walking_work(const CostInput& input, const VolumeWork& work);
 
 /// Optical depths of `receivers` vertices toward all texels through volumes of these, and their
 /// rows once more.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bake/accuracy/sweep/finest.h"
+#include "bake/accuracy/sweep/point_order.h"
 #include "bake/accuracy/sweep/trace_for.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/environment/builtin_environment.h"
@@ -169,36 +170,6 @@ std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
     return std::nullopt;
 }
 
-// Cheap points first: they give the most information per second. Choices come after the presets
-// that may have made them, joint ladders last.
-int urgency(const SweepPoint& point) {
-    const auto stands_on = [&](Ladder ladder) {
-        return std::any_of(point.rungs.begin(), point.rungs.end(),
-                           [&](const Rung& r) { return r.ladder == ladder; });
-    };
-    const Ladder& first = point.rungs.front().ladder;
-    return stands_on(Ladder::preset)                             ? 0
-           : first.knob != nullptr && !first.knob->words.empty() ? 1
-           : first == Ladder::grid                               ? 3
-                                                                 : 2;
-}
-
-// Urgent points first, of those the cheap ones. Predictions look at all densities: once a point.
-void sort_points(const Sweep& sweep, std::vector<SweepPoint>& points) {
-    std::vector<std::pair<double, SweepPoint>> costed;
-    for (SweepPoint& point : points) {
-        const double seconds = sweep.predict_point(point.knobs).seconds;
-        costed.emplace_back(seconds, std::move(point));
-    }
-    std::ranges::stable_sort(costed, {}, [](const auto& one) {
-        return std::pair{urgency(one.second), one.first};
-    });
-    points.clear();
-    for (auto& [seconds, point] : costed) {
-        points.push_back(std::move(point));
-    }
-}
-
 // Bakes the finest setting that can be afforded. A point of the ladders keeps its label and rungs,
 // and leaves them.
 formats::Status bake_truth(Sweep& sweep, std::vector<SweepPoint>& points) {
@@ -322,7 +293,8 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     if (auto status = bake_truth(sweep, points); !status) {
         return std::move(status).error();
     }
-    sort_points(sweep, points);
+    order_points(points,
+                 [&](const SweepPoint& point) { return sweep.predict_point(point.knobs).seconds; });
     for (const SweepPoint& point : points) {
         // One preset or choice must not take the time of all ladders.
         const double share = urgency(point) <= 1 ? 0.5 : 1.0;

@@ -139,7 +139,9 @@ VolumeRay ray_through(const ReferenceScene& reference, glm::vec3 point, glm::vec
                       float extent) {
     VolumeRay ray{point - extent * direction, direction, kForever};
     if (const auto hit = reference.surfaces.closest_hit({point}, -direction, extent)) {
-        ray.origin = leave_surface(*hit, direction).position;
+        // Paths start here without knowing the triangle: well clear of it.
+        constexpr float kClear = 1e-4f;
+        ray.origin = leave_surface(*hit, direction).position + kClear * extent * direction;
     }
     ray.end = find_end(reference, ray.origin, direction);
     return ray;

@@ -107,6 +107,27 @@ TEST(VolumeError, IsSmallAboveAFloorToo) {
     EXPECT_LT(report.rms_relative, 0.3);
 }
 
+TEST(VolumeError, RaysOfAFileSeeWhatIsInFrontOfTheirEnd) {
+    const formats::Scene scene = blob_scene(0.9f, 0);
+    const formats::Asset asset = bake(scene, small_knobs());
+    const auto reference = make_reference_scene(scene, 1);
+    std::vector<VolumeProbe> probes = choose_volume_probes(*reference, 8, 1);
+    const auto march = [&] {
+        return march_probes(asset.volumes.view(), 8, glm::dvec3(0), probes, 1);
+    };
+    const std::vector<double> whole = march();
+    for (VolumeProbe& probe : probes) {
+        for (VolumeRay& ray : probe.ray) {
+            ray.end = -glm::dot(ray.origin, ray.direction);  // beside the middle
+        }
+    }
+    const std::vector<double> half = march();
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        EXPECT_GT(half[i], 0);
+        EXPECT_LT(half[i], 0.999 * whole[i]);
+    }
+}
+
 // Pairs whose truth is known without noise: each class counts alike, however bright its light.
 TEST(VolumeError, TotalIsTheMeanSquareOfTheParts) {
     constexpr std::size_t kProbes = 10;

@@ -62,12 +62,14 @@ TEST(VolumeProbes, RaysComeFromOutsideAndMeetMuchOfTheDensity) {
 TEST(VolumeProbes, SurfacesEndRaysAndHideWhatIsBeforeThem) {
     formats::Scene scene = blob_scene();
     // A wall through the middle, seen from both sides.
-    tests::Primitive wall = tests::make_quad({-9000, 0, -9000}, {0, 0, 18000}, {18000, 0, 0}, 1);
+    tests::Primitive wall = tests::make_quad({-90, 0, -90}, {0, 0, 180}, {180, 0, 0}, 1);
     scene.primitives.push_back(wall);
     scene.materials[0].double_sided = true;
+    double ending = 0;
     for (const VolumeProbe& probe : probes_of(scene)) {
         for (const VolumeRay& ray : probe.ray) {
             const float slope = ray.direction.y;
+            ending += ray.end < 1e9f ? 1 : 0;
             if (ray.end < 1e9f) {
                 EXPECT_NEAR(ray.origin.y + ray.end * slope, 0, 1e-2f);
             } else {
@@ -76,6 +78,8 @@ TEST(VolumeProbes, SurfacesEndRaysAndHideWhatIsBeforeThem) {
             }
         }
     }
+    // Every line meets the wall once: behind the point that it was drawn through, or before it.
+    EXPECT_NEAR(ending / (kLightPlaces * kCount), 0.5, 0.1);
 }
 
 TEST(VolumeProbes, NothingIsChosenWhereNoDensityIs) {

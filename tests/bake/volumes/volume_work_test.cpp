@@ -2,15 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cmath>
+#include <string>
 
+#include "bake/volumes/count_walk.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/light_cells.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
 #include "tests/support/rates.h"
-#include "tests/support/scenes.h"
 
 namespace opaline::bake {
 namespace {
@@ -49,30 +50,52 @@ TEST(VolumeWork, NodesAndRowsAreThoseOfTheFile) {
     EXPECT_EQ(work.bricks, static_cast<double>(volumes->records[0].brick_count));
 }
 
-// Surfaces that nothing meets make a bake count its rays: one a flight.
-TEST(VolumeWork, FlightsAreThoseOfTheBakeWithinAFactorOfTwo) {
+TEST(VolumeWork, FlightsAreThoseOfAllNodesWithinAFactorOfTwo) {
+    constexpr std::uint64_t kWalks = 8;
     for (const float sigma_t : {1.0f, 8.0f}) {
         for (const float albedo : {0.5f, 0.99f}) {
             for (const float g : {0.0f, 0.85f}) {
-                formats::Scene scene = scene_of_blob(sigma_t, albedo, g);
+                const formats::Scene scene = scene_of_blob(sigma_t, albedo, g);
                 const Knobs knobs = knobs_of_draft();
                 const VolumeWork work = work_of(scene, knobs);
-                scene.primitives.push_back(
-                    tests::make_quad({900, 0, 0}, {0, 0, 0.01f}, {0.01f, 0, 0}, 1));
-                const auto rays = RayScene::build(scene, 2);
-                const VolumePlan plan = plan_volumes(scene, knobs);
-                StageLog log;
-                ASSERT_TRUE(bake_volumes({scene, *rays, plan.layouts, knobs}, {}, log));
-                const auto walks =
-                    std::ranges::find(log, "walks through volumes", &StageReport::name);
-                ASSERT_NE(walks, log.end());
+                const DensitySpace space = make_density_space(scene);
+                const formats::Volume& volume = scene.volumes[0];
+                WalkCount all;
+                for (const glm::ivec3 node : make_node_lattice(volume.density, 4).node) {
+                    const glm::vec3 at(volume.density.to_scene * glm::dvec4(glm::dvec3(node), 1));
+                    for (std::uint64_t w = 0; w < kWalks; ++w) {
+                        CostRandom random(1000000 +
+                                          kWalks * static_cast<std::uint64_t>(all.flights) + w);
+                        const WalkCount one = count_walk(space, at, random);
+                        all.flights += one.flights;
+                        all.collisions += one.collisions;
+                    }
+                }
+                const double share = knobs[kVolumeWalks] / kWalks;
                 SCOPED_TRACE(std::to_string(sigma_t) + " " + std::to_string(albedo) + " " +
                              std::to_string(g));
-                expect_within(work.flights, static_cast<double>(walks->rays), 1.5);
-                EXPECT_LT(work.collisions, work.flights);
+                expect_within(work.flights, share * all.flights, 1.5);
+                expect_within(work.collisions, share * all.collisions, 2);
             }
         }
     }
+}
+
+// Weights go 1/2, 1/4, and from there each collision ends half of the walks: 2 + 1/2 + 1/4 + ...
+TEST(VolumeWork, WalksWithoutAWayOutCollideAsOftenAsRouletteLetsThem) {
+    const formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_ball_grid(1, 0.25), 100, 0.5f, 0));
+    const DensitySpace space = make_density_space(scene);
+    constexpr std::uint64_t kWalks = 4000;
+    WalkCount sum;
+    for (std::uint64_t w = 0; w < kWalks; ++w) {
+        CostRandom random(w);
+        const WalkCount one = count_walk(space, glm::vec3(0), random);
+        sum.flights += one.flights;
+        sum.collisions += one.collisions;
+    }
+    EXPECT_NEAR(sum.collisions / kWalks, 3, 0.1);
+    EXPECT_NEAR(sum.flights / kWalks, 4, 0.1);
 }
 
 TEST(VolumeWork, StepsAreThoseOfAllNodesWithinAFactorOfTwo) {
@@ -102,14 +125,14 @@ TEST(VolumeWork, TimeGrowsWithWalksAndBytesWithCoefficients) {
     const Rates rates = tests::make_rates();
     Knobs knobs = knobs_of_draft();
     const VolumeWork few = work_of(scene, knobs);
-    const double seconds = multiple_volume_work({rates, knobs}, few).shared;
+    const double seconds = walking_work({rates, knobs}, few).shared;
     const double bytes = volume_row_bytes(few, knobs, few.rows);
     Knobs more = knobs;
     more.set(kVolumeWalks, 10 * knobs[kVolumeWalks]);
     more.set(kVolumeCoefficients, 4 * knobs[kVolumeCoefficients]);
     const VolumeWork many = work_of(scene, more);
     EXPECT_NEAR(many.collisions, 10 * few.collisions, 1e-6 * many.collisions);
-    const double longer = multiple_volume_work({rates, more}, many).shared;
+    const double longer = walking_work({rates, more}, many).shared;
     EXPECT_GT(longer, 5 * seconds);
     EXPECT_LT(longer, 10.001 * seconds);
     EXPECT_GT(volume_row_bytes(many, more, many.rows), 2.5 * bytes);
