@@ -13,9 +13,11 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
+#include "bake/cli/path_integration.h"
 #include "bake/cli/progress.h"
 #include "bake/cli/scene_options.h"
 #include "bake/cli/write_picture.h"
+#include "bake/path_images/path_image.h"
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "bake/reference/write_receivers.h"
@@ -34,6 +36,7 @@ using formats::Status;
 struct Options {
     std::string scene, media, light, output, terms;
     CameraOptions camera;
+    PathIntegrationOptions paths;
     double metres_per_unit = 1, rotate_light = 0, seconds = 0;
     std::uint32_t receivers = 0, samples = 0, max_depth = 0;
     std::uint64_t seed = 0;
@@ -50,7 +53,7 @@ std::string variance_path(const std::string& output) {
 Status check_paths(const Options& options, std::vector<std::filesystem::path> inputs) {
     const bool table = ending_of(options.output) == ".csv";
     std::vector<OutputFile> outputs{{"--output", options.output, {".exr", ".png", ".csv"}}};
-    if (!table) {
+    if (!table && !options.paths.is_chosen()) {
         outputs.push_back({"the variance beside it", variance_path(options.output), {}});
     }
     inputs.insert(inputs.end(), {options.scene, options.media, options.light});
@@ -180,6 +183,10 @@ Status make_picture(const Options& options, const bake::PathSpace& space,
     if (!camera) {
         return camera.error();
     }
+    if (options.paths.is_chosen()) {
+        return make_path_picture({options.output, options.exposure, options.samples, *camera},
+                                 space, options.paths, context);
+    }
     const auto image = bake::estimate_image(space, *camera, wanted, context);
     if (!image) {
         return image.error();
@@ -221,6 +228,13 @@ int run(const Options& options) {
         return report_error(terms.error());
     }
     paths.terms = *terms;
+    const MonteCarloOption monte_carlo[] = {{"--receivers", options.receivers > 0},
+                                            {"--seconds", options.seconds > 0},
+                                            {"--max-depth", options.max_depth > 0},
+                                            {"--seed", options.seed > 0}};
+    if (auto status = check_method(options.paths, monte_carlo, paths.terms); !status) {
+        return report_error(status.error());
+    }
     if (auto status = check_paths(options, {}); !status) {
         return report_error(status.error());
     }
@@ -230,6 +244,11 @@ int run(const Options& options) {
     }
     if (auto status = check_paths(options, imported->scene.inputs); !status) {
         return report_error(status.error());
+    }
+    if (options.paths.is_chosen()) {
+        if (auto status = bake::check_path_scene(imported->scene); !status) {
+            return report_error(status.error());
+        }
     }
     const auto light = open_light(options.light, options.rotate_light);
     if (!light) {
@@ -280,7 +299,7 @@ void add_estimate_options(CLI::App& command, Options& options) {
     command
         .add_option("--spp", options.samples,
                     "paths for each pixel or receiver; default 64 for pictures, 1024 for tables, "
-                    "no limit with --seconds")
+                    "no limit with --seconds; view rays with path-integration, default 4")
         ->transform(whole_number(1, 2000000000))
         ->option_text("N");
     command
@@ -343,6 +362,7 @@ void add_reference_command(CLI::App& app, Job& job) {
                      "length of one unit of the scene file")
         ->check(real_number(kLeastUnit, kMostUnit))
         ->option_text("X [1]");
+    add_path_integration_options(*command, options->paths);
     add_estimate_options(*command, *options);
     add_camera_options(*command, options->camera);
     command->add_option("--exposure", options->exposure, "brighter by a factor of 2^EV")

@@ -131,4 +131,25 @@ formats::SparseGrid<float> make_cumulus_density() {
     return formats::fill_grid({-80, 0, -60}, {80, 75, 60}, kVoxel, density);
 }
 
+formats::SparseGrid<float> make_block_density() {
+    constexpr double kVoxel = 5e-5;
+    // Density falls to 0 over one voxel beyond the last ones: half a voxel of the edge.
+    return formats::fill_grid({-29, 1, -19}, {30, 30, 20}, kVoxel, [](glm::ivec3) { return 1.0; });
+}
+
+formats::SparseGrid<float> make_noise_density() {
+    constexpr double kVoxel = 0.016;
+    const glm::dvec3 half(0.5, 0.34, 0.4);
+    const auto density = [half](glm::ivec3 voxel) {
+        const glm::dvec3 p = kVoxel * glm::dvec3(voxel) - glm::dvec3(0, half.y, 0);
+        const double r = glm::length(p / half);
+        if (r >= 1) {
+            return 0.0;
+        }
+        const double noise = fractal_noise(p / 0.28, 5);
+        return smooth_step(-0.12, 0.35, noise + 0.45 * (0.55 - r)) * (1 - smooth_step(0.8, 1, r));
+    };
+    return formats::fill_grid({-32, -1, -26}, {32, 43, 26}, kVoxel, density);
+}
+
 }  // namespace opaline::bake

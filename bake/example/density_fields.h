@@ -14,4 +14,11 @@ formats::SparseGrid<float> make_smoke_density(double base);
 /// tall, voxels of 6 m. Denser toward the top, as droplets grow with height.
 formats::SparseGrid<float> make_cumulus_density();
 
+/// A block of even density 1, 3 mm wide, 1.5 mm tall and 2 mm deep, on y = 0: voxels of 0.05 mm.
+formats::SparseGrid<float> make_block_density();
+
+/// A cloud of gradient noise in an ellipsoid 1 m wide, on y = 0: holes and lumps of all sizes down
+/// to its voxels of 16 mm.
+formats::SparseGrid<float> make_noise_density();
+
 }  // namespace opaline::bake

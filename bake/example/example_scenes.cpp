@@ -28,8 +28,10 @@ constexpr double kMetresPerMillimetre = 1e-3;
 // A volume, and what it is made of.
 struct Smoke {
     formats::SparseGrid<float> (*make)() = nullptr;
-    double sigma_t = 0;  // [1/m] where the density is 1
-    double albedo = 0, g = 0;
+    std::array<double, 3> sigma_t{};  // [1/m] where the density is 1
+    std::array<double, 3> albedo{};
+    double g = 0;          // Henyey-Greenstein
+    double rms_angle = 0;  // [rad]; > 0: Gaussian instead
 };
 
 struct Example {
@@ -113,6 +115,14 @@ formats::SparseGrid<float> make_smoke() {
     return make_smoke_density((2 * kBallRadius - 10) * kMetresPerMillimetre);
 }
 
+constexpr std::array<double, 3> grey(double value) {
+    return {value, value, value};
+}
+
+// Skim milk of [Jensen2001] (formats/media/presets.cpp) with g = 0.9: sigma_s' / (1 - g) + sigma_a.
+constexpr std::array<double, 3> kMilk{7001.4, 12202.5, 19014.2};
+constexpr std::array<double, 3> kMilkAlbedo{7000 / 7001.4, 12200 / 12202.5, 19000 / 19014.2};
+
 constexpr Example kExamples[] = {
     {{"statue", "a resting swan with thin lifted wings, the showpiece for translucent media"},
      make_statue},
@@ -124,10 +134,16 @@ constexpr Example kExamples[] = {
      make_plant},
     {{"smoke", "a plume that rises from a ball and widens as it curls: a volume beside meshes"},
      make_smouldering_ball,
-     {.make = make_smoke, .sigma_t = 60, .albedo = 0.92, .g = 0.5}},
+     {.make = make_smoke, .sigma_t = grey(60), .albedo = grey(0.92), .g = 0.5}},
     {{"cumulus", "a fair-weather cloud, 820 m wide: a volume alone"},
      nullptr,
-     {.make = make_cumulus_density, .sigma_t = 0.06, .albedo = 0.999, .g = 0.85}},
+     {.make = make_cumulus_density, .sigma_t = grey(0.06), .albedo = grey(0.999), .g = 0.85}},
+    {{"milk", "a block of skim milk, 3 mm wide, without a boundary: a volume alone"},
+     nullptr,
+     {.make = make_block_density, .sigma_t = kMilk, .albedo = kMilkAlbedo, .g = 0.9}},
+    {{"noise", "a cloud of noise that scatters forward in a narrow Gaussian: a volume alone"},
+     nullptr,
+     {.make = make_noise_density, .sigma_t = grey(80), .albedo = grey(0.995), .rms_angle = 0.11}},
 };
 
 const Example* find_example(std::string_view name) {
@@ -149,13 +165,13 @@ formats::Error no_such_example(std::string_view name) {
 
 // The media file of a scene with a volume.
 std::string describe_volume(const Smoke& volume, const std::string& file) {
+    const nlohmann::ordered_json phase =
+        volume.rms_angle > 0
+            ? nlohmann::ordered_json{{"type", "gaussian"}, {"rms_angle", volume.rms_angle}}
+            : nlohmann::ordered_json{{"type", "hg"}, {"g", volume.g}};
     const nlohmann::ordered_json entry = {
-        {"file", file},
-        {"density", "density"},
-        {"sigma_t", {volume.sigma_t, volume.sigma_t, volume.sigma_t}},
-        {"unit", "1/m"},
-        {"albedo", {volume.albedo, volume.albedo, volume.albedo}},
-        {"phase", {{"type", "hg"}, {"g", volume.g}}}};
+        {"file", file},  {"density", "density"},    {"sigma_t", volume.sigma_t},
+        {"unit", "1/m"}, {"albedo", volume.albedo}, {"phase", phase}};
     return nlohmann::ordered_json{{"volumes", nlohmann::ordered_json::array({entry})}}.dump(2) +
            "\n";
 }

@@ -58,5 +58,40 @@ TEST(DensityFields, CumulusIsWholeAndStandsOnItsFlatBase) {
     EXPECT_GT(cloud.dense, 100000);
 }
 
+// Voxels of 1, and none between 0 and 1: what is between them falls to 0 over one voxel.
+TEST(DensityFields, BlockIsEvenAndStandsOnTheGround) {
+    const formats::SparseGrid<float> grid = make_block_density();
+    const Extent block = extent_of(grid);
+    constexpr double kVoxel = 5e-5;
+    EXPECT_NEAR((block.high.x - block.low.x + 1) * kVoxel, 3e-3, 1e-12);
+    EXPECT_NEAR((block.high.y - block.low.y + 1) * kVoxel, 1.5e-3, 1e-12);
+    EXPECT_NEAR((block.high.z - block.low.z + 1) * kVoxel, 2e-3, 1e-12);
+    EXPECT_EQ(block.low.y, 1);
+    for (const float value : grid.value) {
+        EXPECT_TRUE(value == 0 || value == 1);
+    }
+}
+
+TEST(DensityFields, NoiseIsWholeAndHasHoles) {
+    const formats::SparseGrid<float> grid = make_noise_density();
+    const Extent cloud = extent_of(grid);
+    EXPECT_GT(cloud.low.x, -32);
+    EXPECT_LT(cloud.high.x, 32);
+    EXPECT_GE(cloud.low.y, 0);
+    EXPECT_GT(cloud.dense, 20000);
+    // Holes: of the voxels of the ellipsoid's inner half some are empty.
+    int empty = 0, inside = 0;
+    for (int x = -16; x <= 16; ++x) {
+        for (int y = 11; y <= 31; ++y) {
+            for (int z = -12; z <= 12; ++z) {
+                ++inside;
+                empty += grid.at({x, y, z}) == 0;
+            }
+        }
+    }
+    EXPECT_GT(empty, inside / 50);
+    EXPECT_LT(empty, inside / 2);
+}
+
 }  // namespace
 }  // namespace opaline::bake

@@ -1,0 +1,90 @@
+#include "bake/cli/path_integration.h"
+
+#include <fmt/core.h>
+
+#include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
+#include "bake/cli/write_picture.h"
+#include "bake/path_images/path_image.h"
+
+namespace opaline::cli {
+
+using formats::ErrorKind;
+using formats::make_error;
+using formats::Status;
+using formats::TermSet;
+
+void add_path_integration_options(CLI::App& command, PathIntegrationOptions& options) {
+    command
+        .add_option("--method", options.method,
+                    "monte-carlo: without bias, with noise; path-integration: pictures of volumes "
+                    "without noise, along most probable paths of light, wrong by 10 to 20 % where "
+                    "light comes from ahead or the side and by up to a factor of 2 from behind the "
+                    "eye. It knows opaque surfaces, diffuse and without interreflection, and "
+                    "writes no .var.exr")
+        ->transform(
+            one_of<ReferenceMethod>({{"monte-carlo", ReferenceMethod::monte_carlo},
+                                     {"path-integration", ReferenceMethod::path_integration}}))
+        ->option_text("monte-carlo|path-integration [monte-carlo]");
+    options.renormalise_option =
+        command
+            .add_option("--renormalise", options.renormalise,
+                        "path-integration: scale light scattered twice or more so that a volume "
+                        "without absorption vanishes under even light")
+            ->transform(one_of<bool>({{"on", true}, {"off", false}}))
+            ->option_text("on|off [on]");
+}
+
+Status check_method(const PathIntegrationOptions& options,
+                    std::span<const MonteCarloOption> monte_carlo, TermSet terms) {
+    if (!options.is_chosen()) {
+        return options.renormalise_option->count() == 0
+                   ? formats::ok_status()
+                   : make_error(ErrorKind::usage, "", "--renormalise",
+                                "Monte Carlo needs no renormalisation",
+                                "leave it out, or give --method path-integration");
+    }
+    for (const MonteCarloOption& option : monte_carlo) {
+        if (option.is_given) {
+            return make_error(ErrorKind::usage, "", option.name,
+                              "means nothing with --method path-integration, which makes pictures "
+                              "without random paths",
+                              "leave out one of the two");
+        }
+    }
+    if (!formats::has_any(terms, bake::kPathTerms)) {
+        return make_error(ErrorKind::usage, "", "--terms",
+                          "path integration computes none of these",
+                          "choose among " + formats::term_names(bake::kPathTerms, ", "));
+    }
+    return formats::ok_status();
+}
+
+Status make_path_picture(const PathPicture& picture, const bake::PathSpace& space,
+                         const PathIntegrationOptions& options, const bake::Context& context) {
+    bake::PathImageOptions wanted;
+    wanted.renormalise = options.renormalise;
+    wanted.terms = space.options.terms;
+    if (picture.rays > 0) {
+        wanted.rays = picture.rays;
+    }
+    const auto image =
+        bake::make_path_image(space.scene, space.light, picture.camera, wanted, context);
+    if (!image) {
+        return image.error();
+    }
+    const formats::Image& radiance = image->radiance;
+    if (auto status = write_picture(
+            picture.output, {radiance.width, radiance.height, radiance.pixel}, picture.exposure);
+        !status) {
+        return status;
+    }
+    print_note(
+        fmt::format("{}: path integration, {} rays for each of {} pixels, {}, of which {} "
+                    "before the first pixel",
+                    printable(picture.output), wanted.rays, radiance.pixel.size(),
+                    format_seconds(image->seconds), format_seconds(image->preparation_seconds)));
+    return formats::ok_status();
+}
+
+}  // namespace opaline::cli

@@ -1,0 +1,30 @@
+#include "bake/path_images/band.h"
+
+#include <algorithm>
+
+namespace opaline::bake {
+
+std::vector<Band> make_bands(const VolumeSpace& space) {
+    std::vector<Band> bands;
+    for (int c = 0; c < 3; ++c) {
+        Band band;
+        for (std::size_t v = 0; v < space.volumes.size(); ++v) {
+            const TrackedVolume& volume = space.volumes[v];
+            band.extinction[v] = static_cast<double>(volume.sigma_t[c]);
+            band.scattering[v] = band.extinction[v] * static_cast<double>(volume.albedo[c]);
+        }
+        auto same = std::find(bands.begin(), bands.end(), band);
+        if (same == bands.end()) {
+            same = bands.insert(bands.end(), band);
+        }
+        same->channel[static_cast<std::size_t>(c)] = true;
+    }
+    return bands;
+}
+
+Band without_absorption(Band band) {
+    band.extinction = band.scattering;
+    return band;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/path_images/band.h"
+#include "bake/path_images/node_lattice.h"
+#include "bake/reference/hit_scene.h"
+
+namespace opaline::bake {
+
+/// int density ds [density m] of each volume along a ray, by the midpoint rule in steps of at most
+/// `voxels_per_step` voxels. `direction`: unit; `reach` [m], may be infinite.
+using Columns = std::array<double, formats::kMaxVolumes>;
+Columns columns_along(const VolumeSpace& space, glm::vec3 from, glm::vec3 direction, float reach,
+                      float voxels_per_step = 1);
+
+/// Columns from the nodes of a lattice to infinity in some directions, and whether a surface is in
+/// the way. Linear between nodes, as depths are in an even medium; blocked nodes count as dark.
+/// Marched in steps of half the nodes' spacing, at least a voxel. Kept per volume, so that every
+/// band, with absorption or without, finds its depth here.
+struct ColumnField {
+    NodeLattice lattice;
+    std::size_t directions = 0, volumes = 0;
+    /// value[(slot * volumes + v) * directions + d]; its sign bit: blocked.
+    std::vector<float> value;
+};
+
+/// `surfaces`: null, or what shadows. Stops early if the context is cancelled.
+ColumnField make_column_field(const VolumeSpace& space, const HitScene* surfaces,
+                              NodeLattice lattice, std::span<const glm::dvec3> directions,
+                              const Context& context);
+
+/// Whether surfaces count.
+enum class Shadows { of_everything, of_volumes };
+
+/// Optical depth from a point in a direction of the field, and the share of the nodes around it
+/// from which no surface is in the way.
+struct FieldDepth {
+    double depth = 0, open = 1;
+
+    double visibility() const;  ///< open e^-depth
+};
+FieldDepth depth_toward(const ColumnField& field, const NodesAround& around, std::size_t direction,
+                        const Band& band, Shadows shadows);
+
+}  // namespace opaline::bake

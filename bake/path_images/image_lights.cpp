@@ -1,0 +1,140 @@
+#include "bake/path_images/image_lights.h"
+
+#include <cmath>
+
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Vec3;
+
+constexpr float kLargestSun = 0.0525f;  // [rad]
+constexpr double kBright = 0.05;        // share of the map's flux
+constexpr std::uint32_t kPoints = 8;    // along an edge of a texel
+
+glm::dvec3 to_dvec3(Vec3 v) {
+    return {v.x, v.y, v.z};
+}
+glm::dvec3 to_dvec3(formats::Rgb c) {
+    return {c.r, c.g, c.b};
+}
+
+// Directions of cells and texels, no light.
+ImageSky make_dark_sky() {
+    constexpr std::uint32_t n = ImageSky::kTexels, m = ImageSky::kCells;
+    const std::vector<double> solid_angle = formats::texel_solid_angles(n);
+    ImageSky sky;
+    for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
+        for (std::uint32_t i = 0; i < m * m; ++i) {
+            sky.cell[face * m * m + i] =
+                glm::normalize(to_dvec3(formats::texel_direction(m, face, i / m, i % m)));
+        }
+        for (std::uint32_t i = 0; i < n * n; ++i) {
+            const std::uint32_t row = i / n, column = i % n;
+            SkyTexel texel;
+            texel.direction =
+                glm::normalize(to_dvec3(formats::texel_direction(n, face, row, column)));
+            texel.solid_angle = solid_angle[i];
+            texel.cell = (face * m + row * m / n) * m + column * m / n;
+            sky.texel.push_back(texel);
+        }
+    }
+    return sky;
+}
+
+// Radiance of the map and of discs too wide for suns.
+glm::dvec3 soft_radiance(const formats::Environment& light, glm::dvec3 direction) {
+    const Vec3 d{static_cast<float>(direction.x), static_cast<float>(direction.y),
+                 static_cast<float>(direction.z)};
+    glm::dvec3 radiance =
+        light.pixel.empty() ? glm::dvec3(0) : to_dvec3(formats::sample_map(light, d));
+    for (const formats::DistantDisc& disc : light.discs) {
+        if (disc.angular_radius > kLargestSun &&
+            glm::dot(direction, to_dvec3(disc.direction)) >=
+                std::cos(static_cast<double>(disc.angular_radius))) {
+            radiance += to_dvec3(disc.radiance);
+        }
+    }
+    return radiance;
+}
+
+// The flux of texel `i` of its face, and the direction that it comes from on average (not unit).
+struct TexelFlux {
+    glm::dvec3 irradiance{0}, centre{0};
+};
+TexelFlux integrate_texel(const formats::Environment& light, const glm::dmat3& light_from_world,
+                          std::uint32_t face, std::uint32_t i, double solid_angle) {
+    constexpr std::uint32_t n = ImageSky::kTexels;
+    // Of the middle of a part of a texel along an edge of the face, in [0, 1].
+    const auto place = [](std::uint32_t texel, std::uint32_t part) {
+        return (static_cast<float>(texel) + (static_cast<float>(part) + 0.5f) / kPoints) / n;
+    };
+    TexelFlux flux;
+    double weights = 0;
+    for (std::uint32_t p = 0; p < kPoints * kPoints; ++p) {
+        const float s = place(i % n, p % kPoints), t = place(i / n, p / kPoints);
+        const glm::dvec3 at = to_dvec3(formats::cube_position({face, 2 * s - 1, 2 * t - 1}));
+        const double weight = std::pow(glm::dot(at, at), -1.5);  // of the solid angle
+        const glm::dvec3 direction = glm::normalize(at);
+        const glm::dvec3 part = weight * soft_radiance(light, light_from_world * direction);
+        flux.irradiance += part;
+        flux.centre += (part.x + part.y + part.z) * direction;
+        weights += weight;
+    }
+    flux.irradiance *= solid_angle / weights;
+    return flux;
+}
+
+}  // namespace
+
+ImageLights make_image_lights(const formats::Environment& environment,
+                              const glm::mat3& world_from_light) {
+    ImageLights lights;
+    const glm::dmat3 rotation(world_from_light), back = glm::transpose(rotation);
+    bool has_sky = !environment.pixel.empty();
+    for (const formats::DistantDisc& disc : environment.discs) {
+        if (disc.angular_radius > kLargestSun) {
+            has_sky = true;
+            continue;
+        }
+        lights.suns.push_back(
+            {glm::normalize(rotation * to_dvec3(disc.direction)),
+             formats::disc_solid_angle(disc.angular_radius) * to_dvec3(disc.radiance)});
+    }
+    if (!has_sky) {
+        return lights;
+    }
+    lights.sky = make_dark_sky();
+    constexpr std::uint32_t kOfFace = ImageSky::kTexels * ImageSky::kTexels;
+    std::vector<TexelFlux> flux;
+    double sum = 0;
+    for (std::uint32_t i = 0; i < lights.sky.texel.size(); ++i) {
+        SkyTexel& texel = lights.sky.texel[i];
+        flux.push_back(
+            integrate_texel(environment, back, i / kOfFace, i % kOfFace, texel.solid_angle));
+        texel.irradiance = flux.back().irradiance;
+        sum += texel.brightness();
+    }
+    for (std::size_t i = 0; i < flux.size(); ++i) {
+        SkyTexel& texel = lights.sky.texel[i];
+        if (texel.brightness() > kBright * sum) {
+            lights.suns.push_back({glm::normalize(flux[i].centre), texel.irradiance});
+            texel.irradiance = glm::dvec3(0);
+        }
+    }
+    if (!(sum > 0)) {
+        lights.sky.texel.clear();
+    }
+    return lights;
+}
+
+ImageSky make_even_sky() {
+    ImageSky sky = make_dark_sky();
+    for (SkyTexel& texel : sky.texel) {
+        texel.irradiance = glm::dvec3(texel.solid_angle);
+    }
+    return sky;
+}
+
+}  // namespace opaline::bake

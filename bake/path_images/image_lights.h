@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "formats/opal/environment.h"
+
+namespace opaline::bake {
+
+/// Light from one direction.
+struct ImageSun {
+    glm::dvec3 direction{0, 1, 0};  ///< unit, in the scene, toward the light
+    glm::dvec3 irradiance{0};       ///< perpendicular to the direction [W m^-2]
+};
+
+/// Part of a sky that phase functions are evaluated toward.
+struct SkyTexel {
+    glm::dvec3 direction{0, 1, 0};  ///< unit, of the texel's centre
+    glm::dvec3 irradiance{0};       ///< integral of radiance over its solid angle [W m^-2]
+    double solid_angle = 0;         ///< [sr]
+    std::uint32_t cell = 0;         ///< that it belongs to
+
+    double brightness() const { return (irradiance.x + irradiance.y + irradiance.z) / 3; }
+};
+
+/// A sky as a finite set of directions: cube maps (formats/opal/cubemap.h) of kTexels texels a face
+/// for what varies fast with direction, the phase function, and of kCells for what varies slowly
+/// and is dear, paths and visibility.
+struct ImageSky {
+    static constexpr std::uint32_t kTexels = 16, kCells = 4, kCellCount = 6 * kCells * kCells;
+
+    std::array<glm::dvec3, kCellCount> cell;  ///< unit directions of the cells' centres
+    std::vector<SkyTexel> texel;              ///< none: the sky is black
+};
+
+struct ImageLights {
+    std::vector<ImageSun> suns;  ///< discs of the light, and its brightest texels
+    ImageSky sky;                ///< the rest
+};
+
+/// Discs of up to 3 degrees in radius are suns. Of the map, so are texels that hold more than a
+/// twentieth of its flux, in the direction of their centre of flux: shadows of small lights that a
+/// photograph holds stay sharp.
+ImageLights make_image_lights(const formats::Environment& environment,
+                              const glm::mat3& world_from_light);
+
+/// Radiance 1 from everywhere.
+ImageSky make_even_sky();
+
+}  // namespace opaline::bake

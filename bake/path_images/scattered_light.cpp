@@ -1,0 +1,207 @@
+#include "bake/path_images/scattered_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/path_integral/path_estimate.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr int kSourcePoints = 8;      // along a ray, in equal shares of what is scattered and seen
+constexpr int kMostPathSteps = 8192;  // a path that creeps along a face of its box ends
+constexpr double kClear = 1e-3;       // optical depth that ends a path on its way to the light
+
+double visibility(const ColumnField& field, glm::dvec3 x, std::size_t direction,
+                  const GatherOptions& options) {
+    return depth_toward(field, nodes_around(field.lattice, x), direction, options.band,
+                        options.shadows)
+        .visibility();
+}
+
+// Order 1.
+glm::dvec3 gather_once(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
+                       const GatherOptions& options) {
+    const std::vector<ImageSun>& suns = space.lights.suns;
+    std::vector<double> from_sun(options.suns ? suns.size() : 0);
+    std::array<double, ImageSky::kCellCount + 1> from_part{};
+    const bool has_cells = std::any_of(sky.part.begin(), sky.part.end(),
+                                       [](const SkyPart& part) { return !part.is_dark; });
+    for (std::size_t i = 0; i < ray.position.size(); ++i) {
+        const ViewStep& step = options.steps.step[i];
+        const glm::dvec3 x(ray.position[i]);
+        for (std::size_t s = 0; s < from_sun.size(); ++s) {
+            from_sun[s] += step.scattered * visibility(space.sun_field, x, s, options);
+        }
+        if (!has_cells) {
+            continue;
+        }
+        const NodesAround around = nodes_around(space.cell_field.lattice, x);
+        for (std::size_t c = 0; c < ImageSky::kCellCount; ++c) {
+            if (!sky.part[c].is_dark) {
+                from_part[c] += step.scattered * depth_toward(space.cell_field, around, c,
+                                                              options.band, options.shadows)
+                                                     .visibility();
+            }
+        }
+        if (options.is_open) {
+            from_part[SkyView::kAhead] += step.scattered * std::exp(step.tau - options.steps.tau);
+        }
+    }
+    glm::dvec3 sum(0);
+    for (std::size_t s = 0; s < from_sun.size(); ++s) {
+        const double cosine = glm::dot(glm::dvec3(ray.direction), suns[s].direction);
+        sum += from_sun[s] * eval_phase(space.phase.density, std::clamp(cosine, -1.0, 1.0)) *
+               suns[s].irradiance;
+    }
+    for (std::size_t c = 0; c < sky.part.size(); ++c) {
+        sum += from_part[c] * sky.part[c].once;
+    }
+    return sum;
+}
+
+// Paths from one point along the ray to the lights.
+class PathGatherer {
+  public:
+    PathGatherer(const ScatteringSpace& space, const GatherOptions& options, glm::dvec3 start,
+                 glm::dvec3 onward, double ell_onward)
+        : space_(space),
+          options_(options),
+          medium_{space.volumes, options.band},
+          start_(start),
+          onward_(onward),
+          ell_onward_(ell_onward) {}
+
+    // The mean over paths toward a direction of the field.
+    double gather(const ColumnField& field, std::size_t number, glm::dvec3 light,
+                  const ZonalRow& kernel) const {
+        const Turns turns(onward_, light);
+        double sum = 0;
+        for (const double length : space_.lengths) {
+            const double ell_total = std::max(length * ell_onward_, kShortestTurn);
+            for (const Turn& turn : turns) {
+                sum += along(QuasiPath{start_, turn, ell_total}, field, number, kernel);
+            }
+        }
+        return sum / static_cast<double>(space_.lengths.size() * turns.size());
+    }
+
+  private:
+    double along(const QuasiPath& path, const ColumnField& field, std::size_t number,
+                 const ZonalRow& kernel) const {
+        double sum = 0;
+        int steps = 0;
+        march_quasi_path(path, medium_, space_.limits, [&](const PathStep& step) {
+            if (++steps > kMostPathSteps) {
+                return false;
+            }
+            if (!(step.depth > 0)) {
+                return true;
+            }
+            const double survival = std::exp(-step.absorption);
+            const FieldDepth toward =
+                depth_toward(field, nodes_around(field.lattice, step.position), number,
+                             options_.band, options_.shadows);
+            sum += step.depth * survival * std::max(kernel(step.ell), 0.0) * toward.visibility();
+            const bool leaves =
+                step.ell > path.ell_total && toward.depth < kClear && toward.open == 1;
+            return survival > kLeastSurvival && !leaves;
+        });
+        return sum;
+    }
+
+    const ScatteringSpace& space_;
+    const GatherOptions& options_;
+    BandMedium medium_;
+    glm::dvec3 start_, onward_;
+    double ell_onward_;
+};
+
+// Paths that go straight on: along the view ray itself.
+double gather_ahead(const ViewBand& steps, const ZonalRow& kernel) {
+    double sum = 0;
+    for (const ViewStep& step : steps.step) {
+        sum += step.depth * std::exp(-step.absorption - steps.tau + step.tau) *
+               std::max(kernel(step.ell), 0.0);
+    }
+    return sum;
+}
+
+// Toward all lights from one point.
+glm::dvec3 gather_paths(const ScatteringSpace& space, const SkyView& sky,
+                        const GatherOptions& options, const PathGatherer& paths,
+                        const ZonalTable& table, glm::dvec3 onward) {
+    glm::dvec3 sum(0);
+    for (std::size_t s = 0; options.suns && s < space.lights.suns.size(); ++s) {
+        const ImageSun& sun = space.lights.suns[s];
+        const ZonalRow row = interpolate_row(table, glm::dot(onward, sun.direction));
+        sum += paths.gather(space.sun_field, s, sun.direction, row) * sun.irradiance;
+    }
+    for (std::size_t c = 0; c < ImageSky::kCellCount; ++c) {
+        if (!sky.part[c].is_dark) {
+            sum += paths.gather(space.cell_field, c, space.lights.sky.cell[c], sky.part[c].often) *
+                   sky.part[c].color;
+        }
+    }
+    return sum;
+}
+
+glm::dvec3 gather_from_entry(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
+                             const GatherOptions& options) {
+    const glm::dvec3 onward(ray.direction);
+    const PathGatherer paths(space, options,
+                             glm::dvec3(ray.origin) + static_cast<double>(ray.entry) * onward,
+                             onward, options.steps.ell);
+    glm::dvec3 sum = gather_paths(space, sky, options, paths, space.phase.ray, onward);
+    const SkyPart& ahead = sky.part[SkyView::kAhead];
+    if (options.is_open && !ahead.is_dark) {
+        sum += gather_ahead(options.steps, ahead.often) * ahead.color;
+    }
+    return sum;
+}
+
+glm::dvec3 gather_along_ray(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
+                            const GatherOptions& options) {
+    const glm::dvec3 onward(ray.direction);
+    const std::vector<ViewStep>& steps = options.steps.step;
+    double total = 0;
+    for (const ViewStep& step : steps) {
+        total += step.scattered;
+    }
+    glm::dvec3 sum(0);
+    double passed = 0;
+    int point = 0;
+    for (std::size_t i = 0; i < steps.size() && point < kSourcePoints; ++i) {
+        passed += steps[i].scattered;
+        const double share = total / kSourcePoints;
+        int here = 0;  // points that fall into this step
+        for (; point < kSourcePoints && passed >= (point + 0.5) * share; ++point) {
+            ++here;
+        }
+        if (here > 0) {
+            const PathGatherer paths(space, options, glm::dvec3(ray.position[i]), onward,
+                                     options.steps.ell - steps[i].ell);
+            sum +=
+                here * share * gather_paths(space, sky, options, paths, space.phase.source, onward);
+        }
+    }
+    return sum;
+}
+
+}  // namespace
+
+ScatteredLight gather_scattered(const ScatteringSpace& space, const ViewRay& ray,
+                                const SkyView& sky, const GatherOptions& options) {
+    ScatteredLight light;
+    if (ray.is_empty()) {
+        return light;
+    }
+    light.once = gather_once(space, ray, sky, options);
+    if (options.often) {
+        light.often = options.form == PathForm::ray ? gather_from_entry(space, ray, sky, options)
+                                                    : gather_along_ray(space, ray, sky, options);
+    }
+    return light;
+}
+
+}  // namespace opaline::bake
