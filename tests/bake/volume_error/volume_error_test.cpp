@@ -49,8 +49,12 @@ const VolumeErrorReport::Part& part(const VolumeErrorReport& report, LightPlace 
 }
 
 TEST(VolumeError, OfABlobThatAbsorbsNothingIsAboutZeroUnderEvenLight) {
-    const formats::Scene scene = blob_scene(1, 0);
-    const VolumeErrorReport report = check(scene, bake(scene, small_knobs()));
+    // Half of a mean free path between nodes.
+    const formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_blob(0.5, 0.125), 2, 1, 0));
+    Knobs knobs = small_knobs();
+    knobs.set(kVolumeWalks, 128);
+    const VolumeErrorReport report = check(scene, bake(scene, knobs));
     ASSERT_EQ(report.by_light.size(), kLightPlaces);
     EXPECT_LT(part(report, LightPlace::around).rms_relative, 0.03);
     EXPECT_NEAR(part(report, LightPlace::around).bias, 0, 0.02);
