@@ -33,8 +33,8 @@ number() {
 seconds='pixels, ([\d.]+) (ms|s|minutes?)'
 relative_error() { "$opaline" compare "$1" "$2" --json | perl -0ne '/"relative_rmse": *([\d.e+-]+)/ and print $1'; }
 
-echo "| figure | paths, RMS error | paths, mean | paths, s | Monte Carlo to the same error: spp | s | ratio |"
-echo "|---|---:|---:|---:|---:|---:|---:|"
+echo "| figure | paths, RMS error | paths, s | Monte Carlo to the same error: spp | s | ratio |"
+echo "|---|---:|---:|---:|---:|---:|"
 # FIGURE NAME LABEL ARGUMENTS...: a row of the table, and OUT_DIR/volumesFIGURE.png.
 figure() {
     local n=$1 name=$2 label=$3
@@ -51,13 +51,9 @@ figure() {
         my $e = sqrt(abs($rms**2 - $noise**2)); my $n = $spp * ($noise / $e)**2;
         printf "%.4g %d\n", $e, $n < 1 ? 1 : $n + 0.5' "$rms" "$noise" "$spp")
     scattered "$name" equal "$@" --spp "$equal" --seed 1
-    local mean
-    mean=$(perl -e 'printf "%.2f", $ARGV[0] / $ARGV[1]' \
-        "$(convert "$name-paths.exr" -colorspace RGB -format '%[fx:mean]' info:)" \
-        "$(convert "$name-long.exr" -colorspace RGB -format '%[fx:mean]' info:)")
-    perl -e 'printf "| %s, %s | %.0f %% | x %s | %.2f | %d | %.2f | %.1f |\n", $ARGV[0], $ARGV[1],
-        100 * $ARGV[2], $ARGV[3], $ARGV[4], $ARGV[5], $ARGV[6], $ARGV[6] / $ARGV[4]' \
-        "$n" "$label" "$error" "$mean" "$(number "$name-paths.log" "$seconds")" "$equal" \
+    perl -e 'printf "| %s, %s | %.0f %% | %.2f | %d | %.2f | %.1f |\n", $ARGV[0], $ARGV[1],
+        100 * $ARGV[2], $ARGV[3], $ARGV[4], $ARGV[5], $ARGV[5] / $ARGV[3]' \
+        "$n" "$label" "$error" "$(number "$name-paths.log" "$seconds")" "$equal" \
         "$(number "$name-equal.log" "$seconds")"
     local shots=(--size "$size")
     "$opaline" reference "$name.json" "$@" "${shots[@]}" --spp "$spp" -o "$name-mc.png" 2>/dev/null
