@@ -28,11 +28,12 @@ void add_path_integration_options(CLI::App& command, PathIntegrationOptions& opt
         ->option_text("monte-carlo|path-integration [monte-carlo]");
     options.renormalise_option =
         command
-            .add_option("--renormalise", options.renormalise,
-                        "path-integration: scale light scattered twice or more so that a volume "
-                        "without absorption vanishes under even light")
+            .add_option(
+                "--renormalise", options.renormalise,
+                "path-integration: scale light scattered twice or more so that a volume "
+                "without absorption vanishes under even light; under a sun it makes errors larger")
             ->transform(one_of<bool>({{"on", true}, {"off", false}}))
-            ->option_text("on|off [on]");
+            ->option_text("on|off [off]");
 }
 
 Status check_method(const PathIntegrationOptions& options,

@@ -15,7 +15,8 @@ namespace opaline::bake {
 
 struct PathImageOptions {
     std::uint32_t rays = 4;   ///< of each pixel, >= 1, at the same places of every pixel
-    bool renormalise = true;  ///< scale orders of two and more as a white furnace asks for
+    /// Scale orders of two and more as a white furnace asks for.
+    bool renormalise = false;
     /// Of `kPathTerms`; a view of the sky counts only if all terms do.
     formats::TermSet terms = formats::TermSet::all;
     std::vector<double> lengths{1};  ///< of turns, in scattering depths of the view ray; > 0

@@ -58,7 +58,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         double entries = 0;  // of all rows, once for each light
         for (const VolumeWork& work : volumes.works) {
             entries +=
-                work.rows * work.bands * request.knobs[kVolumeCoefficients] * (check.probes + 1);
+                work.nodes * work.bands * request.knobs[kVolumeCoefficients] * (check.probes + 1);
         }
         bill.open("self-check of volumes");
         bill.add({0, static_cast<double>(check.max_events) * request.rates.traced_collision +

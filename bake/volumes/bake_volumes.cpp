@@ -30,9 +30,9 @@ struct Nodes {
     std::vector<NodeLattice> lattices;  // of each volume of the scene; empty where nothing is baked
     std::vector<std::size_t> first;     // node of each volume, among all
     std::size_t count = 0;
-    LightCells fine;    // of single scattering
-    LightCells coarse;  // of multiple scattering, which is smoother
-    NodeEncoder encoder;
+    LightCells fine;                    // of single scattering
+    LightCells coarse;                  // of multiple scattering, which is smoother
+    std::vector<NodeEncoder> encoders;  // one a layout
 };
 
 Nodes place_nodes(const VolumeJob& job) {
@@ -59,8 +59,11 @@ Nodes place_nodes(const VolumeJob& job) {
     nodes.fine = make_light_cells(is_exact ? std::min(n, 32u) : std::min(n, 16u));
     nodes.coarse = make_light_cells(is_exact ? std::min(n, 16u) : std::min(n, 8u));
     constexpr std::array<double, 4> kTolerance{0.03, 0.015, 0.005, 0.0};
-    nodes.encoder = {make_selector(n, whole(job.knobs, kVolumeCoefficients)),
-                     kTolerance[static_cast<std::size_t>(job.knobs.quality)]};
+    for (const VolumeLayout& layout : job.layouts) {
+        nodes.encoders.push_back(
+            {make_selector(n, coefficients_of_row(job.knobs, 1 + layout.often_terms)),
+             kTolerance[static_cast<std::size_t>(job.knobs.quality)]});
+    }
     return nodes;
 }
 
@@ -84,6 +87,10 @@ Place find_place(const VolumeJob& job, const Nodes& nodes, std::size_t number) {
         }
     }
     return {};
+}
+
+const NodeEncoder& encoder_of(const VolumeJob& job, const Nodes& nodes, const Place& place) {
+    return nodes.encoders[static_cast<std::size_t>(place.layout - job.layouts.data())];
 }
 
 // V of a node: its row, and its depths toward the coarse cells.
@@ -111,7 +118,7 @@ Lit light_node(const VolumeJob& job, const Nodes& nodes, const Place& place, std
     }
     const auto row_bands = static_cast<std::uint32_t>(nodes.space.bands());
     const double energy = row_energy(fine, nodes.fine.n, job.knobs.cubemap_size) / row_bands;
-    lit.row = encode_node_row(nodes.encoder, fine, nodes.fine.n, row_bands, energy);
+    lit.row = encode_node_row(encoder_of(job, nodes, place), fine, nodes.fine.n, row_bands, energy);
     return lit;
 }
 
@@ -178,8 +185,9 @@ std::vector<SparseRow> walk_node(const VolumeJob& job, const Nodes& nodes, const
          whole(job.knobs, kVolumeWalks), terms},
         dense);
     const double energy = row_energy(dense, nodes.coarse.n, job.knobs.cubemap_size) / bands;
+    const NodeEncoder& encoder = encoder_of(job, nodes, place);
     for (std::uint32_t k = 0; k < terms; ++k) {
-        rows.push_back(encode_node_row(nodes.encoder, std::span(dense).subspan(k * size, size),
+        rows.push_back(encode_node_row(encoder, std::span(dense).subspan(k * size, size),
                                        nodes.coarse.n, bands, energy / terms));
     }
     return rows;

@@ -26,9 +26,9 @@ inline constexpr std::array<double, 4> kSpacings{1, 2, 4, 8};
 inline constexpr std::array<double, 5> kTermCounts{1, 4, 9, 16, 25};
 // Of the sweep.
 inline constexpr std::array<double, 6> kSpacingTruths{1, 1, 1, 2, 2, 2};
-inline constexpr std::array<double, 6> kCoefficientLadder{12, 24, 48, 96, 192, 384};
-inline constexpr std::array<double, 5> kCoefficientDiagonal{24, 32, 48, 64, 96};
-inline constexpr std::array<double, 6> kCoefficientTruths{384, 384, 192, 192, 96, 96};
+inline constexpr std::array<double, 6> kCoefficientLadder{136, 272, 544, 1088, 2176, 4352};
+inline constexpr std::array<double, 5> kCoefficientDiagonal{272, 544, 816, 1088, 1632};
+inline constexpr std::array<double, 6> kCoefficientTruths{4352, 4352, 2176, 2176, 1632, 1632};
 inline constexpr std::array<double, 5> kWalkLadder{4, 16, 64, 256, 1024};
 inline constexpr std::array<double, 5> kWalkDiagonal{16, 32, 64, 128, 256};
 inline constexpr std::array<double, 6> kWalkTruths{1024, 512, 512, 256, 256, 128};
@@ -64,22 +64,23 @@ inline constexpr KnobSpec kVolumeSpacing{
     .matters = volume_knobs::is_lit,
     .why_idle = volume_knobs::kWhyDark};
 
-/// Coefficients of a row of a volume.
+/// Coefficients of a node.
 inline constexpr KnobSpec kVolumeCoefficients{
     .name = "volume_coefficients",
     .option = "--volume-coefficients",
     .placeholder = "M",
     .help =
-        "largest number of coefficients that a row of a volume keeps, the six face averages "
-        "included; default as the quality says",
-    .lowest = 7,
-    .highest = 1536,
-    .preset = {24, 32, 96, 1536},
-    .label = "%g coefficients a row of volumes",
+        "largest number of coefficients that all rows of such a point keep together, alike, the "
+        "six "
+        "face averages of each included; default as the quality says",
+    .lowest = 14,
+    .highest = 39936,
+    .preset = {272, 544, 1632, 39936},
+    .label = "%g coefficients a point of volumes",
     .ladder = volume_knobs::kCoefficientLadder,
     .diagonal = volume_knobs::kCoefficientDiagonal,
     .truths = volume_knobs::kCoefficientTruths,
-    .theory = {.label = "coefficients of a row of volumes",
+    .theory = {.label = "coefficients of a point of volumes",
                .words = "edge of a texel, where light is a smooth function of its direction",
                .rate = -0.5},
     .matters = volume_knobs::is_lit,
@@ -95,7 +96,7 @@ inline constexpr KnobSpec kVolumeWalks{
         "than once; default as the quality says",
     .lowest = 1,
     .highest = 65536,
-    .preset = {16, 64, 256, 1024},
+    .preset = {32, 128, 256, 1024},
     .label = "%g walks from a node",
     .ladder = volume_knobs::kWalkLadder,
     .diagonal = volume_knobs::kWalkDiagonal,
@@ -125,5 +126,12 @@ inline constexpr KnobSpec kVolumeTerms{
                .value = volume_knobs::degree_of},
     .matters = volume_knobs::is_scattered_often,
     .why_idle = volume_knobs::kWhyOnce};
+
+/// Largest number of coefficients of each of `rows` rows of a node; the face averages are there in
+/// any case.
+inline std::uint32_t coefficients_of_row(const Knobs& knobs, std::uint32_t rows) {
+    const std::uint32_t texels = 6 * knobs.cubemap_size * knobs.cubemap_size;
+    return std::clamp(whole(knobs, kVolumeCoefficients) / rows, 7u, texels);
+}
 
 }  // namespace opaline::bake

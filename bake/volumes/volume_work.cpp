@@ -147,7 +147,9 @@ double volume_density_bytes(const VolumeWork& work) {
 }
 
 double volume_row_bytes(const VolumeWork& work, const Knobs& knobs, double rows) {
-    const double details = std::min(knobs[kVolumeCoefficients], texels(knobs.cubemap_size)) - 6;
+    const double of_node = work.nodes > 0 ? work.rows / work.nodes : 1;
+    const double details =
+        coefficients_of_row(knobs, static_cast<std::uint32_t>(std::lround(of_node))) - 6.0;
     const double code = knobs.code_bits / 8.0;
     return rows * (details * (2 + work.bands * code) + work.bands * (6 * 2 + 8) + 4);
 }

@@ -129,7 +129,7 @@ TEST(VolumeFiles, AnExampleIsBakedFromDensityToPicture) {
     const std::string file = (folder / "c.opal").string(), again = (folder / "d.opal").string();
     const std::string report = (folder / "report.json").string();
     const Outcome bake = run_opaline({"bake", scene, "-o", file, "--quality", "draft",
-                                      "--volume-walks", "2", "--report", report});
+                                      "--volume-walks", "8", "--report", report});
     ASSERT_EQ(bake.exit_code, 0) << bake.err;
     EXPECT_THAT(bake.err, HasSubstr("nodes in volumes"));
     EXPECT_THAT(bake.err, HasSubstr("volumes err by"));
@@ -146,9 +146,9 @@ TEST(VolumeFiles, AnExampleIsBakedFromDensityToPicture) {
     ASSERT_EQ(json["plan"].size(), 2u);
     EXPECT_EQ(json["plan"][1]["effect"], "volume-multiple");
     EXPECT_EQ(json["plan"][1]["decision"], "on");
-    EXPECT_EQ(json["knobs"]["volume_walks"], 2);
+    EXPECT_EQ(json["knobs"]["volume_walks"], 8);
 
-    ASSERT_EQ(run_opaline({"bake", scene, "-o", again, "--quality", "draft", "--volume-walks", "2",
+    ASSERT_EQ(run_opaline({"bake", scene, "-o", again, "--quality", "draft", "--volume-walks", "8",
                            "--threads", "1"})
                   .exit_code,
               0);
@@ -182,7 +182,7 @@ TEST(VolumeFiles, SmokeDimsWhatStandsBehindIt) {
     const auto brightness = [&](const char* scene) {
         const std::string file = (folder / "s.opal").string(), out = (folder / "s.csv").string();
         const Outcome bake = run_opaline({"bake", (folder / scene).string(), "-o", file,
-                                          "--quality", "draft", "--volume-walks", "2"});
+                                          "--quality", "draft", "--volume-walks", "8"});
         EXPECT_EQ(bake.exit_code, 0) << bake.err;
         EXPECT_EQ(run_opaline({"relight", file, "--light", "white", "-o", out}).exit_code, 0);
         double sum = 0;

@@ -71,7 +71,7 @@ TEST(VolumeBake, TargetOutOfReachIsMissedWithAWarningThatStatesTheError) {
     options.error = 0.001;
     options.set(bake::kVolumeSpacing, 4);
     options.set(bake::kVolumeWalks, 4);
-    options.set(bake::kVolumeCoefficients, 16);
+    options.set(bake::kVolumeCoefficients, 32);
     options.set(bake::kVolumeTerms, 1);
     const bake::BakeResult result = bake_scene(make_cloud(), options);
     EXPECT_EQ(result.volume_trials.size(), 2u);

@@ -56,6 +56,7 @@ TEST(PathImage, BallInAWhiteFurnaceVanishesWithRenormalisation) {
         const auto scene = make_volume_scene(make_ball_volume(depth, 1, g), make_white_sky());
         for (const float aside : {0.0f, 0.6f}) {
             bake::PathImageOptions options;
+            options.renormalise = true;
             const auto look = [&] {
                 return look_along(*scene, {aside, 0, -3}, {0, 0, 1}, options).x;
             };
@@ -66,7 +67,7 @@ TEST(PathImage, BallInAWhiteFurnaceVanishesWithRenormalisation) {
     }
 }
 
-// The model errs by up to 64 % for light from ahead and 88 % from the side (volumes of optical
+// The model errs by up to 64 % for light from ahead and 114 % from the side (volumes of optical
 // depth 1 to 20), by 10 to 17 % in the median.
 TEST(PathImage, OfLightFromAheadAndFromTheSideIsWithinTheModelsErrorOfMonteCarlo) {
     for (const glm::vec3 to_light : {glm::vec3(0.44f, 0, 0.9f), glm::vec3(0.98f, 0, 0.2f)}) {
