@@ -8,15 +8,9 @@
 namespace opaline::bake {
 namespace {
 
-std::string percent(double share) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
-    return text;
-}
-
 std::string with_interval(const MeasuredError& error) {
-    return percent(error.rms_relative) + " (95 %: " + percent(error.ci95[0]) + " to " +
-           percent(error.ci95[1]) + ")";
+    return error_percent(error.rms_relative) + " (95 %: " + error_percent(error.ci95[0]) + " to " +
+           error_percent(error.ci95[1]) + ")";
 }
 
 // What lowers the error at receivers, by the effect that errs most.
@@ -30,6 +24,12 @@ std::string remedy_at_receivers(const MeasuredError& error) {
 }
 
 }  // namespace
+
+std::string error_percent(double share) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
+    return text;
+}
 
 double acceptable_error(Quality quality) {
     return quality == Quality::draft ? 0.2 : 0.1;
@@ -52,10 +52,10 @@ std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& s
         return (asked ? e.rms_relative : e.ci95[0]) > limit;
     };
     const std::string more =
-        ", more than the " + percent(limit) +
+        ", more than the " + error_percent(limit) +
         (!asked ? " that pass unnoticed"
          : knobs.model_error > 0
-             ? " that the models leave of the " + percent(knobs.error_target) + " asked for"
+             ? " that the models leave of the " + error_percent(knobs.error_target) + " asked for"
              : " asked for");
     if (!asked && is_above(error.at_receivers)) {
         warnings.push_back(formats::make_warning(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// 0.123 as "12.3 %", three digits.
+std::string error_percent(double share);
 
 /// The largest measured error that goes without a warning where no error was asked for: 20 % of
 /// drafts, 10 % of everything finer.

@@ -9,7 +9,7 @@ namespace opaline::bake {
 namespace {
 
 constexpr int kSourcePoints = 8;      // along a ray, in equal shares of what is scattered and seen
-constexpr int kMostPathSteps = 8192;  // a path that creeps along a face of its box ends
+constexpr int kMostPathSteps = 8192;  // some paths hardly end by themselves; why is not known
 constexpr double kClear = 1e-3;       // optical depth that ends a path on its way to the light
 
 double visibility(const ColumnField& field, glm::dvec3 x, std::size_t direction,

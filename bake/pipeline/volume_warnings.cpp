@@ -1,22 +1,11 @@
 #include "bake/pipeline/volume_warnings.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 
 #include "bake/accuracy/error_warnings.h"
 
 namespace opaline::bake {
-namespace {
-
-std::string percent(double share) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
-    return text;
-}
-
-}  // namespace
-
 void warn_of_volumes(const Knobs& knobs, const std::optional<VolumeErrorReport>& error,
                      std::vector<formats::Diagnostic>& warnings) {
     if (!error || error->by_light.empty()) {
@@ -31,8 +20,9 @@ void warn_of_volumes(const Knobs& knobs, const std::optional<VolumeErrorReport>&
         std::ranges::max_element(error->by_light, {}, &VolumeErrorReport::Part::rms_relative);
     warnings.push_back(formats::make_warning(
         "", asked ? "--error" : "self-check",
-        "volumes err by " + percent(error->rms_relative) + " (95 %: " + percent(error->ci95[0]) +
-            " to " + percent(error->ci95[1]) + "), more than the " + percent(limit) +
+        "volumes err by " + error_percent(error->rms_relative) +
+            " (95 %: " + error_percent(error->ci95[0]) + " to " + error_percent(error->ci95[1]) +
+            "), more than the " + error_percent(limit) +
             (asked ? " asked for; finer settings help little" : " that pass unnoticed") +
             "; most under light of the class '" + worst->name + "'",
         asked ? "accept the error, or give --volume-walks, --volume-spacing and "
