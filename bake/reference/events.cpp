@@ -50,8 +50,8 @@ glm::vec3 transmittance(const ReferenceMedium& medium, glm::vec3 from, glm::vec3
 
 /// Transmittance of a straight line to the sky. 0 if anything but a boundary between equal indices
 /// is in the way, or if the path would end in no requested term.
-glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction, MediumStack stack,
-                  PathState state, RandomStream& random) {
+glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction,
+                  SurroundingMedia stack, PathState state, RandomStream& random) {
     const ReferenceScene& scene = space.scene;
     const HitScene& surfaces = scene.surfaces;
     const auto pass_volumes = [&](glm::vec3 start, float reach) {

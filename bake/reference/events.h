@@ -16,7 +16,7 @@ struct Path {
     RayOrigin origin;
     glm::vec3 direction{0};
     glm::vec3 beta{1};  ///< throughput
-    MediumStack stack;
+    SurroundingMedia stack;
     PathState state;
     std::uint32_t events = 0;
     /// [1/sr] of `direction` if the light was sampled at the last event too; else 0
@@ -28,9 +28,9 @@ struct Path {
 /// Two sides of a boundary that a path has arrived at.
 struct Crossing {
     BoundarySplit split;
-    RayOrigin near, far;  ///< where rays start on this side and beyond
-    MediumStack beyond;   ///< bodies on the far side
-    glm::vec3 color{1};   ///< factor of light that enters a body
+    RayOrigin near, far;      ///< where rays start on this side and beyond
+    SurroundingMedia beyond;  ///< bodies on the far side
+    glm::vec3 color{1};       ///< factor of light that enters a body
 };
 
 /// True if the path may still end in a term that is counted.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kForever = std::numeric_limits<float>::infinity();
 
-float index_of(const ReferenceScene& scene, const MediumStack& stack) {
+float index_of(const ReferenceScene& scene, const SurroundingMedia& stack) {
     return stack.empty() ? 1 : scene.media[stack.top()].eta;
 }
 
@@ -158,7 +158,7 @@ PathSample finish(const PathSpace& space, Path& path, RandomStream& random) {
 }  // namespace
 
 PathSample trace_ray(const PathSpace& space, glm::vec3 origin, glm::vec3 direction,
-                     RandomStream& random, const MediumStack& around) {
+                     RandomStream& random, const SurroundingMedia& around) {
     Path path;
     path.stack = around;
     if (!around.empty()) {

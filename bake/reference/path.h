@@ -37,7 +37,7 @@ struct ReferenceReceiver {
     glm::vec3 to_eye{0};              ///< unit
     glm::vec3 base_color{1};
     std::uint32_t medium = formats::kNone;  ///< index into ReferenceScene::media; none: opaque
-    MediumStack around;                     ///< other bodies that it lies in
+    SurroundingMedia around;                ///< other bodies that it lies in
 };
 
 /// One sample of radiance, with the state of its path.
@@ -52,7 +52,7 @@ struct PathSample {
 /// Volumetric path tracing. At each event from which a straight line may reach the light, the light
 /// is sampled too; the balance heuristic combines both.
 PathSample trace_ray(const PathSpace& space, glm::vec3 origin, glm::vec3 direction,
-                     RandomStream& random, const MediumStack& around = {});
+                     RandomStream& random, const SurroundingMedia& around = {});
 
 /// Radiance that leaves a receiver toward its eye; surfaces between them are ignored. Black where
 /// the receiver has no normal or faces away (unless its material is double-sided).

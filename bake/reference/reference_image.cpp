@@ -34,7 +34,7 @@ formats::Result<ReferenceImage> estimate_image(const PathSpace& space,
     const runtime::CameraFrame frame = runtime::camera_frame(camera);
     const glm::vec3 eye(glm::dvec3(camera.eye.x, camera.eye.y, camera.eye.z) -
                         space.scene.surfaces.scene().origin);
-    const MediumStack around = surrounding_media(space.scene, eye, {0, 1, 0});
+    const SurroundingMedia around = surrounding_media(space.scene, eye, {0, 1, 0});
     auto estimate = estimate_pixels(
         camera.width * camera.height, options, context,
         [&](std::uint32_t pixel, RandomStream& random) {

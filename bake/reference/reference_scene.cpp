@@ -68,8 +68,8 @@ std::vector<int> count_leaving(const ReferenceScene& scene, glm::vec3 point, glm
 
 }  // namespace
 
-MediumStack surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm::vec3 up) {
-    MediumStack stack;
+SurroundingMedia surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm::vec3 up) {
+    SurroundingMedia stack;
     if (scene.media.empty()) {
         return stack;
     }
@@ -89,13 +89,13 @@ MediumStack surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm:
     return stack;
 }
 
-void MediumStack::enter(std::uint32_t m) {
+void SurroundingMedia::enter(std::uint32_t m) {
     if (size < kCapacity) {
         medium[size++] = m;
     }
 }
 
-void MediumStack::leave(std::uint32_t m) {
+void SurroundingMedia::leave(std::uint32_t m) {
     for (std::uint32_t i = size; i-- > 0;) {
         if (medium[i] == m) {
             for (std::uint32_t j = i + 1; j < size; ++j) {

@@ -31,7 +31,7 @@ inline bool is_matched(float ratio) {
 }
 
 /// The bodies around a point, the last one entered on top: its medium fills the space.
-struct MediumStack {
+struct SurroundingMedia {
     static constexpr std::uint32_t kCapacity = 8;
     std::uint32_t medium[kCapacity] = {};  ///< indices into ReferenceScene::media
     std::uint32_t size = 0;
@@ -46,6 +46,6 @@ struct MediumStack {
 
 /// The bodies around a point: a line from the point leaves them more often than it enters. Three
 /// directions within 60 degrees of `up` vote, because a body may have holes.
-MediumStack surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm::vec3 up);
+SurroundingMedia surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm::vec3 up);
 
 }  // namespace opaline::bake

@@ -8,7 +8,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // d_v - d_r at distance r, without the cancellation of two long distances.
 double distance_gap(const Dipole& dipole, double d_real, double d_virtual) {
@@ -40,7 +40,7 @@ Dipole make_dipole(DipoleKind kind, double sigma_s_prime, double sigma_a, double
         dipole.sigma_tr = std::sqrt(sigma_a / diffusion);
         dipole.z_virtual = dipole.z_real + 4 * a * diffusion;
         // alpha'^2, because the single-scattering stage adds the light that scatters once.
-        const double strength = albedo * albedo / (4 * kPi);
+        const double strength = albedo * albedo / (4 * pi);
         dipole.w_phi = strength * 0.25 * (1 - 2 * moments.c1) / diffusion;
         dipole.w_flux = strength * 0.5 * (1 - 3 * moments.c2);
         return dipole;
@@ -50,7 +50,7 @@ Dipole make_dipole(DipoleKind kind, double sigma_s_prime, double sigma_a, double
     const double a = (1 + f_dr) / (1 - f_dr);
     dipole.sigma_tr = std::sqrt(3 * sigma_a * sigma_t_prime);
     dipole.z_virtual = dipole.z_real * (1 + 4 * a / 3);
-    dipole.w_flux = albedo / (4 * kPi);
+    dipole.w_flux = albedo / (4 * pi);
     return dipole;
 }
 
@@ -88,7 +88,7 @@ double dipole_tail(const Dipole& dipole, double a) {
                         dipole.z_virtual * std::exp(-k * d_virtual) / d_virtual;
     const double fluence =
         exponential_difference(k, d_real, distance_gap(dipole, d_real, d_virtual));
-    return 2 * kPi * (dipole.w_flux * flux + dipole.w_phi * fluence);
+    return 2 * pi * (dipole.w_flux * flux + dipole.w_phi * fluence);
 }
 
 double dipole_total(const Dipole& dipole) {
@@ -96,7 +96,7 @@ double dipole_total(const Dipole& dipole) {
 }
 
 double dipole_disc_mean(const Dipole& dipole, double a) {
-    return (dipole_total(dipole) - dipole_tail(dipole, a)) / (kPi * a * a);
+    return (dipole_total(dipole) - dipole_tail(dipole, a)) / (pi * a * a);
 }
 
 double dipole_fourier(const Dipole& dipole, double k) {
@@ -104,7 +104,7 @@ double dipole_fourier(const Dipole& dipole, double k) {
     const double flux = std::exp(-dipole.z_real * kappa) + std::exp(-dipole.z_virtual * kappa);
     const double fluence =
         exponential_difference(kappa, dipole.z_real, dipole.z_virtual - dipole.z_real);
-    return 2 * kPi * (dipole.w_flux * flux + dipole.w_phi * fluence);
+    return 2 * pi * (dipole.w_flux * flux + dipole.w_phi * fluence);
 }
 
 }  // namespace opaline::bake

@@ -12,18 +12,18 @@ namespace {
 
 using formats::PhaseFunction;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double gaussian_integral(double rms_angle) {
     // Beyond 8 widths the weight is below 1e-27; within, the integrand is smooth.
     const GaussLegendre rule = make_gauss_legendre(96);
-    const double end = std::min(kPi, 8 * rms_angle);
+    const double end = std::min(pi, 8 * rms_angle);
     double sum = 0;
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
         const double angle = end * rule.node[i], x = angle / rms_angle;
         sum += end * rule.weight[i] * std::exp(-x * x) * std::sin(angle);
     }
-    return 2 * kPi * sum;
+    return 2 * pi * sum;
 }
 
 /// Near 1: corrects the rounding of the table to single precision.
@@ -34,7 +34,7 @@ double table_integral(const PhaseFunction& phase) {
         const double p = phase.value[i - 1], q = phase.value[i];
         sum += (to - from) * (p + q) / 2;
     }
-    return 2 * kPi * sum;
+    return 2 * pi * sum;
 }
 
 /// Linear in the cosine.
@@ -74,7 +74,7 @@ double eval_phase(const PhaseDensity& density, double cosine) {
         case PhaseFunction::Type::henyey_greenstein:
             return henyey_greenstein(cosine, static_cast<double>(phase.g));
         case PhaseFunction::Type::rayleigh:
-            return 3 / (16 * kPi) * (1 + cosine * cosine);
+            return 3 / (16 * pi) * (1 + cosine * cosine);
         case PhaseFunction::Type::gaussian: {
             const double x =
                 std::acos(std::clamp(cosine, -1.0, 1.0)) / static_cast<double>(phase.rms_angle);
@@ -83,7 +83,7 @@ double eval_phase(const PhaseDensity& density, double cosine) {
         case PhaseFunction::Type::tabulated:
             return density.scale * interpolate(phase, cosine);
     }
-    return 1 / (4 * kPi);
+    return 1 / (4 * pi);
 }
 
 }  // namespace opaline::bake

@@ -14,7 +14,7 @@ namespace {
 
 using formats::PhaseFunction;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Adds weight * P_l(cosine) to sum[l] for every l.
 void add_legendre(double cosine, double weight, std::vector<double>& sum) {
@@ -38,7 +38,7 @@ double sum_of_squares(const std::vector<double>& lambda) {
 
 /// `square` is the integral of p^2 over the cosine: all degrees together are 8 pi^2 times it.
 PhaseSeries finish(std::vector<double> lambda, double square) {
-    const double total = 8 * kPi * kPi * square;
+    const double total = 8 * pi * pi * square;
     const double tail = std::max(0.0, total - sum_of_squares(lambda));
     return {std::move(lambda), tail};
 }
@@ -47,14 +47,14 @@ PhaseSeries expand_gaussian(const PhaseDensity& density, unsigned degrees) {
     // As a function of the angle the integrand is smooth for any width of the lobe. P_l adds l / 2
     // oscillations.
     const GaussLegendre rule = make_gauss_legendre(96 + static_cast<int>(degrees));
-    const double end = std::min(kPi, 8 * static_cast<double>(density.function.rms_angle));
+    const double end = std::min(pi, 8 * static_cast<double>(density.function.rms_angle));
     std::vector<double> lambda(degrees, 0.0);
     double square = 0;
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
         const double cosine = std::cos(end * rule.node[i]);
         const double p = eval_phase(density, cosine);
         const double weight = end * rule.weight[i] * std::sin(end * rule.node[i]) * p;
-        add_legendre(cosine, 2 * kPi * weight, lambda);
+        add_legendre(cosine, 2 * pi * weight, lambda);
         square += weight * p;
     }
     return finish(std::move(lambda), square);
@@ -72,7 +72,7 @@ PhaseSeries expand_table(const PhaseDensity& density, unsigned degrees) {
         const double q = density.scale * static_cast<double>(phase.value[row]);
         for (std::size_t i = 0; i < rule.node.size(); ++i) {
             const double t = rule.node[i];
-            add_legendre(from + t * width, 2 * kPi * width * rule.weight[i] * (p + t * (q - p)),
+            add_legendre(from + t * width, 2 * pi * width * rule.weight[i] * (p + t * (q - p)),
                          lambda);
         }
         square += width * (p * p + p * q + q * q) / 3;
@@ -140,7 +140,7 @@ double phase_rms_relative(const PhaseSeries& series, unsigned terms) {
 }
 
 double phase_rms(const PhaseSeries& series, unsigned terms) {
-    return std::sqrt(dropped(series, terms)) / (4 * kPi);
+    return std::sqrt(dropped(series, terms)) / (4 * pi);
 }
 
 unsigned choose_phase_terms(const PhaseSeries& series, double tolerance) {

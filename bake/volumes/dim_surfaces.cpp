@@ -16,7 +16,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::size_t kBlock = 16;                  // vertices that a thread takes at once
+constexpr std::size_t kVerticesAtOnce = 16;         // vertices that a thread takes at once
 constexpr std::uint32_t kFinestTransmittance = 16;  // texels along an edge of a face
 
 // Of one vertex toward each texel of the file's cube map, band after band.
@@ -112,7 +112,7 @@ formats::Status dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
         const DimJob job{
             space, cells, selector, given, asset.primitives[p], scene.primitives[p], record.bands};
         for_each_block_in_order(
-            record.vertex_count, kBlock, context,
+            record.vertex_count, kVerticesAtOnce, context,
             [&](Range range) {
                 std::vector<std::vector<formats::SparseRow>> block;
                 for (std::size_t v = range.begin; v < range.end; ++v) {

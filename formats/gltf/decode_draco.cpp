@@ -14,8 +14,9 @@ namespace opaline::formats::gltf {
 namespace {
 
 using Json = nlohmann::json;
-constexpr const char* kExtension = "KHR_draco_mesh_compression";
-constexpr const char* kRemedy = "export without compression, or decompress with gltf-transform";
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kDracoRemedy =
+    "export without compression, or decompress with gltf-transform";
 
 std::optional<std::uint64_t> whole(const Json& object, const char* key) {
     const auto found = object.find(key);
@@ -218,7 +219,7 @@ std::string decode_primitive(Json& root, Resources& resources, const Json& exten
     }
     primitive["indices"] = add_indices(root, resources, *mesh);
     primitive["mode"] = 4u;  // decoded strips are triangle lists
-    primitive["extensions"].erase(kExtension);
+    primitive["extensions"].erase(kDraco);
     return "";
 }
 
@@ -236,16 +237,15 @@ void decode_draco_primitives(nlohmann::json& root, Resources& resources, Report&
         for (std::size_t p = 0; p < count; ++p) {
             Json primitive = root["meshes"][m]["primitives"][p];
             if (!primitive.is_object() || !primitive.contains("extensions") ||
-                !primitive["extensions"].is_object() ||
-                !primitive["extensions"].contains(kExtension)) {
+                !primitive["extensions"].is_object() || !primitive["extensions"].contains(kDraco)) {
                 continue;
             }
-            const Json extension = primitive["extensions"][kExtension];
+            const Json extension = primitive["extensions"][kDraco];
             const std::string fault = decode_primitive(root, resources, extension, primitive);
             if (!fault.empty()) {
                 report.error("mesh " + std::to_string(m) + " > primitive " + std::to_string(p) +
-                                 " > " + kExtension,
-                             fault, kRemedy);
+                                 " > " + kDraco,
+                             fault, kDracoRemedy);
                 continue;
             }
             root["meshes"][m]["primitives"][p] = std::move(primitive);

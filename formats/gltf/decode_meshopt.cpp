@@ -11,8 +11,9 @@ namespace opaline::formats::gltf {
 namespace {
 
 using Json = nlohmann::json;
-constexpr const char* kExtension = "EXT_meshopt_compression";
-constexpr const char* kRemedy = "export again, or decompress with gltfpack -noq or gltf-transform";
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
+constexpr const char* kMeshoptRemedy =
+    "export again, or decompress with gltfpack -noq or gltf-transform";
 
 /// The extension object of one buffer view; its ranges checked against what the decoders demand
 /// (the library asserts on them) and against the worst ratio that its formats can reach.
@@ -126,15 +127,15 @@ void decode_meshopt_views(nlohmann::json& root, Resources& resources, Report& re
         Json& view = (*views)[i];
         const auto extensions = view.find("extensions");
         if (extensions == view.end() || !extensions->is_object() ||
-            !extensions->contains(kExtension)) {
+            !extensions->contains(kMeshopt)) {
             continue;
         }
-        const std::string where = "bufferView " + std::to_string(i) + " > " + kExtension;
+        const std::string where = "bufferView " + std::to_string(i) + " > " + kMeshopt;
         Compressed compressed;
         const std::string fault =
-            read_description((*extensions)[kExtension], resources.buffers, compressed);
+            read_description((*extensions)[kMeshopt], resources.buffers, compressed);
         if (!fault.empty()) {
-            report.error(where, fault, kRemedy);
+            report.error(where, fault, kMeshoptRemedy);
             continue;
         }
         const std::uint64_t size = compressed.count * compressed.stride;
@@ -147,13 +148,13 @@ void decode_meshopt_views(nlohmann::json& root, Resources& resources, Report& re
         }
         std::vector<std::byte> decoded(size);
         if (!decode(compressed, decoded)) {
-            report.error(where, "the compressed data is damaged", kRemedy);
+            report.error(where, "the compressed data is damaged", kMeshoptRemedy);
             continue;
         }
         view["buffer"] = resources.buffers.size();
         view["byteOffset"] = 0u;
         view["byteLength"] = size;
-        extensions->erase(kExtension);
+        extensions->erase(kMeshopt);
         resources.buffers.push_back(resources.keep(std::move(decoded)));
     }
 }

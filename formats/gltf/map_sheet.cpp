@@ -13,7 +13,7 @@ struct Sides {
     glm::dvec3 reflected, transmitted;
 };
 
-bool is_black(glm::dvec3 color) {
+bool scatters_no_light(glm::dvec3 color) {
     return !(std::max({color.x, color.y, color.z}) > 0.0);
 }
 
@@ -21,7 +21,7 @@ std::optional<Sides> scatter(const TranslucencySource& source, glm::dvec3 base,
                              std::vector<std::string>& remarks) {
     const bool scatters = source.has_volume_scatter ||
                           (source.has_scatter && source.scatter_strength.value_or(0.0) > 0.0);
-    if (!scatters || !(source.transmission > 0.0) || is_black(source.multiscatter_color)) {
+    if (!scatters || !(source.transmission > 0.0) || scatters_no_light(source.multiscatter_color)) {
         return std::nullopt;
     }
     const double strength = source.has_scatter ? clamp_factor(*source.scatter_strength, 0.0, 1.0,

@@ -9,8 +9,6 @@ namespace opaline::formats::gltf {
 
 namespace {
 
-constexpr const char* kAgain = "export the file again";
-
 const char* name_of(ComponentType type) {
     switch (type) {
         case ComponentType::int8:
@@ -52,7 +50,7 @@ struct Reader {
                          semantic + " has " + std::to_string(accessor.components) + " x " +
                              name_of(accessor.type) + " per vertex, expected " +
                              std::to_string(min_components) + " numbers",
-                         kAgain);
+                         kExportAgain);
             return {};
         }
         if (accessor.count != vertices) {
@@ -64,7 +62,8 @@ struct Reader {
         }
         auto read = read_floats(document, buffers, found->second);
         if (read.sparse_index_bad) {
-            report.error(where, semantic + " has a sparse index past its last element", kAgain);
+            report.error(where, semantic + " has a sparse index past its last element",
+                         kExportAgain);
             return {};
         }
         return std::move(read.value);
@@ -90,7 +89,7 @@ std::vector<std::uint32_t> drawn_vertices(const Reader& reader, std::size_t vert
                             std::string("its indices are ") + std::to_string(accessor.components) +
                                 " x " + name_of(accessor.type) +
                                 ", expected one unsigned whole number each",
-                            kAgain);
+                            kExportAgain);
         return {};
     }
     auto read = read_indices(reader.document, reader.buffers, accessor_index);
@@ -102,7 +101,7 @@ std::vector<std::uint32_t> drawn_vertices(const Reader& reader, std::size_t vert
                                       : "index " + std::to_string(bad - read.value.begin()) +
                                             " is " + std::to_string(*bad) + ", but there are " +
                                             std::to_string(vertices) + " vertices";
-        reader.report.error(reader.where, fault, kAgain);
+        reader.report.error(reader.where, fault, kExportAgain);
         return {};
     }
     return std::move(read.value);
@@ -140,7 +139,7 @@ std::optional<PrimitiveData> read_primitive(const Document& document,
     const std::uint64_t vertices = document.accessors[position->second].count;
 
     PrimitiveData data;
-    data.position = reader.attribute("POSITION", 3, 3, vertices, kAgain);
+    data.position = reader.attribute("POSITION", 3, 3, vertices, kExportAgain);
     data.normal =
         reader.attribute("NORMAL", 3, 3, vertices,
                          "export with one normal per vertex, or drop NORMAL to have it computed");

@@ -11,7 +11,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uint32_t kMostTextures = 0x7fffffff, kMostTexcoords = 255;
-constexpr const char* kAgain = "export the file again";
 
 /// A whole number up to `most`; absent: `otherwise`. Nothing where it is something else.
 std::optional<std::uint32_t> whole(const Json& object, const char* key, std::uint32_t most,
@@ -57,13 +56,13 @@ glm::mat3 texture_transform(glm::dvec2 offset, double rotation, glm::dvec2 scale
 
 TextureUse read_texture_use(const Json& info, const std::string& where, Report& report) {
     if (!info.is_object()) {
-        report.error(where, "it is not an object", kAgain);
+        report.error(where, "it is not an object", kExportAgain);
         return {};
     }
     const auto index = whole(info, "index", kMostTextures, kNone);
     const auto texcoord = whole(info, "texCoord", kMostTexcoords, 0);
     if (!index || *index == kNone || !texcoord) {
-        report.error(where, "index or texCoord is not a small whole number", kAgain);
+        report.error(where, "index or texCoord is not a small whole number", kExportAgain);
         return {};
     }
     TextureUse use{*index, *texcoord};
@@ -74,7 +73,7 @@ TextureUse read_texture_use(const Json& info, const std::string& where, Report& 
     }
     const Json& transform = extensions->at("KHR_texture_transform");
     if (!transform.is_object()) {
-        report.error(where, "its KHR_texture_transform is not an object", kAgain);
+        report.error(where, "its KHR_texture_transform is not an object", kExportAgain);
         return {};
     }
     const auto offset = pair(transform, "offset", glm::dvec2(0.0));
@@ -82,7 +81,8 @@ TextureUse read_texture_use(const Json& info, const std::string& where, Report& 
     const auto rotation = number(transform, "rotation");
     const auto own = whole(transform, "texCoord", kMostTexcoords, use.texcoord);
     if (!offset || !scale || !rotation || !own) {
-        report.error(where, "its KHR_texture_transform has a member of the wrong type", kAgain);
+        report.error(where, "its KHR_texture_transform has a member of the wrong type",
+                     kExportAgain);
         return {};
     }
     use.texcoord = *own;

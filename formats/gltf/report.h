@@ -10,6 +10,9 @@
 
 namespace opaline::formats::gltf {
 
+/// The remedy for what no program should write.
+inline constexpr const char* kExportAgain = "export the file again";
+
 /// Collects the faults of one file, so that the user sees all at once. Beyond kMaxDiagnostics of
 /// either kind it only counts.
 struct Report {

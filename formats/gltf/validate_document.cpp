@@ -7,8 +7,6 @@ namespace opaline::formats::gltf {
 
 namespace {
 
-constexpr const char* kAgain = "export the file again";
-
 std::string number(std::uint64_t value) {
     return std::to_string(value);
 }
@@ -29,7 +27,7 @@ void check_link(std::uint32_t index, std::size_t size, const std::string& where,
         report.error(
             where,
             std::string(what) + " " + number(index) + " does not exist: there are " + number(size),
-            kAgain);
+            kExportAgain);
     }
 }
 
@@ -41,14 +39,14 @@ void validate_views(const Document& document, const std::vector<Bytes>& buffers,
             report.error(where,
                          "buffer " + number(view.buffer) + " does not exist: there are " +
                              number(buffers.size()),
-                         kAgain);
+                         kExportAgain);
         } else if (!fits(view.offset, view.length, buffers[view.buffer].size())) {
             report.error(where,
                          "its bytes " + number(view.offset) + " to " +
                              number(view.offset + view.length) + " pass the end of buffer " +
                              number(view.buffer) + " (" + number(buffers[view.buffer].size()) +
                              " bytes)",
-                         kAgain);
+                         kExportAgain);
         }
     }
 }
@@ -61,7 +59,7 @@ void check_run(const Document& document, std::uint32_t view_index, std::uint64_t
         report.error(where,
                      "bufferView " + number(view_index) + " does not exist: there are " +
                          number(document.views.size()),
-                     kAgain);
+                     kExportAgain);
         return;
     }
     const BufferView& view = document.views[view_index];
@@ -70,19 +68,19 @@ void check_run(const Document& document, std::uint32_t view_index, std::uint64_t
         report.error(where,
                      "byteStride " + number(stride) + " is smaller than its elements of " +
                          number(element) + " bytes",
-                     kAgain);
+                     kExportAgain);
     } else if (count > kMaxFileBytes ||
                !fits(offset, span_bytes(count, stride, element), view.length)) {
         report.error(where,
                      number(count) + " elements from byte " + number(offset) +
                          " pass the end of bufferView " + number(view_index) + " (" +
                          number(view.length) + " bytes)",
-                     kAgain);
+                     kExportAgain);
     } else if ((offset % component) != 0 || (stride % component) != 0) {
         report.error(where,
                      "byteOffset " + number(offset) + " or byteStride " + number(stride) +
                          " is not a multiple of the component size " + number(component),
-                     kAgain);
+                     kExportAgain);
     }
 }
 
@@ -94,11 +92,11 @@ void validate_accessor(const Document& document, std::size_t index, Report& repo
         report.error(where,
                      "componentType " + number(static_cast<std::uint32_t>(accessor.type)) +
                          " is not one of glTF",
-                     kAgain);
+                     kExportAgain);
         return;
     }
     if (accessor.count == 0) {
-        report.error(where, "count is 0, expected at least 1", kAgain);
+        report.error(where, "count is 0, expected at least 1", kExportAgain);
         return;
     }
     if (accessor.is_matrix) {
@@ -125,14 +123,14 @@ void validate_accessor(const Document& document, std::size_t index, Report& repo
         report.error(where,
                      "its sparse indices have componentType " +
                          number(static_cast<std::uint32_t>(sparse.index_type)),
-                     kAgain);
+                     kExportAgain);
         return;
     }
     if (sparse.count == 0 || sparse.count > accessor.count) {
         report.error(where,
                      "its sparse count is " + number(sparse.count) + ", expected 1 to " +
                          number(accessor.count),
-                     kAgain);
+                     kExportAgain);
         return;
     }
     const std::uint64_t index_bytes = component_bytes(sparse.index_type);
@@ -157,7 +155,7 @@ void validate_links(const Document& document, Report& report) {
                 report.error(where,
                              "mode is " + number(static_cast<std::uint32_t>(primitive.mode)) +
                                  ", expected 0 to 6",
-                             kAgain);
+                             kExportAgain);
             }
         }
     }

@@ -17,7 +17,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Json phase(Arguments arguments) {
     arguments.insert(arguments.begin(), "phase");
@@ -35,7 +35,7 @@ double integral(const Json& function) {
         sum += (cosine.at(i).get<double>() - cosine.at(i - 1).get<double>()) *
                (value.at(i).get<double>() + value.at(i - 1).get<double>()) / 2;
     }
-    return 2 * kPi * sum;
+    return 2 * pi * sum;
 }
 
 TEST(Phase, PrintsTheErrorsOfTheReferenceTable) {
@@ -121,7 +121,7 @@ TEST(Phase, CsvHoldsTheNumbersOfTheJson) {
             std::stod(line.substr(second + 1));
     }
     EXPECT_EQ(value["p"].size(), 181u);
-    EXPECT_NEAR(value["p"][1], 1.25 / (4 * kPi * 0.75 * 0.75), 1e-12);
+    EXPECT_NEAR(value["p"][1], 1.25 / (4 * pi * 0.75 * 0.75), 1e-12);
     EXPECT_EQ(value["lambda"][2], 0.0625);
     EXPECT_EQ(value["rms_harmonics"][4], json.at("rms").at("harmonics").at(3));
     EXPECT_EQ(value["rms_harmonics_absolute"].size(), 25u);

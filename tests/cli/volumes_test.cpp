@@ -25,7 +25,7 @@ std::string write_asset(const SmallScene& small, const formats::Asset& asset) {
     return path;
 }
 
-std::size_t lines_of(const std::string& path) {
+std::size_t count_lines(const std::string& path) {
     const std::string text = read_text(path);
     return static_cast<std::size_t>(std::ranges::count(text, '\n'));
 }
@@ -39,7 +39,7 @@ TEST(VolumeFiles, RelightWritesATableOfReceiversAndOneOfNodes) {
     ASSERT_EQ(mean.exit_code, 0) << mean.err;
     EXPECT_EQ(read_text(out), "primitive,vertex,r,g,b\n");
     EXPECT_THAT(read_text(volumes), StartsWith("volume,i,j,k,r,g,b\n0,"));
-    EXPECT_EQ(lines_of(volumes), asset.volumes.node.size() + 1);
+    EXPECT_EQ(count_lines(volumes), asset.volumes.node.size() + 1);
     EXPECT_EQ(nlohmann::json::parse(mean.out)["volume_nodes"], asset.volumes.node.size());
 
     const std::string seen = small.path("seen.csv");

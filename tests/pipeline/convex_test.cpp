@@ -10,7 +10,8 @@ using tests::make_scene;
 using tests::make_sphere;
 using tests::small_bake;
 
-BakeResult bake(const formats::Scene& scene, bool forced, BakeOptions options = small_bake()) {
+BakeResult bake_convex(const formats::Scene& scene, bool forced,
+                       BakeOptions options = small_bake()) {
     options.simulate_all = forced;
     return tests::bake_scene(scene, options);
 }
@@ -47,7 +48,7 @@ const PlanEntry& visibility_of(const BakeResult& result) {
 constexpr double kRounding = 1e-3;
 
 TEST(ConvexBodies, AnOpaqueOnePaysForItsIrradianceAlone) {
-    const BakeResult result = bake(make_scene({make_sphere(3)}), false);
+    const BakeResult result = bake_convex(make_scene({make_sphere(3)}), false);
     EXPECT_EQ(rays_of(result), 0u);
     EXPECT_FALSE(has_stage(result, "hierarchy"));
     EXPECT_TRUE(result.asset.openness.empty());
@@ -68,7 +69,7 @@ TEST(ConvexBodies, RaysForcedOnFindWhatWasNotTraced) {
     }
     for (const formats::Primitive& body : {ball, box}) {
         const auto scene = make_scene({body});
-        const BakeResult open = bake(scene, false), traced = bake(scene, true);
+        const BakeResult open = bake_convex(scene, false), traced = bake_convex(scene, true);
         ASSERT_FALSE(visibility_of(open).on) << visibility_of(open).reason;
         EXPECT_TRUE(visibility_of(traced).forced);
         EXPECT_EQ(rays_of(open), 0u);
@@ -88,12 +89,13 @@ formats::Scene dented(float depth) {
 
 TEST(ConvexBodies, ADentIsTracedAsSoonAsItCouldShadeMoreThanTheBound) {
     // A vertex of the icosahedron lies .0095 above its neighbours' plane, .138 from them.
-    const BakeResult shallow = bake(dented(0.012f), false), forced = bake(dented(0.012f), true);
+    const BakeResult shallow = bake_convex(dented(0.012f), false),
+                     forced = bake_convex(dented(0.012f), true);
     EXPECT_FALSE(visibility_of(shallow).on) << visibility_of(shallow).bound;
     EXPECT_GT(visibility_of(shallow).bound, 1e-6) << "deeper than its neighbours";
     EXPECT_LE(largest_difference(shallow.asset, forced.asset, "white"),
               visibility_of(shallow).bound + 1e-6);
-    const BakeResult deep = bake(dented(0.025f), false);
+    const BakeResult deep = bake_convex(dented(0.025f), false);
     EXPECT_TRUE(visibility_of(deep).on);
     EXPECT_FALSE(visibility_of(deep).forced);
     EXPECT_GT(rays_of(deep, "rows of "), 1000u);
@@ -112,8 +114,8 @@ BakeOptions multiple_and_specular() {
 
 TEST(ConvexBodies, LightEntersAMediumUntraced) {
     const auto scene = tests::make_translucent_scene({make_sphere(4)}, milky());
-    const BakeResult open = bake(scene, false, multiple_and_specular());
-    const BakeResult traced = bake(scene, true, multiple_and_specular());
+    const BakeResult open = bake_convex(scene, false, multiple_and_specular());
+    const BakeResult traced = bake_convex(scene, true, multiple_and_specular());
     ASSERT_FALSE(visibility_of(open).on) << visibility_of(open).bound;
     EXPECT_EQ(rays_of(open, "samples of "), 0u);
     EXPECT_EQ(rays_of(open, "openness"), 0u);
@@ -128,7 +130,7 @@ TEST(ConvexBodies, LightEntersAMediumUntraced) {
 
 TEST(ConvexBodies, FacetsThatShadeTheirOwnNormalsAreTraced) {
     const auto scene = tests::make_translucent_scene({make_sphere(2)}, milky());
-    const BakeResult coarse = bake(scene, false, multiple_and_specular());
+    const BakeResult coarse = bake_convex(scene, false, multiple_and_specular());
     EXPECT_TRUE(visibility_of(coarse).on);
     EXPECT_GT(rays_of(coarse, "samples of "), 1000u);
 }
@@ -139,7 +141,7 @@ TEST(ConvexBodies, EachMaterialIsAskedByItself) {
                              make_sphere(2, 1, {-1.5f, -3, 0}), make_sphere(2, 1, {1.5f, -3, 0})});
     scene.materials.push_back({.name = "Ball"});
     scene.primitives[1].material = scene.primitives[2].material = 1;
-    const BakeResult result = bake(scene, false);
+    const BakeResult result = bake_convex(scene, false);
     EXPECT_FALSE(find_entry(result.plan, "light.visibility", 0)->on);
     EXPECT_TRUE(find_entry(result.plan, "light.visibility", 1)->on);
     EXPECT_TRUE(has_stage(result, "rows of 'quad'"));

@@ -33,7 +33,7 @@ formats::Gloss dielectric(float roughness) {
     return gloss;
 }
 
-formats::Scene ball_of(const formats::Gloss& gloss, formats::Rgb color = {1, 1, 1}) {
+formats::Scene glossy_ball(const formats::Gloss& gloss, formats::Rgb color = {1, 1, 1}) {
     formats::Scene scene = tests::make_scene({tests::make_sphere(3)});
     scene.materials[0].base_color = color;
     scene.materials[0].gloss = gloss;
@@ -67,7 +67,7 @@ TEST(Gloss, WhiteBallsReturnWhiteLightWhole) {
     const auto white = make_environment("white").value();
     for (const formats::Gloss& gloss :
          {metal(0.3f), metal(1), dielectric(0.3f), dielectric(0.8f)}) {
-        const BakeResult baked = tests::bake_scene(ball_of(gloss), small());
+        const BakeResult baked = tests::bake_scene(glossy_ball(gloss), small());
         for (const formats::Rgb& color : shade_under(baked.asset, white, std::nullopt)) {
             EXPECT_NEAR(color.g, 1, 0.01) << gloss.metallic << " " << gloss.roughness;
         }
@@ -77,7 +77,7 @@ TEST(Gloss, WhiteBallsReturnWhiteLightWhole) {
 // A metal has no diffuse row: no ray is traced for one, and it is not grey plaster.
 TEST(Gloss, MetalIsMirroredLightAloneAndKeepsItsColour) {
     const formats::Rgb gold{1.0f, 0.77f, 0.34f};
-    const BakeResult baked = tests::bake_scene(ball_of(metal(0.4f), gold), small());
+    const BakeResult baked = tests::bake_scene(glossy_ball(metal(0.4f), gold), small());
     EXPECT_FALSE(find_entry(baked.plan, "direct", 0)->on);
     EXPECT_TRUE(find_entry(baked.plan, "gloss", 0)->on);
     EXPECT_EQ(baked.error.not_measured, std::vector<std::string>{"gloss"});
@@ -92,14 +92,14 @@ TEST(Gloss, MetalIsMirroredLightAloneAndKeepsItsColour) {
 }
 
 TEST(Gloss, DiffuseSurfacesHaveNoneAndItIsLeftOutOnRequest) {
-    const BakeResult plain = tests::bake_scene(ball_of({}), small());
+    const BakeResult plain = tests::bake_scene(glossy_ball({}), small());
     EXPECT_EQ(find_entry(plain.plan, "gloss", 0), nullptr);
     EXPECT_TRUE(plain.error.not_measured.empty());
     EXPECT_TRUE(plain.asset.gloss.empty());
     EXPECT_TRUE(plain.asset.openness.empty());
     BakeOptions options = small();
     options.effects = {"direct"};
-    const BakeResult without = tests::bake_scene(ball_of(dielectric(0.3f)), options);
+    const BakeResult without = tests::bake_scene(glossy_ball(dielectric(0.3f)), options);
     EXPECT_FALSE(find_entry(without.plan, "gloss", 0)->on);
     EXPECT_TRUE(without.asset.gloss.empty());
 }
@@ -111,8 +111,8 @@ TEST(Gloss, LeftOutBelowItsBoundChangesLessThanTheBound) {
     const auto white = make_environment("white").value();
     BakeOptions forced = small();
     forced.simulate_all = true;
-    const BakeResult chosen = tests::bake_scene(ball_of(faint), small());
-    const BakeResult all = tests::bake_scene(ball_of(faint), forced);
+    const BakeResult chosen = tests::bake_scene(glossy_ball(faint), small());
+    const BakeResult all = tests::bake_scene(glossy_ball(faint), forced);
     const PlanEntry& entry = *find_entry(chosen.plan, "gloss", 0);
     ASSERT_FALSE(entry.on) << entry.bound;
     ASSERT_TRUE(find_entry(all.plan, "gloss", 0)->forced);
@@ -129,7 +129,7 @@ TEST(Gloss, BallsUnderAStudioAgreeWithPathTracing) {
     const formats::Vec3 eye{4, 1, 3};
     const auto studio = make_environment("studio").value();
     for (const formats::Gloss& gloss : {metal(0.3f), metal(0.6f), dielectric(0.4f)}) {
-        const formats::Scene scene = ball_of(gloss, {0.9f, 0.6f, 0.3f});
+        const formats::Scene scene = glossy_ball(gloss, {0.9f, 0.6f, 0.3f});
         BakeOptions options = small();
         options.cubemap_size = 32;
         const BakeResult baked = tests::bake_scene(scene, options);

@@ -42,8 +42,8 @@ const PlanEntry& colour_of(const BakeResult& result) {
 }
 
 // Above a floor that keeps every shortcut but this one from being taken.
-BakeResult bake(const formats::Scene& scene, bool forced, std::uint32_t phase_terms = 0,
-                bool separate = false) {
+BakeResult bake_grey(const formats::Scene& scene, bool forced, std::uint32_t phase_terms = 0,
+                     bool separate = false) {
     BakeOptions options = tests::small_bake();
     options.set(kPhaseTerms, phase_terms);
     options.separate_terms = separate;
@@ -99,8 +99,8 @@ void expect_same_light(const BakeResult& a, const BakeResult& b, const char* wha
 TEST(Grey, OneBandHasTheBitsOfEachOfThree) {
     for (const auto& [name, medium, terms, separate] : all_variants()) {
         const auto scene = make_ball_on_floor(medium);
-        const BakeResult grey = bake(scene, false, terms, separate);
-        const BakeResult colour = bake(scene, true, terms, separate);
+        const BakeResult grey = bake_grey(scene, false, terms, separate);
+        const BakeResult colour = bake_grey(scene, true, terms, separate);
         EXPECT_FALSE(colour_of(grey).on) << name;
         EXPECT_EQ(colour_of(grey).bound, 0) << name;
         EXPECT_TRUE(colour_of(colour).on && colour_of(colour).forced) << name;
@@ -115,7 +115,7 @@ TEST(Grey, SlightlyBluerTwinKeepsThreeBands) {
     Medium medium = make_grey_medium(10, 0.2f);
     medium.sigma_a.b *= 1.000001f;
     ASSERT_NE(medium.sigma_a.b, medium.sigma_a.g);
-    const BakeResult result = bake(make_ball_on_floor(medium), false);
+    const BakeResult result = bake_grey(make_ball_on_floor(medium), false);
     EXPECT_TRUE(colour_of(result).on);
     EXPECT_FALSE(colour_of(result).forced);
     EXPECT_EQ(result.asset.primitives[0].bands, 3u);
@@ -129,7 +129,7 @@ TEST(Grey, DenseMediumHasTheBitsOfItsTwinsRed) {
     Medium bluer = dense;
     bluer.sigma_a.b *= 2;
     const auto bake_ball = [](const Medium& medium) {
-        return bake(tests::make_translucent_scene({tests::make_sphere(5)}, medium), false);
+        return bake_grey(tests::make_translucent_scene({tests::make_sphere(5)}, medium), false);
     };
     const BakeResult grey = bake_ball(dense), colour = bake_ball(bluer);
     ASSERT_FALSE(find_entry(grey.plan, "multiple.spread", 0)->on);
@@ -146,7 +146,7 @@ TEST(Grey, ColouredSurfaceOfAGreyMediumKeepsItsColourWithOneBand) {
     for (std::size_t v = 0; v < scene.primitives[0].position.size(); ++v) {
         scene.primitives[0].color.push_back({1, v % 2 == 0 ? 1.0f : 0.5f, 1});
     }
-    const BakeResult grey = bake(scene, false), colour = bake(scene, true);
+    const BakeResult grey = bake_grey(scene, false), colour = bake_grey(scene, true);
     expect_rows_of_first_band(grey.asset, colour.asset, "veined");
     expect_same_light(grey, colour, "veined");
     const Rgb c = relight(grey.asset.view(), "white")[0];
@@ -157,7 +157,7 @@ TEST(Grey, MediumThatLetsNothingOutHasNoColour) {
     Medium black;
     black.sigma_s = {0.1f, 0.1f, 0.05f};
     black.sigma_a = {100, 110, 120};
-    const BakeResult result = bake(make_ball_on_floor(black), false);
+    const BakeResult result = bake_grey(make_ball_on_floor(black), false);
     ASSERT_FALSE(find_entry(result.plan, "single", 0)->on);
     ASSERT_FALSE(find_entry(result.plan, "multiple", 0)->on);
     EXPECT_FALSE(colour_of(result).on);

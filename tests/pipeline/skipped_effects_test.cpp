@@ -11,7 +11,7 @@ namespace opaline::bake {
 namespace {
 
 // Of single-scattering albedo `albedo`, its mean free path a tenth of the ball's radius.
-formats::Scene ball_of(float albedo) {
+formats::Scene dim_ball(float albedo) {
     formats::Medium medium;
     medium.sigma_s = {10 * albedo, 10 * albedo, 5 * albedo};
     medium.sigma_a = {10 - 10 * albedo, 10 - 10 * albedo, 10 - 5 * albedo};
@@ -19,7 +19,7 @@ formats::Scene ball_of(float albedo) {
     return tests::make_translucent_scene({tests::make_sphere(4)}, medium);
 }
 
-BakeResult bake(const formats::Scene& scene, bool forced) {
+BakeResult bake_effects(const formats::Scene& scene, bool forced) {
     BakeOptions options = tests::small_bake();
     options.coefficients = kAllCoefficients;
     options.simulate_all = forced;
@@ -47,18 +47,19 @@ TEST(SkippedEffects, ReflectionOfANearlyBlackSurfaceIsLessThanItsBound) {
         scene.materials[0].base_color = {albedo, 0.5f * albedo, 0};
         return scene;
     };
-    const BakeResult chosen = bake(scene_of(0.0019f), false), all = bake(scene_of(0.0019f), true);
+    const BakeResult chosen = bake_effects(scene_of(0.0019f), false),
+                     all = bake_effects(scene_of(0.0019f), true);
     ASSERT_FALSE(entry_of(chosen, "direct").on);
     EXPECT_TRUE(entry_of(all, "direct").forced);
     // The sky of a cube map of 8 x 8 texels a face is 1 % too bright from above.
     expect_within(1.01 * entry_of(chosen, "direct").bound, chosen, all);
-    EXPECT_TRUE(entry_of(bake(scene_of(0.002f), false), "direct").on);
+    EXPECT_TRUE(entry_of(bake_effects(scene_of(0.002f), false), "direct").on);
 }
 
 // Of a ball of albedo `dark` these effects are left out, of a `brighter` one no longer the first.
 BakeResult expect_left_out(std::initializer_list<const char*> effects, float dark, float brighter) {
-    BakeResult chosen = bake(ball_of(dark), false);
-    const BakeResult all = bake(ball_of(dark), true);
+    BakeResult chosen = bake_effects(dim_ball(dark), false);
+    const BakeResult all = bake_effects(dim_ball(dark), true);
     double bound = 0;
     for (const char* effect : effects) {
         EXPECT_FALSE(entry_of(chosen, effect).on) << effect << entry_of(chosen, effect).bound;
@@ -66,7 +67,7 @@ BakeResult expect_left_out(std::initializer_list<const char*> effects, float dar
         bound += entry_of(chosen, effect).bound;
     }
     expect_within(bound, chosen, all);
-    EXPECT_TRUE(entry_of(bake(ball_of(brighter), false), *effects.begin()).on);
+    EXPECT_TRUE(entry_of(bake_effects(dim_ball(brighter), false), *effects.begin()).on);
     return chosen;
 }
 
@@ -81,7 +82,7 @@ TEST(SkippedEffects, SingleScatteringOfABlackMediumIsLessThanItsBound) {
 
 TEST(SkippedEffects, BoundaryOfIndexOneMirrorsNothing) {
     const auto bake_of = [](float eta, bool forced) {
-        auto scene = ball_of(0.5f);
+        auto scene = dim_ball(0.5f);
         scene.materials[0].medium->eta = eta;
         BakeOptions options = tests::only({"specular"});
         options.simulate_all = forced;

@@ -8,7 +8,7 @@
 namespace opaline::bake {
 namespace {
 
-formats::Scene ball_of(
+formats::Scene phase_ball(
     float g, formats::PhaseFunction::Type type = formats::PhaseFunction::Type::henyey_greenstein) {
     formats::Medium medium = tests::make_grey_medium(6, 4, 1.3f);
     medium.phase.type = type;
@@ -16,7 +16,7 @@ formats::Scene ball_of(
     return tests::make_translucent_scene({tests::make_sphere(3)}, medium);
 }
 
-BakeResult bake(const formats::Scene& scene, std::uint32_t terms) {
+BakeResult bake_skipped_terms(const formats::Scene& scene, std::uint32_t terms) {
     BakeOptions options = tests::small_bake();
     options.set(kPhaseTerms, terms);
     return tests::bake_scene(scene, options);
@@ -29,8 +29,8 @@ const PlanEntry& terms_of(const BakeResult& result) {
 constexpr float kNearlyIsotropic = 0.02f, kJustPast = 0.03f;
 
 TEST(SkippedTerms, OfANearlyIsotropicMediumAddLessThanTheirBoundFromAnyEye) {
-    const auto scene = ball_of(kNearlyIsotropic);
-    const BakeResult one = bake(scene, 0), sixteen = bake(scene, 16);
+    const auto scene = phase_ball(kNearlyIsotropic);
+    const BakeResult one = bake_skipped_terms(scene, 0), sixteen = bake_skipped_terms(scene, 16);
     ASSERT_FALSE(terms_of(one).on) << terms_of(one).reason;
     EXPECT_EQ(terms_of(one).terms, 1u);
     EXPECT_TRUE(terms_of(sixteen).on);
@@ -49,7 +49,7 @@ TEST(SkippedTerms, OfANearlyIsotropicMediumAddLessThanTheirBoundFromAnyEye) {
 }
 
 TEST(SkippedTerms, AreSimulatedAsSoonAsTheyCouldShow) {
-    const BakeResult past = bake(ball_of(kJustPast), 0);
+    const BakeResult past = bake_skipped_terms(phase_ball(kJustPast), 0);
     EXPECT_TRUE(terms_of(past).on) << terms_of(past).reason;
     EXPECT_FALSE(terms_of(past).forced);
     EXPECT_EQ(terms_of(past).terms, 4u);
@@ -60,7 +60,7 @@ TEST(SkippedTerms, AreForcedWithEverythingElse) {
     BakeOptions options;
     options.simulate_all = true;
     options.set(kMultipleModel, static_cast<double>(MultipleModel::dipole));
-    const auto scene = ball_of(kNearlyIsotropic);
+    const auto scene = phase_ball(kNearlyIsotropic);
     const auto plan = plan_bake(scene, inspect_scene(scene), *resolve_knobs(options));
     const PlanEntry& entry = *find_entry(plan, "single.terms", 0);
     EXPECT_TRUE(entry.on && entry.forced);
@@ -71,7 +71,8 @@ TEST(SkippedTerms, AreForcedWithEverythingElse) {
 // There is nothing to simulate, whoever asks for it.
 TEST(SkippedTerms, OfAnIsotropicMediumDoNotExist) {
     for (const std::uint32_t terms : {0u, 16u}) {
-        const BakeResult result = bake(ball_of(0, formats::PhaseFunction::Type::isotropic), terms);
+        const BakeResult result =
+            bake_skipped_terms(phase_ball(0, formats::PhaseFunction::Type::isotropic), terms);
         EXPECT_EQ(find_entry(result.plan, "single.terms", 0), nullptr);
         EXPECT_EQ(result.asset.primitives[0].terms, 1u);
     }
@@ -80,7 +81,7 @@ TEST(SkippedTerms, OfAnIsotropicMediumDoNotExist) {
 TEST(SkippedTerms, CostNothingWhereNothingScattersOnce) {
     BakeOptions options = tests::only({"multiple"});
     options.set(kPhaseTerms, 16);
-    const BakeResult result = tests::bake_scene(ball_of(0.5f), options);
+    const BakeResult result = tests::bake_scene(phase_ball(0.5f), options);
     EXPECT_FALSE(terms_of(result).on);
     EXPECT_EQ(terms_of(result).terms, 0u);
     EXPECT_EQ(result.asset.primitives[0].terms, 1u);

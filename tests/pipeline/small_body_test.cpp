@@ -68,7 +68,7 @@ TEST(SmallBodies, SendOutLessThatScatteredTwiceThanTheirBound) {
 }
 
 TEST(SmallBodies, MultipleScatteringLeftOutIsLessThanItsBound) {
-    constexpr double kThin = 0.045, kJustPast = 0.055;
+    constexpr double kThin = 0.045, kThicker = 0.055;
     BakeOptions options = tests::small_bake();
     const BakeResult chosen = tests::bake_scene(smoke_ball(kThin), options);
     options.simulate_all = true;
@@ -80,7 +80,7 @@ TEST(SmallBodies, MultipleScatteringLeftOutIsLessThanItsBound) {
     const double difference = tests::largest_difference(chosen.asset, all.asset, "white");
     EXPECT_GT(difference, 0) << "nothing was forced";
     EXPECT_LE(difference, left_out.bound);
-    EXPECT_TRUE(multiple_of(smoke_ball(kJustPast)).on);
+    EXPECT_TRUE(multiple_of(smoke_ball(kThicker)).on);
 }
 
 // Diffusion sums its profile over the surface, of which folds may have any amount in little room:

@@ -19,7 +19,7 @@ formats::Medium clay(float mean_free_path) {
     return medium;
 }
 
-BakeResult bake(const formats::Scene& scene, bool forced) {
+BakeResult bake_spread(const formats::Scene& scene, bool forced) {
     BakeOptions options = tests::only({"multiple", "single"});
     options.coefficients = kAllCoefficients;
     options.simulate_all = forced;
@@ -37,7 +37,7 @@ bool has_stage(const BakeResult& result, std::string_view start) {
 
 TEST(Spread, OfADenseSmoothBodyIsLeftOutAndSamplesFindTheSame) {
     const auto scene = tests::make_translucent_scene({tests::make_sphere(5)}, clay(5e-5f));
-    const BakeResult local = bake(scene, false), spread = bake(scene, true);
+    const BakeResult local = bake_spread(scene, false), spread = bake_spread(scene, true);
     ASSERT_FALSE(spread_of(local).on) << spread_of(local).bound;
     EXPECT_TRUE(spread_of(spread).forced);
     EXPECT_FALSE(has_stage(local, "samples of "));

@@ -9,7 +9,7 @@
 namespace opaline::bake {
 namespace {
 
-formats::Scene ball_of(float sigma_s, float sigma_a, float eta = 1.3f) {
+formats::Scene clear_ball(float sigma_s, float sigma_a, float eta = 1.3f) {
     return tests::make_translucent_scene({tests::make_sphere(2)},
                                          tests::make_grey_medium(sigma_s, sigma_a, eta));
 }
@@ -28,7 +28,7 @@ double mean_green(const std::vector<formats::Rgb>& radiance) {
 
 // 1 less what the boundary mirrors along the normal.
 TEST(Transmission, AClearBallIsBakedByItAloneAndShowsAFurnaceAsItIs) {
-    const BakeResult baked = tests::bake_scene(ball_of(0, 1e-6f, 1.5f), tests::small_bake());
+    const BakeResult baked = tests::bake_scene(clear_ball(0, 1e-6f, 1.5f), tests::small_bake());
     EXPECT_FALSE(entry_of(baked, "multiple").on);
     EXPECT_FALSE(entry_of(baked, "single").on);
     ASSERT_TRUE(entry_of(baked, "transmission").on);
@@ -44,15 +44,15 @@ TEST(Transmission, OfABodyThatIsTooDenseIsLessThanItsBoundAndOfAClearerOneMoreTh
     options.set(kStraightTerms, 1);  // the mean over views, which the bound is of
     for (const float eta : {1.0f, 1.3f}) {
         const float dense = eta == 1 ? 260.0f : 56.0f;
-        const BakeResult chosen = tests::bake_scene(ball_of(0, dense, eta), options);
+        const BakeResult chosen = tests::bake_scene(clear_ball(0, dense, eta), options);
         ASSERT_FALSE(entry_of(chosen, "transmission").on) << entry_of(chosen, "transmission").bound;
         options.simulate_all = true;
-        const BakeResult forced = tests::bake_scene(ball_of(0, dense, eta), options);
+        const BakeResult forced = tests::bake_scene(clear_ball(0, dense, eta), options);
         options.simulate_all = false;
         EXPECT_TRUE(entry_of(forced, "transmission").forced);
         EXPECT_LE(tests::largest_difference(chosen.asset, forced.asset, "white"),
                   entry_of(chosen, "transmission").bound);
-        const BakeResult clearer = tests::bake_scene(ball_of(0, 1.5f, eta), options);
+        const BakeResult clearer = tests::bake_scene(clear_ball(0, 1.5f, eta), options);
         ASSERT_TRUE(entry_of(clearer, "transmission").on);
         const double shown = tests::largest_difference(chosen.asset, clearer.asset, "white");
         EXPECT_GT(shown, kLeastBound);
@@ -62,19 +62,19 @@ TEST(Transmission, OfABodyThatIsTooDenseIsLessThanItsBoundAndOfAClearerOneMoreTh
 
 TEST(Transmission, RowsByViewAreTakenWhereTheyShowAndChangeLessThanTheirBound) {
     BakeOptions options = tests::only({"transmission"});
-    const BakeResult dim = tests::bake_scene(ball_of(0, 2.5f), options);
+    const BakeResult dim = tests::bake_scene(clear_ball(0, 2.5f), options);
     EXPECT_FALSE(entry_of(dim, "transmission.view").on);
     options.set(kStraightTerms, 4);
-    const BakeResult four = tests::bake_scene(ball_of(0, 2.5f), options);
+    const BakeResult four = tests::bake_scene(clear_ball(0, 2.5f), options);
     ASSERT_TRUE(entry_of(four, "transmission.view").on);
     EXPECT_EQ(four.asset.primitives[0].terms, 4u);
     EXPECT_LT(tests::largest_difference(dim.asset, four.asset, "white"),
               entry_of(dim, "transmission.view").bound);
     options = tests::only({"transmission"});
-    const BakeResult bright = tests::bake_scene(ball_of(0, 0.1f), options);
+    const BakeResult bright = tests::bake_scene(clear_ball(0, 0.1f), options);
     ASSERT_TRUE(entry_of(bright, "transmission.view").on);
     options.set(kStraightTerms, 1);
-    const BakeResult one = tests::bake_scene(ball_of(0, 0.1f), options);
+    const BakeResult one = tests::bake_scene(clear_ball(0, 0.1f), options);
     EXPECT_EQ(one.asset.primitives[0].terms, 1u);
     EXPECT_GT(tests::largest_difference(bright.asset, one.asset, "sun:30,60"), 0.05)
         << "they see the sun from one side";
@@ -101,7 +101,7 @@ TEST(Transmission, AgreesWithTheReferencesUnscatteredTermUnderEvenLight) {
 }
 
 TEST(Transmission, StandsInTheRowOfMultipleScatteringWhereTermsAreApart) {
-    const formats::Scene scene = ball_of(0.5f, 0.1f);
+    const formats::Scene scene = clear_ball(0.5f, 0.1f);
     BakeOptions options = tests::small_bake();
     options.separate_terms = true;
     const BakeResult all = tests::bake_scene(scene, options);
@@ -120,9 +120,9 @@ TEST(Transmission, StandsInTheRowOfMultipleScatteringWhereTermsAreApart) {
 TEST(Transmission, HasTheSameBitsForAnyNumberOfThreads) {
     BakeOptions options = tests::only({"transmission"});
     options.threads = 1;
-    const BakeResult one = tests::bake_scene(ball_of(0.1f, 0.2f), options);
+    const BakeResult one = tests::bake_scene(clear_ball(0.1f, 0.2f), options);
     options.threads = 3;
-    const BakeResult three = tests::bake_scene(ball_of(0.1f, 0.2f), options);
+    const BakeResult three = tests::bake_scene(clear_ball(0.1f, 0.2f), options);
     EXPECT_EQ(one.asset.transport.code8, three.asset.transport.code8);
     EXPECT_EQ(one.asset.transport.average_code, three.asset.transport.average_code);
     EXPECT_EQ(one.error.rms_relative, three.error.rms_relative);
@@ -131,9 +131,9 @@ TEST(Transmission, HasTheSameBitsForAnyNumberOfThreads) {
 TEST(Transmission, ItsSelfCheckFindsFewViewsWorseThanMany) {
     BakeOptions options = tests::only({"transmission"});
     options.set(kStraightViews, 16);
-    const BakeResult few = tests::bake_scene(ball_of(0, 0.5f), options);
+    const BakeResult few = tests::bake_scene(clear_ball(0, 0.5f), options);
     options.set(kStraightViews, 256);
-    const BakeResult many = tests::bake_scene(ball_of(0, 0.5f), options);
+    const BakeResult many = tests::bake_scene(clear_ball(0, 0.5f), options);
     EXPECT_LT(many.error.at_receivers.by_light[0].rms_relative, 0.03) << "white";
     EXPECT_LT(many.error.at_receivers.rms_relative, few.error.at_receivers.rms_relative);
     EXPECT_LT(many.error.at_receivers.rms_relative, 0.3) << "suns between views";

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <random>
 
 #include "bake/volumes/bake_volumes.h"
@@ -9,6 +11,7 @@
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/volume_march.h"
 #include "tests/bake/volumes/volume_support.h"
+#include "tests/support/cut_phase.h"
 #include "tests/support/volume_table.h"
 
 namespace opaline::bake {
@@ -131,6 +134,40 @@ TEST(VolumeRadiance, ABlobThatAbsorbsNothingIsNotSeenUnderEvenLightFromAnySide) 
             mean += static_cast<double>(seen.radiance.g + seen.transmittance.g) / kRays;
         }
         EXPECT_NEAR(mean, 1, 0.02) << g;
+    }
+}
+
+// Light that is scattered once on the way through the middle of a thin Gaussian ball of deviation
+// s: L = sigma_s p(cosine) sqrt(2 pi) s for unit irradiance, dimmed by at most 2 %. Within the cut
+// of the phase function p is that at its edge.
+TEST(VolumeRadiance, AThinBlobUnderABeamShowsThePhaseFunctionAtAllAngles) {
+    constexpr double kDeviation = 0.5, kSigmaS = 0.01;
+    for (const double g : {0.5, 0.85}) {
+        const formats::Scene scene = tests::scene_of(
+            tests::make_volume(tests::make_blob(kDeviation, kDeviation / 8),
+                               static_cast<float>(kSigmaS), 1, static_cast<float>(g)));
+        const Knobs knobs = fine_knobs();
+        const VolumePlan plan = plan_volumes(scene, knobs);
+        const RayScene sky = tests::empty_space();
+        StageLog log;
+        const auto baked = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
+        ASSERT_TRUE(baked.has_value());
+        const Vec3 toward = formats::texel_direction(8, 2, 3, 1);
+        const runtime::VolumeLight lit = runtime::relight_volumes(baked->view(), beam(toward, 8));
+        const runtime::LitVolumes volumes = runtime::light_volumes(baked->view(), lit);
+        const tests::CutPhase phase = tests::make_cut_phase(g);
+        const Vec3 side = normalize(cross(toward, Vec3{1, 0.2f, 0.3f}));
+        for (double angle = 0.02; angle < 3.14; angle += 0.02) {
+            if (std::abs(angle - std::acos(phase.edge)) < 0.02) continue;
+            const Vec3 along = static_cast<float>(std::cos(angle)) * toward +
+                               static_cast<float>(std::sin(angle)) * side;
+            const runtime::MarchResult seen =
+                runtime::march_volumes(volumes, {-6.0f * along, along});
+            const double expected = kSigmaS * phase.whole(std::min(std::cos(angle), phase.edge)) *
+                                    std::sqrt(2 * std::numbers::pi) * kDeviation;
+            EXPECT_NEAR(static_cast<double>(seen.radiance.g) / expected, 0.99, 0.015)
+                << "g " << g << ", angle " << angle;
+        }
     }
 }
 

@@ -47,7 +47,7 @@ test::TestVolume smoke(float x) {
 }
 
 // Volumes and no receivers.
-formats::Asset make_asset(std::uint32_t n) {
+formats::Asset make_smoky_asset(std::uint32_t n) {
     formats::Asset asset;
     asset.provenance = "{}";
     asset.transport = formats::make_sparse_rows(n, 8);
@@ -106,7 +106,7 @@ class ApiVolumes : public testing::Test {
         return results;
     }
     formats::Environment sky = tests::lat_long_map(64, 32, tests::smooth_sky);
-    formats::Asset source = make_asset(kSize);
+    formats::Asset source = make_smoky_asset(kSize);
     formats::VolumesView volumes = source.volumes.view();
     Handles handles{source};
     opaline_asset* asset = handles.asset.get();
@@ -326,7 +326,7 @@ TEST_F(ApiVolumes, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
 }
 
 TEST_F(ApiVolumes, OtherAssetsAndLightsOfAnotherBasisAreRefused) {
-    const Handles again(source), other(make_asset(16));
+    const Handles again(source), other(make_smoky_asset(16));
     opaline_march_result result{};
     opaline_sample_result sample{};
     const opaline_sample_point at{{0, 0, 0}, {0, 0, 1}};
@@ -360,7 +360,7 @@ TEST_F(ApiVolumes, AnAssetReleasedAndLoadedAgainIsAnother) {
 }
 
 TEST(ApiWithoutVolumes, NothingIsMet) {
-    const Handles handles(make_asset(16));
+    const Handles handles(make_smoky_asset(16));
     EXPECT_EQ(opaline_asset_volume_count(handles.asset.get()), 0u);
     EXPECT_EQ(opaline_volume_light_update(handles.volume_light.get(), handles.asset.get(),
                                           handles.light.get(), 0, 0),

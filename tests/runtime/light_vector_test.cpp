@@ -192,19 +192,19 @@ TEST(LightVector, DiscsOfAnySizeHaveTheirFluxInTheRightPlace) {
 
 // What a cosine sees of it: half a texel, .06 rad, is what the nearest texel alone would miss.
 TEST(LightVector, SmallSunsShineFromWhereTheyAreToSecondOrder) {
-    constexpr std::uint32_t kSize = 16;
+    constexpr std::uint32_t kFaceSize = 16;
     for (int i = 0; i < 50; ++i) {
         const float z = 1 - (static_cast<float>(i) + 0.5f) / 25, phi = 2.4f * static_cast<float>(i);
         const float r = std::sqrt(1 - z * z);
         const Vec3 toward{r * std::cos(phi), r * std::sin(phi), z};
         Environment sky;
         sky.discs.push_back({toward, 0.0046f, {1, 1, 1}});
-        const std::vector<double> texel = texels_of(project_environment(sky, kSize), 0);
+        const std::vector<double> texel = texels_of(project_environment(sky, kFaceSize), 0);
         Vec3 mean{0, 0, 0};
         for (std::uint32_t j = 0; j < texel.size(); ++j) {
             mean = mean + static_cast<float>(texel[j]) *
-                              formats::texel_direction(kSize, j / (kSize * kSize),
-                                                       j / kSize % kSize, j % kSize);
+                              formats::texel_direction(kFaceSize, j / (kFaceSize * kFaceSize),
+                                                       j / kFaceSize % kFaceSize, j % kFaceSize);
         }
         EXPECT_LT(length(cross(formats::normalize(mean), toward)), 0.012f) << i;
     }

@@ -18,7 +18,7 @@ using formats::PrimitiveRecord;
 using formats::Rgb;
 
 /// A grey primitive and a textured RGB one of random rows, and one vertex of neither.
-Asset make_asset(std::uint32_t n) {
+Asset make_flat_asset(std::uint32_t n) {
     Asset asset;
     asset.transport = tests::random_rows(n, 8, 1, 11);
     PrimitiveRecord grey;
@@ -44,7 +44,7 @@ Asset make_asset(std::uint32_t n) {
 }
 
 TEST(Shade, RadianceIsBaseColourTimesTheDotProductAndNotBelowZero) {
-    const Asset asset = make_asset(8);
+    const Asset asset = make_flat_asset(8);
     const formats::AssetView view = asset.view();
     const LightVector light = tests::random_light(8, 13);
     std::vector<Rgb> out(view.receivers()), white(view.receivers());
@@ -67,7 +67,7 @@ TEST(Shade, RadianceIsBaseColourTimesTheDotProductAndNotBelowZero) {
 }
 
 TEST(Shade, ThreadsAndRangesDoNotChangeABit) {
-    const Asset asset = make_asset(8);
+    const Asset asset = make_flat_asset(8);
     const formats::AssetView view = asset.view();
     const LightVector light = tests::random_light(8, 14);
     std::vector<Rgb> one(view.receivers());
@@ -128,7 +128,7 @@ TEST(Shade, WhiteFurnaceGivesTheAlbedo) {
 }
 
 TEST(Shade, OverflowingSumsAreShownAsFiniteNumbers) {
-    Asset asset = make_asset(8);
+    Asset asset = make_flat_asset(8);
     for (float& scale : asset.transport.detail_scale) {
         scale = std::numeric_limits<float>::max();
     }

@@ -22,11 +22,11 @@ using formats::Vec3;
 
 constexpr std::uint32_t kAllLevels[] = {0, 8, 20, 40};
 
-Environment constant(Rgb radiance) {
+Environment even_sky(Rgb radiance) {
     return tests::lat_long_map(64, 32, [radiance](Vec3) { return radiance; });
 }
 
-ViewOfReceiver seen_at(float cosine) {
+ViewOfReceiver mirrored_at(float cosine) {
     return {{0, 1, 0}, {std::sqrt(1 - cosine * cosine), cosine, 0}, cosine, false};
 }
 
@@ -49,7 +49,7 @@ double convolve(const Environment& map, Vec3 r, double alpha, std::uint32_t n) {
 }
 
 TEST(SpecularLight, UniformLightStaysUniformAtEveryRoughness) {
-    const SpecularLight light = prefilter_specular(constant({1, 2, 0.5f}), kAllLevels, {}, 0);
+    const SpecularLight light = prefilter_specular(even_sky({1, 2, 0.5f}), kAllLevels, {}, 0);
     ASSERT_EQ(light.maps.size(), std::size(kAllLevels));
     for (const SpecularLight::Map& map : light.maps) {
         for (const Rgb c : map.radiance.pixel) {
@@ -111,7 +111,7 @@ TEST(SpecularLight, ASunKeepsItsFluxAndItsPlace) {
 
 TEST(SpecularLight, StaysFiniteUnderAbsurdLight) {
     const float largest = std::numeric_limits<float>::max();
-    Environment environment = constant({largest, 0, 1e-38f});
+    Environment environment = even_sky({largest, 0, 1e-38f});
     environment.discs = {{{0, 1, 0}, 0.1f, {largest, largest, 0}}};
     const SpecularLight light = prefilter_specular(environment, kAllLevels, {}, 0);
     for (const SpecularLight::Map& map : light.maps) {
@@ -160,7 +160,7 @@ TEST(SpecularVisibility, OpenIsOneAndClosedIsNothingWhateverTheDirections) {
     EXPECT_LT(specular_visibility({0, 0, 1}, 0.25f, normalize(Vec3{1, 0, 1}), sharp), 0.01f);
 }
 
-Asset make_glossy_asset(float roughness, std::uint32_t flags = 0) {
+Asset make_mirror_asset(float roughness, std::uint32_t flags = 0) {
     Asset asset;
     asset.transport = tests::random_rows(8, 8, 3, 31);
     formats::PrimitiveRecord record;
@@ -184,20 +184,20 @@ Asset make_glossy_asset(float roughness, std::uint32_t flags = 0) {
 
 TEST(Specular, OpenReceiverUnderWhiteMirrorsWhatItDoesNotLetThrough) {
     for (const float roughness : {0.2f, 0.5f, 1.0f}) {
-        const Asset asset = make_glossy_asset(roughness);
+        const Asset asset = make_mirror_asset(roughness);
         const SpecularLight light =
-            prefilter_specular(constant({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
+            prefilter_specular(even_sky({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
         const SpecularLobe lobe = specular_lobe(light, asset.view(), 0);
         ASSERT_NE(lobe.radiance, nullptr);
         for (float c = 0.01f; c <= 1; c += 0.03f) {
-            const Rgb mirrored = eval_specular(light, lobe, seen_at(c), 1.5f, {0, 1, 0}, 1);
+            const Rgb mirrored = eval_specular(light, lobe, mirrored_at(c), 1.5f, {0, 1, 0}, 1);
             EXPECT_NEAR(mirrored.g + fresnel_transmittance(c, 1.5f), 1, 3e-6f) << c;
         }
     }
 }
 
 TEST(Specular, MirrorsTheLightWhereTheLawOfReflectionSaysAndTurnsWithIt) {
-    const Asset asset = make_glossy_asset(0.2f);
+    const Asset asset = make_mirror_asset(0.2f);
     const Vec3 toward = normalize(Vec3{-0.6f, 0.8f, 0});
     const Environment spot = tests::lat_long_map(256, 128, [&](Vec3 d) {
         const float on = dot(d, toward) > 0.99f ? 1.0f : 0.0f;
@@ -222,12 +222,12 @@ TEST(Specular, MirrorsTheLightWhereTheLawOfReflectionSaysAndTurnsWithIt) {
 }
 
 TEST(Specular, FadesBehindTheSilhouetteAndIsBlackWithoutANormal) {
-    const Asset asset = make_glossy_asset(0.2f);
+    const Asset asset = make_mirror_asset(0.2f);
     const SpecularLight light =
-        prefilter_specular(constant({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
+        prefilter_specular(even_sky({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
     const SpecularLobe lobe = specular_lobe(light, asset.view(), 0);
     const auto at = [&](float cosine) {
-        return eval_specular(light, lobe, seen_at(cosine), 1.5f, {0, 1, 0}, 1).r;
+        return eval_specular(light, lobe, mirrored_at(cosine), 1.5f, {0, 1, 0}, 1).r;
     };
     EXPECT_NEAR(at(0.0f), 1, 1e-5f);
     EXPECT_NEAR(at(-0.1f), 0.5f, 1e-4f);
@@ -239,7 +239,7 @@ TEST(Specular, FadesBehindTheSilhouetteAndIsBlackWithoutANormal) {
 
 TEST(Specular, ShadingAddsItToGlossyPrimitivesAloneAndOnlyWithItsLight) {
     const Environment sky = tests::lat_long_map(64, 32, tests::smooth_sky);
-    const Asset glossy = make_glossy_asset(0.3f);
+    const Asset glossy = make_mirror_asset(0.3f);
     Asset matt = glossy;
     matt.roughness = {formats::kNotGlossy};
     EXPECT_TRUE(roughness_levels(matt.view()).empty());

@@ -17,7 +17,7 @@ using formats::TermSet;
 using formats::Vec3;
 
 /// A grey diffuse and a glossy translucent primitive with `terms` rows a vertex, radiance above 0.
-Asset make_asset(std::uint32_t terms, bool is_separate) {
+Asset make_layered_asset(std::uint32_t terms, bool is_separate) {
     Asset asset;
     asset.transport = tests::random_rows(8, 8, 1, 31);
     PrimitiveRecord grey;
@@ -64,7 +64,7 @@ class Terms : public testing::Test {
 // Before the last factor, where negative sums of random rows are not yet clamped.
 TEST_F(Terms, MultipleAndSingleAddUpToBoth) {
     for (const std::uint32_t terms : {1u, 2u, 5u, 10u, 17u, 26u}) {
-        const Asset asset = make_asset(terms, true);
+        const Asset asset = make_layered_asset(terms, true);
         const auto both = shaded(asset, TermSet::multiple | TermSet::single, false);
         const auto multiple = shaded(asset, TermSet::multiple, false);
         const auto single = shaded(asset, TermSet::single, false);
@@ -79,7 +79,7 @@ TEST_F(Terms, MultipleAndSingleAddUpToBoth) {
 }
 
 TEST_F(Terms, ComponentsAddUpToTheWholeWhereNoneIsClamped) {
-    const Asset asset = make_asset(5, true);
+    const Asset asset = make_layered_asset(5, true);
     const auto whole = shaded(asset, TermSet::all);
     std::vector<std::vector<Rgb>> parts;
     for (const TermSet term :
@@ -102,7 +102,7 @@ TEST_F(Terms, ComponentsAddUpToTheWholeWhereNoneIsClamped) {
 
 // The second row of a separate asset is what a merged one has; its harmonics begin anew.
 TEST_F(Terms, SingleScatteringHasTheViewTermsOfItsOwnNumberOfRows) {
-    const Asset asset = make_asset(5, true);
+    const Asset asset = make_layered_asset(5, true);
     const auto single = shaded(asset, TermSet::single, false);
     const PrimitiveRecord& p = asset.primitives[1];
     for (std::uint32_t v = p.first_vertex; v < single.size(); ++v) {
@@ -124,7 +124,7 @@ TEST_F(Terms, SingleScatteringHasTheViewTermsOfItsOwnNumberOfRows) {
 // Review 1, fault 12: after a bake of single scattering alone it could not be shown by itself.
 TEST_F(Terms, RowsOfSingleScatteringAloneShowIt) {
     for (const std::uint32_t terms : {1u, 4u}) {
-        Asset asset = make_asset(terms, false);
+        Asset asset = make_layered_asset(terms, false);
         const auto whole = shaded(asset, TermSet::all, false);
         asset.primitives[1].flags |= PrimitiveRecord::kSingleOnly;
         EXPECT_TRUE(check_terms(asset.view(), TermSet::single));
@@ -140,7 +140,7 @@ TEST_F(Terms, RowsOfSingleScatteringAloneShowIt) {
 }
 
 TEST_F(Terms, MergedRowsAreShownWholeOrNotAtAll) {
-    const Asset merged = make_asset(4, false), apart = make_asset(5, true);
+    const Asset merged = make_layered_asset(4, false), apart = make_layered_asset(5, true);
     for (std::uint32_t bits = 0; bits <= static_cast<std::uint32_t>(TermSet::baked); ++bits) {
         const auto terms = static_cast<TermSet>(bits);
         const bool needs_both =

@@ -52,9 +52,9 @@ TEST(Texture, WrapModesFollowTheirDefinition) {
 }
 
 TEST(Texture, AbsurdCoordinatesGiveAColourOfTheImage) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    constexpr float kInfinite = std::numeric_limits<float>::infinity();
     for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
-        for (const float u : {1e30f, -1e30f, 3.4e38f, kInfinity, -kInfinity, NAN, -1e-40f}) {
+        for (const float u : {1e30f, -1e30f, 3.4e38f, kInfinite, -kInfinite, NAN, -1e-40f}) {
             const Rgb c = sample_image_linear(kImage, {u, u}, wrap, wrap);
             EXPECT_TRUE(c.r >= 0 && c.r <= 1 && c.g >= 0 && c.g <= 1 && c.b >= 0 && c.b <= 1) << u;
         }

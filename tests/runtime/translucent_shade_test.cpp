@@ -17,7 +17,7 @@ using formats::Vec3;
 
 /// A grey diffuse primitive, then a translucent one of random rows with `terms` rows a vertex and
 /// normals in all directions.
-Asset make_asset(std::uint32_t terms, float eta = 1.3f, std::uint32_t flags = 0) {
+Asset make_translucent_asset(std::uint32_t terms, float eta = 1.3f, std::uint32_t flags = 0) {
     Asset asset;
     asset.transport = tests::random_rows(8, 8, 1, 31);
     PrimitiveRecord grey;
@@ -60,7 +60,7 @@ Rgb product(const Asset& asset, const LightVector& light, std::uint32_t vertex,
 TEST(TranslucentShade, AddsAllTermsAtTheRefractedDirectionToTheEye) {
     const Vec3 eye{3, 2, -4};
     for (const std::uint32_t terms : {1u, 4u, 9u, 16u, 25u}) {
-        const Asset asset = make_asset(terms);
+        const Asset asset = make_translucent_asset(terms);
         const LightVector light = tests::random_light(8, 5);
         std::vector<Rgb> out(asset.position.size());
         shade(asset.view(), light, out, {.eye = eye});
@@ -93,7 +93,7 @@ TEST(TranslucentShade, AddsAllTermsAtTheRefractedDirectionToTheEye) {
 }
 
 TEST(TranslucentShade, WithoutAnEyeEachReceiverIsSeenAlongItsNormal) {
-    const Asset asset = make_asset(4);
+    const Asset asset = make_translucent_asset(4);
     const LightVector light = tests::random_light(8, 6);
     std::vector<Rgb> out(asset.position.size()), near(out.size());
     shade(asset.view(), light, out);
@@ -106,7 +106,7 @@ TEST(TranslucentShade, WithoutAnEyeEachReceiverIsSeenAlongItsNormal) {
 }
 
 TEST(TranslucentShade, DiffuseReceiversDoNotDependOnTheEyeByABit) {
-    const Asset asset = make_asset(4);
+    const Asset asset = make_translucent_asset(4);
     const LightVector light = tests::random_light(8, 7);
     std::vector<Rgb> here(asset.position.size()), there(here.size());
     shade(asset.view(), light, here);
@@ -118,7 +118,8 @@ TEST(TranslucentShade, DiffuseReceiversDoNotDependOnTheEyeByABit) {
 
 TEST(TranslucentShade, BackFacesAreBlackUnlessDoubleSided) {
     const Vec3 eye{0, 20, 0};
-    const Asset single = make_asset(4), both = make_asset(4, 1.3f, PrimitiveRecord::kDoubleSided);
+    const Asset single = make_translucent_asset(4),
+                both = make_translucent_asset(4, 1.3f, PrimitiveRecord::kDoubleSided);
     const LightVector light = tests::random_light(8, 8);
     std::vector<Rgb> a(single.position.size()), b(a.size());
     shade(single.view(), light, a, {.eye = eye});
@@ -138,7 +139,7 @@ TEST(TranslucentShade, BackFacesAreBlackUnlessDoubleSided) {
 }
 
 TEST(TranslucentShade, ThreadsRangesAndPathsAgree) {
-    const Asset asset = make_asset(25);
+    const Asset asset = make_translucent_asset(25);
     const formats::AssetView view = asset.view();
     const LightVector light = tests::random_light(8, 9);
     const ShadeOptions options{.threads = 1, .eye = Vec3{0, 3, 3}};
@@ -162,7 +163,7 @@ TEST(TranslucentShade, ThreadsRangesAndPathsAgree) {
 }
 
 TEST(TranslucentShade, WithoutFresnelKeepsTheSignThatAPixelClampsLater) {
-    const Asset asset = make_asset(1);
+    const Asset asset = make_translucent_asset(1);
     const LightVector light = tests::random_light(8, 10);
     std::vector<Rgb> out(asset.position.size());
     shade(asset.view(), light, out, {.base_color = false, .eye = Vec3{0, 3, 3}, .fresnel = false});
@@ -175,7 +176,7 @@ TEST(TranslucentShade, WithoutFresnelKeepsTheSignThatAPixelClampsLater) {
 }
 
 TEST(TranslucentShade, NothingButFiniteNumbersComesOut) {
-    Asset asset = make_asset(9);
+    Asset asset = make_translucent_asset(9);
     const float largest = std::numeric_limits<float>::max();
     for (std::size_t i = 0; i < asset.transport.detail_scale.size(); i += 2) {
         asset.transport.detail_scale[i] = largest;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "bake/base/stage_log.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -31,7 +33,6 @@ formats::Result<SweepVolumes> make_sweep_volumes(const formats::Scene& scene, do
     // A little first, which says how much the time allows.
     constexpr std::uint64_t kFewEvents = 300000;
     constexpr double kMostTimes = 1000;
-    using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     const auto elapsed = [&] {
         return std::chrono::duration<double>(Clock::now() - start).count();

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <chrono>
 
+#include "bake/base/stage_log.h"
+
 namespace opaline::bake {
 
 formats::Result<std::vector<LightCheck>> trace_for(const formats::Scene& scene,
                                                    const ModelProbes& probes,
                                                    const TraceForOptions& options,
                                                    const Context& context) {
-    using Clock = std::chrono::steady_clock;
     constexpr std::uint64_t kFewEvents = 300000;  // for each light
     constexpr double kMostTimes = 1000;
     ModelCheckOptions wanted;

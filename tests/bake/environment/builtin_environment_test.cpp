@@ -15,7 +15,7 @@ using formats::Environment;
 using formats::Rgb;
 using formats::Vec3;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double luminance_of(const Rgb& c) {
     return 0.2126 * double{c.r} + 0.7152 * double{c.g} + 0.0722 * double{c.b};
@@ -34,9 +34,9 @@ double irradiance(const Environment& environment, Vec3 normal) {
     double sum = 0;
     for (std::uint32_t row = 0; row < kHeight; ++row) {
         const double solid_angle = lat_long_pixel_solid_angle(kWidth, kHeight, row);
-        const double theta = kPi * (row + 0.5) / kHeight;
+        const double theta = pi * (row + 0.5) / kHeight;
         for (std::uint32_t column = 0; column < kWidth; ++column) {
-            const double phi = kPi * (2 * (column + 0.5) / kWidth - 1);
+            const double phi = pi * (2 * (column + 0.5) / kWidth - 1);
             const double cosine = std::sin(theta) * std::cos(phi) * double{normal.x} +
                                   std::cos(theta) * double{normal.y} +
                                   std::sin(theta) * std::sin(phi) * double{normal.z};
@@ -50,7 +50,7 @@ double irradiance(const Environment& environment, Vec3 normal) {
 TEST(BuiltinEnvironment, WhiteLightsEveryPlaneWithPi) {
     const Environment white = make("white");
     for (const Vec3 normal : {Vec3{0, 1, 0}, Vec3{1, 0, 0}, Vec3{0.6f, 0, -0.8f}}) {
-        EXPECT_NEAR(irradiance(white, normal), kPi, 1e-5);
+        EXPECT_NEAR(irradiance(white, normal), pi, 1e-5);
     }
 }
 
@@ -60,10 +60,10 @@ TEST(BuiltinEnvironment, SunHasIrradiancePiAndHalfADegree) {
         EXPECT_TRUE(sun.pixel.empty());
         ASSERT_EQ(sun.discs.size(), 1u);
         const auto& disc = sun.discs[0];
-        EXPECT_NEAR(2 * double{disc.angular_radius} * 180 / kPi, 0.53, 1e-6);
-        EXPECT_NEAR(double{disc.radiance.g} * formats::disc_solid_angle(disc.angular_radius), kPi,
+        EXPECT_NEAR(2 * double{disc.angular_radius} * 180 / pi, 0.53, 1e-6);
+        EXPECT_NEAR(double{disc.radiance.g} * formats::disc_solid_angle(disc.angular_radius), pi,
                     1e-5);
-        EXPECT_NEAR(irradiance(sun, disc.direction), kPi, 2e-5 * kPi);
+        EXPECT_NEAR(irradiance(sun, disc.direction), pi, 2e-5 * pi);
     }
 }
 
@@ -83,7 +83,7 @@ TEST(BuiltinEnvironment, AzimuthTurnsFromPlusZToPlusX) {
 
 TEST(BuiltinEnvironment, SkyGivesAHorizontalWhiteSurfaceLuminanceOne) {
     for (const char* name : {"sky:1.7,90", "sky:3,35", "sky:6,20", "sky:10,3"}) {
-        EXPECT_NEAR(irradiance(make(name), {0, 1, 0}) / kPi, 1, 2e-3) << name;
+        EXPECT_NEAR(irradiance(make(name), {0, 1, 0}) / pi, 1, 2e-3) << name;
     }
 }
 

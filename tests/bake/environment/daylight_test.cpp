@@ -8,11 +8,11 @@
 namespace opaline::bake {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // [Preetham1999] A.2: absolute luminance of the zenith [kcd/m^2].
 double published_zenith_luminance(double turbidity, double sun_zenith) {
-    const double chi = (4.0 / 9.0 - turbidity / 120.0) * (kPi - 2.0 * sun_zenith);
+    const double chi = (4.0 / 9.0 - turbidity / 120.0) * (pi - 2.0 * sun_zenith);
     return (4.0453 * turbidity - 4.9710) * std::tan(chi) - 0.2155 * turbidity + 2.4192;
 }
 

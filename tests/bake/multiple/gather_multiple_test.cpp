@@ -14,7 +14,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // Samples with one number each as "transport", in the first of six entries: tree and gather do not
 // interpret the entries.
@@ -53,10 +53,10 @@ Samples make_sphere(double radius, int count, Irradiance&& irradiance) {
     Samples set;
     for (int i = 0; i < count; ++i) {
         const double z = 1 - (2 * i + 1.0) / count;
-        const double phi = i * kPi * (3 - std::sqrt(5.0));
+        const double phi = i * pi * (3 - std::sqrt(5.0));
         const double s = std::sqrt(1 - z * z);
         const glm::dvec3 n(s * std::cos(phi), s * std::sin(phi), z);
-        set.add(radius * n, n, 4 * kPi * radius * radius / count, irradiance(n));
+        set.add(radius * n, n, 4 * pi * radius * radius / count, irradiance(n));
     }
     return set;
 }
@@ -145,7 +145,7 @@ TEST(GatherMultiple, SphereUnderUniformLightIsThatOfTheTable) {
         const auto profile =
             classic_profile(row.number("sigma_s_prime"), row.number("sigma_a"), eta);
         // <E, 1> over the hemisphere: all entering white light.
-        const double entering = kPi * (1 - fresnel_moments(eta).external);
+        const double entering = pi * (1 - fresnel_moments(eta).external);
         const Samples set = make_sphere(radius, 40000, [&](glm::dvec3) { return entering; });
         const double found =
             gather(set.tree(), profile, {0, static_cast<float>(radius), 0}, {0, 1, 0}, 1e-4);
@@ -252,7 +252,7 @@ TEST(GatherMultiple, PlaneSampledFinelyReturnsTheTotal) {
     const Samples set = make_plane(60, 120, [](double, double) { return 1.0; });
     // Beyond the plane's rim lies the tail of a disc of about the same size.
     const double found = gather(set.tree(), profile, {0, 0, 0}, {0, 1, 0}, 1e-5);
-    EXPECT_NEAR(found, profile.total(0) - profile.tail(0, 60 / std::sqrt(kPi)), 2e-3);
+    EXPECT_NEAR(found, profile.total(0) - profile.tail(0, 60 / std::sqrt(pi)), 2e-3);
 }
 
 TEST(GatherMultiple, SamplesFartherApartThanTheSourceIsDeepStillConserveEnergy) {

@@ -14,7 +14,7 @@ namespace {
 
 using formats::Medium;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Medium make_medium(formats::Rgb sigma_s, formats::Rgb sigma_a, float eta) {
     Medium medium;
@@ -55,7 +55,7 @@ TEST(GatherProfile, FarAndNearPartTogetherAreTheTotal) {
                 const double r = 0.5 * (low + high);
                 const auto value = eval_far(split, static_cast<float>(r * r));
                 for (std::size_t b = 0; b < 3; ++b) {
-                    sum[b] += static_cast<double>(value[b]) * kPi * (high * high - low * low);
+                    sum[b] += static_cast<double>(value[b]) * pi * (high * high - low * low);
                 }
             }
             for (std::size_t b = 0; b < 3; ++b) {

@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-Scene wax(std::vector<Primitive> primitives) {
+Scene wax_scene(std::vector<Primitive> primitives) {
     return tests::make_translucent_scene(std::move(primitives), tests::make_grey_medium(1, 0.1f));
 }
 
@@ -44,7 +44,7 @@ TEST(CancelFlaps, PairsThatFaceOppositeWaysAreRemovedWhereverTheyStand) {
         both.index.insert(both.index.begin() + 30 + static_cast<std::ptrdiff_t>(i),
                           first + flap.index[i]);
     }
-    const Scene scene = wax({both, make_flap(3)});
+    const Scene scene = wax_scene({both, make_flap(3)});
     const Flaps flaps = find_flaps(scene, 0);
     EXPECT_EQ(flaps.pairs, 2u);
     EXPECT_THAT(flaps.first_index, ElementsAre(ElementsAre(30, 33), ElementsAre(0, 3)));
@@ -66,7 +66,7 @@ TEST(CancelFlaps, OfThreeOnOneAnotherOneIsLeftToFaceTheWayOfTheMost) {
     for (const std::size_t k : {0u, 2u, 1u, 1u, 2u, 0u}) {
         ball.index.push_back(closed[k]);  // the first one again, once each way
     }
-    const OrientedBodies bodies = orient_bodies(wax({ball}));
+    const OrientedBodies bodies = orient_bodies(wax_scene({ball}));
     ASSERT_TRUE(bodies.scene);
     EXPECT_EQ(bodies.scene->primitives[0].index.size(), closed.size());
     EXPECT_EQ(bodies.surfaces[0].open_edges, 0u);
@@ -75,9 +75,9 @@ TEST(CancelFlaps, OfThreeOnOneAnotherOneIsLeftToFaceTheWayOfTheMost) {
 TEST(CancelFlaps, TrianglesThatFaceOneWayOrOnlyShareAnEdgeStay) {
     Primitive twice = tests::make_sphere(1);
     twice.index.insert(twice.index.end(), twice.index.begin(), twice.index.begin() + 3);
-    EXPECT_EQ(find_flaps(wax({twice}), 0).pairs, 0u);
-    EXPECT_EQ(find_flaps(wax({tests::make_cube(3, false)}), 0).pairs, 0u);
-    Scene others = wax({tests::make_sphere(1), make_flap(3)});
+    EXPECT_EQ(find_flaps(wax_scene({twice}), 0).pairs, 0u);
+    EXPECT_EQ(find_flaps(wax_scene({tests::make_cube(3, false)}), 0).pairs, 0u);
+    Scene others = wax_scene({tests::make_sphere(1), make_flap(3)});
     others.materials.push_back({.name = "Opaque"});
     others.primitives[1].material = 1;
     EXPECT_EQ(find_flaps(others, 0).pairs, 0u) << "opaque leaves may have two sides";
@@ -93,7 +93,7 @@ TEST(CancelFlaps, BodiesOfOneMediumThatTouchBecomeOne) {
     for (std::size_t i = 0; i < other.index.size(); i += 3) {
         std::swap(other.index[i + 1], other.index[i + 2]);
     }
-    const OrientedBodies bodies = orient_bodies(wax({cube, other}));
+    const OrientedBodies bodies = orient_bodies(wax_scene({cube, other}));
     ASSERT_TRUE(bodies.scene);
     EXPECT_EQ(bodies.surfaces[0].flaps, 2u);
     EXPECT_EQ(bodies.surfaces[0].open_edges, 0u);
@@ -106,24 +106,24 @@ TEST(CancelFlaps, BodiesOfOneMediumThatTouchBecomeOne) {
 
 // What consists of such pairs is meant.
 TEST(CancelFlaps, ABodyOfNothingElseStays) {
-    EXPECT_EQ(find_flaps(wax({make_flap(0)}), 0).pairs, 0u);
-    EXPECT_FALSE(orient_bodies(wax({make_flap(0)})).scene);
+    EXPECT_EQ(find_flaps(wax_scene({make_flap(0)}), 0).pairs, 0u);
+    EXPECT_FALSE(orient_bodies(wax_scene({make_flap(0)})).scene);
 }
 
 TEST(CancelFlaps, TrianglesWithoutAreaAndEmptyScenesAreHarmless) {
     Primitive point = make_flap(0);
     point.position.assign(6, glm::vec3(1));
-    EXPECT_EQ(find_flaps(wax({point}), 0).pairs, 0u);
-    EXPECT_EQ(find_flaps(wax({}), 0).pairs, 0u);
+    EXPECT_EQ(find_flaps(wax_scene({point}), 0).pairs, 0u);
+    EXPECT_EQ(find_flaps(wax_scene({}), 0).pairs, 0u);
 }
 
 TEST(UsedVertices, AreThoseOfTrianglesAndAllWhereThereIsNone) {
     Primitive corner = make_flap(0);
     corner.index = {5, 3, 0};
-    EXPECT_THAT(find_used_vertices(wax({corner, make_flap(1), corner})),
+    EXPECT_THAT(find_used_vertices(wax_scene({corner, make_flap(1), corner})),
                 ElementsAre(0, 3, 5, 6, 7, 8, 9, 10, 11, 12, 15, 17));
     corner.index.clear();
-    EXPECT_THAT(find_used_vertices(wax({corner})), ElementsAre(0, 1, 2, 3, 4, 5));
+    EXPECT_THAT(find_used_vertices(wax_scene({corner})), ElementsAre(0, 1, 2, 3, 4, 5));
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ GlossyBrdf seen(const OpaqueSurface& surface, float cosine) {
     return bake::make_glossy_brdf(surface, kNormal, direction(cosine, 0.6f));
 }
 
-std::string describe(float roughness, float cosine) {
+std::string describe_lobe(float roughness, float cosine) {
     return "roughness " + std::to_string(roughness) + " cosine " + std::to_string(cosine);
 }
 
@@ -122,9 +122,9 @@ TEST(ReferenceGloss, WhiteFurnaceReturnsAllLight) {
                 }
                 const glm::dvec3 specular = sum / double{kSamples};
                 EXPECT_NEAR(specular.y, brdf.mirrored_albedo.y, 0.004)
-                    << describe(roughness, cosine);
+                    << describe_lobe(roughness, cosine);
                 EXPECT_NEAR(specular.y + brdf.diffuse_albedo.y, 1, 0.005)
-                    << describe(roughness, cosine) << " metallic " << surface.metallic;
+                    << describe_lobe(roughness, cosine) << " metallic " << surface.metallic;
             }
         }
     }
@@ -137,8 +137,8 @@ TEST(ReferenceGloss, NeverReflectsMoreThanArrives) {
                 const GlossyBrdf brdf = seen(coloured(metallic, roughness), cosine);
                 const glm::vec3 all = brdf.mirrored_albedo + brdf.diffuse_albedo;
                 EXPECT_LE(std::max({all.x, all.y, all.z}), 1 + 1e-6f)
-                    << describe(roughness, cosine);
-                EXPECT_GE(std::min({all.x, all.y, all.z}), 0) << describe(roughness, cosine);
+                    << describe_lobe(roughness, cosine);
+                EXPECT_GE(std::min({all.x, all.y, all.z}), 0) << describe_lobe(roughness, cosine);
             }
         }
     }
@@ -157,7 +157,7 @@ TEST(ReferenceGloss, WithoutCompensationTheLobeIsReciprocal) {
                 const glm::dvec3 g = glm::dvec3(bake::eval_mirrored(from_other, one).response) /
                                      (from_other.compensation * static_cast<double>(a));
                 for (const int c : {0, 1, 2}) {
-                    EXPECT_NEAR(f[c], g[c], 1e-4 * f[c]) << describe(roughness, a);
+                    EXPECT_NEAR(f[c], g[c], 1e-4 * f[c]) << describe_lobe(roughness, a);
                 }
             }
         }
@@ -249,7 +249,8 @@ TEST(ReferenceGloss, DirectionsAreDistributedAsTheirDensitySays) {
             const double k = cells - 1, w = 2 / (9 * k);
             ASSERT_GT(cells, 3);
             EXPECT_LT((std::cbrt(chi2 / k) - (1 - w)) / std::sqrt(w), 4)
-                << describe(roughness, cosine) << ", chi2 " << chi2 << " in " << cells << " cells";
+                << describe_lobe(roughness, cosine) << ", chi2 " << chi2 << " in " << cells
+                << " cells";
         }
     }
 }

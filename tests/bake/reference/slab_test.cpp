@@ -25,8 +25,8 @@ std::vector<bake::Moments> measure_total(const TransportRow& row, std::uint32_t 
 }
 
 // Radiance along a ray from where the table says, in 16 independent parts.
-bake::Moments march(const ReferenceFixture& slab, const TransportRow& row,
-                    bake::PathOptions options, std::uint32_t samples) {
+bake::Moments march_slab(const ReferenceFixture& slab, const TransportRow& row,
+                         bake::PathOptions options, std::uint32_t samples) {
     const bake::PathSpace space = slab.space(options);
     bake::EstimateOptions wanted;
     wanted.samples = samples / 16;
@@ -94,7 +94,7 @@ TEST(ReferenceSlab, ScattersADistantLightOnceTwiceAndOften) {
         options.terms =
             row.quantity == "order1" ? formats::TermSet::single : formats::TermSet::multiple;
         options.max_depth = row.quantity == "order2" ? 2 : options.max_depth;
-        expect_within(row, march(*slab, row, options, 64000), limit_for(rows.size()));
+        expect_within(row, march_slab(*slab, row, options, 64000), limit_for(rows.size()));
     }
 }
 
@@ -107,8 +107,8 @@ TEST(ReferenceSlab, LetsABeamOutWhereItIsKnownTo) {
         if (row.quantity == "exit_mean_cos") {
             const auto ahead = make_slab_fixture(row, make_cosine_sky(row.march));
             const auto behind = make_slab_fixture(row, make_cosine_sky(-row.march));
-            bake::Moments m = march(*ahead, row, options, 64000);
-            const bake::Moments back = march(*behind, row, options, 64000);
+            bake::Moments m = march_slab(*ahead, row, options, 64000);
+            const bake::Moments back = march_slab(*behind, row, options, 64000);
             m.mean -= back.mean;
             m.squares += back.squares;  // of as many samples
             expect_within(row, m, limit_for(rows.size()));
@@ -118,7 +118,7 @@ TEST(ReferenceSlab, LetsABeamOutWhereItIsKnownTo) {
         options.terms = all ? formats::TermSet::unscattered : formats::TermSet::all;
         const auto slab = make_slab_fixture(
             row, all ? make_white_sky() : make_half_sky(row.quantity == "exit_back"));
-        expect_within(row, march(*slab, row, options, 64000), limit_for(rows.size()));
+        expect_within(row, march_slab(*slab, row, options, 64000), limit_for(rows.size()));
     }
 }
 
@@ -131,7 +131,7 @@ TEST(ReferenceSlab, TransmitsByBeersLawAtAnyDepth) {
         bake::PathOptions options;
         options.terms = formats::TermSet::unscattered;
         // The only randomness is whether a path passes.
-        const bake::Moments m = march(*slab, down, options, 160000);
+        const bake::Moments m = march_slab(*slab, down, options, 160000);
         EXPECT_NEAR(m.mean.x, row.value, 3 * std::sqrt(row.value / 160000) + 2e-6 * row.value)
             << row.name() << " sigma_t " << row.sigma_t;
     }

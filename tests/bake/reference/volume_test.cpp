@@ -57,8 +57,8 @@ std::unique_ptr<ReferenceFixture> make_row_fixture(const TransportRow& row,
                                std::move(sky));
 }
 
-bake::Moments march(const ReferenceFixture& fixture, const TransportRow& row,
-                    bake::PathOptions options, std::uint32_t samples) {
+bake::Moments march_grid(const ReferenceFixture& fixture, const TransportRow& row,
+                         bake::PathOptions options, std::uint32_t samples) {
     // From outside: the grid is not cut as sharply as the ball.
     return look(fixture, row.start - row.size * row.march, row.march, options, samples);
 }
@@ -73,7 +73,7 @@ TEST(ReferenceVolume, ScattersADistantLightOnceTwiceAndOften) {
         options.terms =
             row.quantity == "order1" ? TermSet::volume_single : TermSet::volume_multiple;
         options.max_depth = row.quantity == "order2" ? 2 : options.max_depth;
-        expect_within(row, march(*fixture, row, options, 128000), limit_for(rows.size()));
+        expect_within(row, march_grid(*fixture, row, options, 128000), limit_for(rows.size()));
     }
 }
 
@@ -84,7 +84,7 @@ TEST(ReferenceVolume, LetsABeamOutWhereItIsKnownTo) {
     for (const TransportRow& row : rows) {
         bake::PathOptions options;
         const auto see = [&](formats::Environment sky) {
-            return march(*make_row_fixture(row, std::move(sky)), row, options, 64000);
+            return march_grid(*make_row_fixture(row, std::move(sky)), row, options, 64000);
         };
         ASSERT_EQ(row.march, glm::vec3(0, 1, 0)) << row.name();
         bake::Moments m;

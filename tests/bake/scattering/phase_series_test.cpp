@@ -21,7 +21,7 @@ using tests::hg;
 using tests::rayleigh;
 using tests::table_of;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(PhaseSeries, HenyeyGreensteinErrorsAreThoseOfTheTable) {
     OPALINE_REFERENCE_ROWS(relative, "translucency.csv", "hg_rms_rel");
@@ -59,7 +59,7 @@ TEST(PhaseSeries, CoefficientsAreTheLegendreMomentsOfTheFunction) {
                 const double width = kEnds[panel] - kEnds[panel - 1];
                 const double x = kEnds[panel - 1] + width * rule.node[i];
                 for (unsigned l = 0; l < kDegrees; ++l) {
-                    moment[l] += 2 * kPi * width * rule.weight[i] * eval_phase(density, x) *
+                    moment[l] += 2 * pi * width * rule.weight[i] * eval_phase(density, x) *
                                  std::legendre(l, x);
                 }
             }
@@ -104,7 +104,7 @@ TEST(PhaseSeries, ErrorIsThatOfTheReconstruction) {
                 const double x = 2 * rule.node[i] - 1, p = eval_phase(density, x);
                 double sum = 0;
                 for (unsigned l = 0; l < degrees; ++l) {
-                    sum += (2 * l + 1) / (4 * kPi) * series.lambda[l] * std::legendre(l, x);
+                    sum += (2 * l + 1) / (4 * pi) * series.lambda[l] * std::legendre(l, x);
                 }
                 square += rule.weight[i] * p * p;
                 missed += rule.weight[i] * (p - sum) * (p - sum);
@@ -156,7 +156,7 @@ TEST(PhaseSeries, HarmonicsOfForwardScatteringAreBrightestOppositeTheLight) {
         const double x = -double(formats::dot(w_i, w_o));
         double expected = 0;
         for (unsigned l = 0; l < 5; ++l) {
-            expected += (2 * l + 1) / (4 * kPi) * series.lambda[l] * std::legendre(l, x);
+            expected += (2 * l + 1) / (4 * pi) * series.lambda[l] * std::legendre(l, x);
         }
         EXPECT_NEAR(value(w_o), expected, 1e-6);  // harmonics are in single precision
     }
@@ -172,7 +172,7 @@ TEST(PhaseSeries, TruncatedFunctionMayBeNegative) {
     for (std::size_t k = 0; k < 4; ++k) {
         sum += weight[k] * double(y[k]) * double(y[k]);
     }
-    EXPECT_NEAR(sum, -0.2 / (4 * kPi), 1e-7);
+    EXPECT_NEAR(sum, -0.2 / (4 * pi), 1e-7);
 }
 
 }  // namespace

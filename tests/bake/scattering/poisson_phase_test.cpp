@@ -13,7 +13,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Henyey {
     PhaseDensity density;
@@ -108,7 +108,7 @@ TEST(PoissonPhase, IntegralIs1AndNoDirectionIsDark) {
                 const double value =
                     eval_after_many(phase.density, phase.series, ell, 2 * rule.node[i] - 1);
                 EXPECT_GT(value, -1e-12) << g << ' ' << ell;
-                sum += 4 * kPi * rule.weight[i] * value;
+                sum += 4 * pi * rule.weight[i] * value;
             }
             EXPECT_NEAR(sum, 1, 1e-9) << g << ' ' << ell;
         }
@@ -121,8 +121,7 @@ TEST(PoissonPhase, IsThePhaseFunctionOfAThinMediumAndEvenInADeepOne) {
         const double once = eval_phase(phase.density, cosine);
         EXPECT_NEAR(eval_after_many(phase.density, phase.series, 1e-6, cosine) / once, 1, 1e-5);
         EXPECT_EQ(eval_after_many(phase.density, phase.series, 0, cosine), once);
-        EXPECT_NEAR(eval_after_many(phase.density, phase.series, 130, cosine), 1 / (4 * kPi),
-                    1e-10);
+        EXPECT_NEAR(eval_after_many(phase.density, phase.series, 130, cosine), 1 / (4 * pi), 1e-10);
     }
 }
 

@@ -6,13 +6,12 @@
 
 #include "bake/scattering/entry.h"
 #include "bake/scattering/path_quadrature.h"
+#include "tests/bake/single/grey_medium.h"
 
 namespace opaline::bake {
 namespace {
 
-PathMedium grey(double sigma_s, double sigma_t, double sigma_m) {
-    return {{sigma_s, sigma_s, sigma_s}, {sigma_t, sigma_t, sigma_t}, sigma_m};
-}
+using tests::grey;
 
 TEST(PathRule, GaussIntegratesPolynomialsUpToTwiceItsCountExactly) {
     for (const std::uint32_t count : {1u, 2u, 5u, 8u, 16u, 64u}) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bake/effects/single/ray_single.h"
+#include "tests/bake/single/grey_medium.h"
 #include "tests/bake/single/single_support.h"
 
 namespace opaline::bake {
@@ -18,7 +19,7 @@ using tests::seen_from;
 using tests::set_up;
 using tests::SingleSetup;
 
-constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
+using tests::kIsotropic;
 
 std::vector<float> henyey_greenstein_series(float g, std::size_t degrees) {
     std::vector<float> lambda{1};

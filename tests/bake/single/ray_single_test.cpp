@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "bake/effects/single/ray_single.h"
+#include "tests/bake/single/grey_medium.h"
 #include "tests/bake/single/single_support.h"
 #include "tests/support/reference_table.h"
 
@@ -15,7 +16,7 @@ using tests::make_grey_medium;
 using tests::make_translucent_scene;
 using tests::set_up;
 
-constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
+using tests::kIsotropic;
 
 // Smooth in s, so that the reference's own quadrature error does not matter.
 void use_fine_quadrature(SingleMedium& medium, bool jacobian) {

@@ -5,13 +5,15 @@
 
 #include "bake/scattering/entry.h"
 #include "bake/scattering/path_quadrature.h"
+#include "tests/bake/single/grey_medium.h"
 #include "tests/support/reference_table.h"
 
 namespace opaline::bake {
 namespace {
 
 constexpr const char* kTable = "translucency.csv";
-constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
+using tests::grey;
+using tests::kIsotropic;
 
 Interface<double> interface_of(const tests::ReferenceRow& row) {
     const auto jacobian = row.input.find("jac");
@@ -36,10 +38,6 @@ void expect_rows(const char* check, Value&& value) {
     for (const auto& row : rows) {
         EXPECT_NEAR(value(row), row.expected, row.tolerance()) << row.name();
     }
-}
-
-PathMedium grey(double sigma_s, double sigma_t, double sigma_m) {
-    return {{sigma_s, sigma_s, sigma_s}, {sigma_t, sigma_t, sigma_t}, sigma_m};
 }
 
 TEST(SingleReference, RefractedCosine) {

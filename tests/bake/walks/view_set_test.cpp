@@ -11,7 +11,7 @@
 namespace opaline::bake {
 namespace {
 
-const glm::vec3 kNormal = glm::normalize(glm::vec3(0.3f, -0.8f, 0.5f));
+const glm::vec3 kSurfaceNormal = glm::normalize(glm::vec3(0.3f, -0.8f, 0.5f));
 
 // What rows of a light hold of it along a view.
 struct Rows {
@@ -33,7 +33,7 @@ struct Rows {
 
 Rows rows_of(const ViewSet& views, const ViewFit& fit,
              const std::function<double(glm::vec3)>& light) {
-    Rows rows{{}, to_harmonics(fit, kNormal)};
+    Rows rows{{}, to_harmonics(fit, kSurfaceNormal)};
     for (std::size_t v = 0; v < views.into.size(); ++v) {
         for (std::size_t r = 0; r < rows.row.size(); ++r) {
             rows.row[r] += static_cast<double>(views.share[v][r]) * light(-views.into[v]);
@@ -45,11 +45,12 @@ Rows rows_of(const ViewSet& views, const ViewFit& fit,
 TEST(ViewSet, SharesAreThoseOfUniformLightThatEnters) {
     for (const double eta : {0.8, 1.0, 1.4}) {
         const ViewFit fit = make_view_fit(eta);
-        const ViewSet views = make_view_set(fit, eta, kNormal, 1);
+        const ViewSet views = make_view_set(fit, eta, kSurfaceNormal, 1);
         double sum = 0, cosine = 0;
         for (std::size_t v = 0; v < views.into.size(); ++v) {
             sum += static_cast<double>(views.share[v][0]);
-            cosine += static_cast<double>(views.share[v][0] * -glm::dot(views.into[v], kNormal));
+            cosine +=
+                static_cast<double>(views.share[v][0] * -glm::dot(views.into[v], kSurfaceNormal));
         }
         EXPECT_NEAR(sum, 1, 1e-5);
         EXPECT_NEAR(cosine, fit.mean, 4e-3) << eta;  // four cosines
@@ -57,15 +58,15 @@ TEST(ViewSet, SharesAreThoseOfUniformLightThatEnters) {
 }
 
 TEST(ViewSet, RowsHoldLightOfTheirDegree) {
-    const Frame frame = make_frame(kNormal);
+    const Frame frame = make_frame(kSurfaceNormal);
     const auto linear = [](glm::vec3 w) { return static_cast<double>(2 + w.x - 0.5f * w.y); };
     const auto quadratic = [&](glm::vec3 w) {
         return linear(w) + static_cast<double>(0.7f * w.x * w.y + 0.4f * w.z * w.z);
     };
     for (const double eta : {1.0, 1.4}) {
         const ViewFit fit = make_view_fit(eta);
-        const Rows four = rows_of(make_view_set(fit, eta, kNormal, 4), fit, linear);
-        const Rows nine = rows_of(make_view_set(fit, eta, kNormal, 9), fit, quadratic);
+        const Rows four = rows_of(make_view_set(fit, eta, kSurfaceNormal, 4), fit, linear);
+        const Rows nine = rows_of(make_view_set(fit, eta, kSurfaceNormal, 9), fit, quadratic);
         for (const float sine : {0.0f, 0.3f, 0.6f}) {
             const glm::vec3 view = frame.to_world({sine, 0, std::sqrt(1 - sine * sine)});
             EXPECT_NEAR(four.seen(view), linear(view), 5e-3) << eta << ' ' << sine;
@@ -77,11 +78,11 @@ TEST(ViewSet, RowsHoldLightOfTheirDegree) {
 // A thin sheet shows 1 - e^(-x / c'), which no row holds.
 TEST(ViewSet, WhatRowsCanNotHoldIsRightInTheMeanAndNearlyAlongTheNormal) {
     const auto sheet = [](glm::vec3 w) {
-        return -std::expm1(-0.5 / std::max(1e-3, static_cast<double>(glm::dot(w, kNormal))));
+        return -std::expm1(-0.5 / std::max(1e-3, static_cast<double>(glm::dot(w, kSurfaceNormal))));
     };
     const ViewFit fit = make_view_fit(1);
     for (const std::uint32_t count : {4u, 9u}) {
-        const ViewSet views = make_view_set(fit, 1, kNormal, count);
+        const ViewSet views = make_view_set(fit, 1, kSurfaceNormal, count);
         const Rows rows = rows_of(views, fit, sheet);
         double mean = 0, squares = 0, truth = 0;
         for (std::size_t v = 0; v < views.into.size(); ++v) {
@@ -92,7 +93,7 @@ TEST(ViewSet, WhatRowsCanNotHoldIsRightInTheMeanAndNearlyAlongTheNormal) {
             truth += share * sheet(-views.into[v]);
         }
         EXPECT_NEAR(mean / truth, 0, 3e-3) << count;
-        const double along = rows.seen(kNormal) - sheet(kNormal);
+        const double along = rows.seen(kSurfaceNormal) - sheet(kSurfaceNormal);
         EXPECT_LT(std::abs(along), 0.5 * std::sqrt(squares)) << count;
         EXPECT_LT(std::sqrt(squares) / truth, count == 4 ? 0.1 : 0.05);
     }

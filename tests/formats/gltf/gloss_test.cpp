@@ -11,7 +11,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// A triangle with texture coordinates and this material, named Shell.
-AssetBuilder asset_with(Json material) {
+AssetBuilder asset_with_material(Json material) {
     AssetBuilder asset = triangle_asset();
     Json& primitive = asset.json["meshes"][0]["primitives"][0];
     primitive["attributes"]["TEXCOORD_0"] = asset.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
@@ -31,7 +31,7 @@ AssetBuilder textured(bool with_base_color) {
     if (with_base_color) {
         pbr["baseColorTexture"] = {{"index", 1u}};
     }
-    AssetBuilder asset = asset_with({{"pbrMetallicRoughness", pbr}});
+    AssetBuilder asset = asset_with_material({{"pbrMetallicRoughness", pbr}});
     const Blob png = encode_png(kRoughThenMetal, 2, 1);
     const auto view = asset.add_view(png.data(), png.size());
     const Json image = {{"bufferView", view}, {"mimeType", "image/png"}};
@@ -50,7 +50,7 @@ TEST(GltfReflection, AbsentMembersHaveTheSpecificationsDefaults) {
     // KHR_materials_specular: 1 and white.
     for (const Json& material : {Json::object(), Json{{"pbrMetallicRoughness", Json::object()}},
                                  Json{{"extensions", {{"KHR_materials_ior", Json::object()}}}}}) {
-        const Gloss gloss = gloss_of(asset_with(material));
+        const Gloss gloss = gloss_of(asset_with_material(material));
         EXPECT_EQ(gloss.metallic, 1.0f);
         EXPECT_EQ(gloss.roughness, 1.0f);
         EXPECT_EQ(gloss.ior, 1.5f);
@@ -61,12 +61,12 @@ TEST(GltfReflection, AbsentMembersHaveTheSpecificationsDefaults) {
 }
 
 TEST(GltfReflection, FactorsAreRead) {
-    const auto imported = must_import(
-        asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}},
-                    {"extensions",
-                     {{"KHR_materials_ior", {{"ior", 1.8}}},
-                      {"KHR_materials_specular",
-                       {{"specularFactor", 0.5}, {"specularColorFactor", {2, 1, 0.5}}}}}}}));
+    const auto imported = must_import(asset_with_material(
+        {{"pbrMetallicRoughness", {{"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}},
+         {"extensions",
+          {{"KHR_materials_ior", {{"ior", 1.8}}},
+           {"KHR_materials_specular",
+            {{"specularFactor", 0.5}, {"specularColorFactor", {2, 1, 0.5}}}}}}}));
     const Gloss& gloss = imported.scene.materials.at(0).gloss;
     EXPECT_EQ(gloss.metallic, 0.25f);
     EXPECT_EQ(gloss.roughness, 0.75f);
@@ -78,36 +78,37 @@ TEST(GltfReflection, FactorsAreRead) {
 }
 
 TEST(GltfReflection, NeitherMetalNorSpecularIsDiffuse) {
-    EXPECT_TRUE(gloss_of(asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
-                                     {"extensions",
-                                      {{"KHR_materials_specular", {{"specularFactor", 0}}}}}}))
-                    .is_diffuse());
-    EXPECT_FALSE(
-        gloss_of(asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 0}}}})).is_diffuse());
+    EXPECT_TRUE(
+        gloss_of(asset_with_material(
+                     {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                      {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}}))
+            .is_diffuse());
+    EXPECT_FALSE(gloss_of(asset_with_material({{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}))
+                     .is_diffuse());
 }
 
 TEST(GltfReflection, UnlitAndSpecularGlossinessAreDiffuseAndNamed) {
     for (const char* extension : {"KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"}) {
         const auto imported =
-            must_import(asset_with({{"extensions", {{extension, Json::object()}}}}));
+            must_import(asset_with_material({{"extensions", {{extension, Json::object()}}}}));
         EXPECT_TRUE(imported.scene.materials.at(0).gloss.is_diffuse()) << extension;
         EXPECT_THAT(lines(imported.warnings), HasSubstr(extension));
     }
     // Its fall-back for other readers.
-    const Gloss fallback = gloss_of(
-        asset_with({{"pbrMetallicRoughness", {{"roughnessFactor", 0.5}}},
-                    {"extensions", {{"KHR_materials_pbrSpecularGlossiness", Json::object()}}}}));
+    const Gloss fallback = gloss_of(asset_with_material(
+        {{"pbrMetallicRoughness", {{"roughnessFactor", 0.5}}},
+         {"extensions", {{"KHR_materials_pbrSpecularGlossiness", Json::object()}}}}));
     EXPECT_EQ(fallback.metallic, 1.0f);
     EXPECT_EQ(fallback.roughness, 0.5f);
 }
 
 TEST(GltfReflection, ValuesOutOfRangeAreClampedWithAWarning) {
-    const auto imported = must_import(
-        asset_with({{"pbrMetallicRoughness", {{"metallicFactor", 2}, {"roughnessFactor", -1}}},
-                    {"extensions",
-                     {{"KHR_materials_ior", {{"ior", 0.5}}},
-                      {"KHR_materials_specular",
-                       {{"specularFactor", 3}, {"specularColorFactor", {-1, 1, 1}}}}}}}));
+    const auto imported = must_import(asset_with_material(
+        {{"pbrMetallicRoughness", {{"metallicFactor", 2}, {"roughnessFactor", -1}}},
+         {"extensions",
+          {{"KHR_materials_ior", {{"ior", 0.5}}},
+           {"KHR_materials_specular",
+            {{"specularFactor", 3}, {"specularColorFactor", {-1, 1, 1}}}}}}}));
     const Gloss& gloss = imported.scene.materials.at(0).gloss;
     EXPECT_EQ(gloss.metallic, 1.0f);
     EXPECT_EQ(gloss.roughness, 0.0f);
@@ -122,16 +123,17 @@ TEST(GltfReflection, ValuesOutOfRangeAreClampedWithAWarning) {
 
 TEST(GltfReflection, InfiniteIndexOfRefractionIsKeptAsZero) {
     const auto imported =
-        must_import(asset_with({{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}));
+        must_import(asset_with_material({{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}));
     EXPECT_EQ(imported.scene.materials.at(0).gloss.ior, 0.0f);
     EXPECT_EQ(lines(imported.warnings), "");
 }
 
 TEST(GltfReflection, WrongTypesAreErrorsThatNameTheMember) {
     for (const char* name : {"metallicFactor", "roughnessFactor"}) {
-        EXPECT_THAT(errors_of(import_asset(asset_with({{"pbrMetallicRoughness", {{name, "x"}}}}))),
-                    HasSubstr(std::string("material 'Shell' > pbrMetallicRoughness: ") + name +
-                              " is not a number"));
+        EXPECT_THAT(
+            errors_of(import_asset(asset_with_material({{"pbrMetallicRoughness", {{name, "x"}}}}))),
+            HasSubstr(std::string("material 'Shell' > pbrMetallicRoughness: ") + name +
+                      " is not a number"));
     }
 }
 
@@ -192,8 +194,9 @@ TEST(GltfReflection, TextureOfADiffuseMaterialIsNotRead) {
 TEST(GltfReflection, TexturesOfSpecularAreNamed) {
     for (const char* name : {"specularTexture", "specularColorTexture"}) {
         const std::string warnings = lines(
-            must_import(asset_with({{"extensions",
-                                     {{"KHR_materials_specular", {{name, {{"index", 0u}}}}}}}}))
+            must_import(
+                asset_with_material(
+                    {{"extensions", {{"KHR_materials_specular", {{name, {{"index", 0u}}}}}}}}))
                 .warnings);
         EXPECT_THAT(warnings, HasSubstr(std::string(name) + " is not read"));
         EXPECT_THAT(warnings, Not(HasSubstr("is not simulated")));
@@ -201,7 +204,7 @@ TEST(GltfReflection, TexturesOfSpecularAreNamed) {
 }
 
 TEST(GltfReflection, DamagedTextureLinksAreErrors) {
-    EXPECT_THAT(errors_of(import_asset(asset_with(
+    EXPECT_THAT(errors_of(import_asset(asset_with_material(
                     {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 9u}}}}}}))),
                 HasSubstr("texture"));
     AssetBuilder asset = textured(false);

@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 const Blob kPixels = {255, 0, 0, 255, 0, 128, 255, 64};
 
 /// The triangle with texture coordinates and a scattering medium, and a texture for it.
-AssetBuilder asset_with(Json scatter) {
+AssetBuilder asset_with_scatter(Json scatter) {
     AssetBuilder asset = triangle_asset();
     Json& primitive = asset.json["meshes"][0]["primitives"][0];
     primitive["attributes"]["TEXCOORD_0"] = asset.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
@@ -46,9 +46,9 @@ const formats::Variation& variation_of(const formats::Scene& scene) {
 }
 
 TEST(GltfScatterTextures, BothActInsideTheMediumAndShareAnImage) {
-    const auto imported =
-        must_import(asset_with({{"multiscatterColorTexture", {{"index", 0u}}},
-                                {"scatterStrengthTexture", {{"index", 0u}, {"texCoord", 0u}}}}));
+    const auto imported = must_import(
+        asset_with_scatter({{"multiscatterColorTexture", {{"index", 0u}}},
+                            {"scatterStrengthTexture", {{"index", 0u}, {"texCoord", 0u}}}}));
     EXPECT_EQ(lines(imported.warnings), "");
     const formats::Variation& variation = variation_of(imported.scene);
     EXPECT_EQ(variation.color.image, 0u);
@@ -64,21 +64,21 @@ TEST(GltfScatterTextures, BothActInsideTheMediumAndShareAnImage) {
 }
 
 TEST(GltfScatterTextures, TakeTheirOwnCoordinatesWhereTheBaseColorHasNone) {
-    const auto imported = must_import(
-        asset_with({{"multiscatterColorTexture",
-                     {{"index", 0u},
-                      {"texCoord", 0u},
-                      {"extensions",
-                       {{"KHR_texture_transform",
-                         {{"texCoord", 1u}, {"offset", {0.25, 0}}, {"scale", {2, 4}}}}}}}}}));
+    const auto imported = must_import(asset_with_scatter(
+        {{"multiscatterColorTexture",
+          {{"index", 0u},
+           {"texCoord", 0u},
+           {"extensions",
+            {{"KHR_texture_transform",
+              {{"texCoord", 1u}, {"offset", {0.25, 0}}, {"scale", {2, 4}}}}}}}}}));
     EXPECT_THAT(imported.scene.primitives.at(0).texcoord,
                 ElementsAre(glm::vec2(0.25f, 0), glm::vec2(1.25f, 0), glm::vec2(0.25f, 2)));
 }
 
 TEST(GltfScatterTextures, OneMappedOtherwiseThanTheBaseColorIsNamedAndNotUsed) {
     AssetBuilder asset =
-        asset_with({{"multiscatterColorTexture", {{"index", 0u}, {"texCoord", 1u}}},
-                    {"scatterStrengthTexture", {{"index", 0u}}}});
+        asset_with_scatter({{"multiscatterColorTexture", {{"index", 0u}, {"texCoord", 1u}}},
+                            {"scatterStrengthTexture", {{"index", 0u}}}});
     asset.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0u}};
     const auto imported = must_import(asset);
     EXPECT_THAT(lines(imported.warnings),
@@ -89,7 +89,7 @@ TEST(GltfScatterTextures, OneMappedOtherwiseThanTheBaseColorIsNamedAndNotUsed) {
 }
 
 TEST(GltfScatterTextures, WithoutAnInsideTheyAreNamedAndNotUsed) {
-    AssetBuilder asset = asset_with({{"multiscatterColorTexture", {{"index", 0u}}}});
+    AssetBuilder asset = asset_with_scatter({{"multiscatterColorTexture", {{"index", 0u}}}});
     asset.json["materials"][0]["extensions"]["KHR_materials_volume"]["thicknessFactor"] = 0;
     const auto imported = must_import(asset);
     EXPECT_TRUE(imported.scene.materials.at(0).sheet);
@@ -109,13 +109,14 @@ TEST(GltfScatterTextures, FaultyOnesAreErrorsThatNameTheElement) {
          {{"index", 0u}, {"extensions", {{"KHR_texture_transform", {{"offset", {1}}}}}}},
          {{"index", 0u}, {"extensions", {{"KHR_texture_transform", {{"rotation", "x"}}}}}}});
     for (const Json& info : wrong) {
-        EXPECT_THAT(errors_of(import_asset(asset_with({{"scatterStrengthTexture", info}}))),
+        EXPECT_THAT(errors_of(import_asset(asset_with_scatter({{"scatterStrengthTexture", info}}))),
                     HasSubstr("KHR_materials_scatter > scatterStrengthTexture"))
             << info;
     }
-    EXPECT_THAT(errors_of(import_asset(asset_with({{"scatterStrengthTexture", {{"index", 7u}}}}))),
-                HasSubstr("material 'Wax'"));
-    AssetBuilder damaged = asset_with({{"scatterStrengthTexture", {{"index", 0u}}}});
+    EXPECT_THAT(
+        errors_of(import_asset(asset_with_scatter({{"scatterStrengthTexture", {{"index", 7u}}}}))),
+        HasSubstr("material 'Wax'"));
+    AssetBuilder damaged = asset_with_scatter({{"scatterStrengthTexture", {{"index", 0u}}}});
     damaged.json["images"][0] = {{"name", "Grain"}, {"uri", "none.png"}};
     EXPECT_THAT(errors_of(import_asset(damaged)), HasSubstr("'Grain'"));
 }

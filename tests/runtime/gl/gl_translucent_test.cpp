@@ -57,14 +57,15 @@ std::vector<Rgb> view_on_cpu(const AssetView& asset, const LightVector& light,
 TEST_F(GlTranslucent, PicturesAgreeWithTheCpuForEveryNumberOfTermsAndBands) {
     const Environment sky = test::make_lat_long(128, 64, test::two_lights);
     const Rotation rotation = rotation_about_y(0.7f);
-    struct Variant {
+    struct TermsAndBands {
         std::uint32_t terms;
         float eta;
         std::uint32_t bands;
     };
     for (const auto& [terms, eta, bands] :
-         {Variant{1, 1.3f, 3}, Variant{4, 1.3f, 3}, Variant{4, 0.7f, 3}, Variant{9, 1.0f, 3},
-          Variant{16, 1.5f, 3}, Variant{25, 3.0f, 3}, Variant{1, 1.3f, 1}, Variant{4, 1.3f, 1}}) {
+         {TermsAndBands{1, 1.3f, 3}, TermsAndBands{4, 1.3f, 3}, TermsAndBands{4, 0.7f, 3},
+          TermsAndBands{9, 1.0f, 3}, TermsAndBands{16, 1.5f, 3}, TermsAndBands{25, 3.0f, 3},
+          TermsAndBands{1, 1.3f, 1}, TermsAndBands{4, 1.3f, 1}}) {
         SCOPED_TRACE(testing::Message()
                      << terms << " terms, eta " << eta << ", " << bands << " bands");
         const Asset asset = make_scene(terms, eta, bands);

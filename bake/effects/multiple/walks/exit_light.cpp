@@ -20,7 +20,7 @@ void add_to(float* to, Float4 value) {
     std::memcpy(to, &sum, sizeof sum);
 }
 
-std::vector<SurfacePoint> points_of(std::span<const SurfaceSample> samples) {
+std::vector<SurfacePoint> sample_points(std::span<const SurfaceSample> samples) {
     std::vector<SurfacePoint> points;
     points.reserve(samples.size());
     for (const SurfaceSample& s : samples) {
@@ -106,7 +106,7 @@ ExitLight::ExitLight(std::span<const SurfaceSample> samples, const SparseVectors
       moments_(moments),
       lobe_(make_exit_lobe(eta)),
       scale_(static_cast<float>(1 / (std::numbers::pi * escape))),
-      grid_(points_of(samples), cell_size(samples)) {}
+      grid_(sample_points(samples), cell_size(samples)) {}
 
 std::uint32_t ExitLight::nearest(const WalkExit& exit, std::vector<std::uint32_t>& around) const {
     constexpr float kFacing = 0.3f;

@@ -9,7 +9,7 @@
 namespace opaline::bake {
 namespace {
 
-std::vector<SurfacePoint> points_of(std::span<const WalkStart> starts) {
+std::vector<SurfacePoint> start_points(std::span<const WalkStart> starts) {
     std::vector<SurfacePoint> points;
     points.reserve(starts.size());
     for (const WalkStart& s : starts) {
@@ -39,7 +39,7 @@ InnerField::InnerField(std::span<const WalkStart> starts, float radius, float pa
     : radius_(radius),
       path_(path),
       is_isotropic_(is_isotropic),
-      grid_(points_of(starts), kCell * radius) {
+      grid_(start_points(starts), kCell * radius) {
     for (const WalkStart& s : starts) {
         position_.push_back(s.position);
         arrival_.push_back(s.arrival);

@@ -10,7 +10,7 @@
 namespace opaline::bake {
 namespace {
 
-std::vector<SurfacePoint> points_of(std::span<const SurfaceSample> samples) {
+std::vector<SurfacePoint> site_points(std::span<const SurfaceSample> samples) {
     std::vector<SurfacePoint> points;
     points.reserve(samples.size());
     for (const SurfaceSample& s : samples) {
@@ -20,12 +20,12 @@ std::vector<SurfacePoint> points_of(std::span<const SurfaceSample> samples) {
 }
 
 // Fewer are too few for a function of six or seven coefficients.
-constexpr std::size_t kFewest = 8;
+constexpr std::size_t kFewestNeighbours = 8;
 
 }  // namespace
 
 SiteField::SiteField(std::span<const SurfaceSample> sites, float radius, std::vector<float> tints)
-    : tint_(std::move(tints)), radius_(radius), grid_(points_of(sites), radius) {
+    : tint_(std::move(tints)), radius_(radius), grid_(site_points(sites), radius) {
     for (const SurfaceSample& s : sites) {
         position_.push_back(s.position);
         normal_.push_back(s.normal);
@@ -47,14 +47,14 @@ std::vector<SiteField::Neighbour> SiteField::collect(glm::vec3 position, glm::ve
         }
     };
     collect_within(radius_);
-    if (neighbours.size() < kFewest) {
+    if (neighbours.size() < kFewestNeighbours) {
         // Near the tip of a spike, or on a part smaller than the radius: the nearest ones.
         around.resize(position_.size());
         for (std::uint32_t s = 0; s < around.size(); ++s) {
             around[s] = s;
         }
         for (float radius = 1.5f * radius_, most = 100 * radius_;
-             neighbours.size() < std::min(kFewest, position_.size()) && radius < most;
+             neighbours.size() < std::min(kFewestNeighbours, position_.size()) && radius < most;
              radius *= 1.5f) {
             collect_within(radius);
         }
