@@ -31,9 +31,10 @@ void add_path_integration_options(CLI::App& command, PathIntegrationOptions& opt
             .add_option(
                 "--renormalise", options.renormalise,
                 "path-integration: scale light scattered twice or more so that a volume "
-                "without absorption vanishes under even light; under a sun it makes errors larger")
+                "without absorption vanishes under even light; off saves the seconds that this "
+                "takes before the first pixel")
             ->transform(one_of<bool>({{"on", true}, {"off", false}}))
-            ->option_text("on|off [off]");
+            ->option_text("on|off [on]");
 }
 
 Status check_method(const PathIntegrationOptions& options,

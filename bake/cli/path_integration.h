@@ -18,7 +18,7 @@ enum class ReferenceMethod { monte_carlo, path_integration };
 /// Options of `--method path-integration`.
 struct PathIntegrationOptions {
     ReferenceMethod method = ReferenceMethod::monte_carlo;
-    bool renormalise = false;
+    bool renormalise = true;
     CLI::Option* renormalise_option = nullptr;  ///< tells whether it was given
 
     bool is_chosen() const { return method == ReferenceMethod::path_integration; }

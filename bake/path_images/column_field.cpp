@@ -7,6 +7,46 @@
 #include "bake/base/ordered_parallel.h"
 
 namespace opaline::bake {
+namespace {
+
+const float* values_of(const ColumnField& field, std::uint32_t slot, std::size_t direction) {
+    return field.value.data() + std::size_t{slot} * field.volumes * field.toward.size() + direction;
+}
+
+// The share of the weights of the nodes around a point from which no surface is in the way.
+double open_share(const ColumnField& field, glm::dvec3 x, std::size_t direction) {
+    const NodesAround around = nodes_around(field.lattice, x);
+    double weights = 0, open = 0;
+    for (std::size_t c = 0; c < around.slot.size(); ++c) {
+        if (around.weight[c] > 0) {
+            weights += around.weight[c];
+            open +=
+                std::signbit(*values_of(field, around.slot[c], direction)) ? 0 : around.weight[c];
+        }
+    }
+    return weights > 0 ? open / weights : 1;
+}
+
+// Optical depth, linear between nodes; 0 where there is no density.
+double depth_between_nodes(const ColumnField& field, const Band& band, glm::dvec3 x,
+                           std::size_t direction) {
+    const NodesAround around = nodes_around(field.lattice, x);
+    double sum = 0, weights = 0;
+    for (std::size_t c = 0; c < around.slot.size(); ++c) {
+        if (!(around.weight[c] > 0)) {
+            continue;
+        }
+        weights += around.weight[c];
+        const float* const value = values_of(field, around.slot[c], direction);
+        for (std::size_t v = 0; v < field.volumes; ++v) {
+            const auto column = static_cast<double>(std::abs(value[v * field.toward.size()]));
+            sum += around.weight[c] * band.extinction[v] * column;
+        }
+    }
+    return weights > 0 ? sum / weights : 0;
+}
+
+}  // namespace
 
 Columns columns_along(const VolumeSpace& space, glm::vec3 from, glm::vec3 direction, float reach,
                       float voxels_per_step) {
@@ -34,28 +74,31 @@ Columns columns_along(const VolumeSpace& space, glm::vec3 from, glm::vec3 direct
 }
 
 ColumnField make_column_field(const VolumeSpace& space, const HitScene* surfaces,
-                              NodeLattice lattice, std::span<const glm::dvec3> directions,
+                              NodeLattice lattice, std::span<const glm::dvec3> toward,
                               const Context& context) {
     constexpr float kForever = std::numeric_limits<float>::infinity();
-    ColumnField field{std::move(lattice), directions.size(), space.volumes.size(), {}};
-    const std::size_t per_node = field.volumes * field.directions;
+    const double edge = voxel_edge(space);
+    ColumnField field;
+    field.lattice = std::move(lattice);
+    field.toward.assign(toward.begin(), toward.end());
+    field.volumes = space.volumes.size();
+    const std::size_t per_node = field.volumes * toward.size();
     const std::size_t nodes = field.lattice.position.size();
-    const auto coarse =
-        static_cast<float>(std::max(1.0, 0.5 * field.lattice.spacing / voxel_edge(space)));
+    const auto coarse = static_cast<float>(std::max(1.0, 0.5 * field.lattice.spacing / edge));
     field.value.resize(nodes * per_node);
     for_each_block_in_order(
-        directions.empty() ? 0 : nodes, 256, context,
+        toward.empty() ? 0 : nodes, 256, context,
         [&](Range range) {
             for (std::size_t node = range.begin; node < range.end; ++node) {
                 const glm::vec3 x = field.lattice.position[node];
-                for (std::size_t d = 0; d < directions.size(); ++d) {
-                    const glm::vec3 direction(directions[d]);
+                for (std::size_t d = 0; d < toward.size(); ++d) {
+                    const glm::vec3 direction(toward[d]);
                     const Columns columns = columns_along(space, x, direction, kForever, coarse);
                     const bool is_blocked =
                         surfaces != nullptr && surfaces->is_blocked({x}, direction);
                     for (std::size_t v = 0; v < field.volumes; ++v) {
                         const auto column = static_cast<float>(columns[v]);
-                        field.value[node * per_node + v * field.directions + d] =
+                        field.value[node * per_node + v * toward.size() + d] =
                             is_blocked ? -column : column;
                     }
                 }
@@ -74,30 +117,21 @@ double FieldDepth::visibility() const {
     return open * std::exp(-depth);
 }
 
-FieldDepth depth_toward(const ColumnField& field, const NodesAround& around, std::size_t direction,
-                        const Band& band, Shadows shadows) {
-    double sum = 0, weights = 0, open = 0;
-    for (std::size_t c = 0; c < around.slot.size(); ++c) {
-        if (!(around.weight[c] > 0)) {
-            continue;
-        }
-        weights += around.weight[c];
-        const float* const value = field.value.data() +
-                                   std::size_t{around.slot[c]} * field.volumes * field.directions +
-                                   direction;
-        if (shadows == Shadows::of_everything && std::signbit(*value)) {
-            continue;
-        }
-        open += around.weight[c];
-        for (std::size_t v = 0; v < field.volumes; ++v) {
-            const auto column = static_cast<double>(std::abs(value[v * field.directions]));
-            sum += around.weight[c] * band.extinction[v] * column;
+FieldDepth depth_toward(const ColumnField& field, const BandMedium& medium, glm::dvec3 x,
+                        std::size_t direction, Shadows shadows) {
+    FieldDepth depth;
+    if (shadows == Shadows::of_everything) {
+        depth.open = open_share(field, x, direction);
+        if (!(depth.open > 0)) {
+            return depth;
         }
     }
-    if (!(open > 0)) {
-        return {0, weights > 0 ? 0.0 : 1.0};
-    }
-    return {sum / open, open / weights};
+    const double reach = field.lattice.spacing;
+    const glm::dvec3 d = reach * field.toward[direction];
+    depth.depth =
+        0.5 * reach * (medium(x + 0.25 * d).extinction() + medium(x + 0.75 * d).extinction());
+    depth.depth += depth_between_nodes(field, medium.band, x + d, direction);
+    return depth;
 }
 
 }  // namespace opaline::bake

@@ -18,19 +18,19 @@ Columns columns_along(const VolumeSpace& space, glm::vec3 from, glm::vec3 direct
                       float voxels_per_step = 1);
 
 /// Columns from the nodes of a lattice to infinity in some directions, and whether a surface is in
-/// the way. Linear between nodes, as depths are in an even medium; blocked nodes count as dark.
-/// Marched in steps of half the nodes' spacing, at least a voxel. Kept per volume, so that every
-/// band, with absorption or without, finds its depth here.
+/// the way. Marched in steps of half the nodes' spacing, at least a voxel. Kept per volume, so that
+/// every band, with absorption or without, finds its depth here.
 struct ColumnField {
     NodeLattice lattice;
-    std::size_t directions = 0, volumes = 0;
-    /// value[(slot * volumes + v) * directions + d]; its sign bit: blocked.
+    std::vector<glm::dvec3> toward;  ///< unit
+    std::size_t volumes = 0;
+    /// value[(slot * volumes + v) * toward.size() + d]; its sign bit: blocked.
     std::vector<float> value;
 };
 
 /// `surfaces`: null, or what shadows. Stops early if the context is cancelled.
 ColumnField make_column_field(const VolumeSpace& space, const HitScene* surfaces,
-                              NodeLattice lattice, std::span<const glm::dvec3> directions,
+                              NodeLattice lattice, std::span<const glm::dvec3> toward,
                               const Context& context);
 
 /// Whether surfaces count.
@@ -43,7 +43,11 @@ struct FieldDepth {
 
     double visibility() const;  ///< open e^-depth
 };
-FieldDepth depth_toward(const ColumnField& field, const NodesAround& around, std::size_t direction,
-                        const Band& band, Shadows shadows);
+
+/// The medium is marched as far as nodes are apart, in two steps, then depths are linear between
+/// nodes, as in an even medium. Without the march they would be wrong most where they count most:
+/// next to a lit surface, where the depth has a kink that nodes do not see.
+FieldDepth depth_toward(const ColumnField& field, const BandMedium& medium, glm::dvec3 x,
+                        std::size_t direction, Shadows shadows);
 
 }  // namespace opaline::bake

@@ -20,16 +20,23 @@ glm::dvec3 to_dvec3(formats::Rgb c) {
     return {c.r, c.g, c.b};
 }
 
-// Directions of cells and texels, no light.
+std::array<glm::dvec3, ImageSky::kCellCount> make_sky_cells() {
+    constexpr std::uint32_t m = ImageSky::kCells;
+    std::array<glm::dvec3, ImageSky::kCellCount> cell{};
+    for (std::uint32_t i = 0; i < ImageSky::kCellCount; ++i) {
+        const std::uint32_t of_face = i % (m * m);
+        cell[i] = glm::normalize(
+            to_dvec3(formats::texel_direction(m, i / (m * m), of_face / m, of_face % m)));
+    }
+    return cell;
+}
+
+// Directions of texels, no light.
 ImageSky make_dark_sky() {
     constexpr std::uint32_t n = ImageSky::kTexels, m = ImageSky::kCells;
     const std::vector<double> solid_angle = formats::texel_solid_angles(n);
     ImageSky sky;
     for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
-        for (std::uint32_t i = 0; i < m * m; ++i) {
-            sky.cell[face * m * m + i] =
-                glm::normalize(to_dvec3(formats::texel_direction(m, face, i / m, i % m)));
-        }
         for (std::uint32_t i = 0; i < n * n; ++i) {
             const std::uint32_t row = i / n, column = i % n;
             SkyTexel texel;
@@ -87,6 +94,11 @@ TexelFlux integrate_texel(const formats::Environment& light, const glm::dmat3& l
 }
 
 }  // namespace
+
+const std::array<glm::dvec3, ImageSky::kCellCount>& sky_cells() {
+    static const std::array<glm::dvec3, ImageSky::kCellCount> cells = make_sky_cells();
+    return cells;
+}
 
 ImageLights make_image_lights(const formats::Environment& environment,
                               const glm::mat3& world_from_light) {

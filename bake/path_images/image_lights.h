@@ -31,9 +31,11 @@ struct SkyTexel {
 struct ImageSky {
     static constexpr std::uint32_t kTexels = 16, kCells = 4, kCellCount = 6 * kCells * kCells;
 
-    std::array<glm::dvec3, kCellCount> cell;  ///< unit directions of the cells' centres
-    std::vector<SkyTexel> texel;              ///< none: the sky is black
+    std::vector<SkyTexel> texel;  ///< none: the sky is black
 };
+
+/// Unit directions of the cells' centres: those of every sky, black ones too.
+const std::array<glm::dvec3, ImageSky::kCellCount>& sky_cells();
 
 struct ImageLights {
     std::vector<ImageSun> suns;  ///< discs of the light, and its brightest texels

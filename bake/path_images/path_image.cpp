@@ -30,6 +30,10 @@ VolumeBox grown(VolumeBox box, double margin) {
     return {box.low - margin, box.high + margin};
 }
 
+bool needs_furnace(const PathImageOptions& options) {
+    return options.renormalise && has_any(options.terms, TermSet::volume_multiple);
+}
+
 ScatteringSpace prepare(const ReferenceScene& scene, const LightSampler& light,
                         const PathImageOptions& options, const Context& context) {
     const VolumeSpace& volumes = scene.volumes;
@@ -38,8 +42,7 @@ ScatteringSpace prepare(const ReferenceScene& scene, const LightSampler& light,
     for (const ImageSun& sun : lights.suns) {
         suns.push_back(sun.direction);
     }
-    const ImageSky directions = make_even_sky();
-    const bool needs_cells = options.renormalise || !lights.sky.texel.empty();
+    const bool needs_cells = needs_furnace(options) || !lights.sky.texel.empty();
     const HitScene* const surfaces =
         scene.surfaces.scene().primitives.empty() ? nullptr : &scene.surfaces;
     ScatteringSpace space{
@@ -50,11 +53,10 @@ ScatteringSpace prepare(const ReferenceScene& scene, const LightSampler& light,
         make_column_field(volumes, surfaces,
                           suns.empty() ? NodeLattice{} : make_node_lattice(volumes, kSunNodes),
                           suns, context),
-        make_column_field(volumes, surfaces,
-                          needs_cells ? make_node_lattice(volumes, kCellNodes) : NodeLattice{},
-                          needs_cells ? std::span<const glm::dvec3>(directions.cell)
-                                      : std::span<const glm::dvec3>(),
-                          context),
+        make_column_field(
+            volumes, surfaces, needs_cells ? make_node_lattice(volumes, kCellNodes) : NodeLattice{},
+            needs_cells ? std::span<const glm::dvec3>(sky_cells()) : std::span<const glm::dvec3>(),
+            context),
         {.box = grown(density_box(volumes), voxel_edge(volumes)), .step = voxel_edge(volumes)},
         options.lengths};
     return space;
@@ -194,14 +196,13 @@ formats::Result<PathImage> make_path_image(const ReferenceScene& scene, const Li
         return interrupted();
     }
     FurnaceGrid furnace;
-    const bool has_often = has_any(options.terms, TermSet::volume_multiple);
-    if (options.renormalise && has_often) {
+    if (needs_furnace(options)) {
         furnace = make_furnace_grid(space, camera, eye, context);
     }
     PathImage image;
     image.preparation_seconds = seconds_since(start);
     image.radiance = {camera.width, camera.height, {}};
-    const Studio studio{scene, light,  space, options.renormalise && has_often ? &furnace : nullptr,
+    const Studio studio{scene, light,  space, needs_furnace(options) ? &furnace : nullptr,
                         eye,   options};
     const runtime::CameraFrame frame = runtime::camera_frame(camera);
     const std::size_t pixels = std::size_t{camera.width} * camera.height;

@@ -14,9 +14,9 @@
 namespace opaline::bake {
 
 struct PathImageOptions {
-    std::uint32_t rays = 4;   ///< of each pixel, >= 1, at the same places of every pixel
+    std::uint32_t rays = 4;  ///< of each pixel, >= 1, at the same places of every pixel
     /// Scale orders of two and more as a white furnace asks for.
-    bool renormalise = false;
+    bool renormalise = true;
     /// Of `kPathTerms`; a view of the sky counts only if all terms do.
     formats::TermSet terms = formats::TermSet::all;
     std::vector<double> lengths{1};  ///< of turns, in scattering depths of the view ray; > 0

@@ -8,21 +8,14 @@
 namespace opaline::bake {
 namespace {
 
-constexpr int kSourcePoints = 8;      // along a ray, in equal shares of what is scattered and seen
-constexpr int kMostPathSteps = 8192;  // some paths hardly end by themselves; why is not known
-constexpr double kClear = 1e-3;       // optical depth that ends a path on its way to the light
-
-double visibility(const ColumnField& field, glm::dvec3 x, std::size_t direction,
-                  const GatherOptions& options) {
-    return depth_toward(field, nodes_around(field.lattice, x), direction, options.band,
-                        options.shadows)
-        .visibility();
-}
+constexpr int kSourcePoints = 8;  // along a ray, in equal shares of what is scattered and seen
+constexpr double kClear = 1e-3;   // optical depth that ends a path on its way to the light
 
 // Order 1.
 glm::dvec3 gather_once(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
                        const GatherOptions& options) {
     const std::vector<ImageSun>& suns = space.lights.suns;
+    const BandMedium medium{space.volumes, options.band};
     std::vector<double> from_sun(options.suns ? suns.size() : 0);
     std::array<double, ImageSky::kCellCount + 1> from_part{};
     const bool has_cells = std::any_of(sky.part.begin(), sky.part.end(),
@@ -31,17 +24,18 @@ glm::dvec3 gather_once(const ScatteringSpace& space, const ViewRay& ray, const S
         const ViewStep& step = options.steps.step[i];
         const glm::dvec3 x(ray.position[i]);
         for (std::size_t s = 0; s < from_sun.size(); ++s) {
-            from_sun[s] += step.scattered * visibility(space.sun_field, x, s, options);
+            from_sun[s] +=
+                step.scattered *
+                depth_toward(space.sun_field, medium, x, s, options.shadows).visibility();
         }
         if (!has_cells) {
             continue;
         }
-        const NodesAround around = nodes_around(space.cell_field.lattice, x);
         for (std::size_t c = 0; c < ImageSky::kCellCount; ++c) {
             if (!sky.part[c].is_dark) {
-                from_part[c] += step.scattered * depth_toward(space.cell_field, around, c,
-                                                              options.band, options.shadows)
-                                                     .visibility();
+                from_part[c] +=
+                    step.scattered *
+                    depth_toward(space.cell_field, medium, x, c, options.shadows).visibility();
             }
         }
         if (options.is_open) {
@@ -90,18 +84,13 @@ class PathGatherer {
     double along(const QuasiPath& path, const ColumnField& field, std::size_t number,
                  const ZonalRow& kernel) const {
         double sum = 0;
-        int steps = 0;
         march_quasi_path(path, medium_, space_.limits, [&](const PathStep& step) {
-            if (++steps > kMostPathSteps) {
-                return false;
-            }
             if (!(step.depth > 0)) {
                 return true;
             }
             const double survival = std::exp(-step.absorption);
             const FieldDepth toward =
-                depth_toward(field, nodes_around(field.lattice, step.position), number,
-                             options_.band, options_.shadows);
+                depth_toward(field, medium_, step.position, number, options_.shadows);
             sum += step.depth * survival * std::max(kernel(step.ell), 0.0) * toward.visibility();
             const bool leaves =
                 step.ell > path.ell_total && toward.depth < kClear && toward.open == 1;
@@ -139,7 +128,7 @@ glm::dvec3 gather_paths(const ScatteringSpace& space, const SkyView& sky,
     }
     for (std::size_t c = 0; c < ImageSky::kCellCount; ++c) {
         if (!sky.part[c].is_dark) {
-            sum += paths.gather(space.cell_field, c, space.lights.sky.cell[c], sky.part[c].often) *
+            sum += paths.gather(space.cell_field, c, sky_cells()[c], sky.part[c].often) *
                    sky.part[c].color;
         }
     }

@@ -99,8 +99,7 @@ glm::dvec3 reflect_diffusely_once(const ScatteringSpace& space, const HitScene& 
     }
     for (std::size_t c = 0; c < of_cell.size(); ++c) {
         if (of_cell[c] != glm::dvec3(0)) {
-            sum +=
-                of_cell[c] * passing(space, surfaces, point, glm::vec3(space.lights.sky.cell[c]));
+            sum += of_cell[c] * passing(space, surfaces, point, glm::vec3(sky_cells()[c]));
         }
     }
     return sum;

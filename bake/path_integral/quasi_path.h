@@ -108,7 +108,9 @@ class Heading {
 /// march ends after the step for which that is false, where the path leaves the box, or at the
 /// longest length. The rule is the midpoint rule in arc length, of second order: integrals are sums
 /// of f(step) step.length. Steps are so short that b ds <= max(1, ell) / 4, or twice that where the
-/// medium becomes denser, and finite in empty space, unlike steps in ell.
+/// medium becomes denser, and finite in empty space, unlike steps in ell. The march ends for every
+/// finite medium: a path that turns by at most pi is no longer in its box than pi times the box's
+/// diagonal.
 template <class Medium, class Visit>
 PathEnd march_quasi_path(const QuasiPath& path, const Medium& medium, const MarchLimits& limits,
                          Visit&& visit) {

@@ -1,5 +1,6 @@
 #include "bake/path_integral/turn.h"
 
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -19,6 +20,8 @@ double sinc(double x) {
 }  // namespace
 
 Turns::Turns(glm::dvec3 from, glm::dvec3 to) {
+    // A path along a vector of length 0 would never arrive anywhere.
+    assert(std::abs(glm::dot(from, from) - 1) < 1e-4 && std::abs(glm::dot(to, to) - 1) < 1e-4);
     const glm::dvec3 axis = glm::cross(from, to);
     const double sine = glm::length(axis), cosine = glm::dot(from, to);
     if (cosine < 0 && sine < kOpposite) {

@@ -17,8 +17,8 @@ double look_at_row(const VolumeRow& row, const bake::PathImageOptions& options) 
                          row.number(std::string(name) + "z"));
     };
     const auto size = row.number("size");
-    auto grid = row.cell.at("geometry") == "blob" ? make_blob(size, size / 16)
-                                                  : make_ball_grid(size, size / 32);
+    auto grid = row.cell.at("geometry") == "blob" ? make_blob(size, size / 8)
+                                                  : make_ball_grid(size, size / 20);
     const auto scene = make_volume_scene(
         make_volume(std::move(grid), static_cast<float>(row.number("sigma_t")),
                     static_cast<float>(row.number("albedo")), static_cast<float>(row.number("g"))),
@@ -47,15 +47,16 @@ TEST(PathImageRows, LightScatteredOftenIsThatOfThePathIntegral) {
     }
 }
 
-// Against Monte Carlo: along rims and toward light from behind, the model is a factor of two off.
-TEST(PathImageRows, LightScatteredOftenIsWithinTheModelsErrorOfTheTruth) {
+// Against Monte Carlo: to 15 %, but along a ball's rim the model is a factor of two off.
+TEST(PathImageRows, LightScatteredOftenIsRightTo15PercentButAlongARim) {
     OPALINE_VOLUME_ROWS(rows, "order2plus");
     for (const VolumeRow& row : rows) {
         if (is_grid(row)) {
             bake::PathImageOptions options = plain(TermSet::volume_multiple);
-            const double ratio = look_at_row(row, options) / row.value();
-            EXPECT_GT(ratio, 0.3) << row.id();
-            EXPECT_LT(ratio, 2.2) << row.id();
+            const bool is_rim = std::abs(row.number("px")) > 0.5 * row.number("size") &&
+                                row.cell.at("geometry") == "sphere";
+            EXPECT_NEAR(look_at_row(row, options) / row.value(), 1, is_rim ? 1.15 : 0.15)
+                << row.id();
         }
     }
 }

@@ -13,7 +13,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 const auto kVisit = [](const PathStep&) { return true; };
 
 Turn turn_between(dvec3 from, dvec3 to) {
@@ -70,7 +70,7 @@ TEST(QuasiPath, TheTableHasPathsOfNoOtherTotalDepth) {
 }
 
 TEST(QuasiPath, InAHomogeneousMediumIsAnArcAndThenStraight) {
-    const double b = 3, total = 2, angle = kPi / 3;
+    const double b = 3, total = 2, angle = pi / 3;
     const Turn turn = turn_between({0, 0, 1}, {std::sin(angle), 0, std::cos(angle)});
     const dvec3 centre = total / (b * angle) * turn.aside;
     const dvec3 end = arc_end(turn, total, b);
@@ -94,7 +94,7 @@ TEST(QuasiPath, InAHomogeneousMediumIsAnArcAndThenStraight) {
 }
 
 TEST(QuasiPath, IncrementalTurnEndsAtItsAngle) {
-    for (const double angle : {1e-6, 0.5, 2.0, kPi - 1e-6}) {
+    for (const double angle : {1e-6, 0.5, 2.0, pi - 1e-6}) {
         const Turn turn = turn_between({0, 0, 1}, {0, std::sin(angle), std::cos(angle)});
         // Not quite to the end of the turn, after 100 000 steps.
         const PathEnd end =
@@ -188,6 +188,41 @@ TEST(QuasiPath, InAnyDensityEndsWithFiniteDepthsInFewSteps) {
         EXPECT_LT(steps, 40 + 1100 * 1.1) << b;
         EXPECT_TRUE(std::isfinite(end.ell)) << b;
         EXPECT_NEAR(end.absorption / end.ell, 0.01, 1e-10) << b;
+    }
+}
+
+// A plane arc that turns one way by at most pi is convex together with its chord, and no convex
+// curve in a box is longer than the circle whose diameter is the box's. So a march ends without a
+// cap, however dense the medium is and however little it absorbs.
+TEST(QuasiPath, TurnsByAtMostPiSoItLeavesItsBoxWithinTheCircumferenceOfASphereAroundIt) {
+    const VolumeBox box = tests::cube(1);
+    const double step = 0.05, circle = pi * glm::length(box.high - box.low);
+    const auto speckled = [](double b) {
+        return [b](dvec3 x) {
+            const bool dense = std::fmod(std::abs(x.x * 31 + x.y * 17 + x.z * 43), 2) < 1;
+            return Coefficients{dense ? b : 1e-3 * b, 0};
+        };
+    };
+    for (const double b : {1e-6, 1.0, 50.0, 1e5}) {
+        for (int i = 0; i < 200; ++i) {
+            const auto direction = [](double u, double v) {
+                const double z = 2 * u - 1, r = std::sqrt(1 - z * z);
+                return dvec3(r * std::cos(2 * pi * v), r * std::sin(2 * pi * v), z);
+            };
+            const auto spread = [i](double by) { return std::fmod(0.5 + by * i, 1.0); };
+            const dvec3 from = direction(spread(0.7548776662), spread(0.5698402910));
+            const Turn turn =
+                turn_between(from, direction(spread(0.8191725134), spread(0.6710436067)));
+            int steps = 0;
+            const PathEnd end = march_quasi_path(
+                {-0.9 * from / std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z)}),
+                 turn, b * 2 * spread(0.6180339887)},
+                speckled(b), {.box = box, .step = step},
+                [&](const PathStep&) { return ++steps < 100000; });
+            EXPECT_LE(end.length, circle) << b << ' ' << i;
+            // Steps that the density limits are few: each adds a quarter of the depth so far.
+            EXPECT_LT(steps, 4 * circle / step) << b << ' ' << i;
+        }
     }
 }
 
