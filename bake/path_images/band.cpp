@@ -4,10 +4,10 @@
 
 namespace opaline::bake {
 
-std::vector<Band> make_bands(const VolumeSpace& space) {
-    std::vector<Band> bands;
+std::vector<MediumBand> make_bands(const VolumeSpace& space) {
+    std::vector<MediumBand> bands;
     for (int c = 0; c < 3; ++c) {
-        Band band;
+        MediumBand band;
         for (std::size_t v = 0; v < space.volumes.size(); ++v) {
             const TrackedVolume& volume = space.volumes[v];
             band.extinction[v] = static_cast<double>(volume.sigma_t[c]);
@@ -22,7 +22,7 @@ std::vector<Band> make_bands(const VolumeSpace& space) {
     return bands;
 }
 
-Band without_absorption(Band band) {
+MediumBand without_absorption(MediumBand band) {
     band.extinction = band.scattering;
     return band;
 }

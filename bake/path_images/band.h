@@ -10,25 +10,25 @@
 namespace opaline::bake {
 
 /// The coefficients of all volumes in channels that have the same [1/m where a density is 1].
-struct Band {
+struct MediumBand {
     std::array<double, formats::kMaxVolumes> scattering{}, extinction{};  ///< by volume
     std::array<bool, 3> channel{};                                        ///< that it stands for
 
-    bool operator==(const Band& other) const {
+    bool operator==(const MediumBand& other) const {
         return scattering == other.scattering && extinction == other.extinction;
     }
 };
 
 /// One band for a grey scene, else one for each set of equal channels.
-std::vector<Band> make_bands(const VolumeSpace& space);
+std::vector<MediumBand> make_bands(const VolumeSpace& space);
 
 /// The same medium without absorption.
-Band without_absorption(Band band);
+MediumBand without_absorption(MediumBand band);
 
 /// The sum of all volumes in a band, as the functions of path_integral/ take it. Refers to both.
 struct BandMedium {
     const VolumeSpace& space;
-    const Band& band;
+    const MediumBand& band;
 
     Coefficients operator()(glm::dvec3 x) const {
         Coefficients sum;

@@ -15,7 +15,7 @@ const float* values_of(const ColumnField& field, std::uint32_t slot, std::size_t
 
 // The share of the weights of the nodes around a point from which no surface is in the way.
 double open_share(const ColumnField& field, glm::dvec3 x, std::size_t direction) {
-    const NodesAround around = nodes_around(field.lattice, x);
+    const DepthNodes around = depth_nodes_around(field.lattice, x);
     double weights = 0, open = 0;
     for (std::size_t c = 0; c < around.slot.size(); ++c) {
         if (around.weight[c] > 0) {
@@ -28,9 +28,9 @@ double open_share(const ColumnField& field, glm::dvec3 x, std::size_t direction)
 }
 
 // Optical depth, linear between nodes; 0 where there is no density.
-double depth_between_nodes(const ColumnField& field, const Band& band, glm::dvec3 x,
+double depth_between_nodes(const ColumnField& field, const MediumBand& band, glm::dvec3 x,
                            std::size_t direction) {
-    const NodesAround around = nodes_around(field.lattice, x);
+    const DepthNodes around = depth_nodes_around(field.lattice, x);
     double sum = 0, weights = 0;
     for (std::size_t c = 0; c < around.slot.size(); ++c) {
         if (!(around.weight[c] > 0)) {
@@ -74,7 +74,7 @@ Columns columns_along(const VolumeSpace& space, glm::vec3 from, glm::vec3 direct
 }
 
 ColumnField make_column_field(const VolumeSpace& space, const HitScene* surfaces,
-                              NodeLattice lattice, std::span<const glm::dvec3> toward,
+                              DepthLattice lattice, std::span<const glm::dvec3> toward,
                               const Context& context) {
     constexpr float kForever = std::numeric_limits<float>::infinity();
     const double edge = voxel_edge(space);

@@ -6,7 +6,7 @@
 
 #include "bake/base/context.h"
 #include "bake/path_images/band.h"
-#include "bake/path_images/node_lattice.h"
+#include "bake/path_images/depth_lattice.h"
 #include "bake/reference/hit_scene.h"
 
 namespace opaline::bake {
@@ -21,7 +21,7 @@ Columns columns_along(const VolumeSpace& space, glm::vec3 from, glm::vec3 direct
 /// the way. Marched in steps of half the nodes' spacing, at least a voxel. Kept per volume, so that
 /// every band, with absorption or without, finds its depth here.
 struct ColumnField {
-    NodeLattice lattice;
+    DepthLattice lattice;
     std::vector<glm::dvec3> toward;  ///< unit
     std::size_t volumes = 0;
     /// value[(slot * volumes + v) * toward.size() + d]; its sign bit: blocked.
@@ -30,7 +30,7 @@ struct ColumnField {
 
 /// `surfaces`: null, or what shadows. Stops early if the context is cancelled.
 ColumnField make_column_field(const VolumeSpace& space, const HitScene* surfaces,
-                              NodeLattice lattice, std::span<const glm::dvec3> toward,
+                              DepthLattice lattice, std::span<const glm::dvec3> toward,
                               const Context& context);
 
 /// Whether surfaces count.

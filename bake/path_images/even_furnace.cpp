@@ -8,10 +8,10 @@
 
 namespace opaline::bake {
 
-double furnace_factor(const ScatteringSpace& space, const ViewRay& ray, const Band& band,
+double furnace_factor(const ScatteringSpace& space, const ViewRay& ray, const MediumBand& band,
                       std::size_t number, const SkyView& sky) {
     const ViewBand& steps = ray.band[number];
-    const ScatteredLight light = gather_scattered(
+    const RayLight light = gather_scattered(
         space, ray, sky,
         {.band = band, .steps = steps, .shadows = Shadows::of_volumes, .suns = false});
     const double missing = -std::expm1(-steps.tau) - light.once.x;
@@ -44,8 +44,8 @@ FurnaceGrid make_furnace_grid(const ScatteringSpace& space, const runtime::Camer
     grid.columns = (camera.width + FurnaceGrid::kPixels - 1) / FurnaceGrid::kPixels + 1;
     grid.rows = (camera.height + FurnaceGrid::kPixels - 1) / FurnaceGrid::kPixels + 1;
     grid.bands = static_cast<std::uint32_t>(space.bands.size());
-    std::vector<Band> bands;
-    for (const Band& band : space.bands) {
+    std::vector<MediumBand> bands;
+    for (const MediumBand& band : space.bands) {
         bands.push_back(without_absorption(band));
     }
     const std::size_t corners = std::size_t{grid.columns} * grid.rows;

@@ -15,7 +15,7 @@ inline constexpr double kLeastFactor = 0.5, kMostFactor = 2;
 /// nothing is absorbed: F = (1 - e^-tau - L_once) / L_often, limited to the bounds above. 1 where
 /// there is nothing to scatter. `ray` holds the steps of `band` without its absorption as band
 /// `number`; surfaces count as absent. `sky`: an even sky of radiance 1, with the ray's kernel.
-double furnace_factor(const ScatteringSpace& space, const ViewRay& ray, const Band& band,
+double furnace_factor(const ScatteringSpace& space, const ViewRay& ray, const MediumBand& band,
                       std::size_t number, const SkyView& sky);
 
 /// Factors of a picture's rays: exact at the corners of squares of pixels, linear between corners

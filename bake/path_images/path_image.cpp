@@ -51,10 +51,11 @@ ScatteringSpace prepare(const ReferenceScene& scene, const LightSampler& light,
         make_image_phase(volumes.volumes.front().volume->phase),
         std::move(lights),
         make_column_field(volumes, surfaces,
-                          suns.empty() ? NodeLattice{} : make_node_lattice(volumes, kSunNodes),
+                          suns.empty() ? DepthLattice{} : make_depth_lattice(volumes, kSunNodes),
                           suns, context),
         make_column_field(
-            volumes, surfaces, needs_cells ? make_node_lattice(volumes, kCellNodes) : NodeLattice{},
+            volumes, surfaces,
+            needs_cells ? make_depth_lattice(volumes, kCellNodes) : DepthLattice{},
             needs_cells ? std::span<const glm::dvec3>(sky_cells()) : std::span<const glm::dvec3>(),
             context),
         {.box = grown(density_box(volumes), voxel_edge(volumes)), .step = voxel_edge(volumes)},
@@ -91,12 +92,12 @@ glm::dvec3 scatter_along(const Studio& studio, const ViewRay& ray,
                                  glm::dvec3(ray.direction));
     glm::dvec3 sum(0);
     for (std::size_t k = 0; k < space.bands.size(); ++k) {
-        const ScatteredLight light = gather_scattered(space, ray, sky,
-                                                      {.band = space.bands[k],
-                                                       .steps = ray.band[k],
-                                                       .form = form,
-                                                       .is_open = !hit.has_value(),
-                                                       .often = often});
+        const RayLight light = gather_scattered(space, ray, sky,
+                                                {.band = space.bands[k],
+                                                 .steps = ray.band[k],
+                                                 .form = form,
+                                                 .is_open = !hit.has_value(),
+                                                 .often = often});
         const double factor =
             studio.furnace != nullptr && form == PathForm::ray ? studio.furnace->at(x, y, k) : 1;
         const glm::dvec3 radiance = (once ? 1.0 : 0.0) * light.once + factor * light.often;

@@ -13,7 +13,7 @@ constexpr double kClear = 1e-3;   // optical depth that ends a path on its way t
 
 // Order 1.
 glm::dvec3 gather_once(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
-                       const GatherOptions& options) {
+                       const ScatterOptions& options) {
     const std::vector<ImageSun>& suns = space.lights.suns;
     const BandMedium medium{space.volumes, options.band};
     std::vector<double> from_sun(options.suns ? suns.size() : 0);
@@ -57,7 +57,7 @@ glm::dvec3 gather_once(const ScatteringSpace& space, const ViewRay& ray, const S
 // Paths from one point along the ray to the lights.
 class PathGatherer {
   public:
-    PathGatherer(const ScatteringSpace& space, const GatherOptions& options, glm::dvec3 start,
+    PathGatherer(const ScatteringSpace& space, const ScatterOptions& options, glm::dvec3 start,
                  glm::dvec3 onward, double ell_onward)
         : space_(space),
           options_(options),
@@ -100,7 +100,7 @@ class PathGatherer {
     }
 
     const ScatteringSpace& space_;
-    const GatherOptions& options_;
+    const ScatterOptions& options_;
     BandMedium medium_;
     glm::dvec3 start_, onward_;
     double ell_onward_;
@@ -118,7 +118,7 @@ double gather_ahead(const ViewBand& steps, const ZonalRow& kernel) {
 
 // Toward all lights from one point.
 glm::dvec3 gather_paths(const ScatteringSpace& space, const SkyView& sky,
-                        const GatherOptions& options, const PathGatherer& paths,
+                        const ScatterOptions& options, const PathGatherer& paths,
                         const ZonalTable& table, glm::dvec3 onward) {
     glm::dvec3 sum(0);
     for (std::size_t s = 0; options.suns && s < space.lights.suns.size(); ++s) {
@@ -136,7 +136,7 @@ glm::dvec3 gather_paths(const ScatteringSpace& space, const SkyView& sky,
 }
 
 glm::dvec3 gather_from_entry(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
-                             const GatherOptions& options) {
+                             const ScatterOptions& options) {
     const glm::dvec3 onward(ray.direction);
     const PathGatherer paths(space, options,
                              glm::dvec3(ray.origin) + static_cast<double>(ray.entry) * onward,
@@ -150,7 +150,7 @@ glm::dvec3 gather_from_entry(const ScatteringSpace& space, const ViewRay& ray, c
 }
 
 glm::dvec3 gather_along_ray(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
-                            const GatherOptions& options) {
+                            const ScatterOptions& options) {
     const glm::dvec3 onward(ray.direction);
     const std::vector<ViewStep>& steps = options.steps.step;
     double total = 0;
@@ -179,9 +179,9 @@ glm::dvec3 gather_along_ray(const ScatteringSpace& space, const ViewRay& ray, co
 
 }  // namespace
 
-ScatteredLight gather_scattered(const ScatteringSpace& space, const ViewRay& ray,
-                                const SkyView& sky, const GatherOptions& options) {
-    ScatteredLight light;
+RayLight gather_scattered(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
+                          const ScatterOptions& options) {
+    RayLight light;
     if (ray.is_empty()) {
         return light;
     }

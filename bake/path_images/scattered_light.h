@@ -14,7 +14,7 @@ namespace opaline::bake {
 /// Volumes, their light, and what is known of both before any ray is marched.
 struct ScatteringSpace {
     const VolumeSpace& volumes;
-    std::vector<Band> bands;
+    std::vector<MediumBand> bands;
     ImagePhase phase;
     ImageLights lights;
     ColumnField sun_field;           ///< toward the suns
@@ -31,14 +31,14 @@ enum class PathForm {
 
 /// Radiance along a view ray [W m^-2 sr^-1] per channel of the light, as a medium of one band
 /// scatters it.
-struct ScatteredLight {
+struct RayLight {
     glm::dvec3 once{0}, often{0};
 };
 
 /// What to gather: `band` is that of `steps`. `suns`: false leaves them out. `is_open`: no surface
 /// ends the ray, so that light comes from straight ahead.
-struct GatherOptions {
-    const Band& band;
+struct ScatterOptions {
+    const MediumBand& band;
     const ViewBand& steps;
     PathForm form = PathForm::ray;
     Shadows shadows = Shadows::of_everything;
@@ -47,7 +47,7 @@ struct GatherOptions {
 
 /// `sky`: as the ray sees it, made with the kernel of the form. Order 1 is the integral along the
 /// ray ([Premoze2003] (15) to (17)); orders of two and more are corrected (18), see README.md.
-ScatteredLight gather_scattered(const ScatteringSpace& space, const ViewRay& ray,
-                                const SkyView& sky, const GatherOptions& options);
+RayLight gather_scattered(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
+                          const ScatterOptions& options);
 
 }  // namespace opaline::bake

@@ -41,7 +41,7 @@ glm::dvec3 passing(const ScatteringSpace& space, const HitScene& surfaces, const
         return share;
     }
     const Columns columns = columns_along(space.volumes, from.position, toward, kForever);
-    for (const Band& band : space.bands) {
+    for (const MediumBand& band : space.bands) {
         double depth = 0;
         for (std::size_t v = 0; v < space.volumes.volumes.size(); ++v) {
             depth += band.extinction[v] * columns[v];

@@ -22,7 +22,7 @@ float steps_through(const VolumeSpace& space, const VolumeSegment& segment, glm:
     return std::ceil(std::clamp(depth / kDeepest, voxels, kMostSteps * voxels));
 }
 
-void add_step(const VolumeSpace& space, const Band& band, std::span<const double> density,
+void add_step(const VolumeSpace& space, const MediumBand& band, std::span<const double> density,
               double ds, ViewBand& sum, double& absorbed) {
     double b = 0, c = 0;
     for (std::size_t v = 0; v < space.volumes.size(); ++v) {
@@ -43,8 +43,8 @@ void add_step(const VolumeSpace& space, const Band& band, std::span<const double
 
 }  // namespace
 
-ViewRay march_view_ray(const VolumeSpace& space, std::span<const Band> bands, glm::vec3 origin,
-                       glm::vec3 direction, float reach) {
+ViewRay march_view_ray(const VolumeSpace& space, std::span<const MediumBand> bands,
+                       glm::vec3 origin, glm::vec3 direction, float reach) {
     ViewRay ray{origin, direction, 0, reach, {}, std::vector<ViewBand>(bands.size())};
     std::vector<double> absorbed(bands.size());
     std::array<double, formats::kMaxVolumes> density{};

@@ -33,7 +33,7 @@ struct ViewRay {
 
 /// Steps of at most a voxel and about a quarter of optical depth; within a step coefficients are
 /// constant, and `scattered` is exact.
-ViewRay march_view_ray(const VolumeSpace& space, std::span<const Band> bands, glm::vec3 origin,
-                       glm::vec3 direction, float reach);
+ViewRay march_view_ray(const VolumeSpace& space, std::span<const MediumBand> bands,
+                       glm::vec3 origin, glm::vec3 direction, float reach);
 
 }  // namespace opaline::bake

@@ -1,4 +1,4 @@
-#include "bake/path_images/node_lattice.h"
+#include "bake/path_images/depth_lattice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,15 +32,15 @@ bool has_brick_near(const TrackedVolume& volume, glm::vec3 x, float reach) {
     return false;
 }
 
-std::size_t node_number(const NodeLattice& lattice, glm::ivec3 at) {
+std::size_t node_number(const DepthLattice& lattice, glm::ivec3 at) {
     return (static_cast<std::size_t>(at.z) * static_cast<std::size_t>(lattice.count.y) +
             static_cast<std::size_t>(at.y)) *
                static_cast<std::size_t>(lattice.count.x) +
            static_cast<std::size_t>(at.x);
 }
 
-NodeLattice lay_out(const VolumeSpace& space, const VolumeBox& box, double spacing) {
-    NodeLattice lattice;
+DepthLattice lay_out(const VolumeSpace& space, const VolumeBox& box, double spacing) {
+    DepthLattice lattice;
     lattice.low = box.low;
     lattice.spacing = spacing;
     lattice.count = glm::ivec3(glm::ceil((box.high - box.low) / spacing)) + 1;
@@ -88,13 +88,13 @@ double voxel_edge(const VolumeSpace& space) {
     return edge;
 }
 
-NodeLattice make_node_lattice(const VolumeSpace& space, std::size_t most) {
+DepthLattice make_depth_lattice(const VolumeSpace& space, std::size_t most) {
     const VolumeBox box = density_box(space);
     const glm::dvec3 size = box.high - box.low;
     // At most 32 times as many nodes are looked at as are wanted.
     double spacing = std::max(
         voxel_edge(space), std::cbrt(size.x * size.y * size.z / (32 * static_cast<double>(most))));
-    NodeLattice lattice = lay_out(space, box, spacing);
+    DepthLattice lattice = lay_out(space, box, spacing);
     while (lattice.position.size() > most) {
         const double excess =
             static_cast<double>(lattice.position.size()) / static_cast<double>(most);
@@ -104,13 +104,13 @@ NodeLattice make_node_lattice(const VolumeSpace& space, std::size_t most) {
     return lattice;
 }
 
-NodesAround nodes_around(const NodeLattice& lattice, glm::dvec3 x) {
+DepthNodes depth_nodes_around(const DepthLattice& lattice, glm::dvec3 x) {
     const glm::dvec3 place = glm::clamp((x - lattice.low) / lattice.spacing, glm::dvec3(0),
                                         glm::dvec3(lattice.count - 1));
     const glm::ivec3 first =
         glm::min(glm::ivec3(place), glm::max(lattice.count - 2, glm::ivec3(0)));
     const glm::dvec3 f = place - glm::dvec3(first);
-    NodesAround around;
+    DepthNodes around;
     for (unsigned c = 0; c < 8; ++c) {
         const glm::ivec3 high(c & 1, c >> 1 & 1, c >> 2);
         const glm::dvec3 w = glm::mix(1.0 - f, f, glm::dvec3(high));

@@ -12,7 +12,7 @@
 namespace opaline::bake {
 
 /// Nodes of a cubic lattice, those near density alone.
-struct NodeLattice {
+struct DepthLattice {
     glm::dvec3 low{0};   ///< [m] of node (0, 0, 0)
     double spacing = 1;  ///< [m]
     glm::ivec3 count{0};
@@ -28,14 +28,14 @@ double voxel_edge(const VolumeSpace& space);
 
 /// Nodes as far apart as voxels, or farther where there would be more than `most` of them. Every
 /// point with density has all eight nodes around it.
-NodeLattice make_node_lattice(const VolumeSpace& space, std::size_t most);
+DepthLattice make_depth_lattice(const VolumeSpace& space, std::size_t most);
 
 /// The eight nodes around a point, and their shares.
-struct NodesAround {
+struct DepthNodes {
     std::array<std::uint32_t, 8> slot;
     std::array<double, 8>
         weight;  ///< sum 1, where there is density; 0 for nodes that are far from density
 };
-NodesAround nodes_around(const NodeLattice& lattice, glm::dvec3 x);
+DepthNodes depth_nodes_around(const DepthLattice& lattice, glm::dvec3 x);
 
 }  // namespace opaline::bake
