@@ -26,11 +26,11 @@ VolumeFacts volume_facts(const formats::VolumesView& volumes, const formats::Vol
         density.size() - static_cast<std::uint64_t>(std::ranges::count(density, 0));
     const std::uint64_t cells =
         std::uint64_t{record.extent[0]} * record.extent[1] * record.extent[2];
-    facts.bytes = sizeof(record) + cells * sizeof(std::uint32_t) +
-                  bricks * (sizeof(float) + formats::kBrickVoxels * sizeof(std::uint16_t) +
-                            record.corners_of_brick() * sizeof(std::uint32_t)) +
-                  record.node_count * sizeof(formats::NodeVoxel) +
-                  row_bytes(volumes.rows, record.rows());
+    facts.bytes =
+        sizeof(record) + formats::kPhaseEntries * sizeof(float) + cells * sizeof(std::uint32_t) +
+        bricks * (sizeof(float) + formats::kBrickVoxels * sizeof(std::uint16_t) +
+                  record.corners_of_brick() * sizeof(std::uint32_t)) +
+        record.node_count * sizeof(formats::NodeVoxel) + row_bytes(volumes.rows, record.rows());
     return facts;
 }
 

@@ -12,6 +12,7 @@
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/node_rows.h"
 #include "bake/volumes/pack_density.h"
+#include "bake/volumes/phase_table.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_walks.h"
 
@@ -289,6 +290,9 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
             !status) {
             return std::move(status).error();
         }
+        const std::vector<float> phase =
+            tabulate_phase(job.scene.volumes[layout.volume].phase, own.phase.peak);
+        volumes.phase.insert(volumes.phase.end(), phase.begin(), phase.end());
         volumes.records.push_back(record);
     }
     LitNodes lit =

@@ -9,6 +9,7 @@
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/volume_knobs.h"
 #include "formats/opal/cubemap.h"
+#include "formats/opal/phase_table.h"
 
 namespace opaline::bake {
 namespace {
@@ -143,7 +144,8 @@ Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, dou
 double volume_density_bytes(const VolumeWork& work) {
     // Codes of 16 bits, half of which compression saves where bricks are half empty; positions.
     constexpr double kCompressed = 0.5, kNode = 12;
-    return kCompressed * 2 * work.voxels + kCompressed * kNode * work.nodes;
+    constexpr double kPhase = 4.0 * formats::kPhaseEntries;
+    return kCompressed * 2 * work.voxels + kCompressed * kNode * work.nodes + kPhase;
 }
 
 double volume_row_bytes(const VolumeWork& work, const Knobs& knobs, double rows) {

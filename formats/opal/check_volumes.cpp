@@ -153,6 +153,20 @@ std::string find_record_value_fault(const VolumeRecord& v) {
     return {};
 }
 
+std::string find_phase_fault(const VolumesView& volumes, const VolumeRecord& v) {
+    const auto phase = volumes.phase_of(static_cast<std::size_t>(&v - volumes.records.data()));
+    if (!std::all_of(phase.begin(), phase.end(),
+                     [](float p) { return p >= 0 && std::isfinite(p); })) {
+        return "its phase function is below zero or not finite";
+    }
+    constexpr double kTolerance = 1e-3;  // far above the rounding of floats
+    const double integral = integrate_phase_table(phase);
+    if (v.single_terms > 0 && !(std::abs(integral - 1) <= kTolerance)) {
+        return "its phase function integrates to " + number(integral) + "; expected 1";
+    }
+    return {};
+}
+
 // Of one brick, whose cell of the table counts from its lowest corner.
 bool has_nodes_in_place(const VolumesView& volumes, const VolumeRecord& v, std::uint32_t brick,
                         const std::array<std::uint32_t, 3>& cell) {
@@ -233,6 +247,7 @@ Fault find_volume_value_fault(const VolumesView& volumes) {
     }
     return find_first(volumes, [&](const VolumeRecord& v) {
         std::string fault = find_record_value_fault(v);
+        if (fault.empty()) fault = find_phase_fault(volumes, v);
         return fault.empty() ? find_brick_value_fault(volumes, v) : fault;
     });
 }

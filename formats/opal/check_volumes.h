@@ -18,8 +18,9 @@ inline constexpr std::int32_t kMaxBrick = 1 << 22;
 /// volumes are fine.
 Fault find_volumes_fault(const VolumesView& volumes);
 
-/// What a sound baker never writes: extinction, albedo, moments and density out of range, nodes
-/// elsewhere than at the corners that refer to them, faulty rows (find_row_value_fault).
+/// What a sound baker never writes: extinction, albedo, moments, phase functions and density out of
+/// range, nodes elsewhere than at the corners that refer to them, faulty rows
+/// (find_row_value_fault).
 /// Precondition: find_volumes_fault found nothing.
 Fault find_volume_value_fault(const VolumesView& volumes);
 

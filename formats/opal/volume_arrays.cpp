@@ -21,7 +21,7 @@ std::vector<std::span<const std::byte>> volume_arrays(const VolumesHead& head,
         std::as_bytes(std::span(&head, 1)), std::as_bytes(volumes.records),
         std::as_bytes(volumes.table),       std::as_bytes(volumes.density_scale),
         std::as_bytes(volumes.density),     std::as_bytes(volumes.corner),
-        std::as_bytes(volumes.node)};
+        std::as_bytes(volumes.node),        std::as_bytes(volumes.phase)};
     const auto of_rows = row_arrays(rows, volumes.rows);
     arrays.insert(arrays.end(), of_rows.begin(), of_rows.end());
     return arrays;
@@ -35,6 +35,7 @@ bool take_volumes(SectionCursor& cursor, VolumesView& volumes) {
            cursor.take(head.bricks, volumes.density_scale) &&
            cursor.take(head.bricks * kBrickVoxels, volumes.density) &&
            cursor.take(head.corners, volumes.corner) && cursor.take(head.nodes, volumes.node) &&
+           cursor.take(std::uint64_t{head.count} * kPhaseEntries, volumes.phase) &&
            take_rows(cursor, volumes.rows);
 }
 

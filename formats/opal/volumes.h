@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "formats/opal/phase_table.h"
 #include "formats/opal/rgb.h"
 #include "formats/opal/sparse_rows.h"
 
@@ -42,6 +43,8 @@ struct VolumeRecord {
     std::uint32_t first_row = 0, first_band_row = 0;
     std::uint64_t first_code = 0;
     /// Legendre moments of the phase function, by degree; those of degrees that K_s has are used.
+    /// They are for light that varies slowly with direction; the phase function itself is in
+    /// VolumesView::phase.
     std::array<float, kMaxVolumeMoments> moment{};
     std::array<std::uint32_t, 3> reserved{};
 
@@ -72,9 +75,15 @@ struct VolumesView {
     std::span<const std::uint32_t> corner;   ///< nodes of a volume, counted from its first one, or
                                              ///< kNoNode; brick after brick, x fastest
     std::span<const NodeVoxel> node;         ///< (i, j, k) of each node
+    std::span<const float> phase;            ///< kPhaseEntries a volume: p', see phase_table.h
     SparseRowsView rows;                     ///< terms() rows a node
 
     bool empty() const { return records.empty(); }
+
+    /// The phase function of a volume.
+    std::span<const float> phase_of(std::size_t volume) const {
+        return phase.subspan(volume * kPhaseEntries, kPhaseEntries);
+    }
 };
 
 /// Owning twin of `VolumesView`: what the baker builds.
@@ -85,10 +94,11 @@ struct Volumes {
     std::vector<std::uint16_t> density;
     std::vector<std::uint32_t> corner;
     std::vector<NodeVoxel> node;
+    std::vector<float> phase;
     SparseRows rows;
 
     VolumesView view() const {
-        return {records, table, density_scale, density, corner, node, rows.view()};
+        return {records, table, density_scale, density, corner, node, phase, rows.view()};
     }
 };
 

@@ -153,6 +153,8 @@ TEST_F(GoldenFile, VolumesToo) {
     EXPECT_EQ(volumes.density[2 * kBrickVoxels + 511], 32910);
     EXPECT_EQ(volumes.corner[2], kNoNode);
     EXPECT_EQ(volumes.node[1], (NodeVoxel{4, 0, 16}));
+    EXPECT_FLOAT_EQ(volumes.phase_of(1)[0], 0.03978874f);
+    EXPECT_FLOAT_EQ(volumes.phase_of(1)[192], 0.10941903f);
     for (const RowSum& row : {RowSum{0, 0, 2.964527, 24.95635}, RowSum{1, 0, 2.465866, 10.08604},
                               RowSum{1, 2, 3.55175, 17.96101}}) {
         expect_sums(volumes.rows, volumes.records[row.primitive].rows(), row);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <numbers>
 #include <random>
 #include <utility>
 
@@ -45,6 +46,11 @@ inline void add_volume(formats::Asset& asset, const VolumeShape& shape) {
     v.first_band_row = static_cast<std::uint32_t>(volumes.rows.detail_scale.size());
     v.first_code = volumes.rows.code8.size() + volumes.rows.code16.size();
     v.moment = {1, 0.6f, 0.36f, 0, 0};
+    // (1 + c / 2) / (4 pi)
+    for (std::size_t i = 0; i < kPhaseEntries; ++i) {
+        const double c = phase_cosine(static_cast<double>(i));
+        volumes.phase.push_back(static_cast<float>((1 + c / 2) / (4 * std::numbers::pi)));
+    }
     std::map<NodeVoxel, std::uint32_t> numbers;
     const auto side = static_cast<std::int32_t>(v.corners_along_edge());
     const auto spacing = static_cast<std::int32_t>(v.spacing);

@@ -67,6 +67,9 @@ TEST(VolumesDamage, EveryFlippedByteIsFoundByTheFullCheck) {
 void use(const VolumesView& volumes) {
     double sum = 0;
     std::vector<float> dense(cubemap_texels(volumes.rows.cubemap_size));
+    for (const float cosine : {-1.0f, 0.3f, 1.0f}) {
+        sum += double{eval_phase_table(volumes.phase_of(volumes.records.size() - 1), cosine)};
+    }
     for (const VolumeRecord& v : volumes.records) {
         const std::size_t cells = std::size_t{v.extent[0]} * v.extent[1] * v.extent[2];
         for (std::size_t cell = 0; cell < cells; ++cell) {

@@ -35,6 +35,7 @@ void expect_same_volumes(const VolumesView& a, const VolumesView& b) {
     expect_same(a.density, b.density);
     expect_same(a.corner, b.corner);
     expect_same(a.node, b.node);
+    expect_same(a.phase, b.phase);
     EXPECT_EQ(a.rows.cubemap_size, b.rows.cubemap_size);
     EXPECT_EQ(a.rows.code_bits, b.rows.code_bits);
     expect_same(a.rows.row_offset, b.rows.row_offset);
@@ -107,6 +108,7 @@ TEST(VolumesFile, IsUsedInPlace) {
     expect_inside(loaded->view.volumes.records);
     expect_inside(loaded->view.volumes.density);
     expect_inside(loaded->view.volumes.corner);
+    expect_inside(loaded->view.volumes.phase);
     expect_inside(loaded->view.volumes.rows.code8);
 }
 
@@ -232,6 +234,7 @@ TEST(VolumesFile, ArraysOfOtherSizesThanTheHeadSaysAreRefused) {
     };
     expect_refused([](Volumes& v) { v.density.resize(v.density.size() - kBrickVoxels); });
     expect_refused([](Volumes& v) { v.density_scale.resize(v.density_scale.size() + 64); });
+    expect_refused([](Volumes& v) { v.phase.resize(v.phase.size() - kPhaseEntries); });
     expect_refused([](Volumes& v) { v.rows.average_scale.clear(); });
 }
 
@@ -259,6 +262,24 @@ TEST(VolumesFile, ValuesOfRecordsOutOfRangeAreRefusedByName) {
     EXPECT_EQ(value_fault([](Volumes& v) {
                   v.records[0].single_terms = 0;
                   v.records[0].moment = {};
+              }),
+              "");
+}
+
+TEST(VolumesFile, PhaseFunctionsOutOfRangeAreRefusedByName) {
+    for (const float bad : {-1e-6f, kNan, kInfinity}) {
+        EXPECT_THAT(value_fault([=](Volumes& v) { v.phase[kPhaseEntries + 30] = bad; }),
+                    HasSubstr("volume 1: its phase function is below zero or not finite"));
+    }
+    EXPECT_THAT(value_fault([](Volumes& v) { v.phase[128] = 1; }),
+                HasSubstr("volume 0: its phase function integrates to 1.0"));
+    const auto black = [](Volumes& v) { std::fill_n(v.phase.begin(), kPhaseEntries, 0.0f); };
+    EXPECT_THAT(value_fault(black),
+                HasSubstr("volume 0: its phase function integrates to 0.000000; expected 1"));
+    // Nobody uses it where single scattering is not shown.
+    EXPECT_EQ(value_fault([&](Volumes& v) {
+                  black(v);
+                  v.records[0].single_terms = 0;
               }),
               "");
 }
