@@ -202,7 +202,8 @@ typedef struct opaline_volume_info {
                             volume is: corner x + 2 y + 4 z, x, y and z 0 or 1; all 0: no density */
     uint32_t bricks;     /* of 8 x 8 x 8 voxels of density */
     uint32_t nodes;      /* points at which light is known */
-    uint32_t node_terms; /* dot products per node when it is relit */
+    uint32_t node_terms; /* dot products per node when it is relit; up to 8 more where the
+                            phase function is sharp and the light has small bright parts */
     uint32_t bands;      /* 1: grey transport, 3: RGB */
 } opaline_volume_info;
 

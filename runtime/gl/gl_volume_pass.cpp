@@ -6,13 +6,23 @@
 #include <string>
 #include <vector>
 
+#include "runtime/volumes/suns.h"
 #include "shader_text.h"
 
 namespace opaline::runtime {
 namespace {
 
 // Locations of volumes.frag.glsl.
-enum Uniform : GLint { kSupersampling, kTileOrigin, kToPlane, kRight, kDown, kForward, kNearPlane };
+enum Uniform : GLint {
+    kSupersampling,
+    kTileOrigin,
+    kToPlane,
+    kRight,
+    kDown,
+    kForward,
+    kNearPlane,
+    kSuns
+};
 
 // Volume of volume_march.glsl.
 struct ShaderVolume {
@@ -58,7 +68,8 @@ ShaderVolume shader_volume(const GlVolumes& volumes, const GlVolumes::Entry& ent
     volume.extinction = {per_unit(record.sigma_t.r), per_unit(record.sigma_t.g),
                          per_unit(record.sigma_t.b), 0};
     volume.albedo = {record.albedo.r, record.albedo.g, record.albedo.b, 0};
-    volume.coefficient = {static_cast<std::uint32_t>(3 * part.first), 0, 0, 0};
+    volume.coefficient = {static_cast<std::uint32_t>(3 * part.first), part.suns,
+                          static_cast<std::uint32_t>(formats::kPhaseEntries * entry.volume), 0};
     return volume;
 }
 
@@ -71,6 +82,7 @@ formats::Result<GlProgram> make_volume_program(const GlVolumes& volumes) {
     return make_program("volumes",
                         "#define VOLUMES " + std::to_string(volumes.entry.size()) +
                             "\n#define HARMONICS " + std::to_string(volumes.harmonics) +
+                            "\n#define SUNS " + std::to_string(kMaxSuns) +
                             "\n#define BRICK_WORDS " + std::to_string(kGlBrickWords) + "\n",
                         stages);
 }
@@ -84,9 +96,12 @@ void draw_volumes_filtered(const DrawScene& scene, const GlProgram& program, con
     }
     std::size_t size = 0;
     const GlBuffer buffer = make_buffer_of(std::span<const ShaderVolume>(records), size);
-    const std::array<const GlBuffer*, 5> buffers{&buffer, &scene.volumes.table,
-                                                 &scene.volumes.density, &scene.volumes.corner,
-                                                 &scene.volumes.coefficient};
+    const std::array<const GlBuffer*, 6> buffers{&buffer,
+                                                 &scene.volumes.table,
+                                                 &scene.volumes.density,
+                                                 &scene.volumes.corner,
+                                                 &scene.volumes.coefficient,
+                                                 &scene.volumes.phase};
     for (GLuint i = 0; i < buffers.size(); ++i) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]->name());
     }
@@ -98,6 +113,8 @@ void draw_volumes_filtered(const DrawScene& scene, const GlProgram& program, con
     set_vec3(name, kRight, static_cast<float>(frame.tan_half_x) * frame.right);
     set_vec3(name, kDown, static_cast<float>(-frame.tan_half_y) * frame.up);
     set_vec3(name, kForward, -1.0f * frame.backward);
+    const std::vector<formats::Vec3>& suns = scene.volumes.light.sun;
+    if (!suns.empty()) glUniform3fv(kSuns, static_cast<GLsizei>(suns.size()), &suns.front().x);
     glUniform1f(kNearPlane, static_cast<float>(view_unit(scene.camera) *
                                                static_cast<double>(scene.camera.near_plane)));
     glDrawArrays(GL_TRIANGLES, 0, 3);

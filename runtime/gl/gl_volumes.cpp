@@ -4,10 +4,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 
 #include "runtime/parallel.h"
+#include "runtime/volumes/suns.h"
+#include "runtime/volumes/volume_source.h"
 
 namespace opaline::runtime {
 namespace {
@@ -108,8 +111,10 @@ std::uint32_t most_terms(const formats::VolumeRecord& record) {
 
 std::size_t coefficient_bytes(const VolumesView& volumes) {
     std::size_t size = 0;
-    for (const formats::VolumeRecord& record : volumes.records) {
-        size += std::size_t{record.node_count} * most_terms(record) * sizeof(formats::Rgb);
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        const formats::VolumeRecord& record = volumes.records[v];
+        const std::size_t suns = needs_suns(record, volumes.phase_of(v)) ? kMaxSuns : 0;
+        size += record.node_count * (most_terms(record) + suns) * sizeof(formats::Rgb);
     }
     return size;
 }
@@ -167,6 +172,7 @@ formats::Result<GlVolumes> upload_volumes(const VolumesView& volumes, std::size_
     if (volumes.empty()) return gl;
     if (const auto status = check_limits(volumes, max_block_bytes); !status) return status.error();
     gl.kept.records.assign(volumes.records.begin(), volumes.records.end());
+    gl.kept.phase.assign(volumes.phase.begin(), volumes.phase.end());
     gl.kept.rows = copy_rows(volumes.rows);
     std::vector<std::uint32_t> words(volumes.density_scale.size() * kGlBrickWords);
     for (std::size_t v = 0; v < gl.kept.records.size(); ++v) {
@@ -180,6 +186,11 @@ formats::Result<GlVolumes> upload_volumes(const VolumesView& volumes, std::size_
     gl.table = make_buffer_of(volumes.table, gl.resident);
     gl.corner = make_buffer_of(volumes.corner, gl.resident);
     gl.density = make_buffer_of(std::span<const std::uint32_t>(words), gl.resident);
+    // A damaged file may hold NaN, which not all drivers handle.
+    std::vector<float> phase;
+    std::ranges::transform(volumes.phase, std::back_inserter(phase),
+                           [](float p) { return tame(p, kLargestSource); });
+    gl.phase = make_buffer_of(std::span<const float>(phase), gl.resident);
     gl.resident += coefficient_bytes(volumes);
     if (const auto status = check_gl("uploading volumes"); !status) return status.error();
     if (const auto status = update_coefficients(gl, TermSet::none); !status) {

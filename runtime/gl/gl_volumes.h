@@ -25,13 +25,14 @@ struct GlVolumes {
         std::size_t volume = 0;  ///< its number in the asset
     };
     std::vector<Entry> entry;  ///< those that a ray can meet
-    formats::Volumes kept;     ///< records and rows
+    formats::Volumes kept;     ///< records, phase functions and rows
 
     GlBuffer table, corner;
     GlBuffer density;  ///< kGlBrickWords a brick
+    GlBuffer phase;    ///< kPhaseEntries a volume
     GlBuffer coefficient;
     VolumeLight light;            ///< its coefficients are on the GPU
-    std::uint32_t harmonics = 1;  ///< the most terms of a node
+    std::uint32_t harmonics = 1;  ///< the most terms of a node, suns left out
     std::size_t resident = 0;     ///< [bytes], most coefficients included
 
     LightVector lit_by;  ///< the last light; n = 0 before there is one

@@ -1,34 +1,13 @@
 #include "runtime/volumes/moment_lights.h"
 
-#include <array>
-#include <span>
+#include <cstddef>
 
 #include "formats/opal/cubemap.h"
-#include "formats/opal/haar.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "runtime/parallel.h"
 
 namespace opaline::runtime {
 namespace {
-
-// integral[3 j + band] over texel j: make_light_vector undone.
-std::vector<double> texel_integrals(const LightVector& light) {
-    const std::uint32_t n = light.n;
-    const std::size_t face_size = std::size_t{n} * n, texels = formats::cubemap_texels(n);
-    std::vector<double> integral(3 * texels), face(face_size), scratch(face_size);
-    for (std::size_t b = 0; b < 3; ++b) {
-        for (std::size_t first = 0; first < texels; first += face_size) {
-            for (std::size_t i = 0; i < face_size; ++i) {
-                face[i] = static_cast<double>(light.rgba[4 * (first + i) + b]);
-            }
-            formats::haar_inverse(std::span<double>(face), n, scratch);
-            for (std::size_t i = 0; i < face_size; ++i) {
-                integral[3 * (first + i) + b] = face[i];
-            }
-        }
-    }
-    return integral;
-}
 
 // harmonic[count j + k] = Y_k of texel j's centre.
 std::vector<float> texel_harmonics(std::uint32_t n, std::uint32_t count) {
@@ -44,19 +23,18 @@ std::vector<float> texel_harmonics(std::uint32_t n, std::uint32_t count) {
 
 }  // namespace
 
-std::vector<LightVector> make_moment_lights(const LightVector& light, std::uint32_t count,
-                                            unsigned threads) {
+std::vector<LightVector> make_moment_lights(std::span<const double> integral, std::uint32_t n,
+                                            std::uint32_t count, unsigned threads) {
     std::vector<LightVector> moments(count);
     if (count == 0) return moments;
-    const std::vector<double> integral = texel_integrals(light);
-    const std::vector<float> harmonic = texel_harmonics(light.n, count);
+    const std::vector<float> harmonic = texel_harmonics(n, count);
     for_ranges(count, 1, threads, [&](std::uint32_t first, std::uint32_t end) {
         std::vector<double> product(integral.size());
         for (std::uint32_t k = first; k < end; ++k) {
             for (std::size_t i = 0; i < product.size(); ++i) {
                 product[i] = integral[i] * static_cast<double>(harmonic[i / 3 * count + k]);
             }
-            moments[k] = make_light_vector(product, light.n);
+            moments[k] = make_light_vector(product, n);
         }
     });
     return moments;

@@ -4,10 +4,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <utility>
 
 #include "formats/opal/spherical_harmonics.h"
 #include "runtime/parallel.h"
 #include "runtime/volumes/moment_lights.h"
+#include "runtime/volumes/suns.h"
+#include "runtime/volumes/texel_integrals.h"
+#include "runtime/volumes/volume_source.h"
 
 namespace opaline::runtime {
 namespace {
@@ -16,9 +21,7 @@ using formats::Rgb;
 using formats::TermSet;
 using formats::VolumeRecord;
 
-constexpr float kY0 = 0.2820947918f;  // Y_0 = 1 / sqrt(4 pi)
-
-// Nodes per block: a moment light stays in the cache while it meets all of them.
+// Nodes per block: a light vector stays in the cache while it meets all of them.
 constexpr std::uint32_t kBlock = 256;
 
 float finite(float x) {
@@ -38,15 +41,71 @@ struct Shown {
           multiple(has_any(terms, TermSet::volume_multiple) ? record.multiple_terms : 0) {}
 };
 
+// The light in the forms that volumes meet. Those with suns have the moments of the rest, the
+// others those of the whole.
+struct Lights {
+    const LightVector& whole;
+    std::vector<LightVector> moment, moment_of_rest;
+    std::vector<LightVector> sun;
+
+    std::span<const LightVector> moments(const VolumeLight::Part& part) const {
+        return part.suns > 0 ? moment_of_rest : moment;
+    }
+};
+
+// Which volumes meet suns, and the light for all of them; fills `result`, coefficients with 0.
+Lights prepare(const formats::VolumesView& volumes, const LightVector& light,
+               const RelightVolumesOptions& options, VolumeLight& result) {
+    Lights lights{light, {}, {}, {}};
+    std::vector<char> meets_suns;
+    std::uint32_t moments = 0, moments_of_rest = 0;
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        const VolumeRecord& record = volumes.records[v];
+        const Shown shown(record, options.terms);
+        meets_suns.push_back(shown.single > 0 && needs_suns(record, volumes.phase_of(v)) ? 1 : 0);
+        std::uint32_t& most = meets_suns.back() != 0 ? moments_of_rest : moments;
+        most = std::max(most, shown.single);
+    }
+    if (moments + moments_of_rest > 0) {
+        const std::vector<double> integral = texel_integrals(light);
+        SplitLight split;
+        if (moments_of_rest > 0) split = split_suns(integral, light.n);
+        // Without suns the rest is the whole.
+        if (split.sun.empty()) moments = std::max(moments, std::exchange(moments_of_rest, 0));
+        lights.moment = make_moment_lights(integral, light.n, moments, options.threads);
+        lights.moment_of_rest =
+            make_moment_lights(split.rest, light.n, moments_of_rest, options.threads);
+        for (const Sun& sun : split.sun) {
+            result.sun.push_back(sun.direction);
+            lights.sun.push_back(make_sun_light(sun, light.n));
+        }
+    }
+    std::size_t size = 0;
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        const Shown shown(volumes.records[v], options.terms);
+        VolumeLight::Part part{std::max(shown.single, shown.multiple), 0, size};
+        if (meets_suns[v] != 0) part.suns = static_cast<std::uint32_t>(result.sun.size());
+        size += std::size_t{volumes.records[v].node_count} * part.stride();
+        result.part.push_back(part);
+    }
+    result.coefficient.resize(size);
+    return lights;
+}
+
 // Everything that the blocks of a volume share.
 struct Job {
     const formats::VolumesView& volumes;
     const VolumeRecord& record;
-    const LightVector& light;
-    std::span<const LightVector> moment_light;
+    const VolumeLight::Part& part;
+    const Lights& lights;
     Shown shown;
-    std::uint32_t terms;  ///< K
     DotPath path;
+};
+
+// Coefficients of the nodes from `first` to `end`, stride() of each.
+struct Block {
+    std::uint32_t first, end;
+    std::span<Rgb> coefficient;
 };
 
 // (-1)^l m_l by k.
@@ -60,29 +119,38 @@ std::array<float, formats::kMaxHarmonics> phase_factors(const VolumeRecord& reco
     return factor;
 }
 
-void add_single(const Job& job, std::uint32_t first, std::uint32_t end, std::span<Rgb> out) {
-    const auto factor = phase_factors(job.record);
-    for (std::uint32_t k = 0; k < job.shown.single; ++k) {
-        for (std::uint32_t node = first; node < end; ++node) {
-            Rgb moment;
-            dot_rows(job.volumes.rows, job.record.rows(), job.moment_light[k],
-                     node * job.record.terms(), {&moment, 1}, job.path);
-            Rgb& c = out[std::size_t{node - first} * job.terms + k];
-            c = c + factor[k] * moment;
-        }
+// factor <V, light> to coefficient j of each node.
+void add_attenuated(const Job& job, const Block& block, const LightVector& light, float factor,
+                    std::uint32_t j) {
+    for (std::uint32_t node = block.first; node < block.end; ++node) {
+        Rgb product;
+        dot_rows(job.volumes.rows, job.record.rows(), light, node * job.record.terms(),
+                 {&product, 1}, job.path);
+        Rgb& c = block.coefficient[std::size_t{node - block.first} * job.part.stride() + j];
+        c = c + factor * product;
     }
 }
 
-void add_multiple(const Job& job, std::uint32_t first, std::uint32_t end, std::span<Rgb> out) {
+void add_single(const Job& job, const Block& block) {
+    const auto factor = phase_factors(job.record);
+    for (std::uint32_t k = 0; k < job.shown.single; ++k) {
+        add_attenuated(job, block, job.lights.moments(job.part)[k], factor[k], k);
+    }
+    for (std::uint32_t s = 0; s < job.part.suns; ++s) {
+        add_attenuated(job, block, job.lights.sun[s], 1, job.part.terms + s);
+    }
+}
+
+void add_multiple(const Job& job, const Block& block) {
     if (job.shown.multiple == 0) return;
     std::array<Rgb, formats::kMaxHarmonics> product;
     const auto own = std::span<Rgb>(product).first(job.shown.multiple);
-    const float scale = job.shown.multiple == 1 ? 1.0f / kY0 : 1.0f;
-    for (std::uint32_t node = first; node < end; ++node) {
-        dot_rows(job.volumes.rows, job.record.rows(), job.light, node * job.record.terms() + 1, own,
-                 job.path);
+    const float scale = job.shown.multiple == 1 ? std::sqrt(4 * std::numbers::pi_v<float>) : 1.0f;
+    for (std::uint32_t node = block.first; node < block.end; ++node) {
+        dot_rows(job.volumes.rows, job.record.rows(), job.lights.whole,
+                 node * job.record.terms() + 1, own, job.path);
         for (std::uint32_t k = 0; k < job.shown.multiple; ++k) {
-            Rgb& c = out[std::size_t{node - first} * job.terms + k];
+            Rgb& c = block.coefficient[std::size_t{node - block.first} * job.part.stride() + k];
             c = c + scale * own[k];
         }
     }
@@ -93,31 +161,21 @@ void add_multiple(const Job& job, std::uint32_t first, std::uint32_t end, std::s
 VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVector& light,
                             const RelightVolumesOptions& options) {
     VolumeLight result;
-    std::size_t size = 0;
-    std::uint32_t moments = 0;
-    for (const VolumeRecord& record : volumes.records) {
-        const Shown shown(record, options.terms);
-        const std::uint32_t terms = std::max(shown.single, shown.multiple);
-        result.part.push_back({terms, size});
-        size += std::size_t{record.node_count} * terms;
-        moments = std::max(moments, shown.single);
-    }
-    result.coefficient.resize(size);
-    const auto moment_lights = make_moment_lights(light, moments, options.threads);
+    const Lights lights = prepare(volumes, light, options, result);
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         const VolumeRecord& record = volumes.records[v];
-        const std::uint32_t terms = result.part[v].terms;
-        const Job job{volumes, record,      light, moment_lights, {record, options.terms},
-                      terms,   options.path};
+        const VolumeLight::Part& part = result.part[v];
+        const Job job{volumes, record, part, lights, {record, options.terms}, options.path};
+        const auto own = std::span<Rgb>(result.coefficient).subspan(part.first);
         for_ranges(record.node_count, kBlock, options.threads,
                    [&](std::uint32_t first, std::uint32_t end) {
-                       const std::span<Rgb> out =
-                           std::span<Rgb>(result.coefficient)
-                               .subspan(result.part[v].first + std::size_t{first} * terms,
-                                        std::size_t{end - first} * terms);
-                       add_single(job, first, end, out);
-                       add_multiple(job, first, end, out);
-                       std::ranges::transform(out, out.begin(), [](Rgb c) { return finite(c); });
+                       const Block block{first, end,
+                                         own.subspan(std::size_t{first} * part.stride(),
+                                                     std::size_t{end - first} * part.stride())};
+                       add_single(job, block);
+                       add_multiple(job, block);
+                       std::ranges::transform(block.coefficient, block.coefficient.begin(),
+                                              [](Rgb c) { return finite(c); });
                    });
     }
     return result;
@@ -127,13 +185,11 @@ std::vector<Rgb> node_radiance(const formats::VolumesView& volumes, const Volume
                                std::size_t volume, const std::optional<formats::Vec3>& eye) {
     const VolumeRecord& record = volumes.records[volume];
     const auto& m = record.to_world;
-    const std::uint32_t terms = light.part[volume].terms;
     std::vector<Rgb> radiance(record.node_count);
-    if (terms == 0) return radiance;
+    if (light.part[volume].terms == 0) return radiance;
+    const SourceWeights mean = mean_weights(light, volume);
     for (std::uint32_t i = 0; i < record.node_count; ++i) {
-        const auto c = light.coefficients(volume, i);
-        std::array<float, formats::kMaxHarmonics> h{kY0};
-        std::uint32_t shown = 1;
+        SourceWeights weight = mean;
         if (eye) {
             const formats::NodeVoxel node = volumes.node[record.first_node + i];
             const auto x = static_cast<float>(node[0]), y = static_cast<float>(node[1]),
@@ -144,16 +200,11 @@ std::vector<Rgb> node_radiance(const formats::VolumesView& volumes, const Volume
                                      m[8] * x + m[9] * y + m[10] * z + m[11]};
             // From the node itself there is no direction: the mean, as without an eye.
             if (const float norm = length(to_eye); norm > 0 && std::isfinite(norm)) {
-                formats::eval_spherical_harmonics((1 / norm) * to_eye,
-                                                  std::span<float>(h).first(terms));
-                shown = terms;
+                weight =
+                    source_weights(light, volume, volumes.phase_of(volume), (1 / norm) * to_eye);
             }
         }
-        Rgb sum;
-        for (std::uint32_t k = 0; k < shown; ++k) {
-            sum = sum + h[k] * c[k];
-        }
-        sum = finite(sum);
+        const Rgb sum = finite(eval_node(light, volume, i, weight));
         radiance[i] = {std::max(0.0f, sum.r), std::max(0.0f, sum.g), std::max(0.0f, sum.b)};
     }
     return radiance;

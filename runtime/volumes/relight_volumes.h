@@ -18,27 +18,34 @@ namespace opaline::runtime {
 /// What volumes scatter under one light, toward any eye. Node i of volume v scatters toward the
 /// unit direction w_o the source radiance
 ///
-///     J(w_o) = sum_{k < terms} c_k Y_k(w_o),   c_k = coefficients(v, i)[k],
+///     J(w_o) = sum_{k < terms} c_k Y_k(w_o) + sum_{s < suns} e_s p'(-l_s . w_o),
 ///
-/// before max(0, .), with, for k = l (l + 1) + m,
+/// before max(0, .), with coefficients(v, i) = c_0 ..., e_0 ... and, for k = l (l + 1) + m,
 ///
-///     c_k = (-1)^l m_l <V, Y_k L> [k < K_s] + <T_k, L> [k < K_m],
+///     c_k = (-1)^l m_l <V, Y_k L'> [k < K_s] + <T_k, L> [k < K_m],   e_s = <V, L_s>,
 ///
-/// m_l the moments of the phase function, V row 0 of the node and T_k row 1 + k. Where K_m = 1 its
-/// h_0 = 1 is taken as Y_0 / Y_0, so that all of J is in harmonics.
+/// m_l the moments of the phase function p', V row 0 of the node and T_k row 1 + k. The light L is
+/// split into suns L_s in the directions l_s, which meet the phase function as it is, and the rest
+/// L' (suns.h); where the moments say the same there are no suns, and L' = L. Where K_m = 1 its
+/// h_0 = 1 is taken as Y_0 / Y_0, so that all of J but suns is in harmonics.
 struct VolumeLight {
     struct Part {
         std::uint32_t terms =
-            0;                  ///< K = max(K_s, K_m) of what is shown; 0: the volume only absorbs
-        std::size_t first = 0;  ///< of the volume's coefficients
+            0;                   ///< K = max(K_s, K_m) of what is shown; 0: the volume only absorbs
+        std::uint32_t suns = 0;  ///< 0, or all of VolumeLight::sun
+        std::size_t first = 0;   ///< of the volume's coefficients
+
+        /// Coefficients of a node.
+        std::uint32_t stride() const { return terms + suns; }
     };
     std::vector<Part> part;                 ///< one for each volume
+    std::vector<formats::Vec3> sun;         ///< l_s, unit, toward the suns, world; kMaxSuns at most
     std::vector<formats::Rgb> coefficient;  ///< [W m^-2 sr^-1], finite; node after node
 
-    /// c_k of a node; `node` counts from the volume's first one.
+    /// Of a node; `node` counts from the volume's first one.
     std::span<const formats::Rgb> coefficients(std::size_t volume, std::uint32_t node) const {
         const Part& p = part[volume];
-        return std::span(coefficient).subspan(p.first + std::size_t{node} * p.terms, p.terms);
+        return std::span(coefficient).subspan(p.first + std::size_t{node} * p.stride(), p.stride());
     }
 };
 
@@ -56,7 +63,7 @@ VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVect
                             const RelightVolumesOptions& options = {});
 
 /// max(0, J) of every node of a volume toward the point `eye` [m, world]; without one the mean of J
-/// over all directions, c_0 Y_0, likewise not below 0.
+/// over all directions, c_0 Y_0 + sum_s e_s / (4 pi), likewise not below 0.
 std::vector<formats::Rgb> node_radiance(const formats::VolumesView& volumes,
                                         const VolumeLight& light, std::size_t volume,
                                         const std::optional<formats::Vec3>& eye);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "formats/opal/spherical_harmonics.h"
 #include "runtime/volumes/brick_walk.h"
 #include "runtime/volumes/volume_source.h"
 
@@ -22,6 +21,7 @@ struct Traveller {
     BrickSpan span;
     BrickBlock block;
     bool is_left = true;  ///< behind its last brick
+    SourceWeights weight{};
 
     // Source radiance at the eight nodes around the last point, which many points share.
     std::uint32_t cell = formats::kNoNode;
@@ -49,21 +49,23 @@ std::vector<Traveller> start(const LitVolumes& volumes, const MarchRay& ray) {
         traveller.voxel = 1 / (formats::kBrickSide * std::hypot(d[0], d[1], d[2]));
         if (!(traveller.voxel > 0) || !std::isfinite(traveller.voxel)) continue;
         advance(traveller);
-        if (!traveller.is_left) travellers.push_back(traveller);
+        if (traveller.is_left) continue;
+        traveller.weight =
+            source_weights(*volumes.light, entry.volume, entry.phase, -1 * ray.direction);
+        travellers.push_back(traveller);
     }
     return travellers;
 }
 
 // max(0, J) at a point of the brick, trilinear between nodes.
-Rgb source_at(Traveller& traveller, const VolumeLight& light, const Harmonics& harmonics,
-              const std::array<float, 3>& at) {
+Rgb source_at(Traveller& traveller, const VolumeLight& light, const std::array<float, 3>& at) {
     const LitVolumes::Entry& entry = *traveller.entry;
     const NodeCell cell = node_cell(entry.lattice, at);
     if (traveller.cell != cell.number) {
         traveller.cell = cell.number;
         const auto nodes = nodes_of_cell(entry.lattice, traveller.block.number[0], cell.number);
         for (std::size_t i = 0; i < 8; ++i) {
-            traveller.source[i] = eval_node(light, entry.volume, nodes[i], harmonics);
+            traveller.source[i] = eval_node(light, entry.volume, nodes[i], traveller.weight);
         }
     }
     return mix_nodes(traveller.source, cell.weight);
@@ -97,7 +99,6 @@ void step(Rgb extinction, Rgb scattered, float h, MarchResult& result) {
 // Everything that the segments of a ray share.
 struct March {
     const VolumeLight& light;
-    Harmonics harmonics{};
     std::vector<Traveller> travellers;
     double step = 0.5;
     float least_transmittance = 0;
@@ -129,8 +130,8 @@ void march_segment(March& march, double begin, double end) {
             if (!(density > 0)) continue;
             const Rgb c = tame(density * lattice.record->sigma_t, kLargestExtinction);
             extinction = extinction + c;
-            scattered = scattered + c * lattice.record->albedo *
-                                        source_at(traveller, march.light, march.harmonics, at);
+            scattered =
+                scattered + c * lattice.record->albedo * source_at(traveller, march.light, at);
         }
         step(extinction, scattered, static_cast<float>(std::min(h, 1e30)), march.result);
     }
@@ -143,7 +144,7 @@ LitVolumes light_volumes(const formats::VolumesView& volumes, const VolumeLight&
     lit.light = &light;
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         if (const auto lattice = make_lattice(volumes, volumes.records[v])) {
-            lit.entry.push_back({*lattice, v});
+            lit.entry.push_back({*lattice, v, volumes.phase_of(v)});
         }
     }
     return lit;
@@ -152,13 +153,11 @@ LitVolumes light_volumes(const formats::VolumesView& volumes, const VolumeLight&
 MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
                           const MarchOptions& options) {
     March march{.light = *volumes.light,
-                .harmonics = {},
                 .travellers = start(volumes, ray),
                 .step = static_cast<double>(std::clamp(options.step, 1.0f / 64, 8.0f)),
                 .least_transmittance = options.least_transmittance,
                 .result = {}};
     if (march.travellers.empty()) return {};
-    formats::eval_spherical_harmonics(-1 * ray.direction, march.harmonics);
     for (double t = -HUGE_VAL; !march.travellers.empty();) {
         // The next stretch with at least one brick, up to where one of them ends or another begins.
         double begin = HUGE_VAL, end = HUGE_VAL;

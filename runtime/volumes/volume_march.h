@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "formats/opal/rgb.h"
@@ -15,7 +16,8 @@ namespace opaline::runtime {
 struct LitVolumes {
     struct Entry {
         VolumeLattice lattice;
-        std::size_t volume = 0;  ///< its number in the asset
+        std::size_t volume = 0;        ///< its number in the asset
+        std::span<const float> phase;  ///< its phase function, kPhaseEntries values
     };
     std::vector<Entry> entry;
     const VolumeLight* light = nullptr;

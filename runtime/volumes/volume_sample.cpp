@@ -36,12 +36,13 @@ std::optional<Place> place_of(const VolumeLattice& lattice, formats::Vec3 point)
 }
 
 Rgb source_at(const LitVolumes& volumes, const LitVolumes::Entry& entry, std::uint32_t brick,
-              const std::array<float, 3>& at, const Harmonics& harmonics) {
+              const std::array<float, 3>& at, formats::Vec3 to_eye) {
+    const SourceWeights weight = source_weights(*volumes.light, entry.volume, entry.phase, to_eye);
     const NodeCell cell = node_cell(entry.lattice, at);
     const auto nodes = nodes_of_cell(entry.lattice, brick, cell.number);
     std::array<Rgb, 8> source{};
     for (std::size_t i = 0; i < 8; ++i) {
-        source[i] = eval_node(*volumes.light, entry.volume, nodes[i], harmonics);
+        source[i] = eval_node(*volumes.light, entry.volume, nodes[i], weight);
     }
     return mix_nodes(source, cell.weight);
 }
@@ -50,8 +51,6 @@ Rgb source_at(const LitVolumes& volumes, const LitVolumes::Entry& entry, std::ui
 
 VolumeSample sample_volumes(const LitVolumes& volumes, formats::Vec3 point, formats::Vec3 to_eye) {
     VolumeSample sample;
-    Harmonics harmonics{};
-    formats::eval_spherical_harmonics(to_eye, harmonics);
     for (const LitVolumes::Entry& entry : volumes.entry) {
         const auto place = place_of(entry.lattice, point);
         if (!place) continue;
@@ -61,7 +60,7 @@ VolumeSample sample_volumes(const LitVolumes& volumes, formats::Vec3 point, form
         if (!(density > 0)) continue;
         const formats::VolumeRecord& record = *entry.lattice.record;
         const Rgb c = tame(density * record.sigma_t, kLargestExtinction);
-        const Rgb source = source_at(volumes, entry, block.number[0], place->at, harmonics);
+        const Rgb source = source_at(volumes, entry, block.number[0], place->at, to_eye);
         sample.extinction = sample.extinction + c;
         sample.scattered = sample.scattered + c * record.albedo * source;
     }

@@ -4,11 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "formats/opal/rgb.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "formats/opal/volumes.h"
 #include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/suns.h"
 
 namespace opaline::runtime {
 
@@ -18,8 +20,16 @@ namespace opaline::runtime {
 /// Beyond these a colour or an extinction [1/m] has no use, and products of both still fit.
 inline constexpr float kLargestSource = 1e20f, kLargestExtinction = 1e15f;
 
-/// Y_k of the direction to the eye.
-using Harmonics = std::array<float, formats::kMaxHarmonics>;
+/// What the coefficients of a volume's nodes count for, in their order; Part::stride() of them.
+using SourceWeights = std::array<float, formats::kMaxHarmonics + kMaxSuns>;
+
+/// For the unit direction `to_eye`: Y_k of it, then p' between each sun's light and the eye, from
+/// `phase`, the volume's table.
+SourceWeights source_weights(const VolumeLight& light, std::size_t volume,
+                             std::span<const float> phase, formats::Vec3 to_eye);
+
+/// For the mean over all directions: Y_0, and of suns 1 / (4 pi).
+SourceWeights mean_weights(const VolumeLight& light, std::size_t volume);
 
 /// Into [0, largest]; NaN fails the comparison and becomes 0.
 inline float tame(float value, float largest) {
@@ -31,12 +41,12 @@ inline formats::Rgb tame(formats::Rgb c, float largest) {
 
 /// J of a node before max(0, .); 0 for kNoNode.
 inline formats::Rgb eval_node(const VolumeLight& light, std::size_t volume, std::uint32_t node,
-                              const Harmonics& harmonics) {
+                              const SourceWeights& weight) {
     formats::Rgb sum;
     if (node == formats::kNoNode) return sum;
     const auto c = light.coefficients(volume, node);
-    for (std::size_t k = 0; k < c.size(); ++k) {
-        sum = sum + harmonics[k] * c[k];
+    for (std::size_t j = 0; j < c.size(); ++j) {
+        sum = sum + weight[j] * c[j];
     }
     return sum;
 }

@@ -8,7 +8,7 @@ struct Volume {
     uvec4 numbers;       // first brick, first corner, boxes of nodes along a brick's edge, terms
     vec4 extinction;     // where the density is 1 [1 / unit]
     vec4 albedo;
-    uvec4 coefficient;  // the first
+    uvec4 coefficient;  // the first; suns; the first entry of its phase function
 };
 layout(std430, binding = 0) readonly buffer Volumes { Volume volumes[]; };
 layout(std430, binding = 1) readonly buffer Table { uint brick_table[]; };
@@ -16,6 +16,8 @@ layout(std430, binding = 1) readonly buffer Table { uint brick_table[]; };
 layout(std430, binding = 2) readonly buffer Density { uint density_words[]; };
 layout(std430, binding = 3) readonly buffer Corners { uint corner_nodes[]; };
 layout(std430, binding = 4) readonly buffer Coefficients { float coefficients[]; };  // R, G, B
+layout(std430, binding = 5) readonly buffer Phases { float phase[]; };  // phase_table.h
+layout(location = 7) uniform vec3 suns[SUNS];                           // directions toward them
 
 const uint kNone = 0xffffffffu;  // no brick, no node
 const float kNever = 1e30;       // a distance
@@ -127,36 +129,48 @@ float density_at(Volume volume, Traveller traveller, vec3 at) {
     return uintBitsToFloat(density_words[first]) * mix(low, high, w.z);
 }
 
+// p' between the light of a sun and the eye, formats/opal/phase_table.h.
+float eval_phase(Volume volume, uint sun, vec3 to_eye) {
+    float cosine = -dot(suns[sun], to_eye);
+    float end = 128.0 * sqrt(max(1.0 - abs(cosine), 0.0));
+    float at = cosine < 0.0 ? end : 256.0 - end, base = min(floor(at), 255.0);
+    uint i = volume.coefficient.z + uint(base);
+    return mix(phase[i], phase[i + 1u], at - base);
+}
+
 // Source radiance at the eight nodes of a box of the brick, in the order x + 2 y + 4 z.
-void light_box(Volume volume, inout Traveller traveller, uvec3 box, float harmonic[HARMONICS]) {
+void light_box(Volume volume, inout Traveller traveller, uvec3 box, vec3 to_eye,
+               float harmonic[HARMONICS]) {
     uint side = volume.numbers.z + 1u;
     uint first = volume.numbers.y + traveller.brick * side * side * side +
                  (box.z * side + box.y) * side + box.x;
-    uint terms = volume.numbers.w, at[8];
+    uint terms = volume.numbers.w, stride = terms + volume.coefficient.y, at[8];
     for (uint i = 0u; i < 8u; ++i) {
         uint node = corner_nodes[first + ((i >> 2) * side + (i >> 1 & 1u)) * side + (i & 1u)];
-        at[i] = node == kNone ? kNone : volume.coefficient.x + node * terms * 3u;
+        at[i] = node == kNone ? kNone : volume.coefficient.x + node * stride * 3u;
         traveller.source[i] = vec3(0.0);
     }
-    for (uint k = 0u; k < terms; ++k) {
+    for (uint k = 0u; k < stride; ++k) {
+        float weight = k < terms ? harmonic[k] : eval_phase(volume, k - terms, to_eye);
         for (uint i = 0u; i < 8u; ++i) {
             if (at[i] == kNone) continue;
             uint c = at[i] + 3u * k;
-            traveller.source[i] += harmonic[k] * vec3(coefficients[c], coefficients[c + 1u],
-                                                      coefficients[c + 2u]);
+            traveller.source[i] +=
+                weight * vec3(coefficients[c], coefficients[c + 1u], coefficients[c + 2u]);
         }
     }
 }
 
 // max(0, J), trilinear between nodes.
-vec3 source_at(Volume volume, inout Traveller traveller, vec3 at, float harmonic[HARMONICS]) {
+vec3 source_at(Volume volume, inout Traveller traveller, vec3 at, vec3 to_eye,
+               float harmonic[HARMONICS]) {
     float boxes = float(volume.numbers.z);
     vec3 scaled = at * (boxes / 8.0), base = min(floor(scaled), boxes - 1.0), w = scaled - base;
     uvec3 b = uvec3(base);
     uint box = (b.z * volume.numbers.z + b.y) * volume.numbers.z + b.x;
     if (traveller.box != box) {
         traveller.box = box;
-        light_box(volume, traveller, b, harmonic);
+        light_box(volume, traveller, b, to_eye, harmonic);
     }
     vec3 low = mix(mix(traveller.source[0], traveller.source[1], w.x),
                    mix(traveller.source[2], traveller.source[3], w.x), w.y);
@@ -185,7 +199,7 @@ bool is_opaque(Seen seen) {
 
 // From begin to end lies no face of a brick: the volumes `inside` all along.
 void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin, float end,
-                   float voxel, float harmonic[HARMONICS], inout Seen seen) {
+                   float voxel, vec3 to_eye, float harmonic[HARMONICS], inout Seen seen) {
     float count = clamp(ceil((end - begin) / (kStep * voxel)), 1.0, ceil(14.0 / kStep));
     float h = (end - begin) / count;
     for (float i = 0.0; i < count && !is_opaque(seen); ++i) {
@@ -200,7 +214,7 @@ void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin
             vec3 c = tame_to(density * volumes[v].extinction.rgb, 1e15);
             extinction += c;
             scattered += c * volumes[v].albedo.rgb *
-                         source_at(volumes[v], travellers[v], at, harmonic);
+                         source_at(volumes[v], travellers[v], at, to_eye, harmonic);
         }
         step_ray(extinction, scattered, h, seen);
     }
@@ -231,7 +245,7 @@ Seen march(Ray ray, float harmonic[HARMONICS]) {
             end = min(end, is_inside ? travellers[v].span_end : travellers[v].span_begin);
             voxel = is_inside ? min(voxel, travellers[v].voxel) : voxel;
         }
-        march_segment(travellers, inside, begin, end, voxel, harmonic, seen);
+        march_segment(travellers, inside, begin, end, voxel, -ray.direction, harmonic, seen);
         if (is_opaque(seen)) return Seen(seen.radiance, vec3(0.0));
         t = end;
         for (uint left = inside; left != 0u; left &= left - 1u) {

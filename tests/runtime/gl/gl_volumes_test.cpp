@@ -11,6 +11,7 @@
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
+#include "tests/support/cut_phase.h"
 
 namespace opaline::runtime {
 namespace {
@@ -103,9 +104,17 @@ Camera camera() {
 
 const formats::Environment kSky = test::make_lat_long(64, 32, test::two_lights);
 
-Picture draw_on_cpu(const Asset& asset, const Camera& camera, const GlRenderOptions& options) {
+// A small light besides, seen from the camera a little beside the volumes.
+formats::Environment sunny() {
+    formats::Environment sky = kSky;
+    sky.discs.push_back({formats::normalize({-0.4f, 0.1f, -1}), 0.01f, {4e4f, 3e4f, 1e4f}});
+    return sky;
+}
+
+Picture draw_on_cpu(const Asset& asset, const Camera& camera, const GlRenderOptions& options,
+                    const formats::Environment& sky = kSky) {
     const auto view = asset.view();
-    const LightVector light = project_environment(kSky, kSize);
+    const LightVector light = project_environment(sky, kSize);
     formats::Vec3 eye = camera.eye;
     const auto radiance = shade_for_picture(view, light, eye, options.terms, 0);
     const VolumeLight volumes = relight_volumes(view.volumes, light, {.terms = options.terms});
@@ -113,24 +122,52 @@ Picture draw_on_cpu(const Asset& asset, const Camera& camera, const GlRenderOpti
     software.supersampling = options.supersampling;
     software.background = options.background;
     software.volumes = &volumes;
-    auto picture = render_software(view, radiance, kSky, {}, camera, software);
+    auto picture = render_software(view, radiance, sky, {}, camera, software);
     EXPECT_TRUE(picture.has_value());
     return std::move(picture).value();
 }
 
-GlRenderer lit_renderer(const Asset& asset) {
-    auto renderer = GlRenderer::create(asset.view(), kSky);
+GlRenderer lit_renderer(const Asset& asset, const formats::Environment& sky = kSky) {
+    auto renderer = GlRenderer::create(asset.view(), sky);
     EXPECT_TRUE(renderer.has_value()) << text_of(renderer.error());
-    EXPECT_TRUE(renderer->set_light(project_environment(kSky, kSize), {}));
+    EXPECT_TRUE(renderer->set_light(project_environment(sky, kSize), {}));
     return std::move(renderer).value();
 }
 
-void expect_agreement(const Asset& asset, const Camera& camera,
-                      const GlRenderOptions& options = {}) {
-    GlRenderer renderer = lit_renderer(asset);
+void expect_agreement(const Asset& asset, const Camera& camera, const GlRenderOptions& options = {},
+                      const formats::Environment& sky = kSky) {
+    GlRenderer renderer = lit_renderer(asset, sky);
     const auto gl = renderer.render(camera, options);
     ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
-    test::expect_same_picture(draw_on_cpu(asset, camera, options), *gl);
+    test::expect_same_picture(draw_on_cpu(asset, camera, options, sky), *gl);
+}
+
+// What a bake makes of Henyey-Greenstein functions, two in one picture: each has its own table.
+TEST_F(Gl, ForwardVolumesAgreeUnderASun) {
+    const auto forward = [](test::TestVolume volume, double g) {
+        const tests::CutPhase phase = tests::make_cut_phase(g);
+        volume.moment = phase.moments();
+        volume.phase = phase;
+        volume.sigma_t = 0.3f * volume.sigma_t;
+        return volume;
+    };
+    const test::TestVolume near = forward(smoke(8, 25, 9), 0.85);
+    const test::TestVolume far = forward(slanted(), 0.5);
+    const LightVector light = project_environment(sunny(), kSize);
+    const Asset asset = volumes_alone({smoke(8, 1, 1), near, far});
+    const VolumeLight lit = relight_volumes(asset.view().volumes, light);
+    ASSERT_EQ(lit.part[0].suns, 0u);
+    ASSERT_GT(lit.part[1].suns, 0u);
+    ASSERT_GT(lit.part[2].suns, 0u);
+    expect_agreement(asset, camera(), {.background = false}, sunny());
+    expect_agreement(volumes_and_sheet({near}), camera(), {}, sunny());
+    GlRenderer renderer = lit_renderer(asset, sunny());
+    for (const TermSet terms : {TermSet::volume_multiple, TermSet::volume_single}) {
+        const GlRenderOptions options{.terms = terms, .background = false};
+        const auto gl = renderer.render(camera(), options);
+        ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
+        test::expect_same_picture(draw_on_cpu(asset, camera(), options, sunny()), *gl);
+    }
 }
 
 TEST_F(Gl, VolumesAloneAgreeForEverySpacingAndNumberOfTerms) {
@@ -215,8 +252,11 @@ TEST_F(Gl, DamagedVolumesNeverReachThePicture) {
     asset.volumes.rows.average_scale[7] = 3e38f;
     asset.volumes.density_scale[1] = 3e38f;
     asset.volumes.density_scale[2] = nan;
+    asset.volumes.phase[100] = nan;
+    asset.volumes.phase[150] = 3e38f;
+    asset.volumes.phase[formats::kPhaseEntries + 9] = -1;
     asset.volumes.records[1].to_world = {1e-30f, 0, 0, 0, 0, 1e-30f, 0, 0, 0, 0, 1e-30f, 0};
-    GlRenderer renderer = lit_renderer(asset);
+    GlRenderer renderer = lit_renderer(asset, sunny());
     const auto picture = renderer.render(camera());
     ASSERT_TRUE(picture.has_value());
     for (const Rgb pixel : picture->pixel) {

@@ -16,7 +16,7 @@ using formats::Rgb;
 using formats::Vec3;
 using test::TestVolume;
 
-constexpr std::uint32_t kSize = 8;
+using test::kSize;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TestVolume full(std::array<float, 12> to_world) {

@@ -8,14 +8,20 @@
 
 #include "formats/opal/cubemap.h"
 #include "formats/opal/spherical_harmonics.h"
+#include "runtime/volumes/texel_integrals.h"
 #include "tests/runtime/light_test_support.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 
 namespace opaline::runtime {
 namespace {
 
+std::vector<LightVector> moments_of(const LightVector& light, std::uint32_t count,
+                                    unsigned threads = 0) {
+    return make_moment_lights(texel_integrals(light), light.n, count, threads);
+}
+
 TEST(MomentLights, WhiteLightHasOnlyAMean) {
-    const auto moments = make_moment_lights(test::white_light(16), 25);
+    const auto moments = moments_of(test::white_light(16), 25);
     ASSERT_EQ(moments.size(), 25u);
     EXPECT_NEAR(tests::flux(moments[0], 0), std::sqrt(4 * std::numbers::pi), 1e-5);
     for (std::size_t k = 1; k < 25; ++k) {
@@ -25,16 +31,15 @@ TEST(MomentLights, WhiteLightHasOnlyAMean) {
 }
 
 TEST(MomentLights, TheFinerTheTexelsTheLessOfWhiteLightIsInDegreeFour) {
-    const double coarse =
-        std::abs(tests::flux(make_moment_lights(test::white_light(8), 25)[20], 0));
-    const double fine = std::abs(tests::flux(make_moment_lights(test::white_light(32), 25)[20], 0));
+    const double coarse = std::abs(tests::flux(moments_of(test::white_light(8), 25)[20], 0));
+    const double fine = std::abs(tests::flux(moments_of(test::white_light(32), 25)[20], 0));
     EXPECT_NEAR(fine / coarse, 1.0 / 16, 0.01);
 }
 
 TEST(MomentLights, OfATexelAreTheHarmonicsOfItsCentre) {
     constexpr std::uint32_t n = 8, texel = 2 * n * n + 3 * n + 6;
     const LightVector light = test::texel_light(n, texel, {2, 3, 5});
-    const auto moments = make_moment_lights(light, 25);
+    const auto moments = moments_of(light, 25);
     std::array<float, 25> expected{};
     formats::eval_spherical_harmonics(formats::texel_direction(n, 2, 3, 6), expected);
     for (std::size_t band = 0; band < 3; ++band) {
@@ -51,11 +56,11 @@ TEST(MomentLights, OfATexelAreTheHarmonicsOfItsCentre) {
 TEST(MomentLights, AreTheSameForAnyNumberOfThreads) {
     const LightVector light =
         project_environment(tests::lat_long_map(64, 32, tests::smooth_sky), 16);
-    const auto one = make_moment_lights(light, 9, 1), many = make_moment_lights(light, 9, 5);
+    const auto one = moments_of(light, 9, 1), many = moments_of(light, 9, 5);
     for (std::size_t k = 0; k < 9; ++k) {
         EXPECT_EQ(one[k].rgba, many[k].rgba);
     }
-    EXPECT_TRUE(make_moment_lights(light, 0).empty());
+    EXPECT_TRUE(moments_of(light, 0).empty());
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ using formats::TermSet;
 using formats::Vec3;
 using test::TestVolume;
 
-constexpr std::uint32_t kSize = 8;
+using test::kSize;
 
 TestVolume full_brick() {
     TestVolume volume;

@@ -50,6 +50,31 @@ void append_corners(formats::Volumes& volumes, const formats::VolumeRecord& reco
     }
 }
 
+// sum_l (2 l + 1) m_l P_l(c), up to the last degree of the terms.
+double sum_moments(const TestVolume& volume, double c) {
+    const double legendre[] = {1, c, (3 * c * c - 1) / 2, (5 * c * c - 3) * c / 2,
+                               ((35 * c * c - 30) * c * c + 3) / 8};
+    double sum = 1;
+    for (std::size_t l = 1; l * l < volume.single_terms; ++l) {
+        sum += (2.0 * static_cast<double>(l) + 1) * static_cast<double>(volume.moment[l]) *
+               legendre[l];
+    }
+    return std::max(0.0, sum);
+}
+
+void append_phase(formats::Volumes& volumes, const TestVolume& volume) {
+    std::vector<float> table;
+    for (std::size_t i = 0; i < formats::kPhaseEntries; ++i) {
+        const double c = formats::phase_cosine(static_cast<double>(i));
+        table.push_back(
+            static_cast<float>(volume.phase ? volume.phase(c) : sum_moments(volume, c)));
+    }
+    const double integral = formats::integrate_phase_table(table);
+    for (const float value : table) {
+        volumes.phase.push_back(static_cast<float>(static_cast<double>(value) / integral));
+    }
+}
+
 }  // namespace
 
 formats::Volumes make_volumes(std::uint32_t n) {
@@ -109,6 +134,7 @@ void add_volume(formats::Volumes& volumes, const TestVolume& volume) {
             formats::append_row(volumes.rows, row);
         }
     }
+    append_phase(volumes, volume);
     volumes.records.push_back(record);
 }
 

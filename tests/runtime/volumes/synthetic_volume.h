@@ -20,11 +20,16 @@ struct TestVolume {
     std::uint32_t spacing = 8;
     std::uint32_t single_terms = 0, multiple_terms = 0, bands = 1;
     std::array<float, formats::kMaxVolumeMoments> moment{1, 0, 0, 0, 0};
+    /// p' [1/sr] of the cosine, scaled to an integral of 1; without it the sum of the moments that
+    /// `single_terms` has, not below 0.
+    std::function<double(double)> phase;
     /// Density at index coordinates; bricks where it is 0 at every voxel are left out.
     std::function<float(float, float, float)> density;
     /// Rows of the node in a voxel, terms() of them; without it V = 1 and T_k = 0.
     std::function<std::vector<formats::SparseRow>(formats::NodeVoxel)> rows;
 };
+
+inline constexpr std::uint32_t kSize = 8;  ///< texels along an edge of a face in these tests
 
 /// No volumes yet, light on a cube map of n x n texels, 16-bit codes.
 formats::Volumes make_volumes(std::uint32_t n);

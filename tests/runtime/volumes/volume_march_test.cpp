@@ -17,7 +17,7 @@ using formats::SparseRow;
 using formats::Vec3;
 using test::TestVolume;
 
-constexpr std::uint32_t kSize = 8;
+using test::kSize;
 
 // Volumes under white light; J = 1 where V = 1 and K_s = 1.
 struct Scene {

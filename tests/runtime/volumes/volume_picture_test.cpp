@@ -15,7 +15,9 @@ using formats::Asset;
 using formats::Rgb;
 using formats::Vec3;
 
-constexpr std::uint32_t kSize = 8, kWidth = 40, kHeight = 30;
+using test::kSize;
+
+constexpr std::uint32_t kWidth = 40, kHeight = 30;
 
 // Smoke 1.6 m wide around the origin, at most 1 optical depth a metre.
 test::TestVolume smoke() {

@@ -17,10 +17,10 @@ using formats::SparseRow;
 using formats::Vec3;
 using test::TestVolume;
 
-constexpr std::uint32_t kSize = 8;
+using test::kSize;
 
 // Smooth in density and source, coloured, forward scattering, under a sheared transform.
-TestVolume blob() {
+TestVolume sheared_blob() {
     TestVolume volume;
     volume.first_brick = {-2, 0, -1};
     volume.extent = {4, 4, 4};
@@ -42,13 +42,13 @@ TestVolume blob() {
     return volume;
 }
 
-struct Scene {
+struct SampledScene {
     formats::Volumes volumes = test::make_volumes(kSize);
     formats::VolumesView view;
     VolumeLight light;
     LitVolumes lit;
 
-    explicit Scene(const std::vector<TestVolume>& parts) {
+    explicit SampledScene(const std::vector<TestVolume>& parts) {
         for (const TestVolume& part : parts) {
             test::add_volume(volumes, part);
         }
@@ -68,8 +68,8 @@ Vec3 world(const TestVolume& volume, Vec3 i) {
 // One step of a march takes the integrands at its midpoint: over the length h it adds
 // scattered (1 - exp(-c h)) / c and lets exp(-c h) through.
 TEST(VolumeSample, IsWhatOneShortStepOfAMarchSees) {
-    const TestVolume volume = blob();
-    const Scene scene({volume, volume});
+    const TestVolume volume = sheared_blob();
+    const SampledScene scene({volume, volume});
     std::mt19937 generator(11);
     std::uniform_real_distribution<float> within(-6, 6), any(-1, 1);
     for (int i = 0; i < 200; ++i) {
@@ -96,9 +96,9 @@ TEST(VolumeSample, IsWhatOneShortStepOfAMarchSees) {
 }
 
 TEST(VolumeSample, NothingOutsideAndFiniteAnywhere) {
-    TestVolume dense = blob();
+    TestVolume dense = sheared_blob();
     dense.sigma_t = {1e38f, 1, 1};
-    const Scene scene({dense, dense});
+    const SampledScene scene({dense, dense});
     const float values[] = {0,
                             -0.0f,
                             40,
