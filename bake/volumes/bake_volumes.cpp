@@ -23,7 +23,7 @@ using formats::ErrorKind;
 using formats::make_error;
 using formats::SparseRow;
 
-constexpr std::size_t kBlock = 16;  // nodes that a thread takes at once
+constexpr std::size_t kNodesAtOnce = 16;  // nodes that a thread takes at once
 
 // All that is known before light is followed.
 struct Nodes {
@@ -138,7 +138,7 @@ LitNodes light_nodes(const VolumeJob& job, const Nodes& nodes, const Context& co
         std::uint64_t rays = 0;
     };
     for_each_block_in_order(
-        nodes.count, kBlock, context,
+        nodes.count, kNodesAtOnce, context,
         [&](Range range) {
             Block block;
             for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -169,8 +169,9 @@ LitNodes light_nodes(const VolumeJob& job, const Nodes& nodes, const Context& co
 }
 
 // The rows of a node: V, then T_k.
-std::vector<SparseRow> walk_node(const VolumeJob& job, const Nodes& nodes, const WalkSpace& space,
-                                 std::size_t number, std::uint64_t& rays) {
+std::vector<SparseRow> walk_node(const VolumeJob& job, const Nodes& nodes,
+                                 const VolumeWalkSpace& space, std::size_t number,
+                                 std::uint64_t& rays) {
     const Place place = find_place(job, nodes, number);
     const std::uint32_t terms = place.layout->often_terms;
     std::vector<SparseRow> rows;
@@ -197,8 +198,8 @@ std::vector<SparseRow> walk_node(const VolumeJob& job, const Nodes& nodes, const
 formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& job, const Nodes& nodes,
                                                       LitNodes lit, const Context& context,
                                                       std::uint64_t& rays) {
-    const WalkSpace space{nodes.space, job.rays,     nodes.lattices, nodes.first,
-                          lit.depths,  nodes.coarse, job.knobs.seed};
+    const VolumeWalkSpace space{nodes.space, job.rays,     nodes.lattices, nodes.first,
+                                lit.depths,  nodes.coarse, job.knobs.seed};
     formats::SparseRows rows =
         formats::make_sparse_rows(job.knobs.cubemap_size, job.knobs.code_bits);
     bool fits = true;
@@ -207,7 +208,7 @@ formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& job, cons
         std::uint64_t rays = 0;
     };
     for_each_block_in_order(
-        nodes.count, kBlock, context,
+        nodes.count, kNodesAtOnce, context,
         [&](Range range) {
             Block block;
             for (std::size_t i = range.begin; i < range.end; ++i) {

@@ -73,7 +73,7 @@ struct Track {
 };
 
 // Adds to `sum` the light that is scattered into a walk where it collides.
-void add_light(const WalkSpace& walk, const Track& track, std::uint32_t volume, glm::vec3 at,
+void add_light(const VolumeWalkSpace& walk, const Track& track, std::uint32_t volume, glm::vec3 at,
                glm::vec3 direction, const std::array<float, 3>& weight, std::span<float> sum) {
     const DensityVolume& own = walk.space.volumes[volume];
     const NodesAround around = nodes_around(walk.lattices[volume], own.to_index * at + own.offset);
@@ -104,8 +104,8 @@ void add_light(const WalkSpace& walk, const Track& track, std::uint32_t volume, 
 }
 
 // Follows one walk from a point; what it meets is added to `sum`, bands times cells.
-std::uint64_t follow(const WalkSpace& walk, const Track& track, glm::vec3 at, glm::vec3 direction,
-                     WalkRandom& random, std::span<float> sum) {
+std::uint64_t follow(const VolumeWalkSpace& walk, const Track& track, glm::vec3 at,
+                     glm::vec3 direction, WalkRandom& random, std::span<float> sum) {
     std::uint64_t traced = 0;
     std::array<float, 3> weight{1, 1, 1};
     for (std::uint32_t n = 0; n < kMostScatterings; ++n) {
@@ -145,7 +145,7 @@ std::uint64_t follow(const WalkSpace& walk, const Track& track, glm::vec3 at, gl
 
 }  // namespace
 
-std::uint64_t gather_walks(const WalkSpace& walk, const WalkReceiver& receiver,
+std::uint64_t gather_walks(const VolumeWalkSpace& walk, const WalkReceiver& receiver,
                            std::span<float> out) {
     const std::size_t bands = walk.space.bands(), row = bands * walk.cells.size();
     std::ranges::fill(out, 0.0f);

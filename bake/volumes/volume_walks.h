@@ -13,7 +13,7 @@
 namespace opaline::bake {
 
 /// What all walks share, read-only.
-struct WalkSpace {
+struct VolumeWalkSpace {
     const DensitySpace& space;
     const RayScene& rays;
     std::span<const NodeLattice> lattices;  ///< one a volume
@@ -39,7 +39,7 @@ struct WalkReceiver {
 /// T_k toward every cell (README.md, "Walks"): in-scattered source radiance of light that was
 /// scattered at least once before [1/sr]. `out`: terms * bands * cells numbers, term after term and
 /// band after band, overwritten; bands as DensitySpace::bands. Returns the rays traced.
-std::uint64_t gather_walks(const WalkSpace& walk, const WalkReceiver& receiver,
+std::uint64_t gather_walks(const VolumeWalkSpace& walk, const WalkReceiver& receiver,
                            std::span<float> out);
 
 }  // namespace opaline::bake

@@ -110,7 +110,7 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         return 0;
     }
     const std::array<float, 4> u = random_at(seed, point.position);
-    ViewSet set = spread_views(point.normal, body.eta, views, {u[0], u[1]});
+    TransmissionViews set = spread_views(point.normal, body.eta, views, {u[0], u[1]});
     std::uint64_t rays = 0;
     const StraightStart start = make_straight_start(body, point, rays);
     std::vector<StraightExit> exits;

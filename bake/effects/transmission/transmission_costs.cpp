@@ -49,7 +49,7 @@ void calibrate_transmission(const CalibrationBench& bench, Rates& rates) {
     std::vector<StraightExit> exits;
     std::vector<std::uint32_t> past;
     for (const BodyPoint& point : points) {
-        const ViewSet views = spread_views(point.normal, body.eta, kViews, {0.5f, 0.5f});
+        const TransmissionViews views = spread_views(point.normal, body.eta, kViews, {0.5f, 0.5f});
         std::uint64_t traced = 0;
         exits.clear();
         follow_straight(body, make_straight_start(body, point, traced), views.seen, exits, past);

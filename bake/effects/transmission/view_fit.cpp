@@ -63,7 +63,7 @@ struct Harmonics {
     std::span<double> of(std::size_t view) { return std::span(value).subspan(view * terms, terms); }
 };
 
-Harmonics centre_harmonics(const ViewSet& views, std::uint32_t terms) {
+Harmonics centre_harmonics(const TransmissionViews& views, std::uint32_t terms) {
     Harmonics h;
     h.terms = terms;
     h.value.resize(views.seen.size() * terms);
@@ -95,10 +95,10 @@ Harmonics centre_harmonics(const ViewSet& views, std::uint32_t terms) {
 
 }  // namespace
 
-ViewSet spread_views(glm::vec3 normal, double eta, std::uint32_t count, glm::vec2 shift) {
+TransmissionViews spread_views(glm::vec3 normal, double eta, std::uint32_t count, glm::vec2 shift) {
     const Frame frame = make_frame(normal);
     const double golden = std::numbers::phi - 1;
-    ViewSet views;
+    TransmissionViews views;
     double sum = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double c = std::sqrt(1 - (i + static_cast<double>(shift.x)) / count);
@@ -120,7 +120,7 @@ ViewSet spread_views(glm::vec3 normal, double eta, std::uint32_t count, glm::vec
     return views;
 }
 
-void leave_out(ViewSet& views, std::span<const std::uint32_t> some) {
+void leave_out(TransmissionViews& views, std::span<const std::uint32_t> some) {
     double left = 1;
     for (const std::uint32_t i : some) {
         left -= views.weight[i];
@@ -132,7 +132,7 @@ void leave_out(ViewSet& views, std::span<const std::uint32_t> some) {
     }
 }
 
-std::vector<float> fit_views(const ViewSet& views, std::uint32_t terms) {
+std::vector<float> fit_views(const TransmissionViews& views, std::uint32_t terms) {
     std::vector<float> factors;
     factors.reserve(views.seen.size() * terms);
     if (terms == 1) {
@@ -157,7 +157,7 @@ std::vector<float> fit_views(const ViewSet& views, std::uint32_t terms) {
     return factors;
 }
 
-void limit_fit(const ViewSet& views, std::uint32_t terms, std::span<const double> even,
+void limit_fit(const TransmissionViews& views, std::uint32_t terms, std::span<const double> even,
                std::span<float> factors) {
     std::vector<double> rows(terms), value(terms);
     double mean = 0, floor = std::numeric_limits<double>::max();

@@ -16,7 +16,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kOnce[] = {1.0};
 
 ZonalTable table_of(PathKernel kernel, double g) {
@@ -86,7 +86,7 @@ TEST(PathEstimate, AroundTheAxisOfARoundBodyNoDirectionIsDistinguished) {
     const auto value = [&](dvec3 view, dvec3 light) {
         return estimate(table, {-0.8 * view, view, light}, kBlob, kLimits);
     };
-    for (const double angle : {0.0, 1e-13, 1e-9, kPi - 1e-9, kPi - 1e-13, kPi}) {
+    for (const double angle : {0.0, 1e-13, 1e-9, pi - 1e-9, pi - 1e-13, pi}) {
         const double tilted = value(kView, std::cos(angle) * kView + std::sin(angle) * aside);
         EXPECT_GT(tilted, 0) << angle;
         EXPECT_NEAR(tilted / value({0, 0, 1}, {0, 0, angle < 1 ? 1 : -1}), 1, 1e-5) << angle;
@@ -156,7 +156,7 @@ TEST(PathEstimate, BallInAWhiteFurnaceIsWhiteWithin15Percent) {
         for (std::size_t i = 0; i < rule.node.size(); ++i) {
             const double cosine = 2 * rule.node[i] - 1;
             const dvec3 light(std::sqrt(1 - cosine * cosine), 0, cosine);
-            const double solid_angle = 4 * kPi * rule.weight[i];
+            const double solid_angle = 4 * pi * rule.weight[i];
             more += solid_angle * estimate(table, {{0, 0, -1}, {0, 0, 1}, light}, ball, limits);
             const Turn straight = Turns({0, 0, 1}, {0, 0, 1})[0];
             const double phase = henyey_greenstein(cosine, g);

@@ -13,7 +13,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Turn only_turn(dvec3 from, dvec3 to) {
     const Turns turns(from, to);
@@ -29,7 +29,7 @@ TEST(Turn, ArcsInAHomogeneousMediumEndAsTheTableSays) {
     for (const bool lateral : {false, true}) {
         OPALINE_VOLUME_ROWS(rows, lateral ? "arc_lateral" : "arc_along_v");
         for (const auto& row : rows) {
-            const double angle = row.number("arg") * kPi / 180;
+            const double angle = row.number("arg") * pi / 180;
             const Turn turn{{0, 0, 1}, {1, 0, 0}, in_plane(angle), angle};
             const dvec3 end = arc_end(turn, row.number("size"), row.number("sigma_t"));
             // The table has 12 digits.
@@ -44,14 +44,14 @@ TEST(Turn, AnglesKeepTheirDigitsNear0AndPi) {
     for (const double small : {1e-11, 1e-9, 1e-6, 1e-3}) {
         EXPECT_NEAR(only_turn({0, 0, 1}, in_plane(small)).angle / small, 1, 1e-12);
         // in_plane itself rounds near pi.
-        EXPECT_NEAR((kPi - only_turn({0, 0, 1}, -in_plane(small)).angle) / small, 1, 1e-4);
+        EXPECT_NEAR((pi - only_turn({0, 0, 1}, -in_plane(small)).angle) / small, 1, 1e-4);
     }
 }
 
 TEST(Turn, EndsInTheLastDirection) {
     const dvec3 from = glm::normalize(dvec3(0.3, -0.5, 0.2));
     const dvec3 side = glm::normalize(glm::cross(from, dvec3(1, 0, 0)));
-    for (const double angle : {1e-13, 1e-9, 1e-4, 1.0, 2.0, kPi - 1e-4, kPi - 1e-9, kPi}) {
+    for (const double angle : {1e-13, 1e-9, 1e-4, 1.0, 2.0, pi - 1e-4, pi - 1e-9, pi}) {
         const dvec3 to = std::cos(angle) * from + std::sin(angle) * side;
         for (const Turn& turn : Turns(from, to)) {
             const dvec3 end = std::cos(turn.angle) * turn.from + std::sin(turn.angle) * turn.aside;
@@ -76,7 +76,7 @@ TEST(Turn, BetweenOppositeDirectionsStandsForAllPlanes) {
         glm::dmat3 sum(0);
         dvec3 mean(0);
         for (const Turn& turn : turns) {
-            EXPECT_EQ(turn.angle, kPi);
+            EXPECT_EQ(turn.angle, pi);
             mean += turn.aside;
             sum += glm::outerProduct(turn.aside, turn.aside);
         }

@@ -21,7 +21,7 @@ TEST(StraightShare, IsNoLessThanWhatABallShowsAndLittleMore) {
         for (const float sigma_t : {0.1f, 1.0f, 3.0f}) {
             const auto ball = tests::make_crossed({tests::make_sphere(5)}, eta, sigma_t);
             const glm::vec3 normal = ball->scene.primitives[0].normal[17];
-            const ViewSet views = spread_views(normal, eta, 256, {0.5f, 0.3f});
+            const TransmissionViews views = spread_views(normal, eta, 256, {0.5f, 0.3f});
             std::vector<StraightExit> exits;
             std::vector<std::uint32_t> past;
             follow_straight(ball->body, {0.9999f * normal, 1, {}}, views.seen, exits, past);

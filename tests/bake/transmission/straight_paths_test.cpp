@@ -44,7 +44,7 @@ TEST(StraightPaths, AClearSlabIsTheFresnelSeriesOfItsTwoFaces) {
 
 TEST(StraightPaths, APlaneParallelSlabShiftsViewsButDoesNotTurnThem) {
     const auto slab = tests::make_crossed({tests::make_crossed_slab(1)}, 1.5, 0);
-    const ViewSet views = spread_views(kUp, 1.5, 32, {0.5f, 0});
+    const TransmissionViews views = spread_views(kUp, 1.5, 32, {0.5f, 0});
     for (const glm::vec3 seen : views.seen) {
         const auto exits = tests::look(*slab, {0.1f, -1e-4f, 0.2f}, seen);
         ASSERT_FALSE(exits.empty());
@@ -59,7 +59,7 @@ TEST(StraightPaths, AClearBallInAFurnaceShowsOneInEveryView) {
     for (const double eta : {1.0 / 3, 0.8, 1.0, 1.33, 1.5, 3.0}) {
         const auto ball = tests::make_crossed({tests::make_sphere(3)}, eta, 0);
         const glm::vec3 normal = ball->scene.primitives[0].normal[17];
-        const ViewSet views = spread_views(normal, eta, 64, {0.5f, 0.3f});
+        const TransmissionViews views = spread_views(normal, eta, 64, {0.5f, 0.3f});
         EXPECT_GT(views.seen.size(), eta < 1 ? 5u : 63u) << eta;
         for (const glm::vec3 seen : views.seen) {
             EXPECT_NEAR(tests::sum_of(tests::look(*ball, 0.9999f * normal, seen)), 1, 5e-4) << eta;
@@ -83,7 +83,7 @@ TEST(StraightPaths, AnAbsorbingBallShowsOnAverageOverViewsWhatQuadratureSays) {
         }
         truth /= sum;
         const glm::vec3 normal = ball->scene.primitives[0].normal[17];
-        const ViewSet views = spread_views(normal, eta, 512, {0.5f, 0.3f});
+        const TransmissionViews views = spread_views(normal, eta, 512, {0.5f, 0.3f});
         std::vector<StraightExit> exits;
         std::vector<std::uint32_t> past;
         follow_straight(ball->body, {0.9999f * normal, 1, {}}, views.seen, exits, past);

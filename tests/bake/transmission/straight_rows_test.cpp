@@ -112,8 +112,8 @@ TEST(StraightRows, OfADenseFacetedBallHoldNoLightPastTheFacetsOfTheVertex) {
 
 TEST(ViewFit, HoldsWhatIsLinearInTheViewWithinItsSmoothing) {
     const glm::vec3 normal = glm::normalize(glm::vec3(0.3f, 0.9f, -0.2f));
-    const ViewSet views = spread_views(normal, 1, 256, {0.5f, 0});
-    const ViewSet many = spread_views(normal, 1, 8192, {0.25f, 0.3f});
+    const TransmissionViews views = spread_views(normal, 1, 256, {0.5f, 0});
+    const TransmissionViews many = spread_views(normal, 1, 8192, {0.25f, 0.3f});
     const auto value = [&](glm::vec3 w) { return 2 + glm::dot(w, glm::vec3(0.5f, -0.7f, 0.4f)); };
     for (const std::uint32_t terms : {4u, 9u}) {
         const std::vector<float> factors = fit_views(views, terms);
@@ -143,7 +143,7 @@ TEST(ViewFit, HoldsWhatIsLinearInTheViewWithinItsSmoothing) {
 }
 
 TEST(ViewFit, AMatchedBoundaryHasHalfOfItsViewsWithin45DegreesOfTheNormal) {
-    const ViewSet views = spread_views({0, 0, 1}, 1, 1000, {0.5f, 0});
+    const TransmissionViews views = spread_views({0, 0, 1}, 1, 1000, {0.5f, 0});
     double steep = 0;
     for (std::size_t i = 0; i < views.seen.size(); ++i) {
         steep += views.seen[i].z > std::numbers::sqrt2_v<float> / 2 ? views.weight[i] : 0;

@@ -16,24 +16,24 @@ PhaseTable make_phase_table(const formats::PhaseFunction& phase) {
         return table;
     }
     // Steps of s, cosine = 1 - 2 s^2: fine where functions have their peak. p dcosine = 4 s p ds.
-    constexpr std::size_t kSteps = 65536, kStored = 4096;
+    constexpr std::size_t kFineSteps = 65536, kStored = 4096;
     const PhaseDensity density = make_phase_density(phase);
     const auto cosine_at = [](double s) { return 1 - 2 * s * s; };
     std::vector<double> cumulative{0};
-    for (std::size_t i = 0; i < kSteps; ++i) {
-        const double s = (static_cast<double>(i) + 0.5) / kSteps;
+    for (std::size_t i = 0; i < kFineSteps; ++i) {
+        const double s = (static_cast<double>(i) + 0.5) / kFineSteps;
         cumulative.push_back(cumulative.back() + s * eval_phase(density, cosine_at(s)));
     }
     std::size_t at = 0;
     for (std::size_t k = 0; k <= kStored; ++k) {
         const double wanted = cumulative.back() * static_cast<double>(k) / kStored;
-        while (at + 1 < kSteps && cumulative[at + 1] < wanted) {
+        while (at + 1 < kFineSteps && cumulative[at + 1] < wanted) {
             ++at;
         }
         const double width = cumulative[at + 1] - cumulative[at];
         const double part = width > 0 ? std::clamp((wanted - cumulative[at]) / width, 0.0, 1.0) : 0;
         table.cosine.push_back(
-            static_cast<float>(cosine_at((static_cast<double>(at) + part) / kSteps)));
+            static_cast<float>(cosine_at((static_cast<double>(at) + part) / kFineSteps)));
     }
     return table;
 }
