@@ -146,5 +146,25 @@ class Documents(unittest.TestCase):
             self.assertIn("tests/README.md:2: names " + name.rstrip("*"), output)
 
 
+class TypeNames(unittest.TestCase):
+    FIRST = {"bake/a/a.h": "namespace o::bake {\nstruct Node {\n    int x;\n};\n}\n"}
+
+    def check(self, text):
+        return run("check_type_names.py", {**self.FIRST, "bake/b/b.h": text}, "bake")
+
+    def test_like_names_of_one_namespace_are_found(self):
+        for text in ["namespace o::bake { class Node final { }; }", "namespace o { namespace bake {\nenum class Node : int { a };\n} }",
+                     "namespace o::bake { void f() { } template <class T> struct alignas(8) Node : Base<T> { }; }"]:
+            code, output = self.check(text)
+            self.assertEqual(code, 1, text)
+            self.assertIn("o::bake::Node is defined at bake/a/a.h:2 and bake/b/b.h:", output)
+
+    def test_others_are_accepted(self):
+        for text in ["namespace o::formats { struct Node { }; }", "namespace o::bake { namespace { struct Node { }; } }",
+                     "namespace o::bake { struct Node; struct Tree { struct Node { }; }; }", "namespace o::bake { Node f(struct Node* n) { return *n; } }",
+                     "// namespace o::bake { struct Node { }; }", 'namespace o::bake { auto s = "struct Node { }"; }']:
+            self.assertEqual(self.check(text)[0], 0, text)
+
+
 if __name__ == "__main__":
     unittest.main()
