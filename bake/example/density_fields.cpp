@@ -114,11 +114,11 @@ formats::SparseGrid<float> make_smoke_density(double base) {
                               kVoxel, density);
 }
 
-formats::SparseGrid<float> make_cumulus_density() {
-    constexpr double kVoxel = 6, kBulge = 60;
+formats::SparseGrid<float> make_cumulus_density(double voxel) {
+    constexpr double kBulge = 60;
     const std::vector<Puff> puffs = make_puffs();
-    const auto density = [&](glm::ivec3 voxel) {
-        const glm::dvec3 p = kVoxel * glm::dvec3(voxel);
+    const auto density = [&](glm::ivec3 index) {
+        const glm::dvec3 p = voxel * glm::dvec3(index);
         const double plain = distance_to(puffs, p);
         if (plain > 0.4 * kBulge) {
             return 0.0;
@@ -128,7 +128,8 @@ formats::SparseGrid<float> make_cumulus_density() {
         const double base = smooth_step(-4, 14, p.y - 8 * fractal_noise(p / 90.0, 2));
         return (1 - smooth_step(-14, 6, d)) * base * (0.45 + 0.55 * std::min(1.0, p.y / 350));
     };
-    return formats::fill_grid({-80, 0, -60}, {80, 75, 60}, kVoxel, density);
+    const glm::ivec3 half(glm::dvec3(480, 450, 360) / voxel);
+    return formats::fill_grid({-half.x, 0, -half.z}, half, voxel, density);
 }
 
 formats::SparseGrid<float> make_block_density() {

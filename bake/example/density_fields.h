@@ -11,8 +11,9 @@ namespace opaline::bake {
 formats::SparseGrid<float> make_smoke_density(double base);
 
 /// A fair-weather cumulus: a flat base at y = 0, heaps of billows above it, 820 m wide and 370 m
-/// tall, voxels of 6 m. Denser toward the top, as droplets grow with height.
-formats::SparseGrid<float> make_cumulus_density();
+/// tall, voxels with edges of `voxel` [m], at least 1. Denser toward the top, as droplets grow with
+/// height.
+formats::SparseGrid<float> make_cumulus_density(double voxel = 6);
 
 /// A block of even density 1, 3 mm wide, 1.5 mm tall and 2 mm deep, on y = 0: voxels of 0.05 mm.
 formats::SparseGrid<float> make_block_density();
