@@ -115,6 +115,35 @@ void print_volume_error(const Json& error) {
     fmt::print(" ({} rays checked)\n", text_of(error, "rays_checked"));
 }
 
+// The self-check's error at vertices.
+void print_error(const Json& error) {
+    const bool is_checked = text_of(error, "receivers_checked") != "0";
+    fmt::print("measured error ");
+    if (is_checked) {
+        fmt::print("{:.2f} % RMS", 100 * error["rms_relative"].get<double>());
+    } else {
+        fmt::print("none");
+    }
+    for (const auto& [key, place] :
+         {std::pair{"at_receivers", "at receivers"}, {"between", "between them"}}) {
+        if (is_checked && error.contains(key) && error[key].is_object() &&
+            error[key].contains("rms_relative") && error[key]["rms_relative"].is_number()) {
+            fmt::print(", {:.2f} % {}", 100 * error[key]["rms_relative"].get<double>(), place);
+        }
+    }
+    fmt::print(" ({} receivers checked)", text_of(error, "receivers_checked"));
+    if (error.contains("not_measured") && error["not_measured"].is_array()) {
+        for (const Json& name : error["not_measured"]) {
+            fmt::print(", without {}", name.is_string() ? printable(name.get<std::string>()) : "?");
+        }
+    }
+    if (error.contains("model_estimate") && error["model_estimate"].is_number() &&
+        error["model_estimate"].get<double>() > 0.0005) {
+        fmt::print("; the model, some {:.1f} %", 100 * error["model_estimate"].get<double>());
+    }
+    fmt::print("\n");
+}
+
 void print_provenance(const Json& provenance) {
     if (!provenance.is_object()) {
         return;
@@ -131,36 +160,14 @@ void print_provenance(const Json& provenance) {
                    text_of(knobs, "coefficients"), text_of(knobs, "code_bits"),
                    text_of(provenance, "seed"));
     }
+    // A file of volumes alone has no receivers to check.
+    const bool has_volume_error =
+        provenance.contains("volume_error") && provenance["volume_error"].is_object();
     if (provenance.contains("error") && provenance["error"].is_object() &&
         provenance["error"].contains("rms_relative") &&
-        provenance["error"]["rms_relative"].is_number()) {
-        const Json& error = provenance["error"];
-        const bool is_checked = text_of(error, "receivers_checked") != "0";
-        fmt::print("measured error ");
-        if (is_checked) {
-            fmt::print("{:.2f} % RMS", 100 * error["rms_relative"].get<double>());
-        } else {
-            fmt::print("none");
-        }
-        for (const auto& [key, place] :
-             {std::pair{"at_receivers", "at receivers"}, {"between", "between them"}}) {
-            if (is_checked && error.contains(key) && error[key].is_object() &&
-                error[key].contains("rms_relative") && error[key]["rms_relative"].is_number()) {
-                fmt::print(", {:.2f} % {}", 100 * error[key]["rms_relative"].get<double>(), place);
-            }
-        }
-        fmt::print(" ({} receivers checked)", text_of(error, "receivers_checked"));
-        if (error.contains("not_measured") && error["not_measured"].is_array()) {
-            for (const Json& name : error["not_measured"]) {
-                fmt::print(", without {}",
-                           name.is_string() ? printable(name.get<std::string>()) : "?");
-            }
-        }
-        if (error.contains("model_estimate") && error["model_estimate"].is_number() &&
-            error["model_estimate"].get<double>() > 0.0005) {
-            fmt::print("; the model, some {:.1f} %", 100 * error["model_estimate"].get<double>());
-        }
-        fmt::print("\n");
+        provenance["error"]["rms_relative"].is_number() &&
+        !(has_volume_error && text_of(provenance["error"], "receivers_checked") == "0")) {
+        print_error(provenance["error"]);
     }
     if (provenance.contains("model_error") && provenance["model_error"].is_object()) {
         const Json& model = provenance["model_error"];
@@ -168,7 +175,7 @@ void print_provenance(const Json& provenance) {
                    percent_of(model, "rms_relative"), percent_of(model, "bias"),
                    text_of(model, "receivers_checked"));
     }
-    if (provenance.contains("volume_error") && provenance["volume_error"].is_object()) {
+    if (has_volume_error) {
         print_volume_error(provenance["volume_error"]);
     }
     if (provenance.contains("plan") && provenance["plan"].is_array()) {
@@ -218,7 +225,9 @@ int run(const Options& options) {
                view.transport.code_bits);
     print_provenance(info["provenance"]);
     print_volumes(view.volumes);
-    fmt::print("primitives\n");
+    if (!view.primitives.empty()) {
+        fmt::print("primitives\n");
+    }
     for (std::size_t i = 0; i < view.primitives.size(); ++i) {
         const formats::PrimitiveRecord& p = view.primitives[i];
         fmt::print(
