@@ -32,6 +32,7 @@ CLI::Validator one_of(std::vector<std::pair<std::string, std::string>> names);
 template <class T>
 CLI::Validator one_of(const std::vector<std::pair<std::string, T>>& names) {
     std::vector<std::pair<std::string, std::string>> texts;
+    texts.reserve(names.size());
     for (const auto& [name, value] : names) {
         texts.emplace_back(name, std::to_string(static_cast<std::int64_t>(value)));
     }

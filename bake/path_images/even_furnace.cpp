@@ -56,9 +56,10 @@ FurnaceGrid make_furnace_grid(const ScatteringSpace& space, const runtime::Camer
         corners, 8, context,
         [&](Range range) {
             for (std::size_t i = range.begin; i < range.end; ++i) {
-                const auto d = runtime::view_ray(
-                    camera, frame, static_cast<double>(i % grid.columns * FurnaceGrid::kPixels),
-                    static_cast<double>(i / grid.columns * FurnaceGrid::kPixels));
+                const std::size_t column = i % grid.columns, row = i / grid.columns;
+                const auto d = runtime::view_ray(camera, frame,
+                                                 static_cast<double>(column * FurnaceGrid::kPixels),
+                                                 static_cast<double>(row * FurnaceGrid::kPixels));
                 const ViewRay ray = march_view_ray(space.volumes, bands, eye, {d.x, d.y, d.z},
                                                    std::numeric_limits<float>::infinity());
                 if (ray.is_empty()) {
