@@ -16,12 +16,13 @@ using formats::TermSet;
 
 void add_path_integration_options(CLI::App& command, PathIntegrationOptions& options) {
     command
-        .add_option("--method", options.method,
-                    "monte-carlo: without bias, with noise; path-integration: pictures of volumes "
-                    "without noise, along most probable paths of light, wrong by 10 to 20 % where "
-                    "light comes from ahead or the side and by up to a factor of 2 from behind the "
-                    "eye. It knows opaque surfaces, diffuse and without interreflection, and "
-                    "writes no .var.exr")
+        .add_option(
+            "--method", options.method,
+            "monte-carlo: without bias, with noise; path-integration: pictures of volumes "
+            "without noise, along most probable paths of light, wrong by 20 to 40 % (RMS over "
+            "a picture), most at rims and where light comes from behind the eye: up to a "
+            "factor of 2. It knows opaque surfaces, diffuse and without interreflection, and "
+            "writes no .var.exr")
         ->transform(
             one_of<ReferenceMethod>({{"monte-carlo", ReferenceMethod::monte_carlo},
                                      {"path-integration", ReferenceMethod::path_integration}}))
