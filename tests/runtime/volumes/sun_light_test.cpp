@@ -13,6 +13,7 @@
 #include "runtime/volumes/volume_march.h"
 #include "runtime/volumes/volume_sample.h"
 #include "tests/runtime/light_test_support.h"
+#include "tests/runtime/volumes/lit_volumes.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 #include "tests/support/cut_phase.h"
 
@@ -24,6 +25,7 @@ using formats::Rgb;
 using formats::SparseRow;
 using formats::TermSet;
 using formats::Vec3;
+using test::LitTestVolumes;
 using test::TestVolume;
 
 using test::kSize;
@@ -45,24 +47,6 @@ TestVolume forward(double g) {
     return volume;
 }
 
-struct Lit {
-    formats::Volumes volumes = test::make_volumes(kSize);
-    formats::VolumesView view;
-    VolumeLight light;
-    LitVolumes lit;
-
-    Lit(const std::vector<TestVolume>& parts, const LightVector& vector,
-        const RelightVolumesOptions& options = {}) {
-        for (const TestVolume& part : parts) {
-            test::add_volume(volumes, part);
-        }
-        view = volumes.view();
-        light = relight_volumes(view, vector, options);
-        lit = light_volumes(view, light);
-    }
-    Lit(const Lit&) = delete;  // members refer to each other
-};
-
 // Unit directions at all angles from `axis`, `count` of them.
 std::vector<Vec3> directions_around(Vec3 axis, int count) {
     const Vec3 side = formats::normalize(cross(axis, Vec3{0.3f, 0.5f, 0.8f}));
@@ -82,7 +66,7 @@ std::vector<Vec3> directions_around(Vec3 axis, int count) {
 TEST(SunLight, AThinMediumUnderATexelShowsThePhaseFunctionAtAllAngles) {
     for (const double g : {0.5, 0.75, 0.85, 0.95}) {
         const LightVector light = test::texel_light(kSize, kTexel, {1000, 500, 250});
-        const Lit lit({forward(g)}, light);
+        const LitTestVolumes lit({forward(g)}, light);
         ASSERT_EQ(lit.light.part[0].suns, 1u);
         const tests::CutPhase phase = tests::make_cut_phase(g);
         const double flux = tests::flux(light, 0);
@@ -112,7 +96,7 @@ TEST(SunLight, ASmallLightBetweenTexelsShowsThePhaseFunctionToo) {
         sky.discs.push_back({formats::normalize(toward), 0.00465f, {1e4f, 1e4f, 1e4f}});
         const LightVector light = project_environment(sky, kSize);
         const double flux = tests::flux(light, 0);
-        const Lit lit({forward(0.85)}, light);
+        const LitTestVolumes lit({forward(0.85)}, light);
         for (const Vec3 to_eye : directions_around(formats::normalize(toward), 200)) {
             const double c = -static_cast<double>(dot(to_eye, formats::normalize(toward)));
             const double seen =
@@ -125,7 +109,7 @@ TEST(SunLight, ASmallLightBetweenTexelsShowsThePhaseFunctionToo) {
 // p' integrates to 1: whatever is scattered once, of a sun or of even light, is the same.
 TEST(SunLight, TheMeanOverAllDirectionsIsTheLightOverTheSphere) {
     const LightVector light = test::texel_light(kSize, kTexel, {1000, 500, 250});
-    const Lit lit({forward(0.85)}, light);
+    const LitTestVolumes lit({forward(0.85)}, light);
     const double expected = tests::flux(light, 0) / (4 * std::numbers::pi);
     EXPECT_NEAR(node_radiance(lit.view, lit.light, 0, std::nullopt)[0].r, expected,
                 1e-5 * expected);
@@ -145,7 +129,7 @@ TEST(SunLight, TheMeanOverAllDirectionsIsTheLightOverTheSphere) {
 
 // Where light is even there is no sun, and a white medium of V = 1 shows 1 in all directions.
 TEST(SunLight, EvenLightIsSeenEvenlyWithoutSuns) {
-    const Lit lit({forward(0.85)}, test::white_light(kSize));
+    const LitTestVolumes lit({forward(0.85)}, test::white_light(kSize));
     EXPECT_EQ(lit.light.part[0].suns, 0u);
     for (const Vec3 to_eye : directions_around(toward_texel(), 50)) {
         EXPECT_NEAR(sample_volumes(lit.lit, {4, 4, 4}, to_eye).scattered.r / 1e-5f, 1, 0.02);
@@ -166,7 +150,7 @@ TEST(SunLight, IsContinuousAsASmallLightTurns) {
         for (int i = 0; i <= steps; ++i) {
             const float angle = 0.3f * static_cast<float>(i) / static_cast<float>(steps);
             const LightVector light = project_environment(sky, kSize, rotation_about_y(angle), 1);
-            const Lit lit({forward(0.85)}, light, {.threads = 1});
+            const LitTestVolumes lit({forward(0.85)}, light, {.threads = 1});
             EXPECT_GT(lit.light.part[0].suns, 0u);
             const float seen = sample_volumes(lit.lit, {4, 4, 4}, to_eye).scattered.r;
             if (i > 0) largest = std::max(largest, std::abs(seen - before));
@@ -211,8 +195,8 @@ TestVolume varied(double g) {
 }
 
 TEST(SunLight, HasTheSameBitsForAnyNumberOfThreads) {
-    const Lit one({varied(0.85), varied(0.5)}, many_suns(), {.threads = 1});
-    const Lit many({varied(0.85), varied(0.5)}, many_suns(), {.threads = 7});
+    const LitTestVolumes one({varied(0.85), varied(0.5)}, many_suns(), {.threads = 1});
+    const LitTestVolumes many({varied(0.85), varied(0.5)}, many_suns(), {.threads = 7});
     EXPECT_EQ(one.light.part[1].suns, kMaxSuns);
     EXPECT_EQ(one.light.coefficient, many.light.coefficient);
 }
@@ -227,11 +211,11 @@ TEST(SunLight, OfVolumesThatNeedNoSunsIsTheWholeLight) {
     isotropic.rows = nullptr;
     const LightVector light = many_suns();
     const std::vector<TestVolume> volumes{isotropic, varied(0.85), varied(0.5)};
-    const Lit both(volumes, light);
+    const LitTestVolumes both(volumes, light);
     EXPECT_EQ(both.light.part[0].suns, 0u);
     EXPECT_EQ(both.light.part[1].suns, kMaxSuns);
     for (std::size_t v = 0; v < volumes.size(); ++v) {
-        const Lit alone({volumes[v]}, light);
+        const LitTestVolumes alone({volumes[v]}, light);
         for (const auto& eye : {std::optional<Vec3>(), std::optional<Vec3>(Vec3{90, -20, 31})}) {
             EXPECT_EQ(node_radiance(both.view, both.light, v, eye),
                       node_radiance(alone.view, alone.light, 0, eye));
@@ -243,12 +227,13 @@ TEST(SunLight, OfVolumesThatNeedNoSunsIsTheWholeLight) {
 
 TEST(SunLight, IsPartOfSingleScatteringAlone) {
     const LightVector light = many_suns();
-    const Lit all({varied(0.85)}, light), once({varied(0.85)}, light, {TermSet::volume_single}),
+    const LitTestVolumes all({varied(0.85)}, light),
+        once({varied(0.85)}, light, {TermSet::volume_single}),
         often({varied(0.85)}, light, {TermSet::volume_multiple});
     EXPECT_EQ(often.light.part[0].suns, 0u);
     EXPECT_EQ(often.light.part[0].terms, 4u);
     EXPECT_EQ(once.light.part[0].suns, kMaxSuns);
-    const auto mean = [](const Lit& lit) {
+    const auto mean = [](const LitTestVolumes& lit) {
         return node_radiance(lit.view, lit.light, 0, std::nullopt)[17].g;
     };
     EXPECT_NEAR(mean(all), mean(once) + mean(often), 1e-5f * mean(all));
@@ -257,7 +242,7 @@ TEST(SunLight, IsPartOfSingleScatteringAlone) {
 TEST(SunLight, OfHostileLightAndDamagedPhaseFunctionsIsFiniteAndNotNegative) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
-    const auto expect_sound = [](const Lit& lit) {
+    const auto expect_sound = [](const LitTestVolumes& lit) {
         for (const Rgb c : lit.light.coefficient) {
             ASSERT_TRUE(std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b));
         }
@@ -273,10 +258,10 @@ TEST(SunLight, OfHostileLightAndDamagedPhaseFunctionsIsFiniteAndNotNegative) {
     for (const float value : {nan, infinity, -infinity, 3e38f, -3e38f, 0.0f, 1e-40f}) {
         LightVector light = many_suns();
         light.rgba[4 * kTexel] = value;
-        expect_sound(Lit({varied(0.85)}, light));
+        expect_sound(LitTestVolumes({varied(0.85)}, light));
         std::ranges::fill(light.rgba, value);
-        expect_sound(Lit({varied(0.85)}, light));
-        Lit damaged({varied(0.85)}, many_suns());
+        expect_sound(LitTestVolumes({varied(0.85)}, light));
+        LitTestVolumes damaged({varied(0.85)}, many_suns());
         std::ranges::fill(damaged.volumes.phase, value);
         expect_sound(damaged);
     }

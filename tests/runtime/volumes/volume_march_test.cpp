@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "tests/runtime/volumes/lit_volumes.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 
 namespace opaline::runtime {
@@ -15,26 +16,10 @@ using formats::NodeVoxel;
 using formats::Rgb;
 using formats::SparseRow;
 using formats::Vec3;
+using test::LitTestVolumes;
 using test::TestVolume;
 
 using test::kSize;
-
-// Volumes under white light; J = 1 where V = 1 and K_s = 1.
-struct Scene {
-    formats::Volumes volumes = test::make_volumes(kSize);
-    formats::VolumesView view;
-    VolumeLight light;
-    LitVolumes lit;
-
-    explicit Scene(const std::vector<TestVolume>& parts) {
-        for (const TestVolume& part : parts) {
-            test::add_volume(volumes, part);
-        }
-        view = volumes.view();
-        light = relight_volumes(view, test::white_light(kSize));
-        lit = light_volumes(view, light);
-    }
-};
 
 // A cube of 12 voxels from 1.5 to 13.5 along each axis, its faces one voxel wide ramps.
 TestVolume box() {
@@ -79,7 +64,7 @@ TEST(VolumeMarch, HomogeneousBoxOfConstantSource) {
     TestVolume volume = box();
     volume.sigma_t = {0.05f, 0.1f, 0.3f};
     volume.albedo = {0.9f, 0.5f, 0.25f};
-    const Scene scene({volume});
+    const LitTestVolumes scene({volume});
     for (const Vec3 direction : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}}) {
         const Vec3 centre{7.5f, 7.5f, 7.5f};
         const MarchResult seen = march_volumes(scene.lit, {centre - 100 * direction, direction});
@@ -93,7 +78,7 @@ TEST(VolumeMarch, HomogeneousBoxOfConstantSource) {
 TEST(VolumeMarch, ABoxFromInsideAndPastItsSide) {
     TestVolume volume = box();
     volume.sigma_t = {0.1f, 0.1f, 0.1f};
-    const Scene scene({volume});
+    const LitTestVolumes scene({volume});
     const MarchResult half = march_volumes(scene.lit, {{7.5f, 7.5f, 7.5f}, {0, 0, 1}});
     EXPECT_NEAR(half.transmittance.r, std::exp(-0.6), 1e-5);
     const MarchResult part = march_volumes(scene.lit, {{7.5f, 7.5f, -5}, {0, 0, 1}, 10, 15});
@@ -106,14 +91,14 @@ TEST(VolumeMarch, ABoxFromInsideAndPastItsSide) {
 TEST(VolumeMarch, WhatIsNearlyOpaqueIsOpaque) {
     TestVolume volume = box();
     volume.sigma_t = {10, 10, 10};
-    const Scene scene({volume});
+    const LitTestVolumes scene({volume});
     const MarchResult seen = march_volumes(scene.lit, {{-9, 7.2f, 7.9f}, {1, 0, 0}});
     EXPECT_EQ(seen.transmittance, Rgb{});
     expect_near(seen.radiance, {1, 1, 1}, 1.1e-3f);
 }
 
 TEST(VolumeMarch, ARayInTwoPartsIsTheWholeRay) {
-    const Scene scene({blob()});
+    const LitTestVolumes scene({blob()});
     std::mt19937 generator(5);
     std::uniform_real_distribution<float> near(26, 38), cut(60, 110);
     for (int i = 0; i < 50; ++i) {
@@ -131,7 +116,7 @@ TEST(VolumeMarch, ARayInTwoPartsIsTheWholeRay) {
 }
 
 TEST(VolumeMarch, HalfASourceStepIsSmallAgainstFineSteps) {
-    const Scene scene({blob()});
+    const LitTestVolumes scene({blob()});
     const MarchRay ray{{-50, 30, 28}, formats::normalize({1, 0.03f, 0.05f})};
     const MarchResult fine = march_volumes(scene.lit, ray, {.step = 1.0f / 32});
     const MarchResult usual = march_volumes(scene.lit, ray);
@@ -142,7 +127,7 @@ TEST(VolumeMarch, HalfASourceStepIsSmallAgainstFineSteps) {
 TEST(VolumeMarch, TwoVolumesInOnePlaceAreOneOfTwiceTheDensity) {
     TestVolume dense = blob();
     dense.sigma_t = 2 * dense.sigma_t;
-    const Scene two({blob(), blob()}), one({dense});
+    const LitTestVolumes two({blob(), blob()}), one({dense});
     for (const float y : {25.0f, 32.0f, 41.3f}) {
         const MarchRay ray{{-20, y, 30}, formats::normalize({1, 0.1f, 0})};
         const MarchResult a = march_volumes(two.lit, ray), b = march_volumes(one.lit, ray);
@@ -158,7 +143,7 @@ TEST(VolumeMarch, VolumesThatOverlapInPartAddUp) {
     fine.albedo = {1, 0, 0};
     coarse.sigma_t = {0.07f, 0.07f, 0.07f};
     coarse.albedo = {0, 1, 0};
-    const Scene scene({coarse, fine});
+    const LitTestVolumes scene({coarse, fine});
     const MarchResult seen = march_volumes(scene.lit, {{6.9f, 6.9f, -30}, {0, 0, 1}});
     EXPECT_NEAR(seen.transmittance.r, std::exp(-12 * 0.07 - 3 * 0.1), 1e-4);
     EXPECT_EQ(seen.radiance.b, 0);
@@ -171,7 +156,7 @@ TEST(VolumeMarch, VolumesThatOverlapInPartAddUp) {
 TEST(VolumeMarch, AGaussianBallUnderAShearedTransform) {
     TestVolume volume = blob();
     volume.to_world = {0.3f, 0.2f, 0, 3, -0.1f, 0.05f, 0.6f, -2, 0, 0.7f, 0.1f, 40};
-    const Scene scene({volume});
+    const LitTestVolumes scene({volume});
     const auto& m = volume.to_world;
     const auto world = [&](Vec3 i, float one) {
         return Vec3{m[0] * i.x + m[1] * i.y + m[2] * i.z + one * m[3],
@@ -202,7 +187,7 @@ TEST(VolumeMarch, ANegativeTableCornerAndMissingBricks) {
     volume.density = [](float, float, float z) {
         return (z >= -238 && z <= -235) || (z >= 234 && z <= 237) ? 1.0f : 0.0f;
     };
-    const Scene scene({volume});
+    const LitTestVolumes scene({volume});
     EXPECT_EQ(scene.view.records[0].brick_count, 2u);
     for (const float sign : {1.0f, -1.0f}) {
         const MarchResult seen =
@@ -223,7 +208,7 @@ TEST(VolumeMarch, SourcesBelowZeroCountAsZeroBetweenNodesToo) {
     volume.rows = [](NodeVoxel node) {
         return std::vector<SparseRow>{test::constant_row(kSize, node[2] == 0 ? 1.0f : -1.0f)};
     };
-    const Scene scene({volume});
+    const LitTestVolumes scene({volume});
     const MarchResult seen = march_volumes(scene.lit, {{3, 3, -10}, {0, 0, 1}, 10, 17});
     // The integral of 1 - z / 4 up to 4.
     EXPECT_NEAR(seen.radiance.r, 1e-3 * 2, 1e-5);
@@ -232,7 +217,7 @@ TEST(VolumeMarch, SourcesBelowZeroCountAsZeroBetweenNodesToo) {
 TEST(VolumeMarch, NodesWithoutNumberAreBlack) {
     TestVolume volume = box();
     volume.sigma_t = {0.1f, 0.1f, 0.1f};
-    Scene scene({volume});
+    LitTestVolumes scene({volume});
     std::ranges::fill(scene.volumes.corner, formats::kNoNode);
     const MarchResult seen = march_volumes(scene.lit, {{7, 7, -10}, {0, 0, 1}});
     EXPECT_EQ(seen.radiance, Rgb{});

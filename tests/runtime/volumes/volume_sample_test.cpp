@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/runtime/volumes/lit_volumes.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 
 namespace opaline::runtime {
@@ -15,6 +16,7 @@ using formats::NodeVoxel;
 using formats::Rgb;
 using formats::SparseRow;
 using formats::Vec3;
+using test::LitTestVolumes;
 using test::TestVolume;
 
 using test::kSize;
@@ -42,22 +44,6 @@ TestVolume sheared_blob() {
     return volume;
 }
 
-struct SampledScene {
-    formats::Volumes volumes = test::make_volumes(kSize);
-    formats::VolumesView view;
-    VolumeLight light;
-    LitVolumes lit;
-
-    explicit SampledScene(const std::vector<TestVolume>& parts) {
-        for (const TestVolume& part : parts) {
-            test::add_volume(volumes, part);
-        }
-        view = volumes.view();
-        light = relight_volumes(view, test::texel_light(kSize, 70, {300, 200, 100}));
-        lit = light_volumes(view, light);
-    }
-};
-
 Vec3 world(const TestVolume& volume, Vec3 i) {
     const auto& m = volume.to_world;
     return {m[0] * i.x + m[1] * i.y + m[2] * i.z + m[3],
@@ -69,7 +55,7 @@ Vec3 world(const TestVolume& volume, Vec3 i) {
 // scattered (1 - exp(-c h)) / c and lets exp(-c h) through.
 TEST(VolumeSample, IsWhatOneShortStepOfAMarchSees) {
     const TestVolume volume = sheared_blob();
-    const SampledScene scene({volume, volume});
+    const LitTestVolumes scene({volume, volume}, test::texel_light(kSize, 70, {300, 200, 100}));
     std::mt19937 generator(11);
     std::uniform_real_distribution<float> within(-6, 6), any(-1, 1);
     for (int i = 0; i < 200; ++i) {
@@ -98,7 +84,7 @@ TEST(VolumeSample, IsWhatOneShortStepOfAMarchSees) {
 TEST(VolumeSample, NothingOutsideAndFiniteAnywhere) {
     TestVolume dense = sheared_blob();
     dense.sigma_t = {1e38f, 1, 1};
-    const SampledScene scene({dense, dense});
+    const LitTestVolumes scene({dense, dense}, test::texel_light(kSize, 70, {300, 200, 100}));
     const float values[] = {0,
                             -0.0f,
                             40,
