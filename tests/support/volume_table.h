@@ -1,12 +1,11 @@
 #pragma once
 
-#include <cstddef>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "tests/support/named_table.h"
 #include "tests/support/reference_table.h"
 
 namespace opaline::tests {
@@ -26,28 +25,9 @@ struct VolumeRow {
 
 /// All rows of the table. Empty if it is not there.
 inline std::vector<VolumeRow> read_volume_table() {
-    std::ifstream file(reference_folder() / "volumes.csv");
-    const auto split = [](const std::string& line) {
-        std::stringstream cells(line);
-        std::vector<std::string> parts;
-        for (std::string part; std::getline(cells, part, ',');) {
-            parts.push_back(part);
-        }
-        return parts;
-    };
-    std::vector<std::string> columns;
     std::vector<VolumeRow> rows;
-    for (std::string line; std::getline(file, line);) {
-        const std::vector<std::string> parts = split(line);
-        if (columns.empty()) {
-            columns = parts;
-            continue;
-        }
-        VolumeRow row;
-        for (std::size_t i = 0; i < columns.size(); ++i) {
-            row.cell[columns[i]] = i < parts.size() ? parts[i] : "";
-        }
-        rows.push_back(row);
+    for (auto& cell : read_named_table(reference_folder() / "volumes.csv")) {
+        rows.push_back({std::move(cell)});
     }
     return rows;
 }
