@@ -25,14 +25,14 @@
 namespace opaline::cli {
 namespace {
 
-struct Options {
+struct BakeCommand {
     SceneOptions scene;
     std::string output, report, depfile;
     bool verbose = false;
     ProgressStyle progress = ProgressStyle::automatic;
 };
 
-void print_summary(const Options& options, const bake::BakeResult& result, std::uint64_t bytes,
+void print_summary(const BakeCommand& options, const bake::BakeResult& result, std::uint64_t bytes,
                    std::size_t warnings) {
     const std::size_t nodes = result.asset.volumes.node.size();
     std::string line = fmt::format(
@@ -98,7 +98,7 @@ void print_stages(const bake::BakeResult& result) {
 }
 
 // Those that were asked for; the .opal file is the last.
-std::vector<OutputFile> name_outputs(const Options& options) {
+std::vector<OutputFile> name_outputs(const BakeCommand& options) {
     std::vector<OutputFile> outputs;
     for (const OutputFile& output : {OutputFile{"--report", options.report, {}},
                                      {"--depfile", options.depfile, {}},
@@ -142,7 +142,7 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
             machine.note};
 }
 
-int run(const Options& options) {
+int run(const BakeCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const auto wanted = parse_effects(options.scene);
     if (!wanted) {
@@ -228,7 +228,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_bake_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<BakeCommand>();
     CLI::App* command = app.add_subcommand("bake", "Bake a scene into an .opal file");
     add_scene_options(*command, options->scene);
     add_error_option(*command, options->scene);

@@ -13,13 +13,13 @@
 namespace opaline::cli {
 namespace {
 
-struct Options {
+struct CompareCommand {
     std::string a, b;
     double max_relative = -1;
     bool json = false;
 };
 
-int run(const Options& options) {
+int run(const CompareCommand& options) {
     const auto comparison = bake::compare_files(options.a, options.b);
     if (!comparison) {
         return report_error(comparison.error());
@@ -51,7 +51,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CompareCommand>();
     CLI::App* command =
         app.add_subcommand("compare",
                            "Say how far A is from the reference B: two images or two "

@@ -14,7 +14,7 @@
 namespace opaline::cli {
 namespace {
 
-struct Options {
+struct ExampleCommand {
     std::string name, folder;
     bool list = false;
 };
@@ -56,7 +56,7 @@ formats::Result<std::filesystem::path> write_light(const std::string& spec,
     return path;
 }
 
-int run(const Options& options) {
+int run(const ExampleCommand& options) {
     if (options.list) {
         return list_all();
     }
@@ -86,7 +86,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_example_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ExampleCommand>();
     CLI::App* command = app.add_subcommand(
         "example", "Write a bundled example scene or light; nothing is downloaded");
     command->add_option("name", options->name, "a scene or a light of the list")

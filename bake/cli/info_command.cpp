@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct InfoCommand {
     std::string path;
     bool json = false;
 };
@@ -203,7 +203,7 @@ void print_volumes(const formats::VolumesView& volumes) {
     }
 }
 
-int run(const Options& options) {
+int run(const InfoCommand& options) {
     const auto asset = open_asset(options.path);
     if (!asset) {
         return report_error(asset.error());
@@ -255,7 +255,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_info_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<InfoCommand>();
     CLI::App* command = app.add_subcommand("info", "Say what is inside an .opal file");
     command->add_option("file", options->path, "the .opal file")
         ->required()

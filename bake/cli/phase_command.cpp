@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 
 enum class Format { json, csv };
 
-struct Options {
+struct PhaseCommand {
     PhaseFunction::Type type = PhaseFunction::Type::henyey_greenstein;
     double g = std::nan(""), rms_angle = std::nan("");
     std::string table;
@@ -46,7 +46,7 @@ struct Subject {
 constexpr unsigned kDegrees = 32, kMostTerms = 25, kCubemapSize = 16;
 constexpr std::size_t kSingularValues = 100;  ///< shown; the errors take in all of them
 
-formats::Status check_options(const Options& options) {
+formats::Status check_options(const PhaseCommand& options) {
     using Type = PhaseFunction::Type;
     const auto refuse = [](const char* option, std::string fault, const char* remedy) {
         return make_error(formats::ErrorKind::usage, "", option, std::move(fault), remedy);
@@ -72,7 +72,7 @@ formats::Status check_options(const Options& options) {
     return formats::ok_status();
 }
 
-formats::Result<Subject> make_subject(const Options& options) {
+formats::Result<Subject> make_subject(const PhaseCommand& options) {
     using Type = PhaseFunction::Type;
     if (options.type == Type::henyey_greenstein) {
         const double g = options.g;  // not rounded to the single precision of PhaseFunction
@@ -145,7 +145,7 @@ void print_csv(const Json& all) {
     print("singular_value", nullptr, all["singular_values"]);
 }
 
-int run(const Options& options) {
+int run(const PhaseCommand& options) {
     if (const auto status = check_options(options); !status) {
         return report_error(status.error());
     }
@@ -179,7 +179,7 @@ int run(const Options& options) {
 
 void add_phase_command(CLI::App& app, Job& job) {
     using Type = PhaseFunction::Type;
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PhaseCommand>();
     CLI::App* command = app.add_subcommand(
         "phase", "Tabulate a phase function and say how many terms its factors need");
     command->add_option("--type", options->type, "as in media files: formats/media/README.md")

@@ -21,7 +21,7 @@
 namespace opaline::cli {
 namespace {
 
-struct Options {
+struct PlanCommand {
     SceneOptions scene;
     bool json = false;
 };
@@ -39,7 +39,7 @@ std::vector<formats::Diagnostic> describe_media_faults(const formats::Scene& sce
     return bake::describe_faults(scene, surfaces);
 }
 
-int run(const Options& options) {
+int run(const PlanCommand& options) {
     const bake::EffectTable& effects = bake::all_effects();
     const auto wanted = parse_effects(options.scene);
     if (!wanted) {
@@ -91,7 +91,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_plan_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PlanCommand>();
     CLI::App* command =
         app.add_subcommand("plan", "Say what a bake of the scene would simulate, and why");
     add_scene_options(*command, options->scene);

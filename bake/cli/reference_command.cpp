@@ -33,7 +33,7 @@ using formats::ErrorKind;
 using formats::make_error;
 using formats::Status;
 
-struct Options {
+struct ReferenceCommand {
     std::string scene, media, light, output, terms;
     CameraOptions camera;
     PathIntegrationOptions paths;
@@ -50,7 +50,7 @@ std::string variance_path(const std::string& output) {
     return std::filesystem::path(output).replace_extension(".var.exr").string();
 }
 
-Status check_paths(const Options& options, std::vector<std::filesystem::path> inputs) {
+Status check_paths(const ReferenceCommand& options, std::vector<std::filesystem::path> inputs) {
     const bool table = ending_of(options.output) == ".csv";
     std::vector<OutputFile> outputs{{"--output", options.output, {".exr", ".png", ".csv"}}};
     if (!table && !options.paths.is_chosen()) {
@@ -106,7 +106,7 @@ formats::Asset make_stand_in(const formats::Scene& scene) {
     return asset;
 }
 
-void print_summary(const Options& options, const bake::Estimate& estimate) {
+void print_summary(const ReferenceCommand& options, const bake::Estimate& estimate) {
     double error = 0, sum = 0;
     for (const bake::Moments& m : estimate.pixel) {
         const glm::dvec3 variance = m.variance_of_mean();
@@ -123,7 +123,7 @@ void print_summary(const Options& options, const bake::Estimate& estimate) {
         sum > 0 ? 100 * std::sqrt(error / sum) : 0.0));
 }
 
-Status report_lost_paths(const Options& options, const bake::Estimate& estimate) {
+Status report_lost_paths(const ReferenceCommand& options, const bake::Estimate& estimate) {
     constexpr double kNoticed = 1e-4;
     const double paths =
         static_cast<double>(estimate.pixel.size()) * static_cast<double>(estimate.samples);
@@ -150,7 +150,7 @@ formats::Result<bake::OrientedBodies> close_bodies(const formats::Scene& scene) 
     return bodies;
 }
 
-Status make_table(const Options& options, const bake::PathSpace& space,
+Status make_table(const ReferenceCommand& options, const bake::PathSpace& space,
                   const bake::EstimateOptions& wanted, const bake::Context& context) {
     std::optional<glm::vec3> eye;
     if (!options.camera.eye.empty()) {
@@ -176,7 +176,7 @@ Status make_table(const Options& options, const bake::PathSpace& space,
     return formats::ok_status();
 }
 
-Status make_picture(const Options& options, const bake::PathSpace& space,
+Status make_picture(const ReferenceCommand& options, const bake::PathSpace& space,
                     const bake::EstimateOptions& wanted, const bake::Context& context) {
     const formats::Asset stand_in = make_stand_in(space.scene.surfaces.scene());
     const auto camera = make_camera(options.camera, stand_in.view());
@@ -205,7 +205,7 @@ Status make_picture(const Options& options, const bake::PathSpace& space,
     return formats::ok_status();
 }
 
-bake::EstimateOptions estimate_options(const Options& options) {
+bake::EstimateOptions estimate_options(const ReferenceCommand& options) {
     constexpr std::uint32_t kReceiverSamples = 1024, kPixelSamples = 64;
     bake::EstimateOptions wanted;
     wanted.seed = options.seed;
@@ -217,7 +217,7 @@ bake::EstimateOptions estimate_options(const Options& options) {
     return wanted;
 }
 
-int run(const Options& options) {
+int run(const ReferenceCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     bake::PathOptions paths;
     if (options.max_depth > 0) {
@@ -289,7 +289,7 @@ int run(const Options& options) {
     return status ? kExitSuccess : report_error(status.error());
 }
 
-void add_estimate_options(CLI::App& command, Options& options) {
+void add_estimate_options(CLI::App& command, ReferenceCommand& options) {
     command
         .add_option("--receivers", options.receivers,
                     "a table instead of a picture: radiance and its standard error at N vertices, "
@@ -334,7 +334,7 @@ void add_estimate_options(CLI::App& command, Options& options) {
 }  // namespace
 
 void add_reference_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ReferenceCommand>();
     CLI::App* command = app.add_subcommand(
         "reference", "Ground truth of a scene by Monte Carlo: a picture, or radiance at vertices");
     command

@@ -17,7 +17,7 @@
 namespace opaline::cli {
 namespace {
 
-struct Options {
+struct RelightCommand {
     std::string path, light, output, eye, terms;
     double rotate_light = 0;
     unsigned threads = 0;
@@ -25,7 +25,7 @@ struct Options {
 };
 
 // What a script wants to know without reading the table.
-void print_json(const Options& options, const formats::AssetView& view,
+void print_json(const RelightCommand& options, const formats::AssetView& view,
                 std::span<const formats::Rgb> radiance) {
     double mean[3] = {}, most = 0;
     for (const formats::Rgb& value : radiance) {
@@ -73,7 +73,7 @@ std::filesystem::path volumes_path(const std::filesystem::path& output) {
 }
 
 // Every output, whether the file has volumes or not.
-std::vector<OutputFile> list_outputs(const Options& options) {
+std::vector<OutputFile> list_outputs(const RelightCommand& options) {
     std::vector<OutputFile> outputs{{"--output", options.output, {".csv", ".ply", ".exr"}}};
     if (ending_of(options.output) == ".csv") {
         outputs.push_back({"the table of volumes", volumes_path(options.output), {}});
@@ -96,7 +96,7 @@ std::vector<bake::VolumeRow> make_volume_rows(const formats::VolumesView& volume
     return rows;
 }
 
-formats::Status write_volumes(const Options& options, const formats::VolumesView& volumes,
+formats::Status write_volumes(const RelightCommand& options, const formats::VolumesView& volumes,
                               const runtime::LightVector& light,
                               const runtime::ShadeOptions& shading) {
     if (volumes.empty()) {
@@ -112,7 +112,7 @@ formats::Status write_volumes(const Options& options, const formats::VolumesView
                                   make_volume_rows(volumes, lit, shading.eye));
 }
 
-int run(const Options& options) {
+int run(const RelightCommand& options) {
     const std::filesystem::path inputs[] = {options.path, options.light};
     if (auto status = check_outputs(list_outputs(options), inputs); !status) {
         return report_error(status.error());
@@ -172,7 +172,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_relight_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RelightCommand>();
     CLI::App* command = app.add_subcommand(
         "relight", "Evaluate the outgoing radiance of every receiver under a light");
     command->add_option("file", options->path, "the .opal file")

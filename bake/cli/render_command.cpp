@@ -34,7 +34,7 @@ using Clock = std::chrono::steady_clock;
 /// `automatic`: OpenGL, and the processor where there is none.
 enum class Backend { automatic, gl, cpu };
 
-struct Options {
+struct RenderCommand {
     std::string path, light, output, terms;
     Backend backend = Backend::automatic;
     CameraOptions camera;
@@ -65,7 +65,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 // OUT.png, or OUT-0001.png and so on for a turntable.
-std::string frame_path(const Options& options, std::uint32_t frame) {
+std::string frame_path(const RenderCommand& options, std::uint32_t frame) {
     if (options.frames == 1) {
         return options.output;
     }
@@ -77,7 +77,7 @@ std::string frame_path(const Options& options, std::uint32_t frame) {
 
 // Draws every frame of a turntable with `draw(camera)` and writes it.
 template <class Draw>
-int render_frames(const Options& options, const runtime::Camera& camera, Draw&& draw) {
+int render_frames(const RenderCommand& options, const runtime::Camera& camera, Draw&& draw) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     double draw_seconds = 0;
     for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
@@ -105,13 +105,13 @@ int render_frames(const Options& options, const runtime::Camera& camera, Draw&& 
     return kExitSuccess;
 }
 
-void print_stat(const Options& options, const char* name, double seconds) {
+void print_stat(const RenderCommand& options, const char* name, double seconds) {
     if (options.stats) {
         fmt::print("{:<16} {}\n", name, format_seconds(seconds));
     }
 }
 
-int render_on_cpu(const Options& options, const formats::AssetView& view, const OpenedLight& light,
+int render_on_cpu(const RenderCommand& options, const formats::AssetView& view, const OpenedLight& light,
                   const runtime::LightVector& vector, const runtime::Camera& camera, Shown shown) {
     formats::Vec3 shaded_for = camera.eye;
     auto start = Clock::now();
@@ -147,7 +147,7 @@ int render_on_cpu(const Options& options, const formats::AssetView& view, const 
     });
 }
 
-int render_on_gpu([[maybe_unused]] const Options& options,
+int render_on_gpu([[maybe_unused]] const RenderCommand& options,
                   [[maybe_unused]] const formats::AssetView& view,
                   [[maybe_unused]] const OpenedLight& light,
                   [[maybe_unused]] const runtime::LightVector& vector,
@@ -188,7 +188,7 @@ int render_on_gpu([[maybe_unused]] const Options& options,
 #endif
 }
 
-int run(const Options& options) {
+int run(const RenderCommand& options) {
     std::vector<OutputFile> outputs;
     for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
         outputs.push_back({"--output", frame_path(options, frame), {".png", ".exr"}});
@@ -228,7 +228,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_render_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RenderCommand>();
     CLI::App* command = app.add_subcommand("render", "Make pictures of an .opal file, headless");
     command->add_option("file", options->path, "the .opal file")
         ->required()

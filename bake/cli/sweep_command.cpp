@@ -30,7 +30,7 @@ using formats::ErrorKind;
 using formats::make_error;
 using formats::Status;
 
-struct Options {
+struct SweepCommand {
     SceneOptions scene;
     std::string folder, light = "sky:3,35";
     double seconds = 300;
@@ -69,7 +69,7 @@ class OutputFolder {
     bool created_ = false;
 };
 
-int run(const Options& options) {
+int run(const SweepCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const auto options_of_bake = parse_effects(options.scene);
     if (!options_of_bake) {
@@ -156,7 +156,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_sweep_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SweepCommand>();
     CLI::App* command = app.add_subcommand(
         "sweep", "Bake a scene in many ways, and show what accuracy costs in time and bytes");
     add_subject_options(*command, options->scene);

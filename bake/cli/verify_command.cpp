@@ -16,7 +16,7 @@
 namespace opaline::cli {
 namespace {
 
-struct Options {
+struct VerifyCommand {
     std::vector<std::string> paths;
     bool json = false;
 };
@@ -47,7 +47,7 @@ Verdict verify(const std::string& path) {
     return {};
 }
 
-int run(const Options& options) {
+int run(const VerifyCommand& options) {
     int code = kExitSuccess;
     nlohmann::ordered_json results = nlohmann::ordered_json::array();
     for (const std::string& path : options.paths) {
@@ -73,7 +73,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_verify_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<VerifyCommand>();
     CLI::App* command = app.add_subcommand(
         "verify", "Check .opal files: structure, checksums, ranges, finite numbers");
     command->add_option("file", options->paths, "the .opal files")
