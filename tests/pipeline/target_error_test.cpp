@@ -99,8 +99,8 @@ TEST(TargetError, OutOfReachIsSaidAndBytesThatLowerNothingAreNotSpent) {
 // One term for light that goes on the way it came: no sample and no texel mends that.
 TEST(TargetError, TooFewPhaseTermsEndThePilotAndAreNamed) {
     auto medium = tests::make_grey_medium(4, 0.4f);
-    medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.8f, 0, {}, {}};
-    BakeOptions options = asking_for(0.03);
+    medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.95f, 0, {}, {}};
+    BakeOptions options = asking_for(0.1);
     options.set(kPhaseTerms, 1);
     const BakeResult result =
         tests::bake_scene(tests::make_translucent_scene({tests::make_sphere(2)}, medium), options);
