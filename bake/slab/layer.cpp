@@ -5,6 +5,25 @@
 #include <vector>
 
 namespace opaline::bake {
+namespace {
+
+/// Products of kernels: one light after the other, integrated over the cosine in between.
+template <class Scalar>
+class KernelProduct {
+  public:
+    using Matrix = typename Layer<Scalar>::Matrix;
+
+    explicit KernelProduct(const Eigen::VectorXd& flux) : flux_(flux.cast<Scalar>()) {}
+
+    Matrix operator()(const Matrix& after, const Matrix& before) const {
+        return after.leftCols(flux_.size()) * flux_.asDiagonal() * before.topRows(flux_.size());
+    }
+
+  private:
+    typename Layer<Scalar>::Vector flux_;
+};
+
+}  // namespace
 
 // README.md, "Adding and doubling", derives both functions.
 
@@ -15,30 +34,29 @@ Layer<Scalar> make_thin_layer(const LayerRates<Scalar>& rates, const Eigen::Vect
     using Vector = typename Layer<Scalar>::Vector;
     // The term of degree n is about (depth extinction)^n / n! of the first.
     constexpr std::size_t kTerms = 6;
-    const Vector flux_weights = flux.cast<Scalar>();
-    const auto weights = flux_weights.asDiagonal();
+    const KernelProduct<Scalar> product(flux);
     const Matrix rho = depth * rates.reflect, alpha = depth * rates.transmit;
-    const Vector loss = depth * rates.extinction;
-    const auto size = loss.size();
+    const Vector loss = depth * rates.extinction, entering = loss.head(rho.cols());
     // Of degree n: reflect[n], transmit[n], straight[n]; turned[n] = rho F reflect[n].
-    std::vector<Matrix> reflect{Matrix::Zero(size, size)}, transmit = reflect, turned = reflect;
-    std::vector<Vector> straight{Vector::Ones(size)};
+    std::vector<Matrix> reflect{Matrix::Zero(rho.rows(), rho.cols())}, transmit = reflect,
+                                                                       turned = reflect;
+    std::vector<Vector> straight{Vector::Ones(loss.size())};
     for (std::size_t n = 0; n < kTerms; ++n) {
         const double degree = static_cast<double>(n) + 1;
         // A layer on top: reflects by itself, dims and scatters what goes down and comes back, and
         // returns to the slab below what that reflects.
-        const Matrix through = alpha * weights * reflect[n] - loss.asDiagonal() * reflect[n];
-        Matrix next = through + through.transpose();
+        Matrix next = product(alpha, reflect[n]) - loss.asDiagonal() * reflect[n] +
+                      product(reflect[n], alpha) - reflect[n] * entering.asDiagonal();
         for (std::size_t i = 1; i < n; ++i) {
-            next += reflect[i] * weights * turned[n - i];
+            next += product(reflect[i], turned[n - i]);
         }
         // What enters the slab below, having gone straight to it or not.
-        Matrix down = -(transmit[n] * loss.asDiagonal()) + transmit[n] * weights * alpha +
+        Matrix down = product(transmit[n], alpha) - transmit[n] * entering.asDiagonal() +
                       straight[n].asDiagonal() * alpha;
         for (std::size_t i = 0; i < n; ++i) {
             down += straight[i].asDiagonal() * turned[n - i];
             if (i > 0) {
-                down += transmit[i] * weights * turned[n - i];
+                down += product(transmit[i], turned[n - i]);
             }
         }
         if (n == 0) {
@@ -46,7 +64,7 @@ Layer<Scalar> make_thin_layer(const LayerRates<Scalar>& rates, const Eigen::Vect
         }
         reflect.push_back(next / degree);
         transmit.push_back(down / degree);
-        turned.push_back(rho * weights * reflect.back());
+        turned.push_back(product(rho, reflect.back()));
         straight.push_back(-loss.cwiseProduct(straight[n]) / degree);
     }
     Layer<Scalar> layer{reflect.back(), transmit.back(), loss};
@@ -60,21 +78,23 @@ Layer<Scalar> make_thin_layer(const LayerRates<Scalar>& rates, const Eigen::Vect
 template <class Scalar>
 Layer<Scalar> double_layer(const Layer<Scalar>& layer, const Eigen::VectorXd& flux) {
     using Matrix = typename Layer<Scalar>::Matrix;
-    const typename Layer<Scalar>::Vector flux_weights = flux.cast<Scalar>();
-    const auto weights = flux_weights.asDiagonal();
+    const KernelProduct<Scalar> product(flux);
+    const auto nodes = flux.size();
     const typename Layer<Scalar>::Vector straight = layer.direct();
-    const auto direct = straight.asDiagonal();
-    const auto size = straight.size();
-    // Between the layers: light that was scattered goes down, D, and all goes up, U.
-    const Matrix turn = layer.reflect * weights * layer.reflect;
-    const Matrix down = (Matrix::Identity(size, size) - turn * weights)
-                            .partialPivLu()
-                            .solve(layer.transmit + turn * direct);
-    const Matrix bounced = layer.reflect * weights;
-    const Matrix up = layer.reflect * direct + bounced * down;
-    const Matrix carried = layer.transmit * weights;
-    return {layer.reflect + direct * up + carried * up,
-            direct * down + layer.transmit * direct + carried * down, 2.0 * layer.slant};
+    const auto leaving = straight.asDiagonal();
+    const auto entering = straight.head(layer.reflect.cols()).asDiagonal();
+    // Between the layers: light that was scattered goes down, and all goes up. Down first between
+    // the nodes of the rule, where it is what it is made of.
+    const Matrix turn = product(layer.reflect, layer.reflect);
+    Matrix down = layer.transmit + turn * entering;
+    const Matrix between = turn.topLeftCorner(nodes, nodes) * flux.cast<Scalar>().asDiagonal();
+    const Matrix at_nodes =
+        (Matrix::Identity(nodes, nodes) - between).partialPivLu().solve(down.topRows(nodes));
+    down += product(turn, at_nodes);
+    const Matrix up = layer.reflect * entering + product(layer.reflect, down);
+    return {layer.reflect + leaving * up + product(layer.transmit, up),
+            leaving * down + layer.transmit * entering + product(layer.transmit, down),
+            2.0 * layer.slant};
 }
 
 template Layer<double> make_thin_layer(const LayerRates<double>&, const Eigen::VectorXd&, double);

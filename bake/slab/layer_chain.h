@@ -20,9 +20,10 @@ void double_up(const PhaseKernels& kernels, const Streams& streams, Scalar albed
     LayerRates<Scalar> rates;
     rates.extinction = extinction * inverse.cast<Scalar>();
     const Scalar quarter = albedo / 4.0;
-    const auto per_cosine = inverse.asDiagonal();
-    rates.reflect = quarter * (per_cosine * kernels.backward * per_cosine).eval().cast<Scalar>();
-    rates.transmit = quarter * (per_cosine * kernels.forward * per_cosine).eval().cast<Scalar>();
+    const auto leaving = inverse.asDiagonal();
+    const auto entering = inverse.head(kernels.forward.cols()).asDiagonal();
+    rates.reflect = quarter * (leaving * kernels.backward * entering).eval().cast<Scalar>();
+    rates.transmit = quarter * (leaving * kernels.forward * entering).eval().cast<Scalar>();
     const double steepest = std::abs(extinction) * inverse.maxCoeff();
     unsigned doublings = halvings;
     while (std::ldexp(optical_depth * steepest, -static_cast<int>(doublings)) > kThinLayerDepth) {

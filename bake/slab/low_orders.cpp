@@ -2,13 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <numbers>
 
 namespace opaline::bake {
 namespace {
-
-using std::numbers::pi;
 
 // Past these, all is at its limit, and products of them are finite.
 constexpr double kGrazing = 1e-12, kDeepest = 1e12;
@@ -44,20 +40,6 @@ SlantDepths slant_depths(double depth, double light, double view) {
     return {d, l, v, d / l + d / v, d / std::max(l, v), std::abs(d / l - d / v)};
 }
 
-/// sum_l (2 l + 1) / (4 pi) of(moment[l]) P_l(cosine)
-template <class Of>
-double sum_legendre(const std::vector<double>& moment, double cosine, const Of& of) {
-    double sum = 0, last = 0, now = 1;
-    for (std::size_t l = 0; l < moment.size(); ++l) {
-        const auto degree = static_cast<double>(l);
-        sum += (2 * degree + 1) * of(moment[l]) * now;
-        const double next = ((2 * degree + 1) * cosine * now - degree * last) / (degree + 1);
-        last = now;
-        now = next;
-    }
-    return sum / (4 * pi);
-}
-
 }  // namespace
 
 double single_reflection(double depth, double light, double view) {
@@ -80,29 +62,6 @@ double double_transmission(double depth, double light, double view) {
     const SlantDepths s = slant_depths(depth, light, view);
     const double rest = s.difference > 0 ? second_order(s.difference) / s.difference : 0;
     return s.depth / s.view * std::exp(-s.less) * (s.less * phi(s.difference) + rest) / 2;
-}
-
-std::vector<double> convolve_with_itself(const std::vector<double>& moment) {
-    std::vector<double> square;
-    square.reserve(moment.size());
-    for (const double x : moment) {
-        square.push_back(x * x);
-    }
-    return square;
-}
-
-double eval_moments(const std::vector<double>& moment, double cosine) {
-    return sum_legendre(moment, cosine, [](double x) { return x; });
-}
-
-double eval_forward_glow(const std::vector<double>& moment, double once, double cosine,
-                         double events) {
-    const double none = std::exp(-events);
-    return events * none * once + sum_legendre(moment, cosine, [&](double x) {
-               // e^-u (e^y - 1 - y), y = u x, where e^y may overflow
-               const double y = events * x;
-               return y < 1 ? none * (std::expm1(y) - y) : std::exp(y - events) - none * (1 + y);
-           });
 }
 
 double spread_profile(double a, double view) {

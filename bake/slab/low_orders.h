@@ -1,15 +1,14 @@
 #pragma once
 
-#include <vector>
-
 namespace opaline::bake {
 
 // Light of irradiance E, on a plane facing it, that leaves a slab after one or two scatterings. Its
 // radiance is E times a density [1/sr], which integrates to 1 over the sphere, times a factor:
-// p(cos) for once, p * p (cos) for twice. cos is that between propagation directions;
-// [Bouthors2006] has 4 pi for the 1 and -dot(l, v) for cos. All functions: optical depth along the
-// normal, >= 0; cosines to the normal of light and view in [0, 1], below 1e-12 taken for that.
-// Derivations: README.md, "Once and twice". Never NaN; relative error 1e-13 where not underflown.
+// p(cos) for once, p * p (cos) for twice (`convolve_with_itself` of bake/mie). cos is that between
+// propagation directions; [Bouthors2006] has 4 pi for the 1 and -dot(l, v) for cos. All functions:
+// optical depth along the normal, >= 0; cosines to the normal of light and view in [0, 1], below
+// 1e-12 taken for that. Derivations: README.md, "Once and twice". Never NaN; relative error 1e-13
+// where not underflown.
 
 /// Once, on the side of the light and on the other: exact.
 double single_reflection(double depth, double light, double view);
@@ -19,20 +18,6 @@ double single_transmission(double depth, double light, double view);
 /// happens anywhere along that folded path: 10 to 25 % off, less for peaked phase functions.
 double double_reflection(double depth, double light, double view);
 double double_transmission(double depth, double light, double view);
-
-/// Moments of p * p, a density that integrates to 1: the squares [Goudsmit1940].
-std::vector<double> convolve_with_itself(const std::vector<double>& moment);
-
-/// p(cosine) = sum_l (2 l + 1) / (4 pi) moment[l] P_l(cosine) [1/sr], cosine in [-1, 1].
-double eval_moments(const std::vector<double>& moment, double cosine);
-
-/// Density [1/sr] of light that has met a forward peak once or more, a Poisson number of mean
-/// `events` >= 0, over the angle to where it came from: exp(-u) sum_{n >= 1} u^n / n! p_F^{*n}, of
-/// integral 1 - exp(-u). `moment`: of the peak p_F, which integrates to 1; `once` = p_F(cosine)
-/// [1/sr] itself, so that an edge of it is not the series'. For 1500 moments of a peak that ends at
-/// 5 degrees the sum is good to 1 %.
-double eval_forward_glow(const std::vector<double>& moment, double once, double cosine,
-                         double events);
 
 /// Radiance of the orders of three and more over that of a diffuse surface of the same flux:
 /// w(mu) = (1 - exp(-a / mu)) / (1 - 2 E_3(a)), 2 int w mu dmu = 1. 1 / (2 mu) where a = 0, 1 where

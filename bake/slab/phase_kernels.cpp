@@ -5,7 +5,8 @@
 
 namespace opaline::bake {
 
-PhaseKernels make_phase_kernels(const SlabMedium& medium, const Streams& streams, int m) {
+PhaseKernels make_phase_kernels(const SlabMedium& medium, const Streams& streams, int m,
+                                Eigen::Index entering) {
     const int resolved = 2 * streams.quadrature;
     const auto moments = static_cast<int>(medium.moment.size());
     PhaseKernels kernels;
@@ -15,7 +16,7 @@ PhaseKernels make_phase_kernels(const SlabMedium& medium, const Streams& streams
         kernels.peak = 0;
     }
     const auto count = streams.cosine.size();
-    kernels.forward = kernels.backward = Eigen::MatrixXd::Zero(count, count);
+    kernels.forward = kernels.backward = Eigen::MatrixXd::Zero(count, entering);
     const int degrees = kernels.peak > 0 ? resolved : std::min(moments, resolved);
     if (m >= degrees) {
         return kernels;
@@ -27,8 +28,9 @@ PhaseKernels make_phase_kernels(const SlabMedium& medium, const Streams& streams
             (2 * l + 1) * (medium.moment[static_cast<std::size_t>(l)] - kernels.peak);
         ((l + m) % 2 == 0 ? even : odd)[l - m] = scaled;
     }
-    const Eigen::MatrixXd same = legendre.transpose() * even.asDiagonal() * legendre;
-    const Eigen::MatrixXd turned = legendre.transpose() * odd.asDiagonal() * legendre;
+    const Eigen::MatrixXd columns = legendre.leftCols(entering);
+    const Eigen::MatrixXd same = legendre.transpose() * even.asDiagonal() * columns;
+    const Eigen::MatrixXd turned = legendre.transpose() * odd.asDiagonal() * columns;
     kernels.forward = same + turned;
     kernels.backward = same - turned;
     return kernels;

@@ -44,7 +44,9 @@ std::vector<SlabRadiance> solve_slab_radiance(const SlabMedium& medium,
     }
     const AlbedoCircle circle(request.first_order);
     for (unsigned m = 0; m < request.modes; ++m) {
-        const PhaseKernels kernels = make_phase_kernels(medium, streams, static_cast<int>(m));
+        const PhaseKernels kernels = make_phase_kernels(
+            medium, streams, static_cast<int>(m),
+            request.streams + static_cast<Eigen::Index>(request.incident.size()));
         double_up(kernels, streams, medium.albedo, request.optical_depth, request.halvings,
                   [&](unsigned j, const Layer<double>& layer) {
                       add_kernels(layer, 1.0, request, m, all[j]);

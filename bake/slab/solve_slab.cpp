@@ -30,8 +30,8 @@ SlabFluxes at_cosines(const StreamFluxes<double>& all, const Streams& streams) {
         fluxes.transmittance.push_back(all.transmitted[i]);
     }
     const Eigen::VectorXd flux = streams.flux();
-    fluxes.mean_reflectance = flux.dot(all.reflected);
-    fluxes.mean_transmittance = flux.dot(all.transmitted);
+    fluxes.mean_reflectance = flux.dot(all.reflected.head(flux.size()));
+    fluxes.mean_transmittance = flux.dot(all.transmitted.head(flux.size()));
     return fluxes;
 }
 
@@ -42,7 +42,7 @@ std::vector<SlabSolution> solve_slab(const SlabMedium& medium, const SlabRequest
     assert(request.orders <= kMaxSlabOrders && request.streams <= kMaxSlabStreams);
     const Streams streams = make_streams(request.streams, request.cosine);
     const Eigen::VectorXd flux = streams.flux();
-    const PhaseKernels kernels = make_phase_kernels(medium, streams, 0);
+    const PhaseKernels kernels = make_phase_kernels(medium, streams, 0, streams.quadrature);
     std::vector<SlabSolution> solutions(request.halvings + std::size_t{1});
     double_up(kernels, streams, medium.albedo, request.optical_depth, request.halvings,
               [&](unsigned halvings, const Layer<double>& layer) {

@@ -12,7 +12,7 @@ Streams make_streams(int quadrature, std::span<const double> others) {
     assert(quadrature > 0);
     const GaussLegendre rule = make_gauss_legendre(quadrature);
     const auto count = quadrature + static_cast<Eigen::Index>(others.size());
-    Streams streams{quadrature, Eigen::VectorXd(count), Eigen::VectorXd::Zero(count)};
+    Streams streams{quadrature, Eigen::VectorXd(count), Eigen::VectorXd(quadrature)};
     for (Eigen::Index i = 0; i < count; ++i) {
         if (i < quadrature) {
             const auto k = static_cast<std::size_t>(i);

@@ -7,14 +7,14 @@
 namespace opaline::bake {
 
 /// Directions at which the light in a slab is known: the nodes of a Gauss-Legendre rule over the
-/// cosines of a hemisphere, then any others, whose weight is 0.
+/// cosines of a hemisphere, then any others.
 struct Streams {
-    int quadrature = 0;              ///< number of nodes of the rule; they stand first
-    Eigen::VectorXd cosine, weight;  ///< cosines to the normal, in (0, 1]; weights of sum 1
+    int quadrature = 0;      ///< number of nodes of the rule; they stand first
+    Eigen::VectorXd cosine;  ///< to the normal, in (0, 1]
+    Eigen::VectorXd weight;  ///< of the rule's nodes, of sum 1
 
-    /// 2 cosine weight: share of the flux of even light, of sum 1. An operator on radiance is a
-    /// kernel times this: I(mu) = 2 int K(mu, mu') mu' I(mu') dmu'.
-    Eigen::VectorXd flux() const { return 2 * cosine.cwiseProduct(weight); }
+    /// 2 cosine weight of the rule's nodes: share of the flux of even light, of sum 1.
+    Eigen::VectorXd flux() const { return 2 * cosine.head(quadrature).cwiseProduct(weight); }
 };
 
 /// `quadrature` at least 1; `others` in (0, 1].

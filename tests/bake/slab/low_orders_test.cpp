@@ -4,15 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "bake/scattering/phase.h"
 #include "tests/bake/slab/slab_support.h"
 
 namespace opaline::tests {
 namespace {
-
-using std::numbers::pi;
 
 // int over the depth z of both ways: exp(-z / mu_l) exp(-(z or depth - z) / mu_v) dz / mu_v.
 TEST(LowOrders, SingleScatteringIsItsIntegralOverTheDepth) {
@@ -102,49 +98,6 @@ TEST(LowOrders, AreReciprocal) {
             EXPECT_NEAR(of(depth, 0.3, 0.8) / 0.3, of(depth, 0.8, 0.3) / 0.8, 1e-13);
         }
     }
-}
-
-TEST(LowOrders, ConvolutionOfHenyeyGreensteinSquaresItsMeanCosine) {
-    const auto moment = bake::expand_henyey_greenstein(0.7, 200).lambda;
-    const auto twice = bake::convolve_with_itself(moment);
-    for (const double cosine : {-1.0, 0.0, 0.9, 1.0}) {
-        EXPECT_NEAR(bake::eval_moments(moment, cosine), bake::henyey_greenstein(cosine, 0.7),
-                    1e-12);
-        EXPECT_NEAR(bake::eval_moments(twice, cosine), bake::henyey_greenstein(cosine, 0.49),
-                    1e-12);
-    }
-}
-
-TEST(LowOrders, GlowHoldsWhatMetThePeakOnceOrMore) {
-    const auto moment = bake::expand_henyey_greenstein(0.9, 600).lambda;
-    const auto glow = [&](double cosine, double events) {
-        return bake::eval_forward_glow(moment, bake::henyey_greenstein(cosine, 0.9), cosine,
-                                       events);
-    };
-    for (const double events : {0.0, 1e-3, 1.0, 12.0}) {
-        const double sum = integrate(
-            [&](double x) {  // dense near the peak
-                const double angle = pi * x * x;
-                return 2 * pi * std::sin(angle) * 2 * pi * x * glow(std::cos(angle), events);
-            },
-            0, 1, 16);
-        EXPECT_NEAR(sum, -std::expm1(-events), 1e-10) << events;
-    }
-    EXPECT_NEAR(glow(0.99, 1e-4) / bake::henyey_greenstein(0.99, 0.9), 1e-4, 3e-8);
-    // 1e4 events: e^u would overflow; all directions are even.
-    EXPECT_NEAR(glow(1, 1e4), 1 / (4 * pi), 1e-9);
-    EXPECT_NEAR(glow(-1, 1e4), 1 / (4 * pi), 1e-9);
-}
-
-TEST(LowOrders, GlowOfManyEventsSpreadsByDiffusion) {
-    // A Gaussian of variance u <theta^2> = 2 u (1 - chi_1): its peak is 1 / (pi u <theta^2>).
-    std::vector<double> narrow;
-    const double width = 2e-4;  // <theta^2> of one event
-    for (int l = 0; l < 1500; ++l) {
-        narrow.push_back(std::exp(-l * (l + 1.0) * width / 4));
-    }
-    const double u = 40;
-    EXPECT_NEAR(bake::eval_forward_glow(narrow, 0, 1, u) * pi * u * width, 1, 0.04);
 }
 
 TEST(LowOrders, SpreadProfileIsNormalisedFromThinToThick) {
