@@ -1,22 +1,9 @@
 #include "bake/slab/column_model.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace opaline::bake {
 namespace {
-
-/// Shrinks two shares to a sum of `most` at most; returns what they leave of it.
-double leave_rest(double& first, double& second, double most) {
-    const double sum = first + second;
-    if (sum <= most) {
-        return most - sum;
-    }
-    const double scale = std::max(most, 0.0) / sum;
-    first *= scale;
-    second *= scale;
-    return 0;
-}
 
 /// y - 1 + e^-y for y >= 0: y^2 / 2 - y^3 / 6 + ...
 double twice_turned(double y) {
@@ -73,12 +60,8 @@ SlabShares column_orders(const ColumnModel& model, double thickness) {
 }
 
 SlabShares eval_column_model(const ColumnModel& model, double thickness, double direct) {
-    SlabShares shares = column_orders(model, thickness);
-    const double all = std::clamp(column_transmittance(model, thickness), direct, 1.0);
-    shares.transmitted[0] = direct;
-    shares.transmitted[3] = leave_rest(shares.transmitted[1], shares.transmitted[2], all - direct);
-    shares.reflected[3] = leave_rest(shares.reflected[1], shares.reflected[2], 1 - all);
-    return shares;
+    return complete_shares(column_orders(model, thickness), direct,
+                           column_transmittance(model, thickness));
 }
 
 std::span<const ColumnModelAt> paper2006() {

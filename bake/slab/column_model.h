@@ -2,14 +2,9 @@
 
 #include <span>
 
-namespace opaline::bake {
+#include "bake/slab/slab_shares.h"
 
-/// Shares of a beam's flux that leave a slab of albedo 1, by order: index 0, 1 and 2, then 3 for
-/// all orders after these.
-struct SlabShares {
-    double transmitted[4] = {1, 0, 0, 0};
-    double reflected[4] = {0, 0, 0, 0};
-};
+namespace opaline::bake {
 
 /// The one-dimensional model of multiple scattering of [Bouthors2006], appendix A: a column that
 /// scatters forward or back, and a transmittance with the right limit of thick layers. Lengths are
@@ -31,8 +26,8 @@ double column_transmittance(const ColumnModel& model, double thickness);
 /// T_2 as printed has H for -H in an exponent of e.
 SlabShares column_orders(const ColumnModel& model, double thickness);
 
-/// All shares, of sum 1: `direct` = T_0 is that of the slab itself, not of the column. Where T_0 +
-/// T_1 + T_2 or R_1 + R_2 exceed what is left to them, T_1 and T_2 or R_1 and R_2 shrink to it.
+/// All shares, of sum 1 (complete_shares): `direct` = T_0 is that of the slab itself, not of the
+/// column.
 SlabShares eval_column_model(const ColumnModel& model, double thickness, double direct);
 
 /// The same with the light at an angle.

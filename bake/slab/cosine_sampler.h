@@ -10,8 +10,8 @@ class CosineSampler {
   public:
     /// [Henyey1941]; |g| < 1.
     static CosineSampler henyey_greenstein(double g);
-    /// A density linear in the cosine between the rows, of any scale: cosines ascend from -1 to 1,
-    /// values are >= 0 and not all of them 0.
+    /// A density linear in the cosine between the rows, of any scale: cosines ascend within [-1,
+    /// 1], values are >= 0 and not all of them 0.
     static CosineSampler tabulated(std::span<const double> cosine, std::span<const double> value);
 
     /// In [-1, 1]; ascends with `uniform`, in [0, 1).
