@@ -124,6 +124,22 @@ std::vector<double> table_moments(const AngularTable& table, unsigned count) {
     return moments;
 }
 
+PhaseSeries expand_table(const AngularTable& phase, unsigned degrees) {
+    // Parseval: sum of (2 l + 1) lambda_l^2 over all degrees is 8 pi^2 int p^2 over the cosine.
+    double rest = 0;
+    for (std::size_t i = 0; i + 1 < phase.angle.size(); ++i) {
+        const double p = phase.value[i], q = phase.value[i + 1];
+        rest += 8 * pi * pi * cosine_difference(phase.angle[i], phase.angle[i + 1]) *
+                (p * p + p * q + q * q) / 3;
+    }
+    PhaseSeries series{table_moments(phase, degrees), 0};
+    for (std::size_t l = 0; l < series.lambda.size(); ++l) {
+        rest -= static_cast<double>(2 * l + 1) * series.lambda[l] * series.lambda[l];
+    }
+    series.tail = std::max(0.0, rest);
+    return series;
+}
+
 std::vector<double> sum_moments(std::span<const double> moments, std::span<const double> angles) {
     std::vector<double> values;
     values.reserve(angles.size());

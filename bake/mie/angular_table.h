@@ -3,6 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "bake/scattering/phase_series.h"
+
 namespace opaline::bake {
 
 /// A function of the scattering angle, linear in its cosine between rows and 0 outside of them.
@@ -35,6 +37,9 @@ void scale_table(AngularTable& table, double factor);
 /// come first (bake/scattering/phase_series.h, lambda_l). Gauss's rule on every interval, with
 /// nodes enough for the fastest of the polynomials; relative error 1e-10 of the largest moment.
 std::vector<double> table_moments(const AngularTable& table, unsigned count);
+
+/// The first moments of a phase function, and what they leave out. `degrees` 1 or more.
+PhaseSeries expand_table(const AngularTable& phase, unsigned degrees);
 
 /// Sum of (2 l + 1) / (4 pi) moment_l P_l(cos angle) [1/sr] at each angle.
 std::vector<double> sum_moments(std::span<const double> moments, std::span<const double> angles);

@@ -10,6 +10,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/mie/mie_series.h"
+#include "bake/mie/number_text.h"
 #include "bake/mie/sphere_scattering.h"
 
 namespace opaline::bake {
@@ -119,7 +120,7 @@ formats::Status check_inputs(const DropletDistribution& droplets, double wavelen
     }
     if (!(wavelength > 0 && std::isfinite(wavelength))) {
         return formats::make_error(formats::ErrorKind::usage, "", "wavelength",
-                                   std::to_string(wavelength) + " m is not a length above 0");
+                                   number_text(wavelength) + " m is not a length above 0");
     }
     if (auto status = check_sphere(1, index); !status) {
         return status;
@@ -133,8 +134,8 @@ formats::Status check_inputs(const DropletDistribution& droplets, double wavelen
     if (!(largest <= kMaxDropletSize)) {
         return formats::make_error(
             formats::ErrorKind::usage, "", "effective radius",
-            "the largest droplets have a size parameter of " +
-                std::to_string(std::llround(std::min(largest, 1e15))) + ", above 20000",
+            "the largest droplets have a size parameter of " + number_text(largest) +
+                ", above 20000",
             "give smaller droplets: such large ones follow geometric optics");
     }
     if (!(2 * pi / wavelength * radius_range(droplets).most >= 1e-6)) {

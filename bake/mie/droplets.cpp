@@ -7,6 +7,8 @@
 #include <numbers>
 #include <string>
 
+#include "bake/mie/number_text.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -45,7 +47,7 @@ NodeDensity make_node_density(double gamma) {
 formats::Status check_droplets(const DropletDistribution& droplets) {
     const auto refuse = [](const char* name, double value, const char* range) {
         return formats::make_error(formats::ErrorKind::usage, "", name,
-                                   std::to_string(value) + " is out of range", range);
+                                   number_text(value) + " is out of range", range);
     };
     if (!(droplets.density > 0 && std::isfinite(droplets.density))) {
         return refuse("density", droplets.density, "give droplets per cubic metre, above 0");

@@ -6,6 +6,8 @@
 #include <string>
 #include <type_traits>
 
+#include "bake/mie/number_text.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -40,10 +42,14 @@ double inverse(double a) {
     return std::abs(a) < kLeast ? 1 / kLeast : 1 / a;
 }
 
-/// Orders above those wanted from which downward recurrences start: errors there die out by more
-/// than 1e-16.
-std::size_t orders_beyond(double z) {
-    return 16 + static_cast<std::size_t>(4 * std::cbrt(z));
+/// Downward recurrences start this many orders above those wanted: their error falls by (z / 2 n)^2
+/// an order, to less than 1e-16.
+constexpr std::size_t kOrdersBeyond = 16;
+
+/// Where the recurrence in z starts. Up to n = |z| ratios oscillate and errors do not fall.
+std::size_t start_order(double size_of_z, std::size_t orders) {
+    const double beyond = size_of_z + 4 * std::cbrt(size_of_z);
+    return kOrdersBeyond + std::max(orders, static_cast<std::size_t>(beyond));
 }
 
 /// inner[n] = psi_{n+1}(z) / psi_n(z) for n in [1, orders], downward:
@@ -52,10 +58,8 @@ std::size_t orders_beyond(double z) {
 template <class Number>
 void fill_inner(Number inverse_z, double size_of_z, std::size_t orders, MieSeries& series) {
     series.inner.resize(orders + 1);
-    const std::size_t start =
-        std::max(orders, static_cast<std::size_t>(size_of_z)) + orders_beyond(size_of_z);
     Number ratio{};
-    for (std::size_t n = start; n >= 2; --n) {
+    for (std::size_t n = start_order(size_of_z, orders); n >= 2; --n) {
         ratio = inverse(static_cast<double>(2 * n + 1) * inverse_z - ratio);
         if (n <= orders + 1) {
             if constexpr (std::is_same_v<Number, double>) {
@@ -90,7 +94,7 @@ void fill_outer(double x, std::size_t orders, MieSeries& series) {
         psi[n] = static_cast<double>(2 * n - 1) * inverse_x * psi[n - 1] - psi[n - 2];
     }
     double down = 0;
-    for (std::size_t n = last + orders_beyond(0); n > top; --n) {
+    for (std::size_t n = last + kOrdersBeyond; n > top; --n) {
         down = 1 / (static_cast<double>(2 * n + 1) * inverse_x - down);
         if (n <= last) {
             ratio[n] = down;
@@ -157,16 +161,16 @@ formats::Status check_sphere(double size_parameter, std::complex<double> index) 
     if (!(size_parameter >= kMinSizeParameter && size_parameter <= kMaxSizeParameter)) {
         return formats::make_error(
             ErrorKind::usage, "", "size parameter",
-            std::to_string(size_parameter) + " is not from 1e-12 to 1e6",
+            number_text(size_parameter) + " is not from 1e-12 to 1e6",
             "it is 2 pi radius / wavelength; larger spheres follow geometric optics");
     }
     if (!(index.real() >= kMinIndex && index.real() <= kMaxIndex && index.imag() >= 0 &&
           index.imag() <= kMaxIndex)) {
-        return formats::make_error(ErrorKind::usage, "", "index of refraction",
-                                   std::to_string(index.real()) + " + " +
-                                       std::to_string(index.imag()) + " i is out of range",
-                                   "give a real part from 0.001 to 1000 and an imaginary part from "
-                                   "0 to 1000, above 0 for absorption");
+        return formats::make_error(
+            ErrorKind::usage, "", "index of refraction",
+            number_text(index.real()) + " + " + number_text(index.imag()) + " i is out of range",
+            "give a real part from 0.001 to 1000 and an imaginary part from "
+            "0 to 1000, above 0 for absorption");
     }
     return formats::ok_status();
 }
@@ -186,7 +190,7 @@ void expand_sphere(double x, std::complex<double> m, MieSeries& series) {
     series.b.resize(orders);
     series.absorbed.resize(orders);
     fill_outer(x, orders, series);
-    const double size_of_z = std::abs(m) * x;
+    const double size_of_z = std::sqrt(std::norm(m)) * x;
     if (m.imag() == 0) {
         const double index = m.real();
         fill_inner(1 / (index * x), size_of_z, orders, series);

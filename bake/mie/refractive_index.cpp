@@ -5,6 +5,8 @@
 #include <span>
 #include <string>
 
+#include "bake/mie/number_text.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -64,11 +66,10 @@ formats::Result<std::complex<double>> refractive_index(Substance substance, doub
     const double nm = std::round(wavelength / kMetresPerNm * 1e9) / 1e9;
     if (!(nm >= rows.front().nm && nm <= rows.back().nm)) {
         return formats::make_error(formats::ErrorKind::usage, "", "wavelength",
-                                   std::to_string(nm) + " nm is outside of the table of " +
+                                   number_text(nm) + " nm is outside of the table of " +
                                        (substance == Substance::ice ? "ice" : "water") +
-                                       ", which goes from " +
-                                       std::to_string(static_cast<int>(rows.front().nm)) + " to " +
-                                       std::to_string(static_cast<int>(rows.back().nm)) + " nm",
+                                       ", which goes from " + number_text(rows.front().nm) +
+                                       " to " + number_text(rows.back().nm) + " nm",
                                    "give a wavelength inside, or the index of refraction itself");
     }
     const auto above = std::find_if(rows.begin() + 1, rows.end() - 1,
