@@ -5,29 +5,9 @@
 #include <cmath>
 
 #include "bake/slab/solve_slab.h"
+#include "bake/slab/table_place.h"
 
 namespace opaline::bake {
-namespace {
-
-/// Between two rows or columns: the first, and the share of the second.
-struct TablePlace {
-    std::size_t first = 0;
-    double share = 0;
-};
-
-TablePlace place_at(double fraction, std::size_t count) {
-    const double at = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(count - 1);
-    const std::size_t first = std::min(static_cast<std::size_t>(at), count - 2);
-    return {first, at - static_cast<double>(first)};
-}
-
-TablePlace place_depth(const SlabTable& table, double depth) {
-    // depth / (1 + depth), of an infinite depth as well
-    return place_at(1 - 1 / (1 + depth), table.size.depths);
-}
-
-}  // namespace
-
 SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size, int streams) {
     assert(size.depths >= 2 && size.cosines >= 2);
     SlabMedium conservative = medium;
@@ -41,9 +21,7 @@ SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size, int stre
     SlabTable table;
     table.size = size;
     for (std::size_t i = 0; i < size.depths; ++i) {
-        const double left = static_cast<double>(size.depths - 1 - i);
-        request.optical_depth =
-            left > 0 ? std::min(static_cast<double>(i) / left, kMaxSlabDepth) : kMaxSlabDepth;
+        request.optical_depth = depth_of_node(i, size.depths, kMaxSlabDepth);
         const SlabSolution slab = solve_slab(conservative, request).front();
         // Orders are good to 1e-10: in row 0, and where they are nearly none, that is more than
         // all.
@@ -63,7 +41,7 @@ SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size, int stre
 }
 
 SlabShares eval_slab_table(const SlabTable& table, double depth, double cosine) {
-    const TablePlace row = place_depth(table, depth);
+    const TablePlace row = place_depth(depth, table.size.depths);
     const TablePlace column = place_at(std::sqrt(std::clamp(cosine, 0.0, 1.0)), table.size.cosines);
     const auto at = [&](const std::vector<float>& values) {
         double sum = 0;
@@ -88,7 +66,7 @@ SlabShares eval_slab_table(const SlabTable& table, double depth, double cosine) 
 }
 
 double eval_mean_transmittance(const SlabTable& table, double depth) {
-    const TablePlace row = place_depth(table, depth);
+    const TablePlace row = place_depth(depth, table.size.depths);
     return (1 - row.share) * static_cast<double>(table.mean_t[row.first]) +
            row.share * static_cast<double>(table.mean_t[row.first + 1]);
 }

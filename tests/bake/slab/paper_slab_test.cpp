@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <tuple>
 
 #include "bake/mie/droplet_optics.h"
 #include "bake/mie/forward_peak.h"
 #include "bake/mie/refractive_index.h"
 #include "bake/slab/fit_column_model.h"
+#include "bake/slab/low_orders.h"
+#include "bake/slab/radiance_table.h"
 #include "bake/slab/slab_walk.h"
+#include "bake/slab/solve_radiance.h"
 #include "tests/bake/slab/slab_support.h"
 #include "tests/support/cloud_table.h"
 
@@ -142,6 +146,52 @@ TEST(PaperSlab, PeakCountedAsExtinctionChangesTheFluxByLessThan16In10000) {
                                          cosine_of_degrees(degrees), 0, 32)
                                    .total.reflectance[0];
             EXPECT_NEAR(cut, whole, degrees > 70 ? 1.6e-3 : 5e-4) << metres << " " << degrees;
+        }
+    }
+}
+
+// What a renderer has: single scattering by the phase function, and the table for the rest.
+TEST(PaperSlab, TablesGiveTheRadianceWithinOnePercentRms) {
+    const SlabMedium& medium = paper_cloud().modified;
+    const bake::RadianceTable table = make_radiance_table(medium);
+    const std::vector<double> degrees = {0, 30, 60, 80};
+    bake::SlabRadianceRequest request{0, 0, {}, {}, 48, 32, 2};
+    for (const double angle : degrees) {
+        request.incident.push_back(cosine_of_degrees(angle));
+    }
+    const bake::GaussLegendre rule = bake::make_gauss_legendre(10);
+    request.view = rule.node;
+    for (const double depth : {0.13, 0.61, 2.3, 7.7}) {
+        request.optical_depth = depth;
+        const auto slab = solve_slab_radiance(medium, request).front();
+        for (std::size_t l = 0; l < degrees.size(); ++l) {
+            for (const bool below : {false, true}) {
+                const double light = request.incident[l];
+                double error = 0, size = 0;
+                for (std::size_t v = 0; v < rule.node.size(); ++v) {
+                    for (int a = 0; a < 24; ++a) {
+                        const double view = rule.node[v],
+                                     azimuth = std::numbers::pi * (a + 0.5) / 24;
+                        const double sines = std::sqrt((1 - light * light) * (1 - view * view));
+                        const double cosine =
+                            (below ? 1 : -1) * light * view + sines * std::cos(azimuth);
+                        const double once = eval_table(paper_cloud().split.rest,
+                                                       std::acos(std::clamp(cosine, -1.0, 1.0))) *
+                                            (below ? bake::single_transmission
+                                                   : bake::single_reflection)(depth, light, view);
+                        const double more =
+                            light / std::numbers::pi *
+                            eval_slab_radiance(slab, below ? slab.transmitted : slab.reflected, v,
+                                               l, azimuth);
+                        const double off =
+                            eval_radiance_table(table, depth, light, view, azimuth, below) - more;
+                        error += rule.weight[v] * off * off;
+                        size += rule.weight[v] * (once + more) * (once + more);
+                    }
+                }
+                EXPECT_LT(std::sqrt(error / size), 0.01)
+                    << depth << " " << degrees[l] << " " << below;
+            }
         }
     }
 }
