@@ -25,7 +25,8 @@ enum class RandomStage : std::uint32_t {
     true_straight_views = 13,
     volume_walk = 14,
     volume_rays = 15,
-    volume_costs = 16
+    volume_costs = 16,
+    slab_walk = 17
 };
 
 /// Four uniform numbers in [0, 1), a pure function of the arguments. There is no state, so results

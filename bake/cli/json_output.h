@@ -1,7 +1,10 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "bake/cli/option_values.h"
 
 namespace opaline::cli {
 
@@ -9,6 +12,21 @@ namespace opaline::cli {
 /// can neither break it, where they are not UTF-8, nor steer a terminal.
 inline std::string json_text(const nlohmann::ordered_json& json) {
     return json.dump(2, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+/// How a command that is all numbers prints them.
+enum class TextFormat { json, csv };
+
+/// `--format json|csv`, and `--json`, which says that what is printed by default is wanted.
+inline void add_format_options(CLI::App& command, TextFormat& format, const std::string& help) {
+    CLI::Option* option =
+        command.add_option("--format", format, help)
+            ->transform(one_of<TextFormat>({{"json", TextFormat::json}, {"csv", TextFormat::csv}}))
+            ->option_text("json|csv [json]");
+    command
+        .add_flag_callback(
+            "--json", [&format] { format = TextFormat::json; }, "the same as --format json")
+        ->excludes(option);
 }
 
 }  // namespace opaline::cli

@@ -57,6 +57,7 @@ int run_program(int argc, char** argv) {
     add_render_command(app, job);
     add_reference_command(app, job);
     add_compare_command(app, job);
+    add_mie_command(app, job);
     add_phase_command(app, job);
     add_sweep_command(app, job);
     add_example_command(app, job);

@@ -20,6 +20,29 @@ std::optional<T> parse_whole(std::string_view text) {
     return is_whole ? std::optional(value) : std::nullopt;
 }
 
+/// Units that a length may have, and how many of them a metre has.
+struct LengthUnit {
+    std::string_view name;
+    double per_metre;
+};
+constexpr LengthUnit kLengthUnits[] = {{"nm", 1e9}, {"um", 1e6}, {"mm", 1e3}, {"m", 1}};
+constexpr double kMicrometresPerMetre = 1e6;
+
+/// In metres; nothing where it is no length.
+std::optional<double> parse_length(std::string_view text) {
+    double per_metre = kMicrometresPerMetre;
+    for (const LengthUnit& unit : kLengthUnits) {
+        if (text.size() > unit.name.size() && text.ends_with(unit.name)) {
+            per_metre = unit.per_metre;
+            text.remove_suffix(unit.name.size());
+            break;
+        }
+    }
+    const auto value = parse_number(text);
+    // Divided, not multiplied by 1e-9, so that 550nm is the number nearest to 5.5e-7.
+    return value ? std::optional(*value / per_metre) : std::nullopt;
+}
+
 CLI::Validator make_check(std::function<std::string(std::string&)> check) {
     return CLI::Validator(std::move(check), "");  // no text of its own in --help
 }
@@ -45,6 +68,25 @@ CLI::Validator number_above(double bound, double most) {
         return fmt::format("'{}' is not a number above {:g} and up to {:g}", shorten(text), bound,
                            most);
     });
+}
+
+CLI::Validator length(double least, double most) {
+    return make_check([=](std::string& text) {
+        const auto metres = parse_length(text);
+        if (metres && *metres >= least && *metres <= most) {
+            text = fmt::format("{}", *metres);
+            return std::string();
+        }
+        return fmt::format(
+            "'{}' is not a length from {:g} to {:g} micrometres (a number of micrometres, or one "
+            "with a unit: nm, um, mm, m)",
+            shorten(text), least * kMicrometresPerMetre, most * kMicrometresPerMetre);
+    });
+}
+
+std::optional<double> parse_number(std::string_view text) {
+    const auto value = parse_whole<double>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {

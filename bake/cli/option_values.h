@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,6 +18,13 @@ CLI::Validator real_number(double least, double most);
 
 /// The same without its lower bound: above `bound`.
 CLI::Validator number_above(double bound, double most);
+
+/// A length from `least` to `most` [m]: a number of micrometres, or one with a unit, nm, um, mm or
+/// m. The option's variable gets metres.
+CLI::Validator length(double least, double most);
+
+/// The whole text as a finite number; nothing where it is none.
+std::optional<double> parse_number(std::string_view text);
 
 /// A whole number from `least` to `most`, decimal digits only.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);

@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,14 +11,18 @@
 #include <vector>
 
 #include "bake/cli/command.h"
+#include "bake/cli/droplet_options.h"
 #include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
+#include "bake/cli/outputs.h"
+#include "bake/mie/angular_table.h"
 #include "bake/scattering/phase.h"
 #include "bake/scattering/phase_maps.h"
 #include "bake/scattering/phase_series.h"
 #include "formats/media/limits.h"
 #include "formats/media/read_phase_table.h"
+#include "formats/opal/atomic_file.h"
 
 namespace opaline::cli {
 namespace {
@@ -25,43 +31,52 @@ using formats::make_error;
 using formats::PhaseFunction;
 using Json = nlohmann::ordered_json;
 
-enum class Format { json, csv };
+/// The types of media files, and droplets, which become a table there.
+enum class PhaseType { henyey_greenstein, isotropic, rayleigh, gaussian, tabulated, mie };
 
 struct PhaseCommand {
-    PhaseFunction::Type type = PhaseFunction::Type::henyey_greenstein;
+    PhaseType type = PhaseType::henyey_greenstein;
     double g = std::nan(""), rms_angle = std::nan("");
-    std::string table;
+    std::string table, table_output;
+    DropletOptions droplets;
     unsigned samples = 181;
-    Format format = Format::json;
-    CLI::Option *g_option = nullptr, *rms_angle_option = nullptr, *table_option = nullptr;
+    TextFormat format = TextFormat::json;
+    CLI::Option *g_option = nullptr, *rms_angle_option = nullptr, *table_option = nullptr,
+                *samples_option = nullptr;
 };
 
-/// The function itself, its series, and the object that names it in a media file.
+/// The function itself, its series, and the object that names it in a media file (of droplets:
+/// their parameters).
 struct Subject {
     std::function<double(double)> p;
     bake::PhaseSeries series;
     Json json;
+    /// Rows of its own, ascending from -1 to 1; empty: equal angles.
+    std::vector<double> cosines = {};
+    Json error = nullptr;  ///< numerical
 };
 
 constexpr unsigned kDegrees = 32, kMostTerms = 25, kCubemapSize = 16;
 constexpr std::size_t kSingularValues = 100;  ///< shown; the errors take in all of them
 
 formats::Status check_options(const PhaseCommand& options) {
-    using Type = PhaseFunction::Type;
+    using Type = PhaseType;
     const auto refuse = [](const char* option, std::string fault, const char* remedy) {
         return make_error(formats::ErrorKind::usage, "", option, std::move(fault), remedy);
     };
     struct Rule {
         const CLI::Option* option;
         const char* name;
-        Type type;
+        PhaseType type;
         const char* remedy;
     };
     const Rule rules[] = {
         {options.g_option, "--g", Type::henyey_greenstein, "give it with --type hg alone"},
         {options.rms_angle_option, "--rms-angle", Type::gaussian,
          "give it with --type gaussian alone"},
-        {options.table_option, "--table", Type::tabulated, "give it with --type table alone"}};
+        {options.table_option, "--table", Type::tabulated, "give it with --type table alone"},
+        {options.droplets.effective_radius_option, "--effective-radius", Type::mie,
+         "give it with --type mie alone"}};
     for (const Rule& rule : rules) {
         const bool given = rule.option->count() > 0, needed = options.type == rule.type;
         if (given != needed) {
@@ -69,11 +84,50 @@ formats::Status check_options(const PhaseCommand& options) {
                           rule.remedy);
         }
     }
+    if (options.type != PhaseType::mie) {
+        for (const std::string& name : given_droplet_options(options.droplets)) {
+            return refuse(name.c_str(), "this type has no such value",
+                          "give it with --type mie alone");
+        }
+    } else if (options.samples_option->count() > 0) {
+        return refuse("--samples", "this type has rows of its own",
+                      "leave it out: they crowd where the function bends");
+    }
     return formats::ok_status();
 }
 
+/// Rows of a table of droplets: what is left out is within this of the line between its neighbours.
+constexpr double kRowTolerance = 2e-3;
+
+formats::Result<Subject> make_droplet_subject(const DropletOptions& options) {
+    const auto& given = options.substance.wavelengths;
+    auto optics = average_droplets(options, {given.empty() ? 550 / 1e9 : given.front()});
+    if (!optics) {
+        return std::move(optics).error();
+    }
+    const bake::DropletOptics& droplets = optics->front();
+    Subject subject;
+    subject.json = {{"type", "mie"},
+                    {"wavelength_m", droplets.wavelength},
+                    {"index", {droplets.index.real(), droplets.index.imag()}}};
+    subject.json.update(describe_droplets(options.droplets));
+    subject.error = describe_error(droplets);
+    subject.series = bake::expand_table(droplets.phase, kDegrees);
+    const std::vector<double> angles = bake::thin_table(droplets.phase, kRowTolerance).angle;
+    for (auto angle = angles.rbegin(); angle != angles.rend(); ++angle) {
+        subject.cosines.push_back(std::cos(*angle));
+    }
+    subject.p = [phase = droplets.phase](double cosine) {
+        return bake::eval_table(phase, std::acos(std::clamp(cosine, -1.0, 1.0)));
+    };
+    return subject;
+}
+
 formats::Result<Subject> make_subject(const PhaseCommand& options) {
-    using Type = PhaseFunction::Type;
+    using Type = PhaseType;
+    if (options.type == PhaseType::mie) {
+        return make_droplet_subject(options.droplets);
+    }
     if (options.type == Type::henyey_greenstein) {
         const double g = options.g;  // not rounded to the single precision of PhaseFunction
         return Subject{[g](double cosine) { return bake::henyey_greenstein(cosine, g); },
@@ -81,9 +135,9 @@ formats::Result<Subject> make_subject(const PhaseCommand& options) {
                        {{"type", "hg"}, {"g", g}}};
     }
     PhaseFunction phase;
-    phase.type = options.type;
     Json json;
     if (options.type == Type::gaussian) {
+        phase.type = PhaseFunction::Type::gaussian;
         phase.rms_angle = static_cast<float>(options.rms_angle);
         json = {{"type", "gaussian"}, {"rms_angle", options.rms_angle}};
     } else if (options.type == Type::tabulated) {
@@ -93,8 +147,12 @@ formats::Result<Subject> make_subject(const PhaseCommand& options) {
         }
         phase = std::move(*table);
         json = {{"type", "table"}, {"file", options.table}};
+    } else if (options.type == Type::rayleigh) {
+        phase.type = PhaseFunction::Type::rayleigh;
+        json = {{"type", "rayleigh"}};
     } else {
-        json = {{"type", options.type == Type::rayleigh ? "rayleigh" : "isotropic"}};
+        phase.type = PhaseFunction::Type::isotropic;
+        json = {{"type", "isotropic"}};
     }
     bake::PhaseSeries series = bake::expand_phase(phase, kDegrees);
     const bake::PhaseDensity density = bake::make_phase_density(phase);
@@ -107,10 +165,16 @@ Json describe(const Subject& subject, const bake::PhaseMaps& maps, unsigned samp
     Json all;
     all["phase"] = subject.json;
     all["mean_cosine"] = subject.series.lambda[1];
+    if (!subject.error.is_null()) {
+        all["error"] = subject.error;
+    }
     Json& function = all["function"];
-    for (unsigned i = 0; i < samples; ++i) {
+    std::vector<double> cosines = subject.cosines;
+    for (unsigned i = 0; subject.cosines.empty() && i < samples; ++i) {
         const double angle = std::numbers::pi * (1 - i / (samples - 1.0));
-        const double cosine = i == 0 ? -1 : i + 1 == samples ? 1 : std::cos(angle);
+        cosines.push_back(i == 0 ? -1 : i + 1 == samples ? 1 : std::cos(angle));
+    }
+    for (const double cosine : cosines) {
         function["cosine"].push_back(cosine);
         function["value"].push_back(subject.p(cosine));
     }
@@ -145,9 +209,32 @@ void print_csv(const Json& all) {
     print("singular_value", nullptr, all["singular_values"]);
 }
 
+/// A table as media files name them (formats/media/README.md). Their reader keeps single precision,
+/// in which neighbouring cosines near 1 may be equal: the last of them stays.
+formats::Status write_phase_table(const std::string& path, const Json& function) {
+    std::string text = "cosine value\n";
+    const Json &cosine = function["cosine"], &value = function["value"];
+    const auto rounded = [&](std::size_t i) { return static_cast<float>(cosine[i].get<double>()); };
+    for (std::size_t i = 0; i < cosine.size(); ++i) {
+        const bool is_last = i + 1 == cosine.size();
+        if (is_last || rounded(i) < rounded(i + 1)) {
+            text += cosine[i].dump() + ' ' + value[i].dump() + '\n';
+        }
+    }
+    return formats::write_file_atomically(path, text);
+}
+
 int run(const PhaseCommand& options) {
     if (const auto status = check_options(options); !status) {
         return report_error(status.error());
+    }
+    if (!options.table_output.empty()) {
+        const std::vector<std::filesystem::path> inputs(options.table.empty() ? 0 : 1,
+                                                        options.table);
+        const OutputFile output{"--table-output", options.table_output, {}};
+        if (const auto status = check_outputs({&output, 1}, inputs); !status) {
+            return report_error(status.error());
+        }
     }
     const auto subject = make_subject(options);
     if (!subject) {
@@ -167,7 +254,12 @@ int run(const PhaseCommand& options) {
         }
     }
     const Json all = describe(*subject, maps, options.samples);
-    if (options.format == Format::csv) {
+    if (!options.table_output.empty()) {
+        if (const auto status = write_phase_table(options.table_output, all["function"]); !status) {
+            return report_error(status.error());
+        }
+    }
+    if (options.format == TextFormat::csv) {
         print_csv(all);
     } else {
         fmt::print("{}", json_text(all));
@@ -178,7 +270,7 @@ int run(const PhaseCommand& options) {
 }  // namespace
 
 void add_phase_command(CLI::App& app, Job& job) {
-    using Type = PhaseFunction::Type;
+    using Type = PhaseType;
     auto options = std::make_shared<PhaseCommand>();
     CLI::App* command = app.add_subcommand(
         "phase", "Tabulate a phase function and say how many terms its factors need");
@@ -187,8 +279,9 @@ void add_phase_command(CLI::App& app, Job& job) {
                                   {"isotropic", Type::isotropic},
                                   {"rayleigh", Type::rayleigh},
                                   {"gaussian", Type::gaussian},
-                                  {"table", Type::tabulated}}))
-        ->option_text("hg|isotropic|rayleigh|gaussian|table [hg]");
+                                  {"table", Type::tabulated},
+                                  {"mie", Type::mie}}))
+        ->option_text("hg|isotropic|rayleigh|gaussian|table|mie [hg]");
     options->g_option =
         command->add_option("--g", options->g, "mean cosine of hg, -0.99 to 0.99; above 0: forward")
             ->check(real_number(-formats::media::kMaxMeanCosine, formats::media::kMaxMeanCosine))
@@ -205,14 +298,19 @@ void add_phase_command(CLI::App& app, Job& job) {
                          "measured function: lines of a cosine and a value, cosines ascending from "
                          "-1 to 1, values relative")
             ->option_text("FILE");
+    add_droplet_options(*command, options->droplets, true);
+    options->samples_option =
+        command
+            ->add_option("--samples", options->samples,
+                         "angles at which the function is printed, equally spaced")
+            ->transform(whole_number(2, 100001))
+            ->option_text("N [181]");
     command
-        ->add_option("--samples", options->samples,
-                     "angles at which the function is printed, equally spaced")
-        ->transform(whole_number(2, 100001))
-        ->option_text("N [181]");
-    command->add_option("--format", options->format, "csv: lines of quantity,at,value")
-        ->transform(one_of<Format>({{"json", Format::json}, {"csv", Format::csv}}))
-        ->option_text("json|csv [json]");
+        ->add_option("--table-output", options->table_output,
+                     "also write the function as a table that a media file can name")
+        ->check(file_name())
+        ->option_text("FILE");
+    add_format_options(*command, options->format, "csv: lines of quantity,at,value");
     command->footer(
         "Prints p(cosine) per steradian, the cosine between propagation directions; lambda_l, its\n"
         "Legendre coefficients, p = sum (2 l + 1) / (4 pi) lambda_l P_l; the RMS error, over all\n"
@@ -220,7 +318,10 @@ void add_phase_command(CLI::App& app, Job& job) {
         "steradian) and of as many terms of the singular value decomposition between the texels "
         "of\n"
         "a 6 x 16 x 16 cube map, weighted by solid angle; its 100 largest singular values.\n"
-        "Example:\n  opaline phase --type hg --g 0.6 --format csv");
+        "Type mie is the mean over droplets (--effective-radius, see `opaline mie --help`) at one\n"
+        "wavelength, with rows where the function bends, and its numerical error.\n"
+        "Example:\n  opaline phase --type hg --g 0.6 --format csv\n"
+        "  opaline phase --type mie --effective-radius 7um --table-output droplets.txt");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 

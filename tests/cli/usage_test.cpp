@@ -8,8 +8,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const Arguments kCommands = {"bake",   "plan",    "info",  "verify",  "relight",
-                             "render", "compare", "phase", "example", "reference"};
+const Arguments kCommands = {"bake",    "plan",  "info",    "verify",    "relight", "render",
+                             "compare", "phase", "example", "reference", "mie"};
 
 TEST(Usage, HelpListsEveryCommandAndTheExitCodes) {
     const Outcome help = run_opaline({"--help"});

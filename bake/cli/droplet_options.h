@@ -1,0 +1,55 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <complex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bake/mie/droplet_optics.h"
+#include "bake/mie/droplets.h"
+#include "bake/mie/refractive_index.h"
+#include "formats/opal/result.h"
+
+namespace opaline::cli {
+
+/// What a sphere or droplets are made of and which light meets them.
+struct SubstanceOptions {
+    std::vector<double> wavelengths;  ///< [m]; empty: the command's default
+    std::string index;                ///< "N" or "N,K"; empty: that of `substance`
+    bake::Substance substance = bake::Substance::water;
+    CLI::Option *wavelength_option = nullptr, *index_option = nullptr, *substance_option = nullptr;
+};
+
+/// Droplets of modified-gamma sizes: options that `mie` and `phase --type mie` share.
+struct DropletOptions {
+    SubstanceOptions substance;
+    bake::DropletDistribution droplets;
+    bake::RadiusSampling sampling;
+    unsigned threads = 0;
+    CLI::Option *effective_radius_option = nullptr, *gamma_option = nullptr,
+                *size_step_option = nullptr, *threads_option = nullptr;
+};
+
+/// `one_wavelength`: the command takes one, otherwise a list.
+void add_droplet_options(CLI::App& command, DropletOptions& options, bool one_wavelength);
+
+/// The options of a distribution that were given, by name; those of its substance too.
+std::vector<std::string> given_droplet_options(const DropletOptions& options);
+
+/// "N" or "N,K". Errors: usage.
+formats::Result<std::complex<double>> parse_index(const std::string& text);
+
+/// The index that was given, or that of the substance at a wavelength [m]. Errors: usage.
+formats::Result<std::complex<double>> index_at(const SubstanceOptions& options, double wavelength);
+
+/// Means over the droplets at each wavelength [m]. Warns of distributions so narrow that ripples of
+/// equal spheres show. Errors: usage, resource, interrupted.
+formats::Result<std::vector<bake::DropletOptics>> average_droplets(
+    const DropletOptions& options, const std::vector<double>& wavelengths);
+
+/// The droplets, and a wavelength's numerical error, as they are printed.
+nlohmann::ordered_json describe_droplets(const bake::DropletDistribution& droplets);
+nlohmann::ordered_json describe_error(const bake::DropletOptics& optics);
+
+}  // namespace opaline::cli

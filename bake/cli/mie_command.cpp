@@ -1,0 +1,274 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <complex>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bake/cli/command.h"
+#include "bake/cli/droplet_options.h"
+#include "bake/cli/json_output.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
+#include "bake/mie/forward_peak.h"
+#include "bake/mie/sphere_scattering.h"
+
+namespace opaline::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MieCommand {
+    DropletOptions droplets;
+    double size_parameter = 0, radius = 0;  // radius [m]
+    std::string forward_angle = "auto";     // [degrees]
+    TextFormat format = TextFormat::json;
+    CLI::Option *size_parameter_option = nullptr, *radius_option = nullptr,
+                *density_option = nullptr, *forward_angle_option = nullptr;
+};
+
+formats::Error refuse_option(std::string option, std::string fault, std::string remedy) {
+    return formats::make_error(formats::ErrorKind::usage, "", std::move(option), std::move(fault),
+                               std::move(remedy));
+}
+
+formats::Status check_options(const MieCommand& options) {
+    const DropletOptions& droplets = options.droplets;
+    const bool by_size = options.size_parameter_option->count() > 0;
+    const bool by_radius = options.radius_option->count() > 0;
+    const bool by_droplets = droplets.effective_radius_option->count() > 0;
+    if (by_size + by_radius + by_droplets != 1) {
+        return refuse_option("mie",
+                             by_size || by_radius || by_droplets
+                                 ? "one sphere or one distribution is computed, not several"
+                                 : "nothing to compute",
+                             "give one of --size-parameter, --radius and --effective-radius");
+    }
+    if (by_size && droplets.substance.wavelength_option->count() > 0) {
+        return refuse_option("--wavelength", "a size parameter holds the wavelength already",
+                             "give it with --radius or --effective-radius");
+    }
+    if (by_size && options.droplets.substance.index.empty()) {
+        return refuse_option("--index", "it is missing",
+                             "a size parameter has no wavelength to look it up at");
+    }
+    if (by_radius && droplets.substance.wavelengths.size() > 1) {
+        return refuse_option("--wavelength", "one sphere takes one", "give --effective-radius");
+    }
+    if (by_droplets) {
+        return formats::ok_status();
+    }
+    for (const CLI::Option* option :
+         {droplets.gamma_option, droplets.size_step_option, droplets.threads_option,
+          options.density_option, options.forward_angle_option}) {
+        if (option->count() > 0) {
+            return refuse_option(option->get_name(), "one sphere has no such value",
+                                 "give it with --effective-radius alone");
+        }
+    }
+    return formats::ok_status();
+}
+
+Json index_json(std::complex<double> index) {
+    return {index.real(), index.imag()};
+}
+
+formats::Result<Json> describe_sphere(const MieCommand& options) {
+    Json all;
+    double x = options.size_parameter, wavelength = 0;
+    const bool by_radius = options.radius_option->count() > 0;
+    if (by_radius) {
+        const auto& given = options.droplets.substance.wavelengths;
+        wavelength = given.empty() ? 550 / 1e9 : given.front();
+        x = 2 * std::numbers::pi * options.radius / wavelength;
+        all["radius_m"] = options.radius;
+        all["wavelength_m"] = wavelength;
+    }
+    const auto index = index_at(options.droplets.substance, wavelength);
+    if (!index) {
+        return index.error();
+    }
+    if (auto status = bake::check_sphere(x, *index); !status) {
+        return std::move(status).error();
+    }
+    const bake::MieEfficiencies q = bake::sphere_efficiencies(x, *index);
+    all["size_parameter"] = x;
+    all["index"] = index_json(*index);
+    all["q_ext"] = q.q_ext;
+    all["q_sca"] = q.q_sca;
+    all["q_back"] = q.q_back;
+    all["q_abs"] = q.q_abs;
+    all["g"] = q.g;
+    return all;
+}
+
+/// The angle of the forward peak for all wavelengths [rad]: different ones would colour its edge.
+formats::Result<double> choose_forward_angle(const MieCommand& options,
+                                             const std::vector<bake::DropletOptics>& optics) {
+    if (options.forward_angle != "auto") {
+        const auto degrees = parse_number(options.forward_angle);
+        if (!degrees || *degrees < 0 || *degrees > 90) {
+            return refuse_option("--forward-angle",
+                                 "it is neither auto nor a number of degrees from 0 to 90",
+                                 "give 0 for no peak");
+        }
+        return *degrees * std::numbers::pi / 180;
+    }
+    std::vector<const bake::DropletOptics*> by_wavelength;
+    for (const bake::DropletOptics& one : optics) {
+        by_wavelength.push_back(&one);
+    }
+    std::sort(by_wavelength.begin(), by_wavelength.end(),
+              [](const auto* a, const auto* b) { return a->wavelength < b->wavelength; });
+    return bake::find_peak_angle(by_wavelength[by_wavelength.size() / 2]->phase);
+}
+
+Json describe_wavelength(const bake::DropletDistribution& droplets,
+                         const bake::DropletOptics& optics, double forward_angle) {
+    const double p_back = bake::eval_table(optics.phase, std::numbers::pi);
+    const double kappa = bake::extinction(droplets, optics);
+    const bake::PeakSplit split = bake::split_peak(optics.phase, forward_angle);
+    return {{"wavelength_m", optics.wavelength},
+            {"index", index_json(optics.index)},
+            {"q_ext", optics.c_ext / optics.c_geo},
+            {"q_sca", optics.c_sca / optics.c_geo},
+            {"q_back", 4 * std::numbers::pi * p_back * optics.c_sca / optics.c_geo},
+            {"q_abs", optics.c_abs / optics.c_geo},
+            {"g", optics.g},
+            {"cross_section_m2", optics.c_ext},
+            {"extinction_per_m", kappa},
+            {"albedo", 1 - bake::absorbed_share(optics)},
+            {"absorbed_share", bake::absorbed_share(optics)},
+            {"p_forward", optics.phase.value.front()},
+            {"p_backward", p_back},
+            {"forward_weight", split.weight},
+            {"rest_g", bake::integrate_cosine(split.rest)},
+            {"rest_extinction_per_m", bake::rest_extinction(split, kappa)},
+            {"error", describe_error(optics)}};
+}
+
+formats::Result<Json> describe_distribution(const MieCommand& options) {
+    std::vector<double> wavelengths = options.droplets.substance.wavelengths;
+    if (wavelengths.empty()) {
+        wavelengths = {650 / 1e9, 550 / 1e9, 450 / 1e9};
+    }
+    const auto optics = average_droplets(options.droplets, wavelengths);
+    if (!optics) {
+        return optics.error();
+    }
+    const auto angle = choose_forward_angle(options, *optics);
+    if (!angle) {
+        return angle.error();
+    }
+    const bake::DropletDistribution& droplets = options.droplets.droplets;
+    Json all;
+    all["droplets"] = describe_droplets(droplets);
+    all["droplets"]["density_per_m3"] = droplets.density;
+    all["droplets"]["geometric_section_m2"] = bake::mean_geometric_section(droplets);
+    all["droplets"]["liquid_water_kg_per_m3"] = bake::liquid_water_content(droplets);
+    all["forward_angle_deg"] = *angle * 180 / std::numbers::pi;
+    for (const bake::DropletOptics& one : *optics) {
+        all["wavelengths"].push_back(describe_wavelength(droplets, one, *angle));
+    }
+    return all;
+}
+
+/// One line of values under one of names; of a list, its elements have numbers.
+void print_lines(const std::vector<Json>& rows) {
+    const auto print = [](const Json& row, bool names) {
+        std::string line;
+        const auto add = [&](const std::string& name, const Json& value) {
+            line += (line.empty() ? "" : ",") + (names ? name : value.dump());
+        };
+        for (const auto& [key, value] : row.items()) {
+            if (value.is_structured()) {
+                for (const auto& [part, inner] : value.items()) {
+                    add(key + "_" + part, inner);
+                }
+            } else {
+                add(key, value);
+            }
+        }
+        fmt::print("{}\n", line);
+    };
+    print(rows.front(), true);
+    for (const Json& row : rows) {
+        print(row, false);
+    }
+}
+
+int run(const MieCommand& options) {
+    if (const auto status = check_options(options); !status) {
+        return report_error(status.error());
+    }
+    const bool by_droplets = options.droplets.effective_radius_option->count() > 0;
+    const auto all = by_droplets ? describe_distribution(options) : describe_sphere(options);
+    if (!all) {
+        return report_error(all.error());
+    }
+    if (options.format == TextFormat::json) {
+        fmt::print("{}", json_text(*all));
+    } else if (by_droplets) {
+        std::vector<Json> rows;
+        for (const Json& wavelength : (*all)["wavelengths"]) {
+            rows.push_back(wavelength);
+            rows.back()["forward_angle_deg"] = (*all)["forward_angle_deg"];
+        }
+        print_lines(rows);
+    } else {
+        print_lines({*all});
+    }
+    return kExitSuccess;
+}
+
+}  // namespace
+
+void add_mie_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<MieCommand>();
+    CLI::App* command =
+        app.add_subcommand("mie", "Say how a sphere, or a cloud of droplets, scatters light");
+    options->size_parameter_option =
+        command
+            ->add_option("--size-parameter", options->size_parameter,
+                         "of one sphere, 2 pi radius / wavelength")
+            ->check(real_number(bake::kMinSizeParameter, bake::kMaxSizeParameter))
+            ->option_text("X");
+    options->radius_option =
+        command
+            ->add_option("--radius", options->radius, "of one sphere, micrometres or with a unit")
+            ->transform(length(1e-15, 1))
+            ->option_text("R");
+    add_droplet_options(*command, options->droplets, false);
+    options->density_option = command
+                                  ->add_option("--density", options->droplets.droplets.density,
+                                               "droplets per cubic metre")
+                                  ->check(number_above(0, 1e30))
+                                  ->option_text("N [3e8]");
+    options->forward_angle_option =
+        command
+            ->add_option(
+                "--forward-angle", options->forward_angle,
+                "half angle of the forward peak in degrees, 0 to 90, counted as light that "
+                "goes straight on; auto: where the logarithm of the phase function of the "
+                "middle wavelength falls by less than 0.44 a degree")
+            ->option_text("auto|A [auto]");
+    add_format_options(*command, options->format, "csv: a line of names, and lines of values");
+    command->footer(
+        "Prints efficiencies (cross-sections over the geometric one) of extinction, scattering,\n"
+        "absorption and backscattering (radar convention), and the mean cosine g of the angle.\n"
+        "Of droplets, means over the distribution; extinction per metre; the share of scattered\n"
+        "light inside the forward peak (forward_weight), and g and extinction of the rest. p is\n"
+        "the phase function per steradian; it integrates to 1. error: of the mean over radii,\n"
+        "half the difference between even and odd ones, relative (g: absolute).\n"
+        "Lengths: plain numbers are micrometres; 550nm, 7um, 0.1mm and 1e-6m have their unit.\n"
+        "Example:\n  opaline mie --size-parameter 10 --index 1.5\n"
+        "  opaline mie --radius 0.525 --wavelength 632.8nm --index 1.55 --format csv\n"
+        "  opaline mie --effective-radius 7um --gamma 2 --density 3e8");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <complex>
+#include <cstddef>
+
+#include "bake/base/context.h"
+#include "bake/mie/angular_table.h"
+#include "bake/mie/droplets.h"
+#include "formats/opal/result.h"
+
+namespace opaline::bake {
+
+/// How finely radii are sampled.
+struct RadiusSampling {
+    /// Step of the size parameter where most of the cross-section lies (place_radii).
+    double size_step = 0.03;
+    /// Bounds on the number of radii, whatever the step; even.
+    unsigned least = 1000, most = 8000;
+};
+
+/// Numerical error, relative: half the difference between the means over the even and over the odd
+/// radii, which is what the mean of both errs by if the halves err independently.
+struct OpticsError {
+    double phase_rms = 0, phase_max = 0;  ///< over the rows of the phase function
+    double c_ext = 0, c_sca = 0;
+    double g = 0;  ///< absolute
+};
+
+/// What droplets of one distribution do to light of one wavelength: means over the droplets.
+/// Cross-sections add, so phase functions are weighted by scattered power [BohrenHuffman1983].
+struct DropletOptics {
+    double wavelength = 0;        ///< [m]
+    std::complex<double> index;   ///< of the droplets
+    double c_ext = 0, c_sca = 0;  ///< extinction and scattering cross-section [m^2]
+    double c_abs = 0;             ///< absorption cross-section, summed by itself [m^2]
+    double c_geo = 0;             ///< mean geometric cross-section, pi <r^2> [m^2]
+    double g = 0;                 ///< mean cosine, from the coefficients
+    AngularTable phase;           ///< integrates to 1 over the sphere [1/sr]
+    double integral_before = 1;   ///< of the phase function before it was scaled to 1
+    OpticsError error;
+    std::size_t radii = 0;  ///< spheres that were computed
+};
+
+/// 1 - albedo = c_abs / c_ext; 1 - omega of droplets of water is below 1e-5 in visible light.
+double absorbed_share(const DropletOptics& optics);
+
+/// kappa = N0 c_ext [1/m].
+double extinction(const DropletDistribution& droplets, const DropletOptics& optics);
+
+/// Averages over the distribution at one wavelength [m], k = 2 pi / wavelength. The phase function
+/// has rows at angles whose steps follow the largest droplets that matter: 2.4 degrees over k times
+/// the radius that weighs most ahead at the ends (0.02 degrees for droplets of 7 um), five times
+/// that in between. The same bits for any number of threads. About a second on one core for
+/// effective radii of 7 um.
+/// Errors: `usage` for a distribution, an index or a wavelength out of range, and where the largest
+/// droplets have a size parameter above 2e4; `interrupted`.
+formats::Result<DropletOptics> average_droplets(const DropletDistribution& droplets,
+                                                double wavelength, std::complex<double> index,
+                                                const RadiusSampling& sampling,
+                                                const Context& context);
+
+}  // namespace opaline::bake

@@ -1,0 +1,87 @@
+#include "bake/slab/radiance_table.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "bake/slab/solve_radiance.h"
+#include "bake/slab/solve_slab.h"
+#include "bake/slab/table_place.h"
+
+namespace opaline::bake {
+namespace {
+
+/// What values are divided by: single scattering looks so, and so do later orders at the horizon.
+double horizon_shape(double depth, double light, double view) {
+    return -std::expm1(-depth / light - depth / view) / (light + view);
+}
+
+TablePlace place_cosine(double cosine, std::size_t count) {
+    // The inverse of s^2 (3 - 2 s).
+    return place_at(0.5 - std::sin(std::asin(1 - 2 * cosine) / 3), count);
+}
+
+}  // namespace
+
+RadianceTable make_radiance_table(const SlabMedium& medium, RadianceTableSize size, int streams) {
+    assert(size.depths >= 2 && size.cosines >= 2 && size.modes >= 1);
+    SlabMedium conservative = medium;
+    conservative.albedo = 1;
+    SlabRadianceRequest request;
+    request.streams = streams;
+    request.modes = static_cast<unsigned>(size.modes);
+    request.first_order = 2;
+    for (std::size_t j = 0; j < size.cosines; ++j) {
+        const double s = static_cast<double>(j) / static_cast<double>(size.cosines - 1);
+        request.view.push_back(std::max(kLeastTableCosine, s * s * (3 - 2 * s)));
+    }
+    request.incident = request.view;
+    RadianceTable table;
+    table.size = size;
+    const std::size_t layer = size.modes * size.cosines * size.cosines;
+    // Row 0 is the limit of thin layers: twice or more is nothing to once.
+    table.reflected.assign(layer, 0);
+    table.transmitted.assign(layer, 0);
+    for (std::size_t i = 1; i < size.depths; ++i) {
+        request.optical_depth = depth_of_node(i, size.depths, kMaxSlabDepth);
+        const SlabRadiance slab = solve_slab_radiance(conservative, request).front();
+        for (std::size_t at = 0; at < layer; ++at) {
+            const double light = request.incident[at % size.cosines];
+            const double view = request.view[at / size.cosines % size.cosines];
+            const double shape = horizon_shape(request.optical_depth, light, view);
+            table.reflected.push_back(static_cast<float>(slab.reflected[at] / shape));
+            table.transmitted.push_back(static_cast<float>(slab.transmitted[at] / shape));
+        }
+    }
+    return table;
+}
+
+double eval_radiance_table(const RadianceTable& table, double depth, double light, double view,
+                           double azimuth, bool transmitted) {
+    const RadianceTableSize& size = table.size;
+    const std::vector<float>& values = transmitted ? table.transmitted : table.reflected;
+    const double mu_l = std::clamp(light, kLeastTableCosine, 1.0);
+    const double mu_v = std::clamp(view, kLeastTableCosine, 1.0);
+    const TablePlace row = place_depth(depth, size.depths);
+    const TablePlace at_light = place_cosine(mu_l, size.cosines);
+    const TablePlace at_view = place_cosine(mu_v, size.cosines);
+    double sum = 0;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        const std::size_t i = corner & 1u, v = corner >> 1u & 1u, l = corner >> 2u;
+        const double weight = (i == 0 ? 1 - row.share : row.share) *
+                              (v == 0 ? 1 - at_view.share : at_view.share) *
+                              (l == 0 ? 1 - at_light.share : at_light.share);
+        for (std::size_t m = 0; m < size.modes; ++m) {
+            const std::size_t at =
+                (((row.first + i) * size.modes + m) * size.cosines + at_view.first + v) *
+                    size.cosines +
+                at_light.first + l;
+            sum += weight * (m == 0 ? 1 : 2) * std::cos(static_cast<double>(m) * azimuth) *
+                   static_cast<double>(values[at]);
+        }
+    }
+    return mu_l / std::numbers::pi * horizon_shape(depth, mu_l, mu_v) * sum;
+}
+
+}  // namespace opaline::bake

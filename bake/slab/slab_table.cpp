@@ -1,0 +1,74 @@
+#include "bake/slab/slab_table.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "bake/slab/solve_slab.h"
+#include "bake/slab/table_place.h"
+
+namespace opaline::bake {
+SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size, int streams) {
+    assert(size.depths >= 2 && size.cosines >= 2);
+    SlabMedium conservative = medium;
+    conservative.albedo = 1;
+    constexpr unsigned kOrders = 3;
+    SlabRequest request{0, 0, {}, streams, kOrders};
+    for (std::size_t j = 0; j < size.cosines; ++j) {
+        const double root = static_cast<double>(j) / static_cast<double>(size.cosines - 1);
+        request.cosine.push_back(std::max(kMinSlabCosine, root * root));
+    }
+    SlabTable table;
+    table.size = size;
+    for (std::size_t i = 0; i < size.depths; ++i) {
+        request.optical_depth = depth_of_node(i, size.depths, kMaxSlabDepth);
+        const SlabSolution slab = solve_slab(conservative, request).front();
+        // Orders are good to 1e-10: in row 0, and where they are nearly none, that is more than
+        // all.
+        const auto order_share = [&](double share) {
+            return i > 0 ? static_cast<float>(std::max(0.0, share)) : 0.0f;
+        };
+        for (std::size_t j = 0; j < size.cosines; ++j) {
+            table.t1.push_back(order_share(slab.order[1].transmittance[j]));
+            table.t2.push_back(order_share(slab.order[2].transmittance[j]));
+            table.t_ms.push_back(static_cast<float>(slab.total.transmittance[j]));
+            table.r1.push_back(order_share(slab.order[1].reflectance[j]));
+            table.r2.push_back(order_share(slab.order[2].reflectance[j]));
+        }
+        table.mean_t.push_back(static_cast<float>(slab.total.mean_transmittance));
+    }
+    return table;
+}
+
+SlabShares eval_slab_table(const SlabTable& table, double depth, double cosine) {
+    const TablePlace row = place_depth(depth, table.size.depths);
+    const TablePlace column = place_at(std::sqrt(std::clamp(cosine, 0.0, 1.0)), table.size.cosines);
+    const auto at = [&](const std::vector<float>& values) {
+        double sum = 0;
+        for (const std::size_t below : {0u, 1u}) {
+            for (const std::size_t beside : {0u, 1u}) {
+                sum +=
+                    (below == 0 ? 1 - row.share : row.share) *
+                    (beside == 0 ? 1 - column.share : column.share) *
+                    static_cast<double>(
+                        values[(row.first + below) * table.size.cosines + column.first + beside]);
+            }
+        }
+        return sum;
+    };
+    SlabShares shares;
+    shares.transmitted[1] = at(table.t1);
+    shares.transmitted[2] = at(table.t2);
+    shares.reflected[1] = at(table.r1);
+    shares.reflected[2] = at(table.r2);
+    const double direct = depth > 0 ? std::exp(-depth / std::max(cosine, kMinSlabCosine)) : 1.0;
+    return complete_shares(shares, direct, at(table.t_ms));
+}
+
+double eval_mean_transmittance(const SlabTable& table, double depth) {
+    const TablePlace row = place_depth(depth, table.size.depths);
+    return (1 - row.share) * static_cast<double>(table.mean_t[row.first]) +
+           row.share * static_cast<double>(table.mean_t[row.first + 1]);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,86 @@
+#include "bake/slab/solve_slab.h"
+
+#include <cassert>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+
+#include "bake/slab/albedo_circle.h"
+#include "bake/slab/layer_chain.h"
+
+namespace opaline::bake {
+namespace {
+
+template <class Scalar>
+struct StreamFluxes {
+    typename Layer<Scalar>::Vector reflected, transmitted;  ///< by stream of incidence
+};
+
+/// By reciprocity the flux that leaves under a beam is the radiance under even light.
+template <class Scalar>
+StreamFluxes<Scalar> sum_fluxes(const Layer<Scalar>& layer, const Eigen::VectorXd& flux) {
+    const typename Layer<Scalar>::Vector weights = flux.cast<Scalar>();
+    return {layer.reflect * weights, layer.transmit * weights + layer.direct()};
+}
+
+SlabFluxes at_cosines(const StreamFluxes<double>& all, const Streams& streams) {
+    SlabFluxes fluxes;
+    for (Eigen::Index i = streams.quadrature; i < streams.cosine.size(); ++i) {
+        fluxes.reflectance.push_back(all.reflected[i]);
+        fluxes.transmittance.push_back(all.transmitted[i]);
+    }
+    const Eigen::VectorXd flux = streams.flux();
+    fluxes.mean_reflectance = flux.dot(all.reflected.head(flux.size()));
+    fluxes.mean_transmittance = flux.dot(all.transmitted.head(flux.size()));
+    return fluxes;
+}
+
+}  // namespace
+
+std::vector<SlabSolution> solve_slab(const SlabMedium& medium, const SlabRequest& request) {
+    assert(request.optical_depth >= 0 && request.optical_depth <= kMaxSlabDepth);
+    assert(request.orders <= kMaxSlabOrders && request.streams <= kMaxSlabStreams);
+    const Streams streams = make_streams(request.streams, request.cosine);
+    const Eigen::VectorXd flux = streams.flux();
+    const PhaseKernels kernels = make_phase_kernels(medium, streams, 0, streams.quadrature);
+    std::vector<SlabSolution> solutions(request.halvings + std::size_t{1});
+    double_up(kernels, streams, medium.albedo, request.optical_depth, request.halvings,
+              [&](unsigned halvings, const Layer<double>& layer) {
+                  SlabSolution& solution = solutions[halvings];
+                  solution.optical_depth =
+                      std::ldexp(request.optical_depth, -static_cast<int>(halvings));
+                  solution.total = at_cosines(sum_fluxes(layer, flux), streams);
+              });
+    if (request.orders == 0) {
+        return solutions;
+    }
+    // What n scatterings leave is the coefficient of albedo^n.
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(streams.cosine.size());
+    std::vector<std::vector<StreamFluxes<double>>> orders(
+        solutions.size(), std::vector<StreamFluxes<double>>(request.orders, {none, none}));
+    const AlbedoCircle circle(request.orders);
+    for (unsigned k = 0; k < circle.count(); ++k) {
+        double_up(kernels, streams, circle.albedo(k), request.optical_depth, request.halvings,
+                  [&](unsigned halvings, const Layer<std::complex<double>>& layer) {
+                      const auto fluxes = sum_fluxes(layer, flux);
+                      for (unsigned n = 0; n < request.orders; ++n) {
+                          const std::complex<double> weight = circle.weight(k, n);
+                          StreamFluxes<double>& order = orders[halvings][n];
+                          order.reflected += (weight * fluxes.reflected).real();
+                          order.transmitted += (weight * fluxes.transmitted).real();
+                      }
+                  });
+    }
+    for (std::size_t j = 0; j < solutions.size(); ++j) {
+        double power = 1;
+        for (StreamFluxes<double>& order : orders[j]) {
+            order.reflected *= power;
+            order.transmitted *= power;
+            solutions[j].order.push_back(at_cosines(order, streams));
+            power *= medium.albedo;
+        }
+    }
+    return solutions;
+}
+
+}  // namespace opaline::bake

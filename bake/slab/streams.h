@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace opaline::bake {
+
+/// Directions at which the light in a slab is known: the nodes of a Gauss-Legendre rule over the
+/// cosines of a hemisphere, then any others.
+struct Streams {
+    int quadrature = 0;      ///< number of nodes of the rule; they stand first
+    Eigen::VectorXd cosine;  ///< to the normal, in (0, 1]
+    Eigen::VectorXd weight;  ///< of the rule's nodes, of sum 1
+
+    /// 2 cosine weight of the rule's nodes: share of the flux of even light, of sum 1.
+    Eigen::VectorXd flux() const { return 2 * cosine.head(quadrature).cwiseProduct(weight); }
+};
+
+/// `quadrature` at least 1; `others` in (0, 1].
+Streams make_streams(int quadrature, std::span<const double> others);
+
+/// Associated Legendre functions of the order m over degree and stream, sqrt((l - m)! / (l + m)!)
+/// P_l^m(cosine), without the sign (-1)^m: row l - m holds degree l, up to degree `degrees` - 1.
+/// 0 <= m < degrees.
+Eigen::MatrixXd associated_legendre(const Eigen::VectorXd& cosine, int m, int degrees);
+
+}  // namespace opaline::bake

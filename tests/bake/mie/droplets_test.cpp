@@ -1,0 +1,93 @@
+#include "bake/mie/droplets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/bake/mie/mie_support.h"
+
+namespace opaline::bake {
+namespace {
+
+using std::numbers::pi;
+
+TEST(Droplets, MomentsAreThoseOfTheGammaDistribution) {
+    const DropletDistribution d = tests::paper_droplets();
+    EXPECT_NEAR(characteristic_radius(d), 1.75e-6, 1e-18);
+    const double r_n = 1.75e-6;
+    EXPECT_NEAR(mean_radius_power(d, 0), 1, 1e-12);
+    EXPECT_NEAR(mean_radius_power(d, 1) / (2 * r_n), 1, 1e-12);
+    EXPECT_NEAR(mean_radius_power(d, 2) / (6 * r_n * r_n), 1, 1e-12);
+    EXPECT_NEAR(mean_radius_power(d, 3) / mean_radius_power(d, 2) / d.effective_radius, 1, 1e-12);
+    EXPECT_NEAR(mean_geometric_section(d) * 1e12, 57.726765, 1e-6);
+    EXPECT_NEAR(liquid_water_content(d) * 1e3, 0.1616, 5e-5);  // grams
+}
+
+TEST(Droplets, LargeGammaOverflowsNowhere) {
+    for (const double gamma : {171.0, 172.0, 1000.0, 10000.0}) {
+        const DropletDistribution d{1e8, 1e-5, gamma};
+        const double square = mean_radius_power(d, 2);
+        ASSERT_TRUE(std::isfinite(square));
+        EXPECT_NEAR(pi * square / mean_geometric_section(d), 1, 1e-9) << gamma;
+        double count = 0, area = 0;
+        for (const RadiusNode& node : place_radii(d, 2000)) {
+            ASSERT_TRUE(std::isfinite(node.share));
+            count += node.share;
+            area += node.share * pi * node.radius * node.radius;
+        }
+        EXPECT_NEAR(count, 1, 1e-5) << gamma;
+        EXPECT_NEAR(area / mean_geometric_section(d), 1, 1e-5) << gamma;
+    }
+}
+
+TEST(Droplets, SingularityOfGammaBelow1IsIntegratedOver) {
+    for (const double gamma : {0.1, 0.5, 0.99, 1.0}) {
+        const DropletDistribution d{1e8, 5e-6, gamma};
+        double area = 0, volume = 0;
+        for (const RadiusNode& node : place_radii(d, 2000)) {
+            ASSERT_TRUE(std::isfinite(node.share));
+            area += node.share * pi * node.radius * node.radius;
+            volume += node.share * std::pow(node.radius, 3);
+        }
+        EXPECT_NEAR(area / mean_geometric_section(d), 1, 1e-4) << gamma;
+        EXPECT_NEAR(volume / mean_radius_power(d, 3), 1, 1e-4) << gamma;
+    }
+}
+
+// Forward intensity carries r^4, and beyond the last radius there is next to nothing of it.
+TEST(Droplets, RadiiReachAsFarAsDropletsMatter) {
+    for (const double gamma : {0.5, 2.0, 30.0, 1000.0}) {
+        const DropletDistribution d{1e8, 5e-6, gamma};
+        const RadiusRange range = radius_range(d);
+        double fourth = 0;
+        const auto nodes = place_radii(d, 4000);
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            EXPECT_GT(nodes[i].radius, i == 0 ? range.least : nodes[i - 1].radius);
+            fourth += nodes[i].share * std::pow(nodes[i].radius, 4);
+        }
+        EXPECT_LT(nodes.back().radius, range.most);
+        EXPECT_NEAR(fourth / mean_radius_power(d, 4), 1, 1e-5) << gamma;
+    }
+    const DropletDistribution d = tests::paper_droplets();
+    EXPECT_NEAR(radius_range(d).most / characteristic_radius(d), 33.6, 0.01);
+}
+
+TEST(Droplets, NarrowDistributionsAreKnown) {
+    EXPECT_GT(relative_width(tests::paper_droplets()), kMonodisperse);
+    EXPECT_LT(relative_width({1e8, 5e-6, 400}), kMonodisperse);
+}
+
+TEST(Droplets, DistributionsOutOfRangeAreRefused) {
+    EXPECT_TRUE(check_droplets(tests::paper_droplets()));
+    for (const double bad : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+        EXPECT_FALSE(check_droplets({bad, 7e-6, 2}));
+        EXPECT_FALSE(check_droplets({3e8, bad, 2}));
+        EXPECT_FALSE(check_droplets({3e8, 7e-6, bad}));
+    }
+    EXPECT_FALSE(check_droplets({3e8, 7e-6, 10001}));
+    EXPECT_FALSE(check_droplets({3e8, 7e-6, 0.05}));
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,137 @@
+#include "bake/slab/column_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/slab/fit_column_model.h"
+#include "tests/bake/slab/slab_support.h"
+#include "tests/support/cloud_table.h"
+
+namespace opaline::tests {
+namespace {
+
+using bake::column_orders;
+using bake::ColumnFit;
+using bake::ColumnModel;
+using bake::SlabShares;
+
+TEST(ColumnModelTest, HoldsThePrintedParametersOfThePaper) {
+    OPALINE_CLOUD_ROWS(rows, "appendixB");
+    for (const CloudRow& row : rows) {
+        const std::string& quantity = row.text("quantity");
+        bool found = false;
+        for (const bake::ColumnModelAt& at : bake::paper2006()) {
+            if (row.number_or("theta_l_deg", at.degrees) != at.degrees) {
+                continue;
+            }
+            const ColumnModel& m = at.model;
+            const std::map<std::string, double> value = {
+                {"b", m.length / (1 + m.length)}, {"beta", m.beta}, {"c_per_m", m.decay},
+                {"kappa_c_per_m", m.extinction},  {"t", m.forward}, {"r", m.back}};
+            ASSERT_TRUE(value.contains(quantity)) << row.name();
+            EXPECT_NEAR(value.at(quantity), row.value(), 1e-12) << row.name();
+            found = true;
+        }
+        EXPECT_TRUE(found) << row.name();
+    }
+}
+
+// Events at k and l below it: forward twice, or back and forth with the second event above the
+// first; what leaves goes on for the rest of the column.
+TEST(ColumnModelTest, OrdersAreIntegralsOverTheirEvents) {
+    const ColumnModel model{1, 1, 1, 1.59, 0.7165, 0.17};
+    for (const double thickness : {0.01, 0.3, 1.0, 4.0}) {
+        const double k = model.extinction, t = model.forward, r = model.back;
+        const auto through = [&](double length) { return std::exp(-k * length); };
+        const SlabShares shares = column_orders(model, thickness);
+        const auto inside = [&](const auto& f) { return integrate(f, 0, thickness, 4); };
+        EXPECT_NEAR(shares.transmitted[1],
+                    inside([&](double a) { return k * t * through(a) * through(thickness - a); }),
+                    1e-12);
+        EXPECT_NEAR(shares.reflected[1],
+                    inside([&](double a) { return k * r * through(a) * through(a); }), 1e-12);
+        const double forward_twice = inside([&](double a) {
+            return integrate([&](double b) { return k * k * t * t * through(thickness) + 0 * b; },
+                             a, thickness, 4);
+        });
+        const double back_and_forth = inside([&](double a) {
+            return integrate(
+                [&](double b) {  // down to a, up to b < a, down from b
+                    return k * k * r * r * through(a) * through(a - b) * through(thickness - b);
+                },
+                0, a, 4);
+        });
+        EXPECT_NEAR(shares.transmitted[2], forward_twice + back_and_forth, 1e-12);
+        const double turned_second = inside([&](double a) {
+            return integrate([&](double b) { return k * k * t * r * through(b) * through(b); }, a,
+                             thickness, 4);
+        });
+        const double turned_first = inside([&](double a) {
+            return integrate(
+                [&](double b) { return k * k * r * t * through(a) * through(a) + 0 * b; }, 0, a, 4);
+        });
+        EXPECT_NEAR(shares.reflected[2], turned_second + turned_first, 1e-12);
+    }
+}
+
+TEST(ColumnModelTest, ThePaperSecondOrderNeedsItsSignTurned) {
+    // x = 1.59, r = .0547: 3.4e-4, and 6.9e-6 as printed
+    const double x = 1.59, r = 0.0547;
+    const SlabShares shares = column_orders({1, 1, 1, x, 0, r}, 1);
+    EXPECT_NEAR(shares.transmitted[2], 3.4e-4, 5e-6);
+    EXPECT_NEAR(column_orders({1, 1, 1, 1e-5, 0, r}, 1).transmitted[2] / (r * r * 1e-10 / 2), 1,
+                3e-5);
+}
+
+TEST(ColumnModelTest, ThickColumnsApproachTheirLimits) {
+    const ColumnModel model{2, 1.2, 0.5, 1.1, 0.8, 0.06};
+    for (const double thickness : {1e3, 1e9, 1e300}) {
+        const SlabShares shares = column_orders(model, thickness);
+        EXPECT_NEAR(shares.reflected[1], 0.03, 1e-15);
+        EXPECT_NEAR(shares.reflected[2], 0.024, 1e-15);
+        EXPECT_EQ(shares.transmitted[1], 0);
+        EXPECT_EQ(shares.transmitted[2], 0);
+        EXPECT_NEAR(column_transmittance(model, thickness) * thickness / 2, 1.2, 3e-3);
+    }
+}
+
+TEST(ColumnModelTest, SharesAreNeverNegativeAndAddUpToOne) {
+    for (const bake::ColumnModelAt& at : bake::paper2006()) {
+        const double cosine = std::max(1e-6, cosine_of_degrees(at.degrees));
+        for (const double thickness : {0.0, 1e-6, 1.0, 20.0, 300.0, 1e5}) {
+            const double direct = std::exp(-0.0226 * thickness / cosine);
+            const SlabShares shares = eval_column_model(at.model, thickness, direct);
+            double sum = 0;
+            for (int n = 0; n < 4; ++n) {
+                EXPECT_GE(shares.transmitted[n], 0);
+                EXPECT_GE(shares.reflected[n], 0);
+                sum += shares.transmitted[n] + shares.reflected[n];
+            }
+            EXPECT_NEAR(sum, 1, 1e-12) << at.degrees << " " << thickness;
+            EXPECT_EQ(shares.transmitted[0], direct);
+        }
+    }
+    EXPECT_EQ(eval_column_model(bake::paper2006()[0].model, 0, 1).transmitted[0], 1);
+}
+
+TEST(ColumnModelTest, FitOfAnyPhaseFunctionIsNearItsSlabs) {
+    const double cosines[] = {1, 0.5};
+    for (const double g : {0.0, 0.6, 0.85}) {
+        const auto medium = henyey_greenstein_slab(g, 1);
+        const auto fits = fit_column_models(medium, cosines, bake::column_fit_depths(), 16);
+        for (std::size_t i = 0; i < fits.size(); ++i) {
+            const ColumnFit& fit = fits[i];
+            EXPECT_LT(fit.max_transmittance, 0.02) << g << " " << cosines[i];
+            EXPECT_LT(fit.max_orders, 0.05) << g << " " << cosines[i];
+            const double depth = 5;  // not one of those it was fitted at
+            const double exact = solve_one(medium, depth, cosines[i], 0, 16).total.transmittance[0];
+            EXPECT_NEAR(column_transmittance(fit.model, depth), exact,
+                        2 * fit.max_transmittance + 1e-3);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace opaline::tests
