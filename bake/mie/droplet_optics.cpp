@@ -57,7 +57,7 @@ BothSums empty_sums(std::size_t angles) {
 AngleGrid choose_angles(double wave_number, const DropletDistribution& droplets) {
     const double size = wave_number * (droplets.gamma + 4) * characteristic_radius(droplets);
     const double first = std::clamp(2.4 / size, 1e-3, 0.5) * kRadiansPerDegree;
-    const double most = std::clamp(12 / size, 0.05, 0.5) * kRadiansPerDegree;
+    const double most = std::clamp(12 / size, 0.1, 0.5) * kRadiansPerDegree;
     return make_angle_grid(first, most, 0.01);
 }
 
