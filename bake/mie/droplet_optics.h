@@ -2,6 +2,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <span>
 
 #include "bake/base/context.h"
 #include "bake/mie/angular_table.h"
@@ -57,5 +58,14 @@ formats::Result<DropletOptics> average_droplets(const DropletDistribution& dropl
                                                 double wavelength, std::complex<double> index,
                                                 const RadiusSampling& sampling,
                                                 const Context& context);
+
+/// One colour channel from several wavelengths of the same droplets, which an observer weights by
+/// `weights` [1], >= 0 and not all 0: cross-sections are weighted means, and so are phase functions
+/// and mean cosines, by scattered power too [Bouthors2006]. Rows are those of the wavelength with
+/// most of them. `wavelength` and `index` are weighted means and describe the channel; errors are
+/// the largest. Three wavelengths a channel take the hard colours out of a glory.
+/// Precondition: as many weights as wavelengths, at least one.
+DropletOptics mix_wavelengths(std::span<const DropletOptics> optics,
+                              std::span<const double> weights);
 
 }  // namespace opaline::bake
