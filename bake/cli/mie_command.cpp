@@ -119,6 +119,7 @@ formats::Result<double> choose_forward_angle(const MieCommand& options,
         return *degrees * std::numbers::pi / 180;
     }
     std::vector<const bake::DropletOptics*> by_wavelength;
+    by_wavelength.reserve(optics.size());
     for (const bake::DropletOptics& one : optics) {
         by_wavelength.push_back(&one);
     }
@@ -187,7 +188,7 @@ void print_lines(const std::vector<Json>& rows) {
         for (const auto& [key, value] : row.items()) {
             if (value.is_structured()) {
                 for (const auto& [part, inner] : value.items()) {
-                    add(key + "_" + part, inner);
+                    add(fmt::format("{}_{}", key, part), inner);
                 }
             } else {
                 add(key, value);

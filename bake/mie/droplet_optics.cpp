@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -57,7 +58,7 @@ BothSums empty_sums(std::size_t angles) {
 AngleGrid choose_angles(double wave_number, const DropletDistribution& droplets) {
     const double size = wave_number * (droplets.gamma + 4) * characteristic_radius(droplets);
     const double first = std::clamp(2.4 / size, 1e-3, 0.5) * kRadiansPerDegree;
-    const double most = std::clamp(12 / size, 0.05, 0.5) * kRadiansPerDegree;
+    const double most = std::clamp(12 / size, 0.1, 0.5) * kRadiansPerDegree;
     return make_angle_grid(first, most, 0.01);
 }
 
@@ -216,6 +217,47 @@ formats::Result<DropletOptics> average_droplets(const DropletDistribution& dropl
     optics.integral_before = integrate_table(optics.phase);
     scale_table(optics.phase, 1 / optics.integral_before);
     return optics;
+}
+
+DropletOptics mix_wavelengths(std::span<const DropletOptics> optics,
+                              std::span<const double> weights) {
+    assert(!optics.empty() && optics.size() == weights.size());
+    DropletOptics mean;
+    const auto most_rows = std::max_element(optics.begin(), optics.end(),
+                                            [](const DropletOptics& a, const DropletOptics& b) {
+                                                return a.phase.angle.size() < b.phase.angle.size();
+                                            });
+    mean.phase.angle = most_rows->phase.angle;
+    mean.phase.value.assign(mean.phase.angle.size(), 0.0);
+    mean.integral_before = 0;
+    double total = 0, scattered = 0;
+    for (std::size_t k = 0; k < optics.size(); ++k) {
+        total += weights[k];
+        scattered += weights[k] * optics[k].c_sca;
+    }
+    for (std::size_t k = 0; k < optics.size(); ++k) {
+        const DropletOptics& one = optics[k];
+        const double weight = weights[k] / total, power = weights[k] * one.c_sca / scattered;
+        mean.wavelength += weight * one.wavelength;
+        mean.index += weight * one.index;
+        mean.c_ext += weight * one.c_ext;
+        mean.c_sca += weight * one.c_sca;
+        mean.c_abs += weight * one.c_abs;
+        mean.c_geo += weight * one.c_geo;
+        mean.g += power * one.g;
+        mean.integral_before += power * one.integral_before;
+        mean.radii += one.radii;
+        mean.error.phase_rms = std::max(mean.error.phase_rms, one.error.phase_rms);
+        mean.error.phase_max = std::max(mean.error.phase_max, one.error.phase_max);
+        mean.error.c_ext = std::max(mean.error.c_ext, one.error.c_ext);
+        mean.error.c_sca = std::max(mean.error.c_sca, one.error.c_sca);
+        mean.error.g = std::max(mean.error.g, one.error.g);
+        for (std::size_t i = 0; i < mean.phase.angle.size(); ++i) {
+            mean.phase.value[i] += power * eval_table(one.phase, mean.phase.angle[i]);
+        }
+    }
+    scale_table(mean.phase, 1 / integrate_table(mean.phase));
+    return mean;
 }
 
 }  // namespace opaline::bake

@@ -143,6 +143,28 @@ TEST(DropletOptics, BadInputIsRefusedWithWhatIsWrong) {
     refuse({1e8, 1e-15, 2}, 550e-9, 1.333);  // nothing
 }
 
+TEST(DropletOptics, ChannelOfSeveralWavelengthsIsTheirMeanByScatteredPower) {
+    const DropletDistribution d{1e8, 0.6e-6, 4};
+    const DropletOptics one = average(d, 600e-9, {1.333, 0.001}), other = average(d, 400e-9, 1.34);
+    const DropletOptics both[] = {one, other};
+    const double weights[] = {1, 3};
+    const DropletOptics channel = mix_wavelengths(both, weights);
+    EXPECT_NEAR(channel.c_ext, (one.c_ext + 3 * other.c_ext) / 4, 1e-12 * one.c_ext);
+    EXPECT_NEAR(channel.c_ext, channel.c_sca + channel.c_abs, 1e-12 * one.c_ext);
+    EXPECT_NEAR(channel.wavelength, 450e-9, 1e-15);
+    EXPECT_NEAR(integrate_table(channel.phase), 1, 1e-12);
+    EXPECT_NEAR(integrate_cosine(channel.phase), channel.g, 1e-4);
+    const double power = 3 * other.c_sca / (one.c_sca + 3 * other.c_sca);
+    for (const double angle : {0.0, 0.1, 1.0, 2.0, pi}) {
+        const double mean =
+            (1 - power) * eval_table(one.phase, angle) + power * eval_table(other.phase, angle);
+        EXPECT_NEAR(eval_table(channel.phase, angle) / mean, 1, 1e-4) << angle;
+    }
+    // Of one wavelength it is that one.
+    const double all[] = {0, 1};
+    EXPECT_EQ(mix_wavelengths(both, all).c_sca, other.c_sca);
+}
+
 TEST(DropletOptics, CancellationIsHeard) {
     const std::atomic<bool> cancel = true;
     Context context;
