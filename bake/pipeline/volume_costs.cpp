@@ -45,12 +45,12 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
     for_each("volume-single", [&](const VolumeWork& work, PlanEntry* payer) {
         bill.add(attenuation_work(input, work), payer);
         bill.add_bytes(volume_density_bytes(work));
-        bill.add_bytes(volume_row_bytes(work, request.knobs, work.nodes), payer);
+        bill.add_bytes(attenuated_row_bytes(work, request.knobs), payer);
     });
     bill.open("walks through volumes");
     for_each("volume-multiple", [&](const VolumeWork& work, PlanEntry* payer) {
         bill.add(walking_work(input, work), payer);
-        bill.add_bytes(volume_row_bytes(work, request.knobs, work.rows - work.nodes), payer);
+        bill.add_bytes(scattered_row_bytes(work, request.knobs), payer);
     });
     if (std::ranges::any_of(volumes.layouts, &VolumeLayout::has_nodes)) {
         const VolumeCheckOptions check =

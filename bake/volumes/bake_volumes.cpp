@@ -33,7 +33,7 @@ struct Nodes {
     std::size_t count = 0;
     LightCells fine;                    // of single scattering
     LightCells coarse;                  // of multiple scattering, which is smoother
-    std::vector<NodeEncoder> encoders;  // one a layout
+    std::vector<NodeEncoder> attenuated, scattered;  // of row V and of all T_k, one a layout
 };
 
 Nodes place_nodes(const VolumeJob& job) {
@@ -61,9 +61,10 @@ Nodes place_nodes(const VolumeJob& job) {
     nodes.coarse = make_light_cells(is_exact ? std::min(n, 16u) : std::min(n, 8u));
     constexpr std::array<double, 4> kTolerance{0.03, 0.015, 0.005, 0.0};
     for (const VolumeLayout& layout : job.layouts) {
-        nodes.encoders.push_back(
-            {make_selector(n, coefficients_of_row(job.knobs, 1 + layout.often_terms)),
-             kTolerance[static_cast<std::size_t>(job.knobs.quality)]});
+        const NodeCoefficients most = node_coefficients(job.knobs, layout.often_terms);
+        const double tolerance = kTolerance[static_cast<std::size_t>(job.knobs.quality)];
+        nodes.attenuated.push_back({make_selector(n, most.attenuated), tolerance});
+        nodes.scattered.push_back({make_selector(n, most.scattered), tolerance});
     }
     return nodes;
 }
@@ -90,8 +91,8 @@ Place find_place(const VolumeJob& job, const Nodes& nodes, std::size_t number) {
     return {};
 }
 
-const NodeEncoder& encoder_of(const VolumeJob& job, const Nodes& nodes, const Place& place) {
-    return nodes.encoders[static_cast<std::size_t>(place.layout - job.layouts.data())];
+std::size_t number_of(const VolumeJob& job, const VolumeLayout& layout) {
+    return static_cast<std::size_t>(&layout - job.layouts.data());
 }
 
 // V of a node: its row, and its depths toward the coarse cells.
@@ -118,8 +119,9 @@ Lit light_node(const VolumeJob& job, const Nodes& nodes, const Place& place, std
         fine.insert(fine.end(), fine.begin(), fine.begin() + static_cast<std::ptrdiff_t>(cells));
     }
     const auto row_bands = static_cast<std::uint32_t>(nodes.space.bands());
-    const double energy = row_energy(fine, nodes.fine.n, job.knobs.cubemap_size) / row_bands;
-    lit.row = encode_node_row(encoder_of(job, nodes, place), fine, nodes.fine.n, row_bands, energy);
+    lit.row = std::move(encode_node_rows(nodes.attenuated[number_of(job, *place.layout)], fine, 1,
+                                         nodes.fine.n, row_bands)
+                            .front());
     return lit;
 }
 
@@ -174,9 +176,8 @@ std::vector<SparseRow> walk_node(const VolumeJob& job, const Nodes& nodes,
                                  std::uint64_t& rays) {
     const Place place = find_place(job, nodes, number);
     const std::uint32_t terms = place.layout->often_terms;
-    std::vector<SparseRow> rows;
     if (terms == 0) {
-        return rows;
+        return {};
     }
     const auto bands = static_cast<std::uint32_t>(nodes.space.bands());
     const std::size_t size = bands * nodes.coarse.size();
@@ -184,15 +185,10 @@ std::vector<SparseRow> walk_node(const VolumeJob& job, const Nodes& nodes,
     rays += gather_walks(
         space,
         {place.layout->volume, number, position_of(job, nodes, place.layout->volume, place.node),
-         whole(job.knobs, kVolumeWalks), terms},
+         place.layout->walks, terms},
         dense);
-    const double energy = row_energy(dense, nodes.coarse.n, job.knobs.cubemap_size) / bands;
-    const NodeEncoder& encoder = encoder_of(job, nodes, place);
-    for (std::uint32_t k = 0; k < terms; ++k) {
-        rows.push_back(encode_node_row(encoder, std::span(dense).subspan(k * size, size),
-                                       nodes.coarse.n, bands, energy / terms));
-    }
-    return rows;
+    return encode_node_rows(nodes.scattered[number_of(job, *place.layout)], dense, terms,
+                            nodes.coarse.n, bands);
 }
 
 formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& job, const Nodes& nodes,

@@ -63,20 +63,18 @@ void calibrate_volumes(const CalibrationBench& bench, Rates& rates) {
     const auto sky = RayScene::build({}, 1);
     Knobs knobs;
     knobs.cubemap_size = 16;
-    knobs.set(kVolumeWalks, 1);
     // One thing more at a time: rows, walks, and directions whose light joins them.
-    const VolumeLayout once{0, 1, 0, 8}, often{0, 1, 1, 8}, rows{0, 25, 25, 8};
-    Knobs walks = knobs;
-    walks.set(kVolumeWalks, 8);
-    Knobs fine = walks;
+    const VolumeLayout once{0, 1, 0, 8, 0}, often{0, 1, 1, 8, 1}, rows{0, 25, 25, 8, 1};
+    const VolumeLayout walks{0, 1, 1, 8, 8};
+    Knobs fine = knobs;
     fine.quality = Quality::reference;
     const double alone = measure_bake(scene, *sky, once, knobs);
     const double few_rows = measure_bake(scene, *sky, often, knobs);
     const double many_rows = measure_bake(scene, *sky, rows, knobs);
-    const double walked = measure_bake(scene, *sky, often, walks);
-    const double finely = measure_bake(scene, *sky, often, fine);
-    const VolumeWork few = count_volume_work(scene, {&often, 1}, walks).front();
-    const VolumeWork many = count_volume_work(scene, {&often, 1}, fine).front();
+    const double walked = measure_bake(scene, *sky, walks, knobs);
+    const double finely = measure_bake(scene, *sky, walks, fine);
+    const VolumeWork few = count_volume_work(scene, {&walks, 1}, knobs).front();
+    const VolumeWork many = count_volume_work(scene, {&walks, 1}, fine).front();
     const auto texels = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     rates.node_texel = std::max(0.0, many_rows - few_rows) /
                        (few.nodes * (rows.often_terms - often.often_terms) * texels);

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include "bake/volumes/light_cells.h"
 #include "formats/opal/cubemap.h"
@@ -30,6 +33,19 @@ float find_threshold(std::span<const float> coefficients, double lost) {
     return std::numeric_limits<float>::infinity();
 }
 
+// The smallest score of those that `count` coefficients at most have.
+float find_least_score(std::vector<float> score, std::size_t count) {
+    if (score.size() <= count) {
+        return 0;
+    }
+    if (count == 0) {
+        return std::numeric_limits<float>::infinity();
+    }
+    const auto last = score.begin() + static_cast<std::ptrdiff_t>(count - 1);
+    std::nth_element(score.begin(), last, score.end(), std::greater<>());
+    return *last;
+}
+
 }  // namespace
 
 double row_energy(std::span<const float> values, std::uint32_t m, std::uint32_t n) {
@@ -41,36 +57,55 @@ double row_energy(std::span<const float> values, std::uint32_t m, std::uint32_t 
     return sum * block * block;
 }
 
-formats::SparseRow encode_node_row(const NodeEncoder& encoder, std::span<const float> values,
-                                   std::uint32_t m, std::uint32_t bands, double energy) {
-    const std::uint32_t n = encoder.selector.cubemap_size;
+std::vector<formats::SparseRow> encode_node_rows(const NodeEncoder& encoder,
+                                                 std::span<const float> values,
+                                                 std::uint32_t count, std::uint32_t m,
+                                                 std::uint32_t bands) {
+    Selector selector = encoder.selector;
+    const std::uint32_t n = selector.cubemap_size;
     const std::size_t cells = formats::cubemap_texels(m), size = formats::cubemap_texels(n);
+    const auto is_average = [&](std::size_t k) { return k % (std::size_t{n} * n) == 0; };
     std::vector<float> coefficients;
-    coefficients.reserve(bands * size);
-    for (std::uint32_t band = 0; band < bands; ++band) {
-        const auto own = values.subspan(band * cells, cells);
-        const std::vector<float> plane =
+    coefficients.reserve(count * bands * size);
+    for (std::size_t plane = 0; plane < std::size_t{count} * bands; ++plane) {
+        const auto own = values.subspan(plane * cells, cells);
+        const std::vector<float> transformed =
             transform_cells(std::vector<float>(own.begin(), own.end()), m, n);
-        coefficients.insert(coefficients.end(), plane.begin(), plane.end());
+        coefficients.insert(coefficients.end(), transformed.begin(), transformed.end());
     }
     // Bands share their indices: a coefficient goes if it is small in all of them.
-    std::vector<float> largest(size, 0.0f);
-    for (std::size_t k = 0; k < size; ++k) {
-        for (std::uint32_t band = 0; band < bands; ++band) {
-            largest[k] = std::max(largest[k], std::abs(coefficients[band * size + k]));
+    std::vector<float> largest(count * size, 0.0f), score;
+    for (std::size_t row = 0; row < count; ++row) {
+        for (std::size_t k = 0; k < size; ++k) {
+            float& most = largest[row * size + k];
+            for (std::size_t band = 0; !is_average(k) && band < bands; ++band) {
+                most = std::max(most, std::abs(coefficients[(row * bands + band) * size + k]));
+            }
+            if (most > 0) {
+                score.push_back(selector.weight[k] * most);
+            }
         }
     }
-    for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
-        largest[std::size_t{face} * n * n] = 0;  // averages stay, whatever they are
-    }
+    const double energy = row_energy(values, m, n) / bands;
     const float least = find_threshold(largest, encoder.tolerance * encoder.tolerance * energy);
-    for (std::size_t k = 0; k < size; ++k) {
-        const bool is_average = k % (std::size_t{n} * n) == 0;
-        for (std::uint32_t band = 0; !is_average && largest[k] < least && band < bands; ++band) {
-            coefficients[band * size + k] = 0;
+    const std::size_t averages = std::size_t{formats::kCubeFaces} * count;
+    const float least_score = find_least_score(
+        std::move(score), selector.kept > averages ? selector.kept - averages : 0);
+    selector.kept = static_cast<std::uint32_t>(size);  // what is left is kept
+    std::vector<formats::SparseRow> rows;
+    for (std::size_t row = 0; row < count; ++row) {
+        const auto own = std::span(coefficients).subspan(row * bands * size, bands * size);
+        for (std::size_t k = 0; k < size; ++k) {
+            const float most = largest[row * size + k];
+            const bool stays =
+                is_average(k) || (most >= least && selector.weight[k] * most >= least_score);
+            for (std::size_t band = 0; !stays && band < bands; ++band) {
+                own[band * size + k] = 0;
+            }
         }
+        rows.push_back(select_coefficients(selector, own, bands));
     }
-    return select_coefficients(encoder.selector, coefficients, bands);
+    return rows;
 }
 
 }  // namespace opaline::bake

@@ -36,6 +36,17 @@ std::uint32_t choose_terms(const ScaledPhase& phase, const Knobs& knobs) {
     return (degree + 1) * (degree + 1);
 }
 
+// Walks leave a node in all directions alike, and J(w_o) weighs each by p' between the two: of W
+// walks as many count as W / (4 pi int p'^2 dw), the integral being a sum over degrees of those
+// moments that the rows have.
+std::uint32_t choose_walks(const ScaledPhase& phase, std::uint32_t terms, const Knobs& knobs) {
+    double spread = 0;
+    for (unsigned l = 0; l * l < terms; ++l) {
+        spread += (2 * l + 1) * phase.lambda[l] * phase.lambda[l];
+    }
+    return static_cast<std::uint32_t>(std::lround(knobs[kVolumeWalks] * spread));
+}
+
 std::uint32_t spacing_of(const formats::Volume& volume, const Knobs& knobs) {
     if (const double given = knobs[kVolumeSpacing]; given > 0) {
         return static_cast<std::uint32_t>(given);
@@ -115,7 +126,7 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         const ScaledPhase phase = scale_phase(volume.phase);
         PlanEntry once = decide("volume-single", subject, most.once, knobs);
         PlanEntry often = decide("volume-multiple", subject, most.once * most.once, knobs);
-        VolumeLayout layout{v, 0, 0, spacing_of(volume, knobs)};
+        VolumeLayout layout{.volume = v, .spacing = spacing_of(volume, knobs)};
         if (once.on) {
             layout.once_terms = once.terms = phase.harmonics();
             once.reason =
@@ -127,6 +138,7 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         }
         if (often.on) {
             layout.often_terms = often.terms = choose_terms(phase, knobs);
+            layout.walks = choose_walks(phase, layout.often_terms, knobs);
             often.choice = "walks";
             often.reason = "light is scattered more than once: random walks, " +
                            std::to_string(often.terms) +

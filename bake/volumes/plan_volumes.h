@@ -16,6 +16,7 @@ struct VolumeLayout {
     std::uint32_t once_terms = 0;   ///< K_s; 0: no light that was scattered once
     std::uint32_t often_terms = 0;  ///< K_m; 0: none that was scattered more often
     std::uint32_t spacing = 1;      ///< voxels between nodes
+    std::uint32_t walks = 0;        ///< from each node; 0 where often_terms is
 
     bool has_nodes() const { return once_terms > 0 || often_terms > 0; }
 };

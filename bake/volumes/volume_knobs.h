@@ -70,9 +70,9 @@ inline constexpr KnobSpec kVolumeCoefficients{
     .option = "--volume-coefficients",
     .placeholder = "M",
     .help =
-        "largest number of coefficients that all rows of such a point keep together, alike, the "
-        "six "
-        "face averages of each included; default as the quality says",
+        "largest number of coefficients that the rows of such a point keep together, the six face "
+        "averages of each included: a half or a quarter for light that arrives unscattered, the "
+        "largest others of light that was scattered before; default as the quality says",
     .lowest = 14,
     .highest = 39936,
     .preset = {272, 544, 1632, 39936},
@@ -93,7 +93,8 @@ inline constexpr KnobSpec kVolumeWalks{
     .placeholder = "W",
     .help =
         "random walks from each of these points, which find the light that is scattered more "
-        "than once; default as the quality says",
+        "than once, where media scatter evenly; up to some five times as many where they scatter "
+        "forward, for the same noise; default as the quality says",
     .lowest = 1,
     .highest = 65536,
     .preset = {32, 128, 256, 1024},
@@ -127,11 +128,18 @@ inline constexpr KnobSpec kVolumeTerms{
     .matters = volume_knobs::is_scattered_often,
     .why_idle = volume_knobs::kWhyOnce};
 
-/// Largest number of coefficients of each of `rows` rows of a node; the face averages are there in
-/// any case.
-inline std::uint32_t coefficients_of_row(const Knobs& knobs, std::uint32_t rows) {
+/// Largest numbers of coefficients of the rows of a node; the face averages are there in any case.
+struct NodeCoefficients {
+    std::uint32_t attenuated = 0;  ///< of V
+    std::uint32_t scattered = 0;   ///< of all T_k together
+};
+
+/// V has half of them where one row holds multiple scattering and a quarter where more do.
+inline NodeCoefficients node_coefficients(const Knobs& knobs, std::uint32_t terms) {
     const std::uint32_t texels = 6 * knobs.cubemap_size * knobs.cubemap_size;
-    return std::clamp(whole(knobs, kVolumeCoefficients) / rows, 7u, texels);
+    const std::uint32_t all = whole(knobs, kVolumeCoefficients);
+    const std::uint32_t own = terms == 0 ? all : terms == 1 ? all / 2 : all / 4;
+    return {std::clamp(own, 7u, texels), std::clamp(all - own, 7 * terms, texels * terms)};
 }
 
 }  // namespace opaline::bake

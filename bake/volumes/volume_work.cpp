@@ -37,13 +37,20 @@ std::uint32_t coarse_cells(const Knobs& knobs) {
     return std::min(knobs.cubemap_size, knobs.quality == Quality::reference ? 16u : 8u);
 }
 
+// Bytes of rows that keep so many coefficients together.
+double bytes_of_rows(double rows, std::uint32_t coefficients, const VolumeWork& work,
+                     const Knobs& knobs) {
+    const double details = coefficients - 6.0 * rows, code = knobs.code_bits / 8.0;
+    return details * (2 + work.bands * code) + rows * (work.bands * (6 * 2 + 8) + 4);
+}
+
 double texels(std::uint32_t n) {
     return static_cast<double>(formats::cubemap_texels(n));
 }
 
 // Steps and collisions, from some nodes of the volume.
 void count_by_samples(const DensitySpace& space, const formats::Volume& volume,
-                      const NodeLattice& lattice, double walks, VolumeWork& work) {
+                      const NodeLattice& lattice, VolumeWork& work) {
     constexpr std::size_t kNodes = 48, kDirections = 8, kWalks = 4;
     const std::size_t count = lattice.node.size(), drawn = std::min(count, kNodes);
     double steps = 0;
@@ -64,8 +71,8 @@ void count_by_samples(const DensitySpace& space, const formats::Volume& volume,
     if (drawn > 0) {
         const auto nodes = static_cast<double>(drawn);
         work.depth_steps = work.nodes * work.cells * steps / (nodes * kDirections);
-        work.flights = work.nodes * walks * walked.flights / (nodes * kWalks);
-        work.collisions = work.nodes * walks * walked.collisions / (nodes * kWalks);
+        work.flights = work.nodes * work.walks * walked.flights / (nodes * kWalks);
+        work.collisions = work.nodes * work.walks * walked.collisions / (nodes * kWalks);
     }
 }
 
@@ -93,9 +100,9 @@ std::vector<VolumeWork> count_volume_work(const formats::Scene& scene,
                           (space.is_grey ? work.bands : 1);  // a track of one band has one
         if (layout.has_nodes()) {
             work.nodes = static_cast<double>(lattice.node.size());
-            work.rows = work.nodes * (1 + layout.often_terms);
-            count_by_samples(space, volume, lattice,
-                             layout.often_terms > 0 ? knobs[kVolumeWalks] : 0, work);
+            work.terms = layout.often_terms;
+            work.walks = layout.walks;
+            count_by_samples(space, volume, lattice, work);
         }
         works.push_back(work);
     }
@@ -119,10 +126,10 @@ Work attenuation_work(const CostInput& input, const VolumeWork& work) {
 
 Work walking_work(const CostInput& input, const VolumeWork& work) {
     const double texel = texels(input.knobs.cubemap_size) * work.bands;
-    const double rows = work.rows - work.nodes;
+    const double rows = work.nodes * work.terms;
     return {0, work.tracks * (work.flights * input.rates.volume_flight +
                               work.collisions * work.walk_cells * input.rates.scattered_cell) +
-                   rows * input.knobs[kVolumeWalks] * work.tracks * work.walk_cells *
+                   rows * work.walks * work.tracks * work.walk_cells *
                        input.rates.gather_entry +
                    rows * texel * input.rates.node_texel};
 }
@@ -148,12 +155,14 @@ double volume_density_bytes(const VolumeWork& work) {
     return kCompressed * 2 * work.voxels + kCompressed * kNode * work.nodes + kPhase;
 }
 
-double volume_row_bytes(const VolumeWork& work, const Knobs& knobs, double rows) {
-    const double of_node = work.nodes > 0 ? work.rows / work.nodes : 1;
-    const double details =
-        coefficients_of_row(knobs, static_cast<std::uint32_t>(std::lround(of_node))) - 6.0;
-    const double code = knobs.code_bits / 8.0;
-    return rows * (details * (2 + work.bands * code) + work.bands * (6 * 2 + 8) + 4);
+double attenuated_row_bytes(const VolumeWork& work, const Knobs& knobs) {
+    const auto most = node_coefficients(knobs, static_cast<std::uint32_t>(work.terms));
+    return work.nodes * bytes_of_rows(1, most.attenuated, work, knobs);
+}
+
+double scattered_row_bytes(const VolumeWork& work, const Knobs& knobs) {
+    const auto most = node_coefficients(knobs, static_cast<std::uint32_t>(work.terms));
+    return work.nodes * bytes_of_rows(work.terms, most.scattered, work, knobs);
 }
 
 double volume_memory(const VolumeWork& work, const Knobs& knobs) {
@@ -162,7 +171,7 @@ double volume_memory(const VolumeWork& work, const Knobs& knobs) {
     const double corners = std::pow(8 / work.spacing + 1, 3);
     const double depths = 2 * work.nodes * work.tracks * texels(coarse_cells(knobs));
     return work.voxels * (2 * kScene + kGrowth * kCode) + 2 * work.bricks * corners * kCorner +
-           depths + kGrowth * volume_row_bytes(work, knobs, work.rows);
+           depths + kGrowth * (attenuated_row_bytes(work, knobs) + scattered_row_bytes(work, knobs));
 }
 
 }  // namespace opaline::bake

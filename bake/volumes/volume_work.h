@@ -22,7 +22,8 @@ struct VolumeWork {
     double collisions = 0;   ///< of them
     double walk_cells = 0;   ///< directions and bands of light that join a walk at a collision
     double tracks = 1;       ///< walks that follow extinctions of their own: 1, or 3 by band
-    double rows = 0;         ///< of all nodes
+    double walks = 0;        ///< from each node
+    double terms = 0;        ///< rows of multiple scattering of each node
     double bands = 1;        ///< of a row
 };
 
@@ -46,9 +47,11 @@ Work walking_work(const CostInput& input, const VolumeWork& work);
 Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
                   double rows);
 
-/// Bytes in the file: of density and nodes; of all rows of one kind (`rows` of them) at most.
+/// Bytes in the file: of density and nodes; at most of the rows of light that arrives unscattered,
+/// and of those of multiple scattering.
 double volume_density_bytes(const VolumeWork& work);
-double volume_row_bytes(const VolumeWork& work, const Knobs& knobs, double rows);
+double attenuated_row_bytes(const VolumeWork& work, const Knobs& knobs);
+double scattered_row_bytes(const VolumeWork& work, const Knobs& knobs);
 
 /// Memory of one volume [bytes]: density, nodes, optical depths of walks, and rows.
 double volume_memory(const VolumeWork& work, const Knobs& knobs);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
+#include "bake/volumes/scaled_phase.h"
 #include "bake/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
 
@@ -83,6 +86,28 @@ TEST(PlanVolumes, GivenKnobsAreTaken) {
     const VolumeLayout layout = plan_of(3, 1, 0.5f, knobs).layouts.at(0);
     EXPECT_EQ(layout.spacing, 8u);
     EXPECT_EQ(layout.often_terms, 4u);
+}
+
+// Of walks in all directions alike a share counts that 1 / (4 pi int p'^2) is.
+TEST(PlanVolumes, MoreWalksLeaveWhereMediaScatterForwardSoThatAsManyCount) {
+    const double walks = preview()[kVolumeWalks];
+    EXPECT_EQ(plan_of(3, 1, 0, preview()).layouts.at(0).walks, walks);
+    EXPECT_EQ(plan_of(3, 0, 0, preview()).layouts.at(0).walks, 0u) << "none are needed";
+    for (const float g : {0.5f, 0.85f}) {
+        Knobs knobs = preview();
+        knobs.set(kVolumeTerms, 25);
+        const ScaledPhase phase =
+            scale_phase(tests::make_volume(tests::make_blob(0.4, 0.1), 3, 1, g).phase);
+        double squares = 0;
+        constexpr int kSteps = 2000;
+        for (int i = 0; i < kSteps; ++i) {
+            const float p = eval_scaled(phase, -1 + (static_cast<float>(i) + 0.5f) * 2 / kSteps);
+            squares += 2 * std::numbers::pi * 2.0 / kSteps * static_cast<double>(p * p);
+        }
+        EXPECT_NEAR(plan_of(3, 1, g, knobs).layouts.at(0).walks,
+                    4 * std::numbers::pi * squares * walks, 0.01 * walks)
+            << g;
+    }
 }
 
 TEST(PlanVolumes, TheDepthOfNoLineExceedsTheBound) {
