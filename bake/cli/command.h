@@ -21,6 +21,7 @@ void add_reference_command(CLI::App& app, Job& job);
 void add_compare_command(CLI::App& app, Job& job);
 void add_mie_command(CLI::App& app, Job& job);
 void add_phase_command(CLI::App& app, Job& job);
+void add_slab_command(CLI::App& app, Job& job);
 void add_sweep_command(CLI::App& app, Job& job);
 void add_example_command(CLI::App& app, Job& job);
 

@@ -59,6 +59,7 @@ int run_program(int argc, char** argv) {
     add_compare_command(app, job);
     add_mie_command(app, job);
     add_phase_command(app, job);
+    add_slab_command(app, job);
     add_sweep_command(app, job);
     add_example_command(app, job);
     app.footer(

@@ -45,10 +45,10 @@ double column_transmittance(const ColumnModel& model, double thickness) {
            (1 + thickness / model.length);
 }
 
-SlabShares column_orders(const ColumnModel& model, double thickness) {
+OrderShares column_orders(const ColumnModel& model, double thickness) {
     const double x = model.extinction * thickness, t = model.forward, r = model.back;
     const double through = std::exp(-x);
-    SlabShares shares;
+    OrderShares shares;
     shares.transmitted[0] = 0;
     if (through > 0) {  // else x may be too large to be squared
         shares.transmitted[1] = t * x * through;
@@ -59,8 +59,8 @@ SlabShares column_orders(const ColumnModel& model, double thickness) {
     return shares;
 }
 
-SlabShares eval_column_model(const ColumnModel& model, double thickness, double direct) {
-    return complete_shares(column_orders(model, thickness), direct,
+OrderShares eval_column_model(const ColumnModel& model, double thickness, double straight) {
+    return complete_shares(column_orders(model, thickness), straight,
                            column_transmittance(model, thickness));
 }
 

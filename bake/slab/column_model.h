@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "bake/slab/slab_shares.h"
+#include "bake/slab/order_shares.h"
 
 namespace opaline::bake {
 
@@ -24,11 +24,11 @@ double column_transmittance(const ColumnModel& model, double thickness);
 ///   T_1 = t x e^-x,   T_2 = ((t x)^2 / 2 + (r^2 / 4) (2 x - 1 + e^-2x)) e^-x,
 ///   R_1 = (r / 2) (1 - e^-2x),   R_2 = (r t / 2) (1 - (1 + 2 x) e^-2x).
 /// T_2 as printed has H for -H in an exponent of e.
-SlabShares column_orders(const ColumnModel& model, double thickness);
+OrderShares column_orders(const ColumnModel& model, double thickness);
 
-/// All shares, of sum 1 (complete_shares): `direct` = T_0 is that of the slab itself, not of the
+/// All shares, of sum 1 (complete_shares): `straight` = T_0 is that of the slab itself, not of the
 /// column.
-SlabShares eval_column_model(const ColumnModel& model, double thickness, double direct);
+OrderShares eval_column_model(const ColumnModel& model, double thickness, double straight);
 
 /// The same with the light at an angle.
 struct ColumnModelAt {

@@ -43,7 +43,7 @@ LeastSquares best_of(std::span<const double> starts, const Start& from) {
 /// What the model is fitted to, at one cosine: by depth.
 struct ColumnTarget {
     std::vector<double> depth, transmittance;
-    std::vector<SlabShares> shares;
+    std::vector<OrderShares> shares;
 };
 
 void fit_transmittance(const ColumnTarget& target, double cosine, ColumnFit& fit) {
@@ -86,7 +86,7 @@ void fit_orders(const ColumnTarget& target, double cosine, ColumnFit& fit) {
         VectorXd r(static_cast<Eigen::Index>(4 * target.depth.size()));
         Eigen::Index at = 0;
         for (std::size_t i = 0; i < target.depth.size(); ++i) {
-            const SlabShares shares = column_orders(model, target.depth[i]);
+            const OrderShares shares = column_orders(model, target.depth[i]);
             for (int n = 1; n <= 2; ++n) {
                 r[at++] = shares.transmitted[n] - target.shares[i].transmitted[n];
                 r[at++] = shares.reflected[n] - target.shares[i].reflected[n];
@@ -125,7 +125,7 @@ std::vector<ColumnFit> fit_column_models(const SlabMedium& medium, std::span<con
             solve_slab(conservative, {depth, 0, {cosines.begin(), cosines.end()}, streams, kOrders})
                 .front();
         for (std::size_t i = 0; i < cosines.size(); ++i) {
-            SlabShares shares;
+            OrderShares shares;
             for (std::size_t n = 1; n < kOrders; ++n) {
                 shares.transmitted[n] = slab.order[n].transmittance[i];
                 shares.reflected[n] = slab.order[n].reflectance[i];

@@ -80,7 +80,7 @@ Layer<Scalar> double_layer(const Layer<Scalar>& layer, const Eigen::VectorXd& fl
     using Matrix = typename Layer<Scalar>::Matrix;
     const KernelProduct<Scalar> product(flux);
     const auto nodes = flux.size();
-    const typename Layer<Scalar>::Vector straight = layer.direct();
+    const typename Layer<Scalar>::Vector straight = layer.straight();
     const auto leaving = straight.asDiagonal();
     const auto entering = straight.head(layer.reflect.cols()).asDiagonal();
     // Between the layers: light that was scattered goes down, and all goes up. Down first between

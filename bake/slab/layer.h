@@ -20,7 +20,7 @@ struct Layer {
 
     /// Share that goes straight, by row. Not carried from layer to layer: squared k times, an error
     /// of 1e-16 would become 2^k of it.
-    Vector direct() const { return (-slant).array().exp().matrix(); }
+    Vector straight() const { return (-slant).array().exp().matrix(); }
 };
 
 /// A layer per unit of optical depth, for one mode: rows and columns as in Layer.

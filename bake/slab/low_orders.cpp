@@ -42,23 +42,23 @@ SlantDepths slant_depths(double depth, double light, double view) {
 
 }  // namespace
 
-double single_reflection(double depth, double light, double view) {
+double reflected_once(double depth, double light, double view) {
     const SlantDepths s = slant_depths(depth, light, view);
     return s.light / (s.light + s.view) * -std::expm1(-s.sum);
 }
 
-double single_transmission(double depth, double light, double view) {
+double transmitted_once(double depth, double light, double view) {
     // Where light and view are near each other the quotient of [Bouthors2006] is 0 / 0.
     const SlantDepths s = slant_depths(depth, light, view);
     return s.depth / s.view * std::exp(-s.less) * phi(s.difference);
 }
 
-double double_reflection(double depth, double light, double view) {
+double reflected_twice(double depth, double light, double view) {
     const SlantDepths s = slant_depths(depth, light, view);
     return s.light / (s.light + s.view) * second_order(s.sum) / 2;
 }
 
-double double_transmission(double depth, double light, double view) {
+double transmitted_twice(double depth, double light, double view) {
     const SlantDepths s = slant_depths(depth, light, view);
     const double rest = s.difference > 0 ? second_order(s.difference) / s.difference : 0;
     return s.depth / s.view * std::exp(-s.less) * (s.less * phi(s.difference) + rest) / 2;
@@ -75,7 +75,7 @@ double spread_profile(double a, double view) {
     return -std::expm1(-a / mu) / taken;
 }
 
-double mean_direct_transmittance(double depth) {
+double mean_straight_transmittance(double depth) {
     constexpr double kOpaque = 700;  // below e^-700
     if (depth <= 0 || depth > kOpaque) {
         return depth <= 0 ? 1 : 0;

@@ -11,13 +11,13 @@ namespace opaline::bake {
 // where not underflown.
 
 /// Once, on the side of the light and on the other: exact.
-double single_reflection(double depth, double light, double view);
-double single_transmission(double depth, double light, double view);
+double reflected_once(double depth, double light, double view);
+double transmitted_once(double depth, double light, double view);
 
 /// Twice, if one of both scatterings turns the light from one path to the other, and the other
 /// happens anywhere along that folded path: 10 to 25 % off, less for peaked phase functions.
-double double_reflection(double depth, double light, double view);
-double double_transmission(double depth, double light, double view);
+double reflected_twice(double depth, double light, double view);
+double transmitted_twice(double depth, double light, double view);
 
 /// Radiance of the orders of three and more over that of a diffuse surface of the same flux:
 /// w(mu) = (1 - exp(-a / mu)) / (1 - 2 E_3(a)), 2 int w mu dmu = 1. 1 / (2 mu) where a = 0, 1 where
@@ -26,6 +26,6 @@ double double_transmission(double depth, double light, double view);
 double spread_profile(double a, double view);
 
 /// 2 E_3(depth): share of even light over the hemisphere that crosses unscattered; depth >= 0.
-double mean_direct_transmittance(double depth);
+double mean_straight_transmittance(double depth);
 
 }  // namespace opaline::bake

@@ -7,7 +7,7 @@ namespace opaline::bake {
 
 PhaseKernels make_phase_kernels(const SlabMedium& medium, const Streams& streams, int m,
                                 Eigen::Index entering) {
-    const int resolved = 2 * streams.quadrature;
+    const int resolved = streams.resolved;
     const auto moments = static_cast<int>(medium.moment.size());
     PhaseKernels kernels;
     kernels.peak = moments > resolved ? medium.moment[static_cast<std::size_t>(resolved)] : 0;

@@ -36,7 +36,7 @@ RadianceTable make_radiance_table(const SlabMedium& medium, RadianceTableSize si
         const double s = static_cast<double>(j) / static_cast<double>(size.cosines - 1);
         request.view.push_back(std::max(kLeastTableCosine, s * s * (3 - 2 * s)));
     }
-    request.incident = request.view;
+    request.lights = request.view;
     RadianceTable table;
     table.size = size;
     const std::size_t layer = size.modes * size.cosines * size.cosines;
@@ -47,7 +47,7 @@ RadianceTable make_radiance_table(const SlabMedium& medium, RadianceTableSize si
         request.optical_depth = depth_of_node(i, size.depths, kMaxSlabDepth);
         const SlabRadiance slab = solve_slab_radiance(conservative, request).front();
         for (std::size_t at = 0; at < layer; ++at) {
-            const double light = request.incident[at % size.cosines];
+            const double light = request.lights[at % size.cosines];
             const double view = request.view[at / size.cosines % size.cosines];
             const double shape = horizon_shape(request.optical_depth, light, view);
             table.reflected.push_back(static_cast<float>(slab.reflected[at] / shape));

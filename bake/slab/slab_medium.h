@@ -4,7 +4,7 @@
 
 namespace opaline::bake {
 
-/// What a plane slab is made of: homogeneous, without a boundary that reflects.
+/// What a plane slab is made of: homogeneous.
 struct SlabMedium {
     /// Legendre moments of the phase function, as PhaseSeries::lambda: p(cos) =
     /// sum_l (2 l + 1) / (4 pi) moment[l] P_l(cos) integrates to 1 over the sphere, moment[0] = 1,

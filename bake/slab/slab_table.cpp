@@ -40,7 +40,7 @@ SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size, int stre
     return table;
 }
 
-SlabShares eval_slab_table(const SlabTable& table, double depth, double cosine) {
+OrderShares eval_slab_table(const SlabTable& table, double depth, double cosine) {
     const TablePlace row = place_depth(depth, table.size.depths);
     const TablePlace column = place_at(std::sqrt(std::clamp(cosine, 0.0, 1.0)), table.size.cosines);
     const auto at = [&](const std::vector<float>& values) {
@@ -56,13 +56,13 @@ SlabShares eval_slab_table(const SlabTable& table, double depth, double cosine) 
         }
         return sum;
     };
-    SlabShares shares;
+    OrderShares shares;
     shares.transmitted[1] = at(table.t1);
     shares.transmitted[2] = at(table.t2);
     shares.reflected[1] = at(table.r1);
     shares.reflected[2] = at(table.r2);
-    const double direct = depth > 0 ? std::exp(-depth / std::max(cosine, kMinSlabCosine)) : 1.0;
-    return complete_shares(shares, direct, at(table.t_ms));
+    const double straight = depth > 0 ? std::exp(-depth / std::max(cosine, kMinSlabCosine)) : 1.0;
+    return complete_shares(shares, straight, at(table.t_ms));
 }
 
 double eval_mean_transmittance(const SlabTable& table, double depth) {

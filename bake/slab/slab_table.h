@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "bake/slab/order_shares.h"
 #include "bake/slab/slab_medium.h"
-#include "bake/slab/slab_shares.h"
 
 namespace opaline::bake {
 
@@ -27,7 +27,7 @@ struct SlabTable {
 SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size = {}, int streams = 16);
 
 /// All shares, of sum 1, by linear interpolation along both axes; depth >= 0, cosine in [0, 1].
-SlabShares eval_slab_table(const SlabTable& table, double depth, double cosine);
+OrderShares eval_slab_table(const SlabTable& table, double depth, double cosine);
 
 /// T of even light by linear interpolation, depth >= 0; R is 1 less that.
 double eval_mean_transmittance(const SlabTable& table, double depth);

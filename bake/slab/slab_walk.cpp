@@ -7,6 +7,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
+#include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
 namespace {
@@ -103,37 +104,94 @@ void leave(SlabSide& side, const SlabWalkRequest& request, const SlabVector& dir
         .add(weight);
 }
 
-void walk_photon(const CosineSampler& phase, const SlabWalkRequest& request, std::uint64_t photon,
-                 SlabTally& tally) {
-    constexpr double kRouletteBelow = 1e-4, kSurvival = 0.1;
-    constexpr std::uint32_t kRoulette = 1u << 31;  // of the counter: numbers of their own
-    SlabVector direction{std::sqrt((1 - request.cosine) * (1 + request.cosine)), 0, request.cosine};
-    double depth = 0, weight = 1;
-    for (std::uint32_t event = 0;; ++event) {
-        const auto uniform =
-            random_uniform(request.seed, RandomStage::slab_walk, photon, event % kRoulette);
+/// A photon inside: where it is, and where it flies.
+struct SlabPhoton {
+    double depth = 0;
+    SlabVector direction;
+};
+
+/// `direction` on the other side of a boundary; `eta`: index there over that here. Not for total
+/// reflection.
+SlabVector refract(const SlabVector& direction, double eta) {
+    return {direction.x / eta, direction.y / eta,
+            std::copysign(refracted_cosine(std::abs(direction.z), eta), direction.z)};
+}
+
+/// A flight of the length given between two boundaries that reflect it totally.
+void fly_between_mirrors(SlabPhoton& photon, double flight, double optical_depth) {
+    const double period = 2 * optical_depth;
+    double unfolded = std::fmod(photon.depth + flight * photon.direction.z, period);
+    unfolded += unfolded < 0 ? period : 0;
+    const bool turned = unfolded > optical_depth;
+    photon.depth = turned ? period - unfolded : unfolded;
+    // Of every other pass the depth falls as it rose.
+    photon.direction.z = turned ? -photon.direction.z : photon.direction.z;
+}
+
+/// The flight to the next scattering, true; or out of the slab, false: then photon.direction is
+/// outside and photon.depth below 0 or above the slab's. `steps` counts random numbers.
+bool fly(SlabPhoton& photon, const SlabWalkRequest& request, std::uint64_t key,
+         std::uint32_t& steps) {
+    while (true) {
+        const auto uniform = random_uniform(request.seed, RandomStage::slab_walk, key, steps++);
         // Two of them, so that short flights are not all of one length; below 1.
         const double flight = -std::log1p(
             -(static_cast<double>(uniform[0]) + static_cast<double>(uniform[1]) * 0x1p-24));
-        depth += flight * direction.z;
-        const bool reflected = depth < 0;
-        if (reflected || depth > request.optical_depth) {
-            leave(reflected ? tally.reflected : tally.transmitted, request, direction, event,
+        const double pass =
+            request.eta == 1 ? 1
+                             : fresnel_transmittance(std::abs(photon.direction.z), 1 / request.eta);
+        if (pass == 0) {
+            fly_between_mirrors(photon, flight, request.optical_depth);
+            return true;
+        }
+        photon.depth += flight * photon.direction.z;
+        if (photon.depth > 0 && photon.depth < request.optical_depth) {
+            return true;
+        }
+        if (static_cast<double>(uniform[2]) < pass) {
+            photon.direction = refract(photon.direction, 1 / request.eta);
+            return false;
+        }
+        photon.depth = photon.direction.z < 0 ? 0 : request.optical_depth;
+        photon.direction.z = -photon.direction.z;
+    }
+}
+
+void walk_photon(const CosineSampler& phase, const SlabWalkRequest& request, std::uint64_t key,
+                 SlabTally& tally) {
+    constexpr double kRouletteBelow = 1e-4, kSurvival = 0.1;
+    const SlabVector beam{std::sqrt((1 - request.cosine) * (1 + request.cosine)), 0,
+                          request.cosine};
+    double weight = 1;
+    std::uint32_t steps = 0;
+    const auto draw = [&] {
+        return random_uniform(request.seed, RandomStage::slab_walk, key, steps++);
+    };
+    if (request.eta != 1 &&
+        static_cast<double>(draw()[0]) < fresnel_reflectance(request.cosine, request.eta)) {
+        leave(tally.reflected, request, beam, 0, weight);
+        tally.lost.add(0);
+        return;
+    }
+    SlabPhoton photon{0, refract(beam, request.eta)};
+    for (std::uint32_t order = 0;; ++order) {
+        if (!fly(photon, request, key, steps)) {
+            const bool reflected = photon.direction.z < 0;
+            leave(reflected ? tally.reflected : tally.transmitted, request, photon.direction, order,
                   weight);
             break;
         }
+        const auto uniform = draw();
         weight *= request.albedo;
         if (weight < kRouletteBelow) {
-            const auto chance = random_uniform(request.seed, RandomStage::slab_walk, photon,
-                                               event % kRoulette + kRoulette);
-            if (weight == 0 || static_cast<double>(chance[0]) >= kSurvival) {
+            if (weight == 0 || static_cast<double>(uniform[2]) >= kSurvival) {
                 weight = 0;
                 break;
             }
             weight /= kSurvival;
         }
-        direction = turn(direction, phase.sample(static_cast<double>(uniform[2])),
-                         2 * pi * static_cast<double>(uniform[3]));
+        photon.direction = turn(photon.direction, phase.sample(static_cast<double>(uniform[0])),
+                                2 * pi * static_cast<double>(uniform[1]));
     }
     tally.lost.add(1 - weight);
 }

@@ -19,6 +19,7 @@ struct SlabWalkRequest {
     /// bins of the cosine to the normal, times even bins of the azimuth's absolute value from 0,
     /// where the beam goes, to pi. None if either number is 0.
     unsigned histogram_from = 0, cosine_bins = 0, azimuth_bins = 0;
+    double eta = 1;  ///< index of the slab over that of both sides, as SlabRequest::eta
 };
 
 /// Share of the incident flux and one standard deviation of it.

@@ -11,7 +11,7 @@ namespace opaline::bake {
 struct SlabRadianceRequest {
     double optical_depth = 1;
     unsigned halvings = 0;
-    std::vector<double> incident, view;  ///< cosines to the normal of light and view
+    std::vector<double> lights, view;  ///< cosines to the normal of light and view
     int streams = 32;
     unsigned modes = 3;        ///< of the azimuth: cos(m phi) for m = 0 to `modes` - 1; 1 or more
     unsigned first_order = 1;  ///< light scattered so often or more; at least 1
@@ -35,6 +35,6 @@ std::vector<SlabRadiance> solve_slab_radiance(const SlabMedium& medium,
 /// The reflection factor at an azimuth [rad] between the horizontal directions that light and view
 /// ray propagate in. `modes`: SlabRadiance::reflected or transmitted of `radiance`.
 double eval_slab_radiance(const SlabRadiance& radiance, const std::vector<double>& modes,
-                          std::size_t view, std::size_t incident, double azimuth);
+                          std::size_t view, std::size_t light, double azimuth);
 
 }  // namespace opaline::bake

@@ -1,37 +1,41 @@
 #include "bake/slab/solve_slab.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <complex>
 #include <cstddef>
 
 #include "bake/slab/albedo_circle.h"
+#include "bake/slab/boundary.h"
 #include "bake/slab/layer_chain.h"
 
 namespace opaline::bake {
 namespace {
 
-template <class Scalar>
-struct StreamFluxes {
-    typename Layer<Scalar>::Vector reflected, transmitted;  ///< by stream of incidence
-};
-
 /// By reciprocity the flux that leaves under a beam is the radiance under even light.
 template <class Scalar>
-StreamFluxes<Scalar> sum_fluxes(const Layer<Scalar>& layer, const Eigen::VectorXd& flux) {
-    const typename Layer<Scalar>::Vector weights = flux.cast<Scalar>();
-    return {layer.reflect * weights, layer.transmit * weights + layer.direct()};
+StreamFluxes<Scalar> sum_fluxes(const Layer<Scalar>& layer, const Eigen::VectorXd& flux,
+                                const SlabBoundary& boundary) {
+    if (boundary.eta != 1) {
+        return sum_bounded_fluxes(layer, flux, boundary);
+    }
+    return {layer.reflect * flux.cast<Scalar>(),
+            layer.transmit * flux.cast<Scalar>() + layer.straight()};
 }
 
-SlabFluxes at_cosines(const StreamFluxes<double>& all, const Streams& streams) {
+/// `is_all`: not of one order after the first, which has nothing of what never enters.
+SlabFluxes at_cosines(const StreamFluxes<double>& all, const Streams& streams,
+                      const SlabBoundary& boundary, bool is_all) {
     SlabFluxes fluxes;
     for (Eigen::Index i = streams.quadrature; i < streams.cosine.size(); ++i) {
         fluxes.reflectance.push_back(all.reflected[i]);
         fluxes.transmittance.push_back(all.transmitted[i]);
     }
-    const Eigen::VectorXd flux = streams.flux();
-    fluxes.mean_reflectance = flux.dot(all.reflected.head(flux.size()));
-    fluxes.mean_transmittance = flux.dot(all.transmitted.head(flux.size()));
+    const Eigen::VectorXd& even = boundary.entering;
+    fluxes.mean_reflectance =
+        even.dot(all.reflected.head(even.size())) + (is_all ? boundary.never_entering : 0);
+    fluxes.mean_transmittance = even.dot(all.transmitted.head(even.size()));
     return fluxes;
 }
 
@@ -40,17 +44,23 @@ SlabFluxes at_cosines(const StreamFluxes<double>& all, const Streams& streams) {
 std::vector<SlabSolution> solve_slab(const SlabMedium& medium, const SlabRequest& request) {
     assert(request.optical_depth >= 0 && request.optical_depth <= kMaxSlabDepth);
     assert(request.orders <= kMaxSlabOrders && request.streams <= kMaxSlabStreams);
-    const Streams streams = make_streams(request.streams, request.cosine);
+    const Streams streams =
+        make_streams(request.streams, refracted_cosines(request.cosine, request.eta),
+                     critical_cosine(request.eta));
+    const SlabBoundary boundary = make_slab_boundary(streams, request.cosine, request.eta);
+    constexpr double kAlmostNothing = 1e-60;  // for total reflection, which needs some depth
+    const double depth =
+        request.eta == 1 ? request.optical_depth : std::max(request.optical_depth, kAlmostNothing);
     const Eigen::VectorXd flux = streams.flux();
     const PhaseKernels kernels = make_phase_kernels(medium, streams, 0, streams.quadrature);
     std::vector<SlabSolution> solutions(request.halvings + std::size_t{1});
-    double_up(kernels, streams, medium.albedo, request.optical_depth, request.halvings,
-              [&](unsigned halvings, const Layer<double>& layer) {
-                  SlabSolution& solution = solutions[halvings];
-                  solution.optical_depth =
-                      std::ldexp(request.optical_depth, -static_cast<int>(halvings));
-                  solution.total = at_cosines(sum_fluxes(layer, flux), streams);
-              });
+    double_up(
+        kernels, streams, medium.albedo, depth, request.halvings,
+        [&](unsigned halvings, const Layer<double>& layer) {
+            SlabSolution& solution = solutions[halvings];
+            solution.optical_depth = std::ldexp(request.optical_depth, -static_cast<int>(halvings));
+            solution.total = at_cosines(sum_fluxes(layer, flux, boundary), streams, boundary, true);
+        });
     if (request.orders == 0) {
         return solutions;
     }
@@ -60,9 +70,9 @@ std::vector<SlabSolution> solve_slab(const SlabMedium& medium, const SlabRequest
         solutions.size(), std::vector<StreamFluxes<double>>(request.orders, {none, none}));
     const AlbedoCircle circle(request.orders);
     for (unsigned k = 0; k < circle.count(); ++k) {
-        double_up(kernels, streams, circle.albedo(k), request.optical_depth, request.halvings,
+        double_up(kernels, streams, circle.albedo(k), depth, request.halvings,
                   [&](unsigned halvings, const Layer<std::complex<double>>& layer) {
-                      const auto fluxes = sum_fluxes(layer, flux);
+                      const auto fluxes = sum_fluxes(layer, flux, boundary);
                       for (unsigned n = 0; n < request.orders; ++n) {
                           const std::complex<double> weight = circle.weight(k, n);
                           StreamFluxes<double>& order = orders[halvings][n];
@@ -76,7 +86,8 @@ std::vector<SlabSolution> solve_slab(const SlabMedium& medium, const SlabRequest
         for (StreamFluxes<double>& order : orders[j]) {
             order.reflected *= power;
             order.transmitted *= power;
-            solutions[j].order.push_back(at_cosines(order, streams));
+            solutions[j].order.push_back(
+                at_cosines(order, streams, boundary, solutions[j].order.empty()));
             power *= medium.albedo;
         }
     }

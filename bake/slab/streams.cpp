@@ -8,21 +8,25 @@
 
 namespace opaline::bake {
 
-Streams make_streams(int quadrature, std::span<const double> others) {
-    assert(quadrature > 0);
-    const GaussLegendre rule = make_gauss_legendre(quadrature);
-    const auto count = quadrature + static_cast<Eigen::Index>(others.size());
-    Streams streams{quadrature, Eigen::VectorXd(count), Eigen::VectorXd(quadrature)};
-    for (Eigen::Index i = 0; i < count; ++i) {
-        if (i < quadrature) {
-            const auto k = static_cast<std::size_t>(i);
-            streams.cosine[i] = rule.node[k];
-            streams.weight[i] = rule.weight[k];
-        } else {
-            const double given = others[static_cast<std::size_t>(i - quadrature)];
-            assert(given > 0 && given <= 1);
-            streams.cosine[i] = given;
-        }
+Streams make_streams(int quadrature, std::span<const double> others, double split) {
+    assert(quadrature > 0 && split >= 0 && split < 1);
+    const int parts = split > 0 ? 2 : 1, each = (quadrature + parts - 1) / parts;
+    const GaussLegendre rule = make_gauss_legendre(each);
+    Streams streams;
+    streams.quadrature = parts * each;
+    streams.resolved = 2 * each;
+    streams.cosine.resize(streams.quadrature + static_cast<Eigen::Index>(others.size()));
+    streams.weight.resize(streams.quadrature);
+    for (int i = 0; i < streams.quadrature; ++i) {
+        const bool low = split > 0 && i < each;
+        const double from = low ? 0 : split, width = low ? split : 1 - split;
+        const auto k = static_cast<std::size_t>(i % each);
+        streams.cosine[i] = from + width * rule.node[k];
+        streams.weight[i] = width * rule.weight[k];
+    }
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        assert(others[i] > 0 && others[i] <= 1);
+        streams.cosine[streams.quadrature + static_cast<Eigen::Index>(i)] = others[i];
     }
     return streams;
 }

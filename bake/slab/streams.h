@@ -10,6 +10,7 @@ namespace opaline::bake {
 /// cosines of a hemisphere, then any others.
 struct Streams {
     int quadrature = 0;      ///< number of nodes of the rule; they stand first
+    int resolved = 0;        ///< degrees of Legendre polynomials that the rule integrates exactly
     Eigen::VectorXd cosine;  ///< to the normal, in (0, 1]
     Eigen::VectorXd weight;  ///< of the rule's nodes, of sum 1
 
@@ -17,8 +18,9 @@ struct Streams {
     Eigen::VectorXd flux() const { return 2 * cosine.head(quadrature).cwiseProduct(weight); }
 };
 
-/// `quadrature` at least 1; `others` in (0, 1].
-Streams make_streams(int quadrature, std::span<const double> others);
+/// `quadrature` at least 1; `others` in (0, 1]. With a `split` above 0 the rule is one below that
+/// cosine and one above, of as many nodes: where light is reflected totally on one side of it.
+Streams make_streams(int quadrature, std::span<const double> others, double split = 0);
 
 /// Associated Legendre functions of the order m over degree and stream, sqrt((l - m)! / (l + m)!)
 /// P_l^m(cosine), without the sign (-1)^m: row l - m holds degree l, up to degree `degrees` - 1.

@@ -9,7 +9,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 const Arguments kCommands = {"bake",    "plan",  "info",    "verify",    "relight", "render",
-                             "compare", "phase", "example", "reference", "mie"};
+                             "compare", "phase", "example", "reference", "mie",     "slab"};
 
 TEST(Usage, HelpListsEveryCommandAndTheExitCodes) {
     const Outcome help = run_opaline({"--help"});

@@ -15,7 +15,7 @@ namespace {
 using bake::column_orders;
 using bake::ColumnFit;
 using bake::ColumnModel;
-using bake::SlabShares;
+using bake::OrderShares;
 
 TEST(ColumnModelTest, HoldsThePrintedParametersOfThePaper) {
     OPALINE_CLOUD_ROWS(rows, "appendixB");
@@ -45,7 +45,7 @@ TEST(ColumnModelTest, OrdersAreIntegralsOverTheirEvents) {
     for (const double thickness : {0.01, 0.3, 1.0, 4.0}) {
         const double k = model.extinction, t = model.forward, r = model.back;
         const auto through = [&](double length) { return std::exp(-k * length); };
-        const SlabShares shares = column_orders(model, thickness);
+        const OrderShares shares = column_orders(model, thickness);
         const auto inside = [&](const auto& f) { return integrate(f, 0, thickness, 4); };
         EXPECT_NEAR(shares.transmitted[1],
                     inside([&](double a) { return k * t * through(a) * through(thickness - a); }),
@@ -79,7 +79,7 @@ TEST(ColumnModelTest, OrdersAreIntegralsOverTheirEvents) {
 TEST(ColumnModelTest, ThePaperSecondOrderNeedsItsSignTurned) {
     // x = 1.59, r = .0547: 3.4e-4, and 6.9e-6 as printed
     const double x = 1.59, r = 0.0547;
-    const SlabShares shares = column_orders({1, 1, 1, x, 0, r}, 1);
+    const OrderShares shares = column_orders({1, 1, 1, x, 0, r}, 1);
     EXPECT_NEAR(shares.transmitted[2], 3.4e-4, 5e-6);
     EXPECT_NEAR(column_orders({1, 1, 1, 1e-5, 0, r}, 1).transmitted[2] / (r * r * 1e-10 / 2), 1,
                 3e-5);
@@ -88,7 +88,7 @@ TEST(ColumnModelTest, ThePaperSecondOrderNeedsItsSignTurned) {
 TEST(ColumnModelTest, ThickColumnsApproachTheirLimits) {
     const ColumnModel model{2, 1.2, 0.5, 1.1, 0.8, 0.06};
     for (const double thickness : {1e3, 1e9, 1e300}) {
-        const SlabShares shares = column_orders(model, thickness);
+        const OrderShares shares = column_orders(model, thickness);
         EXPECT_NEAR(shares.reflected[1], 0.03, 1e-15);
         EXPECT_NEAR(shares.reflected[2], 0.024, 1e-15);
         EXPECT_EQ(shares.transmitted[1], 0);
@@ -102,7 +102,7 @@ TEST(ColumnModelTest, SharesAreNeverNegativeAndAddUpToOne) {
         const double cosine = std::max(1e-6, cosine_of_degrees(at.degrees));
         for (const double thickness : {0.0, 1e-6, 1.0, 20.0, 300.0, 1e5}) {
             const double direct = std::exp(-0.0226 * thickness / cosine);
-            const SlabShares shares = eval_column_model(at.model, thickness, direct);
+            const OrderShares shares = eval_column_model(at.model, thickness, direct);
             double sum = 0;
             for (int n = 0; n < 4; ++n) {
                 EXPECT_GE(shares.transmitted[n], 0);

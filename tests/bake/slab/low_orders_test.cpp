@@ -20,8 +20,8 @@ TEST(LowOrders, SingleScatteringIsItsIntegralOverTheDepth) {
                 const double transmitted = integrate(
                     [&](double z) { return std::exp(-z / light - (depth - z) / view) / view; }, 0,
                     depth, 64);
-                EXPECT_NEAR(bake::single_reflection(depth, light, view), reflected, 1e-12);
-                EXPECT_NEAR(bake::single_transmission(depth, light, view), transmitted, 1e-12);
+                EXPECT_NEAR(bake::reflected_once(depth, light, view), reflected, 1e-12);
+                EXPECT_NEAR(bake::transmitted_once(depth, light, view), transmitted, 1e-12);
             }
         }
     }
@@ -44,45 +44,44 @@ TEST(LowOrders, DoubleScatteringIsItsIntegralAlongTheFoldedPath) {
                         return std::exp(-y) / view * y / 2;
                     },
                     0, depth, 64);
-                EXPECT_NEAR(bake::double_reflection(depth, light, view), reflected, 1e-12);
-                EXPECT_NEAR(bake::double_transmission(depth, light, view), transmitted, 1e-12);
+                EXPECT_NEAR(bake::reflected_twice(depth, light, view), reflected, 1e-12);
+                EXPECT_NEAR(bake::transmitted_twice(depth, light, view), transmitted, 1e-12);
             }
         }
     }
 }
 
 TEST(LowOrders, ViewAlongTheLightIsALimit) {
-    EXPECT_NEAR(bake::single_transmission(1, 0.5, 0.5), 2 * std::exp(-2.0), 1e-15);
-    EXPECT_NEAR(bake::double_transmission(1, 0.5, 0.5), 2 * std::exp(-2.0), 1e-15);
+    EXPECT_NEAR(bake::transmitted_once(1, 0.5, 0.5), 2 * std::exp(-2.0), 1e-15);
+    EXPECT_NEAR(bake::transmitted_twice(1, 0.5, 0.5), 2 * std::exp(-2.0), 1e-15);
     for (const double off : {1e-15, 1e-12, 1e-9, 1e-6}) {
-        EXPECT_NEAR(bake::single_transmission(1, 0.5, 0.5 + off), 2 * std::exp(-2.0),
-                    3 * off + 1e-15);
-        EXPECT_NEAR(bake::double_transmission(1, 0.5, 0.5 + off), 2 * std::exp(-2.0),
+        EXPECT_NEAR(bake::transmitted_once(1, 0.5, 0.5 + off), 2 * std::exp(-2.0), 3 * off + 1e-15);
+        EXPECT_NEAR(bake::transmitted_twice(1, 0.5, 0.5 + off), 2 * std::exp(-2.0),
                     3 * off + 1e-15);
     }
 }
 
 TEST(LowOrders, ThinLayersKeepTheirDigits) {
     // 1 - (1 + x) e^-x = 4.99967e-9 at x = 1e-4, here the sum of both slant depths
-    EXPECT_NEAR(2 * 2 * bake::double_reflection(0.5e-4, 1, 1) / 4.99966667916e-9, 1, 1e-9);
+    EXPECT_NEAR(2 * 2 * bake::reflected_twice(0.5e-4, 1, 1) / 4.99966667916e-9, 1, 1e-9);
     for (const double depth : {1e-12, 1e-6, 0.05}) {
-        EXPECT_NEAR(bake::single_reflection(depth, 1, 0.5) / depth, 2, 3.1 * depth + 1e-14);
-        EXPECT_NEAR(bake::double_reflection(depth, 1, 0.5) / (depth * depth), 1.5, 6 * depth);
-        EXPECT_NEAR(bake::double_transmission(depth, 1, 0.5) / (depth * depth), 1.5, 6 * depth);
+        EXPECT_NEAR(bake::reflected_once(depth, 1, 0.5) / depth, 2, 3.1 * depth + 1e-14);
+        EXPECT_NEAR(bake::reflected_twice(depth, 1, 0.5) / (depth * depth), 1.5, 6 * depth);
+        EXPECT_NEAR(bake::transmitted_twice(depth, 1, 0.5) / (depth * depth), 1.5, 6 * depth);
     }
 }
 
 TEST(LowOrders, GrazingLightAndViewAreLimits) {
-    EXPECT_NEAR(bake::single_reflection(1, 0.5, 0), 1, 1e-11);  // of E p: only the surface is seen
-    EXPECT_NEAR(bake::double_reflection(1, 0.5, 0), 0.5, 1e-11);
-    EXPECT_NEAR(bake::single_transmission(1, 0.5, 0), std::exp(-2.0), 1e-11);
+    EXPECT_NEAR(bake::reflected_once(1, 0.5, 0), 1, 1e-11);  // of E p: only the surface is seen
+    EXPECT_NEAR(bake::reflected_twice(1, 0.5, 0), 0.5, 1e-11);
+    EXPECT_NEAR(bake::transmitted_once(1, 0.5, 0), std::exp(-2.0), 1e-11);
     for (const double depth : {0.0, 1e-300, 1e-3, 1.0, 1e6, 1e300}) {
         for (const double light : {0.0, 1e-30, 1e-3, 1.0}) {
             for (const double view : {0.0, 1e-30, 1e-3, 1.0}) {
-                for (const double value : {bake::single_reflection(depth, light, view),
-                                           bake::single_transmission(depth, light, view),
-                                           bake::double_reflection(depth, light, view),
-                                           bake::double_transmission(depth, light, view)}) {
+                for (const double value : {bake::reflected_once(depth, light, view),
+                                           bake::transmitted_once(depth, light, view),
+                                           bake::reflected_twice(depth, light, view),
+                                           bake::transmitted_twice(depth, light, view)}) {
                     EXPECT_GE(value, 0);
                     EXPECT_LE(value, 1 + 1e-12) << depth << " " << light << " " << view;
                 }
@@ -92,8 +91,8 @@ TEST(LowOrders, GrazingLightAndViewAreLimits) {
 }
 
 TEST(LowOrders, AreReciprocal) {
-    for (const auto& of : {bake::single_reflection, bake::single_transmission,
-                           bake::double_reflection, bake::double_transmission}) {
+    for (const auto& of : {bake::reflected_once, bake::transmitted_once, bake::reflected_twice,
+                           bake::transmitted_twice}) {
         for (const double depth : {0.1, 3.0}) {
             EXPECT_NEAR(of(depth, 0.3, 0.8) / 0.3, of(depth, 0.8, 0.3) / 0.8, 1e-13);
         }
@@ -111,7 +110,7 @@ TEST(LowOrders, SpreadProfileIsNormalisedFromThinToThick) {
     for (const auto& [a, value] :
          {std::pair{0.1, 0.16742}, {0.6, 0.6169}, {1.0, 0.78062}, {2.26, 0.95631}}) {
         EXPECT_NEAR(-std::expm1(-a) / bake::spread_profile(a, 1), value, 5e-5);
-        EXPECT_NEAR(1 - bake::mean_direct_transmittance(a), value, 5e-5);
+        EXPECT_NEAR(1 - bake::mean_straight_transmittance(a), value, 5e-5);
     }
     EXPECT_NEAR(bake::spread_profile(0, 0.25), 2, 1e-15);
     EXPECT_NEAR(bake::spread_profile(1e-14, 0.25), 2, 1e-12);
@@ -124,10 +123,10 @@ TEST(LowOrders, EvenLightCrossesByTheThirdExponentialIntegral) {
     for (const double depth : {1e-6, 0.3, 1.99, 2.01, 20.0}) {
         const double direct = integrate(
             [&](double x) { return 4 * x * x * x * std::exp(-depth / (x * x)); }, 0, 1, 64);
-        EXPECT_NEAR(bake::mean_direct_transmittance(depth) / direct, 1, 1e-11) << depth;
+        EXPECT_NEAR(bake::mean_straight_transmittance(depth) / direct, 1, 1e-11) << depth;
     }
-    EXPECT_EQ(bake::mean_direct_transmittance(0), 1);
-    EXPECT_EQ(bake::mean_direct_transmittance(1e9), 0);
+    EXPECT_EQ(bake::mean_straight_transmittance(0), 1);
+    EXPECT_EQ(bake::mean_straight_transmittance(1e9), 0);
 }
 
 }  // namespace

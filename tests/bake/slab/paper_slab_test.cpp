@@ -157,7 +157,7 @@ TEST(PaperSlab, TablesGiveTheRadianceWithinOnePercentRms) {
     const std::vector<double> degrees = {0, 30, 60, 80};
     bake::SlabRadianceRequest request{0, 0, {}, {}, 48, 32, 2};
     for (const double angle : degrees) {
-        request.incident.push_back(cosine_of_degrees(angle));
+        request.lights.push_back(cosine_of_degrees(angle));
     }
     const bake::GaussLegendre rule = bake::make_gauss_legendre(10);
     request.view = rule.node;
@@ -166,7 +166,7 @@ TEST(PaperSlab, TablesGiveTheRadianceWithinOnePercentRms) {
         const auto slab = solve_slab_radiance(medium, request).front();
         for (std::size_t l = 0; l < degrees.size(); ++l) {
             for (const bool below : {false, true}) {
-                const double light = request.incident[l];
+                const double light = request.lights[l];
                 double error = 0, size = 0;
                 for (std::size_t v = 0; v < rule.node.size(); ++v) {
                     for (int a = 0; a < 24; ++a) {
@@ -177,8 +177,8 @@ TEST(PaperSlab, TablesGiveTheRadianceWithinOnePercentRms) {
                             (below ? 1 : -1) * light * view + sines * std::cos(azimuth);
                         const double once = eval_table(paper_cloud().split.rest,
                                                        std::acos(std::clamp(cosine, -1.0, 1.0))) *
-                                            (below ? bake::single_transmission
-                                                   : bake::single_reflection)(depth, light, view);
+                                            (below ? bake::transmitted_once : bake::reflected_once)(
+                                                depth, light, view);
                         const double more =
                             light / std::numbers::pi *
                             eval_slab_radiance(slab, below ? slab.transmitted : slab.reflected, v,

@@ -13,7 +13,7 @@
 namespace opaline::tests {
 namespace {
 
-using bake::SlabShares;
+using bake::OrderShares;
 using bake::SlabTable;
 
 const bake::SlabMedium& tabulated_medium() {
@@ -34,7 +34,7 @@ TEST(SlabTableTest, InterpolatesTheFluxUpTo80DegreesWithin3In1000OfTheLight) {
     for (int i = 0; i < kPoints; ++i) {
         const double x = 0.02 + 0.96 * uniform(generator), depth = x / (1 - x);
         const double cosine = cosine_of_degrees(80 * uniform(generator));
-        const SlabShares shares = eval_slab_table(slab_table(), depth, cosine);
+        const OrderShares shares = eval_slab_table(slab_table(), depth, cosine);
         const auto slab = solve_one(tabulated_medium(), depth, cosine, 3, 32);
         const double transmitted = shares.transmitted[0] + shares.transmitted[1] +
                                    shares.transmitted[2] + shares.transmitted[3];
@@ -64,7 +64,7 @@ TEST(SlabTableTest, EvenLightIsInterpolatedWithin1In1000) {
 
 TEST(SlabTableTest, NoDepthIsExactlyClear) {
     for (const double cosine : {0.0, 0.3, 1.0}) {
-        const SlabShares shares = eval_slab_table(slab_table(), 0, cosine);
+        const OrderShares shares = eval_slab_table(slab_table(), 0, cosine);
         EXPECT_EQ(shares.transmitted[0], 1);
         for (int n = 1; n < 4; ++n) {
             EXPECT_EQ(shares.transmitted[n], 0);
@@ -78,7 +78,7 @@ TEST(SlabTableTest, SharesAddUpToOneEverywhere) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     for (const double depth : {0.0, 1e-300, 1e-6, 0.4, 20.0, 1e9, kInfinity}) {
         for (const double cosine : {0.0, 1e-9, 1e-3, 0.17, 0.6, 1.0}) {
-            const SlabShares shares = eval_slab_table(slab_table(), depth, cosine);
+            const OrderShares shares = eval_slab_table(slab_table(), depth, cosine);
             double sum = 0;
             for (int n = 0; n < 4; ++n) {
                 EXPECT_GE(shares.transmitted[n], 0) << depth << " " << cosine;
@@ -91,7 +91,7 @@ TEST(SlabTableTest, SharesAddUpToOneEverywhere) {
 }
 
 TEST(SlabTableTest, GrazingLightOnInfiniteDepthIsHalfReflectedAtOnce) {
-    const SlabShares shares =
+    const OrderShares shares =
         eval_slab_table(slab_table(), std::numeric_limits<double>::infinity(), 0);
     EXPECT_NEAR(shares.reflected[1], 0.5, 1e-3);
     EXPECT_NEAR(shares.transmitted[3], 0, 1e-5);

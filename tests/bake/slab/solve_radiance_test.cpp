@@ -55,7 +55,7 @@ TEST(SolveRadiance, ThinLayersShowTheSingleScatteringOfTheirPhaseFunction) {
 
 TEST(SolveRadiance, IsReciprocal) {
     SlabRadianceRequest request = crossed_request(2, 4, 1);
-    request.view = request.incident;
+    request.view = request.lights;
     const auto slab = solve_slab_radiance(henyey_greenstein_slab(0.8, 0.9), request).front();
     for (std::size_t m = 0; m < 4; ++m) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -81,7 +81,7 @@ TEST(SolveRadiance, OrdersAreTakenAwayOneByOne) {
                                  eval_slab_radiance(second, second.reflected, v, l, 2));
             const double p =
                 bake::henyey_greenstein(scattering_cosine(kLights[l], kEyes[v], 2, false), 0.6);
-            EXPECT_NEAR(once, 0.9 * p * bake::single_reflection(1.5, kLights[l], kEyes[v]), 2e-5);
+            EXPECT_NEAR(once, 0.9 * p * bake::reflected_once(1.5, kLights[l], kEyes[v]), 2e-5);
             EXPECT_GT(eval_slab_radiance(second, second.transmitted, v, l, 2),
                       eval_slab_radiance(third, third.transmitted, v, l, 2));
         }
@@ -100,6 +100,19 @@ TEST(SolveRadiance, OrdersAreTakenAwayOneByOne) {
         flux,
         slab.total.reflectance[0] - slab.order[1].reflectance[0] - slab.order[2].reflectance[0],
         1e-9);
+}
+
+// Escape function of thick layers, 3/7 (1 + 2 mu) [vandeHulst1980]: they are darker at the horizon
+// than a diffuse surface, which the profile of orders 3 and more is not.
+TEST(SolveRadiance, ThickLayersTransmitMoreAlongTheNormal) {
+    SlabRadianceRequest request{40, 0, {0.8}, {0.2, 0.6, 1.0}, 24, 1, 3};
+    const auto slab = solve_slab_radiance(henyey_greenstein_slab(0.75, 1), request).front();
+    const auto flux = solve_one(henyey_greenstein_slab(0.75, 1), 40, 0.8, 0, 24);
+    for (std::size_t v = 0; v < 3; ++v) {
+        const double profile = slab.transmitted[v] / flux.total.transmittance[0];
+        EXPECT_NEAR(profile, 3.0 / 7 * (1 + 2 * request.view[v]), 0.03) << request.view[v];
+        EXPECT_NEAR(bake::spread_profile(20, request.view[v]), 1, 1e-3);
+    }
 }
 
 TEST(SolveRadiance, TableOfTwiceOrMoreIsNearTheSolverBetweenItsNodes) {

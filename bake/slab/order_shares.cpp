@@ -1,4 +1,4 @@
-#include "bake/slab/slab_shares.h"
+#include "bake/slab/order_shares.h"
 
 #include <algorithm>
 
@@ -19,10 +19,11 @@ double leave_rest(double& first, double& second, double most) {
 
 }  // namespace
 
-SlabShares complete_shares(SlabShares shares, double direct, double transmittance) {
-    const double all = std::clamp(transmittance, direct, 1.0);
-    shares.transmitted[0] = direct;
-    shares.transmitted[3] = leave_rest(shares.transmitted[1], shares.transmitted[2], all - direct);
+OrderShares complete_shares(OrderShares shares, double straight, double transmittance) {
+    const double all = std::clamp(transmittance, straight, 1.0);
+    shares.transmitted[0] = straight;
+    shares.transmitted[3] =
+        leave_rest(shares.transmitted[1], shares.transmitted[2], all - straight);
     shares.reflected[3] = leave_rest(shares.reflected[1], shares.reflected[2], 1 - all);
     return shares;
 }

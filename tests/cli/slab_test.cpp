@@ -1,0 +1,197 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/cli/run_program.h"
+#include "tests/formats/gltf/asset_builder.h"
+#include "tests/support/cloud_table.h"
+#include "tests/support/temporary_folder.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+Json slab(Arguments arguments) {
+    arguments.insert(arguments.begin(), "slab");
+    const Outcome outcome = run_opaline(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    return Json::parse(outcome.out);
+}
+
+double number(const Json& object, const std::string& key) {
+    return object.at(key).get<double>();
+}
+
+TEST(Slab, PrintsTheSharesOfTheReferenceTable) {
+    OPALINE_CLOUD_ROWS(rows, "slab_hg");
+    for (const auto& row : rows) {
+        const double cosine = std::cos(row.number("theta_l_deg") * std::acos(-1.0) / 180);
+        const Json all = slab({"--optical-depth", row.text("tau"), "--albedo", row.text("albedo"),
+                               "--g", row.text("g_hg"), "--cosine", Json(cosine).dump()});
+        const bool photons = row.text("method") == "monte_carlo_1sigma";
+        EXPECT_NEAR(number(all, row.text("quantity") == "R" ? "reflectance" : "transmittance"),
+                    row.value(), (photons ? 4 : 1) * row.error())
+            << row.name();
+        EXPECT_LT(number(all, "numerical_error"), 2e-5) << row.name();
+    }
+}
+
+TEST(Slab, EveryMethodSplitsTheSameLightByOrder) {
+    const Arguments layer = {"--optical-depth", "2", "--g", "0.7", "--cosine", "0.6"};
+    const auto with = [&](const Arguments& more) {
+        Arguments all = layer;
+        all.insert(all.end(), more.begin(), more.end());
+        return slab(all);
+    };
+    const Json adding = with({"--orders", "3"});
+    for (const auto& [arguments, tolerance] :
+         {std::pair{Arguments{"--method", "model"}, 0.02},
+          {Arguments{"--method", "monte-carlo", "--photons", "100000", "--orders", "3"}, 0.007}}) {
+        const Json other = with(arguments);
+        EXPECT_NEAR(number(other, "reflectance"), number(adding, "reflectance"), tolerance);
+        EXPECT_NEAR(number(other, "reflectance") + number(other, "transmittance"), 1, 1e-9);
+        ASSERT_EQ(other.at("by_order").size(), 4u);
+        for (std::size_t n = 0; n < 4; ++n) {
+            const Json &a = other.at("by_order").at(n), &b = adding.at("by_order").at(n);
+            EXPECT_EQ(a.at("order"), b.at("order"));
+            EXPECT_NEAR(number(a, "reflectance"), number(b, "reflectance"), tolerance) << n;
+            EXPECT_NEAR(number(a, "transmittance"), number(b, "transmittance"), tolerance) << n;
+        }
+        EXPECT_EQ(other.at("by_order").back().at("order"), "3+");
+    }
+    EXPECT_GT(number(with({"--method", "model"}).at("fit_error"), "rms_transmittance"), 0);
+}
+
+TEST(Slab, AbsorbedLightIsWhatDoesNotLeave) {
+    const Json all = slab({"--optical-depth", "3", "--albedo", "0.8", "--g", "0"});
+    EXPECT_NEAR(number(all, "absorptance"),
+                1 - number(all, "reflectance") - number(all, "transmittance"), 1e-15);
+    EXPECT_GT(number(all, "absorptance"), 0.3);
+    const Json clear = slab({"--optical-depth", "0", "--g", "0"});
+    EXPECT_EQ(number(clear, "transmittance"), 1);
+    const Json black = slab({"--optical-depth", "1", "--albedo", "0", "--g", "0"});
+    EXPECT_NEAR(number(black, "transmittance"), std::exp(-1.0), 1e-15);
+}
+
+// Index 1.5, albedo .9: [Giovanelli1955] states .2600, what the boundary reflects included.
+TEST(Slab, RefractingBoundariesReflectAsPublished) {
+    const Arguments layer = {"--optical-depth", "60", "--albedo", "0.9", "--g", "0",
+                             "--eta",           "1.5"};
+    EXPECT_NEAR(number(slab(layer), "reflectance"), 0.2600, 1.5e-4);
+    Arguments photons = layer;
+    photons.insert(photons.end(), {"--method", "monte-carlo", "--photons", "100000"});
+    const Json walk = slab(photons);
+    EXPECT_NEAR(number(walk, "reflectance"), 0.26, 4 * number(walk, "reflectance_standard_error"));
+    EXPECT_NEAR(number(walk.at("by_order").at(0), "reflectance"), 0.04,
+                4 * number(walk.at("by_order").at(0), "reflectance_standard_error"));
+}
+
+TEST(Slab, PhotonsDoNotDependOnThreads) {
+    const Arguments layer = {"slab",     "--optical-depth", "5",         "--g",   "0.85",
+                             "--method", "monte-carlo",     "--photons", "20000", "--threads"};
+    const auto run = [&](const char* threads) {
+        Arguments all = layer;
+        all.emplace_back(threads);
+        return run_opaline(all).out;
+    };
+    const std::string one = run("1");
+    EXPECT_THAT(one, HasSubstr("reflectance_standard_error"));
+    EXPECT_EQ(run("2"), one);
+    EXPECT_EQ(run("5"), one);
+}
+
+TEST(Slab, TablesOfThePhaseFunctionAreAnInput) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "even.txt";
+    write_file(path, std::string("-1 3\n1 3\n"));
+    const Json table = slab({"--optical-depth", "1", "--phase", path});
+    const Json even = slab({"--optical-depth", "1", "--g", "0"});
+    EXPECT_NEAR(number(table, "reflectance"), number(even, "reflectance"), 1e-9);
+    EXPECT_NEAR(number(table, "reflectance"), 0.341329, 1e-5);
+    const Json walk = slab(
+        {"--optical-depth", "1", "--phase", path, "--method", "monte-carlo", "--photons", "50000"});
+    EXPECT_NEAR(number(walk, "reflectance"), 0.341329,
+                4 * number(walk, "reflectance_standard_error"));
+    const std::string bad = folder / "bad.txt";
+    write_file(bad, std::string("-1 1\n0 -1\n1 1\n"));
+    const Outcome outcome = run_opaline({"slab", "--optical-depth", "1", "--phase", bad});
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, StartsWith("opaline: error: " + bad));
+    EXPECT_THAT(outcome.err, HasSubstr("line 2"));
+}
+
+TEST(Slab, CsvHoldsTheNumbersOfTheJson) {
+    const Json json = slab({"--optical-depth", "1", "--g", "0.5", "--orders", "2", "--json"});
+    const Outcome csv = run_opaline(
+        {"slab", "--optical-depth", "1", "--g", "0.5", "--orders", "2", "--format", "csv"});
+    EXPECT_EQ(csv.exit_code, 0) << csv.err;
+    std::map<std::string, double> value;
+    std::istringstream lines(csv.out);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "quantity,order,value");
+    while (std::getline(lines, line)) {
+        const std::size_t last = line.rfind(',');
+        value[line.substr(0, last)] = std::stod(line.substr(last + 1));
+    }
+    EXPECT_EQ(value.at("reflectance,all"), number(json, "reflectance"));
+    EXPECT_EQ(value.at("numerical_error,all"), number(json, "numerical_error"));
+    EXPECT_EQ(value.at("transmittance,0"), number(json.at("by_order").at(0), "transmittance"));
+    EXPECT_EQ(value.at("reflectance,2+"), number(json.at("by_order").at(2), "reflectance"));
+}
+
+TEST(Slab, BadLayersExitWithTwoAndSayWhatIsAccepted) {
+    const std::vector<std::pair<Arguments, std::string>> bad = {
+        {{"--g", "0"}, "--optical-depth"},
+        {{"--optical-depth", "1"}, "no phase function"},
+        {{"--optical-depth", "1", "--g", "0", "--phase", "x"}, "two phase functions"},
+        {{"--optical-depth", "-1", "--g", "0"}, "--optical-depth"},
+        {{"--optical-depth", "nan", "--g", "0"}, "--optical-depth"},
+        {{"--optical-depth", "1e7", "--g", "0"}, "--optical-depth"},
+        {{"--optical-depth", "1", "--g", "1"}, "--g"},
+        {{"--optical-depth", "1", "--g", "0", "--albedo", "1.1"}, "--albedo"},
+        {{"--optical-depth", "1", "--g", "0", "--cosine", "0"}, "--cosine"},
+        {{"--optical-depth", "1", "--g", "0", "--cosine", "1.5"}, "--cosine"},
+        {{"--optical-depth", "1", "--g", "0", "--method", "guess"}, "--method"},
+        {{"--optical-depth", "1", "--g", "0", "--eta", "0.1"}, "--eta"},
+        {{"--optical-depth", "1", "--g", "0", "--eta", "1.5", "--method", "model"}, "--eta"},
+        {{"--optical-depth", "1", "--g", "0", "--orders", "0"}, "--orders"},
+        {{"--optical-depth", "1", "--g", "0", "--streams", "1000"}, "--streams"},
+        {{"--optical-depth", "1", "--g", "0", "--photons", "9"}, "no photons"},
+        {{"--optical-depth", "1", "--g", "0", "--method", "model", "--albedo", "0.5"}, "--albedo"},
+        {{"--optical-depth", "1", "--g", "0", "--method", "model", "--orders", "2"}, "--orders"},
+        {{"--optical-depth", "1", "--g", "0", "--method", "monte-carlo", "--streams", "8"},
+         "--streams"},
+        {{"--optical-depth", "1e4", "--g", "0", "--method", "monte-carlo"}, "too long"}};
+    for (const auto& [arguments, says] : bad) {
+        Arguments all = arguments;
+        all.insert(all.begin(), "slab");
+        const Outcome outcome = run_opaline(all);
+        EXPECT_EQ(outcome.exit_code, 2) << ::testing::PrintToString(all) << outcome.err;
+        EXPECT_THAT(outcome.err, StartsWith("opaline: error: "));
+        EXPECT_THAT(outcome.err, HasSubstr(says));
+        EXPECT_EQ(outcome.out, "");
+    }
+}
+
+TEST(Slab, ExtremeLayersGiveFiniteNumbers) {
+    for (const char* depth : {"1e-300", "1e-9", "1e6"}) {
+        for (const char* g : {"-0.99", "0.99"}) {
+            for (const char* cosine : {"0.001", "1"}) {
+                const Json all = slab({"--optical-depth", depth, "--g", g, "--cosine", cosine,
+                                       "--streams", "8", "--orders", "2"});
+                EXPECT_NEAR(number(all, "reflectance") + number(all, "transmittance"), 1, 1e-6)
+                    << depth << " " << g << " " << cosine;  // null would have thrown
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace opaline::tests
