@@ -31,8 +31,8 @@ struct Nodes {
     std::vector<NodeLattice> lattices;  // of each volume of the scene; empty where nothing is baked
     std::vector<std::size_t> first;     // node of each volume, among all
     std::size_t count = 0;
-    LightCells fine;                    // of single scattering
-    LightCells coarse;                  // of multiple scattering, which is smoother
+    LightCells fine;                                 // of single scattering
+    LightCells coarse;                               // of multiple scattering, which is smoother
     std::vector<NodeEncoder> attenuated, scattered;  // of row V and of all T_k, one a layout
 };
 

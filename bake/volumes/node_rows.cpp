@@ -58,9 +58,8 @@ double row_energy(std::span<const float> values, std::uint32_t m, std::uint32_t 
 }
 
 std::vector<formats::SparseRow> encode_node_rows(const NodeEncoder& encoder,
-                                                 std::span<const float> values,
-                                                 std::uint32_t count, std::uint32_t m,
-                                                 std::uint32_t bands) {
+                                                 std::span<const float> values, std::uint32_t count,
+                                                 std::uint32_t m, std::uint32_t bands) {
     Selector selector = encoder.selector;
     const std::uint32_t n = selector.cubemap_size;
     const std::size_t cells = formats::cubemap_texels(m), size = formats::cubemap_texels(n);
@@ -89,8 +88,8 @@ std::vector<formats::SparseRow> encode_node_rows(const NodeEncoder& encoder,
     const double energy = row_energy(values, m, n) / bands;
     const float least = find_threshold(largest, encoder.tolerance * encoder.tolerance * energy);
     const std::size_t averages = std::size_t{formats::kCubeFaces} * count;
-    const float least_score = find_least_score(
-        std::move(score), selector.kept > averages ? selector.kept - averages : 0);
+    const float least_score =
+        find_least_score(std::move(score), selector.kept > averages ? selector.kept - averages : 0);
     selector.kept = static_cast<std::uint32_t>(size);  // what is left is kept
     std::vector<formats::SparseRow> rows;
     for (std::size_t row = 0; row < count; ++row) {

@@ -19,9 +19,8 @@ struct NodeEncoder {
 /// keep the details that are largest among all of them (Selector's scores), and in any case their
 /// face averages.
 std::vector<formats::SparseRow> encode_node_rows(const NodeEncoder& encoder,
-                                                 std::span<const float> values,
-                                                 std::uint32_t count, std::uint32_t m,
-                                                 std::uint32_t bands);
+                                                 std::span<const float> values, std::uint32_t count,
+                                                 std::uint32_t m, std::uint32_t bands);
 
 /// Sum of squares of the Haar coefficients of `values` on a file's cube map of n x n texels.
 double row_energy(std::span<const float> values, std::uint32_t m, std::uint32_t n);

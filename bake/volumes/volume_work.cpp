@@ -129,8 +129,7 @@ Work walking_work(const CostInput& input, const VolumeWork& work) {
     const double rows = work.nodes * work.terms;
     return {0, work.tracks * (work.flights * input.rates.volume_flight +
                               work.collisions * work.walk_cells * input.rates.scattered_cell) +
-                   rows * work.walks * work.tracks * work.walk_cells *
-                       input.rates.gather_entry +
+                   rows * work.walks * work.tracks * work.walk_cells * input.rates.gather_entry +
                    rows * texel * input.rates.node_texel};
 }
 
@@ -171,7 +170,8 @@ double volume_memory(const VolumeWork& work, const Knobs& knobs) {
     const double corners = std::pow(8 / work.spacing + 1, 3);
     const double depths = 2 * work.nodes * work.tracks * texels(coarse_cells(knobs));
     return work.voxels * (2 * kScene + kGrowth * kCode) + 2 * work.bricks * corners * kCorner +
-           depths + kGrowth * (attenuated_row_bytes(work, knobs) + scattered_row_bytes(work, knobs));
+           depths +
+           kGrowth * (attenuated_row_bytes(work, knobs) + scattered_row_bytes(work, knobs));
 }
 
 }  // namespace opaline::bake

@@ -46,7 +46,8 @@ TEST(VolumeWork, NodesAndRowsAreThoseOfTheFile) {
     const auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
     ASSERT_TRUE(volumes.has_value());
     EXPECT_EQ(work.nodes, static_cast<double>(volumes->node.size()));
-    EXPECT_EQ(work.nodes * (1 + work.terms), static_cast<double>(volumes->rows.row_offset.size() - 1));
+    EXPECT_EQ(work.nodes * (1 + work.terms),
+              static_cast<double>(volumes->rows.row_offset.size() - 1));
     EXPECT_EQ(work.bricks, static_cast<double>(volumes->records[0].brick_count));
 }
 
