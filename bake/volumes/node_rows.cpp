@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
-#include <utility>
 
+#include "bake/base/largest.h"
 #include "bake/volumes/light_cells.h"
 #include "formats/opal/cubemap.h"
 
@@ -31,19 +30,6 @@ float find_threshold(std::span<const float> coefficients, double lost) {
         }
     }
     return std::numeric_limits<float>::infinity();
-}
-
-// The smallest score of those that `count` coefficients at most have.
-float find_least_score(std::vector<float> score, std::size_t count) {
-    if (score.size() <= count) {
-        return 0;
-    }
-    if (count == 0) {
-        return std::numeric_limits<float>::infinity();
-    }
-    const auto last = score.begin() + static_cast<std::ptrdiff_t>(count - 1);
-    std::nth_element(score.begin(), last, score.end(), std::greater<>());
-    return *last;
 }
 
 }  // namespace
@@ -73,33 +59,34 @@ std::vector<formats::SparseRow> encode_node_rows(const NodeEncoder& encoder,
         coefficients.insert(coefficients.end(), transformed.begin(), transformed.end());
     }
     // Bands share their indices: a coefficient goes if it is small in all of them.
-    std::vector<float> largest(count * size, 0.0f), score;
+    std::vector<float> largest(count * size, 0.0f), score(count * size, 0.0f);
     for (std::size_t row = 0; row < count; ++row) {
         for (std::size_t k = 0; k < size; ++k) {
             float& most = largest[row * size + k];
             for (std::size_t band = 0; !is_average(k) && band < bands; ++band) {
                 most = std::max(most, std::abs(coefficients[(row * bands + band) * size + k]));
             }
-            if (most > 0) {
-                score.push_back(selector.weight[k] * most);
-            }
         }
     }
     const double energy = row_energy(values, m, n) / bands;
     const float least = find_threshold(largest, encoder.tolerance * encoder.tolerance * energy);
-    const std::size_t averages = std::size_t{formats::kCubeFaces} * count;
-    const float least_score =
-        find_least_score(std::move(score), selector.kept > averages ? selector.kept - averages : 0);
+    for (std::size_t i = 0; i < score.size(); ++i) {
+        score[i] = largest[i] < least ? 0.0f : selector.weight[i % size] * largest[i];
+    }
+    const std::uint32_t averages = formats::kCubeFaces * count;
+    std::vector<char> stays(count * size, 0);
+    for (const std::uint32_t i :
+         find_largest(score, selector.kept > averages ? selector.kept - averages : 0)) {
+        stays[i] = 1;
+    }
     selector.kept = static_cast<std::uint32_t>(size);  // what is left is kept
     std::vector<formats::SparseRow> rows;
     for (std::size_t row = 0; row < count; ++row) {
         const auto own = std::span(coefficients).subspan(row * bands * size, bands * size);
-        for (std::size_t k = 0; k < size; ++k) {
-            const float most = largest[row * size + k];
-            const bool stays =
-                is_average(k) || (most >= least && selector.weight[k] * most >= least_score);
-            for (std::size_t band = 0; !stays && band < bands; ++band) {
-                own[band * size + k] = 0;
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            const std::size_t k = i % size;
+            if (!is_average(k) && stays[row * size + k] == 0) {
+                own[i] = 0;
             }
         }
         rows.push_back(select_coefficients(selector, own, bands));

@@ -83,5 +83,13 @@ TEST(NodeRows, TheLargestDetailsOfAllRowsTogetherAreKept) {
     EXPECT_GE(larger, 98u);
 }
 
+// Of equal details the first are kept: a node never takes more than it may.
+TEST(NodeRows, EqualDetailsDoNotExceedTheirNumber) {
+    std::vector<float> values = random_cells();
+    values.insert(values.end(), values.begin(), values.begin() + 384);
+    const auto rows = encode_node_rows({make_selector(16, 113, 0), 0}, values, 2, 8, 1);
+    EXPECT_EQ(rows.at(0).index.size() + rows.at(1).index.size(), 101u);
+}
+
 }  // namespace
 }  // namespace opaline::bake
