@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "tests/cli/print_json.h"
 #include "tests/cli/run_program.h"
 #include "tests/formats/gltf/asset_builder.h"
 #include "tests/support/cloud_table.h"
@@ -22,15 +23,6 @@ using std::numbers::pi;
 
 /// Droplets whose mean takes a tenth of a second.
 const Arguments kSmallDroplets = {"--effective-radius", "0.5", "--size-step", "0.2"};
-
-Json print_json(const char* command, const Arguments& arguments) {
-    Arguments all = {command};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    const Outcome outcome = run_opaline(all);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
-    return Json::parse(outcome.out);
-}
 
 Arguments join(Arguments a, const Arguments& b) {
     a.insert(a.end(), b.begin(), b.end());

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "tests/cli/print_json.h"
 #include "tests/cli/run_program.h"
 #include "tests/formats/gltf/asset_builder.h"
 #include "tests/support/reference_table.h"
@@ -19,12 +20,8 @@ using ::testing::StartsWith;
 
 using std::numbers::pi;
 
-Json phase(Arguments arguments) {
-    arguments.insert(arguments.begin(), "phase");
-    const Outcome outcome = run_opaline(arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
-    return Json::parse(outcome.out);
+Json phase(const Arguments& arguments) {
+    return print_json("phase", arguments);
 }
 
 /// 2 pi int p over the cosine, by trapezia.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/cli/print_json.h"
 #include "tests/cli/run_program.h"
 #include "tests/formats/gltf/asset_builder.h"
 #include "tests/support/cloud_table.h"
@@ -15,12 +16,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-Json slab(Arguments arguments) {
-    arguments.insert(arguments.begin(), "slab");
-    const Outcome outcome = run_opaline(arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
-    return Json::parse(outcome.out);
+Json slab(const Arguments& arguments) {
+    return print_json("slab", arguments);
 }
 
 double number(const Json& object, const std::string& key) {
