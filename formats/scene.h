@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -145,6 +146,28 @@ struct Volume {
     PhaseFunction phase;
 };
 
+/// A stratiform cloud layer: droplets between the height `base` and `base` + thickness. Heights and
+/// coordinates are the world's [m], whatever the scene's origin is.
+struct CloudLayer {
+    std::string name;                     ///< "layer 1 (layer.exr)", for messages
+    std::uint32_t columns = 0, rows = 0;  ///< 2 or more
+    std::vector<float> thickness;         ///< [m], finite, >= 0; x fastest, rows toward +z
+    double base = 1000;                   ///< height of the flat lower side, above `ground`
+    double ground = 0;                    ///< height of the ground
+    glm::dvec2 center{0};                 ///< x, z
+    glm::dvec2 size{20000};               ///< along x and z
+    glm::dvec2 wind{0};                   ///< [m/s] along x and z
+    bool repeats = false;                 ///< goes on beyond its size, over and over
+    double visibility = 0;             ///< of the air: distance [m] where contrast is 5 %; 0: clear
+    double droplets = 3e8;             ///< N0, per volume [1/m^3]
+    double effective_radius = 7e-6;    ///< <r^3> / <r^2> [m]
+    double gamma = 2;                  ///< of the modified gamma distribution (bake/mie/droplets.h)
+    bool ice = false;                  ///< spheres of ice instead of water
+    std::optional<double> peak_angle;  ///< theta_f [rad]; nothing: where the phase function bends
+    std::uint32_t ground_columns = 1, ground_rows = 1;       ///< over `size`, rows toward +z
+    std::vector<std::array<std::uint8_t, 4>> ground_albedo;  ///< sRGB codes, last byte 255
+};
+
 /// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.
 /// Vertices keep the original order and count: receivers and output rows use this numbering.
 struct Primitive {
@@ -183,6 +206,7 @@ struct Scene {
                                         ///< a primitive's position here is its running number
     std::vector<Material> materials;    ///< never empty
     std::vector<Volume> volumes;        ///< at most kMaxVolumes
+    std::vector<CloudLayer> layers;     ///< at most formats::kMaxLayers (opal/clouds.h)
     /// World position [m] of the origin of the scene's frame: world = origin + position. The
     /// frame's axes are parallel to those of the world. All stages compute in the frame, so float
     /// precision does not depend on the distance between the scene and the world's origin.

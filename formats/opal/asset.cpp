@@ -23,6 +23,7 @@ AssetView Asset::view() const {
     view.openness = openness;
     view.gloss = gloss;
     view.volumes = volumes.view();
+    view.clouds = clouds.view();
     return view;
 }
 

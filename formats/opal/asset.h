@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/opal/clouds.h"
 #include "formats/opal/gloss.h"
 #include "formats/opal/openness.h"
 #include "formats/opal/preview_image.h"
@@ -106,6 +107,7 @@ struct AssetView {
     /// Gloss of opaque primitives: empty (none), or one per primitive; needs `openness`.
     std::span<const GlossRecord> gloss;
     VolumesView volumes;  ///< smoke, clouds; empty without any
+    CloudsView clouds;    ///< cloud layers; empty without any
 
     std::uint32_t receivers() const { return static_cast<std::uint32_t>(position.size()); }
 };
@@ -127,6 +129,7 @@ struct Asset {
     std::vector<Openness> openness;  ///< empty, or one per vertex; where `roughness` is not empty
     std::vector<GlossRecord> gloss;  ///< empty, or one per primitive; kNotGlossy if translucent
     Volumes volumes;                 ///< empty without any
+    Clouds clouds;                   ///< empty without any
 
     AssetView view() const;
 };
