@@ -12,7 +12,7 @@ namespace opaline::formats {
 
 /// What an `.opal` file holds of stratiform cloud layers; formats/README.md, `CLOU`.
 
-inline constexpr std::uint32_t kMaxLayers = 4;  ///< of a file
+inline constexpr std::uint32_t kMaxLayers = 1;  ///< of a file; layers do not light each other yet
 
 /// What the droplets of a layer do to light of one band. Light that they scatter by less than
 /// LayerRecord::peak_angle counts as going straight on: the `rest` is a medium without that forward
