@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "formats/opal/check_clouds.h"
 #include "formats/opal/check_rows.h"
 #include "formats/opal/check_volumes.h"
 #include "formats/opal/cubemap.h"
@@ -182,7 +183,10 @@ Fault find_structure_fault(const AssetView& asset) {
             return fault;
         }
     }
-    return find_volumes_fault(asset.volumes);
+    if (Fault fault = find_volumes_fault(asset.volumes); !fault.what.empty()) {
+        return fault;
+    }
+    return find_clouds_fault(asset.clouds);
 }
 
 Fault find_value_fault(const AssetView& asset) {
@@ -208,7 +212,10 @@ Fault find_value_fault(const AssetView& asset) {
     if (Fault fault = find_row_value_fault(asset.transport, "section TRAN"); !fault.what.empty()) {
         return fault;
     }
-    return find_volume_value_fault(asset.volumes);
+    if (Fault fault = find_volume_value_fault(asset.volumes); !fault.what.empty()) {
+        return fault;
+    }
+    return find_cloud_value_fault(asset.clouds);
 }
 
 }  // namespace opaline::formats

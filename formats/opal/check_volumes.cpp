@@ -8,6 +8,7 @@
 
 #include "formats/opal/check_rows.h"
 #include "formats/opal/spherical_harmonics.h"
+#include "formats/opal/used_part.h"
 
 namespace opaline::formats {
 namespace {
@@ -18,22 +19,7 @@ std::string number(auto value) {
     return std::to_string(value);
 }
 
-// Parts of an array that volumes have used so far. Nothing is used twice: what a reader allocates
-// and does for all volumes together is bounded by the size of the file.
-class UsedPart {
-  public:
-    bool take(std::uint64_t first, std::uint64_t count, std::uint64_t size) {
-        if (!lies_inside(first, count, size)) return false;
-        if (count == 0) return true;
-        if (first < end_) return false;
-        end_ = first + count;
-        return true;
-    }
-
-  private:
-    std::uint64_t end_ = 0;
-};
-
+// Parts of the arrays that volumes have used so far.
 struct UsedParts {
     UsedPart cells, bricks, corners, nodes, rows, band_rows, codes;
 };

@@ -13,13 +13,18 @@ namespace opaline::formats {
 /// What an `.opal` file holds of stratiform cloud layers; formats/README.md, `CLOU`.
 
 inline constexpr std::uint32_t kMaxLayers = 1;  ///< of a file; layers do not light each other yet
+/// Of thickness and ground, along an edge: what every OpenGL 4 takes as a texture.
+inline constexpr std::uint32_t kMaxLayerSide = 16384;
+inline constexpr float kMaxLayerLength = 1e9f;      ///< of heights, x, z, sizes [m], wind [m/s]
+inline constexpr float kMinLayerSize = 1e-3f;       ///< along x and z [m]
+inline constexpr float kMaxLayerExtinction = 1e6f;  ///< of kappa and haze [1/m]
 
 /// What the droplets of a layer do to light of one band. Light that they scatter by less than
 /// LayerRecord::peak_angle counts as going straight on: the `rest` is a medium without that forward
 /// peak [Bouthors2006]. Droplets absorb nothing.
 struct LayerBand {
     float kappa = 0;        ///< extinction [1/m], >= 0
-    float peak_weight = 0;  ///< P_f: share of scattered light within the peak, in [0, 1)
+    float peak_weight = 0;  ///< P_f: share of scattered light in the peak, in [0, 1); 0 without one
     float g = 0;            ///< mean cosine, in (-1, 1)
     float reserved = 0;
 
@@ -33,17 +38,19 @@ struct LayerRecord {
     float base = 0;                 ///< height of the flat lower side
     float ground = 0;               ///< height of the ground, < base
     std::array<float, 2> center{};  ///< x, z at time 0
-    std::array<float, 2> size{};    ///< along x and z, > 0; also that of the ground's picture
-    std::array<float, 2> wind{};    ///< the layer moves by wind * time [m/s]; the ground stays
-    float highest = 0;              ///< thickness of the code 65535, >= 0
-    float peak_angle = 0;           ///< theta_f [rad], in [0, pi / 2)
-    float haze = 0;                 ///< extinction of the air below and above it [1/m], >= 0
-    std::uint32_t flags = 0;        ///< kRepeat, kRadiosity
-    std::uint32_t columns = 0, rows = 0;                ///< of the thickness, along x and z
-    std::uint32_t ground_columns = 0, ground_rows = 0;  ///< of the ground's albedo
-    std::uint32_t phase_angles = 0;                     ///< 2 or more
-    std::uint32_t glow_angles = 0, glow_events = 0;     ///< both 0 (no peak), or 2 or more
-    std::uint32_t flux_depths = 0, flux_cosines = 0;    ///< 2 or more
+    /// Along x and z, >= kMinLayerSize; also that of the ground's picture.
+    std::array<float, 2> size{};
+    std::array<float, 2> wind{};  ///< the layer moves by wind * time [m/s]; the ground stays
+    float highest = 0;            ///< thickness of the code 65535, >= 0
+    float peak_angle = 0;         ///< theta_f [rad], in [0, pi / 2)
+    float haze = 0;               ///< extinction of the air below and above it [1/m], >= 0
+    std::uint32_t flags = 0;      ///< kRepeat, kRadiosity
+    /// Of the thickness and of the ground's albedo, along x and z: 1 ... kMaxLayerSide.
+    std::uint32_t columns = 0, rows = 0;
+    std::uint32_t ground_columns = 0, ground_rows = 0;
+    std::uint32_t phase_angles = 0;                   ///< 2 or more
+    std::uint32_t glow_angles = 0, glow_events = 0;   ///< both 0 (peak_angle 0), or 2 or more
+    std::uint32_t flux_depths = 0, flux_cosines = 0;  ///< 2 or more
     /// All 0: light that was scattered twice or more is left out. Otherwise 2, 2, 1 or more.
     std::uint32_t radiance_depths = 0, radiance_cosines = 0, radiance_modes = 0;
     std::array<LayerBand, 3> band{};
@@ -101,8 +108,7 @@ struct LayerTables {
 struct CloudsView {
     std::span<const LayerRecord> records;
     /// Codes of thickness: highest * code / 65535 at the centres of columns x rows cells of `size`,
-    /// x fastest, rows toward +z; bilinear. Where the layer does not repeat, the outermost half
-    /// cell and all beyond is 0 or falls to 0 linearly.
+    /// x fastest, rows toward +z; bilinear. Where the layer does not repeat, cells beyond are 0.
     std::span<const std::uint16_t> thickness;
     std::span<const std::array<std::uint8_t, 4>> ground;  ///< sRGB codes of albedo; last byte 255
     std::span<const float> value;                         ///< tables, see tables_of

@@ -75,6 +75,12 @@ struct VolumesHead {
 };
 static_assert(sizeof(VolumesHead) == 48);
 
+struct CloudsHead {
+    std::uint32_t count = 0, record_size = 0;
+    std::uint64_t thickness = 0, ground = 0, values = 0, reserved[2] = {};
+};
+static_assert(sizeof(CloudsHead) == 48);
+
 /// Largest ratio of decoded to stored size that a reader accepts and a writer makes: bounds what a
 /// hostile file can make a reader allocate.
 inline constexpr std::uint64_t kMaxCompressionRatio = 1024;

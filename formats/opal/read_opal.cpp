@@ -5,6 +5,7 @@
 #include <new>
 
 #include "formats/opal/check_opal.h"
+#include "formats/opal/cloud_arrays.h"
 #include "formats/opal/layout.h"
 #include "formats/opal/row_arrays.h"
 #include "formats/opal/section_cursor.h"
@@ -76,6 +77,10 @@ bool read_volumes(SectionCursor cursor, AssetView& view) {
     return take_volumes(cursor, view.volumes) && cursor.at_end();
 }
 
+bool read_clouds(SectionCursor cursor, AssetView& view) {
+    return take_clouds(cursor, view.clouds) && cursor.at_end();
+}
+
 }  // namespace
 
 Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::string& file,
@@ -125,6 +130,9 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 break;
             case kVoluSection:
                 read = read_volumes;
+                break;
+            case kClouSection:
+                read = read_clouds;
                 break;
             case kProvSection:
                 break;

@@ -38,6 +38,7 @@ inline constexpr std::uint32_t kSpecSection = section_id("SPEC");
 inline constexpr std::uint32_t kGlosSection = section_id("GLOS");
 inline constexpr std::uint32_t kTranSection = section_id("TRAN");
 inline constexpr std::uint32_t kVoluSection = section_id("VOLU");
+inline constexpr std::uint32_t kClouSection = section_id("CLOU");
 
 struct FileHeader {
     std::array<char, 8> magic = kOpalMagic;

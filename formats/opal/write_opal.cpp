@@ -1,79 +1,18 @@
 #include "formats/opal/write_opal.h"
 
-#include <xxhash.h>
-#include <zstd.h>
-
 #include <algorithm>
 #include <cassert>
-#include <cstring>
-#include <memory>
-#include <string>
+#include <vector>
 
+#include "formats/opal/cloud_arrays.h"
 #include "formats/opal/layout.h"
 #include "formats/opal/row_arrays.h"
 #include "formats/opal/section.h"
+#include "formats/opal/stored_section.h"
 #include "formats/opal/volume_arrays.h"
 
 namespace opaline::formats {
 namespace {
-
-constexpr int kZstdLevel = 6;
-
-std::size_t padding_to(std::size_t alignment, std::uint64_t size) {
-    return static_cast<std::size_t>((alignment - size % alignment) % alignment);
-}
-
-template <class T>
-std::span<const std::byte> bytes_of(const T& value) {
-    return std::as_bytes(std::span(&value, 1));
-}
-
-// A section on its way into the file: its entry, and its stored bytes as parts.
-struct Stored {
-    SectionEntry entry;
-    std::vector<std::span<const std::byte>> parts;
-    std::string compressed;
-};
-
-constexpr std::byte kZeros[kSectionAlignment] = {};
-
-// Sections are lists of arrays, each padded to 16 bytes, so that a reader can use them in place.
-Stored store(std::uint32_t id, Codec codec, std::span<const std::span<const std::byte>> arrays) {
-    Stored stored;
-    stored.entry.id = id;
-    for (const std::span<const std::byte> array : arrays) {
-        const std::size_t padding = padding_to(kArrayAlignment, array.size());
-        stored.parts.push_back(array);
-        stored.parts.push_back({kZeros, padding});
-        stored.entry.size += array.size() + padding;
-    }
-    if (codec == Codec::zstd) {
-        std::string plain;
-        plain.reserve(stored.entry.size);
-        for (const auto part : stored.parts) {
-            plain.append(reinterpret_cast<const char*>(part.data()), part.size());
-        }
-        std::string& out = stored.compressed;
-        out.resize(ZSTD_compressBound(plain.size()));
-        const std::size_t size =
-            ZSTD_compress(out.data(), out.size(), plain.data(), plain.size(), kZstdLevel);
-        if (ZSTD_isError(size) == 0U && size < plain.size() &&
-            plain.size() / size < kMaxCompressionRatio) {
-            out.resize(size);
-            stored.entry.codec = static_cast<std::uint32_t>(Codec::zstd);
-            stored.parts = {std::as_bytes(std::span(out.data(), out.size()))};
-        }
-    }
-    const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
-                                                                                XXH3_freeState);
-    XXH3_64bits_reset(state.get());
-    for (const auto part : stored.parts) {
-        XXH3_64bits_update(state.get(), part.data(), part.size());
-        stored.entry.stored_size += part.size();
-    }
-    stored.entry.checksum = XXH3_64bits_digest(state.get());
-    return stored;
-}
 
 // Of PRIM: the earliest version that has all of it.
 std::uint32_t version_of(std::span<const PrimitiveRecord> primitives) {
@@ -93,90 +32,104 @@ std::uint32_t version_of(std::span<const PrimitiveRecord> primitives) {
                : 1;
 }
 
-Stored store_provenance(const AssetView& asset) {
-    // Text has no arrays to pad: one part, its exact length.
-    Stored stored;
-    stored.entry.id = kProvSection;
-    const auto text = std::as_bytes(std::span(asset.provenance.data(), asset.provenance.size()));
-    stored.parts = {text};
-    stored.entry.size = stored.entry.stored_size = text.size();
-    stored.entry.checksum = checksum(text);
-    return stored;
-}
+// What is written before the arrays of an asset and is not part of it. Sections point into it.
+struct SectionHeads {
+    BasisHead basis;
+    PrimitivesHead primitives;
+    TransportHead transport;
+    MeshHead mesh;
+    ImagesHead images;
+    std::vector<ImageSize> image_sizes;
+    SpecularHead specular;
+    GlossHead gloss;
+    VolumesHead volumes;
+    TransportHead volume_rows;
+    CloudsHead clouds;
+};
 
-Stored store_mesh(const AssetView& asset) {
-    const MeshHead head{asset.receivers(), static_cast<std::uint32_t>(asset.index.size()),
-                        static_cast<std::uint32_t>(asset.texcoord.size()), 0};
-    const std::span<const std::byte> arrays[] = {bytes_of(head),
-                                                 std::as_bytes(asset.position),
-                                                 std::as_bytes(asset.normal),
-                                                 std::as_bytes(asset.base_color),
-                                                 std::as_bytes(asset.texcoord),
-                                                 std::as_bytes(asset.index)};
-    Stored stored = store(kMeshSection, Codec::zstd, arrays);
-    if (stored.entry.codec == 0) {
-        // `head` dies with this function: keep a copy where the parts can refer to it.
-        stored.compressed.assign(reinterpret_cast<const char*>(&head), sizeof head);
-        stored.parts.front() = std::as_bytes(std::span(stored.compressed));
-    }
-    return stored;
-}
-
-Stored store_images(const AssetView& asset) {
-    const ImagesHead head{static_cast<std::uint32_t>(asset.images.size()), {}};
-    std::vector<ImageSize> sizes;
+SectionHeads make_heads(const AssetView& asset) {
+    const auto count = [](auto span) { return static_cast<std::uint32_t>(span.size()); };
+    SectionHeads heads;
+    heads.basis = {1, asset.cubemap_size, static_cast<std::uint32_t>(asset.pairing), 0};
+    heads.primitives = {count(asset.primitives), sizeof(PrimitiveRecord), 0};
+    heads.transport = rows_head(asset.transport);
+    heads.mesh = {asset.receivers(), count(asset.index), count(asset.texcoord), 0};
+    heads.images.count = static_cast<std::uint32_t>(asset.images.size());
     for (const PreviewImage& image : asset.images) {
-        sizes.push_back({image.width, image.height});
+        heads.image_sizes.push_back({image.width, image.height});
     }
-    // One block, since head and sizes are made here; images compress well or are small.
-    std::string block(reinterpret_cast<const char*>(&head), sizeof head);
-    const auto add = [&block](std::span<const std::byte> bytes) {
-        block.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        block.append(padding_to(kArrayAlignment, bytes.size()), '\0');
+    heads.specular = {count(asset.roughness), count(asset.openness), {}};
+    heads.gloss = {count(asset.gloss), sizeof(GlossRecord), {}};
+    heads.volumes = volumes_head(asset.volumes);
+    heads.volume_rows = rows_head(asset.volumes.rows);
+    heads.clouds = clouds_head(asset.clouds);
+    return heads;
+}
+
+using Arrays = std::vector<std::span<const std::byte>>;
+
+StoredSection store_mesh(const AssetView& asset, const MeshHead& head) {
+    const Arrays arrays{bytes_of(head),
+                        std::as_bytes(asset.position),
+                        std::as_bytes(asset.normal),
+                        std::as_bytes(asset.base_color),
+                        std::as_bytes(asset.texcoord),
+                        std::as_bytes(asset.index)};
+    return store_arrays(kMeshSection, Codec::zstd, arrays);
+}
+
+// Images compress well or are small.
+StoredSection store_images(const AssetView& asset, const SectionHeads& heads) {
+    Arrays arrays{bytes_of(heads.images), std::as_bytes(std::span(heads.image_sizes))};
+    for (const PreviewImage& image : asset.images) {
+        arrays.push_back(std::as_bytes(image.rgb));
+    }
+    return store_arrays(kImagSection, Codec::zstd, arrays);
+}
+
+// In the order of the file.
+std::vector<StoredSection> store_sections(const AssetView& asset, const SectionHeads& heads) {
+    std::vector<StoredSection> sections;
+    const auto add = [&](std::uint32_t id, Codec codec, const auto& arrays) {
+        sections.push_back(store_arrays(id, codec, arrays));
     };
-    add(std::as_bytes(std::span(sizes)));
-    for (const PreviewImage& image : asset.images) {
-        add(std::as_bytes(image.rgb));
+    if (!asset.provenance.empty()) {
+        sections.push_back(store_text(kProvSection, asset.provenance));
     }
-    const std::span<const std::byte> arrays[] = {std::as_bytes(std::span(block))};
-    Stored stored = store(kImagSection, Codec::zstd, arrays);
-    if (stored.entry.codec == 0) {
-        stored.compressed = std::move(block);
-        stored.parts.front() = std::as_bytes(std::span(stored.compressed));
+    add(kBasiSection, Codec::none, Arrays{bytes_of(heads.basis)});
+    add(kPrimSection, Codec::none,
+        Arrays{bytes_of(heads.primitives), std::as_bytes(asset.primitives)});
+    sections.back().entry.version = version_of(asset.primitives);
+    add(kTranSection, Codec::none, row_arrays(heads.transport, asset.transport));
+    sections.back().entry.version = kTransportVersion;
+    sections.push_back(store_mesh(asset, heads.mesh));
+    if (!asset.images.empty()) {
+        sections.push_back(store_images(asset, heads));
     }
-    return stored;
-}
-
-Stored store_specular(const AssetView& asset) {
-    const SpecularHead head{static_cast<std::uint32_t>(asset.roughness.size()),
-                            static_cast<std::uint32_t>(asset.openness.size()),
-                            {}};
-    const std::span<const std::byte> arrays[] = {bytes_of(head), std::as_bytes(asset.roughness),
-                                                 std::as_bytes(asset.openness)};
-    Stored stored = store(kSpecSection, Codec::zstd, arrays);
-    if (stored.entry.codec == 0) {
-        stored.compressed.assign(reinterpret_cast<const char*>(&head), sizeof head);
-        stored.parts.front() = std::as_bytes(std::span(stored.compressed));
+    if (!asset.roughness.empty()) {
+        add(kSpecSection, Codec::zstd,
+            Arrays{bytes_of(heads.specular), std::as_bytes(asset.roughness),
+                   std::as_bytes(asset.openness)});
     }
-    return stored;
-}
-
-Stored store_gloss(const AssetView& asset) {
-    const GlossHead head{static_cast<std::uint32_t>(asset.gloss.size()), sizeof(GlossRecord), {}};
-    const std::span<const std::byte> arrays[] = {bytes_of(head), std::as_bytes(asset.gloss)};
-    Stored stored = store(kGlosSection, Codec::zstd, arrays);
-    if (stored.entry.codec == 0) {
-        stored.compressed.assign(reinterpret_cast<const char*>(&head), sizeof head);
-        stored.parts.front() = std::as_bytes(std::span(stored.compressed));
+    if (!asset.gloss.empty()) {
+        add(kGlosSection, Codec::zstd, Arrays{bytes_of(heads.gloss), std::as_bytes(asset.gloss)});
     }
-    return stored;
+    if (!asset.volumes.empty()) {
+        assert(asset.volumes.rows.cubemap_size == asset.cubemap_size);
+        add(kVoluSection, Codec::none,
+            volume_arrays(heads.volumes, asset.volumes, heads.volume_rows));
+    }
+    if (!asset.clouds.empty()) {
+        add(kClouSection, Codec::none, cloud_arrays(heads.clouds, asset.clouds));
+    }
+    return sections;
 }
 
 template <class Write>
 Status write_padded(Write& write, std::uint64_t& position, std::uint64_t target) {
     while (position < target) {
-        const std::size_t step = std::min<std::uint64_t>(target - position, sizeof kZeros);
-        if (Status status = write(std::span(kZeros, step)); !status) {
+        const std::size_t step = std::min<std::uint64_t>(target - position, kSectionAlignment);
+        if (Status status = write(padding_zeros(step)); !status) {
             return status;
         }
         position += step;
@@ -187,45 +140,11 @@ Status write_padded(Write& write, std::uint64_t& position, std::uint64_t target)
 // Hands the file to `write`, a Status(std::span<const std::byte>), from beginning to end.
 template <class Write>
 Status write_parts(const AssetView& asset, Write write) {
-    const BasisHead basis{1, asset.cubemap_size, static_cast<std::uint32_t>(asset.pairing), 0};
-    const PrimitivesHead primitives{static_cast<std::uint32_t>(asset.primitives.size()),
-                                    sizeof(PrimitiveRecord), 0};
-    const TransportHead transport = rows_head(asset.transport);
-    const std::span<const std::byte> basis_arrays[] = {bytes_of(basis)};
-    const std::span<const std::byte> primitive_arrays[] = {bytes_of(primitives),
-                                                           std::as_bytes(asset.primitives)};
-    const VolumesHead volumes = volumes_head(asset.volumes);
-    const TransportHead volume_rows = rows_head(asset.volumes.rows);
-
-    std::vector<Stored> sections;
-    sections.reserve(9);
-    if (!asset.provenance.empty()) {
-        sections.push_back(store_provenance(asset));
-    }
-    sections.push_back(store(kBasiSection, Codec::none, basis_arrays));
-    sections.push_back(store(kPrimSection, Codec::none, primitive_arrays));
-    sections.back().entry.version = version_of(asset.primitives);
-    sections.push_back(store(kTranSection, Codec::none, row_arrays(transport, asset.transport)));
-    sections.back().entry.version = kTransportVersion;
-    sections.push_back(store_mesh(asset));
-    if (!asset.images.empty()) {
-        sections.push_back(store_images(asset));
-    }
-    if (!asset.roughness.empty()) {
-        sections.push_back(store_specular(asset));
-    }
-    if (!asset.gloss.empty()) {
-        sections.push_back(store_gloss(asset));
-    }
-    if (!asset.volumes.empty()) {
-        assert(asset.volumes.rows.cubemap_size == asset.cubemap_size);
-        sections.push_back(
-            store(kVoluSection, Codec::none, volume_arrays(volumes, asset.volumes, volume_rows)));
-    }
-
+    const SectionHeads heads = make_heads(asset);
+    std::vector<StoredSection> sections = store_sections(asset, heads);
     std::vector<SectionEntry> table;
     std::uint64_t end = sizeof(FileHeader) + sections.size() * sizeof(SectionEntry);
-    for (Stored& section : sections) {
+    for (StoredSection& section : sections) {
         section.entry.offset = end + padding_to(kSectionAlignment, end);
         end = section.entry.offset + section.entry.stored_size;
         table.push_back(section.entry);
@@ -243,7 +162,7 @@ Status write_parts(const AssetView& asset, Write write) {
         return status;
     }
     std::uint64_t position = sizeof header + table.size() * sizeof(SectionEntry);
-    for (const Stored& section : sections) {
+    for (const StoredSection& section : sections) {
         if (Status status = write_padded(write, position, section.entry.offset); !status) {
             return status;
         }

@@ -1,6 +1,8 @@
 // Files of every section version that was ever released: today's reader reads them for ever.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -159,6 +161,39 @@ TEST_F(GoldenFile, VolumesToo) {
                               RowSum{1, 2, 3.55175, 17.96101}}) {
         expect_sums(volumes.rows, volumes.records[row.primitive].rows(), row);
     }
+}
+
+TEST_F(GoldenFile, CloudLayersToo) {
+    const AssetView& asset = read("clou1.opal");
+    EXPECT_EQ(version_of(kClouSection), 1u);
+    EXPECT_TRUE(asset.primitives.empty() && asset.volumes.empty());
+    const CloudsView& clouds = asset.clouds;
+    ASSERT_EQ(clouds.records.size(), 1u);
+    const LayerRecord& layer = clouds.records[0];
+    EXPECT_EQ(layer.base, 800);
+    EXPECT_EQ(layer.ground, -20);
+    EXPECT_EQ(layer.center, (std::array<float, 2>{100, -300}));
+    EXPECT_EQ(layer.size, (std::array<float, 2>{4000, 3000}));
+    EXPECT_EQ(layer.wind, (std::array<float, 2>{5, -2.5f}));
+    EXPECT_EQ(layer.highest, 250);
+    EXPECT_EQ(layer.peak_angle, 0.0875f);
+    EXPECT_EQ(layer.haze, 1e-4f);
+    EXPECT_TRUE(layer.has_radiosity() && !layer.repeats());
+    EXPECT_EQ(layer.band[2].kappa, 0.046f);
+    EXPECT_EQ(layer.band[1].peak_weight, 0.45f);
+    EXPECT_EQ(layer.band[0].g, 0.85f);
+    ASSERT_EQ(layer.thickness_count(), 12u);
+    EXPECT_EQ(clouds.thickness_of(layer)[11], 26000);
+    EXPECT_EQ(clouds.ground_of(layer)[5], (std::array<std::uint8_t, 4>{200, 128, 55, 255}));
+    const LayerTables tables = tables_of(clouds, layer, 2);
+    EXPECT_EQ(tables.log_phase[4], -2.33915567f);
+    EXPECT_EQ(tables.glow[5], 15.398654f);
+    EXPECT_EQ(tables.t1[0], 0.30265519f);
+    EXPECT_EQ(tables.t_ms[2], 1);
+    EXPECT_EQ(tables.r1[3], 0.0348787121f);
+    EXPECT_EQ(tables.mean_t[3], 0);
+    EXPECT_EQ(tables.reflected[35], 0.808276415f);
+    EXPECT_EQ(tables.transmitted[35], 0.446365088f);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <new>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,23 @@ inline std::vector<std::byte> encode(const formats::Asset& asset) {
     auto mapped = formats::FileBytes::open(folder / "a.opal");
     EXPECT_TRUE(mapped);
     return {mapped->bytes().begin(), mapped->bytes().end()};
+}
+
+template <class T>
+void expect_same_bytes(std::span<const T> a, std::span<const T> b) {
+    ASSERT_EQ(a.size(), b.size());
+    if (!a.empty()) {
+        EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size_bytes()), 0);
+    }
+}
+
+/// "where: fault" of the file that an asset is written to, empty where it passes the checks.
+inline std::string fault_of(const formats::Asset& asset, formats::Checks checks) {
+    AlignedBytes stored(encode(asset));
+    const auto loaded = formats::read_opal(stored.bytes(), "a.opal", checks);
+    if (loaded) return {};
+    const auto& diagnostic = loaded.error().diagnostics.front();
+    return diagnostic.where + ": " + diagnostic.fault;
 }
 
 /// The section of a table with this id. Precondition: it is there.

@@ -16,36 +16,29 @@ namespace {
 using testing::HasSubstr;
 using tests::AlignedBytes;
 using tests::encode;
+using tests::expect_same_bytes;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-template <class T>
-void expect_same(std::span<const T> a, std::span<const T> b) {
-    ASSERT_EQ(a.size(), b.size());
-    if (!a.empty()) {
-        EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size_bytes()), 0);
-    }
-}
-
 void expect_same_volumes(const VolumesView& a, const VolumesView& b) {
-    expect_same(a.records, b.records);
-    expect_same(a.table, b.table);
-    expect_same(a.density_scale, b.density_scale);
-    expect_same(a.density, b.density);
-    expect_same(a.corner, b.corner);
-    expect_same(a.node, b.node);
-    expect_same(a.phase, b.phase);
+    expect_same_bytes(a.records, b.records);
+    expect_same_bytes(a.table, b.table);
+    expect_same_bytes(a.density_scale, b.density_scale);
+    expect_same_bytes(a.density, b.density);
+    expect_same_bytes(a.corner, b.corner);
+    expect_same_bytes(a.node, b.node);
+    expect_same_bytes(a.phase, b.phase);
     EXPECT_EQ(a.rows.cubemap_size, b.rows.cubemap_size);
     EXPECT_EQ(a.rows.code_bits, b.rows.code_bits);
-    expect_same(a.rows.row_offset, b.rows.row_offset);
-    expect_same(a.rows.average_scale, b.rows.average_scale);
-    expect_same(a.rows.detail_scale, b.rows.detail_scale);
-    expect_same(a.rows.average_code, b.rows.average_code);
-    expect_same(a.rows.index16, b.rows.index16);
-    expect_same(a.rows.index32, b.rows.index32);
-    expect_same(a.rows.code8, b.rows.code8);
-    expect_same(a.rows.code16, b.rows.code16);
+    expect_same_bytes(a.rows.row_offset, b.rows.row_offset);
+    expect_same_bytes(a.rows.average_scale, b.rows.average_scale);
+    expect_same_bytes(a.rows.detail_scale, b.rows.detail_scale);
+    expect_same_bytes(a.rows.average_code, b.rows.average_code);
+    expect_same_bytes(a.rows.index16, b.rows.index16);
+    expect_same_bytes(a.rows.index32, b.rows.index32);
+    expect_same_bytes(a.rows.code8, b.rows.code8);
+    expect_same_bytes(a.rows.code16, b.rows.code16);
 }
 
 TEST(VolumesFile, ReturnsEveryValueItWasGivenWithoutAnyPrimitive) {
@@ -122,11 +115,7 @@ template <class Change>
 std::string fault_of(Checks checks, Change change) {
     Asset asset = tests::make_volume_asset();
     change(asset.volumes);
-    AlignedBytes stored(encode(asset));
-    const auto loaded = read_opal(stored.bytes(), "a.opal", checks);
-    if (loaded) return {};
-    const auto& diagnostic = loaded.error().diagnostics.front();
-    return diagnostic.where + ": " + diagnostic.fault;
+    return tests::fault_of(asset, checks);
 }
 
 template <class Change>

@@ -1,0 +1,230 @@
+#include "formats/opal/check_clouds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "formats/opal/used_part.h"
+
+namespace opaline::formats {
+namespace {
+
+constexpr const char* kSection = "section CLOU";
+
+std::string number(auto value) {
+    return std::to_string(value);
+}
+
+// False for NaN.
+bool lies_within(float x, float low, float high) {
+    return x >= low && x <= high;
+}
+
+bool is_coordinate(float x) {
+    return lies_within(x, -kMaxLayerLength, kMaxLayerLength);
+}
+
+bool is_side(std::uint32_t cells) {
+    return cells >= 1 && cells <= kMaxLayerSide;
+}
+
+std::string find_place_fault(const LayerRecord& layer) {
+    if (!is_coordinate(layer.base) || !is_coordinate(layer.ground) ||
+        !(layer.base > layer.ground)) {
+        return "its base at " + number(layer.base) + " m is not above its ground at " +
+               number(layer.ground) + " m, or is too far from 0";
+    }
+    const float lengths[] = {layer.center[0], layer.center[1], layer.wind[0], layer.wind[1]};
+    if (!std::all_of(std::begin(lengths), std::end(lengths), is_coordinate)) {
+        return "its centre or wind is not finite, or too far from 0";
+    }
+    for (const float size : layer.size) {
+        if (!lies_within(size, kMinLayerSize, kMaxLayerLength)) {
+            return "it is " + number(size) + " m wide; expected 0.001 m or more";
+        }
+    }
+    if (!lies_within(layer.highest, 0, kMaxLayerLength)) {
+        return "its largest thickness of " + number(layer.highest) +
+               " m is below zero or not finite";
+    }
+    if (!lies_within(layer.haze, 0, kMaxLayerExtinction)) {
+        return "its haze of " + number(layer.haze) + " per metre is below zero or not finite";
+    }
+    constexpr std::uint32_t kKnown = LayerRecord::kRepeat | LayerRecord::kRadiosity;
+    if ((layer.flags & ~kKnown) != 0 || layer.reserved != std::array<std::uint32_t, 2>{}) {
+        return "it has flags or values that only later versions know";
+    }
+    return {};
+}
+
+std::string find_band_fault(const LayerRecord& layer) {
+    if (!(layer.peak_angle >= 0 && layer.peak_angle < std::numbers::pi_v<float> / 2)) {
+        return "its forward peak of " + number(layer.peak_angle) +
+               " rad is not in 0 ... pi / 2 (exclusive)";
+    }
+    for (const LayerBand& band : layer.band) {
+        if (!lies_within(band.kappa, 0, kMaxLayerExtinction)) {
+            return "its extinction of " + number(band.kappa) +
+                   " per metre is below zero or not finite";
+        }
+        if (!(band.peak_weight >= 0 && band.peak_weight < 1) ||
+            (layer.peak_angle == 0 && band.peak_weight != 0)) {
+            return "its forward peak has " + number(band.peak_weight) +
+                   " of the light; expected less than 1, and 0 where the peak has no angle";
+        }
+        if (!(std::abs(band.g) < 1)) {
+            return "a mean cosine of " + number(band.g) + " is not in -1 ... 1 (exclusive)";
+        }
+        if (band.reserved != 0) {
+            return "a band has a value that only later versions know";
+        }
+    }
+    return {};
+}
+
+std::string find_count_fault(const LayerRecord& layer) {
+    if (!is_side(layer.columns) || !is_side(layer.rows) || !is_side(layer.ground_columns) ||
+        !is_side(layer.ground_rows)) {
+        return "its thickness has " + number(layer.columns) + " x " + number(layer.rows) +
+               " cells, its ground " + number(layer.ground_columns) + " x " +
+               number(layer.ground_rows) + "; expected 1 to " + number(kMaxLayerSide) +
+               " along an edge";
+    }
+    if (layer.phase_angles < 2 || layer.flux_depths < 2 || layer.flux_cosines < 2) {
+        return "its phase function has " + number(layer.phase_angles) +
+               " angles, its table of flux " + number(layer.flux_depths) + " depths and " +
+               number(layer.flux_cosines) + " cosines; expected 2 or more each";
+    }
+    const bool has_no_glow = layer.glow_angles == 0 && layer.glow_events == 0;
+    const bool has_glow = layer.glow_angles >= 2 && layer.glow_events >= 2;
+    if (!(layer.peak_angle > 0 ? has_glow : has_no_glow)) {
+        return "its glow has " + number(layer.glow_angles) + " angles and " +
+               number(layer.glow_events) +
+               " numbers of events; expected 2 or more each, or 0 where the forward peak has no "
+               "angle";
+    }
+    const bool has_no_radiance =
+        layer.radiance_depths == 0 && layer.radiance_cosines == 0 && layer.radiance_modes == 0;
+    const bool has_radiance =
+        layer.radiance_depths >= 2 && layer.radiance_cosines >= 2 && layer.radiance_modes >= 1;
+    if (!has_no_radiance && !has_radiance) {
+        return "its tables of radiance have " + number(layer.radiance_depths) + " depths, " +
+               number(layer.radiance_cosines) + " cosines and " + number(layer.radiance_modes) +
+               " modes; expected 2, 2 and 1 or more, or all 0";
+    }
+    return {};
+}
+
+// The product where it is at most `limit`, which any of the counts and steps on the way may exceed.
+std::optional<std::uint64_t> product_within(std::uint64_t limit,
+                                            std::initializer_list<std::uint32_t> counts) {
+    std::uint64_t product = 1;
+    for (const std::uint32_t count : counts) {
+        if (count != 0 && product > limit / count) return std::nullopt;
+        product *= count;
+    }
+    return product;
+}
+
+struct UsedLayerParts {
+    UsedPart thickness, ground, values;
+};
+
+// Counts are those that find_count_fault lets pass.
+std::string find_part_fault(const CloudsView& clouds, const LayerRecord& layer,
+                            UsedLayerParts& used) {
+    const std::uint64_t values = clouds.value.size();
+    if (!product_within(values, {layer.glow_angles, layer.glow_events}) ||
+        !product_within(values, {layer.flux_depths, layer.flux_cosines}) ||
+        !product_within(values, {layer.radiance_depths, layer.radiance_modes,
+                                 layer.radiance_cosines, layer.radiance_cosines})) {
+        return "a table of it is larger than all tables";
+    }
+    // None of the terms in value_count() is beyond 32 bits or the size of an array in memory now:
+    // their sum cannot overflow. Sides cannot either, see kMaxLayerSide.
+    if (!used.thickness.take(layer.first_thickness, layer.thickness_count(),
+                             clouds.thickness.size()) ||
+        !used.ground.take(layer.first_ground, layer.ground_count(), clouds.ground.size()) ||
+        !used.values.take(layer.first_value, layer.value_count(), values)) {
+        return "its thickness, ground or tables lie outside their arrays, or overlap with those "
+               "of another layer";
+    }
+    return {};
+}
+
+bool all_within(std::span<const float> values, float low, float high) {
+    return std::all_of(values.begin(), values.end(),
+                       [=](float x) { return lies_within(x, low, high); });
+}
+
+std::string find_table_fault(const LayerTables& tables) {
+    if (!all_within(tables.log_phase, kMinLogPhase, kMaxLogPhase)) {
+        return "the logarithm of its phase function is not in -100 ... 40";
+    }
+    if (!all_within(tables.glow, 0, kMaxLayerValue)) {
+        return "its glow is below zero or not finite";
+    }
+    constexpr float kRounding = 1e-3f;  // of shares that are sums over directions
+    for (const auto shares : {tables.t1, tables.t_ms, tables.r1, tables.mean_t}) {
+        if (!all_within(shares, -kRounding, 1 + kRounding)) {
+            return "a share of its flux is not in 0 ... 1";
+        }
+    }
+    for (const auto radiance : {tables.reflected, tables.transmitted}) {
+        if (!all_within(radiance, -kMaxLayerValue, kMaxLayerValue)) {
+            return "a value of its tables of radiance is not finite, or too large";
+        }
+    }
+    return {};
+}
+
+std::string find_layer_value_fault(const CloudsView& clouds, const LayerRecord& layer) {
+    const auto ground = clouds.ground_of(layer);
+    if (!std::all_of(ground.begin(), ground.end(),
+                     [](const auto& color) { return color[3] == 255; })) {
+        return "the last byte of a colour of the ground is not 255";
+    }
+    for (std::size_t band = 0; band < layer.band.size(); ++band) {
+        std::string fault = find_table_fault(tables_of(clouds, layer, band));
+        if (!fault.empty()) return "band " + number(band) + ": " + fault;
+    }
+    return {};
+}
+
+// The first fault that `find` sees in a layer.
+template <class Find>
+Fault find_first(const CloudsView& clouds, Find find) {
+    for (std::size_t i = 0; i < clouds.records.size(); ++i) {
+        if (std::string fault = find(clouds.records[i]); !fault.empty()) {
+            return {std::string(kSection) + ", layer " + number(i), std::move(fault)};
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Fault find_clouds_fault(const CloudsView& clouds) {
+    if (clouds.records.size() > kMaxLayers) {
+        return {kSection, "it has " + number(clouds.records.size()) + " layers; this version of " +
+                              "Opaline knows one at most"};
+    }
+    UsedLayerParts used;
+    return find_first(clouds, [&](const LayerRecord& layer) {
+        std::string fault = find_place_fault(layer);
+        if (fault.empty()) fault = find_band_fault(layer);
+        if (fault.empty()) fault = find_count_fault(layer);
+        return fault.empty() ? find_part_fault(clouds, layer, used) : fault;
+    });
+}
+
+Fault find_cloud_value_fault(const CloudsView& clouds) {
+    return find_first(
+        clouds, [&](const LayerRecord& layer) { return find_layer_value_fault(clouds, layer); });
+}
+
+}  // namespace opaline::formats

@@ -1,0 +1,298 @@
+// Cloud layers that are written come back, and what no writer may write is refused by name.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "formats/opal/check_clouds.h"
+#include "formats/opal/used_part.h"
+#include "tests/formats/opal/asset_fixture.h"
+#include "tests/formats/opal/cloud_fixture.h"
+#include "tests/formats/opal/opal_bytes.h"
+#include "tests/formats/opal/volume_fixture.h"
+
+namespace opaline::formats {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using tests::AlignedBytes;
+using tests::encode;
+using tests::make_cloud_asset;
+
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
+constexpr float kEndless = std::numeric_limits<float>::infinity();
+
+void expect_same_clouds(const CloudsView& a, const CloudsView& b) {
+    tests::expect_same_bytes(a.records, b.records);
+    tests::expect_same_bytes(a.thickness, b.thickness);
+    tests::expect_same_bytes(a.ground, b.ground);
+    tests::expect_same_bytes(a.value, b.value);
+}
+
+TEST(CloudsFile, ReturnsEveryValueItWasGivenWithoutAnyPrimitive) {
+    for (const bool has_all : {true, false}) {
+        const Asset asset = make_cloud_asset({.has_peak = has_all, .has_radiance = has_all});
+        AlignedBytes stored(encode(asset));
+        const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+        ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
+        const AssetView& view = loaded->view;
+        EXPECT_TRUE(view.primitives.empty() && view.position.empty() && view.volumes.empty());
+        expect_same_clouds(view.clouds, asset.clouds.view());
+        EXPECT_EQ(loaded->sections.back().id, kClouSection);
+        EXPECT_EQ(loaded->sections.back().version, 1u);
+    }
+}
+
+TEST(CloudsFile, StandsBesideAllElseAndIsAbsentWithoutLayers) {
+    Asset asset = tests::make_small_asset();
+    tests::add_volume(asset, {});
+    const std::vector<std::byte> without = encode(asset);
+    tests::add_layer(asset);
+    AlignedBytes stored(encode(asset));
+    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+    ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
+    expect_same_clouds(loaded->view.clouds, asset.clouds.view());
+    EXPECT_EQ(loaded->view.volumes.records.size(), 1u);
+    EXPECT_EQ(loaded->view.primitives.size(), 2u);
+
+    AlignedBytes plain(without);
+    const auto other = read_opal(plain.bytes(), "a.opal", Checks::full);
+    ASSERT_TRUE(other);
+    EXPECT_TRUE(other->view.clouds.empty());
+    EXPECT_EQ(other->sections.size() + 1, loaded->sections.size());
+}
+
+TEST(CloudsFile, IsUsedInPlaceAndItsSizeIsKnownBeforeItIsWritten) {
+    const Asset asset = make_cloud_asset();
+    AlignedBytes stored(encode(asset));
+    EXPECT_EQ(opal_size(asset.view()), stored.bytes().size());
+    const auto loaded = read_opal(stored.bytes(), "a.opal");
+    ASSERT_TRUE(loaded);
+    const auto expect_inside = [&](auto span) {
+        const auto bytes = std::as_bytes(span);
+        EXPECT_GE(bytes.data(), stored.bytes().data());
+        EXPECT_LE(bytes.data() + bytes.size(), stored.bytes().data() + stored.bytes().size());
+    };
+    expect_inside(loaded->view.clouds.records);
+    expect_inside(loaded->view.clouds.thickness);
+    expect_inside(loaded->view.clouds.ground);
+    expect_inside(loaded->view.clouds.value);
+}
+
+// Tables of a band follow each other in the order of formats/README.md, bands too.
+TEST(CloudsFile, TablesOfABandFollowEachOther) {
+    LayerRecord layer;
+    layer.phase_angles = 2;
+    layer.glow_angles = 3;
+    layer.glow_events = 2;
+    layer.flux_depths = 2;
+    layer.flux_cosines = 4;
+    layer.radiance_depths = 2;
+    layer.radiance_cosines = 3;
+    layer.radiance_modes = 5;
+    layer.first_value = 7;
+    EXPECT_EQ(layer.band_values(), 2u + 6 + 3 * 8 + 2 + 2 * 90);
+    Clouds clouds;
+    for (std::size_t i = 0; i < 7 + layer.value_count(); ++i) {
+        clouds.value.push_back(static_cast<float>(i));
+    }
+    clouds.records.push_back(layer);
+    std::size_t next = 7;
+    const auto expect_next = [&next](std::span<const float> part, std::size_t count) {
+        ASSERT_EQ(part.size(), count);
+        EXPECT_EQ(part.front(), static_cast<float>(next));
+        next += count;
+    };
+    for (std::size_t band = 0; band < 3; ++band) {
+        const LayerTables tables = tables_of(clouds.view(), layer, band);
+        expect_next(tables.log_phase, 2);
+        expect_next(tables.glow, 6);
+        expect_next(tables.t1, 8);
+        expect_next(tables.t_ms, 8);
+        expect_next(tables.r1, 8);
+        expect_next(tables.mean_t, 2);
+        expect_next(tables.reflected, 90);
+        expect_next(tables.transmitted, 90);
+    }
+    EXPECT_EQ(next, clouds.value.size());
+    EXPECT_TRUE(tables_of(make_cloud_asset({.has_radiance = false}).clouds.view(),
+                          make_cloud_asset({.has_radiance = false}).clouds.records[0], 2)
+                    .reflected.empty());
+}
+
+TEST(UsedPart, NoPartBeginsBeforeTheOnesThatWereTaken) {
+    UsedPart used;
+    EXPECT_TRUE(used.take(2, 3, 10));
+    EXPECT_FALSE(used.take(4, 1, 10));
+    EXPECT_TRUE(used.take(0, 0, 10));
+    EXPECT_FALSE(used.take(9, 2, 10));
+    EXPECT_FALSE(used.take(11, 0, 10));
+    EXPECT_FALSE(used.take(UINT64_MAX, 2, 10));
+    EXPECT_TRUE(used.take(5, 5, 10));
+    EXPECT_FALSE(used.take(9, 1, 10));
+}
+
+// The fault of the fixture's layer after change(Clouds&, LayerRecord&).
+template <class Change>
+std::string layer_fault(Change change) {
+    Asset asset = make_cloud_asset();
+    change(asset.clouds, asset.clouds.records[0]);
+    return tests::fault_of(asset, Checks::structure);
+}
+
+// Of a change that the check of the structure lets pass.
+template <class Change>
+std::string table_fault(Change change) {
+    Asset asset = make_cloud_asset();
+    change(asset.clouds, asset.clouds.records[0]);
+    EXPECT_EQ(tests::fault_of(asset, Checks::structure), "");
+    return tests::fault_of(asset, Checks::full);
+}
+
+// Sets the number that `field`, a reference to it from the record, gives.
+template <class Field>
+void expect_refused(const char* what, Field field, std::initializer_list<float> bad) {
+    for (const float value : bad) {
+        EXPECT_THAT(layer_fault([&](Clouds&, LayerRecord& layer) { field(layer) = value; }),
+                    AllOf(HasSubstr("section CLOU, layer 0: "), HasSubstr(what)))
+            << value;
+    }
+}
+
+TEST(CloudsFile, PlacesOutOfRangeAreRefusedByName) {
+    EXPECT_EQ(layer_fault([](Clouds&, LayerRecord&) {}), "");
+    using Layer = LayerRecord;
+    expect_refused("its base at", [](Layer& l) -> float& { return l.base; },
+                   {-20, -21, kNotANumber, kEndless, 2e9f});
+    expect_refused("its base at", [](Layer& l) -> float& { return l.ground; },
+                   {800, 900, kNotANumber, -kEndless, -2e9f});
+    const std::initializer_list<float> beyond{kNotANumber, kEndless, -2e9f};
+    expect_refused(
+        "its centre", [](Layer& l) -> float& { return l.center[0]; }, beyond);
+    expect_refused(
+        "its centre", [](Layer& l) -> float& { return l.center[1]; }, beyond);
+    expect_refused(
+        "wind", [](Layer& l) -> float& { return l.wind[0]; }, beyond);
+    expect_refused(
+        "wind", [](Layer& l) -> float& { return l.wind[1]; }, beyond);
+    const std::initializer_list<float> not_wide{0, -1, 1e-4f, 2e9f, kNotANumber, kEndless};
+    expect_refused(
+        "m wide", [](Layer& l) -> float& { return l.size[0]; }, not_wide);
+    expect_refused(
+        "m wide", [](Layer& l) -> float& { return l.size[1]; }, not_wide);
+    const std::initializer_list<float> below{-1e-6f, 2e9f, kNotANumber, kEndless};
+    expect_refused(
+        "thickness", [](Layer& l) -> float& { return l.highest; }, below);
+    expect_refused(
+        "haze", [](Layer& l) -> float& { return l.haze; }, below);
+}
+
+TEST(CloudsFile, BandsOutOfRangeAreRefusedByName) {
+    using Layer = LayerRecord;
+    expect_refused("its forward peak of", [](Layer& l) -> float& { return l.peak_angle; },
+                   {-0.1f, 1.5708f, kNotANumber, kEndless});
+    expect_refused("its extinction", [](Layer& l) -> float& { return l.band[1].kappa; },
+                   {-1e-6f, 2e6f, kNotANumber, kEndless});
+    expect_refused("of the light", [](Layer& l) -> float& { return l.band[2].peak_weight; },
+                   {-1e-6f, 1, kNotANumber, kEndless});
+    expect_refused("a mean cosine", [](Layer& l) -> float& { return l.band[0].g; },
+                   {-1, 1, kNotANumber, kEndless});
+    expect_refused("a band has a value", [](Layer& l) -> float& { return l.band[2].reserved; },
+                   {1, kNotANumber});
+}
+
+TEST(CloudsFile, FlagsAndValuesOfLaterVersionsAreRefused) {
+    for (const std::uint32_t flags : {0u, 1u, 2u, 3u}) {
+        EXPECT_EQ(layer_fault([=](Clouds&, LayerRecord& l) { l.flags = flags; }), "");
+    }
+    const char* const later = "only later versions know";
+    EXPECT_THAT(layer_fault([](Clouds&, LayerRecord& l) { l.flags = 4; }), HasSubstr(later));
+    EXPECT_THAT(layer_fault([](Clouds&, LayerRecord& l) { l.reserved[1] = 1; }), HasSubstr(later));
+    EXPECT_THAT(layer_fault([](Clouds& c, LayerRecord& l) { c.records.push_back(l); }),
+                HasSubstr("section CLOU: it has 2 layers"));
+}
+
+TEST(CloudsFile, CountsThatDoNotExistAreRefusedByName) {
+    for (const std::uint32_t side : {0u, kMaxLayerSide + 1, 0xffffffffu}) {
+        EXPECT_THAT(layer_fault([=](Clouds&, LayerRecord& l) { l.columns = side; }),
+                    HasSubstr("its thickness has " + std::to_string(side) + " x 3 cells"));
+        EXPECT_THAT(layer_fault([=](Clouds&, LayerRecord& l) { l.ground_rows = side; }),
+                    HasSubstr("its ground 2 x " + std::to_string(side)));
+    }
+    const auto expect_count = [](const char* what, auto change) {
+        EXPECT_THAT(layer_fault([&](Clouds&, LayerRecord& l) { change(l); }), HasSubstr(what));
+    };
+    expect_count("1 angles", [](LayerRecord& l) { l.phase_angles = 1; });
+    expect_count("0 depths", [](LayerRecord& l) { l.flux_depths = 0; });
+    expect_count("1 cosines", [](LayerRecord& l) { l.flux_cosines = 1; });
+    expect_count("its glow has 1 angles", [](LayerRecord& l) { l.glow_angles = 1; });
+    expect_count("0 numbers of events", [](LayerRecord& l) { l.glow_events = 0; });
+    expect_count("its glow", [](LayerRecord& l) { l.glow_angles = l.glow_events = 0; });
+    expect_count("of the light", [](LayerRecord& l) { l.peak_angle = 0; });
+    expect_count("its glow", [](LayerRecord& l) {
+        l.peak_angle = 0;
+        for (LayerBand& band : l.band)
+            band.peak_weight = 0;
+    });
+    expect_count("1 depths", [](LayerRecord& l) { l.radiance_depths = 1; });
+    expect_count("1 cosines", [](LayerRecord& l) { l.radiance_cosines = 1; });
+    expect_count("0 modes", [](LayerRecord& l) { l.radiance_modes = 0; });
+}
+
+TEST(CloudsFile, PartsBeyondTheirArraysAreRefused) {
+    const auto expect_outside = [](const char* what, auto change) {
+        EXPECT_THAT(layer_fault([&](Clouds&, LayerRecord& l) { change(l); }), HasSubstr(what));
+    };
+    const char* const outside = "lie outside their arrays";
+    expect_outside(outside, [](LayerRecord& l) { l.first_thickness = 1; });
+    expect_outside(outside, [](LayerRecord& l) { l.first_ground = UINT64_MAX; });
+    expect_outside(outside, [](LayerRecord& l) { l.first_value = UINT64_MAX - 100; });
+    expect_outside(outside, [](LayerRecord& l) { ++l.columns; });
+    expect_outside(outside, [](LayerRecord& l) { ++l.ground_rows; });
+    expect_outside(outside, [](LayerRecord& l) { ++l.radiance_modes; });
+    expect_outside(outside, [](LayerRecord& l) { l.phase_angles = 0xffffffffu; });
+    expect_outside("larger than all", [](LayerRecord& l) { l.flux_cosines = 0x40000000u; });
+    EXPECT_THAT(layer_fault([](Clouds& c, LayerRecord&) { c.value.pop_back(); }),
+                HasSubstr(outside));
+    EXPECT_THAT(layer_fault([](Clouds& c, LayerRecord&) { c.thickness.clear(); }),
+                HasSubstr(outside));
+}
+
+TEST(CloudsFile, TablesOutOfRangeAreRefusedByName) {
+    // Tables of the second band begin here; sizes are those of the fixture.
+    const LayerRecord layer = make_cloud_asset().clouds.records[0];
+    const std::size_t phase = layer.band_values(), glow = phase + layer.phase_angles,
+                      t1 = glow + layer.glow_count(), mean_t = t1 + 3 * layer.flux_count(),
+                      reflected = mean_t + layer.flux_depths;
+    const auto expect_fault = [](std::size_t at, float bad, const char* what) {
+        EXPECT_THAT(table_fault([=](Clouds& c, LayerRecord&) { c.value[at] = bad; }),
+                    AllOf(HasSubstr("section CLOU, layer 0: band 1: "), HasSubstr(what)))
+            << bad;
+    };
+    for (const float bad : {kNotANumber, kEndless, -kEndless}) {
+        expect_fault(phase, bad, "the logarithm of its phase function");
+        expect_fault(glow, bad, "its glow");
+        for (std::size_t table = 0; table < 3; ++table) {
+            expect_fault(t1 + table * layer.flux_count(), bad, "a share of its flux");
+        }
+        expect_fault(mean_t, bad, "a share of its flux");
+        expect_fault(reflected, bad, "its tables of radiance");
+        expect_fault(2 * layer.band_values() - 1, bad, "its tables of radiance");
+    }
+    expect_fault(phase, 41, "the logarithm");
+    expect_fault(phase, -101, "the logarithm");
+    expect_fault(glow, -1e-3f, "its glow");
+    expect_fault(t1, -0.01f, "a share");
+    expect_fault(mean_t, 1.01f, "a share");
+    expect_fault(reflected, -2e9f, "its tables of radiance");
+    EXPECT_EQ(table_fault([=](Clouds& c, LayerRecord&) { c.value[t1] = -1e-4f; }), "");
+    EXPECT_THAT(table_fault([](Clouds& c, LayerRecord&) { c.ground[1][3] = 0; }),
+                HasSubstr("the last byte of a colour"));
+}
+
+}  // namespace
+}  // namespace opaline::formats
