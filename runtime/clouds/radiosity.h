@@ -29,7 +29,7 @@ struct Radiosity {
     std::uint32_t passes = 0;                   ///< as done
 };
 
-/// Light between the ground and the base of clouds, two Lambertian planes; clouds.md 3.11. Passes
+/// Light between the ground and the base of clouds, two Lambertian planes [Bouthors2006]. Passes
 /// go on until (rho R)^n / (1 - rho R) < tolerance for the largest products. What is left then is
 /// added as a geometric series, in the shape of the last pass and with the quotient of its energy,
 /// at most kMaxQuotient: exact for even planes. Beyond a grid that does not wrap everything is as

@@ -13,7 +13,7 @@ namespace {
 
 using formats::Rgb;
 
-// K(q) of clouds.md 3.11 for q^2 = x^2 + z^2.
+// K(q), the form factor of parallel planes, for q^2 = x^2 + z^2.
 double kernel(double x, double z, double h) {
     const double sum = h * h + x * x + z * z;
     return h * h / (std::numbers::pi * sum * sum);
@@ -102,7 +102,7 @@ TEST(PlaneGather, PlanesMuchFartherThanTheGridSeeItsMeanOrTheOutside) {
     }
 }
 
-// The form factor of a centred square of side s at distance h, clouds.md 3.11.
+// The form factor of a centred square of side s at distance h.
 TEST(PlaneGather, SquareCloudOverAPointHasItsFormFactor) {
     const PlaneGrid grid{201, 201, 10, 10, 250, false};
     const GatherPlan plan = make_gather_plan(grid);

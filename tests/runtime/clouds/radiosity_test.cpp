@@ -51,7 +51,7 @@ TEST(Radiosity, EvenPlanesHaveTheClosedForm) {
     }
 }
 
-// K(q), clouds.md 3.11, summed over all pairs of cells at their centres: cells are a fifth of h.
+// K(q) of plane_gather.h, summed over all pairs of cells at their centres: cells are a fifth of h.
 TEST(Radiosity, BrokenCloudsAgreeWithSumsOverAllPairs) {
     const PlaneGrid grid{40, 30, 20, 20, 100, false};
     std::vector<RadiosityCell> cells;
