@@ -65,6 +65,7 @@ void draw_pass(PicturePass pass, const DrawScene& scene, const DrawPrograms& pro
     switch (pass) {
         case PicturePass::surfaces:
             return draw_surfaces(scene, programs.surfaces, view);
+        case PicturePass::layers:
         case PicturePass::volumes:
             return;  // the box filter composes them, often once for a whole pixel
         case PicturePass::background:

@@ -5,8 +5,9 @@
 #include <string>
 
 #include "runtime/parallel.h"
-#include "runtime/picture/band.h"
+#include "runtime/picture/layer_pass.h"
 #include "runtime/picture/passes.h"
+#include "runtime/picture/samples.h"
 #include "runtime/picture/volume_pass.h"
 #include "runtime/surface.h"
 #include "runtime/texture.h"
@@ -37,6 +38,8 @@ struct Job {
     std::vector<std::vector<std::uint32_t>> triangles_of_band;
     std::vector<SurfaceMaterial> materials;  // of each primitive
     LitVolumes volumes;
+    const LayerLight* layers = nullptr;
+    bool shows_sky = true;
 };
 
 // The limit keeps sums of samples finite.
@@ -126,22 +129,6 @@ Rgb shade_triangle(const Job& job, const GridTriangle& triangle, double x, doubl
     return tame(shade_surface(job.materials[triangle.primitive], point_at(job, triangle, weight)));
 }
 
-// A band of samples while its passes run: what is nearest, and the colour so far.
-struct Samples {
-    Band band;  ///< depth, and the triangle seen
-    std::vector<Rgb> color;
-
-    // Calls draw(sample, column, row), the last two of the whole grid.
-    template <class Draw>
-    void for_each(Draw draw) const {
-        for (std::uint32_t row = 0; row < band.rows; ++row) {
-            for (std::uint32_t column = 0; column < band.columns; ++column) {
-                draw(std::size_t{row} * band.columns + column, column, band.first_row + row);
-            }
-        }
-    }
-};
-
 void draw_surfaces(const Job& job, std::uint32_t number, Samples& samples) {
     for (const std::uint32_t t : job.triangles_of_band[number]) {
         draw_triangle(samples.band, t, job.triangles[t], job.vertices, job.grid);
@@ -170,36 +157,16 @@ void draw_pass(PicturePass pass, const Job& job, std::uint32_t number, Samples& 
             return draw_surfaces(job, number, samples);
         case PicturePass::background:
             return draw_background(job, samples);
+        case PicturePass::layers:
+            return draw_layers({{*job.layers, job.environment, job.rotation, job.shows_sky},
+                                job.camera,
+                                job.frame,
+                                job.supersampling},
+                               samples.band, samples.color);
         case PicturePass::volumes:
             return draw_volumes({job.volumes, job.camera, job.frame, job.supersampling},
                                 samples.band, samples.color);
     }
-}
-
-void resolve_band(const Job& job, const Samples& samples, Picture& picture) {
-    const std::uint32_t s = job.supersampling;
-    const Band& band = samples.band;
-    const float share = 1.0f / static_cast<float>(s * s);
-    for (std::uint32_t y = 0; y < band.rows / s; ++y) {
-        for (std::uint32_t x = 0; x < picture.width; ++x) {
-            Rgb sum;
-            for (std::uint32_t j = 0; j < s; ++j) {
-                for (std::uint32_t i = 0; i < s; ++i) {
-                    const std::size_t row = std::size_t{y} * s + j;
-                    sum = sum + samples.color[row * band.columns + x * s + i];
-                }
-            }
-            picture.pixel[(std::size_t{band.first_row / s} + y) * picture.width + x] = share * sum;
-        }
-    }
-}
-
-// Rows of samples that a thread works on at once: whole pixels, and few enough that a band stays in
-// the megabytes however wide the picture is.
-std::uint32_t rows_of_band(const SampleGrid& grid, std::uint32_t supersampling) {
-    constexpr std::uint32_t kMostPixels = 16, kMostSamples = 1u << 20;
-    return std::clamp(kMostSamples / (grid.columns * supersampling), 1u, kMostPixels) *
-           supersampling;
 }
 
 void render_band(const Job& job, std::uint32_t number, Picture& picture) {
@@ -211,7 +178,7 @@ void render_band(const Job& job, std::uint32_t number, Picture& picture) {
     for (const PicturePass pass : job.passes) {
         draw_pass(pass, job, number, samples);
     }
-    resolve_band(job, samples, picture);
+    resolve_samples(samples, job.supersampling, picture);
 }
 
 void sort_into_bands(Job& job) {
@@ -226,39 +193,6 @@ void sort_into_bands(Job& job) {
 }
 
 }  // namespace
-
-formats::Status check_camera(const Camera& camera, std::uint32_t supersampling) {
-    const auto refuse = [](const std::string& where, const std::string& fault,
-                           const std::string& remedy) {
-        return formats::make_error(ErrorKind::usage, {}, where, fault, remedy);
-    };
-    if (camera.width < 1 || camera.height < 1 || camera.width > kMaxPictureSize ||
-        camera.height > kMaxPictureSize) {
-        return refuse("picture size",
-                      "found " + std::to_string(camera.width) + "x" +
-                          std::to_string(camera.height) + ", expected 1 to " +
-                          std::to_string(kMaxPictureSize) + " pixels on each side",
-                      "choose another size");
-    }
-    if (supersampling < 1 || supersampling > 8) {
-        return refuse("supersampling",
-                      "found " + std::to_string(supersampling) + ", expected 1 to 8",
-                      "3 is a good choice");
-    }
-    if (!(camera.fov_y > 0.0f && camera.fov_y < 180.0f)) {
-        return refuse("field of view",
-                      "found " + std::to_string(camera.fov_y) +
-                          " degrees, expected more than 0 and less than 180",
-                      "40 is a good choice");
-    }
-    const formats::Vec3 sum = camera.eye + camera.target + camera.up;
-    if (!std::isfinite(sum.x) || !std::isfinite(sum.y) || !std::isfinite(sum.z) ||
-        !std::isfinite(camera.near_plane) || !(camera.near_plane > 0.0f)) {
-        return refuse("camera", "a position is not finite or the near plane is not above 0",
-                      "give finite coordinates");
-    }
-    return formats::ok_status();
-}
 
 formats::Result<Picture> render_software(const AssetView& asset, std::span<const Rgb> radiance,
                                          const formats::Environment& environment,
@@ -294,12 +228,14 @@ formats::Result<Picture> render_software(const AssetView& asset, std::span<const
             .grid = grid,
             .supersampling = s,
             .band_rows = rows_of_band(grid, s),
-            .passes = list_passes(options.background, has_volumes),
+            .passes = list_passes(options.background, has_volumes, options.layers != nullptr),
             .vertices = {},
             .triangles = {},
             .triangles_of_band = {},
             .materials = {},
-            .volumes = {}};
+            .volumes = {},
+            .layers = options.layers,
+            .shows_sky = options.background};
     if (has_volumes) job.volumes = light_volumes(asset.volumes, *options.volumes);
     for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
         job.materials.push_back(

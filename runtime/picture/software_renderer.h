@@ -7,8 +7,10 @@
 #include "formats/opal/environment.h"
 #include "formats/opal/result.h"
 #include "formats/opal/rgb.h"
+#include "runtime/clouds/layer_light.h"
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
+#include "runtime/picture/check_camera.h"
 #include "runtime/picture/picture.h"
 #include "runtime/specular.h"
 #include "runtime/volumes/relight_volumes.h"
@@ -23,6 +25,8 @@ struct SoftwareOptions {
     bool background = true;  ///< false: black where no triangle is seen
     /// The asset's volumes under the light (relight_volumes); nothing: none are drawn.
     const VolumeLight* volumes = nullptr;
+    /// The asset's cloud layer under the light (light_layers); nothing: none is drawn.
+    const LayerLight* layers = nullptr;
 };
 
 /// A picture of the asset in front of its environment, on the CPU.
@@ -34,7 +38,8 @@ struct SoftwareOptions {
 /// bilinearly. Triangles show from both sides; diffuse ones are shaded alike, translucent and
 /// glossy ones face away with one of them unless they are double-sided. Where no triangle is seen
 /// stands the radiance of the environment, turned by `rotation` like the light. Volumes are marched
-/// up to what a sample sees (volume_pass.h), before a black background too. Depth and clipping:
+/// up to what a sample sees (volume_pass.h), before a black background too. A cloud layer stands
+/// with its ground between the eye and that (layer_pass.h). Depth and clipping:
 /// what is nearest, from the near plane on. Passes: passes.h.
 ///
 /// Errors: usage (see check_camera; not one value per vertex or volume), resource (memory).
@@ -43,9 +48,5 @@ formats::Result<Picture> render_software(const formats::AssetView& asset,
                                          const formats::Environment& environment,
                                          const Rotation& rotation, const Camera& camera,
                                          const SoftwareOptions& options = {});
-
-/// What both backends refuse: picture sizes outside [1, kMaxPictureSize], S outside [1, 8], a
-/// field of view outside (0, 180), a near plane that is not positive, non-finite numbers.
-formats::Status check_camera(const Camera& camera, std::uint32_t supersampling);
 
 }  // namespace opaline::runtime

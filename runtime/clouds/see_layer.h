@@ -1,0 +1,40 @@
+#pragma once
+
+#include "formats/opal/environment.h"
+#include "formats/opal/rgb.h"
+#include "runtime/clouds/layer_light.h"
+#include "runtime/clouds/layer_march.h"
+
+namespace opaline::runtime {
+
+/// What a layer adds to a ray that is seen from its origin, and what it leaves.
+struct SeenLayer {
+    formats::Rgb radiance;  ///< its own light, in its haze [W m^-2 sr^-1]
+    /// Light of the suns that droplets scatter by less than the peak's angle, which is taken to go
+    /// straight on: only for rays that end in the sky [W m^-2 sr^-1].
+    formats::Rgb glow;
+    formats::Rgb transmittance{1, 1, 1};      ///< exp(-tau_S): of ground, surfaces, sky
+    formats::Rgb sun_transmittance{1, 1, 1};  ///< exp(-tau): of a sun's disc
+};
+
+/// The layer as a plane slab of the thickness that the ray sees (layer_march.h), whose light is
+/// taken as that of a source: radiance (1 - exp(-tau_S)) / (1 - exp(-kappa_S H / mu_v)) L_slab(H,
+/// mu_v, mu_l), so that an even layer is the slab and edges fade. Looking down L_slab is what the
+/// slab reflects, with the normal of its top in single scattering; looking up what it transmits.
+/// README.md, "Along a ray". Any finite ray gives finite values, not negative.
+SeenLayer see_layer(const LayerLight& light, const LayerRay& ray);
+
+/// A layer, the ground and the environment that lights them; refers to all.
+struct LayerScene {
+    const LayerLight& light;
+    const formats::Environment& environment;
+    const Rotation& rotation;
+    bool shows_sky = true;  ///< false: black stands for the sky and the suns
+};
+
+/// Radiance along a ray to the ground or the sky, or to a surface of that radiance at ray.end where
+/// `surface` is not null and the ground is not in front of it.
+formats::Rgb see_through_layer(const LayerScene& scene, const LayerRay& ray,
+                               const formats::Rgb* surface = nullptr);
+
+}  // namespace opaline::runtime

@@ -1,0 +1,122 @@
+#include "runtime/picture/layer_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "runtime/picture/sample_rays.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Rgb;
+
+LayerRay layer_ray(const LayerPass& pass, const PictureRay& ray, double end) {
+    return {ray.origin, ray.direction, ray.begin, end,
+            static_cast<float>(2 * pass.frame.tan_half_y / pass.camera.height)};
+}
+
+Rgb bounded(Rgb color) {
+    const auto bound = [](float value) { return value > 0 ? std::min(value, 1e35f) : 0.0f; };
+    return {bound(color.r), bound(color.g), bound(color.b)};
+}
+
+Rgb see_sample(const LayerPass& pass, double x, double y, double inverse_distance, Rgb behind) {
+    const PictureRay ray = ray_through(pass.camera, pass.frame, x, y);
+    return bounded(see_through_layer(pass.scene,
+                                     layer_ray(pass, ray, distance_along(ray, inverse_distance)),
+                                     inverse_distance > 0 ? &behind : nullptr));
+}
+
+// Whether a sun's disc may touch the pixel whose centre is (x, y).
+bool is_near_sun(const LayerPass& pass, double x, double y) {
+    const formats::Vec3 direction = view_ray(pass.camera, pass.frame, x, y);
+    const auto pixel = static_cast<float>(2 * pass.frame.tan_half_y / pass.camera.height);
+    return std::ranges::any_of(pass.scene.light.sky.suns, [&](const SkySun& sun) {
+        return length(sun.direction - direction) < 1.1f * sun.angular_radius + 2 * pixel;
+    });
+}
+
+bool agree(const std::array<Rgb, 4>& corner) {
+    const auto differs = [&](float Rgb::*band) {
+        float low = corner[0].*band, high = low;
+        for (const Rgb& c : corner) {
+            low = std::min(low, c.*band);
+            high = std::max(high, c.*band);
+        }
+        return high - low > kCornerTolerance * high;
+    };
+    return !differs(&Rgb::r) && !differs(&Rgb::g) && !differs(&Rgb::b);
+}
+
+// What the corners of pixels along a line between rows see where there are no surfaces, each when
+// it is first asked for.
+class CornerRow {
+  public:
+    CornerRow(const LayerPass& pass, std::size_t count) : pass_(&pass), value_(count) {}
+
+    void move_to(double y) {
+        y_ = y;
+        std::ranges::fill(value_, std::nullopt);
+    }
+    Rgb at(std::size_t x) {
+        if (!value_[x]) value_[x] = see_sample(*pass_, static_cast<double>(x), y_, 0, {});
+        return *value_[x];
+    }
+
+  private:
+    const LayerPass* pass_;
+    std::vector<std::optional<Rgb>> value_;
+    double y_ = 0;
+};
+
+// The mean of a pixel's corners, if they agree.
+std::optional<Rgb> smooth_color(const LayerPass& pass, std::uint32_t x, double row,
+                                CornerRow& above, CornerRow& below) {
+    if (is_near_sun(pass, x + 0.5, row + 0.5)) return std::nullopt;
+    const std::array<Rgb, 4> corner{above.at(x), above.at(x + 1), below.at(x), below.at(x + 1)};
+    if (!agree(corner)) return std::nullopt;
+    return 0.25f * (corner[0] + corner[1] + corner[2] + corner[3]);
+}
+
+void draw_layer_pixel(const LayerPass& pass, const Band& band, std::uint32_t x, std::uint32_t y,
+                      CornerRow& above, CornerRow& below, std::span<Rgb> color) {
+    const std::uint32_t s = pass.supersampling;
+    const double row = static_cast<double>(band.first_row / s) + y;
+    bool sees_surface = false;
+    for_samples(band, s, x, y, [&](std::size_t sample, std::uint32_t, std::uint32_t) {
+        sees_surface = sees_surface || band.inverse_distance[sample] > 0;
+    });
+    if (!sees_surface) {
+        if (const auto smooth = smooth_color(pass, x, row, above, below)) {
+            for_samples(band, s, x, y, [&](std::size_t sample, std::uint32_t, std::uint32_t) {
+                color[sample] = *smooth;
+            });
+            return;
+        }
+    }
+    for_samples(band, s, x, y, [&](std::size_t sample, std::uint32_t i, std::uint32_t j) {
+        color[sample] = see_sample(pass, x + (i + 0.5) / s, row + (j + 0.5) / s,
+                                   band.inverse_distance[sample], color[sample]);
+    });
+}
+
+}  // namespace
+
+void draw_layers(const LayerPass& pass, const Band& band, std::span<Rgb> color) {
+    const std::uint32_t s = pass.supersampling;
+    CornerRow above(pass, band.columns / s + 1), below(pass, band.columns / s + 1);
+    const double first = static_cast<double>(band.first_row / s);
+    above.move_to(first);
+    for (std::uint32_t y = 0; y < band.rows / s; ++y) {
+        below.move_to(first + y + 1);
+        for (std::uint32_t x = 0; x < band.columns / s; ++x) {
+            draw_layer_pixel(pass, band, x, y, above, below, color);
+        }
+        std::swap(above, below);
+    }
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "formats/opal/rgb.h"
+#include "runtime/clouds/see_layer.h"
+#include "runtime/picture/band.h"
+#include "runtime/picture/camera.h"
+
+namespace opaline::runtime {
+
+/// A cloud layer with its ground and sky in a picture.
+struct LayerPass {
+    LayerScene scene;
+    const Camera& camera;
+    CameraFrame frame;
+    std::uint32_t supersampling = 1;  ///< S: the samples of a pixel are S x S
+};
+
+/// Composes layer and ground with what each sample sees: the surface at band.inverse_distance,
+/// whose color stays as far as it is seen, or the sky where that is 0, which replaces the color.
+/// The ground hides what is behind it. Where a pixel sees no surface and its four corners agree to
+/// kCornerTolerance, no sun touches it, and its samples get the mean of the corners. Precondition:
+/// the band holds whole pixels.
+void draw_layers(const LayerPass& pass, const Band& band, std::span<formats::Rgb> color);
+inline constexpr float kCornerTolerance = 0.04f;  ///< of the brightest corner
+
+}  // namespace opaline::runtime
