@@ -25,7 +25,7 @@ MipPyramid<Rgb> decode_ground(const formats::CloudsView& clouds, const LayerReco
                         record.repeats() ? MipBorder::repeat : MipBorder::clamp);
 }
 
-LitSun light_sun(const SkySun& sun, const LayerLight& light) {
+LitSun light_sun(const LayerSun& sun, const LayerLight& light) {
     LitSun lit;
     lit.direction = sun.direction;
     lit.irradiance = sun.irradiance;
@@ -63,7 +63,7 @@ LayerLight light_layers(const formats::CloudsView& clouds, const formats::Enviro
     light.field = make_layer_field(light.record, clouds.thickness_of(light.record), options.time);
     light.albedo = decode_ground(clouds, light.record);
     light.sky = split_sky(environment, rotation);
-    for (const SkySun& sun : light.sky.suns) {
+    for (const LayerSun& sun : light.sky.suns) {
         light.sun.push_back(light_sun(sun, light));
     }
     const GroundCells cells = cut_ground(light, options.threads);

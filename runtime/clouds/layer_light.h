@@ -47,7 +47,7 @@ struct LayerLight {
     LayerField field;
     MipPyramid<formats::Rgb> albedo;  ///< of the ground over the record's size, which does not move
     SkyLight sky;
-    std::vector<LitSun> sun;  ///< kMaxSkySuns at most
+    std::vector<LitSun> sun;  ///< kMaxLayerSuns at most
     LightGrid ground_light;   ///< RG: irradiance on the ground but for T_0 + T_1 of the suns
     LightGrid base_light;     ///< RC: irradiance on the base from the ground
 };

@@ -34,7 +34,7 @@ Rgb see_sample(const LayerPass& pass, double x, double y, double inverse_distanc
 bool is_near_sun(const LayerPass& pass, double x, double y) {
     const formats::Vec3 direction = view_ray(pass.camera, pass.frame, x, y);
     const auto pixel = static_cast<float>(2 * pass.frame.tan_half_y / pass.camera.height);
-    return std::ranges::any_of(pass.scene.light.sky.suns, [&](const SkySun& sun) {
+    return std::ranges::any_of(pass.scene.light.sky.suns, [&](const LayerSun& sun) {
         return length(sun.direction - direction) < 1.1f * sun.angular_radius + 2 * pixel;
     });
 }
