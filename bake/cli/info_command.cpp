@@ -8,6 +8,7 @@
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
+#include "bake/cli/layer_info.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/volume_facts.h"
 #include "formats/opal/terms.h"
@@ -74,6 +75,7 @@ Json describe(const OpenedAsset& asset) {
                                    {"bytes", facts.bytes},
                                    {"bytes_per_active_voxel", facts.bytes_per_active_voxel()}});
     }
+    info["layers"] = layers_json(view.clouds);
     info["sections"] = Json::array();
     for (const formats::SectionEntry& section : asset.loaded.sections) {
         info["sections"].push_back({{"id", formats::section_name(section.id)},
@@ -225,6 +227,7 @@ int run(const InfoCommand& options) {
                view.transport.code_bits);
     print_provenance(info["provenance"]);
     print_volumes(view.volumes);
+    print_layers(view.clouds);
     if (!view.primitives.empty()) {
         fmt::print("primitives\n");
     }

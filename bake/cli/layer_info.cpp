@@ -1,0 +1,98 @@
+#include "bake/cli/layer_info.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "bake/cli/messages.h"
+
+namespace opaline::cli {
+namespace {
+
+// [m]
+float largest_thickness(const formats::CloudsView& clouds, const formats::LayerRecord& layer) {
+    const auto codes = clouds.thickness_of(layer);
+    return layer.highest * static_cast<float>(*std::max_element(codes.begin(), codes.end())) /
+           65535;
+}
+
+// Of all that belongs to it, decoded.
+std::uint64_t bytes_of_layer(const formats::LayerRecord& layer) {
+    return sizeof layer + layer.thickness_count() * sizeof(std::uint16_t) +
+           layer.ground_count() * 4 + layer.value_count() * sizeof(float);
+}
+
+template <class Get>
+nlohmann::ordered_json each_band(const formats::LayerRecord& layer, Get get) {
+    auto values = nlohmann::ordered_json::array();
+    for (const formats::LayerBand& band : layer.band)
+        values.push_back(get(band));
+    return values;
+}
+
+bool has_multiple(const formats::LayerRecord& layer) {
+    return layer.radiance_count() > 0;
+}
+
+}  // namespace
+
+nlohmann::ordered_json layers_json(const formats::CloudsView& clouds) {
+    auto layers = nlohmann::ordered_json::array();
+    for (const formats::LayerRecord& layer : clouds.records) {
+        layers.push_back(
+            {{"base", layer.base},
+             {"ground", layer.ground},
+             {"center", layer.center},
+             {"size", layer.size},
+             {"wind", layer.wind},
+             {"repeats", layer.repeats()},
+             {"largest_thickness", largest_thickness(clouds, layer)},
+             {"thickness_cells", {layer.columns, layer.rows}},
+             {"ground_cells", {layer.ground_columns, layer.ground_rows}},
+             {"haze", layer.haze},
+             {"kappa", each_band(layer, [](const auto& band) { return band.kappa; })},
+             {"peak_angle", layer.peak_angle},
+             {"peak_weight", each_band(layer, [](const auto& band) { return band.peak_weight; })},
+             {"g", each_band(layer, [](const auto& band) { return band.g; })},
+             {"multiple_scattering", has_multiple(layer)},
+             {"radiosity", layer.has_radiosity()},
+             {"tables",
+              {{"phase", layer.phase_angles},
+               {"glow", {layer.glow_angles, layer.glow_events}},
+               {"flux", {layer.flux_depths, layer.flux_cosines}},
+               {"radiance",
+                {layer.radiance_depths, layer.radiance_cosines, layer.radiance_modes}}}},
+             {"bytes", bytes_of_layer(layer)}});
+    }
+    return layers;
+}
+
+void print_layers(const formats::CloudsView& clouds) {
+    if (!clouds.empty()) {
+        fmt::print("cloud layers\n");
+    }
+    for (std::size_t i = 0; i < clouds.records.size(); ++i) {
+        const formats::LayerRecord& layer = clouds.records[i];
+        const auto& [r, g, b] = layer.band;
+        fmt::print(
+            "  {:>3}  base at {:g} m over ground at {:g} m, {:g} x {:g} m{}, up to {:.4g} m "
+            "thick\n",
+            i, layer.base, layer.ground, layer.size[0], layer.size[1],
+            layer.repeats() ? " repeated" : "", largest_thickness(clouds, layer));
+        fmt::print(
+            "       extinction {:.4g}, {:.4g}, {:.4g} 1/m, {:.1f} % of it within {:.2g} rad\n",
+            r.kappa, g.kappa, b.kappa, 100 * g.peak_weight, layer.peak_angle);
+        fmt::print(
+            "       orders: {}; {} x {} cells, ground {} x {}{}\n"
+            "       tables: phase {}, glow {} x {}, flux {} x {}, radiance {} x {} x {}; {}\n",
+            has_multiple(layer) ? "0, 1, and 2 or more" : "0 and 1", layer.columns, layer.rows,
+            layer.ground_columns, layer.ground_rows,
+            layer.has_radiosity() ? ", light between ground and base" : "", layer.phase_angles,
+            layer.glow_angles, layer.glow_events, layer.flux_depths, layer.flux_cosines,
+            layer.radiance_depths, layer.radiance_cosines, layer.radiance_modes,
+            format_bytes(static_cast<double>(bytes_of_layer(layer))));
+    }
+}
+
+}  // namespace opaline::cli

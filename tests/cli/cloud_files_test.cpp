@@ -1,0 +1,89 @@
+// Files that hold a cloud layer and no vertex, as users meet them.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "formats/opal/write_opal.h"
+#include "tests/cli/print_json.h"
+#include "tests/cli/small_scene.h"
+#include "tests/formats/opal/cloud_fixture.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string write_clouds(const SmallScene& small, const formats::Asset& asset) {
+    const std::string path = small.path("clouds.opal");
+    auto file = formats::AtomicFile::create(path);
+    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    return path;
+}
+
+TEST(CloudFiles, InfoListsTheLayer) {
+    SmallScene small;
+    const formats::Asset asset = make_cloud_asset();
+    const std::string file = write_clouds(small, asset);
+    const Outcome text = run_opaline({"info", file});
+    ASSERT_EQ(text.exit_code, 0) << text.err;
+    EXPECT_THAT(text.out,
+                AllOf(HasSubstr("cloud layers\n    0  base at 800 m over ground at -20 m, "
+                                "4000 x 3000 m, up to "),
+                      HasSubstr("orders: 0, 1, and 2 or more"), HasSubstr("CLOU"),
+                      Not(HasSubstr("primitives"))));
+    const nlohmann::json info = print_json("info", {file, "--json"});
+    ASSERT_EQ(info["layers"].size(), 1u);
+    const nlohmann::json& layer = info["layers"][0];
+    EXPECT_EQ(layer["base"], 800);
+    EXPECT_EQ(layer["ground"], -20);
+    EXPECT_EQ(layer["size"], nlohmann::json({4000, 3000}));
+    EXPECT_EQ(layer["wind"], nlohmann::json({5, -2.5}));
+    EXPECT_GT(layer["largest_thickness"], 125);
+    EXPECT_LE(layer["largest_thickness"], 250);
+    EXPECT_EQ(layer["kappa"][2], 0.046f);
+    EXPECT_EQ(layer["multiple_scattering"], true);
+    EXPECT_EQ(layer["repeats"], false);
+    EXPECT_EQ(layer["tables"]["flux"], nlohmann::json({4, 3}));
+    EXPECT_EQ(layer["tables"]["radiance"], nlohmann::json({2, 3, 2}));
+    EXPECT_EQ(layer["bytes"], 176 + 2 * 12 + 4 * 6 + 4 * asset.clouds.value.size());
+    EXPECT_TRUE(info["volumes"].empty() && info["primitives"].empty());
+
+    const formats::Asset single = make_cloud_asset({.has_radiance = false});
+    EXPECT_THAT(run_opaline({"info", write_clouds(small, single)}).out,
+                HasSubstr("orders: 0 and 1;"));
+}
+
+TEST(CloudFiles, VerifyAcceptsSoundOnesAndNamesFaults) {
+    SmallScene small;
+    formats::Asset asset = make_cloud_asset();
+    EXPECT_EQ(run_opaline({"verify", write_clouds(small, asset)}).exit_code, 0);
+    asset.clouds.value.back() = 1e30f;
+    const Outcome damaged = run_opaline({"verify", write_clouds(small, asset)});
+    EXPECT_EQ(damaged.exit_code, 1);
+    EXPECT_THAT(damaged.err,
+                HasSubstr("section CLOU, layer 0: band 2: a value of its tables of radiance"));
+}
+
+TEST(CloudFiles, EveryCommandThatReadsOneEndsWellWithoutAnyVertex) {
+    SmallScene small;
+    const std::string file = write_clouds(small, make_cloud_asset());
+    const Outcome table =
+        run_opaline({"relight", file, "--light", "studio", "-o", small.path("o.csv")});
+    EXPECT_EQ(table.exit_code, 0) << table.err;
+    EXPECT_THAT(read_text(small.path("o.csv")), HasSubstr("primitive,vertex,r,g,b"));
+    for (const char* output : {"o.ply", "o.exr", "o.png"}) {
+        const Outcome other =
+            run_opaline({"relight", file, "--light", "white", "-o", small.path(output)});
+        EXPECT_LE(other.exit_code, 2) << other.err;
+    }
+    const Outcome picture =
+        run_opaline({"render", file, "--light", "studio", "--backend", "cpu", "--size", "16x12",
+                     "--eye", "0,900,0", "--target", "0,1000,500", "-o", small.path("p.exr")});
+    EXPECT_LE(picture.exit_code, 2) << picture.err;
+}
+
+}  // namespace
+}  // namespace opaline::tests
