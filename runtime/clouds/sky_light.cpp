@@ -44,12 +44,12 @@ Moment moment_above_horizon(double sine, double r) {
 }
 
 // A disc as a sun; nothing if it does not reach above the horizon. `irradiance` facing all of it.
-std::optional<SkySun> raise_sun(Vec3 direction, Rgb irradiance, float radius) {
+std::optional<LayerSun> raise_sun(Vec3 direction, Rgb irradiance, float radius) {
     const auto r = static_cast<double>(radius);
     const Moment moment = moment_above_horizon(static_cast<double>(direction.y), r);
     const double facing = std::hypot(moment.up, moment.across);
     const auto share = static_cast<float>(facing / (pi * std::pow(std::sin(r), 2)));
-    SkySun sun{direction, share * irradiance, radius};
+    LayerSun sun{direction, share * irradiance, radius};
     if (!(moment.up > 0) || !(formats::luminance(sun.irradiance) > 0)) return std::nullopt;
     const double level =
         std::hypot(static_cast<double>(direction.x), static_cast<double>(direction.z));
@@ -69,7 +69,7 @@ Rgb disc_irradiance(const formats::DistantDisc& disc) {
 // Suns of the discs; what remains of them is added to the sky's irradiance.
 void add_discs(const Environment& environment, const Rotation& rotation, SkyLight& sky) {
     struct Candidate {
-        SkySun sun;
+        LayerSun sun;
         std::uint32_t disc;
     };
     std::vector<Candidate> above;
@@ -83,7 +83,7 @@ void add_discs(const Environment& environment, const Rotation& rotation, SkyLigh
         return formats::luminance(a.sun.irradiance) > formats::luminance(b.sun.irradiance);
     });
     for (const Candidate& candidate : above) {
-        if (sky.suns.size() < kMaxSkySuns) {
+        if (sky.suns.size() < kMaxLayerSuns) {
             sky.suns.push_back(candidate.sun);
             sky.sun_discs.push_back(candidate.disc);
         } else {
@@ -107,7 +107,7 @@ Rgb peak_part(const SkyLight& sky, Rgb radiance, Vec3 direction) {
                                                       : Rgb{};
 }
 
-Rgb map_rest(const SkyLight& sky, Rgb radiance, Vec3 direction) {
+Rgb without_peak(const SkyLight& sky, Rgb radiance, Vec3 direction) {
     return radiance + -1.0f * peak_part(sky, radiance, direction);
 }
 
@@ -117,7 +117,7 @@ Rgb rest_irradiance(const Environment& map, const Rotation& rotation, const SkyL
     for_cells(map, [&](Rgb radiance, Vec3 direction, double solid_angle) {
         const Vec3 world = rotation.world_from_light(direction);
         if (!(world.y > 0)) return;
-        const Rgb rest = map_rest(sky, radiance, world);
+        const Rgb rest = without_peak(sky, radiance, world);
         const double weight = solid_angle * static_cast<double>(world.y);
         sum[0] += weight * static_cast<double>(rest.r);
         sum[1] += weight * static_cast<double>(rest.g);
@@ -137,8 +137,7 @@ Rgb mean_near_horizon(const Environment& map, const Rotation& rotation, const Sk
             const double phi = 2 * pi * (i + 0.5) / kTurns;
             const Vec3 world{static_cast<float>(across * std::cos(phi)), static_cast<float>(y),
                              static_cast<float>(across * std::sin(phi))};
-            const Rgb rest =
-                map_rest(sky, formats::sample_map(map, rotation.light_from_world(world)), world);
+            const Rgb rest = map_rest(sky, map, rotation, world);
             sum[0] += static_cast<double>(rest.r);
             sum[1] += static_cast<double>(rest.g);
             sum[2] += static_cast<double>(rest.b);
@@ -171,10 +170,16 @@ SkyLight split_sky(const Environment& environment, const Rotation& rotation) {
     return sky;
 }
 
+Rgb map_rest(const SkyLight& sky, const Environment& environment, const Rotation& rotation,
+             Vec3 direction) {
+    return without_peak(sky, formats::sample_map(environment, rotation.light_from_world(direction)),
+                        direction);
+}
+
 Rgb rest_radiance(const SkyLight& sky, const Environment& environment, const Rotation& rotation,
                   Vec3 direction) {
     const Vec3 light = rotation.light_from_world(direction);
-    Rgb rest = map_rest(sky, formats::sample_map(environment, light), direction);
+    Rgb rest = map_rest(sky, environment, rotation, direction);
     for (std::uint32_t i = 0; i < environment.discs.size(); ++i) {
         if (std::ranges::find(sky.sun_discs, i) == sky.sun_discs.end() &&
             lies_in(environment.discs[i], light)) {

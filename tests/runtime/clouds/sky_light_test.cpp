@@ -59,7 +59,7 @@ Rgb horizontal_irradiance(const Function& radiance, int rings = 500) {
 
 Rgb whole_irradiance(const SkyLight& sky) {
     Rgb sum = sky.irradiance;
-    for (const SkySun& sun : sky.suns)
+    for (const LayerSun& sun : sky.suns)
         sum = sum + sun.direction.y * sun.irradiance;
     return sum;
 }
@@ -141,7 +141,7 @@ TEST(SkyLight, SetsContinuously) {
                 split_sky(environment, tilt(pi / 2 + (3.0 * i / steps - 1.5) * radius));
             const Rgb now = whole_irradiance(sky);
             EXPECT_NEAR(now.g, before.g, 0.3 * radius * whole + 0.01 * before.g);
-            for (const SkySun& sun : sky.suns)
+            for (const LayerSun& sun : sky.suns)
                 EXPECT_GT(sun.direction.y, 0);
             has_set = sky.suns.empty();
             before = now;
@@ -158,7 +158,7 @@ TEST(SkyLight, KeepsTheStrongestDiscsAndAddsOthersToTheSky) {
     }
     light.discs.push_back({at_elevation(-30), 0.02f, {1e5f, 1e5f, 1e5f}});
     const SkyLight sky = split_sky(light, {});
-    ASSERT_EQ(sky.suns.size(), kMaxSkySuns);
+    ASSERT_EQ(sky.suns.size(), kMaxLayerSuns);
     EXPECT_EQ(sky.sun_discs, (std::vector<std::uint32_t>{1, 2}));
     const double weak = 100 * pi * std::pow(std::sin(0.02), 2) * 0.5;
     EXPECT_NEAR(sky.irradiance.r, pi + weak, 2e-3);
