@@ -113,8 +113,9 @@ inline formats::Clouds make_test_clouds(
             const double q = event / (record.glow_events - 1.0);
             for (std::uint32_t angle = 0; angle < record.glow_angles; ++angle) {
                 const double s = angle / (record.glow_angles - 1.0);
-                band.push_back(static_cast<float>(bake::forward_glow(
-                    split, moments, 12 * q * q, 4 * layer.droplets.peak_angle * s * s)));
+                const double glow = bake::forward_glow(split, moments, 12 * q * q,
+                                                       4 * layer.droplets.peak_angle * s * s);
+                band.push_back(static_cast<float>(std::max(0.0, glow)));  // noise of the series
             }
         }
     }
