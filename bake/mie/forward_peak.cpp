@@ -60,10 +60,11 @@ double rest_extinction(const PeakSplit& split, double kappa) {
     return (1 - split.weight) * kappa;
 }
 
-double forward_glow(const PeakSplit& split, std::span<const double> moments, double events,
-                    double angle) {
+std::vector<double> forward_glow(const PeakSplit& split, std::span<const double> moments,
+                                 double events, std::span<const double> angles) {
+    std::vector<double> glow(angles.size(), 0.0);
     if (split.weight <= 0 || !(events > 0)) {
-        return 0;
+        return glow;
     }
     const double once = events * std::exp(-events), share = scattered_share(0, events);
     std::vector<double> rest;
@@ -71,7 +72,15 @@ double forward_glow(const PeakSplit& split, std::span<const double> moments, dou
     for (const double moment : moments) {
         rest.push_back(share * moment_after_many(moment, events) - once * moment);
     }
-    return once * eval_table(split.peak, angle) + eval_zonal(rest, std::cos(angle));
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+        glow[i] = once * eval_table(split.peak, angles[i]) + eval_zonal(rest, std::cos(angles[i]));
+    }
+    return glow;
+}
+
+double forward_glow(const PeakSplit& split, std::span<const double> moments, double events,
+                    double angle) {
+    return forward_glow(split, moments, events, std::span(&angle, 1)).front();
 }
 
 SelfConvolution convolve_with_itself(const AngularTable& phase, unsigned moments,

@@ -34,6 +34,10 @@ double rest_extinction(const PeakSplit& split, double kappa);
 double forward_glow(const PeakSplit& split, std::span<const double> moments, double events,
                     double angle);
 
+/// The same at many angles, the moments' factors being computed once.
+std::vector<double> forward_glow(const PeakSplit& split, std::span<const double> moments,
+                                 double events, std::span<const double> angles);
+
 /// A phase function convolved with itself: directions after two scatterings.
 struct SelfConvolution {
     AngularTable table;   ///< integrates to 1 [1/sr]

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/base/ordered_parallel.h"
 #include "bake/slab/solve_radiance.h"
 #include "bake/slab/solve_slab.h"
 #include "bake/slab/table_place.h"
@@ -24,36 +25,42 @@ TablePlace place_cosine(double cosine, std::size_t count) {
 
 }  // namespace
 
-RadianceTable make_radiance_table(const SlabMedium& medium, RadianceTableSize size, int streams) {
+RadianceTable make_radiance_table(const SlabMedium& medium, RadianceTableSize size, int streams,
+                                  const Context& context) {
     assert(size.depths >= 2 && size.cosines >= 2 && size.modes >= 1);
     SlabMedium conservative = medium;
     conservative.albedo = 1;
-    SlabRadianceRequest request;
-    request.streams = streams;
-    request.modes = static_cast<unsigned>(size.modes);
-    request.first_order = 2;
+    SlabRadianceRequest all_rows;
+    all_rows.streams = streams;
+    all_rows.modes = static_cast<unsigned>(size.modes);
+    all_rows.first_order = 2;
     for (std::size_t j = 0; j < size.cosines; ++j) {
         const double s = static_cast<double>(j) / static_cast<double>(size.cosines - 1);
-        request.view.push_back(std::max(kLeastTableCosine, s * s * (3 - 2 * s)));
+        all_rows.view.push_back(std::max(kLeastTableCosine, s * s * (3 - 2 * s)));
     }
-    request.lights = request.view;
+    all_rows.lights = all_rows.view;
     RadianceTable table;
     table.size = size;
     const std::size_t layer = size.modes * size.cosines * size.cosines;
     // Row 0 is the limit of thin layers: twice or more is nothing to once.
     table.reflected.assign(layer, 0);
     table.transmitted.assign(layer, 0);
-    for (std::size_t i = 1; i < size.depths; ++i) {
-        request.optical_depth = depth_of_node(i, size.depths, kMaxSlabDepth);
-        const SlabRadiance slab = solve_slab_radiance(conservative, request).front();
-        for (std::size_t at = 0; at < layer; ++at) {
-            const double light = request.lights[at % size.cosines];
-            const double view = request.view[at / size.cosines % size.cosines];
-            const double shape = horizon_shape(request.optical_depth, light, view);
-            table.reflected.push_back(static_cast<float>(slab.reflected[at] / shape));
-            table.transmitted.push_back(static_cast<float>(slab.transmitted[at] / shape));
-        }
-    }
+    for_each_block_in_order(
+        size.depths - 1, 1, context,
+        [&](Range row) {
+            SlabRadianceRequest request = all_rows;
+            request.optical_depth = depth_of_node(row.begin + 1, size.depths, kMaxSlabDepth);
+            return solve_slab_radiance(conservative, request).front();
+        },
+        [&](Range, const SlabRadiance& slab) {
+            for (std::size_t at = 0; at < layer; ++at) {
+                const double light = all_rows.lights[at % size.cosines];
+                const double view = all_rows.view[at / size.cosines % size.cosines];
+                const double shape = horizon_shape(slab.optical_depth, light, view);
+                table.reflected.push_back(static_cast<float>(slab.reflected[at] / shape));
+                table.transmitted.push_back(static_cast<float>(slab.transmitted[at] / shape));
+            }
+        });
     return table;
 }
 

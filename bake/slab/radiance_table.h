@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "bake/base/context.h"
 #include "bake/slab/slab_medium.h"
 
 namespace opaline::bake {
@@ -26,10 +27,11 @@ struct RadianceTable {
 inline constexpr double kLeastTableCosine = 1e-3;
 
 /// By adding and doubling with as many `streams`; the albedo of `medium` counts as 1. A few
-/// seconds. Error of droplets of 7 um without their forward peak, eight modes: 1 % of the RMS
+/// seconds of one thread; the same bits for any number of threads. Lacks rows once the context is
+/// cancelled. Error of droplets of 7 um without their forward peak, eight modes: 1 % of the RMS
 /// radiance of a layer, for light up to 80 degrees from the normal (tests/bench/RESULTS.md).
 RadianceTable make_radiance_table(const SlabMedium& medium, RadianceTableSize size = {},
-                                  int streams = 24);
+                                  int streams = 24, const Context& context = {});
 
 /// Radiance of light scattered twice or more over that of a beam of irradiance 1 on a plane facing
 /// it [1/sr], by linear interpolation: depth >= 0, cosines of light and view in [0, 1], `azimuth`

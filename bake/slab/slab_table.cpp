@@ -4,39 +4,46 @@
 #include <cassert>
 #include <cmath>
 
+#include "bake/base/ordered_parallel.h"
 #include "bake/slab/solve_slab.h"
 #include "bake/slab/table_place.h"
 
 namespace opaline::bake {
-SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size, int streams) {
+SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size, int streams,
+                          const Context& context) {
     assert(size.depths >= 2 && size.cosines >= 2);
     SlabMedium conservative = medium;
     conservative.albedo = 1;
     constexpr unsigned kOrders = 3;
-    SlabRequest request{0, 0, {}, streams, kOrders};
+    SlabRequest all_rows{0, 0, {}, streams, kOrders};
     for (std::size_t j = 0; j < size.cosines; ++j) {
         const double root = static_cast<double>(j) / static_cast<double>(size.cosines - 1);
-        request.cosine.push_back(std::max(kMinSlabCosine, root * root));
+        all_rows.cosine.push_back(std::max(kMinSlabCosine, root * root));
     }
     SlabTable table;
     table.size = size;
-    for (std::size_t i = 0; i < size.depths; ++i) {
-        request.optical_depth = depth_of_node(i, size.depths, kMaxSlabDepth);
-        const SlabSolution slab = solve_slab(conservative, request).front();
-        // Orders are good to 1e-10: in row 0, and where they are nearly none, that is more than
-        // all.
-        const auto order_share = [&](double share) {
-            return i > 0 ? static_cast<float>(std::max(0.0, share)) : 0.0f;
-        };
-        for (std::size_t j = 0; j < size.cosines; ++j) {
-            table.t1.push_back(order_share(slab.order[1].transmittance[j]));
-            table.t2.push_back(order_share(slab.order[2].transmittance[j]));
-            table.t_ms.push_back(static_cast<float>(slab.total.transmittance[j]));
-            table.r1.push_back(order_share(slab.order[1].reflectance[j]));
-            table.r2.push_back(order_share(slab.order[2].reflectance[j]));
-        }
-        table.mean_t.push_back(static_cast<float>(slab.total.mean_transmittance));
-    }
+    for_each_block_in_order(
+        size.depths, 1, context,
+        [&](Range row) {
+            SlabRequest request = all_rows;
+            request.optical_depth = depth_of_node(row.begin, size.depths, kMaxSlabDepth);
+            return solve_slab(conservative, request).front();
+        },
+        [&](Range row, const SlabSolution& slab) {
+            // Orders are good to 1e-10: in row 0, and where they are nearly none, that is more
+            // than all.
+            const auto order_share = [&](double share) {
+                return row.begin > 0 ? static_cast<float>(std::max(0.0, share)) : 0.0f;
+            };
+            for (std::size_t j = 0; j < size.cosines; ++j) {
+                table.t1.push_back(order_share(slab.order[1].transmittance[j]));
+                table.t2.push_back(order_share(slab.order[2].transmittance[j]));
+                table.t_ms.push_back(static_cast<float>(slab.total.transmittance[j]));
+                table.r1.push_back(order_share(slab.order[1].reflectance[j]));
+                table.r2.push_back(order_share(slab.order[2].reflectance[j]));
+            }
+            table.mean_t.push_back(static_cast<float>(slab.total.mean_transmittance));
+        });
     return table;
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "bake/base/context.h"
 #include "bake/slab/order_shares.h"
 #include "bake/slab/slab_medium.h"
 
@@ -23,8 +24,10 @@ struct SlabTable {
 };
 
 /// By adding and doubling with as many `streams` (solve_slab); the albedo of `medium` counts as 1.
-/// Row 0 is exactly T_ms = 1 and no scattering. About a second for 64 x 32 and 16 streams.
-SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size = {}, int streams = 16);
+/// Row 0 is exactly T_ms = 1 and no scattering. About a second of one thread for 64 x 32 and 16
+/// streams; the same bits for any number of threads. Lacks rows once the context is cancelled.
+SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size = {}, int streams = 16,
+                          const Context& context = {});
 
 /// All shares, of sum 1, by linear interpolation along both axes; depth >= 0, cosine in [0, 1].
 OrderShares eval_slab_table(const SlabTable& table, double depth, double cosine);

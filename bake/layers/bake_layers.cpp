@@ -1,0 +1,111 @@
+#include "bake/layers/bake_layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bake/layers/layer_knobs.h"
+#include "bake/layers/layer_tables.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr double kMostCode = 65535;
+/// Contrast falls by e^-(haze distance); at the visibility it is 5 %.
+const double kVisibleDepth = std::log(20.0);
+
+float as_float(double value) {
+    return static_cast<float>(value);
+}
+
+formats::LayerRecord make_record(const formats::CloudLayer& layer, const LayerLayout& layout,
+                                 const DropletBands& bands, const LayerTableSizes& sizes) {
+    formats::LayerRecord record;
+    record.base = as_float(layer.base);
+    record.ground = as_float(layer.ground);
+    record.center = {as_float(layer.center.x), as_float(layer.center.y)};
+    record.size = {as_float(layer.size.x), as_float(layer.size.y)};
+    record.wind = {as_float(layer.wind.x), as_float(layer.wind.y)};
+    record.highest = *std::ranges::max_element(layer.thickness);
+    record.peak_angle = as_float(bands[1].split.angle);
+    record.haze = layer.visibility > 0 ? as_float(kVisibleDepth / layer.visibility) : 0;
+    record.flags = (layer.repeats ? formats::LayerRecord::kRepeat : 0) |
+                   (layout.radiosity ? formats::LayerRecord::kRadiosity : 0);
+    record.columns = layer.columns;
+    record.rows = layer.rows;
+    record.ground_columns = layer.ground_columns;
+    record.ground_rows = layer.ground_rows;
+    record.phase_angles = sizes.phase_angles;
+    if (record.peak_angle > 0) {
+        record.glow_angles = sizes.glow_angles;
+        record.glow_events = sizes.glow_events;
+    }
+    record.flux_depths = static_cast<std::uint32_t>(sizes.flux.depths);
+    record.flux_cosines = static_cast<std::uint32_t>(sizes.flux.cosines);
+    if (layout.multiple) {
+        record.radiance_depths = static_cast<std::uint32_t>(sizes.radiance.depths);
+        record.radiance_cosines = static_cast<std::uint32_t>(sizes.radiance.cosines);
+        record.radiance_modes = static_cast<std::uint32_t>(sizes.radiance.modes);
+    }
+    for (std::size_t band = 0; band < bands.size(); ++band) {
+        record.band[band].kappa = as_float(bands[band].kappa);
+        record.band[band].peak_weight = as_float(bands[band].split.weight);
+        record.band[band].g = as_float(bands[band].optics.g);
+    }
+    return record;
+}
+
+void append_pictures(const formats::CloudLayer& layer, formats::LayerRecord& record,
+                     formats::Clouds& clouds) {
+    record.first_thickness = clouds.thickness.size();
+    const double scale = kMostCode / static_cast<double>(record.highest);
+    for (const float thickness : layer.thickness) {
+        clouds.thickness.push_back(
+            static_cast<std::uint16_t>(std::lround(scale * static_cast<double>(thickness))));
+    }
+    record.first_ground = clouds.ground.size();
+    clouds.ground.insert(clouds.ground.end(), layer.ground_albedo.begin(),
+                         layer.ground_albedo.end());
+}
+
+}  // namespace
+
+RadiusSampling radius_sampling(const Knobs& knobs) {
+    // With fewer radii than this, small droplets show the ripples of single spheres.
+    constexpr unsigned kLeast = 100, kMost = 8000;
+    return {knobs[kCloudStep], kLeast, kMost};
+}
+
+formats::Result<BakedLayers> bake_layers(const LayerJob& job, const Context& context,
+                                         StageLog& log) {
+    const LayerTableSizes sizes = layer_table_sizes(job.knobs);
+    BakedLayers baked;
+    for (const LayerLayout& layout : job.layouts) {
+        const formats::CloudLayer& layer = job.scene.layers[layout.layer];
+        auto droplets = run_stage(log, "droplets of clouds", "cloud", [&](std::uint64_t&) {
+            return scatter_bands(layer, radius_sampling(job.knobs), context);
+        });
+        if (!droplets) {
+            return std::move(droplets).error();
+        }
+        formats::LayerRecord record = make_record(layer, layout, *droplets, sizes);
+        append_pictures(layer, record, baked.clouds);
+        record.first_value = baked.clouds.value.size();
+        run_stage(log, "tables of clouds", "cloud", [&](std::uint64_t&) {
+            for (const DropletBand& band : *droplets) {
+                const auto values = make_band_tables(band, sizes, layout.multiple, context);
+                baked.clouds.value.insert(baked.clouds.value.end(), values.begin(), values.end());
+            }
+            return true;
+        });
+        if (context.cancelled()) {
+            return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
+                                       "nothing was written");
+        }
+        baked.clouds.records.push_back(record);
+        baked.droplets.push_back(std::move(*droplets));
+    }
+    return baked;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "bake/plan/bake_plan.h"
+#include "bake/plan/knob.h"
+#include "bake/plan/knobs.h"
+#include "bake/slab/radiance_table.h"
+#include "bake/slab/slab_table.h"
+
+namespace opaline::bake {
+
+namespace layer_knobs {
+inline bool is_cloudy(const RowLayout&, std::span<const PlanEntry> decisions) {
+    return std::ranges::any_of(decisions, [](const PlanEntry& entry) {
+        return entry.on && entry.subject.kind == Subject::Kind::layer;
+    });
+}
+inline constexpr const char* kWhyClear = "no cloud layer is seen";
+// The self-check measures some 1.5 % with draft, 0.5 % with preview and 0.3 % with production.
+inline double step_for(double error) {
+    return error >= 0.03 ? 0.3 : error >= 0.01 ? 0.1 : 0.03;
+}
+inline double nodes_for(double error) {
+    return error >= 0.03 ? 12 : error >= 0.01 ? 18 : error >= 0.005 ? 24 : 32;
+}
+}  // namespace layer_knobs
+
+/// How finely the radii of droplets are sampled.
+inline constexpr KnobSpec kCloudStep{
+    .name = "cloud_step",
+    .option = "--cloud-step",
+    .placeholder = "X",
+    .help =
+        "step of the size parameter, 2 pi radius / wavelength, between the droplets of a cloud "
+        "layer of which phase functions are means; default as the quality says",
+    .lowest = 0.01,
+    .highest = 2,
+    .whole = false,
+    .preset = {0.3, 0.1, 0.03, 0.02},
+    .for_target = layer_knobs::step_for,
+    .matters = layer_knobs::is_cloudy,
+    .why_idle = layer_knobs::kWhyClear};
+
+/// Size of the tables of a layer.
+inline constexpr KnobSpec kCloudNodes{
+    .name = "cloud_nodes",
+    .option = "--cloud-nodes",
+    .placeholder = "N",
+    .help =
+        "cosines of light and of view that a cloud layer's table of radiance has; numbers of "
+        "its depths and azimuth modes, and of streams, follow; default as the quality says",
+    .lowest = 8,
+    .highest = 48,
+    .preset = {12, 18, 24, 32},
+    .for_target = layer_knobs::nodes_for,
+    .matters = layer_knobs::is_cloudy,
+    .why_idle = layer_knobs::kWhyClear};
+
+/// Sizes of the tables of one band, and of the solver that fills them.
+struct LayerTableSizes {
+    unsigned phase_angles = 512;
+    /// An even number of angles: the edge of the peak, a jump of the light scattered once, then
+    /// lies in the middle between two of them.
+    unsigned glow_angles = 96, glow_events = 48;
+    SlabTableSize flux;
+    RadianceTableSize radiance;
+    int flux_streams = 16, radiance_streams = 24;
+};
+
+/// kCloudNodes = 24 are the sizes that the tables were measured with (tests/bench/RESULTS.md).
+inline LayerTableSizes layer_table_sizes(const Knobs& knobs) {
+    const auto nodes = whole(knobs, kCloudNodes);
+    LayerTableSizes sizes;
+    sizes.flux = {nodes * 8 / 3, nodes * 4 / 3};
+    sizes.radiance = {nodes * 4 / 3, nodes, std::max(4u, nodes / 3)};
+    sizes.flux_streams = static_cast<int>(std::max(12u, nodes * 2 / 3));
+    sizes.radiance_streams = static_cast<int>(std::max(16u, nodes));
+    return sizes;
+}
+
+}  // namespace opaline::bake

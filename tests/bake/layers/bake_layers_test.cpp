@@ -1,0 +1,121 @@
+#include "bake/layers/bake_layers.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "bake/layers/layer_knobs.h"
+#include "tests/bake/layers/layer_support.h"
+
+namespace opaline::bake {
+namespace {
+
+const BakedLayers& draft() {
+    static const BakedLayers kBaked = bake_layer(layer_scene(), layer_knobs_of(Quality::draft));
+    return kBaked;
+}
+
+TEST(BakeLayers, EveryTableStandsWhereItsCountsSay) {
+    const formats::Clouds& clouds = draft().clouds;
+    ASSERT_EQ(clouds.records.size(), 1u);
+    const formats::LayerRecord& record = clouds.records[0];
+    EXPECT_EQ(clouds.value.size(), record.value_count());
+    EXPECT_EQ(clouds.thickness.size(), record.thickness_count());
+    EXPECT_EQ(clouds.ground.size(), record.ground_count());
+    for (const float value : clouds.value) {
+        ASSERT_TRUE(std::isfinite(value));
+    }
+}
+
+TEST(BakeLayers, ThicknessReturnsFromItsCodes) {
+    formats::Scene scene = layer_scene();
+    scene.layers[0].thickness = {0, 37.5f, 120, 80};
+    const formats::Clouds clouds = bake_layer(scene, layer_knobs_of(Quality::draft)).clouds;
+    EXPECT_EQ(clouds.records[0].highest, 120);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_NEAR(clouds.thickness[i] * 120 / 65535.0,
+                    static_cast<double>(scene.layers[0].thickness[i]), 0.001);
+    }
+}
+
+TEST(BakeLayers, ContrastIsFivePercentAtTheVisibility) {
+    formats::Scene scene = layer_scene();
+    scene.layers[0].visibility = 20000;
+    const auto record = bake_layer(scene, layer_knobs_of(Quality::draft)).clouds.records[0];
+    EXPECT_NEAR(std::exp(-20000 * static_cast<double>(record.haze)), 0.05, 1e-6);
+    EXPECT_EQ(draft().clouds.records[0].haze, 0);
+}
+
+// kappa = N0 Q pi <r^2>, and Q tends to 2 for large droplets: here it is 2.1 to 2.4.
+TEST(BakeLayers, ExtinctionIsSomewhatMoreThanTwiceTheSectionOfTheDroplets) {
+    const formats::LayerRecord& record = draft().clouds.records[0];
+    const double section = 3e8 * mean_geometric_section({3e8, 3e-6, 2});
+    for (const formats::LayerBand& band : record.band) {
+        EXPECT_GT(static_cast<double>(band.kappa), 2.1 * section);
+        EXPECT_LT(static_cast<double>(band.kappa), 2.4 * section);
+        EXPECT_GT(band.peak_weight, 0.3f);
+        EXPECT_LT(band.peak_weight, 0.6f);
+        EXPECT_FLOAT_EQ(band.rest_kappa(), band.kappa * (1 - band.peak_weight));
+    }
+}
+
+TEST(BakeLayers, LargerWavelengthsSeeSmallerDroplets) {
+    // The forward peak of red light is wider, so less of it lies within the common angle.
+    const auto& band = draft().clouds.records[0].band;
+    EXPECT_LT(band[0].peak_weight, band[1].peak_weight);
+    EXPECT_LT(band[1].peak_weight, band[2].peak_weight);
+}
+
+TEST(BakeLayers, StatedAngleOfThePeakIsKeptAndNoneMeansNoGlow) {
+    formats::Scene scene = layer_scene();
+    scene.layers[0].peak_angle = 0.1;
+    EXPECT_FLOAT_EQ(bake_layer(scene, layer_knobs_of(Quality::draft)).clouds.records[0].peak_angle,
+                    0.1f);
+    scene.layers[0].peak_angle = 0;
+    const auto baked = bake_layer(scene, layer_knobs_of(Quality::draft));
+    EXPECT_EQ(baked.clouds.records[0].glow_count(), 0u);
+    EXPECT_EQ(baked.clouds.records[0].band[1].peak_weight, 0);
+}
+
+TEST(BakeLayers, WithoutMultipleScatteringThereIsNoRadianceTable) {
+    const formats::Scene scene = layer_scene();
+    const LayerLayout layout{0, false, false};
+    StageLog log;
+    const auto baked = bake_layers({scene, {&layout, 1}, layer_knobs_of(Quality::draft)}, {}, log);
+    const formats::LayerRecord& record = baked->clouds.records[0];
+    EXPECT_EQ(record.radiance_count(), 0u);
+    EXPECT_EQ(baked->clouds.value.size(), record.value_count());
+    EXPECT_FALSE(record.has_radiosity());
+    EXPECT_EQ(log.size(), 2u);
+}
+
+TEST(BakeLayers, AreTheSameForAnyNumberOfThreads) {
+    const formats::Scene scene = layer_scene();
+    const Knobs knobs = layer_knobs_of(Quality::draft);
+    const auto one = bake_layer(scene, knobs, 1), three = bake_layer(scene, knobs, 3);
+    EXPECT_EQ(one.clouds.value, three.clouds.value);
+    EXPECT_EQ(one.clouds.value, draft().clouds.value);
+}
+
+TEST(BakeLayers, ReportInterruptionAndDropletsOutOfRange) {
+    formats::Scene scene = layer_scene();
+    const std::atomic<bool> cancel = true;
+    Context context;
+    context.cancel = &cancel;
+    const LayerLayout layout;
+    StageLog log;
+    const Knobs knobs = layer_knobs_of(Quality::draft);
+    const auto stopped = bake_layers({scene, {&layout, 1}, knobs}, context, log);
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().kind, formats::ErrorKind::interrupted);
+    scene.layers[0].gamma = -1;
+    const auto refused = bake_layers({scene, {&layout, 1}, knobs}, {}, log);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, formats::ErrorKind::usage);
+    EXPECT_EQ(refused.error().diagnostics[0].where.rfind("layer 1 > ", 0), 0u);
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,198 @@
+#include "bake/layers/layer_tables.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "bake/mie/phase_texture.h"
+#include "bake/slab/solve_radiance.h"
+#include "bake/slab/solve_slab.h"
+#include "tests/bake/layers/layer_support.h"
+
+namespace opaline::bake {
+namespace {
+
+using std::numbers::pi;
+
+struct Baked {
+    formats::Scene scene = layer_scene();
+    Knobs knobs = layer_knobs_of(Quality::draft);
+    BakedLayers layers = bake_layer(scene, knobs);
+    LayerTableSizes sizes = layer_table_sizes(knobs);
+
+    const formats::LayerRecord& record() const { return layers.clouds.records[0]; }
+    formats::LayerTables tables(std::size_t band) const {
+        return formats::tables_of(layers.clouds.view(), record(), band);
+    }
+};
+
+const Baked& baked() {
+    static const Baked kBaked;
+    return kBaked;
+}
+
+// L as formats/opal/clouds.h states it, at nodes of the table.
+double stated_radiance(std::span<const float> values, std::size_t depth, std::size_t view,
+                       std::size_t light, double azimuth) {
+    const formats::LayerRecord& record = baked().record();
+    const std::size_t n = record.radiance_cosines, modes = record.radiance_modes;
+    const auto cosine = [n](std::size_t j) {
+        const double s = static_cast<double>(j) / static_cast<double>(n - 1);
+        return std::max(1e-3, s * s * (3 - 2 * s));
+    };
+    const double tau =
+        static_cast<double>(depth) / static_cast<double>(record.radiance_depths - 1 - depth);
+    const double mu_v = cosine(view), mu_l = cosine(light);
+    double sum = 0;
+    for (std::size_t m = 0; m < modes; ++m) {
+        sum += static_cast<double>(values[((depth * modes + m) * n + view) * n + light]) *
+               std::cos(static_cast<double>(m) * azimuth);
+    }
+    return mu_l * (1 - std::exp(-tau / mu_l - tau / mu_v)) / (mu_l + mu_v) / pi * sum;
+}
+
+// The room's own table says the same by eval_radiance_table, which slab_table_test.cpp compares
+// with the solver.
+TEST(LayerTables, RadianceIsThatOfTheFormulaInTheFormat) {
+    const std::size_t band = 1;
+    const SlabMedium medium =
+        rest_medium(baked().layers.droplets[0][band].split, baked().sizes.radiance_streams);
+    const RadianceTable table =
+        make_radiance_table(medium, baked().sizes.radiance, baked().sizes.radiance_streams);
+    const formats::LayerTables stored = baked().tables(band);
+    const std::size_t n = table.size.cosines;
+    for (const std::size_t depth : {2u, 9u}) {
+        const double tau =
+            static_cast<double>(depth) / static_cast<double>(table.size.depths - 1 - depth);
+        for (const std::size_t view : {std::size_t{1}, n / 2, n - 1}) {
+            for (const std::size_t light : {std::size_t{2}, n / 2, n - 2}) {
+                for (const double azimuth : {0.0, 0.7, 2.0, pi}) {
+                    const auto cosine = [n](std::size_t j) {
+                        const double s = static_cast<double>(j) / static_cast<double>(n - 1);
+                        return s * s * (3 - 2 * s);
+                    };
+                    for (const bool below : {false, true}) {
+                        const double expected = eval_radiance_table(table, tau, cosine(light),
+                                                                    cosine(view), azimuth, below);
+                        EXPECT_NEAR(stated_radiance(below ? stored.transmitted : stored.reflected,
+                                                    depth, view, light, azimuth),
+                                    expected, 1e-5 * (1 + std::abs(expected)));
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Independent of the table: the solver at one node, all orders but the first.
+TEST(LayerTables, RadianceIsThatOfTheSolver) {
+    const std::size_t depth = 8, band = 2;
+    const formats::LayerRecord& record = baked().record();
+    const std::size_t n = record.radiance_cosines, view = n / 2, light = n - 3;
+    SlabRadianceRequest request;
+    request.optical_depth =
+        static_cast<double>(depth) / static_cast<double>(record.radiance_depths - 1 - depth);
+    for (const std::size_t j : {light, view}) {
+        const double s = static_cast<double>(j) / static_cast<double>(n - 1);
+        (j == light ? request.lights : request.view).push_back(s * s * (3 - 2 * s));
+    }
+    request.streams = 32;
+    request.modes = record.radiance_modes;
+    request.first_order = 2;
+    const SlabRadiance truth =
+        solve_slab_radiance(rest_medium(baked().layers.droplets[0][band].split, 32), request)
+            .front();
+    const formats::LayerTables stored = baked().tables(band);
+    for (const double azimuth : {0.0, 1.0, 3.0}) {
+        const double expected =
+            request.lights[0] / pi * eval_slab_radiance(truth, truth.transmitted, 0, 0, azimuth);
+        EXPECT_NEAR(stated_radiance(stored.transmitted, depth, view, light, azimuth), expected,
+                    0.01 * expected);
+    }
+}
+
+TEST(LayerTables, SharesOfTheFluxAreThoseOfTheSolver) {
+    const formats::LayerRecord& record = baked().record();
+    const std::size_t depth = record.flux_depths / 2, cosine = record.flux_cosines / 2;
+    const double root = static_cast<double>(cosine) / (record.flux_cosines - 1.0);
+    SlabRequest request;
+    request.optical_depth =
+        static_cast<double>(depth) / (record.flux_depths - 1.0 - static_cast<double>(depth));
+    request.cosine = {root * root};
+    request.orders = 2;
+    for (std::size_t band = 0; band < 3; ++band) {
+        const SlabSolution slab =
+            solve_slab(rest_medium(baked().layers.droplets[0][band].split, 48), request).front();
+        const formats::LayerTables stored = baked().tables(band);
+        const std::size_t at = depth * record.flux_cosines + cosine;
+        EXPECT_NEAR(stored.t1[at], slab.order[1].transmittance[0], 1e-3);
+        EXPECT_NEAR(stored.r1[at], slab.order[1].reflectance[0], 1e-3);
+        EXPECT_NEAR(stored.t_ms[at], slab.total.transmittance[0], 1e-3);
+        EXPECT_NEAR(stored.mean_t[depth], slab.total.mean_transmittance, 1e-3);
+    }
+}
+
+TEST(LayerTables, LayerOfNoDepthLetsAllLightThrough) {
+    const formats::LayerRecord& record = baked().record();
+    const formats::LayerTables stored = baked().tables(0);
+    for (std::size_t j = 0; j < record.flux_cosines; ++j) {
+        EXPECT_EQ(stored.t1[j], 0);
+        EXPECT_EQ(stored.r1[j], 0);
+        EXPECT_EQ(stored.t_ms[j], 1);
+    }
+    EXPECT_EQ(stored.mean_t[0], 1);
+}
+
+// As a reader interpolates it: in the coordinate of the texture.
+TEST(LayerTables, PhaseFunctionIntegratesToOne) {
+    for (std::size_t band = 0; band < 3; ++band) {
+        const auto stored = baked().tables(band).log_phase;
+        const PhaseTexture texture{{stored.begin(), stored.end()}, 1};
+        double sum = 0, cosine = 0;
+        constexpr int kSteps = 200000;
+        for (int i = 0; i < kSteps; ++i) {
+            const double u = (i + 0.5) / kSteps, angle = texture_angle(u);
+            const double weight = 2 * pi * std::sin(angle) * 6 * pi * u * (1 - u) / kSteps *
+                                  eval_texture(texture, angle);
+            sum += weight;
+            cosine += weight * std::cos(angle);
+        }
+        EXPECT_NEAR(sum, 1, 1e-4);
+        EXPECT_NEAR(cosine, static_cast<double>(baked().record().band[band].g), 2e-3);
+    }
+}
+
+// 2 pi int W sin(angle) = 1 - e^-u, within the table's angles and interpolated as a reader does.
+TEST(LayerTables, GlowHoldsWhatThePeakScatters) {
+    const formats::LayerRecord& record = baked().record();
+    const auto glow = baked().tables(1).glow;
+    const std::size_t angles = record.glow_angles;
+    for (const std::size_t event : {8u, 20u, 40u}) {
+        const double q = static_cast<double>(event) / (record.glow_events - 1.0);
+        const double events = 12 * q * q;
+        double sum = 0;
+        constexpr int kSteps = 20000;
+        for (int i = 0; i < kSteps; ++i) {
+            const double s = (i + 0.5) / kSteps, at = s * static_cast<double>(angles - 1);
+            const auto first = static_cast<std::size_t>(at);
+            const double most = 4 * static_cast<double>(record.peak_angle);
+            const double value = std::lerp(static_cast<double>(glow[event * angles + first]),
+                                           static_cast<double>(glow[event * angles + first + 1]),
+                                           at - static_cast<double>(first));
+            sum += 2 * pi * std::sin(most * s * s) * most * 2 * s * value / kSteps;
+        }
+        EXPECT_NEAR(sum / -std::expm1(-events), 1, 5e-3) << events;
+    }
+}
+
+TEST(LayerTables, NoPeakHasNoGlow) {
+    PeakSplit split = baked().layers.droplets[0][0].split;
+    split.angle = 0;
+    EXPECT_TRUE(tabulate_glow(split, 16, 8).empty());
+}
+
+}  // namespace
+}  // namespace opaline::bake
