@@ -26,7 +26,8 @@ enum class RandomStage : std::uint32_t {
     volume_walk = 14,
     volume_rays = 15,
     volume_costs = 16,
-    slab_walk = 17
+    slab_walk = 17,
+    layer_check = 18
 };
 
 /// Four uniform numbers in [0, 1), a pure function of the arguments. There is no state, so results

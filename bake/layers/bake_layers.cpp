@@ -42,7 +42,7 @@ formats::LayerRecord make_record(const formats::CloudLayer& layer, const LayerLa
     }
     record.flux_depths = static_cast<std::uint32_t>(sizes.flux.depths);
     record.flux_cosines = static_cast<std::uint32_t>(sizes.flux.cosines);
-    if (layout.multiple) {
+    if (layout.often) {
         record.radiance_depths = static_cast<std::uint32_t>(sizes.radiance.depths);
         record.radiance_cosines = static_cast<std::uint32_t>(sizes.radiance.cosines);
         record.radiance_modes = static_cast<std::uint32_t>(sizes.radiance.modes);
@@ -64,6 +64,10 @@ void append_pictures(const formats::CloudLayer& layer, formats::LayerRecord& rec
             static_cast<std::uint16_t>(std::lround(scale * static_cast<double>(thickness))));
     }
     record.first_ground = clouds.ground.size();
+    if (layer.ground_albedo.empty()) {  // a black one
+        record.ground_columns = record.ground_rows = 1;
+        clouds.ground.push_back({0, 0, 0, 255});
+    }
     clouds.ground.insert(clouds.ground.end(), layer.ground_albedo.begin(),
                          layer.ground_albedo.end());
 }
@@ -93,7 +97,7 @@ formats::Result<BakedLayers> bake_layers(const LayerJob& job, const Context& con
         record.first_value = baked.clouds.value.size();
         run_stage(log, "tables of clouds", "cloud", [&](std::uint64_t&) {
             for (const DropletBand& band : *droplets) {
-                const auto values = make_band_tables(band, sizes, layout.multiple, context);
+                const auto values = make_band_tables(band, sizes, layout.often, context);
                 baked.clouds.value.insert(baked.clouds.value.end(), values.begin(), values.end());
             }
             return true;

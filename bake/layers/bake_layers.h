@@ -17,7 +17,7 @@ namespace opaline::bake {
 /// What is baked of one layer.
 struct LayerLayout {
     std::uint32_t layer = 0;  ///< index into Scene::layers
-    bool multiple = true;     ///< light that was scattered twice or more
+    bool often = true;        ///< light that was scattered twice or more
     bool radiosity = true;    ///< ground and base light each other
 };
 

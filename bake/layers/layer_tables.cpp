@@ -51,7 +51,7 @@ std::vector<float> tabulate_glow(const PeakSplit& split, unsigned angles, unsign
 }
 
 std::vector<float> make_band_tables(const DropletBand& band, const LayerTableSizes& sizes,
-                                    bool multiple, const Context& context) {
+                                    bool often, const Context& context) {
     std::vector<float> values = make_phase_texture(band.optics.phase, sizes.phase_angles).log_value;
     append(tabulate_glow(band.split, sizes.glow_angles, sizes.glow_events), values);
     const SlabTable flux = make_slab_table(rest_medium(band.split, sizes.flux_streams), sizes.flux,
@@ -59,7 +59,7 @@ std::vector<float> make_band_tables(const DropletBand& band, const LayerTableSiz
     for (const std::vector<float>* part : {&flux.t1, &flux.t_ms, &flux.r1, &flux.mean_t}) {
         append(*part, values);
     }
-    if (multiple && !context.cancelled()) {
+    if (often && !context.cancelled()) {
         const RadianceTable radiance =
             make_radiance_table(rest_medium(band.split, sizes.radiance_streams), sizes.radiance,
                                 sizes.radiance_streams, context);

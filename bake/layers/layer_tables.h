@@ -16,10 +16,10 @@ SlabMedium rest_medium(const PeakSplit& split, int streams);
 /// values below 0. Empty where there is no peak.
 std::vector<float> tabulate_glow(const PeakSplit& split, unsigned angles, unsigned events);
 
-/// All tables of one band in the order of the file. `multiple`: with the radiance of light that
+/// All tables of one band in the order of the file. `often`: with the radiance of light that
 /// was scattered twice or more. Parallel inside, the same bits for any number of threads;
 /// incomplete once the context is cancelled.
 std::vector<float> make_band_tables(const DropletBand& band, const LayerTableSizes& sizes,
-                                    bool multiple, const Context& context);
+                                    bool often, const Context& context);
 
 }  // namespace opaline::bake

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/layers/layer_knobs.h"
+#include "formats/opal/check_clouds.h"
 #include "tests/bake/layers/layer_support.h"
 
 namespace opaline::bake {
@@ -27,12 +27,14 @@ TEST(BakeLayers, EveryTableStandsWhereItsCountsSay) {
     for (const float value : clouds.value) {
         ASSERT_TRUE(std::isfinite(value));
     }
+    EXPECT_EQ(formats::find_clouds_fault(clouds.view()).what, "");
+    EXPECT_EQ(formats::find_cloud_value_fault(clouds.view()).what, "");
 }
 
 TEST(BakeLayers, ThicknessReturnsFromItsCodes) {
     formats::Scene scene = layer_scene();
     scene.layers[0].thickness = {0, 37.5f, 120, 80};
-    const formats::Clouds clouds = bake_layer(scene, layer_knobs_of(Quality::draft)).clouds;
+    const formats::Clouds clouds = bake_layer(scene, least_layer_knobs()).clouds;
     EXPECT_EQ(clouds.records[0].highest, 120);
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_NEAR(clouds.thickness[i] * 120 / 65535.0,
@@ -43,7 +45,7 @@ TEST(BakeLayers, ThicknessReturnsFromItsCodes) {
 TEST(BakeLayers, ContrastIsFivePercentAtTheVisibility) {
     formats::Scene scene = layer_scene();
     scene.layers[0].visibility = 20000;
-    const auto record = bake_layer(scene, layer_knobs_of(Quality::draft)).clouds.records[0];
+    const auto record = bake_layer(scene, least_layer_knobs()).clouds.records[0];
     EXPECT_NEAR(std::exp(-20000 * static_cast<double>(record.haze)), 0.05, 1e-6);
     EXPECT_EQ(draft().clouds.records[0].haze, 0);
 }
@@ -71,10 +73,9 @@ TEST(BakeLayers, LargerWavelengthsSeeSmallerDroplets) {
 TEST(BakeLayers, StatedAngleOfThePeakIsKeptAndNoneMeansNoGlow) {
     formats::Scene scene = layer_scene();
     scene.layers[0].peak_angle = 0.1;
-    EXPECT_FLOAT_EQ(bake_layer(scene, layer_knobs_of(Quality::draft)).clouds.records[0].peak_angle,
-                    0.1f);
+    EXPECT_FLOAT_EQ(bake_layer(scene, least_layer_knobs()).clouds.records[0].peak_angle, 0.1f);
     scene.layers[0].peak_angle = 0;
-    const auto baked = bake_layer(scene, layer_knobs_of(Quality::draft));
+    const auto baked = bake_layer(scene, least_layer_knobs());
     EXPECT_EQ(baked.clouds.records[0].glow_count(), 0u);
     EXPECT_EQ(baked.clouds.records[0].band[1].peak_weight, 0);
 }
@@ -83,7 +84,7 @@ TEST(BakeLayers, WithoutMultipleScatteringThereIsNoRadianceTable) {
     const formats::Scene scene = layer_scene();
     const LayerLayout layout{0, false, false};
     StageLog log;
-    const auto baked = bake_layers({scene, {&layout, 1}, layer_knobs_of(Quality::draft)}, {}, log);
+    const auto baked = bake_layers({scene, {&layout, 1}, least_layer_knobs()}, {}, log);
     const formats::LayerRecord& record = baked->clouds.records[0];
     EXPECT_EQ(record.radiance_count(), 0u);
     EXPECT_EQ(baked->clouds.value.size(), record.value_count());
@@ -93,10 +94,17 @@ TEST(BakeLayers, WithoutMultipleScatteringThereIsNoRadianceTable) {
 
 TEST(BakeLayers, AreTheSameForAnyNumberOfThreads) {
     const formats::Scene scene = layer_scene();
-    const Knobs knobs = layer_knobs_of(Quality::draft);
+    const Knobs knobs = least_layer_knobs();
     const auto one = bake_layer(scene, knobs, 1), three = bake_layer(scene, knobs, 3);
     EXPECT_EQ(one.clouds.value, three.clouds.value);
-    EXPECT_EQ(one.clouds.value, draft().clouds.value);
+}
+
+TEST(BakeLayers, GroundWithoutAPictureIsBlack) {
+    formats::Scene scene = layer_scene();
+    scene.layers[0].ground_albedo.clear();
+    const formats::Clouds clouds = bake_layer(scene, least_layer_knobs()).clouds;
+    EXPECT_EQ(clouds.ground, (std::vector<std::array<std::uint8_t, 4>>{{0, 0, 0, 255}}));
+    EXPECT_EQ(formats::find_clouds_fault(clouds.view()).what, "");
 }
 
 TEST(BakeLayers, ReportInterruptionAndDropletsOutOfRange) {
@@ -106,7 +114,7 @@ TEST(BakeLayers, ReportInterruptionAndDropletsOutOfRange) {
     context.cancel = &cancel;
     const LayerLayout layout;
     StageLog log;
-    const Knobs knobs = layer_knobs_of(Quality::draft);
+    const Knobs knobs = least_layer_knobs();
     const auto stopped = bake_layers({scene, {&layout, 1}, knobs}, context, log);
     ASSERT_FALSE(stopped);
     EXPECT_EQ(stopped.error().kind, formats::ErrorKind::interrupted);

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "bake/layers/bake_layers.h"
+#include "bake/layers/layer_knobs.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -24,6 +25,14 @@ inline formats::Scene layer_scene(float thickness = 100, double effective_radius
 inline Knobs layer_knobs_of(Quality quality) {
     Knobs knobs;
     knobs.quality = quality;
+    return knobs;
+}
+
+/// Tables as small as may be, of few droplets: what does not depend on them is quick.
+inline Knobs least_layer_knobs() {
+    Knobs knobs = layer_knobs_of(Quality::draft);
+    knobs.set(kCloudStep, 2);
+    knobs.set(kCloudNodes, 8);
     return knobs;
 }
 
