@@ -78,8 +78,8 @@ TEST(EvenLayer, IsTheSlabFromBelowAndAbove) {
                 const Vec3 ray = test::direction_of(up ? slab.view[v] : -slab.view[v], azimuth);
                 const SeenLayer seen = see_layer(lit.light, {up ? kBelow : kAbove, ray});
                 // Light and view travel against the directions of sun and ray.
-                const double angle = std::acos(
-                    static_cast<double>(dot(lit.light.sun.front().direction, ray)));
+                const double angle =
+                    std::acos(static_cast<double>(dot(lit.light.sun.front().direction, ray)));
                 const double expected = slab.radiance(v, azimuth, angle, up);
                 // The table is linear between nodes and has eight modes.
                 EXPECT_NEAR(static_cast<double>(seen.radiance.g), expected, 0.03 * expected + 5e-4)
@@ -109,13 +109,12 @@ TEST(EvenLayer, IsInvisibleInAWhiteFurnace) {
     test::TestLayer layer = test::even_test_layer();
     layer.record.haze = 1e-4f;
     const test::LitLayer lit(
-        test::make_test_clouds(
-            layer, [](std::uint32_t, std::uint32_t) { return 1e9; }, {255, 255, 255, 255}),
+        test::make_test_clouds(layer, [](std::uint32_t, std::uint32_t) { return 1e9; },
+                               {255, 255, 255, 255}),
         test::white_sky());
     for (const Vec3 eye : {kBelow, kAbove, Vec3{0, 1040, 0}}) {
         for (const double sine : {1.0, 0.5, 0.1, 0.01, -0.01, -0.1, -0.5, -1.0}) {
-            const Rgb color =
-                see_through_layer(lit.scene(), {eye, test::direction_of(sine, 0.3)});
+            const Rgb color = see_through_layer(lit.scene(), {eye, test::direction_of(sine, 0.3)});
             EXPECT_NEAR(color.r, 1, 0.01) << eye.y << " " << sine;
             EXPECT_NEAR(color.b, 1, 0.01) << eye.y << " " << sine;
         }
@@ -125,8 +124,7 @@ TEST(EvenLayer, IsInvisibleInAWhiteFurnace) {
 TEST(EvenLayer, OverGroundIsTheClosedFormOfRadiosity) {
     // E_G = S / (1 - rho Rbar), S all that comes down through the layer.
     const float albedo = linear_from_srgb(124);
-    const test::LitLayer lit(
-        test::make_test_clouds(test::even_test_layer()), test::one_sun(0.6));
+    const test::LitLayer lit(test::make_test_clouds(test::even_test_layer()), test::one_sun(0.6));
     const std::array<float, 3> depth = rest_depths(lit.light, lit.light.record.highest);
     const FluxShares flux = flux_shares(lit.light.tables[1], lit.light.record, depth[1], 0.6f);
     const float mean = mean_transmittance(lit.light.tables[1], depth[1]);

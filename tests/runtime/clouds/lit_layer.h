@@ -31,7 +31,7 @@ struct LitLayer {
 
     runtime::LayerScene scene() const { return {light, environment, rotation}; }
 
-   private:
+  private:
     formats::CloudsView view;
 };
 
@@ -52,7 +52,8 @@ inline formats::Vec3 direction_of(double sine, double azimuth) {
 }
 
 /// A black sky with a sun of irradiance 1 facing it.
-inline formats::Environment one_sun(double sine, double azimuth = 0, float angular_radius = 0.005f) {
+inline formats::Environment one_sun(double sine, double azimuth = 0,
+                                    float angular_radius = 0.005f) {
     formats::Environment environment;
     formats::DistantDisc disc;
     disc.direction = direction_of(sine, azimuth);
