@@ -11,6 +11,7 @@
 #include "bake/environment/builtin_environment.h"
 #include "bake/scene/flatten_slabs.h"
 #include "formats/media/apply_media.h"
+#include "formats/media/load_clouds.h"
 #include "formats/media/load_volumes.h"
 #include "formats/media/read_media.h"
 
@@ -34,6 +35,15 @@ formats::Status fill_materials(const formats::MediaFile& media, formats::Importe
     return formats::ok_status();
 }
 
+formats::Status add_clouds(const formats::MediaFile& media, formats::ImportedScene& imported) {
+    const auto warnings = formats::load_clouds(media, imported.scene);
+    if (!warnings) {
+        return warnings.error();
+    }
+    join(*warnings, imported);
+    return formats::ok_status();
+}
+
 formats::Status add_media(const formats::MediaFile& media, double metres_per_unit,
                           formats::ImportedScene& imported) {
     if (auto status = fill_materials(media, imported); !status) {
@@ -44,7 +54,7 @@ formats::Status add_media(const formats::MediaFile& media, double metres_per_uni
         return warnings.error();
     }
     join(*warnings, imported);
-    return formats::ok_status();
+    return add_clouds(media, imported);
 }
 
 // A volume alone, with what the media file says of it.
@@ -62,20 +72,23 @@ formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& pa
         if (auto status = fill_materials(*file, *imported); !status) {
             return std::move(status).error();
         }
+        if (auto status = add_clouds(*file, *imported); !status) {
+            return std::move(status).error();
+        }
     }
     return imported;
 }
 
-// The volumes of a media file, without any surface.
+// The volumes and the cloud layer of a media file, without any surface.
 formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::path& path,
                                                          double metres_per_unit) {
     const auto file = formats::read_media(path);
     if (!file) {
         return file.error();
     }
-    if (file->volumes.empty()) {
-        return make_error(ErrorKind::bad_input, path.string(), "volumes", "there are none",
-                          "a media file alone is a scene if it places a volume");
+    if (file->volumes.empty() && file->clouds.empty()) {
+        return make_error(ErrorKind::bad_input, path.string(), "", "it has no volumes or clouds",
+                          "a media file alone is a scene if it places a volume or a cloud layer");
     }
     formats::ImportedScene imported;
     imported.scene.source = path.string();

@@ -22,9 +22,9 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path,
                                         formats::Checks checks = formats::Checks::structure);
 
 /// Reads a scene, fills its materials with the media of its extension OPALINE_media, then of a
-/// media file (none if the path is empty), loads their volumes, flattens sheets of a medium, and
-/// reports the warnings (messages.h). A `.vdb` file is a scene of one volume, and a media file
-/// (`.json`) one of its volumes.
+/// media file (none if the path is empty), loads their volumes and cloud layers, flattens
+/// sheets of a medium, and reports the warnings (messages.h). A `.vdb` file is a scene of one
+/// volume, and a media file (`.json`) one of its volumes and its cloud layer.
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
                                                    const formats::ImportOptions& options,
                                                    const std::filesystem::path& media);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +28,13 @@ struct ExrImage {
 /// `name` is used in messages only. Untrusted bytes are safe: the header is checked before
 /// OpenEXR sees it. Errors: bad_input.
 Result<ExrImage> decode_exr(std::span<const std::byte> bytes, const std::string& name);
+
+/// Decodes one channel of such a file: the first of `names` that it holds at full resolution.
+/// Errors: bad_input; also if it holds none of them, or has more than `most_side` pixels on a side,
+/// which is found before any is read.
+Result<ScalarImage> decode_exr_channel(std::span<const std::byte> bytes, const std::string& name,
+                                       std::initializer_list<const char*> names,
+                                       std::uint32_t most_side);
 
 /// `decode_exr` of a file, without its warnings.
 Result<Image> read_exr(const std::filesystem::path& path);

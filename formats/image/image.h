@@ -15,6 +15,12 @@ struct Image {
     std::vector<Rgb> pixel;
 };
 
+/// One number a pixel, row-major, row 0 on top.
+struct ScalarImage {
+    std::uint32_t width = 0, height = 0;
+    std::vector<float> value;
+};
+
 /// 8-bit colour image as stored in textures and PNG files: sRGB-encoded RGB plus linear alpha,
 /// four bytes a pixel, row-major, row 0 on top.
 struct Image8 {

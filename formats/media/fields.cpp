@@ -1,6 +1,7 @@
 #include "formats/media/fields.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace opaline::formats::media {
@@ -47,10 +48,14 @@ std::string range(double least, double greatest) {
     return "from " + plain(least) + " to " + plain(greatest);
 }
 
-bool is_rgb(const Json& value, double least, double greatest) {
-    return value.is_array() && value.size() == 3 &&
+bool are_within(const Json& value, std::size_t size, double least, double greatest) {
+    return value.is_array() && value.size() == size &&
            std::all_of(value.begin(), value.end(),
-                       [&](const Json& band) { return is_within(band, least, greatest); });
+                       [&](const Json& one) { return is_within(one, least, greatest); });
+}
+
+bool is_rgb(const Json& value, double least, double greatest) {
+    return are_within(value, 3, least, greatest);
 }
 
 Rgb to_rgb(const Json& value, double scale) {
@@ -72,6 +77,14 @@ bool has(const Fields& fields, const char* key) {
     return find(fields, key) != nullptr;
 }
 
+void refuse_both(const Fields& fields, const char* key, const char* other) {
+    if (has(fields, key) && has(fields, other)) {
+        fields.report.error(place(fields.where, key),
+                            std::string("it contradicts ") + other + ", which is given too",
+                            "keep one of them");
+    }
+}
+
 void refuse_unknown_keys(const Fields& fields, std::initializer_list<std::string_view> known) {
     for (const auto& [key, value] : fields.object.items()) {
         if (std::find(known.begin(), known.end(), key) == known.end()) {
@@ -91,6 +104,34 @@ std::optional<double> number(const Fields& fields, const char* key, double least
         return std::nullopt;
     }
     return value->get<double>();
+}
+
+std::optional<std::uint32_t> count(const Fields& fields, const char* key, std::uint32_t least,
+                                   std::uint32_t greatest) {
+    const Json* value = find(fields, key);
+    if (!value) {
+        return std::nullopt;
+    }
+    if (!is_within(*value, least, greatest) ||
+        value->get<double>() != std::floor(value->get<double>())) {
+        wrong(fields, key, *value,
+              "a whole number from " + std::to_string(least) + " to " + std::to_string(greatest));
+        return std::nullopt;
+    }
+    return static_cast<std::uint32_t>(value->get<double>());
+}
+
+std::optional<std::array<double, 2>> pair(const Fields& fields, const char* key, double least,
+                                          double greatest) {
+    const Json* value = find(fields, key);
+    if (!value) {
+        return std::nullopt;
+    }
+    if (!are_within(*value, 2, least, greatest)) {
+        wrong(fields, key, *value, "two numbers [x, z], each " + range(least, greatest));
+        return std::nullopt;
+    }
+    return std::array{(*value)[0].get<double>(), (*value)[1].get<double>()};
 }
 
 std::optional<Rgb> rgb(const Fields& fields, const char* key, double least, double greatest,
@@ -150,6 +191,13 @@ std::optional<bool> truth(const Fields& fields, const char* key) {
         return std::nullopt;
     }
     return value->get<bool>();
+}
+
+std::optional<gltf::Bytes> read_named_file(const Fields& fields, const char* key,
+                                           gltf::Resources& resources) {
+    const auto name = text(fields, key);
+    return name ? gltf::read_inside(resources, *name, place(fields.where, key), fields.report)
+                : std::nullopt;
 }
 
 std::optional<std::size_t> choice(const Fields& fields, const char* key,

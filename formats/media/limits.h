@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace opaline::formats::media {
 
@@ -19,5 +20,19 @@ inline constexpr double kMinDensityScale = 1e-12, kMaxDensityScale = 1e12;
 /// Through a voxel along its longest edge; beyond, a volume is a surface, and walks through it take
 /// ever more steps (bake/reference/README.md, "Volumes").
 inline constexpr double kMaxVoxelDepth = 1e6;
+/// Of cloud layers: lengths in metres. Heights and coordinates stay distinct as single floats.
+inline constexpr double kMaxLayerCoordinate = 1e7, kMinLayerSize = 1, kMaxLayerSize = 1e7;
+inline constexpr double kMaxLayerHeight = 1e6, kMinLayerGap = 0.1;  ///< gap: ground to base
+inline constexpr double kMinLayerThickness = 1e-6, kMaxLayerThickness = 1e5;
+inline constexpr double kMaxWind = 1e4;  ///< [m/s]
+inline constexpr double kMinVisibility = 1, kMaxVisibility = 1e7;
+inline constexpr double kMaxPeakAngle = 20;                       ///< [degrees]
+inline constexpr double kMinDroplets = 1e3, kMaxDroplets = 1e13;  ///< per volume [1/m^3]
+inline constexpr double kMinDropletRadius = 1e-7, kMaxDropletRadius = 1e-4;
+inline constexpr double kMinDropletGamma = 0.1, kMaxDropletGamma = 1e4;
+inline constexpr double kMaxDropletShare = 0.01;  ///< of the volume; denser ones are no cloud
+inline constexpr std::uint32_t kMinFieldSide = 2, kMaxFieldSide = 4096;       ///< texels
+inline constexpr std::uint32_t kMinFormulaSide = 16, kMaxFormulaSide = 2048;  ///< texels
+inline constexpr double kMinCellTexels = 4;  ///< that a cell or wave of a formula takes
 
 }  // namespace opaline::formats::media

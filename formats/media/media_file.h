@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/media/height_fields.h"
 #include "formats/scene.h"
 
 namespace opaline::formats {
@@ -33,11 +34,20 @@ struct VolumeEntry {
     glm::dmat4 transform{1};  ///< affine: the file's world to the scene's, in units of the scene
 };
 
+/// A cloud layer that a media file places.
+struct CloudEntry {
+    std::string where;                      ///< in the media file, for messages: "clouds > 0"
+    CloudLayer layer;                       ///< without thickness where a formula gives it
+    std::optional<HeightFieldShape> shape;  ///< the formula
+    double thickness = 0;                   ///< where the formula is 1 [m], > 0
+};
+
 /// A media file, checked.
 struct MediaFile {
     std::string file;                       ///< for messages
     std::vector<MaterialMedium> materials;  ///< no name stands twice
     std::vector<VolumeEntry> volumes;
+    std::vector<CloudEntry> clouds;             ///< at most kMaxLayers
     std::vector<std::filesystem::path> inputs;  ///< files read
     std::string sha256;                         ///< of their bytes, in reading order
 };

@@ -10,8 +10,10 @@
 #include "formats/gltf/container.h"
 #include "formats/gltf/resources.h"
 #include "formats/media/fields.h"
+#include "formats/media/read_cloud.h"
 #include "formats/media/read_material.h"
 #include "formats/media/read_volume.h"
+#include "formats/opal/clouds.h"
 
 namespace opaline::formats {
 
@@ -56,29 +58,60 @@ std::optional<Json> parse_strict(std::string_view text, Report& report) {
     }
 }
 
+/// What a root key that holds a list is like, for messages.
+struct List {
+    const char *key, *example;
+    std::size_t most;
+    const char *too_many, *remedy;
+};
+
+/// Calls read(entry, index, where) for each entry of a list of the root.
+template <class Read>
+void read_list(const Json& root, const std::string& where, const List& list, Report& report,
+               const Read& read) {
+    const auto found = root.find(list.key);
+    if (found == root.end()) {
+        return;
+    }
+    const std::string at = media::place(where, list.key);
+    if (!found->is_array()) {
+        report.error(at, "it is not an array", list.example);
+        return;
+    }
+    if (found->size() > list.most) {
+        report.error(at, list.too_many, list.remedy);
+        return;
+    }
+    for (std::size_t i = 0; i < found->size(); ++i) {
+        read((*found)[i], i, media::place(at, std::to_string(i)));
+    }
+}
+
 void read_volumes(const Json& root, const std::string& where, Resources& resources,
                   MediaFile& media, Report& report) {
-    const auto volumes = root.find("volumes");
-    if (volumes == root.end()) {
-        return;
-    }
-    const std::string at = media::place(where, "volumes");
-    if (!volumes->is_array()) {
-        report.error(at, "it is not an array", "give {\"volumes\": [{\"file\": \"NAME.vdb\"}]}");
-        return;
-    }
-    if (volumes->size() > kMaxVolumes) {
-        report.error(at, "there are more than " + std::to_string(kMaxVolumes),
-                     "join grids that lie beside each other in one file");
-        return;
-    }
-    for (std::size_t i = 0; i < volumes->size(); ++i) {
-        auto volume = media::read_volume((*volumes)[i], media::place(at, std::to_string(i)),
-                                         resources, report);
-        if (volume) {
-            media.volumes.push_back(std::move(*volume));
-        }
-    }
+    static_assert(kMaxVolumes == 16);
+    const List list{"volumes", "give {\"volumes\": [{\"file\": \"NAME.vdb\"}]}", kMaxVolumes,
+                    "there are more than 16", "join grids that lie beside each other in one file"};
+    read_list(root, where, list, report,
+              [&](const Json& entry, std::size_t, const std::string& at) {
+                  if (auto volume = media::read_volume(entry, at, resources, report)) {
+                      media.volumes.push_back(std::move(*volume));
+                  }
+              });
+}
+
+void read_clouds(const Json& root, const std::string& where, Resources& resources, MediaFile& media,
+                 Report& report) {
+    static_assert(kMaxLayers == 1);
+    const List list{"clouds", "give {\"clouds\": [{\"procedural\": {\"type\": \"cellular\"}}]}",
+                    kMaxLayers, "there is more than one layer, and this version simulates one",
+                    "keep one of them"};
+    read_list(root, where, list, report,
+              [&](const Json& entry, std::size_t index, const std::string& at) {
+                  if (auto cloud = media::read_cloud(entry, index, at, resources, report)) {
+                      media.clouds.push_back(std::move(*cloud));
+                  }
+              });
 }
 
 void read_root(const Json& root, const std::string& where, Resources& resources, MediaFile& media,
@@ -88,13 +121,11 @@ void read_root(const Json& root, const std::string& where, Resources& resources,
         return;
     }
     media::refuse_unknown_keys({root, where, report}, {"materials", "volumes", "clouds"});
-    if (root.contains("clouds")) {
-        report.error(media::place(where, "clouds"), "they are not supported yet", "leave them out");
-    }
     read_volumes(root, where, resources, media, report);
+    read_clouds(root, where, resources, media, report);
     const std::string at = media::place(where, "materials");
     const auto materials = root.find("materials");
-    if (materials == root.end() && root.contains("volumes")) {
+    if (materials == root.end() && (root.contains("volumes") || root.contains("clouds"))) {
         return;
     }
     if (materials == root.end() || !materials->is_object()) {

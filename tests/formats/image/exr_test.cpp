@@ -77,6 +77,30 @@ TEST(Exr, LuminanceAloneBecomesGrey) {
     }
 }
 
+TEST(Exr, OneChannelIsTheFirstNamedThatTheFileHolds) {
+    const Image image = ramp(8, 5);
+    const std::string color = make_exr(image, {.is_half = true, .has_alpha = true, .min_x = -7});
+    const Result<ScalarImage> red = decode_exr_channel(as_bytes(color), "x.exr", {"Y", "R"}, 8);
+    ASSERT_TRUE(red) << message(red.error());
+    const Result<ScalarImage> alpha = decode_exr_channel(as_bytes(color), "x.exr", {"A", "R"}, 8);
+    ASSERT_TRUE(alpha) << message(alpha.error());
+    const Result<ExrImage> whole = decode_exr(as_bytes(color), "x.exr");
+    ASSERT_TRUE(whole) << message(whole.error());
+    ASSERT_EQ(red->width, 8u);
+    ASSERT_EQ(red->height, 5u);
+    ASSERT_EQ(red->value.size(), 40u);
+    for (std::size_t i = 0; i < red->value.size(); ++i) {
+        EXPECT_EQ(red->value[i], whole->image.pixel[i].r);
+        EXPECT_EQ(alpha->value[i], 0.25f);
+    }
+    const auto missing = decode_exr_channel(as_bytes(color), "x.exr", {"Y", "Z"}, 8);
+    ASSERT_FALSE(missing);
+    EXPECT_THAT(message(missing.error()), HasSubstr("no channel Y or Z"));
+    const auto large = decode_exr_channel(as_bytes(color), "x.exr", {"R"}, 7);
+    ASSERT_FALSE(large);
+    EXPECT_THAT(message(large.error()), HasSubstr("the limit is 7"));
+}
+
 TEST(Exr, WithoutColourChannelsTheMessageNamesThoseFound) {
     const std::string bytes = make_exr(ramp(8, 4), {.prefix = "beauty."});
     const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");

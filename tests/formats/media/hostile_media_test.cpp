@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "tests/formats/media/cloud_text.h"
 #include "tests/formats/media/media_text.h"
 
 namespace opaline::tests {
@@ -17,7 +18,12 @@ const std::string kRich = R"({"materials": {
             "profile": "better", "fidelity": "paper"},
     "Ear": {"preset": "skin1", "thickness": 1e-3},
     "Leaf": {"thin_walled": {"reflect": [0.1, 0.2, 0.3], "transmit": [0.4, 0.5, 0.6]}},
-    "*": {"opaque": true}}})";
+    "*": {"opaque": true}},
+    "clouds": [{"procedural": {"type": "waves", "scale": 900, "coverage": 0.5, "seed": 3,
+                               "resolution": 256}, "thickness": 120, "N0": 3e8, "r_e": 7e-6,
+                "gamma": 2, "substance": "ice", "base": 1000, "ground_height": 10,
+                "size": [9e3, 8000], "center": [1, 2], "wind": [3, 4], "repeat": true,
+                "visibility": 3e4, "forward_angle": 5, "ground_albedo": [0.1, 0.2, 0.3]}]})";
 
 void expect_sound_or_refused(const formats::Result<formats::MediaFile>& media) {
     if (!media) {
@@ -26,6 +32,9 @@ void expect_sound_or_refused(const formats::Result<formats::MediaFile>& media) {
     }
     for (const auto& material : media->materials) {
         ASSERT_TRUE(!material.medium || is_sound(*material.medium)) << material.name;
+    }
+    for (const auto& cloud : media->clouds) {
+        ASSERT_TRUE(is_sound(cloud)) << cloud.layer.name;
     }
 }
 

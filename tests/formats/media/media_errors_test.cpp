@@ -160,11 +160,6 @@ TEST(MediaErrors, MediumWithoutAnyCoefficientIsRefused) {
                 HasSubstr("zero in every channel"));
 }
 
-TEST(MediaErrors, WhatIsNotSupportedYetIsNotPassedOver) {
-    EXPECT_THAT(refuse_file(R"({"materials": {}, "clouds": []})"),
-                AllOf(HasSubstr("clouds"), HasSubstr("not supported yet")));
-}
-
 TEST(MediaErrors, MarbleNeedsPositiveScaleAndColoursThatReflectNoMoreThanAll) {
     for (const char* bad :
          {"1", "{\"scale\": 0}", "{\"scale\": -1}", "{\"scale\": 1e7}", "{\"size\": 1}",

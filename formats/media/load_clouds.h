@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "formats/media/media_file.h"
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+namespace opaline::formats {
+
+/// Adds the cloud layers of a media file to the scene, after those that it has; formulas become
+/// thickness. Their files are among the inputs and in the hash that apply_media adds. Gives
+/// warnings: about a layer of thickness 0. Errors: `bad_input`, with the scene unchanged, for more
+/// than kMaxLayers in all.
+Result<std::vector<Diagnostic>> load_clouds(const MediaFile& media, Scene& scene);
+
+}  // namespace opaline::formats
