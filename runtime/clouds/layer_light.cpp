@@ -59,6 +59,7 @@ LayerLight light_layers(const formats::CloudsView& clouds, const formats::Enviro
     for (std::size_t b = 0; b < 3; ++b) {
         light.tables[b] = tables_of(clouds, light.record, b);
         light.rest_kappa[b] = light.record.band[b].rest_kappa();
+        light.peak_mean_square[b] = peak_mean_square(light.tables[b], light.record);
     }
     light.field = make_layer_field(light.record, clouds.thickness_of(light.record), options.time);
     light.albedo = decode_ground(clouds, light.record);

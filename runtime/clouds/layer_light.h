@@ -44,6 +44,7 @@ struct LayerLight {
     formats::LayerRecord record;
     std::array<formats::LayerTables, 3> tables;  ///< by band
     std::array<float, 3> rest_kappa{};           ///< kappa_S [1/m], by band
+    std::array<float, 3> peak_mean_square{};     ///< of angles [rad^2], by band (layer_tables.h)
     LayerField field;
     MipPyramid<formats::Rgb> albedo;  ///< of the ground over the record's size, which does not move
     SkyLight sky;

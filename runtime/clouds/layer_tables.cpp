@@ -79,11 +79,34 @@ float phase_coordinate(float angle) {
     return inverse_smoothstep(static_cast<double>(angle) / std::numbers::pi);
 }
 
+float peak_mean_square(const LayerTables& tables, const LayerRecord& record) {
+    constexpr int kSteps = 256;
+    const double end = static_cast<double>(record.peak_angle), step = end / kSteps;
+    double weights = 0, sum = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double angle = (i + 0.5) * step;
+        const TablePlace place =
+            place_on_axis(phase_coordinate(static_cast<float>(angle)), tables.log_phase.size());
+        const double weight =
+            std::sin(angle) * std::exp(static_cast<double>(at_place(tables.log_phase, place)));
+        weights += weight;
+        sum += weight * angle * angle;
+    }
+    return weights > 0 ? static_cast<float>(sum / weights) : 0.0f;
+}
+
 float rest_phase(const LayerTables& tables, const LayerRecord& record, std::size_t band,
-                 float angle, float coordinate) {
-    if (angle < record.peak_angle) return 0;
-    return std::exp(
-               at_place(tables.log_phase, place_on_axis(coordinate, tables.log_phase.size()))) /
+                 float angle, float coordinate, float events, float mean_square) {
+    const float straight = std::exp(-events);
+    const float sigma = std::sqrt(std::max(1.0f, events) * mean_square / 2);
+    const float beyond = angle - record.peak_angle;
+    float share = beyond >= 0 ? straight : 0.0f;
+    share += (1 - straight) *
+             (sigma > 0 ? 0.5f * std::erfc(-beyond / (std::numbers::sqrt2_v<float> * sigma))
+                        : (beyond >= 0 ? 1.0f : 0.0f));
+    if (share <= 0) return 0;
+    const TablePlace place = place_on_axis(coordinate, tables.log_phase.size());
+    return share * std::exp(at_place(tables.log_phase, place)) /
            (1 - record.band[band].peak_weight);
 }
 

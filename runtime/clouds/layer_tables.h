@@ -23,10 +23,15 @@ TablePlace place_depth(float depth, std::size_t count);
 /// The coordinate u of LayerTables::log_phase at an angle of [0, pi] [rad].
 float phase_coordinate(float angle);
 
-/// P_S [1/sr] at a scattering angle [rad]: the phase function without its peak; 0 within it.
-/// `coordinate` as above, of the same angle.
+/// Mean square angle of one scattering by the peak [rad^2]; 0 where there is no peak.
+float peak_mean_square(const formats::LayerTables& tables, const formats::LayerRecord& record);
+
+/// P_S [1/sr] at a scattering angle [rad], as it looks after `events` scatterings by the peak on
+/// average: those turn light too, and blur the edge at the peak's angle. P_S alone ends there, and
+/// is 0 within; light that the peak scattered besides looks it through a Gaussian of events / 2
+/// `mean_square` per axis. `coordinate` as above, of max(angle, peak_angle).
 float rest_phase(const formats::LayerTables& tables, const formats::LayerRecord& record,
-                 std::size_t band, float angle, float coordinate);
+                 std::size_t band, float angle, float coordinate, float events, float mean_square);
 
 /// What the peak scatters once or more, per unit of incoming light [1/sr], after `events`
 /// scatterings on average, >= 0. 0 where there is no peak.

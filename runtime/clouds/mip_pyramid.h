@@ -54,32 +54,35 @@ void halve_line(const T* line, std::size_t stride, std::uint32_t count, const Pu
     }
 }
 
-inline std::uint32_t border_index(std::int64_t index, std::uint32_t count, MipBorder border) {
-    const auto n = static_cast<std::int64_t>(count);
-    if (border == MipBorder::repeat) return static_cast<std::uint32_t>((index % n + n) % n);
-    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(index, 0, n - 1));
+// Of a number that an int holds; std::floor is a call on plain x86-64.
+inline int floor_to_int(double x) {
+    const int towards_zero = static_cast<int>(x);
+    return towards_zero - (static_cast<double>(towards_zero) > x ? 1 : 0);
 }
 
-// Two texels of a line and the share of the second one; texels beyond a zero border weigh nothing.
+// Two texels of a line and their weights; texels beyond a zero border weigh nothing.
 struct MipPlace {
-    std::uint32_t first = 0, second = 0;
+    std::size_t first = 0, second = 0;
     float first_weight = 0, second_weight = 0;
 };
 
 inline MipPlace mip_place(double u, std::uint32_t count, MipBorder border) {
-    const double n = static_cast<double>(count);
+    const int last = static_cast<int>(count) - 1;
     // Beyond these a border has no more to say, and the index stays small.
-    const double at = std::clamp(u * n - 0.5, -2.0, n + 1);
-    const double below = std::floor(at);
-    const auto index = static_cast<std::int64_t>(below);
-    MipPlace place{border_index(index, count, border), border_index(index + 1, count, border), 0,
-                   static_cast<float>(at - below)};
+    const double at = std::clamp(u * (last + 1) - 0.5, -2.0, last + 2.0);
+    int first = floor_to_int(at), second = first + 1;
+    MipPlace place;
+    place.second_weight = static_cast<float>(at - first);
     place.first_weight = 1 - place.second_weight;
-    if (border == MipBorder::zero) {
-        const auto last = static_cast<std::int64_t>(count) - 1;
-        if (index < 0 || index > last) place.first_weight = 0;
-        if (index + 1 < 0 || index + 1 > last) place.second_weight = 0;
+    if (border == MipBorder::repeat) {
+        if (first < 0) first = last;
+        if (second > last) second = 0;
+    } else if (border == MipBorder::zero) {
+        if (first < 0 || first > last) place.first_weight = 0;
+        if (second < 0 || second > last) place.second_weight = 0;
     }
+    place.first = static_cast<std::size_t>(std::clamp(first, 0, last));
+    place.second = static_cast<std::size_t>(std::clamp(second, 0, last));
     return place;
 }
 
@@ -114,20 +117,31 @@ MipPyramid<T> make_pyramid(std::uint32_t columns, std::uint32_t rows, std::vecto
     return pyramid;
 }
 
-/// Bilinear sample of one level; u, v in [0, 1] cover the image, finite.
+namespace detail {
+
+// u, v in [0, 1) where the border repeats.
 template <class T>
-T sample_level(const MipLevel<T>& level, MipBorder border, double u, double v) {
-    if (border == MipBorder::repeat) {
-        u -= std::floor(u);
-        v -= std::floor(v);
-    }
-    const detail::MipPlace x = detail::mip_place(u, level.columns, border);
-    const detail::MipPlace y = detail::mip_place(v, level.rows, border);
-    const T* first = &level.value[std::size_t{y.first} * level.columns];
-    const T* second = &level.value[std::size_t{y.second} * level.columns];
+T sample_within(const MipLevel<T>& level, MipBorder border, double u, double v) {
+    const MipPlace x = mip_place(u, level.columns, border);
+    const MipPlace y = mip_place(v, level.rows, border);
+    const T* first = &level.value[y.first * level.columns];
+    const T* second = &level.value[y.second * level.columns];
     return y.first_weight * (x.first_weight * first[x.first] + x.second_weight * first[x.second]) +
            y.second_weight *
                (x.first_weight * second[x.first] + x.second_weight * second[x.second]);
+}
+
+inline double within_period(double u, MipBorder border) {
+    return border == MipBorder::repeat ? std::min(u - std::floor(u), 1.0) : u;
+}
+
+}  // namespace detail
+
+/// Bilinear sample of one level; u, v in [0, 1] cover the image, finite.
+template <class T>
+T sample_level(const MipLevel<T>& level, MipBorder border, double u, double v) {
+    return detail::sample_within(level, border, detail::within_period(u, border),
+                                 detail::within_period(v, border));
 }
 
 /// Trilinear: `lod` counts levels, is clamped to those that exist, and may lie between two.
@@ -136,10 +150,12 @@ T sample_pyramid(const MipPyramid<T>& pyramid, double u, double v, float lod) {
     const float last = static_cast<float>(pyramid.level.size() - 1);
     const float at = lod > 0 ? std::min(lod, last) : 0.0f;
     const auto first = static_cast<std::size_t>(at);
-    const T fine = sample_level(pyramid.level[first], pyramid.border, u, v);
+    const double x = detail::within_period(u, pyramid.border);
+    const double y = detail::within_period(v, pyramid.border);
+    const T fine = detail::sample_within(pyramid.level[first], pyramid.border, x, y);
     const float share = at - static_cast<float>(first);
     if (share <= 0) return fine;
-    const T coarse = sample_level(pyramid.level[first + 1], pyramid.border, u, v);
+    const T coarse = detail::sample_within(pyramid.level[first + 1], pyramid.border, x, y);
     return (1 - share) * fine + share * coarse;
 }
 

@@ -89,7 +89,7 @@ Rgb see_through_layer(const LayerScene& scene, const LayerRay& ray, const Rgb* s
     bool is_opaque = true;
     if (surface != nullptr && ray.end <= ground) {
         behind = *surface;
-    } else if (ground < kFarthest && ground >= ray.begin) {
+    } else if (ground < kFarthest) {
         cut.end = ground;
         // The mean of both sides of the pixel's image, which is stretched along the view.
         const double side = static_cast<double>(ray.spread) * ground;

@@ -25,13 +25,15 @@ Rgb single_source(const LayerLight& light, const LitSun& sun, const SlabView& vi
     const float mu_l = std::clamp(dot(normal, sun.direction), kLeastCosine, 1.0f);
     const float mu_v = std::clamp(std::abs(dot(normal, view.direction)), kLeastCosine, 1.0f);
     const float angle = scattering_angle(sun.direction, view.direction);
-    const float coordinate = phase_coordinate(angle);
+    const float coordinate = phase_coordinate(std::max(angle, light.record.peak_angle));
     Rgb source;
     for (std::size_t b = 0; b < 3; ++b) {
         const float geometry = transmitted ? transmitted_source(view.depth[b], mu_l, mu_v)
                                            : reflected_source(view.depth[b], mu_l, mu_v);
-        band_of(source, b) =
-            geometry * rest_phase(light.tables[b], light.record, b, angle, coordinate);
+        const float peak = light.record.band[b].peak_weight;
+        const float events = peak / (1 - peak) * view.depth[b] / mu_v;
+        band_of(source, b) = geometry * rest_phase(light.tables[b], light.record, b, angle,
+                                                   coordinate, events, light.peak_mean_square[b]);
     }
     return sun.irradiance * source;
 }

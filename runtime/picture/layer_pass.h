@@ -24,6 +24,6 @@ struct LayerPass {
 /// kCornerTolerance, no sun touches it, and its samples get the mean of the corners. Precondition:
 /// the band holds whole pixels.
 void draw_layers(const LayerPass& pass, const Band& band, std::span<formats::Rgb> color);
-inline constexpr float kCornerTolerance = 0.04f;  ///< of the brightest corner
+inline constexpr float kCornerTolerance = 0.08f;  ///< of the brightest corner
 
 }  // namespace opaline::runtime

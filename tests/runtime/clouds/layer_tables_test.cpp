@@ -72,15 +72,31 @@ TEST(ScatteringAngle, IsExactAheadAndBehind) {
 TEST(LayerTables, RestOfThePhaseFunctionIsThatOfTheSplit) {
     const auto tables = band_tables();
     const bake::PeakSplit split = bake::split_peak(test::test_phase({}), 0.08);
+    const formats::LayerRecord& record = table_clouds().records[0];
+    const auto rest = [&](float angle, float events) {
+        return rest_phase(tables[1], record, 1, angle, phase_coordinate(std::max(angle, 0.08f)),
+                          events, peak_mean_square(tables[1], record));
+    };
     for (const double angle : {0.09, 0.3, 1.5, 2.45, 3.0, 3.1415}) {
-        const auto a = static_cast<float>(angle);
-        EXPECT_NEAR(static_cast<double>(rest_phase(tables[1], table_clouds().records[0], 1, a,
-                                                   phase_coordinate(a))) /
+        EXPECT_NEAR(static_cast<double>(rest(static_cast<float>(angle), 0)) /
                         bake::eval_table(split.rest, angle),
                     1, 0.02);
     }
-    EXPECT_EQ(rest_phase(tables[1], table_clouds().records[0], 1, 0.07f, phase_coordinate(0.07f)),
-              0);
+    EXPECT_EQ(rest(0.07f, 0), 0);
+    // Scattering by the peak besides blurs the edge, and changes nothing far from it.
+    EXPECT_NEAR(rest(0.0799f, 8) / rest(0.0801f, 8), 1, 0.02f);
+    EXPECT_NEAR(rest(0.5f, 8) / rest(0.5f, 0), 1, 1e-4f);
+}
+
+TEST(LayerTables, MeanSquareOfThePeakIsItsIntegral) {
+    const bake::PeakSplit split = bake::split_peak(test::test_phase({}), 0.08);
+    bake::AngularTable square = split.peak;
+    for (std::size_t i = 0; i < square.angle.size(); ++i) {
+        square.value[i] *= square.angle[i] * square.angle[i];
+    }
+    EXPECT_NEAR(static_cast<double>(peak_mean_square(band_tables()[1], table_clouds().records[0])) /
+                    bake::integrate_table(square),
+                1, 0.02);
 }
 
 TEST(LayerTables, SharesOfFluxAreTheBakersAndAddUpToOne) {
