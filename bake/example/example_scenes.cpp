@@ -16,7 +16,9 @@
 #include "bake/example/polygonize.h"
 #include "bake/example/remesh.h"
 #include "bake/example/sphere.h"
+#include "bake/example/stratus.h"
 #include "bake/example/swan_field.h"
+#include "formats/image/png.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/vdb/write_vdb.h"
 
@@ -34,10 +36,17 @@ struct Smoke {
     double rms_angle = 0;  // [rad]; > 0: Gaussian instead
 };
 
+// A cloud layer: the picture of the ground, and the media file that names it.
+struct Layer {
+    formats::Image8 (*make_ground)() = nullptr;
+    std::string (*describe)(const std::string& ground) = nullptr;
+};
+
 struct Example {
     ExampleInfo info;
-    std::vector<GltfObject> (*make)() = nullptr;  // null: a volume alone
+    std::vector<GltfObject> (*make)() = nullptr;  // null: a volume or a layer alone
     Smoke volume = {};                            // make null: there is none
+    Layer layer = {};                             // make_ground null: there is none
 };
 
 TriangleMesh in_metres(TriangleMesh mesh) {
@@ -147,6 +156,10 @@ constexpr Example kExamples[] = {
     {{"noise", "a cloud of noise that scatters forward in a narrow Gaussian: a volume alone"},
      nullptr,
      {.make = make_noise_density, .sigma_t = grey(80), .albedo = grey(0.995), .rms_angle = 0.11}},
+    {{"stratus", "stratocumulus over an icy sea, to the horizon: a cloud layer alone"},
+     nullptr,
+     {},
+     {.make_ground = make_icy_sea, .describe = describe_stratus}},
 };
 
 const Example* find_example(std::string_view name) {
@@ -210,7 +223,7 @@ formats::Result<std::vector<std::filesystem::path>> write_example(
                                    "choose a folder you may write to");
     }
     const std::string stem(name);
-    std::vector<std::filesystem::path> volume_files;
+    std::vector<std::filesystem::path> others;
     std::string media;
     if (example->volume.make != nullptr) {
         const formats::SparseGrid<float> density = example->volume.make();
@@ -219,19 +232,28 @@ formats::Result<std::vector<std::filesystem::path>> write_example(
         if (auto status = formats::write_vdb(file, {&grid, 1}); !status) {
             return std::move(status).error();
         }
-        volume_files.push_back(file);
+        others.push_back(file);
         media = describe_volume(example->volume, stem + ".vdb");
+    }
+    if (example->layer.make_ground != nullptr) {
+        const std::filesystem::path file = folder / (stem + ".png");
+        if (auto status = formats::write_png(file, example->layer.make_ground()); !status) {
+            return std::move(status).error();
+        }
+        others.push_back(file);
+        media = example->layer.describe(stem + ".png");
     }
     if (example->make == nullptr) {
         const std::filesystem::path file = folder / (stem + ".json");
         if (auto status = formats::write_file_atomically(file, media); !status) {
             return std::move(status).error();
         }
-        return std::vector{file, volume_files.front()};
+        others.insert(others.begin(), file);
+        return others;
     }
     auto files = write_gltf(folder, stem, example->make(), media);
     if (files) {
-        files->insert(files->end(), volume_files.begin(), volume_files.end());
+        files->insert(files->end(), others.begin(), others.end());
     }
     return files;
 }
