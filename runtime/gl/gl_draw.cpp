@@ -38,7 +38,6 @@ TileGrid tile_grid(const DrawScene& scene, const Tile& tile) {
 
 // The background is drawn at the depth that the target was cleared to.
 void draw_background(const DrawScene& scene, const DrawPrograms& programs, const TileView& view) {
-    const GlEnvironment& environment = scene.environment;
     const CameraFrame& frame = view.frame;
     const TileGrid& grid = view.grid;
     glDepthFunc(GL_EQUAL);
@@ -49,13 +48,7 @@ void draw_background(const DrawScene& scene, const DrawPrograms& programs, const
     set_vec3(program, 2, static_cast<float>(frame.tan_half_x) * frame.right);
     set_vec3(program, 3, static_cast<float>(-frame.tan_half_y) * frame.up);
     set_vec3(program, 4, -1.0f * frame.backward);
-    set_light_from_world(scene.rotation, program, 5);
-    glUniform1i(6, static_cast<GLint>(environment.map));
-    glUniform2f(7, environment.u_offset, environment.u_sign);
-    glUniform1i(8, environment.rows_include_poles ? 1 : 0);
-    glUniform1i(9, environment.disc_count);
-    glBindTextureUnit(0, environment.texture.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, environment.discs.name());
+    bind_environment(scene.environment, scene.rotation, program, 5);
     glBindVertexArray(programs.nothing.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
@@ -87,10 +80,13 @@ formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlV
     }
     struct Job {
         GlProgram& program;
-        const char *name, *include, *fragment;
+        const char* name;
+        std::string include;
+        const char* fragment;
     };
     const std::array<Job, 2> jobs{
-        {{programs.background, "background", cube_map_text, background_frag_text},
+        {{programs.background, "background", std::string(cube_map_text) + environment_text,
+          background_frag_text},
          {programs.resolve, "box filter", "", resolve_frag_text}}};
     for (const Job& job : jobs) {
         const std::array<StageSource, 2> stages{
@@ -106,7 +102,7 @@ formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlV
 }
 
 formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t height,
-                                             std::uint32_t supersampling) {
+                                             std::uint32_t supersampling, bool layers) {
     const std::uint32_t columns = width * supersampling, rows = height * supersampling;
     DrawTarget target;
     target.samples = make_target_texture(GL_RGBA32F, columns, rows);
@@ -116,6 +112,17 @@ formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t 
     glNamedFramebufferTexture(target.sample_frame.name(), GL_DEPTH_ATTACHMENT, target.depth.name(),
                               0);
     target.pixel_frame = make_frame(target.pixels);
+    if (layers) {
+        target.layer.corners = make_target_texture(GL_RGBA32F, width + 1, height + 1);
+        target.layer.means = make_target_texture(GL_RGBA32F, width, height);
+        target.layer.samples = make_target_texture(GL_RGBA32F, columns, rows);
+        target.layer.is_done = make_target_texture(GL_DEPTH_COMPONENT32F, columns, rows);
+        target.layer.corner_frame = make_frame(target.layer.corners);
+        target.layer.mean_frame = make_frame(target.layer.means);
+        target.layer.sample_frame = make_frame(target.layer.samples);
+        glNamedFramebufferTexture(target.layer.sample_frame.name(), GL_DEPTH_ATTACHMENT,
+                                  target.layer.is_done.name(), 0);
+    }
     if (const auto status = check_gl("allocating a " + std::to_string(columns) + "x" +
                                      std::to_string(rows) + " render target");
         !status) {
@@ -145,15 +152,22 @@ void draw_tile(const DrawScene& scene, const DrawPrograms& programs, const DrawT
     glClearNamedFramebufferfv(target.sample_frame.name(), GL_DEPTH, 0, &infinitely_far);
     const std::array<float, 4> black{0, 0, 0, 1};
     glClearNamedFramebufferfv(target.sample_frame.name(), GL_COLOR, 0, black.data());
-    for (const PicturePass pass : list_passes(scene.background, !scene.volumes.empty())) {
+    const bool layers = scene.layers.shown;
+    for (const PicturePass pass :
+         list_passes(scene.background && !layers, !scene.volumes.empty())) {
         draw_pass(pass, scene, programs, view);
     }
 
+    glDisable(GL_DEPTH_TEST);
+    glBindVertexArray(programs.nothing.name());
+    if (layers) {
+        glBindTextureUnit(1, target.samples.name());
+        glBindTextureUnit(2, target.depth.name());
+        draw_gl_layers(scene, programs.layers, view, target.layer);
+    }
     glBindFramebuffer(GL_FRAMEBUFFER, target.pixel_frame.name());
     glViewport(0, 0, static_cast<GLsizei>(tile.width), static_cast<GLsizei>(tile.height));
-    glDisable(GL_DEPTH_TEST);
-    glBindTextureUnit(0, target.samples.name());
-    glBindVertexArray(programs.nothing.name());
+    glBindTextureUnit(0, layers ? target.layer.samples.name() : target.samples.name());
     if (!scene.volumes.empty()) {
         glBindTextureUnit(1, target.depth.name());
         return draw_volumes_filtered(scene, programs.volumes, view);

@@ -4,6 +4,7 @@
 
 #include "formats/opal/result.h"
 #include "formats/opal/terms.h"
+#include "runtime/gl/gl_layer_pass.h"
 #include "runtime/gl/gl_objects.h"
 #include "runtime/gl/gl_scene.h"
 #include "runtime/gl/gl_surfaces.h"
@@ -15,6 +16,7 @@ struct DrawPrograms {
     SurfacePrograms surfaces;
     GlProgram background, resolve;
     GlProgram volumes;      ///< in place of `resolve`, where there are volumes
+    LayerPrograms layers;   ///< where there are any (gl_layer_pass.h)
     GlVertexArray nothing;  ///< for passes without vertex data
 };
 /// Only those that the asset has surfaces and volumes for. Errors: resource.
@@ -24,10 +26,11 @@ formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlV
 struct DrawTarget {
     GlTexture samples, depth, pixels;
     GlFramebuffer sample_frame, pixel_frame;
+    LayerTarget layer;  ///< where there are layers
 };
-/// For tiles of up to width x height pixels of S x S samples.
+/// For tiles of up to width x height pixels of S x S samples; `layers`: for those too.
 formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t height,
-                                             std::uint32_t supersampling);
+                                             std::uint32_t supersampling, bool layers);
 
 /// Part of a picture, in pixels from its top left corner.
 struct Tile {
@@ -35,7 +38,7 @@ struct Tile {
 };
 
 /// The passes of the picture (passes.h), then the box filter. The two of volumes are one:
-/// gl_volume_pass.h.
+/// gl_volume_pass.h. A layer covers the background, which is left out then.
 void draw_tile(const DrawScene& scene, const DrawPrograms& programs, const DrawTarget& target,
                const Tile& tile);
 

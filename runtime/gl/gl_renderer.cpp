@@ -10,6 +10,8 @@
 #include "runtime/gl/gl_dot.h"
 #include "runtime/gl/gl_draw.h"
 #include "runtime/gl/gl_environment.h"
+#include "runtime/gl/gl_layer_pass.h"
+#include "runtime/gl/gl_layers.h"
 #include "runtime/gl/gl_view.h"
 #include "runtime/gl/gl_volumes.h"
 #include "runtime/picture/software_renderer.h"
@@ -40,6 +42,7 @@ struct Resources {
     GlEnvironment environment;
     GlSpecular specular;
     GlVolumes volumes;
+    GlLayers layers;
     DotPrograms dot_programs;
     ViewPrograms view_programs;
     DrawPrograms draw_programs;
@@ -119,9 +122,13 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     state->stats.dispatches = static_cast<std::uint32_t>(gl_asset->batches.size());
     state->stats.lanes_per_row = lanes;
     state->stats.device = state->context.description();
-    state->resources.emplace(Resources{std::move(*gl_asset), std::move(*gl_environment),
-                                       std::move(*gl_specular), std::move(*gl_volumes),
-                                       std::move(*dot_programs), std::move(*view_programs),
+    state->resources.emplace(Resources{std::move(*gl_asset),
+                                       std::move(*gl_environment),
+                                       std::move(*gl_specular),
+                                       std::move(*gl_volumes),
+                                       {},
+                                       std::move(*dot_programs),
+                                       std::move(*view_programs),
                                        std::move(*draw_programs)});
     return GlRenderer(std::move(state));
 }
@@ -156,6 +163,30 @@ formats::Status GlRenderer::set_light(const LightVector& light, const Rotation& 
     return check_gl("computing dot products");
 }
 
+formats::Status GlRenderer::set_layers(const LayerLight& light) {
+    const CurrentContext current(state_->context);
+    if (auto status = current.status(); !status) return status;
+    GlClock clock;
+    Resources& resources = *state_->resources;
+    GlLayers& layers = resources.layers;
+    const std::string compiled_for = layers.defines;
+    state_->stats.gpu_bytes -= layers.layer_bytes + layers.light_bytes;
+    const auto status = relight_gl_layers(layers, light);
+    state_->stats.gpu_bytes += layers.layer_bytes + layers.light_bytes;
+    if (!status) return status;
+    if (layers.defines != compiled_for) {
+        auto programs = make_layer_programs(layers);
+        if (!programs) {
+            layers.shown = false;
+            layers.defines.clear();
+            return programs.error();
+        }
+        resources.draw_programs.layers = std::move(programs).value();
+    }
+    state_->stats.layer_seconds = clock.lap();
+    return formats::ok_status();
+}
+
 formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRenderOptions& options) {
     if (auto status = check_camera(camera, options.supersampling); !status) return status.error();
     const CurrentContext current(state_->context);
@@ -167,8 +198,8 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
     const std::uint32_t s = options.supersampling;
     const std::uint32_t side =
         std::max(1u, std::min(options.max_tile_samples, largest_target()) / s);
-    const auto target =
-        make_draw_target(std::min(side, camera.width), std::min(side, camera.height), s);
+    const auto target = make_draw_target(std::min(side, camera.width),
+                                         std::min(side, camera.height), s, resources.layers.shown);
     if (!target) return target.error();
 
     auto picture = make_picture(camera.width, camera.height);
@@ -185,6 +216,7 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
                           resources.environment,
                           resources.specular,
                           resources.volumes,
+                          resources.layers,
                           state_->rotation,
                           camera,
                           s,

@@ -10,6 +10,7 @@
 #include "formats/opal/environment.h"
 #include "formats/opal/result.h"
 #include "formats/opal/terms.h"
+#include "runtime/clouds/layer_light.h"
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/picture.h"
@@ -36,11 +37,12 @@ struct GlStats {
     double upload_seconds = 0;    ///< asset and environment to buffers and textures
     double specular_seconds = 0;  ///< environment to specular light, on the CPU, and its upload
     double light_seconds = 0;     ///< light vector to its buffer
+    double layer_seconds = 0;     ///< cloud layer to textures, and its program
     double dot_seconds = 0;       ///< all dot products
-    double draw_seconds = 0;      ///< view terms, geometry, background and box filter
+    double draw_seconds = 0;      ///< view terms, geometry, layers, background and box filter
     double readback_seconds = 0;
-    std::size_t gpu_bytes = 0;        ///< in buffers and textures of the asset and environment
-    std::uint32_t dispatches = 0;     ///< of the compute shader, one per batch of rows
+    std::size_t gpu_bytes = 0;     ///< in buffers and textures of the asset, environment and layers
+    std::uint32_t dispatches = 0;  ///< of the compute shader, one per batch of rows
     std::uint32_t lanes_per_row = 0;  ///< as used
     std::string device;               ///< GL renderer and version
 };
@@ -68,6 +70,12 @@ class GlRenderer {
     /// light vector must have been made with the same one. Errors: usage (another cube map size
     /// than the asset's), resource.
     formats::Status set_light(const LightVector& light, const Rotation& rotation);
+
+    /// Shows the asset's cloud layer under this light, at its time, from the next picture on; the
+    /// light must have been made with the environment of `create` and the rotation of set_light.
+    /// Another time or light of the same layer is cheap: what depends on neither stays where it is.
+    /// Errors: resource.
+    formats::Status set_layers(const LayerLight& light);
 
     /// Draws and reads back; before the first set_light surfaces and volumes are black. Errors: as
     /// check_camera; resource.

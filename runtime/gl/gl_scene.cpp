@@ -24,4 +24,15 @@ void set_light_from_world(const Rotation& r, GLuint program, GLint location) {
     glProgramUniformMatrix3fv(program, location, 1, GL_TRUE, rows.data());
 }
 
+void bind_environment(const GlEnvironment& environment, const Rotation& rotation, GLuint program,
+                      GLint first) {
+    set_light_from_world(rotation, program, first);
+    glUniform1i(first + 1, static_cast<GLint>(environment.map));
+    glUniform2f(first + 2, environment.u_offset, environment.u_sign);
+    glUniform1i(first + 3, environment.rows_include_poles ? 1 : 0);
+    glUniform1i(first + 4, environment.disc_count);
+    glBindTextureUnit(0, environment.texture.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, environment.discs.name());
+}
+
 }  // namespace opaline::runtime

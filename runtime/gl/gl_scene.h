@@ -6,6 +6,7 @@
 #include "formats/opal/vec3.h"
 #include "runtime/gl/gl_asset.h"
 #include "runtime/gl/gl_environment.h"
+#include "runtime/gl/gl_layers.h"
 #include "runtime/gl/gl_volumes.h"
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
@@ -18,6 +19,7 @@ struct DrawScene {
     const GlEnvironment& environment;
     const GlSpecular& specular;
     const GlVolumes& volumes;
+    const GlLayers& layers;
     const Rotation& rotation;
     const Camera& camera;
     std::uint32_t supersampling = 1;
@@ -42,6 +44,11 @@ struct TileView {
 double view_unit(const Camera& camera);
 
 void set_vec3(GLuint program, GLint location, formats::Vec3 v);
+
+/// Binds the map and the discs, and sets the uniforms of environment.glsl from location `first` on.
+/// The program is in use.
+void bind_environment(const GlEnvironment& environment, const Rotation& rotation, GLuint program,
+                      GLint first);
 
 /// Sets a mat3 that turns world directions into the light's frame.
 void set_light_from_world(const Rotation& rotation, GLuint program, GLint location);

@@ -1,0 +1,174 @@
+#include "runtime/gl/gl_layer_pass.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "runtime/picture/layer_pass.h"
+#include "shader_text.h"
+
+namespace opaline::runtime {
+namespace {
+
+// Locations of layers.frag.glsl, and of what comes before it; 5 to 9 are the environment's.
+enum Uniform : GLint {
+    kTileOrigin = 0,
+    kToPlane,
+    kRight,
+    kDown,
+    kForward,
+    kEnvironment,
+    kFieldOrigin = 10,
+    kEyeAboveBase,
+    kSpread,
+    kAlbedoOrigin,
+    kLightOrigin,
+    kEyeAboveGround,
+    kNearPlane,
+    kSupersampling,
+    kSeesCorners,
+    kShowsSky
+};
+
+// Where the eye is, as shares of a grid; in doubles, and within one period where it repeats.
+void set_origin(GLint location, const GlLayers::Grid& grid, formats::Vec3 eye) {
+    const auto place = [&](float at, double low, double size) {
+        const double share = (static_cast<double>(at) - low) / size;
+        return static_cast<float>(grid.repeats ? share - std::floor(share) : share);
+    };
+    glUniform2f(location, place(eye.x, grid.low_x, grid.size_x),
+                place(eye.z, grid.low_z, grid.size_z));
+}
+
+void bind_layer(const DrawScene& scene) {
+    const GlLayers& layers = scene.layers;
+    const std::array<const GlTexture*, 4> textures{&layers.thickness, &layers.albedo,
+                                                   &layers.ground_light, &layers.base_light};
+    for (GLuint i = 0; i < textures.size(); ++i) {
+        glBindTextureUnit(4 + i, textures[i]->name());
+    }
+    const std::array<const GlBuffer*, 6> buffers{&layers.block,      &layers.phase,
+                                                 &layers.flux,       &layers.glow,
+                                                 &layers.sun_tables, &layers.sun_flux};
+    for (GLuint i = 0; i < buffers.size(); ++i) {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1 + i, buffers[i]->name());
+    }
+}
+
+// What the two programs of pixels have in common.
+void set_rays(const GlProgram& program, const TileView& view) {
+    const CameraFrame& frame = view.frame;
+    const TileGrid& grid = view.grid;
+    const GLuint name = program.name();
+    glUseProgram(name);
+    glUniform2f(kTileOrigin, grid.first_column, grid.first_row);
+    glUniform2f(kToPlane, 2.0f / grid.columns, 2.0f / grid.rows);
+    set_vec3(name, kRight, static_cast<float>(frame.tan_half_x) * frame.right);
+    set_vec3(name, kDown, static_cast<float>(-frame.tan_half_y) * frame.up);
+    set_vec3(name, kForward, -1.0f * frame.backward);
+}
+
+// Of a pixel [rad].
+float pixel_spread(const DrawScene& scene, const TileView& view) {
+    return static_cast<float>(2 * view.frame.tan_half_y / scene.camera.height);
+}
+
+void use_see(const DrawScene& scene, const GlProgram& program, const TileView& view) {
+    const GlLayers& layers = scene.layers;
+    const Camera& camera = scene.camera;
+    set_rays(program, view);
+    bind_environment(scene.environment, scene.rotation, program.name(), kEnvironment);
+    bind_layer(scene);
+    set_origin(kFieldOrigin, layers.field, camera.eye);
+    set_origin(kAlbedoOrigin, layers.ground, camera.eye);
+    set_origin(kLightOrigin, layers.light, camera.eye);
+    const double height = static_cast<double>(camera.eye.y);
+    glUniform1f(kEyeAboveBase, static_cast<float>(height - layers.base));
+    glUniform1f(kEyeAboveGround, static_cast<float>(height - layers.ground_height));
+    glUniform1f(kSpread, pixel_spread(scene, view));
+    glUniform1f(kNearPlane, camera.near_plane);
+    glUniform1i(kSupersampling, static_cast<GLint>(scene.supersampling));
+    glUniform1i(kShowsSky, scene.background ? 1 : 0);
+}
+
+// Locations of layer_smooth.frag.glsl after the first five.
+enum SmoothUniform : GLint { kSmoothSamples = 5, kTolerance, kNearSuns };
+
+void use_smooth(const DrawScene& scene, const GlProgram& program, const TileView& view) {
+    set_rays(program, view);
+    glUniform1i(kSmoothSamples, static_cast<GLint>(scene.supersampling));
+    glUniform1f(kTolerance, kCornerTolerance);
+    std::array<std::array<float, 4>, kMaxLayerSuns> suns{};  // a chord of 0 is never reached
+    for (std::size_t i = 0; i < scene.layers.suns.size(); ++i) {
+        const LayerSun& sun = scene.layers.suns[i];
+        suns[i] = {sun.direction.x, sun.direction.y, sun.direction.z,
+                   1.1f * sun.angular_radius + 2 * pixel_spread(scene, view)};
+    }
+    glUniform4fv(kNearSuns, static_cast<GLsizei>(suns.size()), suns.front().data());
+}
+
+}  // namespace
+
+formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers) {
+    const std::string see = std::string(cube_map_text) + environment_text + layer_tables_text +
+                            layer_march_text + layers_frag_text;
+    LayerPrograms programs;
+    struct Job {
+        GlProgram& program;
+        const char *name, *fragment;
+    };
+    const std::array<Job, 3> jobs{{{programs.see, "cloud layer", see.c_str()},
+                                   {programs.smooth, "smooth pixels", layer_smooth_frag_text},
+                                   {programs.spread, "smooth samples", layer_spread_frag_text}}};
+    for (const Job& job : jobs) {
+        const std::array<StageSource, 2> stages{
+            {{GL_VERTEX_SHADER, screen_vert_text}, {GL_FRAGMENT_SHADER, job.fragment}}};
+        auto program = make_program(job.name, layers.defines, stages);
+        if (!program) return program.error();
+        job.program = std::move(program).value();
+    }
+    return programs;
+}
+
+void draw_gl_layers(const DrawScene& scene, const LayerPrograms& programs, const TileView& view,
+                    const LayerTarget& target) {
+    const TileGrid& grid = view.grid;
+    const auto samples = static_cast<GLsizei>(scene.supersampling);
+    const auto columns = static_cast<GLsizei>(grid.tile_columns);
+    const auto rows = static_cast<GLsizei>(grid.tile_rows);
+    const auto draw = [](const GlFramebuffer& frame, GLsizei width, GLsizei height) {
+        glBindFramebuffer(GL_FRAMEBUFFER, frame.name());
+        glViewport(0, 0, width, height);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    };
+    use_see(scene, programs.see, view);
+    glBindTextureUnit(3, 0);  // not what is drawn to
+    glUniform1i(kSeesCorners, 1);
+    draw(target.corner_frame, columns / samples + 1, rows / samples + 1);
+
+    use_smooth(scene, programs.smooth, view);
+    glBindTextureUnit(3, target.corners.name());
+    draw(target.mean_frame, columns / samples, rows / samples);
+
+    // The test of depth leaves out what is done before a shader runs: software renderers execute
+    // both sides of a branch.
+    const float left = 0;
+    glClearNamedFramebufferfv(target.sample_frame.name(), GL_DEPTH, 0, &left);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    glUseProgram(programs.spread.name());
+    glUniform1i(0, samples);
+    glBindTextureUnit(3, target.means.name());
+    draw(target.sample_frame, columns, rows);
+
+    glDepthFunc(GL_EQUAL);
+    glDepthMask(GL_FALSE);
+    glUseProgram(programs.see.name());
+    glUniform1i(kSeesCorners, 0);
+    draw(target.sample_frame, columns, rows);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_DEPTH_TEST);
+}
+
+}  // namespace opaline::runtime

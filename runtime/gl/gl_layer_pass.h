@@ -1,0 +1,30 @@
+#pragma once
+
+#include "formats/opal/result.h"
+#include "runtime/gl/gl_layers.h"
+#include "runtime/gl/gl_objects.h"
+#include "runtime/gl/gl_scene.h"
+
+namespace opaline::runtime {
+
+struct LayerPrograms {
+    GlProgram see;             ///< along the rays of corners and of samples
+    GlProgram smooth, spread;  ///< which pixels corners do for; to their samples
+};
+/// For layers.defines. Errors: resource. Precondition: layers.shown.
+formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers);
+
+/// What a layer is drawn into, besides the samples.
+struct LayerTarget {
+    GlTexture corners, means;    ///< of pixels
+    GlTexture samples, is_done;  ///< composed; a depth buffer: 0 where a sample is left
+    GlFramebuffer corner_frame, mean_frame, sample_frame;
+};
+
+/// The samples as seen through the layer, with the ground and the sky, as draw_layers
+/// (picture/layer_pass.h) has it: from the samples in texture unit 1 and their depth in unit 2 to
+/// target.samples. A vertex array is bound; depth is not tested, before and after.
+void draw_gl_layers(const DrawScene& scene, const LayerPrograms& programs, const TileView& view,
+                    const LayerTarget& target);
+
+}  // namespace opaline::runtime

@@ -1,0 +1,102 @@
+// The thickness of a layer and the way of a ray through it, as clouds/layer_field.cpp and
+// clouds/layer_march.cpp have it. layer_tables.glsl comes before it. Places are offsets from the
+// eye along x and z [m].
+layout(binding = 4) uniform sampler2D thickness_map;
+layout(location = 10) uniform vec2 field_origin;    // the eye's place in the thickness, [0, 1]
+layout(location = 11) uniform float eye_above_base;  // [m]
+layout(location = 12) uniform float spread;          // of a pixel [rad]
+
+const float kFarthest = 1e8, kNever = 1e38;
+const int kSteps = 48;
+
+struct LayerRay {
+    vec3 direction;  // unit; from the eye
+    float begin, end;
+};
+
+struct LayerMarch {
+    float length, distance, thickness, level;
+};
+
+// By the driver's filters: written out, a step would fetch eight texels.
+float thickness_at(vec2 place, float level) {
+    return textureLod(thickness_map, field_origin + place / field.xy, level).r;
+}
+
+float field_level(float size) {
+    return log2(max(size, 1e-30) / field.z);
+}
+
+// dH/dx and dH/dz
+vec2 slope_at(vec2 place, float level) {
+    float s = field.z * exp2(clamp(level, 0.0, float(levels_counts.x)));
+    return vec2(thickness_at(place + vec2(s, 0.0), level) - thickness_at(place - vec2(s, 0.0), level),
+                thickness_at(place + vec2(0.0, s), level) - thickness_at(place - vec2(0.0, s), level)) *
+           (0.5 / s);
+}
+
+void cut_to(inout vec2 part, float position, float direction, float low, float high) {
+    if (direction == 0.0) {
+        if (position < low || position > high) part.y = part.x;
+        return;
+    }
+    float a = (low - position) / direction, b = (high - position) / direction;
+    part = vec2(max(part.x, min(a, b)), min(part.y, max(a, b)));
+}
+
+float log_of_one_more(float x) {
+    return x > 0.01 ? log(1.0 + x) : x * (1.0 - x * (0.5 - x / 3.0));
+}
+
+float exp_minus_one(float x) {
+    return x > 0.1 ? exp(x) - 1.0
+                   : x * (1.0 + x / 2.0 * (1.0 + x / 3.0 * (1.0 + x / 4.0 * (1.0 + x / 5.0))));
+}
+
+LayerMarch march_layer(LayerRay ray, float kappa) {
+    LayerMarch none = LayerMarch(0.0, 0.0, 0.0, 0.0);
+    vec3 d = ray.direction;
+    float highest = field.w;
+    vec2 part = vec2(ray.begin, min(ray.end, kFarthest));
+    cut_to(part, eye_above_base, d.y, 0.0, highest);
+#if !REPEAT
+    cut_to(part, field_origin.x, d.x / field.x, -0.125, 1.125);
+    cut_to(part, field_origin.y, d.z / field.y, -0.125, 1.125);
+#endif
+    if (!(part.y > part.x) || !(highest > 0.0)) return none;
+    // Distances from part.x: (part.x + offset) growth, growth + 1 a power of the ratio.
+    float offset = 0.5 * highest, start = part.x + offset, whole = part.y - part.x;
+    float step_growth = exp_minus_one(log_of_one_more(whole / start) / float(kSteps));
+    float level_scale = length(d.xz) * step_growth;
+    float first_height = eye_above_base + d.y * part.x;
+    float s = 0.0, growth = 0.0;
+    float level = field_level(max(level_scale * start, spread * part.x));
+    float thickness = thickness_at(part.x * d.xz, level), below_top = thickness - first_height;
+    float weights = 0.0;
+    LayerMarch march = none;
+    for (int i = 0; i < kSteps && kappa * march.length < 20.0; ++i) {
+        growth += step_growth * (1.0 + growth);
+        float next = i + 1 < kSteps ? start * growth : whole, t = part.x + next;
+        float next_level = field_level(max(level_scale * (t + offset), spread * t));
+        float next_thickness = thickness_at(t * d.xz, next_level);
+        float next_below = next_thickness - (first_height + d.y * next);
+        if (below_top > 0.0 || next_below > 0.0) {
+            float crossing = below_top / (below_top - next_below);
+            float begin = below_top > 0.0 ? 0.0 : crossing, end = next_below > 0.0 ? 1.0 : crossing;
+            float inside = (end - begin) * (next - s), middle = 0.5 * (begin + end);
+            float weight = exp(-kappa * march.length) * taken_share(kappa * inside);
+            march.length += max(inside, 0.0);
+            weights += weight;
+            march.thickness += weight * mix(thickness, next_thickness, middle);
+            march.level += weight * mix(level, next_level, middle);
+            march.distance += weight * mix(s, next, middle);
+        }
+        s = next;
+        level = next_level;
+        thickness = next_thickness;
+        below_top = next_below;
+    }
+    if (!(weights > 0.0)) return none;
+    return LayerMarch(march.length, part.x + march.distance / weights, march.thickness / weights,
+                      march.level / weights);
+}
