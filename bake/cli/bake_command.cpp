@@ -77,6 +77,10 @@ void print_summary(const BakeCommand& options, const bake::BakeResult& result, s
         }
         line += ")";
     }
+    if (const auto& layer = result.layer_error) {
+        line += fmt::format("; cloud layer errs by {:.1f} % (95 %: {:.1f} to {:.1f})",
+                            100 * layer->rms_relative, 100 * layer->ci95[0], 100 * layer->ci95[1]);
+    }
     line += warnings == 0   ? ""
             : warnings == 1 ? "; 1 warning"
                             : "; " + std::to_string(warnings) + " warnings";

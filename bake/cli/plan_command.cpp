@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "bake/base/ordered_parallel.h"
@@ -10,6 +12,7 @@
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
+#include "bake/layers/plan_layers.h"
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/cancel_flaps.h"
@@ -65,6 +68,7 @@ int run(const PlanCommand& options) {
     const bake::SceneFacts facts = bake::inspect_scene(scene);
     auto plan = bake::plan_bake(effects, scene, facts, *knobs);
     std::vector<bake::PlanEntry> volumes = bake::plan_volumes(scene, *knobs).entries;
+    std::ranges::copy(bake::plan_layers(scene, *knobs).entries, std::back_inserter(volumes));
     std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, facts);
     if (evened) {
         warnings.insert(warnings.end(), evened->warnings.begin(), evened->warnings.end());

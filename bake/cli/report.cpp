@@ -130,6 +130,9 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     if (result.volume_error) {
         report["volume_error"] = bake::volume_error_json(*result.volume_error);
     }
+    if (result.layer_error) {
+        report["layer_error"] = bake::layer_error_json(*result.layer_error);
+    }
     for (const bake::VolumeTrial& trial : result.volume_trials) {
         report["volume_trials"].push_back(
             {{"quality", bake::quality_name(trial.quality)}, {"error", trial.error}});

@@ -195,8 +195,7 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
 
 formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
     // Of later versions; whoever names one should not take it for a slip of the pen.
-    constexpr std::array<std::string_view, 5> kLater{"interreflection", "emitters", "filtering",
-                                                     "cloud", "radiosity"};
+    constexpr std::array<std::string_view, 3> kLater{"interreflection", "emitters", "filtering"};
     bake::BakeOptions wanted = options.bake;
     if (options.effects == "auto") {
         return wanted;

@@ -12,6 +12,7 @@
 #include "bake/effects/single/single.h"
 #include "bake/effects/specular/specular.h"
 #include "bake/effects/transmission/transmission.h"
+#include "bake/layers/describe_layers.h"
 #include "bake/volumes/describe_volumes.h"
 
 namespace opaline::bake {
@@ -27,6 +28,8 @@ const EffectTable& all_effects() {
                                          describe_gloss(Effect::gloss),
                                          describe_scattered_once(Effect::volume_single),
                                          describe_scattered_often(Effect::volume_multiple),
+                                         describe_cloud(Effect::cloud),
+                                         describe_radiosity(Effect::radiosity),
                                          describe_incident(Effect::incident)};
     static const EffectTable kTable{kDescriptors};
     return kTable;

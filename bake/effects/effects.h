@@ -16,6 +16,8 @@ enum class Effect : std::uint8_t {
     gloss,            ///< light mirrored by opaque surfaces
     volume_single,    ///< light scattered once in volumes
     volume_multiple,  ///< light scattered more than once in volumes
+    cloud,            ///< light scattered by cloud layers
+    radiosity,        ///< light between cloud layers and the ground
     incident          ///< what all share: what stands before the light, and its colour
 };
 

@@ -76,7 +76,7 @@ void append_pictures(const formats::CloudLayer& layer, formats::LayerRecord& rec
 
 RadiusSampling radius_sampling(const Knobs& knobs) {
     // With fewer radii than this, small droplets show the ripples of single spheres.
-    constexpr unsigned kLeast = 100, kMost = 8000;
+    constexpr unsigned kLeast = 200, kMost = 8000;
     return {knobs[kCloudStep], kLeast, kMost};
 }
 

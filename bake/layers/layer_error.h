@@ -32,4 +32,7 @@ LayerErrorReport check_layer(const formats::CloudsView& clouds, const formats::L
                              const DropletBands& droplets, std::uint64_t seed,
                              const Context& context);
 
+/// Multiplications of a check of all bands, in the unit of count_radiance_products.
+double check_products();
+
 }  // namespace opaline::bake

@@ -53,8 +53,9 @@ struct CostRequest {
 /// of a medium's profile width to the sample spacing. The clutter of a scene is not known: rates
 /// are those of a dented ball, and scenes differ from it by a factor of up to 1.4.
 ///
-/// Volumes cost what the layouts of plan_volumes ask for. `volume_plan`: their entries, which get
-/// predictions of their own; empty: the costs count as shared.
+/// Volumes cost what the layouts of plan_volumes ask for. `volume_plan`: their entries and those of
+/// layers, which get predictions of their own; empty: the costs count as shared, and layers are
+/// baked with everything.
 CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan,
                              std::span<PlanEntry> volume_plan = {});
 

@@ -11,6 +11,8 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/encode/pack_asset.h"
 #include "bake/encode/row_sink.h"
+#include "bake/layers/plan_layers.h"
+#include "bake/pipeline/layer_stages.h"
 #include "bake/pipeline/provenance.h"
 #include "bake/pipeline/volume_stages.h"
 #include "bake/pipeline/volume_warnings.h"
@@ -256,10 +258,12 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     }
     const formats::Scene& scene = evened ? evened->scene : facing;
     bool has_volumes = false;
+    LayerPlan layers;
     result.plan = run_stage(log, "plan", [&](std::uint64_t&) {
         VolumePlan decided = plan_volumes(scene, wanted);
         has_volumes = !decided.layouts.empty();
         result.volume_plan = std::move(decided.entries);
+        layers = plan_layers(scene, wanted);
         result.facts = inspect_scene(scene);
         return plan_bake(effects, scene, result.facts, wanted);
     });
@@ -291,15 +295,22 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         }
         warn_of_volumes(result.knobs, result.volume_error, result.warnings);
     }
+    std::ranges::copy(layers.entries, std::back_inserter(result.volume_plan));
+    if (!layers.layouts.empty()) {
+        if (auto status = add_layers(scene, layers.layouts, context, result); !status) {
+            return std::move(status).error();
+        }
+    }
     if (wanted.check_model && !scene.primitives.empty()) {
         if (auto status = check_model_of(effects, facing, context, result); !status) {
             return std::move(status).error();
         }
     }
-    result.asset.provenance =
-        make_provenance(scene, {result.knobs, result.plan, result.volume_plan, result.error,
-                                result.model_error ? &*result.model_error : nullptr,
-                                result.volume_error ? &*result.volume_error : nullptr});
+    result.asset.provenance = make_provenance(
+        scene, {result.knobs, result.plan, result.volume_plan, result.error,
+                result.model_error ? &*result.model_error : nullptr,
+                result.volume_error ? &*result.volume_error : nullptr,
+                result.layer_error ? &*result.layer_error : nullptr, result.asset.clouds.records});
     result.seconds_total = seconds_since(start);
     return result;
 }

@@ -7,6 +7,7 @@
 #include "bake/accuracy/check_model.h"
 #include "bake/accuracy/measure_error.h"
 #include "bake/accuracy/volumes/volume_error.h"
+#include "bake/layers/layer_error.h"
 #include "bake/pipeline/choose_knobs.h"
 #include "formats/opal/asset.h"
 
@@ -23,13 +24,14 @@ struct BakeResult {
     Knobs knobs;                         ///< as used
     unsigned threads = 1;                ///< as used
     std::vector<PlanEntry> plan;         ///< of materials
-    std::vector<PlanEntry> volume_plan;  ///< of volumes
+    std::vector<PlanEntry> volume_plan;  ///< of volumes, then of layers
     SceneFacts facts;                    ///< that the plan was decided from
     StageLog stages;
     ErrorReport error;
     std::optional<AccuracyReport> accuracy;         ///< where an error was asked for
     std::optional<ModelErrorReport> model_error;    ///< where Knobs::check_model asks for it
     std::optional<VolumeErrorReport> volume_error;  ///< nothing: no volume scatters light
+    std::optional<LayerErrorReport> layer_error;    ///< nothing: the file has no cloud layer
     std::vector<VolumeTrial> volume_trials;  ///< where an error was asked for, in their order
     std::vector<formats::Diagnostic> warnings;
     double seconds_total = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bake/layers/layer_work.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/volumes/volume_work.h"
 
@@ -64,6 +65,9 @@ MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scen
     for (const VolumeWork& work : count_volume_work(scene, layouts, knobs)) {
         counts.volume_bytes += volume_memory(work, knobs);
     }
+    for (const formats::CloudLayer& layer : scene.layers) {
+        counts.layer_bytes += layer_memory(layer, knobs);
+    }
     return counts;
 }
 
@@ -99,6 +103,7 @@ MemoryPrediction predict_memory(const EffectTable& effects, const MemoryCounts& 
              {"receivers", vertices * kReceiver},
              {"surface samples", counts.media * samples},
              {"volumes", counts.volume_bytes},
+             {"cloud layers", counts.layer_bytes},
              {"transport rows", kGrowth * (counts.opaque_rows * opaque_row +
                                            counts.translucent_rows * translucent_row)}}};
 }

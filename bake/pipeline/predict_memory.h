@@ -17,6 +17,7 @@ struct MemoryCounts {
     double opaque_rows = 0;       ///< of all others
     double media = 0;             ///< materials that are translucent
     double volume_bytes = 0;      ///< of volumes, baked with the knobs at hand
+    double layer_bytes = 0;       ///< of cloud layers, likewise
 };
 
 /// Of a scene of which only the size is known: everything counts as opaque, so that the prediction

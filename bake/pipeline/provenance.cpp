@@ -98,6 +98,31 @@ Json volume_error_json(const VolumeErrorReport& error) {
     return json;
 }
 
+Json layer_error_json(const LayerErrorReport& error) {
+    return {{"rms_relative", error.rms_relative},
+            {"ci95", {error.ci95[0], error.ci95[1]}},
+            {"tables", error.tables},
+            {"worst", error.worst},
+            {"droplets", error.droplets},
+            {"flux", error.flux},
+            {"radiances_checked", error.radiances_checked},
+            {"reference", error.reference}};
+}
+
+namespace {
+
+// What droplets do to red, green and blue light.
+Json layer_json(const formats::LayerRecord& record) {
+    Json json{{"peak_angle", record.peak_angle}, {"bands", Json::array()}};
+    for (const formats::LayerBand& band : record.band) {
+        json["bands"].push_back(
+            {{"kappa", band.kappa}, {"peak_weight", band.peak_weight}, {"g", band.g}});
+    }
+    return json;
+}
+
+}  // namespace
+
 std::string make_provenance(const formats::Scene& scene, const BakeRecord& record) {
     const Knobs& knobs = record.knobs;
     Json root;
@@ -131,6 +156,12 @@ std::string make_provenance(const formats::Scene& scene, const BakeRecord& recor
     }
     if (record.volume_error != nullptr) {
         root["volume_error"] = volume_error_json(*record.volume_error);
+    }
+    if (record.layer_error != nullptr) {
+        root["layer_error"] = layer_error_json(*record.layer_error);
+    }
+    for (const formats::LayerRecord& layer : record.layers) {
+        root["layers"].push_back(layer_json(layer));
     }
     // Names come from the user's file: bytes that are not UTF-8 must not stop the bake.
     return root.dump(2, ' ', false, Json::error_handler_t::replace);

@@ -14,8 +14,9 @@ using formats::make_warning;
 bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const Knobs& knobs,
                   std::string_view name) {
     const auto& all = effects.effects;
-    if (!scene.volumes.empty() && std::ranges::any_of(all, [&](const EffectDescriptor& effect) {
-            return effect.name == name && effect.concerns_volumes;
+    if (std::ranges::any_of(all, [&](const EffectDescriptor& effect) {
+            return effect.name == name && ((effect.concerns_volumes && !scene.volumes.empty()) ||
+                                           (effect.concerns_layers && !scene.layers.empty()));
         })) {
         return true;
     }
@@ -32,7 +33,8 @@ bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const
 }
 
 std::string concerns_nothing(const std::string& effect) {
-    return "'" + effect + "' concerns nothing in the scene: no material or volume is of its kind";
+    return "'" + effect +
+           "' concerns nothing in the scene: no material, volume or layer is of its kind";
 }
 
 // Effects that were named, and that no subject has.

@@ -19,7 +19,7 @@ struct DecidedBake {
     const SceneFacts& facts;
     const Knobs& knobs;  ///< as they were used
     std::span<const PlanEntry> plan;
-    std::span<const PlanEntry> volume_plan = {};
+    std::span<const PlanEntry> volume_plan = {};  ///< of volumes and layers
 };
 
 /// Warnings about requests that were not met or have no effect, with the decision made instead.

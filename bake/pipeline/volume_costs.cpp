@@ -11,7 +11,8 @@ namespace {
 // The entry of a volume with a name that is on; null where there is none.
 PlanEntry* payer_of(std::span<PlanEntry> plan, std::uint32_t volume, std::string_view name) {
     const auto found = std::ranges::find_if(plan, [&](const PlanEntry& entry) {
-        return entry.on && entry.subject.index == volume && entry.name == name;
+        return entry.on && entry.subject.kind == Subject::Kind::volume &&
+               entry.subject.index == volume && entry.name == name;
     });
     return found == plan.end() ? nullptr : &*found;
 }

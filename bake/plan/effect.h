@@ -126,6 +126,7 @@ struct EffectDescriptor {
     TruthStep truth{};
     bool reads_openness = false;
     bool concerns_volumes = false;  ///< it is about volumes instead of materials
+    bool concerns_layers = false;   ///< it is about cloud layers instead of materials
     /// Light of the reference that files with it hold, beside what all files are compared with.
     formats::TermSet held_light = formats::TermSet::none;
 

@@ -65,6 +65,10 @@ struct Rates {
     double scattered_cell = 0;    ///< light of one direction and band that joins a walk there
     double node_texel = 0;        ///< of a node's row: transform, selection and quantising
     double traced_collision = 0;  ///< of a path of the reference, its light included
+    // Cloud layers.
+    double series_term = 0;       ///< of a sphere's series, at one angle
+    double flux_product = 0;      ///< a multiplication of the adding of slabs, for fluxes
+    double radiance_product = 0;  ///< the same for radiance
     // The self-check.
     double split_triangle = 0;  ///< of the surface integral
     CostBySize surface_point;   ///< of the surface integral: its rays to all lights
@@ -117,6 +121,9 @@ void visit_rates(AnyRates&& rates, Visit&& visit) {
     visit("scattered_cell", rates.scattered_cell);
     visit("node_texel", rates.node_texel);
     visit("traced_collision", rates.traced_collision);
+    visit("series_term", rates.series_term);
+    visit("flux_product", rates.flux_product);
+    visit("radiance_product", rates.radiance_product);
     visit("split_triangle", rates.split_triangle);
     by_size("surface_point_few", "surface_point_many", rates.surface_point);
     visit("crowding", rates.crowding);

@@ -5,10 +5,10 @@
 
 namespace opaline::bake {
 
-/// What a decision is about. This version has materials alone: their surfaces and what fills them.
+/// What a decision is about. A material stands for its surfaces and what fills them.
 struct Subject {
     enum class Kind : std::uint8_t { material, volume, layer, emitter } kind = Kind::material;
-    std::uint32_t index = 0;  ///< material: index into Scene::materials
+    std::uint32_t index = 0;  ///< into Scene::materials, volumes or layers
     std::string name;         ///< for messages and reports: "material 'Floor'"
 };
 

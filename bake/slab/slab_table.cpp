@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <vector>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/slab/once_fluxes.h"
 #include "bake/slab/solve_slab.h"
 #include "bake/slab/table_place.h"
 
@@ -14,19 +16,24 @@ SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size, int stre
     assert(size.depths >= 2 && size.cosines >= 2);
     SlabMedium conservative = medium;
     conservative.albedo = 1;
-    constexpr unsigned kOrders = 3;
-    SlabRequest all_rows{0, 0, {}, streams, kOrders};
+    SlabRequest all_rows{0, 0, {}, streams, size.has_twice ? 3u : 0u};
     for (std::size_t j = 0; j < size.cosines; ++j) {
         const double root = static_cast<double>(j) / static_cast<double>(size.cosines - 1);
         all_rows.cosine.push_back(std::max(kMinSlabCosine, root * root));
     }
+    std::vector<double> depths;
+    for (std::size_t i = 0; i < size.depths; ++i) {
+        depths.push_back(depth_of_node(i, size.depths, kMaxSlabDepth));
+    }
+    const std::vector<OnceFluxes> once =
+        scatter_once(conservative, depths, all_rows.cosine, streams);
     SlabTable table;
     table.size = size;
     for_each_block_in_order(
         size.depths, 1, context,
         [&](Range row) {
             SlabRequest request = all_rows;
-            request.optical_depth = depth_of_node(row.begin, size.depths, kMaxSlabDepth);
+            request.optical_depth = depths[row.begin];
             return solve_slab(conservative, request).front();
         },
         [&](Range row, const SlabSolution& slab) {
@@ -36,11 +43,13 @@ SlabTable make_slab_table(const SlabMedium& medium, SlabTableSize size, int stre
                 return row.begin > 0 ? static_cast<float>(std::max(0.0, share)) : 0.0f;
             };
             for (std::size_t j = 0; j < size.cosines; ++j) {
-                table.t1.push_back(order_share(slab.order[1].transmittance[j]));
-                table.t2.push_back(order_share(slab.order[2].transmittance[j]));
+                table.t1.push_back(order_share(once[row.begin].transmitted[j]));
+                table.r1.push_back(order_share(once[row.begin].reflected[j]));
+                table.t2.push_back(size.has_twice ? order_share(slab.order[2].transmittance[j])
+                                                  : 0.0f);
+                table.r2.push_back(size.has_twice ? order_share(slab.order[2].reflectance[j])
+                                                  : 0.0f);
                 table.t_ms.push_back(static_cast<float>(slab.total.transmittance[j]));
-                table.r1.push_back(order_share(slab.order[1].reflectance[j]));
-                table.r2.push_back(order_share(slab.order[2].reflectance[j]));
             }
             table.mean_t.push_back(static_cast<float>(slab.total.mean_transmittance));
         });

@@ -12,6 +12,7 @@ namespace opaline::bake {
 /// Number of rows and columns of a SlabTable, 2 or more each.
 struct SlabTableSize {
     std::size_t depths = 64, cosines = 32;
+    bool has_twice = true;  ///< else t2 and r2 are 0, and the table takes a tenth of the time
 };
 
 /// What a slab of albedo 1 does with a beam, tabulated for a renderer. Row i is the optical depth

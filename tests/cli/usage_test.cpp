@@ -67,7 +67,7 @@ TEST(Usage, BadCommandLinesExitWithTwoAndSayWhereHelpIs) {
         {"bake", scene, "-o", out, "--coefficients", "3"},
         {"bake", scene, "-o", out, "--coefficients", "many"},
         {"bake", scene, "-o", out, "--effects", "sparkle"},
-        {"bake", scene, "-o", out, "--effects", "cloud"},
+        {"bake", scene, "-o", out, "--effects", "filtering"},
         {"bake", scene, "-o", out, "--effects", "volume-single"},
         {"bake", scene, "-o", out, "--effects", "all,direct"},
         {"bake", scene, "-o", out, "--effects", "single"},  // no medium

@@ -21,7 +21,8 @@ LayerPlan plan_of(float thickness, const Knobs& knobs = {}) {
     return plan_layers(layer_scene(thickness), knobs);
 }
 
-// What a finely sampled layer does at the bound's cosine: the largest of three bands.
+// What a finely sampled layer does at the bound's cosine: the largest of three bands. All layers
+// have the same droplets.
 struct Truth {
     double scattered = 0, often = 0;  // 1 - T_0, 1 - T_0 - T_1 - R_1
     double reflected = 0;             // R_ms
@@ -29,9 +30,9 @@ struct Truth {
 };
 
 Truth truth_of(const formats::CloudLayer& layer) {
-    const auto bands = scatter_bands(layer, {0.3, 400, 2000}, {});
+    static const DropletBands kBands = *scatter_bands(layer, {0.3, 400, 2000}, {});
     Truth most;
-    for (const DropletBand& band : *bands) {
+    for (const DropletBand& band : kBands) {
         SlabRequest request;
         request.optical_depth =
             rest_extinction(band.split, band.kappa) * static_cast<double>(layer.thickness[0]);

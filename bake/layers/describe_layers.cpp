@@ -1,0 +1,31 @@
+#include "bake/layers/describe_layers.h"
+
+#include <array>
+
+#include "bake/layers/calibrate_layers.h"
+#include "bake/layers/layer_knobs.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::array<const KnobSpec*, 2> kCloudKnobs{&kCloudStep, &kCloudNodes};
+
+}  // namespace
+
+EffectDescriptor describe_cloud(Effect id) {
+    return {.id = id,
+            .name = "cloud",
+            .help = "light scattered by the droplets of cloud layers",
+            .knobs = kCloudKnobs,
+            .concerns_layers = true,
+            .calibrate = calibrate_layers};
+}
+
+EffectDescriptor describe_radiosity(Effect id) {
+    return {.id = id,
+            .name = "radiosity",
+            .help = "light between cloud layers and the ground",
+            .concerns_layers = true};
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,154 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bake/layers/layer_knobs.h"
+#include "bake/pipeline/cost_model.h"
+#include "bake/pipeline/unmet_requests.h"
+#include "bake/scene/inspect_scene.h"
+#include "formats/opal/check_clouds.h"
+#include "formats/opal/file_bytes.h"
+#include "formats/opal/read_opal.h"
+#include "formats/opal/write_opal.h"
+#include "tests/support/media_bake.h"
+#include "tests/support/rates.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/volumes.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::HasSubstr;
+
+formats::CloudLayer make_layer() {
+    formats::CloudLayer layer;
+    layer.name = "layer 1";
+    layer.columns = layer.rows = 2;
+    layer.thickness = {0, 50, 100, 150};
+    layer.effective_radius = 3e-6;
+    layer.ground_albedo = {{90, 100, 80, 255}};
+    return layer;
+}
+
+Scene make_layer_scene() {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.layers.push_back(make_layer());
+    return scene;
+}
+
+bake::BakeOptions layer_bake() {
+    bake::BakeOptions options = small_bake();
+    options.set(bake::kCloudNodes, 8);
+    options.set(bake::kCloudStep, 1);
+    return options;
+}
+
+TEST(CloudBake, LayerAloneMakesALegalFileThatStatesItsError) {
+    bake::BakeOptions options = small_bake();
+    options.quality = bake::Quality::draft;
+    const bake::BakeResult result = bake_scene(make_layer_scene(), options);
+    EXPECT_TRUE(result.warnings.empty());
+    ASSERT_EQ(result.asset.clouds.records.size(), 1u);
+    const TemporaryFolder folder;
+    auto output = formats::AtomicFile::create(folder / "a.opal");
+    ASSERT_TRUE(output);
+    ASSERT_TRUE(formats::write_opal(result.asset.view(), std::move(*output)));
+    const auto bytes = formats::FileBytes::open(folder / "a.opal");
+    ASSERT_TRUE(bytes);
+    const auto file = formats::read_opal(bytes->bytes(), "a.opal", formats::Checks::full);
+    ASSERT_TRUE(file);
+
+    ASSERT_TRUE(result.layer_error);
+    EXPECT_GT(result.layer_error->rms_relative, 0);
+    EXPECT_LT(result.layer_error->rms_relative, 0.05);
+    const auto json = nlohmann::json::parse(result.asset.provenance);
+    EXPECT_EQ(json.at("error").at("rms_relative"), result.layer_error->rms_relative);
+    EXPECT_EQ(json.at("error").at("by_effect").at("cloud"), result.layer_error->rms_relative);
+    EXPECT_EQ(json.at("layer_error").at("tables"), result.layer_error->tables);
+    EXPECT_EQ(json.at("layers").at(0).at("bands").size(), 3u);
+    EXPECT_EQ(json.at("knobs").at("cloud_nodes"), 12);
+    std::vector<std::string> effects;
+    for (const auto& entry : json.at("plan")) {
+        effects.push_back(entry.at("effect"));
+        EXPECT_EQ(entry.at("decision"), "on");
+        EXPECT_EQ(entry.at("subject"), "layer 1");
+    }
+    EXPECT_THAT(effects, ::testing::ElementsAre("cloud", "cloud.multiple", "radiosity"));
+}
+
+TEST(CloudBake, LayerStandsBesideMeshesAndVolumes) {
+    Scene scene = make_scene({make_sphere(1)});
+    scene.volumes.push_back(make_volume(make_blob(0.5, 0.25), 4, 0.9f, 0.3f));
+    scene.layers.push_back(make_layer());
+    const bake::BakeResult result = bake_scene(scene, layer_bake());
+    EXPECT_FALSE(result.asset.position.empty());
+    EXPECT_FALSE(result.asset.volumes.records.empty());
+    EXPECT_EQ(result.asset.clouds.records.size(), 1u);
+    EXPECT_GT(result.error.receivers_checked, 0u);
+    EXPECT_EQ(result.error.by_effect.back().name, "cloud");
+    EXPECT_NE(result.error.rms_relative, result.layer_error->rms_relative);
+    EXPECT_EQ(formats::find_clouds_fault(result.asset.clouds.view()).what, "");
+}
+
+TEST(CloudBake, LayerWithoutThicknessIsLeftOut) {
+    Scene scene = make_layer_scene();
+    scene.layers[0].thickness.assign(4, 0);
+    const bake::BakeResult result = bake_scene(scene, layer_bake());
+    EXPECT_TRUE(result.asset.clouds.records.empty());
+    EXPECT_FALSE(result.layer_error);
+}
+
+TEST(CloudBake, TargetErrorChoosesTheTables) {
+    bake::BakeOptions options = small_bake();
+    options.error = 0.05;
+    const bake::BakeResult result = bake_scene(make_layer_scene(), options);
+    EXPECT_EQ(result.knobs[bake::kCloudNodes], bake::layer_knobs::nodes_for(0.05));
+    EXPECT_LE(result.layer_error->rms_relative, 0.05);
+    EXPECT_TRUE(result.warnings.empty());
+}
+
+TEST(CloudBake, EqualDropletsAndCoarseTablesAreWarnedOf) {
+    Scene scene = make_layer_scene();
+    scene.layers[0].gamma = 500;
+    const bake::BakeResult result = bake_scene(scene, layer_bake());
+    ASSERT_FALSE(result.warnings.empty());
+    EXPECT_THAT(result.warnings.back().fault, HasSubstr("ripples"));
+}
+
+TEST(CloudBake, CostsArePredictedForItsEntries) {
+    const Scene scene = make_layer_scene();
+    const bake::BakeResult result = bake_scene(scene, layer_bake());
+    std::vector<bake::PlanEntry> plan = result.plan, layers = result.volume_plan;
+    const bake::Rates rates = make_rates();
+    const bake::CostPrediction cost = bake::predict_costs(
+        {bake::all_effects(), scene, result.facts, result.knobs, rates, 1}, plan, layers);
+    for (const bake::StageReport& stage : result.stages) {
+        if (stage.name.ends_with("of clouds")) {
+            EXPECT_EQ(std::ranges::count(cost.stages, stage.name, &bake::StageCost::name), 1)
+                << stage.name;
+        }
+    }
+    EXPECT_GT(layers[0].predicted_seconds, 0);
+    EXPECT_GT(layers[1].predicted_seconds, 0);
+    const auto bytes = static_cast<double>(4 * result.asset.clouds.value.size());
+    EXPECT_NEAR(static_cast<double>(layers[0].predicted_bytes + layers[1].predicted_bytes), bytes,
+                0.01 * bytes);
+}
+
+TEST(CloudBake, EffectsOfLayersConcernNothingElse) {
+    bake::Knobs knobs;
+    knobs.effects = {"radiosity"};
+    EXPECT_FALSE(bake::check_effects(bake::all_effects(), make_scene({make_sphere(1)}), knobs));
+    Scene scene = make_scene({make_sphere(1)});
+    scene.layers.push_back(make_layer());
+    EXPECT_TRUE(bake::check_effects(bake::all_effects(), scene, knobs));
+}
+
+}  // namespace
+}  // namespace opaline::tests
