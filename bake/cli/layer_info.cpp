@@ -31,7 +31,7 @@ nlohmann::ordered_json each_band(const formats::LayerRecord& layer, Get get) {
     return values;
 }
 
-bool has_multiple(const formats::LayerRecord& layer) {
+bool scatters_often(const formats::LayerRecord& layer) {
     return layer.radiance_count() > 0;
 }
 
@@ -55,7 +55,7 @@ nlohmann::ordered_json layers_json(const formats::CloudsView& clouds) {
              {"peak_angle", layer.peak_angle},
              {"peak_weight", each_band(layer, [](const auto& band) { return band.peak_weight; })},
              {"g", each_band(layer, [](const auto& band) { return band.g; })},
-             {"multiple_scattering", has_multiple(layer)},
+             {"multiple_scattering", scatters_often(layer)},
              {"radiosity", layer.has_radiosity()},
              {"tables",
               {{"phase", layer.phase_angles},
@@ -86,7 +86,7 @@ void print_layers(const formats::CloudsView& clouds) {
         fmt::print(
             "       orders: {}; {} x {} cells, ground {} x {}{}\n"
             "       tables: phase {}, glow {} x {}, flux {} x {}, radiance {} x {} x {}; {}\n",
-            has_multiple(layer) ? "0, 1, and 2 or more" : "0 and 1", layer.columns, layer.rows,
+            scatters_often(layer) ? "0, 1, and 2 or more" : "0 and 1", layer.columns, layer.rows,
             layer.ground_columns, layer.ground_rows,
             layer.has_radiosity() ? ", light between ground and base" : "", layer.phase_angles,
             layer.glow_angles, layer.glow_events, layer.flux_depths, layer.flux_cosines,
