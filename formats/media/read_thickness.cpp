@@ -46,10 +46,10 @@ void read_height_field(const Fields& fields, gltf::Resources& resources, CloudLa
         return;
     }
     const std::string where = place(fields.where, "height_field");
-    auto image = decode_exr_channel(*bytes, "it", {"Y", "R"}, kMaxFieldSide);
+    auto image = decode_exr_channel(*bytes, where, {"Y", "R"}, kMaxFieldSide);
     if (!image) {
         const Diagnostic& fault = image.error().diagnostics.front();
-        fields.report.error(where, "it " + fault.fault, fault.remedy);
+        fields.report.error(where, fault.fault, fault.remedy);
         return;
     }
     if (std::min(image->width, image->height) < kMinFieldSide) {
