@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "runtime/picture/frame_layer.h"
 #include "runtime/volumes/volume_bounds.h"
 
 namespace opaline::runtime {
@@ -238,11 +239,18 @@ Vec3 choose_direction(const AssetView& asset) {
 float near_plane_for(const AssetView& asset, Vec3 eye) {
     const BoundingSphere sphere = bound_asset(asset);
     const double radius = usable_radius(sphere);
+    if (!asset.clouds.empty()) {
+        return sphere.radius > 0 ? std::min(kLayerNearPlane, narrow(1e-3 * radius))
+                                 : kLayerNearPlane;
+    }
     const double distance = norm(minus(widen(eye), {sphere.x, sphere.y, sphere.z}));
     return narrow(std::max(0.5 * (distance - radius), 1e-3 * radius));
 }
 
 Camera frame_asset(const AssetView& asset, float fov_y, std::uint32_t width, std::uint32_t height) {
+    if (!asset.clouds.empty() && asset.primitives.empty() && asset.volumes.empty()) {
+        return frame_layer(asset.clouds.records.front(), fov_y, width, height);
+    }
     Camera camera;
     camera.fov_y = fov_y;
     camera.width = width;

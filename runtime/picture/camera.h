@@ -54,12 +54,14 @@ double front_share(const formats::AssetView& asset, formats::Vec3 direction);
 /// The default view: bound_object fills the frame, seen 18 degrees above the horizon, 30 degrees
 /// from +Z toward +X. Where more than three quarters of the area face away from there, the azimuth
 /// is that of the quarter turns that shows the largest share of front faces. Defined for every
-/// asset: empty, a point, any size.
+/// asset: empty, a point, any size. Of a cloud layer alone: frame_layer.h.
 Camera frame_asset(const formats::AssetView& asset, float fov_y, std::uint32_t width,
                    std::uint32_t height);
 
 /// The near plane for a camera placed by the user: half way to the asset, or a thousandth of its
-/// radius where the eye is near or inside.
+/// radius where the eye is near or inside. kLayerNearPlane where there is a cloud layer, which may
+/// begin at the eye, and less for an asset whose radius is below 100 m.
+inline constexpr float kLayerNearPlane = 0.1f;  ///< [m]
 float near_plane_for(const formats::AssetView& asset, formats::Vec3 eye);
 
 /// The camera moved around the vertical axis through its target by `degrees`, from +Z toward +X:
