@@ -71,6 +71,7 @@ struct GlRenderer::State {
     EglContext context;
     std::optional<Resources> resources;
     Rotation rotation;
+    bool mirrors_world = false;  // GlOptions::mirrored was given
     GlStats stats;
 };
 
@@ -106,8 +107,9 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     auto gl_environment = upload_environment(environment);
     if (!gl_environment) return gl_environment.error();
     state->stats.upload_seconds = clock.lap();
-    auto gl_specular =
-        upload_specular(make_specular_light(environment, specular_needs(asset), {}, 0));
+    auto gl_specular = upload_specular(
+        make_specular_light(options.mirrored != nullptr ? *options.mirrored : environment,
+                            specular_needs(asset), {}, 0));
     if (!gl_specular) return gl_specular.error();
     state->stats.specular_seconds = clock.lap();
 
@@ -121,6 +123,7 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
                              gl_volumes->resident;
     state->stats.dispatches = static_cast<std::uint32_t>(gl_asset->batches.size());
     state->stats.lanes_per_row = lanes;
+    state->mirrors_world = options.mirrored != nullptr;
     state->stats.device = state->context.description();
     state->resources.emplace(Resources{std::move(*gl_asset),
                                        std::move(*gl_environment),
@@ -218,6 +221,7 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
                           resources.volumes,
                           resources.layers,
                           state_->rotation,
+                          state_->mirrors_world ? Rotation{} : state_->rotation,
                           camera,
                           s,
                           options.terms,

@@ -21,6 +21,7 @@ struct DrawScene {
     const GlVolumes& volumes;
     const GlLayers& layers;
     const Rotation& rotation;
+    Rotation mirror_rotation;  ///< of `specular`
     const Camera& camera;
     std::uint32_t supersampling = 1;
     formats::TermSet terms = formats::TermSet::all;

@@ -128,7 +128,7 @@ void set_mirroring(const DrawScene& scene, GLuint program, std::size_t primitive
     asset.roughness = scene.asset.roughness;
     const SpecularLobe lobe = specular_lobe(light, asset, primitive);
     const bool shows = lobe.radiance != nullptr && has_any(scene.terms, TermSet::specular);
-    set_light_from_world(scene.rotation, program, kLightFromWorld);
+    set_light_from_world(scene.mirror_rotation, program, kLightFromWorld);
     glProgramUniform2f(program, kLobe, lobe.cosine, lobe.sine);
     glProgramUniform1ui(program, kHasSpecular, shows ? 1u : 0u);
     for (std::size_t i = 0; i < light.maps.size(); ++i) {
@@ -140,7 +140,7 @@ void set_mirroring(const DrawScene& scene, GLuint program, std::size_t primitive
 
 void set_gloss(const DrawScene& scene, GLuint program, const formats::GlossRecord& gloss) {
     const GlSpecular& specular = scene.specular;
-    set_light_from_world(scene.rotation, program, kLightFromWorld);
+    set_light_from_world(scene.mirror_rotation, program, kLightFromWorld);
     glProgramUniform1ui(program, kHasSpecular, has_any(scene.terms, TermSet::specular) ? 1u : 0u);
     glProgramUniform4f(program, kF0F90, gloss.f0.r, gloss.f0.g, gloss.f0.b, gloss.f90);
     glProgramUniform2f(program, kMetallicRoughness, gloss.metallic, gloss.roughness);

@@ -101,6 +101,27 @@ TEST_F(GlSpecular, PicturesAgreeWithTheCpu) {
     }
 }
 
+// What a cloud layer makes of a light stands in the world's frame; the background is the light's.
+TEST_F(GlSpecular, AnotherEnvironmentThanTheBackgroundIsMirrored) {
+    const Asset asset = make_scene(2);
+    const AssetView view = asset.view();
+    Lit lit(view);
+    const Environment mirrored = test::make_lat_long(32, 16, [](formats::Vec3 d) {
+        return Rgb{1 + d.y, 1 + d.x, 2 - d.z * d.x};
+    });
+    lit.specular = prefilter_specular(mirrored, roughness_levels(view), {}, 0);
+    auto renderer = GlRenderer::create(view, lit.sky, {.mirrored = &mirrored});
+    ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
+    ASSERT_TRUE(renderer->set_light(lit.light, lit.rotation));
+    Camera camera = frame_asset(view, 45, 80, 60);
+    camera.fov_y = 18;
+    const auto cpu = draw_on_cpu(view, lit, camera, TermSet::all, true);
+    const auto gl = renderer->render(camera);
+    ASSERT_TRUE(cpu.has_value());
+    ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
+    expect_same_picture(*cpu, *gl);
+}
+
 TEST_F(GlTerms, EachComponentAgreesWithTheCpuAndTheyAddUp) {
     for (const std::uint32_t terms : {1u, 2u, 5u, 26u}) {
         SCOPED_TRACE(testing::Message() << terms << " rows a vertex");
