@@ -6,6 +6,7 @@
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
+#include "bake/cli/light_with_layers.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
@@ -20,6 +21,7 @@ namespace {
 struct RelightCommand {
     std::string path, light, output, eye, terms;
     double rotate_light = 0;
+    double time = 0;  ///< [s]
     unsigned threads = 0;
     bool json = false;
 };
@@ -142,14 +144,19 @@ int run(const RelightCommand& options) {
         return report_error(light.error());
     }
     const formats::AssetView& view = asset->loaded.view;
+    const LightWithLayers layers = light_layers_of(view, *light, options.time, options.threads);
+    const OpenedLight& of_objects = layers.of_objects(*light);
     const runtime::SpecularNeeds needs = runtime::specular_needs(view);
-    const runtime::SpecularLight specular =
-        runtime::make_specular_light(light->environment, needs, light->rotation, options.threads);
+    const runtime::SpecularLight specular = runtime::make_specular_light(
+        of_objects.environment, needs, of_objects.rotation, options.threads);
     shading.terms = *terms;
     shading.specular = needs.any() ? &specular : nullptr;
+    if (!view.clouds.empty() && view.receivers() == 0 && view.volumes.empty()) {
+        print_note("opaline: the file has a cloud layer alone, which opaline render shows");
+    }
     std::vector<formats::Rgb> radiance(view.receivers());
     const runtime::LightVector vector = runtime::project_environment(
-        light->environment, view.cubemap_size, light->rotation, options.threads);
+        of_objects.environment, view.cubemap_size, of_objects.rotation, options.threads);
     runtime::shade(view, vector, radiance, shading);
     if (auto status = write_volumes(options, view.volumes, vector, shading); !status) {
         return report_error(status.error());
@@ -207,12 +214,16 @@ void add_relight_command(CLI::App& app, Job& job) {
                      "turn the light about +Y, from +Z toward +X [degrees]")
         ->check(real_number(-1e6, 1e6))
         ->option_text("DEG [0]");
+    add_time_option(*command, options->time);
     command->add_option("--threads", options->threads, "0: one per core")
         ->transform(whole_number(0, 1024))
         ->option_text("T [0]");
     command->add_flag("--json", options->json,
                       "print JSON: receivers, mean and maximum of their radiance");
-    command->footer("Example:\n  opaline relight scene.opal --light studio -o radiance.csv");
+    command->footer(
+        "A cloud layer lights the receivers and nodes as it is seen from the centre of their "
+        "bounds.\n\n"
+        "Example:\n  opaline relight scene.opal --light studio -o radiance.csv");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 

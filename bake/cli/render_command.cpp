@@ -9,6 +9,7 @@
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
+#include "bake/cli/light_with_layers.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
@@ -40,6 +41,7 @@ struct RenderCommand {
     CameraOptions camera;
     float exposure = 0;
     double rotate_light = 0;
+    double time = 0;  ///< [s]
     std::uint32_t frames = 1;
     unsigned threads = 0;
     bool stats = false;
@@ -111,25 +113,35 @@ void print_stat(const RenderCommand& options, const char* name, double seconds) 
     }
 }
 
-int render_on_cpu(const RenderCommand& options, const formats::AssetView& view, const OpenedLight& light,
-                  const runtime::LightVector& vector, const runtime::Camera& camera, Shown shown) {
+// The light of the sky, and what of it reaches meshes and volumes.
+struct PictureLight {
+    const OpenedLight& sky;
+    const LightWithLayers& layers;
+    runtime::LightVector vector;
+
+    const OpenedLight& of_objects() const { return layers.of_objects(sky); }
+};
+
+int render_on_cpu(const RenderCommand& options, const formats::AssetView& view,
+                  const PictureLight& light, const runtime::Camera& camera, Shown shown) {
     formats::Vec3 shaded_for = camera.eye;
     auto start = Clock::now();
     std::vector<formats::Rgb> radiance =
-        runtime::shade_for_picture(view, vector, shaded_for, shown.terms, options.threads);
+        runtime::shade_for_picture(view, light.vector, shaded_for, shown.terms, options.threads);
     const runtime::VolumeLight volumes = runtime::relight_volumes(
-        view.volumes, vector, {.terms = shown.terms, .threads = options.threads});
+        view.volumes, light.vector, {.terms = shown.terms, .threads = options.threads});
     print_stat(options, "dot products", seconds_since(start));
     runtime::SoftwareOptions software;
     software.volumes = &volumes;
     software.threads = options.threads;
     software.background = shown.background;
+    software.layers = light.layers.layers ? &*light.layers.layers : nullptr;
     runtime::SpecularLight specular;
     if (const runtime::SpecularNeeds needs = runtime::specular_needs(view);
         needs.any() && has_any(shown.terms, formats::TermSet::specular)) {
         start = Clock::now();
-        specular =
-            runtime::make_specular_light(light.environment, needs, light.rotation, options.threads);
+        specular = runtime::make_specular_light(light.of_objects().environment, needs,
+                                                light.of_objects().rotation, options.threads);
         software.specular = &specular;
         print_stat(options, "mirrored light", seconds_since(start));
     }
@@ -139,33 +151,39 @@ int render_on_cpu(const RenderCommand& options, const formats::AssetView& view, 
     return render_frames(options, camera, [&](const runtime::Camera& at) {
         if (depends_on_eye && shaded_for != at.eye) {
             shaded_for = at.eye;
-            radiance =
-                runtime::shade_for_picture(view, vector, shaded_for, shown.terms, options.threads);
+            radiance = runtime::shade_for_picture(view, light.vector, shaded_for, shown.terms,
+                                                  options.threads);
         }
-        return runtime::render_software(view, radiance, light.environment, light.rotation, at,
-                                        software);
+        return runtime::render_software(view, radiance, light.sky.environment, light.sky.rotation,
+                                        at, software);
     });
 }
 
 int render_on_gpu([[maybe_unused]] const RenderCommand& options,
                   [[maybe_unused]] const formats::AssetView& view,
-                  [[maybe_unused]] const OpenedLight& light,
-                  [[maybe_unused]] const runtime::LightVector& vector,
+                  [[maybe_unused]] const PictureLight& light,
                   [[maybe_unused]] const runtime::Camera& camera, [[maybe_unused]] Shown shown) {
 #ifdef OPALINE_HAS_GL
-    auto renderer = runtime::GlRenderer::create(view, light.environment);
+    runtime::GlOptions upload;
+    if (light.layers.objects) upload.mirrored = &light.layers.objects->environment;
+    auto renderer = runtime::GlRenderer::create(view, light.sky.environment, upload);
     if (!renderer && options.backend == Backend::automatic) {
         print_note("opaline: drawing on the CPU, as OpenGL cannot be used: " +
                    printable(renderer.error().diagnostics.front().fault));
-        return render_on_cpu(options, view, light, vector, camera, shown);
+        return render_on_cpu(options, view, light, camera, shown);
     }
     if (!renderer) {
         formats::Error error = renderer.error();
         error.diagnostics.front().remedy = "use --backend cpu";
         return report_error(error);
     }
-    if (auto status = renderer->set_light(vector, light.rotation); !status) {
+    if (auto status = renderer->set_light(light.vector, light.sky.rotation); !status) {
         return report_error(status.error());
+    }
+    if (light.layers.layers) {
+        if (auto status = renderer->set_layers(*light.layers.layers); !status) {
+            return report_error(status.error());
+        }
     }
     if (options.stats) {
         fmt::print("{:<16} {}\n", "device", renderer->stats().device);
@@ -181,7 +199,7 @@ int render_on_gpu([[maybe_unused]] const RenderCommand& options,
                          [&](const runtime::Camera& at) { return renderer->render(at, drawing); });
 #else
     if (options.backend == Backend::automatic) {
-        return render_on_cpu(options, view, light, vector, camera, shown);
+        return render_on_cpu(options, view, light, camera, shown);
     }
     return report_error(make_error(ErrorKind::resource, "", "--backend",
                                    "this program was built without OpenGL", "use --backend cpu"));
@@ -217,12 +235,17 @@ int run(const RenderCommand& options) {
     if (!light) {
         return report_error(light.error());
     }
+    const LightWithLayers layers = light_layers_of(view, *light, options.time, options.threads);
+    if (layers.layers) print_stat(options, "layer light", layers.seconds);
+    const OpenedLight& of_objects = layers.of_objects(*light);
     const auto start = Clock::now();
-    const runtime::LightVector vector = runtime::project_environment(
-        light->environment, view.cubemap_size, light->rotation, options.threads);
+    const PictureLight picture_light{
+        *light, layers,
+        runtime::project_environment(of_objects.environment, view.cubemap_size, of_objects.rotation,
+                                     options.threads)};
     print_stat(options, "light vector", seconds_since(start));
     return (options.backend == Backend::cpu ? render_on_cpu : render_on_gpu)(
-        options, view, *light, vector, *camera, show(*terms, view));
+        options, view, picture_light, *camera, show(*terms, view));
 }
 
 }  // namespace
@@ -249,6 +272,7 @@ void add_render_command(CLI::App& app, Job& job) {
                      "turn the light about +Y, from +Z toward +X [degrees]")
         ->check(real_number(-1e6, 1e6))
         ->option_text("DEG [0]");
+    add_time_option(*command, options->time);
     command
         ->add_option("--frames", options->frames,
                      "a turntable: N pictures OUT-0001.png ... once around the target")
@@ -270,6 +294,11 @@ void add_render_command(CLI::App& app, Job& job) {
         ->option_text("T [0]");
     command->add_flag("--stats", options->stats, "print timings");
     command->footer(
+        "A cloud layer lights the file's meshes and volumes as it is seen from the centre of "
+        "their\n"
+        "bounds. A layer alone is seen from 1.7 m above the ground; --elevation 20 looks down on "
+        "it\n"
+        "from above, --azimuth 140 toward the sun of sky:T,EL.\n\n"
         "Example:\n  opaline render scene.opal --light sky:3,35 --rotate-light 90 -o scene.png");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }

@@ -1,0 +1,103 @@
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "formats/image/exr.h"
+#include "formats/opal/write_opal.h"
+#include "tests/cli/small_scene.h"
+#include "tests/formats/opal/asset_fixture.h"
+#include "tests/formats/opal/cloud_fixture.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string write_layer_file(const SmallScene& small, const formats::Asset& asset,
+                             const std::string& name = "layer.opal") {
+    auto file = formats::AtomicFile::create(small.path(name));
+    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    return small.path(name);
+}
+
+// Of all pixels; a picture by the CPU of 32 x 24 pixels.
+double mean_of_picture(const SmallScene& small, const std::string& file,
+                       std::vector<std::string> more) {
+    const std::string out = small.path("mean.exr");
+    std::vector<std::string> arguments{"render",   file,     "--backend", "cpu", "--light",
+                                       "sky:3,40", "--size", "32x24",     "-o",  out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome drawn = run_opaline(arguments);
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+    const auto seen = formats::read_exr(out);
+    EXPECT_TRUE(seen);
+    double mean = 0;
+    for (const formats::Rgb& pixel : seen->pixel) {
+        mean += static_cast<double>(pixel.g) / static_cast<double>(seen->pixel.size());
+    }
+    return mean;
+}
+
+TEST(LayerFiles, RelightOfALayerAloneIsATableWithoutRows) {
+    SmallScene small;
+    const std::string file = write_layer_file(small, make_cloud_asset());
+    const std::string out = small.path("o.csv");
+    const Outcome outcome = run_opaline({"relight", file, "--light", "white", "-o", out});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("cloud layer alone"), HasSubstr("opaline render")));
+    EXPECT_EQ(read_text(out), "primitive,vertex,r,g,b\n");
+}
+
+TEST(LayerFiles, RenderShowsThemFromBelowAndFromAboveAndMovedByTheirWind) {
+    SmallScene small;
+    const std::string file = write_layer_file(small, make_cloud_asset());
+    const double below = mean_of_picture(small, file, {});
+    EXPECT_GT(below, 0);
+    EXPECT_EQ(mean_of_picture(small, file, {"--time", "0"}), below);
+    EXPECT_NE(mean_of_picture(small, file, {"--time", "60"}), below);
+    EXPECT_NE(mean_of_picture(small, file, {"--elevation", "30"}), below);
+    for (const char* time : {"nan", "1e10", "noon"}) {
+        const Outcome outcome = run_opaline(
+            {"render", file, "--light", "white", "--time", time, "-o", small.path("bad.png")});
+        EXPECT_EQ(outcome.exit_code, 2) << time;
+        EXPECT_THAT(outcome.err, HasSubstr("--time"));
+    }
+}
+
+TEST(LayerFiles, TurntablesAndTimingsAreThoseOfOtherFiles) {
+    SmallScene small;
+    const std::string file = write_layer_file(small, make_cloud_asset());
+    const Outcome outcome = run_opaline({"render", file, "--light", "sun:30,40", "--frames", "2",
+                                         "--size", "16x12", "--stats", "-o", small.path("t.png")});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("layer light"), HasSubstr("draw per frame")));
+    EXPECT_NE(read_text(small.path("t-0001.png")), read_text(small.path("t-0002.png")));
+}
+
+// Beneath the layer of the fixture, whose base is 800 m high, a mesh gets less of a sun's light.
+TEST(LayerFiles, LayerLightsTheMeshesOfItsFile) {
+    SmallScene small;
+    formats::Asset asset = make_small_asset();
+    const std::string clear = write_layer_file(small, asset, "clear.opal");
+    add_layer(asset);
+    asset.clouds.thickness.assign(asset.clouds.thickness.size(), 65535);
+    const std::string cloudy = write_layer_file(small, asset, "cloudy.opal");
+    const auto table = [&](const std::string& file, const char* time) {
+        const std::string out = small.path("r.csv");
+        const Outcome outcome =
+            run_opaline({"relight", file, "--light", "sun:0,50", "--time", time, "-o", out});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_THAT(outcome.err, Not(HasSubstr("alone")));
+        return read_text(out);
+    };
+    EXPECT_NE(table(cloudy, "0"), table(clear, "0"));
+    EXPECT_NE(table(cloudy, "150"), table(cloudy, "0"));  // another part of it is overhead
+    EXPECT_EQ(table(clear, "150"), table(clear, "0"));
+    const double day = mean_of_picture(small, clear, {}), dull = mean_of_picture(small, cloudy, {});
+    EXPECT_NE(day, dull);
+}
+
+}  // namespace
+}  // namespace opaline::tests
