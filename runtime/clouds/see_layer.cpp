@@ -87,7 +87,7 @@ Rgb see_through_layer(const LayerScene& scene, const LayerRay& ray, const Rgb* s
     const double ground = ground_distance(light, ray);
     Rgb behind, sun;
     bool is_opaque = true;
-    if (surface != nullptr && ray.end <= ground) {
+    if (surface != nullptr && ray.end <= kGroundSlack * ground) {
         behind = *surface;
     } else if (ground < kFarthest) {
         cut.end = ground;

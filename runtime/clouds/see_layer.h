@@ -33,8 +33,10 @@ struct LayerScene {
 };
 
 /// Radiance along a ray to the ground or the sky, or to a surface of that radiance at ray.end where
-/// `surface` is not null and the ground is not in front of it.
+/// `surface` is not null and the ground is not in front of it: the surface wins up to kGroundSlack
+/// times the ground's distance, as floors often lie in the ground's plane.
 formats::Rgb see_through_layer(const LayerScene& scene, const LayerRay& ray,
                                const formats::Rgb* surface = nullptr);
+inline constexpr double kGroundSlack = 1.001;
 
 }  // namespace opaline::runtime

@@ -162,7 +162,7 @@ vec3 see_through_layer(LayerRay ray, bool has_surface, vec3 surface) {
     vec3 d = ray.direction, behind = vec3(0.0), sun = vec3(0.0);
     float ground = d.y < 0.0 && eye_above_ground >= 0.0 ? eye_above_ground / -d.y : kNever;
     bool is_opaque = true;
-    if (has_surface && ray.end <= ground) {
+    if (has_surface && ray.end <= 1.001 * ground) {  // kGroundSlack of see_layer.h
         behind = surface;
     } else if (ground < kFarthest) {
         ray.end = ground;

@@ -156,8 +156,10 @@ TEST(SeeLayer, SurfacesHideTheSkyAndTheGroundHidesThem) {
     const test::LitLayer lit(heaps(true), bright_day(0.5));
     const Rgb red{1, 0, 0};
     LayerRay down{{0, 500, 0}, {0, -1, 0}};
-    down.end = 400;
-    EXPECT_EQ(see_through_layer(lit.scene(), down, &red), red);
+    for (const double end : {400.0, 500.2}) {  // above the ground, and a floor in its plane
+        down.end = end;
+        EXPECT_EQ(see_through_layer(lit.scene(), down, &red), red);
+    }
     down.end = 600;
     EXPECT_NE(see_through_layer(lit.scene(), down, &red), red);
     // Toward the sun, without its light.
