@@ -117,6 +117,16 @@ void print_volume_error(const Json& error) {
     fmt::print(" ({} rays checked)\n", text_of(error, "rays_checked"));
 }
 
+void print_layer_error(const Json& error) {
+    fmt::print("layer errs    {:.1f} % RMS: tables {:.1f} %, droplets {:.1f} %\n",
+               percent_of(error, "rms_relative"), percent_of(error, "tables"),
+               percent_of(error, "droplets"));
+}
+
+bool has_object(const Json& json, const char* key) {
+    return json.contains(key) && json[key].is_object();
+}
+
 // The self-check's error at vertices.
 void print_error(const Json& error) {
     const bool is_checked = text_of(error, "receivers_checked") != "0";
@@ -162,13 +172,14 @@ void print_provenance(const Json& provenance) {
                    text_of(knobs, "coefficients"), text_of(knobs, "code_bits"),
                    text_of(provenance, "seed"));
     }
-    // A file of volumes alone has no receivers to check.
-    const bool has_volume_error =
-        provenance.contains("volume_error") && provenance["volume_error"].is_object();
+    // A file of volumes or a layer alone has no receivers to check.
+    const bool has_volume_error = has_object(provenance, "volume_error");
+    const bool has_layer_error = has_object(provenance, "layer_error");
     if (provenance.contains("error") && provenance["error"].is_object() &&
         provenance["error"].contains("rms_relative") &&
         provenance["error"]["rms_relative"].is_number() &&
-        !(has_volume_error && text_of(provenance["error"], "receivers_checked") == "0")) {
+        !((has_volume_error || has_layer_error) &&
+          text_of(provenance["error"], "receivers_checked") == "0")) {
         print_error(provenance["error"]);
     }
     if (provenance.contains("model_error") && provenance["model_error"].is_object()) {
@@ -179,6 +190,9 @@ void print_provenance(const Json& provenance) {
     }
     if (has_volume_error) {
         print_volume_error(provenance["volume_error"]);
+    }
+    if (has_layer_error) {
+        print_layer_error(provenance["layer_error"]);
     }
     if (provenance.contains("plan") && provenance["plan"].is_array()) {
         fmt::print("plan\n");

@@ -237,7 +237,10 @@ int run(const RenderCommand& options) {
     }
     const LightWithLayers layers = light_layers_of(view, *light, options.time, options.threads);
     if (layers.layers) print_stat(options, "layer light", layers.seconds);
-    const OpenedLight& of_objects = layers.of_objects(*light);
+    // A file without rows, a cloud layer alone, needs no light vector.
+    const OpenedLight none;
+    const bool has_rows = !view.primitives.empty() || !view.volumes.empty();
+    const OpenedLight& of_objects = has_rows ? layers.of_objects(*light) : none;
     const auto start = Clock::now();
     const PictureLight picture_light{
         *light, layers,

@@ -1,0 +1,73 @@
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "tests/cli/print_json.h"
+#include "tests/cli/small_scene.h"
+
+namespace opaline::tests {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// A media file of a layer alone, of droplets so small that its bake takes a second.
+std::string write_layer_scene(const SmallScene& small, const std::string& more) {
+    const std::string path = small.path("layer.json");
+    write_file(path,
+               std::string(R"({"clouds": [{"r_e": 2e-6, "size": [4000, 4000], )" + more + "}]}"));
+    return path;
+}
+
+nlohmann::json plan_of(const std::string& scene, const std::string& effect) {
+    const nlohmann::json plan = print_json("plan", {scene, "--json"});
+    for (const nlohmann::json& entry : plan["plan"]) {
+        if (entry["effect"] == effect) return entry;
+    }
+    ADD_FAILURE() << "no " << effect << " in the plan of " << scene;
+    return {};
+}
+
+TEST(LayerBake, IsPlannedBakedAndStatedFromAMediaFileAlone) {
+    SmallScene small;
+    const std::string scene = write_layer_scene(small, R"("thickness": 300)");
+    EXPECT_EQ(plan_of(scene, "cloud")["decision"], "on");
+    EXPECT_EQ(plan_of(scene, "cloud.multiple")["decision"], "on");
+    EXPECT_EQ(plan_of(scene, "radiosity")["decision"], "on");
+    const std::string file = small.path("layer.opal"), report = small.path("report.json");
+    const Outcome bake =
+        run_opaline({"bake", scene, "-o", file, "--quality", "draft", "--report", report});
+    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+    EXPECT_THAT(bake.err, HasSubstr("cloud layer errs by"));
+    const nlohmann::json error = nlohmann::json::parse(read_text(report))["error"];
+    const double stated = error["by_effect"]["cloud"];
+    EXPECT_GT(stated, 0);
+    EXPECT_LT(stated, 0.1);
+    EXPECT_EQ(error["rms_relative"], stated);
+    EXPECT_THAT(run_opaline({"info", file}).out,
+                AllOf(HasSubstr("layer errs"), HasSubstr("base at 1000 m over ground at 0 m"),
+                      Not(HasSubstr("measured error"))));
+    EXPECT_EQ(run_opaline({"verify", file}).exit_code, 0);
+}
+
+TEST(LayerBake, BlackGroundSendsNothingBackAndAVeilIsNoCloud) {
+    SmallScene small;
+    EXPECT_EQ(plan_of(write_layer_scene(small, R"("thickness": 300, "ground_albedo": [0, 0, 0])"),
+                      "radiosity")["decision"],
+              "off");
+    EXPECT_EQ(plan_of(write_layer_scene(small, R"("thickness": 1e-4)"), "cloud")["decision"],
+              "off");
+}
+
+TEST(LayerBake, TwoLayersAreOneTooMany) {
+    SmallScene small;
+    const std::string scene = small.path("two.json");
+    write_file(scene, std::string(R"({"clouds": [{"thickness": 100}, {"thickness": 50}]})"));
+    const Outcome outcome = run_opaline({"plan", scene});
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_THAT(outcome.err, HasSubstr("this version simulates one"));
+}
+
+}  // namespace
+}  // namespace opaline::tests
