@@ -13,11 +13,7 @@
 namespace opaline::formats {
 namespace {
 
-constexpr const char* kSection = "section CLOU";
-
-std::string number(auto value) {
-    return std::to_string(value);
-}
+constexpr const char* kCloudsSection = "section CLOU";
 
 // False for NaN.
 bool lies_within(float x, float low, float high) {
@@ -35,8 +31,8 @@ bool is_side(std::uint32_t cells) {
 std::string find_place_fault(const LayerRecord& layer) {
     if (!is_coordinate(layer.base) || !is_coordinate(layer.ground) ||
         !(layer.base > layer.ground)) {
-        return "its base at " + number(layer.base) + " m is not above its ground at " +
-               number(layer.ground) + " m, or is too far from 0";
+        return "its base at " + number_in_fault(layer.base) + " m is not above its ground at " +
+               number_in_fault(layer.ground) + " m, or is too far from 0";
     }
     const float lengths[] = {layer.center[0], layer.center[1], layer.wind[0], layer.wind[1]};
     if (!std::all_of(std::begin(lengths), std::end(lengths), is_coordinate)) {
@@ -44,15 +40,16 @@ std::string find_place_fault(const LayerRecord& layer) {
     }
     for (const float size : layer.size) {
         if (!lies_within(size, kMinLayerSize, kMaxLayerLength)) {
-            return "it is " + number(size) + " m wide; expected 0.001 m or more";
+            return "it is " + number_in_fault(size) + " m wide; expected 0.001 m or more";
         }
     }
     if (!lies_within(layer.highest, 0, kMaxLayerLength)) {
-        return "its largest thickness of " + number(layer.highest) +
+        return "its largest thickness of " + number_in_fault(layer.highest) +
                " m is below zero or not finite";
     }
     if (!lies_within(layer.haze, 0, kMaxLayerExtinction)) {
-        return "its haze of " + number(layer.haze) + " per metre is below zero or not finite";
+        return "its haze of " + number_in_fault(layer.haze) +
+               " per metre is below zero or not finite";
     }
     constexpr std::uint32_t kKnown = LayerRecord::kRepeat | LayerRecord::kRadiosity;
     if ((layer.flags & ~kKnown) != 0 || layer.reserved != std::array<std::uint32_t, 2>{}) {
@@ -63,21 +60,22 @@ std::string find_place_fault(const LayerRecord& layer) {
 
 std::string find_band_fault(const LayerRecord& layer) {
     if (!(layer.peak_angle >= 0 && layer.peak_angle < std::numbers::pi_v<float> / 2)) {
-        return "its forward peak of " + number(layer.peak_angle) +
+        return "its forward peak of " + number_in_fault(layer.peak_angle) +
                " rad is not in 0 ... pi / 2 (exclusive)";
     }
     for (const LayerBand& band : layer.band) {
         if (!lies_within(band.kappa, 0, kMaxLayerExtinction)) {
-            return "its extinction of " + number(band.kappa) +
+            return "its extinction of " + number_in_fault(band.kappa) +
                    " per metre is below zero or not finite";
         }
         if (!(band.peak_weight >= 0 && band.peak_weight < 1) ||
             (layer.peak_angle == 0 && band.peak_weight != 0)) {
-            return "its forward peak has " + number(band.peak_weight) +
+            return "its forward peak has " + number_in_fault(band.peak_weight) +
                    " of the light; expected less than 1, and 0 where the peak has no angle";
         }
         if (!(std::abs(band.g) < 1)) {
-            return "a mean cosine of " + number(band.g) + " is not in -1 ... 1 (exclusive)";
+            return "a mean cosine of " + number_in_fault(band.g) +
+                   " is not in -1 ... 1 (exclusive)";
         }
         if (band.reserved != 0) {
             return "a band has a value that only later versions know";
@@ -89,21 +87,21 @@ std::string find_band_fault(const LayerRecord& layer) {
 std::string find_count_fault(const LayerRecord& layer) {
     if (!is_side(layer.columns) || !is_side(layer.rows) || !is_side(layer.ground_columns) ||
         !is_side(layer.ground_rows)) {
-        return "its thickness has " + number(layer.columns) + " x " + number(layer.rows) +
-               " cells, its ground " + number(layer.ground_columns) + " x " +
-               number(layer.ground_rows) + "; expected 1 to " + number(kMaxLayerSide) +
-               " along an edge";
+        return "its thickness has " + number_in_fault(layer.columns) + " x " +
+               number_in_fault(layer.rows) + " cells, its ground " +
+               number_in_fault(layer.ground_columns) + " x " + number_in_fault(layer.ground_rows) +
+               "; expected 1 to " + number_in_fault(kMaxLayerSide) + " along an edge";
     }
     if (layer.phase_angles < 2 || layer.flux_depths < 2 || layer.flux_cosines < 2) {
-        return "its phase function has " + number(layer.phase_angles) +
-               " angles, its table of flux " + number(layer.flux_depths) + " depths and " +
-               number(layer.flux_cosines) + " cosines; expected 2 or more each";
+        return "its phase function has " + number_in_fault(layer.phase_angles) +
+               " angles, its table of flux " + number_in_fault(layer.flux_depths) + " depths and " +
+               number_in_fault(layer.flux_cosines) + " cosines; expected 2 or more each";
     }
     const bool has_no_glow = layer.glow_angles == 0 && layer.glow_events == 0;
     const bool has_glow = layer.glow_angles >= 2 && layer.glow_events >= 2;
     if (!(layer.peak_angle > 0 ? has_glow : has_no_glow)) {
-        return "its glow has " + number(layer.glow_angles) + " angles and " +
-               number(layer.glow_events) +
+        return "its glow has " + number_in_fault(layer.glow_angles) + " angles and " +
+               number_in_fault(layer.glow_events) +
                " numbers of events; expected 2 or more each, or 0 where the forward peak has no "
                "angle";
     }
@@ -112,8 +110,9 @@ std::string find_count_fault(const LayerRecord& layer) {
     const bool has_radiance =
         layer.radiance_depths >= 2 && layer.radiance_cosines >= 2 && layer.radiance_modes >= 1;
     if (!has_no_radiance && !has_radiance) {
-        return "its tables of radiance have " + number(layer.radiance_depths) + " depths, " +
-               number(layer.radiance_cosines) + " cosines and " + number(layer.radiance_modes) +
+        return "its tables of radiance have " + number_in_fault(layer.radiance_depths) +
+               " depths, " + number_in_fault(layer.radiance_cosines) + " cosines and " +
+               number_in_fault(layer.radiance_modes) +
                " modes; expected 2, 2 and 1 or more, or all 0";
     }
     return {};
@@ -190,7 +189,7 @@ std::string find_layer_value_fault(const CloudsView& clouds, const LayerRecord& 
     }
     for (std::size_t band = 0; band < layer.band.size(); ++band) {
         std::string fault = find_table_fault(tables_of(clouds, layer, band));
-        if (!fault.empty()) return "band " + number(band) + ": " + fault;
+        if (!fault.empty()) return "band " + number_in_fault(band) + ": " + fault;
     }
     return {};
 }
@@ -200,7 +199,8 @@ template <class Find>
 Fault find_first(const CloudsView& clouds, Find find) {
     for (std::size_t i = 0; i < clouds.records.size(); ++i) {
         if (std::string fault = find(clouds.records[i]); !fault.empty()) {
-            return {std::string(kSection) + ", layer " + number(i), std::move(fault)};
+            return {std::string(kCloudsSection) + ", layer " + number_in_fault(i),
+                    std::move(fault)};
         }
     }
     return {};
@@ -210,8 +210,8 @@ Fault find_first(const CloudsView& clouds, Find find) {
 
 Fault find_clouds_fault(const CloudsView& clouds) {
     if (clouds.records.size() > kMaxLayers) {
-        return {kSection, "it has " + number(clouds.records.size()) + " layers; this version of " +
-                              "Opaline knows one at most"};
+        return {kCloudsSection, "it has " + number_in_fault(clouds.records.size()) +
+                                    " layers; this version of " + "Opaline knows one at most"};
     }
     UsedLayerParts used;
     return find_first(clouds, [&](const LayerRecord& layer) {

@@ -13,11 +13,7 @@
 namespace opaline::formats {
 namespace {
 
-constexpr const char* kSection = "section VOLU";
-
-std::string number(auto value) {
-    return std::to_string(value);
-}
+constexpr const char* kVolumesSection = "section VOLU";
 
 // Parts of the arrays that volumes have used so far.
 struct UsedParts {
@@ -60,18 +56,19 @@ bool is_invertible(const std::array<float, 12>& to_world) {
 
 std::string find_kind_fault(const VolumeRecord& v) {
     if (v.spacing != 1 && v.spacing != 2 && v.spacing != 4 && v.spacing != 8) {
-        return "nodes every " + number(v.spacing) + " voxels; expected 1, 2, 4 or 8";
+        return "nodes every " + number_in_fault(v.spacing) + " voxels; expected 1, 2, 4 or 8";
     }
     if (!is_possible_count(v.single_terms) || !is_possible_count(v.multiple_terms) ||
         (v.bands != 1 && v.bands != 3)) {
-        return number(v.single_terms) + " terms of single scattering, " + number(v.multiple_terms) +
-               " of multiple scattering and " + number(v.bands) +
+        return number_in_fault(v.single_terms) + " terms of single scattering, " +
+               number_in_fault(v.multiple_terms) + " of multiple scattering and " +
+               number_in_fault(v.bands) +
                " bands; expected 0, 1, 4, 9, 16 or 25 terms and 1 or 3 bands";
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::int64_t first = v.first_brick[axis];
         if (first < -kMaxBrick || first + std::int64_t{v.extent[axis]} > kMaxBrick) {
-            return "its bricks lie further than " + number(kMaxBrick) + " from the origin";
+            return "its bricks lie further than " + number_in_fault(kMaxBrick) + " from the origin";
         }
     }
     return is_invertible(v.to_world) ? "" : "its matrix is not finite or cannot be inverted";
@@ -134,7 +131,8 @@ std::string find_record_value_fault(const VolumeRecord& v) {
         return "a moment of its phase function is not in -1 ... 1";
     }
     if (v.single_terms > 0 && v.moment[0] < 1 - kRounding) {
-        return "its phase function has moment 0 of " + number(v.moment[0]) + "; expected 1";
+        return "its phase function has moment 0 of " + number_in_fault(v.moment[0]) +
+               "; expected 1";
     }
     return {};
 }
@@ -148,7 +146,7 @@ std::string find_phase_fault(const VolumesView& volumes, const VolumeRecord& v) 
     constexpr double kTolerance = 1e-3;  // far above the rounding of floats
     const double integral = integrate_phase_table(phase);
     if (v.single_terms > 0 && !(std::abs(integral - 1) <= kTolerance)) {
-        return "its phase function integrates to " + number(integral) + "; expected 1";
+        return "its phase function integrates to " + number_in_fault(integral) + "; expected 1";
     }
     return {};
 }
@@ -203,7 +201,8 @@ template <class Find>
 Fault find_first(const VolumesView& volumes, Find find) {
     for (std::size_t i = 0; i < volumes.records.size(); ++i) {
         if (std::string fault = find(volumes.records[i]); !fault.empty()) {
-            return {std::string(kSection) + ", volume " + number(i), std::move(fault)};
+            return {std::string(kVolumesSection) + ", volume " + number_in_fault(i),
+                    std::move(fault)};
         }
     }
     return {};
@@ -213,9 +212,9 @@ Fault find_first(const VolumesView& volumes, Find find) {
 
 Fault find_volumes_fault(const VolumesView& volumes) {
     if (volumes.rows.row_offset.empty()) {
-        return volumes.empty() ? Fault{} : Fault{kSection, "it has no rows"};
+        return volumes.empty() ? Fault{} : Fault{kVolumesSection, "it has no rows"};
     }
-    if (Fault fault = find_rows_fault(volumes.rows, kSection); !fault.what.empty()) {
+    if (Fault fault = find_rows_fault(volumes.rows, kVolumesSection); !fault.what.empty()) {
         return fault;
     }
     UsedParts used;
@@ -228,7 +227,7 @@ Fault find_volumes_fault(const VolumesView& volumes) {
 
 Fault find_volume_value_fault(const VolumesView& volumes) {
     if (volumes.empty()) return {};
-    if (Fault fault = find_row_value_fault(volumes.rows, kSection); !fault.what.empty()) {
+    if (Fault fault = find_row_value_fault(volumes.rows, kVolumesSection); !fault.what.empty()) {
         return fault;
     }
     return find_first(volumes, [&](const VolumeRecord& v) {

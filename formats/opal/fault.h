@@ -9,4 +9,9 @@ struct Fault {
     std::string where, what;
 };
 
+/// A number in such a text.
+std::string number_in_fault(auto value) {
+    return std::to_string(value);
+}
+
 }  // namespace opaline::formats
