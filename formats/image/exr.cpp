@@ -57,15 +57,11 @@ void read_pixels(const std::string& bytes, const ExrHeader& header, std::span<co
     MemoryInput stream(bytes);
     imf::InputFile file(stream, 0);  // no threads of its own
     const std::size_t x_stride = stride * sizeof(float), y_stride = x_stride * header.width;
-    // OpenEXR addresses pixels from the origin of its plane, not of the window.
-    const std::ptrdiff_t origin = header.min_x * static_cast<std::ptrdiff_t>(x_stride) +
-                                  header.min_y * static_cast<std::ptrdiff_t>(y_stride);
+    const Imath::V2i corner(header.min_x, header.min_y);
     imf::FrameBuffer frame;
     for (const Target& target : targets) {
-        const std::uintptr_t base =
-            reinterpret_cast<std::uintptr_t>(target.first) - static_cast<std::uintptr_t>(origin);
-        frame.insert(target.name,
-                     imf::Slice(imf::FLOAT, reinterpret_cast<char*>(base), x_stride, y_stride));
+        frame.insert(target.name, imf::Slice::Make(imf::FLOAT, target.first, corner, header.width,
+                                                   header.height, x_stride, y_stride));
     }
     file.setFrameBuffer(frame);
     const int last = header.min_y + static_cast<int>(header.height) - 1;

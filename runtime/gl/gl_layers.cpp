@@ -116,7 +116,7 @@ GlBuffer upload_table(const LayerLight& light, std::span<const float> formats::L
 }
 
 formats::Status upload_layer(GlLayers& layers, const LayerLight& light) {
-    if (const auto status = check_sizes(light); !status) return status;
+    if (auto status = check_sizes(light); !status) return status;
     layers.thickness = upload_pyramid(std::span<const MipLevel<float>>(light.field.thickness.level),
                                       layers.layer_bytes);
     filter_thickness(layers.thickness, light.field.repeats());
@@ -211,7 +211,7 @@ std::string list_defines(const LayerLight& light) {
 formats::Status relight_gl_layers(GlLayers& layers, const LayerLight& light) {
     if (!layers.shown) {
         layers.layer_bytes = 0;
-        if (const auto status = upload_layer(layers, light); !status) return status;
+        if (auto status = upload_layer(layers, light); !status) return status;
     }
     layers.light_bytes = 0;
     upload_suns(layers, light);
@@ -234,7 +234,7 @@ formats::Status relight_gl_layers(GlLayers& layers, const LayerLight& light) {
                     light.ground_light.size_z, repeats};
     layers.base = static_cast<double>(record.base);
     layers.ground_height = static_cast<double>(record.ground);
-    const auto status = check_gl("uploading the light of a cloud layer");
+    auto status = check_gl("uploading the light of a cloud layer");
     layers.shown = status.has_value();
     return status;
 }
