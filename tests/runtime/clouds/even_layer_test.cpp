@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "bake/slab/low_orders.h"
 #include "bake/slab/solve_radiance.h"
+#include "runtime/clouds/layer_march.h"
 #include "runtime/clouds/see_ground.h"
 #include "runtime/texture.h"
 #include "tests/runtime/clouds/lit_layer.h"
@@ -132,6 +134,47 @@ TEST(EvenLayer, OverGroundIsTheClosedFormOfRadiosity) {
     const float ground = down / (1 - albedo * (1 - mean));
     const Rgb seen = see_ground(lit.light, 500, -300, 0);
     EXPECT_NEAR(seen.g / (albedo / std::numbers::pi_v<float> * ground), 1, 2e-3f);
+}
+
+TEST(EvenLayer, WithoutRadiosityTheGroundHasWhatComesDownOnce) {
+    formats::Clouds clouds = test::make_test_clouds(test::even_test_layer());
+    clouds.records[0].flags &= ~formats::LayerRecord::kRadiosity;
+    const test::LitLayer lit(std::move(clouds), test::one_sun(0.6));
+    const std::array<float, 3> depth = rest_depths(lit.light, lit.light.record.highest);
+    const FluxShares flux = flux_shares(lit.light.tables[1], lit.light.record, depth[1], 0.6f);
+    const float down = 0.6f * (flux.straight + flux.across);
+    const Rgb seen = see_ground(lit.light, 500, -300, 0);
+    EXPECT_NEAR(seen.g / (linear_from_srgb(124) / std::numbers::pi_v<float> * down), 1, 2e-3f);
+    EXPECT_EQ(lit.light.base_light.at(500, -300), Rgb{});
+}
+
+// Koschmieder: e^(-haze d) of what is far off is left, the rest is the radiance near the horizon.
+TEST(EvenLayer, HazeTakesWhatIsFarOffTowardTheHorizon) {
+    constexpr float kHaze = 2e-4f;
+    const auto look = [](float haze, double sine, double sky) {
+        formats::Clouds clouds = test::make_test_clouds(test::even_test_layer());
+        clouds.records[0].haze = haze;
+        formats::Environment day = test::white_sky(static_cast<float>(sky));
+        day.discs = test::one_sun(0.6).discs;
+        const test::LitLayer lit(std::move(clouds), day);
+        const LayerRay ray{kBelow, test::direction_of(sine, 2)};
+        const LayerMarch march = march_layer(lit.light.field, ray, lit.light.rest_kappa[1]);
+        return std::tuple(see_layer(lit.light, ray), march.distance, lit.light.sky.horizon.g);
+    };
+    for (const double sine : {1.0, 0.2}) {
+        for (const double sky : {0.0, 0.5}) {
+            const auto [clear, distance, horizon] = look(0, sine, sky);
+            const auto [hazy, same_distance, same_horizon] = look(kHaze, sine, sky);
+            ASSERT_EQ(distance, same_distance);
+            const float left = std::exp(-kHaze * static_cast<float>(distance));
+            ASSERT_LT(left, 0.85f);
+            EXPECT_NEAR(
+                hazy.radiance.g,
+                left * clear.radiance.g + (1 - left) * (1 - clear.transmittance.g) * horizon,
+                1e-5f);
+            EXPECT_EQ(hazy.transmittance, clear.transmittance);
+        }
+    }
 }
 
 }  // namespace

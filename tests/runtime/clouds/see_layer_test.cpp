@@ -185,6 +185,37 @@ TEST(SeeLayer, SunThroughALayerIsItsDiscAndItsGlow) {
     EXPECT_LT(thinnest, 0.1f);
 }
 
+TEST(SeeLayer, SlopesThatFaceTheSunAreBrighterFromAbove) {
+    // Ridges along z, both flanks of one slope, up to 300 m.
+    Clouds ridges = heaps(true);
+    for (std::uint32_t i = 0; i < kHeapCells * kHeapCells; ++i) {
+        const std::uint32_t step = i % kHeapCells % 8;
+        ridges.thickness[i] = static_cast<std::uint16_t>(20000 + 10000 * std::min(step, 8 - step));
+    }
+    const test::LitLayer lit(std::move(ridges), test::one_sun(0.3));
+    const double cell = static_cast<double>(lit.light.record.size[0]) / kHeapCells;
+    // Cell 2 of 8 rises toward +X and so faces away from the sun, cell 6 faces it.
+    const auto look = [&](double column) {
+        const auto x = static_cast<float>(lit.light.field.low_x + (column + 0.5) * cell);
+        const LayerRay ray{{x, 3000, 0}, {0, -1, 0}};
+        EXPECT_NEAR(march_layer(lit.light.field, ray, 1e-6f).thickness, 300 * 40000.0 / 65535, 20);
+        return see_layer(lit.light, ray).radiance.g;
+    };
+    EXPECT_GT(look(6), 1.02f * look(2));
+}
+
+TEST(SeeLayer, WindCarriesItAlong) {
+    Clouds clouds = heaps(true);
+    clouds.records[0].wind = {8, -3};
+    const test::LitLayer now(clouds, bright_day(0.5)), later(clouds, bright_day(0.5), {.time = 50});
+    for (const float x : {0.0f, 700.0f, 1900.0f}) {
+        const Vec3 up = test::direction_of(0.8, 1);
+        const float before = see_layer(now.light, {{x, 0, 100}, up}).transmittance.g;
+        EXPECT_NEAR(see_layer(later.light, {{x + 400, 0, 100 - 150}, up}).transmittance.g, before,
+                    1e-3f);
+    }
+}
+
 TEST(GroundLight, ShadowsLieAwayFromTheSun) {
     // One heap in the middle of nothing, the sun 45 degrees high toward +X: its shadow is at -1000.
     Clouds one = heaps(false, 200);
