@@ -138,6 +138,22 @@ Status report_lost_paths(const ReferenceCommand& options, const bake::Estimate& 
         "close the holes of its mesh")});
 }
 
+// Paths do not know cloud layers.
+Status check_layers(const formats::Scene& scene) {
+    if (scene.layers.empty()) {
+        return formats::ok_status();
+    }
+    if (scene.primitives.empty() && scene.volumes.empty()) {
+        return make_error(ErrorKind::bad_input, scene.source, "clouds",
+                          "the scene is a cloud layer alone, which no paths are traced through",
+                          "a bake measures a layer's error itself; opaline slab computes layers by "
+                          "photons");
+    }
+    return report_warnings({formats::make_warning(
+        scene.source, "clouds", "the cloud layer is left out: no paths are traced through it",
+        "compare with a bake without it")});
+}
+
 // As a bake sees them.
 formats::Result<bake::OrientedBodies> close_bodies(const formats::Scene& scene) {
     bake::OrientedBodies bodies = bake::orient_bodies(scene);
@@ -243,6 +259,9 @@ int run(const ReferenceCommand& options) {
         return report_error(imported.error());
     }
     if (auto status = check_paths(options, imported->scene.inputs); !status) {
+        return report_error(status.error());
+    }
+    if (auto status = check_layers(imported->scene); !status) {
         return report_error(status.error());
     }
     if (options.paths.is_chosen()) {

@@ -53,7 +53,8 @@ struct Shown {
     bool background = true;
 };
 
-// The background belongs to the whole light: to all components that the file may have.
+// The background, cloud layers too, belongs to the whole light: to all components that the file may
+// have.
 Shown show(formats::TermSet terms, const formats::AssetView& view) {
     constexpr formats::TermSet kOfVolumes =
         formats::TermSet::volume_single | formats::TermSet::volume_multiple;
@@ -135,7 +136,7 @@ int render_on_cpu(const RenderCommand& options, const formats::AssetView& view,
     software.volumes = &volumes;
     software.threads = options.threads;
     software.background = shown.background;
-    software.layers = light.layers.layers ? &*light.layers.layers : nullptr;
+    software.layers = shown.background && light.layers.layers ? &*light.layers.layers : nullptr;
     runtime::SpecularLight specular;
     if (const runtime::SpecularNeeds needs = runtime::specular_needs(view);
         needs.any() && has_any(shown.terms, formats::TermSet::specular)) {
@@ -180,7 +181,7 @@ int render_on_gpu([[maybe_unused]] const RenderCommand& options,
     if (auto status = renderer->set_light(light.vector, light.sky.rotation); !status) {
         return report_error(status.error());
     }
-    if (light.layers.layers) {
+    if (shown.background && light.layers.layers) {
         if (auto status = renderer->set_layers(*light.layers.layers); !status) {
             return report_error(status.error());
         }
@@ -285,7 +286,7 @@ void add_render_command(CLI::App& app, Job& job) {
         ->add_option("--terms", options->terms,
                      "components to show: all, or some of " +
                          formats::term_names(formats::TermSet::baked) +
-                         "; the background is black unless all are. " +
+                         "; the background is black, without a cloud layer, unless all are. " +
                          formats::term_names(formats::TermSet::separable, " and ") +
                          " apart need a bake with --separate-terms")
         ->option_text("all|LIST [all]");

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <sstream>
 #include <string>
 
 #include "formats/image/exr.h"
@@ -76,27 +77,66 @@ TEST(LayerFiles, TurntablesAndTimingsAreThoseOfOtherFiles) {
     EXPECT_NE(read_text(small.path("t-0001.png")), read_text(small.path("t-0002.png")));
 }
 
+// Sum of all numbers of a table of relight behind its vertices.
+double sum_of_table(const std::string& text) {
+    double sum = 0;
+    std::istringstream lines(text.substr(text.find('\n') + 1));
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream cells(line.substr(line.find(',', line.find(',') + 1) + 1));
+        for (std::string cell; std::getline(cells, cell, ',');)
+            sum += std::stod(cell);
+    }
+    return sum;
+}
+
 // Beneath the layer of the fixture, whose base is 800 m high, a mesh gets less of a sun's light.
-TEST(LayerFiles, LayerLightsTheMeshesOfItsFile) {
+TEST(LayerFiles, LayerTakesLightFromTheMeshesOfItsFile) {
     SmallScene small;
     formats::Asset asset = make_small_asset();
     const std::string clear = write_layer_file(small, asset, "clear.opal");
     add_layer(asset);
     asset.clouds.thickness.assign(asset.clouds.thickness.size(), 65535);
     const std::string cloudy = write_layer_file(small, asset, "cloudy.opal");
-    const auto table = [&](const std::string& file, const char* time) {
+    const auto light_of = [&](const std::string& file, const char* time) {
         const std::string out = small.path("r.csv");
         const Outcome outcome =
             run_opaline({"relight", file, "--light", "sun:0,50", "--time", time, "-o", out});
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         EXPECT_THAT(outcome.err, Not(HasSubstr("alone")));
-        return read_text(out);
+        return sum_of_table(read_text(out));
     };
-    EXPECT_NE(table(cloudy, "0"), table(clear, "0"));
-    EXPECT_NE(table(cloudy, "150"), table(cloudy, "0"));  // another part of it is overhead
-    EXPECT_EQ(table(clear, "150"), table(clear, "0"));
-    const double day = mean_of_picture(small, clear, {}), dull = mean_of_picture(small, cloudy, {});
-    EXPECT_NE(day, dull);
+    const double day = light_of(clear, "0"), dull = light_of(cloudy, "0");
+    EXPECT_GT(day, 0);
+    EXPECT_LT(dull, 0.9 * day);
+    EXPECT_NE(light_of(cloudy, "150"), dull);  // another part of it is overhead
+    EXPECT_EQ(light_of(clear, "150"), day);
+}
+
+TEST(LayerFiles, SingleTermsAreShownWithoutTheLayer) {
+    SmallScene small;
+    formats::Asset asset = make_small_asset();
+    const std::string clear = write_layer_file(small, asset, "clear.opal");
+    add_layer(asset);
+    const std::string cloudy = write_layer_file(small, asset, "cloudy.opal");
+    const std::vector<std::string> away{"--eye", "0,500,0", "--target", "0,900,300"};
+    std::vector<std::string> diffuse = away;
+    diffuse.insert(diffuse.end(), {"--terms", "diffuse"});
+    EXPECT_GT(mean_of_picture(small, cloudy, away), 0);
+    EXPECT_NE(mean_of_picture(small, cloudy, away), mean_of_picture(small, clear, away));
+    EXPECT_EQ(mean_of_picture(small, cloudy, diffuse), 0);
+}
+
+TEST(LayerFiles, ReferenceRefusesALayerAloneAndSaysWhatItLeavesOut) {
+    SmallScene small;
+    const std::string media = small.path("layer.json"), out = small.path("o.exr");
+    write_file(media, std::string(R"({"clouds": [{"thickness": 100}]})"));
+    const Outcome alone = run_opaline({"reference", media, "--light", "white", "-o", out});
+    EXPECT_EQ(alone.exit_code, 3);
+    EXPECT_THAT(alone.err, HasSubstr("cloud layer alone"));
+    const Outcome beside = run_opaline({"reference", small.scene(), "--media", media, "--light",
+                                        "white", "--size", "8x6", "--spp", "1", "-o", out});
+    EXPECT_EQ(beside.exit_code, 0) << beside.err;
+    EXPECT_THAT(beside.err, HasSubstr("cloud layer is left out"));
 }
 
 }  // namespace
