@@ -151,8 +151,9 @@ TEST(EvenLayer, WithoutRadiosityTheGroundHasWhatComesDownOnce) {
 // Koschmieder: e^(-haze d) of what is far off is left, the rest is the radiance near the horizon.
 TEST(EvenLayer, HazeTakesWhatIsFarOffTowardTheHorizon) {
     constexpr float kHaze = 2e-4f;
-    const auto look = [](float haze, double sine, double sky) {
-        formats::Clouds clouds = test::make_test_clouds(test::even_test_layer());
+    const formats::Clouds made = test::make_test_clouds(test::even_test_layer());
+    const auto look = [&made](float haze, double sine, double sky) {
+        formats::Clouds clouds = made;
         clouds.records[0].haze = haze;
         formats::Environment day = test::white_sky(static_cast<float>(sky));
         day.discs = test::one_sun(0.6).discs;
