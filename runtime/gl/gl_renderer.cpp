@@ -174,7 +174,7 @@ formats::Status GlRenderer::set_layers(const LayerLight& light) {
     GlLayers& layers = resources.layers;
     const std::string compiled_for = layers.defines;
     state_->stats.gpu_bytes -= layers.layer_bytes + layers.light_bytes;
-    const auto status = relight_gl_layers(layers, light);
+    auto status = relight_gl_layers(layers, light);
     state_->stats.gpu_bytes += layers.layer_bytes + layers.light_bytes;
     if (!status) return status;
     if (layers.defines != compiled_for) {
