@@ -1,0 +1,56 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace opaline::bake {
+
+/// What is reached while random numbers move within their steps: the Minkowski sum of segments
+/// [-v_j / 2, v_j / 2], v_j = step_j dP_j, in coordinates of the tangent plane. Any number of
+/// vectors, in any order and of any sign, zero ones too.
+
+/// Sum over pairs of |v_i x v_j| [m^2]: the exact area.
+double polygon_area(std::span<const glm::dvec2> vectors);
+
+/// Corners of the polygon, counter-clockwise, around 0; two a vector that is not 0.
+std::vector<glm::dvec2> footprint_polygon(std::span<const glm::dvec2> vectors);
+
+/// Two vectors that stand for the footprint.
+struct FootprintPair {
+    glm::dvec2 A{0}, B{0};
+};
+
+/// |A x B|.
+double pair_area(const FootprintPair& pair);
+
+/// [Suykens2001]: the vectors, turned into the upper half plane, on either side of their sum. An
+/// inscribed parallelogram; which one depends on the axes of coordinates.
+FootprintPair split_pair(std::span<const glm::dvec2> vectors);
+
+/// The largest parallelogram of two groups of vectors adjacent in angle: at least 2 / pi of the
+/// area, independent of axes, order and signs.
+FootprintPair best_pair(std::span<const glm::dvec2> vectors);
+
+/// `best_pair`, both scaled so that the area is the polygon's.
+FootprintPair polygon_pair(std::span<const glm::dvec2> vectors);
+
+/// The axes of the second moments: A, B = sqrt(lambda_i) e_i of sum v v^T, A the longer one. A box
+/// on them has the moments of the sum of the boxes. Extent grows like the root of the number of
+/// vectors: for filters.
+FootprintPair rms_pair(std::span<const glm::dvec2> vectors);
+
+/// Singular values of (A B): semi-axes of the ellipse that the unit circle becomes.
+struct PairExtent {
+    double major = 0, minor = 0;
+};
+
+PairExtent pair_extent(const FootprintPair& pair);
+
+/// In a volume: sum over triples of |det| [m^3].
+double footprint_volume(std::span<const glm::dvec3> vectors);
+
+/// sqrt of the eigenvalues of sum v v^T [m], descending.
+glm::dvec3 rms_extents(std::span<const glm::dvec3> vectors);
+
+}  // namespace opaline::bake

@@ -1,0 +1,138 @@
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+
+#include "bake/path_differentials/bounded_change.h"
+#include "bake/path_differentials/differential_column.h"
+#include "bake/path_differentials/footprint.h"
+#include "bake/path_differentials/merge_columns.h"
+#include "bake/path_differentials/path_gradient.h"
+#include "bake/path_differentials/visible_normal.h"
+
+namespace opaline::bake {
+
+/// What a path's steps and footprints are.
+struct DifferentialRules {
+    enum class Steps {
+        local,  ///< each column has its own: filtering, bounces
+        global  ///< (samples survival)^(-1 / variables) for all: particles
+    } steps = Steps::local;
+    double samples = 1;  ///< paths of the whole estimate, for global steps
+    GradientForm form = GradientForm::contribution;
+    double gradient_limit = 0.7;  ///< limited_step's; > 0, infinite: none
+    /// Scatterings from which the limit holds. With one glossy event local steps tile its lobe.
+    int limited_from = 2;
+    double extent = 1;  ///< diameter of the scene [m]; footprints are at most a quarter of it
+};
+
+/// The columns of a path at its current vertex; 600 bytes. It reads what was sampled and changes
+/// nothing of it. Events apply in the order of the path.
+struct PathDifferential {
+    static constexpr std::size_t kMost = 8;
+    std::array<DifferentialColumn, kMost> column{};
+    std::size_t count = 0;
+    int variables = 0;         ///< continuous random numbers so far
+    int scatterings = 0;       ///< events that drew a direction
+    double survival = 1;       ///< product of probabilities of surviving, and of discrete choices
+    double polygon_scale = 1;  ///< lengths of the polygon, before over after merging
+
+    std::span<DifferentialColumn> columns() { return std::span(column).first(count); }
+    std::span<const DifferentialColumn> columns() const { return std::span(column).first(count); }
+};
+
+/// One more random number. Precondition: fewer than kMost columns.
+void add_variable(PathDifferential& path, const DifferentialColumn& column);
+
+/// The step of a column: its own or the path's, limited where its contribution varies.
+double column_step(const PathDifferential& path, const DifferentialRules& rules,
+                   const DifferentialColumn& column);
+
+/// To a surface with geometric normal N_g at distance t along D.
+void move_to_surface(PathDifferential& path, const glm::dvec3& D, const glm::dvec3& N_g, double t);
+
+/// To a point in a volume at distance t along D, sampled by one random number. `change(dP, dD)`:
+/// how t moves with an earlier one; `own`: the step of the new one and dt/du.
+struct FlightColumn {
+    double dt_du = 0, step = 1;
+};
+template <class Change>
+void move_in_volume(PathDifferential& path, const glm::dvec3& D, double t, FlightColumn own,
+                    Change&& change) {
+    for (DifferentialColumn& column : path.columns()) {
+        column.dP = column.dP + t * column.dD + change(column.dP, column.dD) * D;
+    }
+    add_variable(path, {own.dt_du * D, glm::dvec3(0), 0, own.step});
+}
+
+/// Mirror and refraction; dN_dP: SurfaceShape's, facing as the event's N does.
+void reflect_columns(PathDifferential& path, const Mirror& event, const glm::dmat3& dN_dP);
+void refract_columns(PathDifferential& path, const DifferentialRules& rules,
+                     const Refraction& event, const glm::dmat3& dN_dP);
+
+/// The direction becomes the normal, the axis of a diffuse lobe.
+void aim_at_normal(PathDifferential& path, const glm::dmat3& dN_dP);
+
+/// A direction drawn from a lobe around the current direction: mirrored, refracted, the normal, or
+/// the direction of propagation.
+struct LobeEvent {
+    glm::dvec3 axis{0, 0, 1};  ///< the current direction
+    Lobe lobe{};
+    DiskMap map = DiskMap::concentric;
+    double u = 0.5, v = 0.5;
+    double step_u = 1, step_v = 1;    ///< local steps; 1 under global ones
+    std::optional<glm::dvec3> N_g{};  ///< nothing: in a volume
+};
+
+/// Turns the columns with the axis, merges them if there are more than six, and adds those of u and
+/// v. The lobe is counted as a factor of the contribution. Returns the sampled direction.
+glm::dvec3 scatter_in_lobe(PathDifferential& path, const DifferentialRules& rules,
+                           const LobeEvent& event);
+
+/// A direction from a visible normal of an isotropic GGX surface.
+struct FacetEvent {
+    glm::dvec3 D{0, 0, -1}, N{0, 0, 1};  ///< D.N < 0
+    glm::dmat3 dN_dP{0.0};
+    double alpha = 0.5;
+    double eta = 0;  ///< refraction: index of this side over that of the other; 0: reflection
+    DiskMap map = DiskMap::concentric;
+    double u = 0.5, v = 0.5;
+    double step_u = 1, step_v = 1;
+    glm::dvec3 N_g{0, 0, 1};
+};
+
+/// Nothing if the facet reflects totally, or the direction ends on the wrong side: the path's
+/// contribution is 0. Adds no gradient: dln_microfacet is the caller's to add.
+std::optional<glm::dvec3> scatter_on_facets(PathDifferential& path, const DifferentialRules& rules,
+                                            const FacetEvent& event);
+
+/// Counts the cosine N.D of the current direction as a factor. False if it is not above 0: the
+/// path's contribution is 0, and it ends.
+bool add_cosine(PathDifferential& path, const glm::dvec3& N, const glm::dvec3& D,
+                const glm::dmat3& dN_dP);
+
+/// A footprint on a surface.
+struct SurfaceFootprint {
+    glm::dvec3 A{0}, B{0};  ///< in the tangent plane [m]
+    double area = 0;        ///< |A x B| [m^2]
+    PairExtent extent;      ///< singular values [m]
+};
+
+/// polygon: worst case, area exact, for elements; filter: second moments, for textures.
+enum class FootprintMode { polygon, filter };
+
+SurfaceFootprint surface_footprint(const PathDifferential& path, const DifferentialRules& rules,
+                                   const glm::dvec3& N_g, FootprintMode mode);
+
+/// The same in texture coordinates; duv_dP: SurfaceShape's.
+inline FootprintPair footprint_in_texture(const SurfaceFootprint& footprint,
+                                          const glm::dmat3x2& duv_dP) {
+    return {duv_dP * footprint.A, duv_dP * footprint.B};
+}
+
+/// Extents of the footprint in a volume, rms, descending [m].
+glm::dvec3 volume_footprint(const PathDifferential& path, const DifferentialRules& rules);
+
+}  // namespace opaline::bake

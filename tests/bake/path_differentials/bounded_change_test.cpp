@@ -1,0 +1,165 @@
+#include "bake/path_differentials/bounded_change.h"
+
+#include "bake/path_differentials/flight_sample.h"
+#include "bake/path_differentials/transfer.h"
+#include "tests/bake/path_differentials/event_check.h"
+
+namespace opaline::bake {
+namespace {
+
+// Hard case: 1 / (D.N_g).
+TEST(BoundedChange, GrazingTransfersMoveByAtMost1e4) {
+    const glm::dvec3 N(0, 0, 1);
+    for (const double c : {1e-2, 1e-4, 1e-6, 1e-12, 0.0, -1e-6, -1e-2}) {
+        const glm::dvec3 D(std::sqrt(1 - c * c), 0, c), dP(0.3, 0.2, 0.5), dD(0, 0, 0.1);
+        const glm::dvec3 moved = bounded_transfer(D, N, 2, dP, dD);
+        EXPECT_LE(glm::length(moved), 1e4 * (1 + 1e-9) * glm::length(dP + 2.0 * dD)) << c;
+        EXPECT_EQ(moved.z, 0) << c;
+        if (std::abs(c) >= 1e-3) {
+            EXPECT_LT(glm::length(moved - transfer_to_plane(D, N, 2, dP, dD).dP), 1e-12) << c;
+        }
+    }
+}
+
+TEST(BoundedChange, TransfersAreExactElsewhere) {
+    tests::RandomInputs random(33);
+    for (int i = 0; i < tests::kRandomCases; ++i) {
+        const glm::dvec3 N = random.unit(), D = -random.unit_facing(N, 1e-3);
+        const glm::dvec3 dP = random.vector(), dD = random.change_of(D);
+        const glm::dvec3 exact = transfer_to_plane(D, N, 1.5, dP, dD).dP;
+        EXPECT_LT(glm::length(bounded_transfer(D, N, 1.5, dP, dD) - exact),
+                  1e-12 * (1 + glm::length(exact)));
+    }
+}
+
+TEST(BoundedChange, SecantOfTheRootIsBoundedByTheRootOfTheChange) {
+    for (const double z : {0.0, 1e-12, 1e-6, 0.01, 1.0}) {
+        for (const double d : {1e-15, 1e-9, 1e-3, 0.5}) {
+            EXPECT_LE(sqrt_secant(z, d), std::sqrt(d) * (1 + 1e-15));
+            EXPECT_EQ(sqrt_secant(z, -d), -sqrt_secant(z, d));
+            const long double lower = std::sqrt(std::max(0.0L, z - d / 2.0L));
+            const double exact = static_cast<double>(std::sqrt(z + d / 2.0L) - lower);
+            EXPECT_NEAR(sqrt_secant(z, d), exact, 1e-12 * exact + 1e-18);
+        }
+    }
+    EXPECT_EQ(sqrt_secant(0, 0), 0);
+    EXPECT_EQ(sqrt_secant(0.25, 0), 0);
+}
+
+// Hard case: |dT| = eta cos_i / cos_t, without bound towards the critical angle.
+TEST(BoundedChange, RefractionNearTotalReflectionIsBoundedByItsSecant) {
+    const double eta = 1.5, critical = std::sqrt(1 - 1 / (eta * eta));
+    const glm::dvec3 N(0, 0, 1);
+    double raw = 0;
+    for (const auto& [e, expected] :
+         {std::pair(1e-2, 7.12), {1e-4, 70.7}, {1e-6, 707}, {1e-8, 7071}}) {
+        const double c = critical * (1 + e), s = std::sqrt(1 - c * c);
+        const auto event = make_refraction({s, 0, -c}, N, eta);
+        ASSERT_TRUE(event);
+        const glm::dvec3 dD(c, 0, s), still(0);
+        raw = glm::length(event->change(dD, still));
+        EXPECT_NEAR(raw / expected, 1, 2e-3);
+        for (const double step : {1e-3, 0.1, 1.0}) {
+            const double delta =
+                step *
+                std::abs(event->square_cosine_change(event->mirror.cosine_change(dD, still)));
+            const glm::dvec3 moved = step * bounded_refraction(*event, dD, still, step);
+            EXPECT_TRUE(std::isfinite(moved.x));
+            // The rest of dT, eta step |dD| (1 + |k|), is bounded by itself.
+            EXPECT_LE(glm::length(moved), std::sqrt(delta) + 2 * eta * step);
+        }
+    }
+    EXPECT_GT(raw, 7000);
+}
+
+TEST(BoundedChange, RefractionOfASmallStepIsItsDerivative) {
+    tests::RandomInputs random(34);
+    for (int i = 0; i < 1000; ++i) {
+        const glm::dvec3 N = random.unit(), D = -random.unit_facing(N, 0.1);
+        const glm::dvec3 dD = random.change_of(D), dN = random.change_of(N);
+        const auto event = make_refraction(D, N, random.uniform(0.5, 0.95));
+        ASSERT_TRUE(event);
+        const glm::dvec3 exact = event->change(dD, dN);
+        EXPECT_LT(glm::length(bounded_refraction(*event, dD, dN, 1e-5) - exact),
+                  1e-8 * (1 + glm::length(exact)));
+    }
+}
+
+TEST(BoundedChange, SecantsOfLobesTendToTheirDerivatives) {
+    tests::RandomInputs random(35);
+    for (const DiskMap map : {DiskMap::polar, DiskMap::concentric}) {
+        for (const Lobe& lobe :
+             {Lobe{Lobe::Kind::power, 1}, Lobe{Lobe::Kind::power, 40},
+              Lobe{Lobe::Kind::henyey_greenstein, 0.7}, Lobe{Lobe::Kind::cone, 0.5}}) {
+            for (int i = 0; i < 1000; ++i) {
+                const double u = random.uniform(0.1, 0.9), v = random.uniform(0.1, 0.9);
+                const LobeDirection exact = sample_lobe(lobe, map, u, v);
+                const LobeDirection secant = secant_of_lobe(lobe, map, u, v, 1e-5, 1e-5);
+                EXPECT_LT(glm::length(secant.dD_du - exact.dD_du), 1e-6);
+                EXPECT_LT(glm::length(secant.dD_dv - exact.dD_dv), 1e-6);
+                EXPECT_LT(glm::length(secant.D - exact.D), 1e-15);
+                EXPECT_EQ(secant.pdf, exact.pdf);
+                EXPECT_EQ(secant.dln_pdf_du, exact.dln_pdf_du);
+                EXPECT_EQ(secant.dln_pdf_dv, exact.dln_pdf_dv);
+            }
+        }
+    }
+}
+
+// Hard case: |dD/dv| of the polar map is 1100 on the axis at S = 40. The concentric columns are
+// about sqrt(1 / pdf) = 0.39 there, the polar secant is the sine half a cell away.
+TEST(BoundedChange, AxisOfALobeIsBounded) {
+    const Lobe lobe{Lobe::Kind::power, 40};
+    EXPECT_NEAR(glm::length(sample_lobe(lobe, DiskMap::polar, 0.3, 1e-8).dD_dv), 1100, 10);
+    const LobeDirection round = sample_lobe(lobe, DiskMap::concentric, 0.5, 0.5 + 1e-8);
+    EXPECT_NEAR(std::sqrt(glm::length(glm::cross(round.dD_du, round.dD_dv))), 0.39, 0.005);
+    EXPECT_LT(glm::length(round.dD_du), 0.5);
+    for (const double step : {0.01, 0.5, 1.0}) {
+        const LobeDirection secant = secant_of_lobe(lobe, DiskMap::polar, 0.3, 1e-8, step, step);
+        const double c = eval_lobe(lobe, step / 2).cosine, s = std::sqrt(1 - c * c);
+        EXPECT_NEAR(step * glm::length(secant.dD_dv), s, 1e-3 * s + 1e-4);
+    }
+}
+
+// Hard case: where the density ends it is 0, and the derivative infinite. q = 0.99 has a radius of
+// 0.995.
+TEST(BoundedChange, RimOfALobeIsBoundedBy90Degrees) {
+    for (const Lobe& lobe : {Lobe{Lobe::Kind::power, 1}, Lobe{Lobe::Kind::power, 40},
+                             Lobe{Lobe::Kind::henyey_greenstein, 0.9}, Lobe{Lobe::Kind::cap, 2}}) {
+        for (const DiskMap map : {DiskMap::polar, DiskMap::concentric}) {
+            for (const double v : {0.99, 1 - 1e-6, 1 - 1e-12}) {
+                for (const double step : {1e-3, 0.25, 1.0}) {
+                    const LobeDirection at = secant_of_lobe(lobe, map, 0.4, v, step, step);
+                    for (const glm::dvec3& column : {at.dD_du, at.dD_dv}) {
+                        EXPECT_LE(step * glm::length(column), std::sqrt(2.0) + 1e-12);
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GT(
+        glm::length(sample_lobe({Lobe::Kind::power, 40}, DiskMap::polar, 0.4, 1 - 1e-12).dD_dv),
+        1e9);
+}
+
+// Hard case: dt/du = 1 / (sigma (1 - u)).
+TEST(BoundedChange, FlightsOfAnyLengthHaveAFiniteStep) {
+    for (const double u : {0.0, 0.5, 0.999, 1 - 1e-9, 1 - 0x1p-53}) {
+        for (const double step : {1e-3, 0.25, 1.0}) {
+            const double moved = step * secant_of_flight(2, u, step);
+            EXPECT_TRUE(std::isfinite(moved));
+            EXPECT_GT(moved, 0);
+            // To half way to 1, from 0 at the least: ln 2 more than the distance itself.
+            EXPECT_LE(moved, (std::log(2.0) - std::log1p(-u)) / 2 * (1 + 1e-12));
+        }
+    }
+    EXPECT_NEAR(secant_of_flight(2, 0.3, 1e-5), sample_flight_distance(2, 0.3).dt_du, 1e-9);
+}
+
+TEST(BoundedChange, DirectionsAreShortenedAndKept) {
+    EXPECT_EQ(bounded_direction({1, 0, 0}, 0.5), glm::dvec3(1, 0, 0));
+    EXPECT_NEAR(0.5 * glm::length(bounded_direction({100, 0, 0}, 0.5)), std::sqrt(2.0), 1e-14);
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,191 @@
+#include "bake/path_differentials/footprint.h"
+
+#include <numbers>
+
+#include "tests/bake/path_differentials/event_check.h"
+
+namespace opaline::bake {
+namespace {
+
+double shoelace(const std::vector<glm::dvec2>& corners) {
+    double area = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const glm::dvec2 a = corners[i], b = corners[(i + 1) % corners.size()];
+        area += (a.x * b.y - a.y * b.x) / 2;
+    }
+    return area;
+}
+
+glm::dvec2 random_normal(tests::RandomInputs& random) {
+    const double r = std::sqrt(-2 * std::log(1 - random.uniform()));
+    const double phi = 2 * std::numbers::pi * random.uniform();
+    return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+/// Normally distributed in both coordinates, of sizes whose logarithm is normal with deviation 0.7.
+std::vector<glm::dvec2> random_set(tests::RandomInputs& random, std::size_t count) {
+    std::vector<glm::dvec2> vectors(count);
+    for (glm::dvec2& v : vectors) {
+        v = std::exp(0.7 * random_normal(random).x) * random_normal(random);
+    }
+    return vectors;
+}
+
+TEST(Footprint, AreaIsThatOfThePolygon) {
+    tests::RandomInputs random(28);
+    for (int i = 0; i < 1000; ++i) {
+        const auto vectors = random_set(random, 2 + static_cast<std::size_t>(i) % 9);
+        const double area = polygon_area(vectors);
+        EXPECT_NEAR(shoelace(footprint_polygon(vectors)), area, 1e-12 * area);
+    }
+}
+
+// Every sum of +-v_j / 2 lies inside, the corners are such sums.
+TEST(Footprint, PolygonHoldsAllSums) {
+    tests::RandomInputs random(29);
+    const auto vectors = random_set(random, 6);
+    const auto corners = footprint_polygon(vectors);
+    for (unsigned signs = 0; signs < 64; ++signs) {
+        glm::dvec2 sum(0);
+        for (std::size_t j = 0; j < 6; ++j) {
+            sum += ((signs >> j & 1u) != 0 ? 0.5 : -0.5) * vectors[j];
+        }
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const glm::dvec2 edge = corners[(i + 1) % corners.size()] - corners[i];
+            const glm::dvec2 to = sum - corners[i];
+            EXPECT_GT(edge.x * to.y - edge.y * to.x, -1e-12);
+        }
+    }
+}
+
+struct RatioStatistics {
+    double least = 1e9, sum = 0;
+    void add(double ratio) {
+        least = std::min(least, ratio);
+        sum += ratio;
+    }
+};
+
+// 1500 random sets, minimum and mean of area over the polygon's, as an independent program measured
+// them. Its distribution is not known: sizes as above have the same means.
+TEST(Footprint, RepresentativesHaveTheSharesOfTheAreaThatWereMeasured) {
+    struct Row {
+        std::size_t count;
+        double split, best, rms, least_split, least_best;
+    };
+    for (const Row& row :
+         {Row{3, 0.867, 0.893, 0.710, 0.50, 0.6366}, Row{6, 0.750, 0.790, 0.394, 0.50, 0.6366},
+          Row{12, 0.696, 0.731, 0.215, 0.50, 0.6366}}) {
+        tests::RandomInputs random(30);
+        RatioStatistics split, best, rms;
+        const int sets = 1500;
+        for (int i = 0; i < sets; ++i) {
+            const auto vectors = random_set(random, row.count);
+            const double area = polygon_area(vectors);
+            split.add(pair_area(split_pair(vectors)) / area);
+            best.add(pair_area(best_pair(vectors)) / area);
+            rms.add(pair_area(rms_pair(vectors)) / area);
+        }
+        EXPECT_NEAR(split.sum / sets, row.split, 0.01);
+        EXPECT_NEAR(best.sum / sets, row.best, 0.01);
+        EXPECT_NEAR(rms.sum / sets, row.rms, 0.01);
+        EXPECT_GT(split.least, row.least_split);
+        EXPECT_GE(best.least, row.least_best);
+    }
+}
+
+TEST(Footprint, OfTwoVectorsAllRulesAgree) {
+    tests::RandomInputs random(31);
+    for (int i = 0; i < 1000; ++i) {
+        const auto vectors = random_set(random, 2);
+        const double area = polygon_area(vectors);
+        for (const FootprintPair& pair :
+             {split_pair(vectors), best_pair(vectors), rms_pair(vectors), polygon_pair(vectors)}) {
+            EXPECT_NEAR(pair_area(pair), area, 1e-12 * area + 1e-15);
+        }
+    }
+}
+
+TEST(Footprint, PolygonPairHasTheExactAreaWhateverOrderAndSigns) {
+    tests::RandomInputs random(32);
+    for (int i = 0; i < 1000; ++i) {
+        auto vectors = random_set(random, 7);
+        const double area = polygon_area(vectors), best = pair_area(best_pair(vectors));
+        const PairExtent rms = pair_extent(rms_pair(vectors));
+        EXPECT_NEAR(pair_area(polygon_pair(vectors)), area, 1e-12 * area);
+        std::swap(vectors[0], vectors[5]);
+        vectors[3] = -vectors[3];
+        vectors[1] = -vectors[1];
+        EXPECT_NEAR(pair_area(best_pair(vectors)), best, 1e-12 * area);
+        EXPECT_NEAR(pair_extent(rms_pair(vectors)).minor, rms.minor, 1e-12 * rms.major);
+    }
+}
+
+// Hard case: three vectors 120 degrees apart, whose sum is 0.
+TEST(Footprint, SignsThatCancelDoNotMatter) {
+    const double h = std::sqrt(3.0) / 2;
+    const std::vector<glm::dvec2> star{{1, 0}, {-0.5, h}, {-0.5, -h}};
+    const double area = polygon_area(star);  // a regular hexagon of side 1
+    EXPECT_NEAR(area, 3 * h, 1e-15);
+    EXPECT_GT(pair_area(split_pair(star)), 0.5 * area);
+    EXPECT_GE(pair_area(best_pair(star)), 2 / std::numbers::pi * area);
+    const PairExtent round = pair_extent(rms_pair(star));
+    EXPECT_NEAR(round.major, round.minor, 1e-7);
+}
+
+// Hard case: all vectors along the axes of coordinates, or on the line that splits.
+TEST(Footprint, VectorsAlongTheSplittingLineAreNotLost) {
+    const std::vector<glm::dvec2> cross{{2, 0}, {0, 1}, {-1, 0}, {0, -3}};
+    EXPECT_NEAR(pair_area(polygon_pair(cross)), 12, 1e-14);
+    EXPECT_NEAR(pair_area(best_pair(cross)), 12, 1e-14);
+    const std::vector<glm::dvec2> upright{{0, 2}, {1, 0}, {-1, 0}};
+    EXPECT_NEAR(polygon_area(upright), 4, 1e-15);
+    EXPECT_NEAR(pair_area(polygon_pair(upright)), 4, 1e-14);
+}
+
+// Hard case: no columns, columns of 0.
+TEST(Footprint, WithoutVectorsIsAPoint) {
+    for (const std::vector<glm::dvec2>& none :
+         {std::vector<glm::dvec2>{}, {glm::dvec2(0), glm::dvec2(0)}}) {
+        EXPECT_EQ(polygon_area(none), 0);
+        EXPECT_TRUE(footprint_polygon(none).empty());
+        for (const FootprintPair& pair :
+             {split_pair(none), best_pair(none), polygon_pair(none), rms_pair(none)}) {
+            EXPECT_EQ(pair.A, glm::dvec2(0));
+            EXPECT_EQ(pair.B, glm::dvec2(0));
+            EXPECT_EQ(pair_extent(pair).minor, 0);
+        }
+    }
+}
+
+// Hard case: a line has its length and no width, and nothing is divided by that.
+TEST(Footprint, ParallelColumnsAreALine) {
+    const std::vector<glm::dvec2> line{{1, 2}, {-2, -4}, {0.5, 1}};
+    const PairExtent worst = pair_extent(polygon_pair(line));
+    EXPECT_NEAR(worst.major, 3.5 * std::sqrt(5.0), 1e-13);
+    EXPECT_EQ(worst.minor, 0);
+    const PairExtent rms = pair_extent(rms_pair(line));
+    EXPECT_NEAR(rms.major, std::sqrt(5.25 * 5), 1e-13);
+    EXPECT_EQ(rms.minor, 0);
+}
+
+TEST(Footprint, ThinOnesKeepTheDigitsOfTheirWidth) {
+    const std::vector<glm::dvec2> thin{{1, 0}, {1, 1e-9}};
+    EXPECT_NEAR(pair_extent(rms_pair(thin)).minor / (1e-9 / std::sqrt(2.0)), 1, 1e-12);
+}
+
+// A box and a skewed prism by their volume; the moments of a box are its edges.
+TEST(Footprint, VolumesAreSumsOfDeterminants) {
+    const std::vector<glm::dvec3> box{{2, 0, 0}, {0, 3, 0}, {0, 0, 0.5}};
+    EXPECT_NEAR(footprint_volume(box), 3, 1e-15);
+    EXPECT_LT(glm::length(rms_extents(box) - glm::dvec3(3, 2, 0.5)), 1e-14);
+    auto more = box;
+    more.push_back({1, 0, 0});  // the box grows to 3 x 3 x 0.5
+    EXPECT_NEAR(footprint_volume(more), 4.5, 1e-14);
+    const std::vector<glm::dvec3> flat{{1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+    EXPECT_EQ(footprint_volume(flat), 0);
+    EXPECT_NEAR(rms_extents(flat).z, 0, 1e-8);
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,176 @@
+#include "bake/path_differentials/lobe.h"
+
+#include "tests/bake/path_differentials/event_check.h"
+
+namespace opaline::bake {
+namespace {
+
+/// The textbook's cosine of a lobe at q.
+template <class S>
+S textbook_cosine(const Lobe& lobe, S q) {
+    switch (lobe.kind) {
+        case Lobe::Kind::power:
+            return tests::power_cosine(lobe.parameter, q);
+        case Lobe::Kind::henyey_greenstein:
+            return tests::henyey_greenstein_cosine(lobe.parameter, q);
+        case Lobe::Kind::cone:
+            return S(1) - q * S(1 - lobe.parameter);
+        case Lobe::Kind::cap:
+            break;
+    }
+    return S(1) - q * S(lobe.parameter);
+}
+
+/// Columns of random lobes against the textbook's direction, and area times pdf.
+void check_lobes(Lobe::Kind kind, double least, double most, double tolerance) {
+    tests::RandomInputs random(11);
+    for (const DiskMap map : {DiskMap::polar, DiskMap::concentric}) {
+        const bool concentric = map == DiskMap::concentric;
+        tests::ColumnErrors errors;
+        tests::AreaErrors areas;
+        double along = 0;
+        for (int i = 0; i < tests::kRandomCases; ++i) {
+            const Lobe lobe{kind, random.uniform(least, most)};
+            const double u = random.uniform(0.001, 0.999), v = random.uniform(0.01, 0.98);
+            if (concentric && tests::is_near_diagonal(u, v)) {
+                continue;
+            }
+            const LobeDirection sample = sample_lobe(lobe, map, u, v);
+            areas.add(sample.dD_du, sample.dD_dv, sample.pdf);
+            along = std::max(
+                {along, std::abs(glm::dot(sample.D, sample.dD_du)) / glm::length(sample.dD_du),
+                 std::abs(glm::length(sample.D) - 1)});
+            const glm::dvec2 at(2 * u - 1, 2 * v - 1);
+            if (concentric && (at.x * at.x > 0.98 || at.y * at.y > 0.98 ||
+                               std::max(std::abs(at.x), std::abs(at.y)) < 0.1)) {
+                continue;  // the textbook's sine has no digits left there
+            }
+            const auto direction = [&](auto du, auto dv) {
+                using S = decltype(du + dv);
+                return tests::lobe_direction<S>(
+                    tests::disk_point<S>(concentric, S(u) + du, S(v) + dv),
+                    [&](S q) { return textbook_cosine<S>(lobe, q); });
+            };
+            errors.add([&](auto d) { return direction(d, decltype(d)(0)); }, sample.dD_du);
+            errors.add([&](auto d) { return direction(decltype(d)(0), d); }, sample.dD_dv);
+        }
+        tests::expect_derivatives(errors, tolerance);
+        EXPECT_LT(areas.largest, 1e-12);
+        EXPECT_LT(along, 1e-12);
+    }
+}
+
+TEST(Lobe, PowersAreDerivativesOfTheirDirections) {
+    check_lobes(Lobe::Kind::power, 0, 60, 1e-10);
+}
+
+TEST(Lobe, HenyeyGreensteinIsTheDerivativeOfItsDirections) {
+    check_lobes(Lobe::Kind::henyey_greenstein, 0.1, 0.95, 1e-9);
+    check_lobes(Lobe::Kind::henyey_greenstein, -0.9, -0.1, 1e-9);
+}
+
+TEST(Lobe, ConesAndCapsAreDerivativesOfTheirDirections) {
+    check_lobes(Lobe::Kind::cone, -0.9, 0.95, 1e-10);
+    check_lobes(Lobe::Kind::cap, 0.05, 1.95, 1e-10);
+}
+
+TEST(Lobe, LogarithmOfThePdfHasItsDerivative) {
+    for (const Lobe& lobe :
+         {Lobe{Lobe::Kind::power, 40}, Lobe{Lobe::Kind::power, 0},
+          Lobe{Lobe::Kind::henyey_greenstein, 0.8}, Lobe{Lobe::Kind::henyey_greenstein, -0.6},
+          Lobe{Lobe::Kind::cone, 0.5}, Lobe{Lobe::Kind::cap, 1.5}}) {
+        for (const double q : {0.1, 0.5, 0.9}) {
+            const double h = 1e-6, above = std::log(eval_lobe(lobe, q + h).pdf);
+            const double slope = (above - std::log(eval_lobe(lobe, q - h).pdf)) / (2 * h);
+            EXPECT_NEAR(eval_lobe(lobe, q).dln_pdf, slope, 1e-7 * (1 + std::abs(slope)));
+        }
+        const LobeDirection sample = sample_lobe(lobe, DiskMap::polar, 0.3, 0.4);
+        EXPECT_EQ(sample.dln_pdf_du, 0);
+        EXPECT_EQ(sample.dln_pdf_dv, eval_lobe(lobe, 0.4).dln_pdf);
+    }
+}
+
+// Hard case: 1 - c^2 cancels. The sine in extended precision is the same to 1e-15.
+TEST(Lobe, HugeExponentsKeepTheDigitsOfTheirSine) {
+    for (const double S : {1e3, 1e6, 1e9, 1e12}) {
+        for (const double q : {1e-12, 1e-6, 0.1, 0.7}) {
+            const long double l = std::log1p(-static_cast<long double>(q)) / (S + 1.0L);
+            const long double exact = std::sqrt(-std::expm1(2 * l));
+            const double sine =
+                std::sqrt(eval_lobe({Lobe::Kind::power, S}, q).square_sine_over_q * q);
+            EXPECT_NEAR(static_cast<double>(sine / exact), 1, 1e-15) << S << " " << q;
+        }
+    }
+}
+
+// Hard case: the textbook's inversion divides by 2 g. The cosine of Henyey and Greenstein near
+// g = 0 is k + g (1 - k^2) 3/2 ... : compared with 1e-9 in extended precision.
+TEST(Lobe, HenyeyGreensteinIsSmoothAtIsotropy) {
+    for (const double g : {0.0, 1e-12, 1e-9, 1e-6, -1e-9}) {
+        for (const double q : {0.1, 0.5, 0.8}) {
+            const long double k = 1 - 2 * static_cast<long double>(q), G = g;
+            const long double a = 1 + G * k;
+            const long double exact =
+                1 - (1 - G) * (1 - G) * q * (2 + G + G * k) / (a * a);  // no division by g
+            const LobePoint at = eval_lobe({Lobe::Kind::henyey_greenstein, g}, q);
+            EXPECT_NEAR(at.cosine, static_cast<double>(exact), 1e-15);
+            EXPECT_NEAR(at.dcosine, -2, 1e-5);
+        }
+    }
+    // The same against the textbook's form where that has digits.
+    const long double g = 1e-3L, f = (1 - g * g) / (1 - g + 2 * g * 0.7L);
+    EXPECT_NEAR(eval_lobe({Lobe::Kind::henyey_greenstein, 1e-3}, 0.3).cosine,
+                static_cast<double>((1 + g * g - f * f) / (2 * g)), 1e-15);
+}
+
+// Hard case: 1 - c cancels in the forward peak.
+TEST(Lobe, ForwardPeakOfHenyeyGreensteinKeepsItsDigits) {
+    for (const double g : {0.9, 0.999, 0.99999}) {
+        for (const double q : {1e-9, 1e-6, 1e-3, 0.5}) {
+            const long double G = g, xi = 1 - static_cast<long double>(q);
+            const long double f = (1 - G * G) / (1 - G + 2 * G * xi);
+            const long double c = (1 + G * G - f * f) / (2 * G);
+            const LobePoint at = eval_lobe({Lobe::Kind::henyey_greenstein, g}, q);
+            const double exact = static_cast<double>((1 - c) * (1 + c)) / q;
+            // The textbook's form in extended precision has about 1e-19 / (1 - c) itself.
+            const double tolerance = 4e-15 + 1e-18 / static_cast<double>(1 - c);
+            EXPECT_NEAR(at.square_sine_over_q / exact, 1, tolerance) << g << " " << q;
+        }
+    }
+}
+
+// Hard case: on the axis the concentric columns have their limits, and area times pdf is 1.
+TEST(Lobe, AxisOfTheConcentricMapHasALimit) {
+    for (const double S : {0.0, 1.0, 40.0, 1e6}) {
+        const LobeDirection at = sample_lobe({Lobe::Kind::power, S}, DiskMap::concentric, 0.5, 0.5);
+        EXPECT_EQ(at.D, glm::dvec3(0, 0, 1));
+        const double product = glm::length(glm::cross(at.dD_du, at.dD_dv)) * at.pdf;
+        EXPECT_NEAR(product, 1, 1e-14);
+        const LobeDirection near =
+            sample_lobe({Lobe::Kind::power, S}, DiskMap::concentric, 0.5 + 1e-9, 0.5);
+        EXPECT_LT(glm::length(near.dD_du - at.dD_du), 1e-6 * glm::length(at.dD_du));
+    }
+}
+
+// Measured in the literature's terms: the ratio of the columns' lengths.
+TEST(Lobe, ConcentricColumnsAreOfLikeLengthAndPolarOnesAreNot) {
+    tests::RandomInputs random(12);
+    double concentric = 0, polar = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const double u = random.uniform(), v = random.uniform();
+        for (const DiskMap map : {DiskMap::concentric, DiskMap::polar}) {
+            if (map_to_disk(map, u, v).q >= 0.9) {
+                continue;
+            }
+            const LobeDirection at = sample_lobe({Lobe::Kind::power, 40}, map, u, v);
+            const double du = glm::length(at.dD_du), dv = glm::length(at.dD_dv);
+            double& worst = map == DiskMap::polar ? polar : concentric;
+            worst = std::max({worst, du / dv, dv / du});
+        }
+    }
+    EXPECT_LT(concentric, 5.2);
+    EXPECT_GT(polar, 1000);
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,247 @@
+#include <algorithm>
+#include <vector>
+
+#include "bake/path_differentials/axis_frame.h"
+#include "bake/path_differentials/flight_sample.h"
+#include "bake/path_differentials/path_differential.h"
+#include "bake/path_differentials/steps.h"
+#include "tests/bake/path_differentials/event_check.h"
+#include "tests/bake/path_differentials/path_rules.h"
+
+namespace opaline::bake {
+namespace {
+
+using tests::global_rules;
+using tests::kChain;
+using tests::kPoint;
+using tests::kStill;
+using tests::kUp;
+using tests::local_rules;
+
+double hull_area(std::vector<glm::dvec2> points) {
+    std::sort(points.begin(), points.end(), [](const glm::dvec2& a, const glm::dvec2& b) {
+        return a.x < b.x || (a.x == b.x && a.y < b.y);
+    });
+    double area = 0;
+    for (const double side : {1.0, -1.0}) {
+        std::vector<glm::dvec2> chain;
+        for (const glm::dvec2& p : points) {
+            while (chain.size() > 1) {
+                const glm::dvec2 a = chain[chain.size() - 2], b = chain.back();
+                if (side * ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)) > 0) {
+                    break;
+                }
+                chain.pop_back();
+            }
+            chain.push_back(p);
+        }
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+            area += side * (chain[i].x * chain[i + 1].y - chain[i + 1].x * chain[i].y) / 2;
+        }
+    }
+    return area;
+}
+
+// Paths of perturbed numbers, 8^4 in the box of steps, end in the polygon: the area of their hull.
+// The same path in four numbers, traced anew each time.
+TEST(PathFootprint, IsTheHullOfPerturbedPaths) {
+    const auto raw = tests::chain_outputs(kChain, kPoint);
+    const glm::dvec3 axis(raw.at("R")[0], raw.at("R")[1], raw.at("R")[2]);
+    const auto ratio = [&](double step) {
+        const double pixel = step / 50;
+        std::vector<glm::dvec2> ends;
+        const auto offset = [](int i) { return i / 7.0 - 0.5; };
+        for (int n = 0; n < 4096; ++n) {
+            const tests::ChainPoint x{
+                kPoint.x + pixel * offset(n & 7), kPoint.y + pixel * offset(n >> 3 & 7),
+                kPoint.u + step * offset(n >> 6 & 7), kPoint.v + step * offset(n >> 9)};
+            const auto out = tests::chain_outputs(kChain, x, axis);
+            ends.emplace_back(out.at("P2")[0], out.at("P2")[2]);
+        }
+        std::vector<glm::dvec2> vectors;
+        for (const auto& [name, size] :
+             {std::pair("dP2_x", pixel), {"dP2_y", pixel}, {"dP2_u", step}, {"dP2_v", step}}) {
+            vectors.emplace_back(size * raw.at(name)[0], size * raw.at(name)[2]);
+        }
+        return hull_area(ends) / polygon_area(vectors);
+    };
+    EXPECT_NEAR(ratio(0.02), 1, 0.02);
+    EXPECT_NEAR(ratio(0.005), 1, 0.01);
+}
+
+// Of a curved receiver the normal turns along the cell, and the directions around it.
+TEST(PathFootprint, ReceiversTurnTheirBouncesWithTheirNormal) {
+    const SurfaceShape sphere = sphere_shape({0, 0, 0}, 2, {0, 2, 0});
+    const AreaSample cell = cell_of_area({0, 2, 0}, sphere.N, 0.01);
+    PathDifferential path;
+    add_variable(path, {cell.dP_du, kStill, 0, 1});
+    add_variable(path, {cell.dP_dv, kStill, 0, 1});
+    aim_at_normal(path, sphere.dN_dP);
+    const glm::dvec3 D =
+        scatter_in_lobe(path, local_rules(), {.axis = sphere.N, .u = 0.5, .v = 0.5, .N_g = kUp});
+    EXPECT_LT(glm::length(D - kUp), 1e-15);
+    EXPECT_LT(glm::length(path.column[0].dD - cell.dP_du / 2.0), 1e-15);
+}
+
+/// A path between two planes at distance 1, with its columns unmerged beside it. Directions are
+/// made to depend on positions, so that those of older columns matter.
+struct Bounces {
+    PathDifferential path;
+    std::vector<DifferentialColumn> all;
+};
+
+Bounces bounce(int count, const DifferentialRules& rules) {
+    tests::RandomInputs random(42);
+    Bounces out;
+    PathDifferential& path = out.path;
+    glm::dvec3 N = kUp;
+    for (int i = 0; i < count; ++i) {
+        const double u = random.uniform(0.1, 0.9), v = random.uniform(0.1, 0.9);
+        for (DifferentialColumn& column : path.columns()) {
+            column.dD = glm::cross(column.dP, N) * 0.3;
+        }
+        for (DifferentialColumn& column : out.all) {
+            column.dD = glm::cross(column.dP, N) * 0.3;
+        }
+        const glm::dvec3 D = scatter_in_lobe(
+            path, rules, {.axis = N, .u = u, .v = v, .step_u = 0.25, .step_v = 0.25, .N_g = N});
+        for (DifferentialColumn& column : out.all) {
+            column.dD = carry_with_axis(N, column.dD, D);
+        }
+        for (std::size_t k = path.count - 2; k < path.count; ++k) {
+            out.all.push_back(path.column[k]);
+        }
+        N = -N;
+        const double t = 1 / std::abs(D.y);
+        move_to_surface(path, D, N, t);
+        for (DifferentialColumn& column : out.all) {
+            column.dP = bounded_transfer(D, N, t, column.dP, column.dD);
+        }
+    }
+    return out;
+}
+
+double rms_minor(const std::vector<DifferentialColumn>& columns, double step) {
+    std::vector<glm::dvec2> vectors;
+    for (const DifferentialColumn& column : columns) {
+        vectors.emplace_back(step * column.step * column.dP.x, step * column.step * column.dP.z);
+    }
+    return pair_extent(rms_pair(vectors)).minor;
+}
+
+TEST(PathFootprint, OfEightColumnsAtMostIsThatOfAll) {
+    for (const int count : {3, 4, 6, 10}) {
+        const Bounces local = bounce(count, local_rules());
+        EXPECT_LE(local.path.count, 8u);
+        EXPECT_EQ(local.path.variables, 2 * count);
+        const SurfaceFootprint merged =
+            surface_footprint(local.path, local_rules(), kUp, FootprintMode::filter);
+        EXPECT_NEAR(merged.extent.minor / rms_minor(local.all, 1), 1, 1e-9) << count;
+        // Global steps change after a merge: merged columns follow.
+        const DifferentialRules rules = global_rules(1e5);
+        const Bounces global = bounce(count, rules);
+        const SurfaceFootprint later =
+            surface_footprint(global.path, rules, kUp, FootprintMode::filter);
+        EXPECT_NEAR(later.extent.minor / rms_minor(global.all, global_step(1e5, 2 * count, 1)), 1,
+                    1e-9)
+            << count;
+    }
+}
+
+// Merging keeps the area of the polygon where it happens.
+TEST(PathFootprint, MergingKeepsThePolygonsArea) {
+    const DifferentialRules rules = local_rules();
+    tests::RandomInputs random(43);
+    PathDifferential path;
+    for (int i = 0; i < 8; ++i) {
+        add_variable(path, {random.change_of(kUp), random.change_of(kUp), 0, 0.5});
+    }
+    const double before = surface_footprint(path, rules, kUp, FootprintMode::polygon).area;
+    scatter_in_lobe(path, rules, {.axis = kUp, .u = 0.3, .v = 0.6, .N_g = kUp});
+    EXPECT_LE(path.count, 7u);
+    EXPECT_NEAR(surface_footprint(path, rules, kUp, FootprintMode::polygon).area, before,
+                1e-9 * before);
+}
+
+// Hard case: footprints that the linear model cannot mean.
+TEST(PathFootprint, IsAtMostAQuarterOfTheScene) {
+    PathDifferential path;
+    add_variable(path, {{1e9, 0, 0}, kStill, 0, 1});
+    add_variable(path, {{0, 0, 1e9}, kStill, 0, 1});
+    add_variable(path, {{1e9, 0, 1e9}, kStill, 0, 1});
+    for (const FootprintMode mode : {FootprintMode::polygon, FootprintMode::filter}) {
+        const SurfaceFootprint at = surface_footprint(path, local_rules(8), kUp, mode);
+        EXPECT_NEAR(at.extent.major, 2, 1e-12);
+        EXPECT_LE(at.area, 4 + 1e-12);
+        EXPECT_GT(at.extent.minor, 0.5);
+    }
+    EXPECT_LE(volume_footprint(path, local_rules(8)).x, 2);
+}
+
+// Hard case: at the eye all positions stand still.
+TEST(PathFootprint, AtTheEyeIsAPoint) {
+    PathDifferential path;
+    add_variable(path, {kStill, {1, 0, 0}, 0, 1});
+    add_variable(path, {kStill, {0, 1, 0}, 0, 1});
+    for (const FootprintMode mode : {FootprintMode::polygon, FootprintMode::filter}) {
+        const SurfaceFootprint at = surface_footprint(path, local_rules(), kUp, mode);
+        EXPECT_EQ(at.area, 0);
+        EXPECT_EQ(at.extent.major, 0);
+    }
+    EXPECT_EQ(PathDifferential().columns().size(), 0u);
+}
+
+// A square of 0.1 m seen through coordinates of 10 per metre is one unit of the texture wide.
+TEST(PathFootprint, IsSeenInTextureCoordinates) {
+    PathDifferential path;
+    add_variable(path, {{0.1, 0, 0}, kStill, 0, 1});
+    add_variable(path, {{0, 0, 0.1}, kStill, 0, 1});
+    const SurfaceFootprint at = surface_footprint(path, local_rules(), kUp, FootprintMode::filter);
+    EXPECT_NEAR(at.area, 0.01, 1e-17);
+    const FootprintPair uv = footprint_in_texture(at, {{10, 0}, {0, 0}, {0, 5}});
+    EXPECT_NEAR(pair_area(uv), 0.5, 1e-14);
+}
+
+// Two flights in a homogeneous medium, by dual numbers: all four vertices' numbers.
+TEST(PathFootprint, InAVolumeHasThreeDimensions) {
+    const double sigma = 2, g = 0.6, u1 = 0.4, u2 = 0.7;
+    const glm::dvec2 x(0.3, 0.45);
+    const glm::dvec3 first(0, 0, 1);
+    PathDifferential path;
+    const FlightSample near = sample_flight_distance(sigma, u1);
+    const auto even = [](const glm::dvec3&, const glm::dvec3&) { return 0.0; };
+    move_in_volume(path, first, near.t, {near.dt_du, 1e-5}, even);
+    const glm::dvec3 D = scatter_in_lobe(path, local_rules(),
+                                         {.axis = first,
+                                          .lobe = {Lobe::Kind::henyey_greenstein, g},
+                                          .u = x.x,
+                                          .v = x.y,
+                                          .step_u = 1e-5,
+                                          .step_v = 1e-5});
+    const FlightSample far = sample_flight_distance(sigma, u2);
+    move_in_volume(path, D, far.t, {far.dt_du, 1e-5}, even);
+    ASSERT_EQ(path.count, 4u);
+    const auto end = [&](std::array<tests::Dual, 4> d) {
+        using S = tests::Dual;
+        const auto flight = [&](S u) { return (S(0) - log(S(1) - u)) / S(sigma); };
+        const auto frame = tests::branchless_frame<S>(first);
+        const tests::Vector<S> turned =
+            tests::lobe_direction<S>(tests::concentric_point<S>(S(x.x) + d[1], S(x.y) + d[2]),
+                                     [&](S q) { return tests::henyey_greenstein_cosine(g, q); });
+        return flight(S(u1) + d[0]) * tests::Vector<S>(first) +
+               flight(S(u2) + d[3]) * tests::in_frame<S>(frame, first, turned);
+    };
+    std::vector<glm::dvec3> vectors;
+    for (std::size_t i = 0; i < 4; ++i) {
+        std::array<tests::Dual, 4> d{};
+        d[i].change = 1;
+        EXPECT_LT(glm::length(path.column[i].dP - changes(end(d))), 1e-8) << i;
+        vectors.push_back(1e-5 * path.column[i].dP);
+    }
+    const glm::dvec3 extents = volume_footprint(path, local_rules());
+    EXPECT_LT(glm::length(extents - rms_extents(vectors)), 1e-18);
+    EXPECT_GT(extents.z, 1e-6);
+}
+
+}  // namespace
+}  // namespace opaline::bake
