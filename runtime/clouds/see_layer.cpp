@@ -53,14 +53,13 @@ Rgb glow_along(const LayerLight& light, const LayerRay& ray, const std::array<fl
     return sum;
 }
 
-// Distance to the ground; infinity where the ray does not meet it from above.
-double ground_distance(const LayerLight& light, const LayerRay& ray) {
-    const double height = static_cast<double>(ray.origin.y - light.record.ground);
-    if (!(ray.direction.y < 0) || height < 0) return std::numeric_limits<double>::infinity();
-    return height / -static_cast<double>(ray.direction.y);
-}
-
 }  // namespace
+
+double ground_distance(const LayerLight& light, formats::Vec3 origin, formats::Vec3 direction) {
+    const double height = static_cast<double>(origin.y - light.record.ground);
+    if (!(direction.y < 0) || height < 0) return std::numeric_limits<double>::infinity();
+    return height / -static_cast<double>(direction.y);
+}
 
 SeenLayer see_layer(const LayerLight& light, const LayerRay& ray) {
     SeenLayer seen;
@@ -78,13 +77,14 @@ SeenLayer see_layer(const LayerLight& light, const LayerRay& ray) {
     const Rgb share{taken[0], taken[1], taken[2]};
     seen.radiance = haze_over(light, share * own_source(light, ray, march), march.distance, share);
     seen.glow = glow_along(light, ray, depth);
+    seen.distance = march.distance;
     return seen;
 }
 
-Rgb see_through_layer(const LayerScene& scene, const LayerRay& ray, const Rgb* surface) {
+SeenRay see_along(const LayerScene& scene, const LayerRay& ray, const Rgb* surface) {
     const LayerLight& light = scene.light;
     LayerRay cut = ray;
-    const double ground = ground_distance(light, ray);
+    const double ground = ground_distance(light, ray.origin, ray.direction);
     Rgb behind, sun;
     bool is_opaque = true;
     if (surface != nullptr && ray.end <= kGroundSlack * ground) {
@@ -110,7 +110,11 @@ Rgb see_through_layer(const LayerScene& scene, const LayerRay& ray, const Rgb* s
     if (!is_opaque && scene.shows_sky) {
         color = color + seen.glow + seen.sun_transmittance * sun;
     }
-    return color;
+    return {color, {seen.radiance, seen.transmittance, static_cast<float>(seen.distance)}};
+}
+
+Rgb see_through_layer(const LayerScene& scene, const LayerRay& ray, const Rgb* surface) {
+    return see_along(scene, ray, surface).radiance;
 }
 
 }  // namespace opaline::runtime

@@ -4,6 +4,7 @@
 #include "formats/opal/rgb.h"
 #include "runtime/clouds/layer_light.h"
 #include "runtime/clouds/layer_march.h"
+#include "runtime/clouds/layer_sheet.h"
 
 namespace opaline::runtime {
 
@@ -15,6 +16,7 @@ struct SeenLayer {
     formats::Rgb glow;
     formats::Rgb transmittance{1, 1, 1};      ///< exp(-tau_S): of ground, surfaces, sky
     formats::Rgb sun_transmittance{1, 1, 1};  ///< exp(-tau): of a sun's disc
+    double distance = 0;                      ///< mean, of what is seen [m]; 0: no layer
 };
 
 /// The layer as a plane slab of the thickness that the ray sees (layer_march.h), whose light is
@@ -32,11 +34,29 @@ struct LayerScene {
     bool shows_sky = true;  ///< false: black stands for the sky and the suns
 };
 
+/// What a ray sees, and how much of that is the layer.
+struct SeenRay {
+    formats::Rgb radiance;  ///< of layer and what is behind it [W m^-2 sr^-1]
+    LayerSheet sheet;
+};
+
 /// Radiance along a ray to the ground or the sky, or to a surface of that radiance at ray.end where
 /// `surface` is not null and the ground is not in front of it: the surface wins up to kGroundSlack
 /// times the ground's distance, as floors often lie in the ground's plane.
+SeenRay see_along(const LayerScene& scene, const LayerRay& ray,
+                  const formats::Rgb* surface = nullptr);
+/// Its radiance alone.
 formats::Rgb see_through_layer(const LayerScene& scene, const LayerRay& ray,
                                const formats::Rgb* surface = nullptr);
 inline constexpr double kGroundSlack = 1.001;
+
+/// Distance at which a ray of unit direction meets the ground from above [m]; infinity if it does
+/// not.
+double ground_distance(const LayerLight& light, formats::Vec3 origin, formats::Vec3 direction);
+/// What of them ends a view: a surface at the first distance, or the ground at the second. Infinity
+/// stands for none.
+inline double opaque_distance(double surface, double ground) {
+    return surface <= kGroundSlack * ground ? surface : ground;
+}
 
 }  // namespace opaline::runtime

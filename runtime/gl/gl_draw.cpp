@@ -27,6 +27,19 @@ GlFramebuffer make_frame(const GlTexture& color) {
     return GlFramebuffer(name);
 }
 
+// Lets draws to the frame write sheets too.
+SheetTextures attach_sheet(const GlFramebuffer& frame, std::uint32_t width, std::uint32_t height) {
+    SheetTextures sheet{make_target_texture(GL_RGBA32F, width, height),
+                        make_target_texture(GL_RGBA32F, width, height)};
+    constexpr std::array<GLenum, 3> kAttachments{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
+                                                 GL_COLOR_ATTACHMENT2};
+    glNamedFramebufferTexture(frame.name(), kAttachments[1], sheet.light.name(), 0);
+    glNamedFramebufferTexture(frame.name(), kAttachments[2], sheet.through.name(), 0);
+    glNamedFramebufferDrawBuffers(frame.name(), static_cast<GLsizei>(kAttachments.size()),
+                                  kAttachments.data());
+    return sheet;
+}
+
 TileGrid tile_grid(const DrawScene& scene, const Tile& tile) {
     const auto samples = [&](std::uint32_t pixels) {
         return static_cast<float>(pixels * scene.supersampling);
@@ -74,7 +87,7 @@ formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlV
     if (!surfaces) return surfaces.error();
     programs.surfaces = std::move(surfaces).value();
     if (!volumes.empty()) {
-        auto made = make_volume_program(volumes);
+        auto made = make_volume_program(volumes, false);
         if (!made) return made.error();
         programs.volumes = std::move(made).value();
     }
@@ -102,7 +115,7 @@ formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlV
 }
 
 formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t height,
-                                             std::uint32_t supersampling, bool layers) {
+                                             std::uint32_t supersampling, const DrawParts& parts) {
     const std::uint32_t columns = width * supersampling, rows = height * supersampling;
     DrawTarget target;
     target.samples = make_target_texture(GL_RGBA32F, columns, rows);
@@ -112,7 +125,7 @@ formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t 
     glNamedFramebufferTexture(target.sample_frame.name(), GL_DEPTH_ATTACHMENT, target.depth.name(),
                               0);
     target.pixel_frame = make_frame(target.pixels);
-    if (layers) {
+    if (parts.layers) {
         target.layer.corners = make_target_texture(GL_RGBA32F, width + 1, height + 1);
         target.layer.means = make_target_texture(GL_RGBA32F, width, height);
         target.layer.samples = make_target_texture(GL_RGBA32F, columns, rows);
@@ -122,6 +135,11 @@ formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t 
         target.layer.sample_frame = make_frame(target.layer.samples);
         glNamedFramebufferTexture(target.layer.sample_frame.name(), GL_DEPTH_ATTACHMENT,
                                   target.layer.is_done.name(), 0);
+    }
+    if (parts.layers && parts.volumes) {
+        target.layer.corner_sheet = attach_sheet(target.layer.corner_frame, width + 1, height + 1);
+        target.layer.mean_sheet = attach_sheet(target.layer.mean_frame, width, height);
+        target.layer.sample_sheet = attach_sheet(target.layer.sample_frame, columns, rows);
     }
     if (const auto status = check_gl("allocating a " + std::to_string(columns) + "x" +
                                      std::to_string(rows) + " render target");
@@ -170,7 +188,12 @@ void draw_tile(const DrawScene& scene, const DrawPrograms& programs, const DrawT
     glBindTextureUnit(0, layers ? target.layer.samples.name() : target.samples.name());
     if (!scene.volumes.empty()) {
         glBindTextureUnit(1, target.depth.name());
-        return draw_volumes_filtered(scene, programs.volumes, view);
+        if (layers) {
+            glBindTextureUnit(2, target.layer.sample_sheet.light.name());
+            glBindTextureUnit(3, target.layer.sample_sheet.through.name());
+        }
+        return draw_volumes_filtered(
+            scene, layers ? programs.volumes_around_layer : programs.volumes, view);
     }
     glUseProgram(programs.resolve.name());
     glUniform1i(0, static_cast<GLint>(scene.supersampling));

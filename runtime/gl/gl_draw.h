@@ -15,9 +15,10 @@ namespace opaline::runtime {
 struct DrawPrograms {
     SurfacePrograms surfaces;
     GlProgram background, resolve;
-    GlProgram volumes;      ///< in place of `resolve`, where there are volumes
-    LayerPrograms layers;   ///< where there are any (gl_layer_pass.h)
-    GlVertexArray nothing;  ///< for passes without vertex data
+    GlProgram volumes;               ///< in place of `resolve`, where there are volumes
+    GlProgram volumes_around_layer;  ///< in place of `volumes`, where there is a layer too
+    LayerPrograms layers;            ///< where there are any (gl_layer_pass.h)
+    GlVertexArray nothing;           ///< for passes without vertex data
 };
 /// Only those that the asset has surfaces and volumes for. Errors: resource.
 formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlVolumes& volumes);
@@ -28,9 +29,13 @@ struct DrawTarget {
     GlFramebuffer sample_frame, pixel_frame;
     LayerTarget layer;  ///< where there are layers
 };
-/// For tiles of up to width x height pixels of S x S samples; `layers`: for those too.
+/// What a picture has besides surfaces.
+struct DrawParts {
+    bool layers = false, volumes = false;
+};
+/// For tiles of up to width x height pixels of S x S samples.
 formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t height,
-                                             std::uint32_t supersampling, bool layers);
+                                             std::uint32_t supersampling, const DrawParts& parts);
 
 /// Part of a picture, in pixels from its top left corner.
 struct Tile {

@@ -108,11 +108,18 @@ void use_smooth(const DrawScene& scene, const GlProgram& program, const TileView
     glUniform4fv(kNearSuns, static_cast<GLsizei>(suns.size()), suns.front().data());
 }
 
+// Beyond the units that `see` reads.
+void bind_sheet(const SheetTextures& sheet) {
+    glBindTextureUnit(8, sheet.light.name());
+    glBindTextureUnit(9, sheet.through.name());
+}
+
 }  // namespace
 
-formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers) {
+formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers, bool sheet) {
     const std::string see = std::string(cube_map_text) + environment_text + layer_tables_text +
                             layer_march_text + layers_frag_text;
+    const std::string defines = layers.defines + "#define SHEET " + (sheet ? "1\n" : "0\n");
     LayerPrograms programs;
     struct Job {
         GlProgram& program;
@@ -124,7 +131,7 @@ formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers) {
     for (const Job& job : jobs) {
         const std::array<StageSource, 2> stages{
             {{GL_VERTEX_SHADER, screen_vert_text}, {GL_FRAGMENT_SHADER, job.fragment}}};
-        auto program = make_program(job.name, layers.defines, stages);
+        auto program = make_program(job.name, defines, stages);
         if (!program) return program.error();
         job.program = std::move(program).value();
     }
@@ -144,11 +151,13 @@ void draw_gl_layers(const DrawScene& scene, const LayerPrograms& programs, const
     };
     use_see(scene, programs.see, view);
     glBindTextureUnit(3, 0);  // not what is drawn to
+    bind_sheet({});
     glUniform1i(kSeesCorners, 1);
     draw(target.corner_frame, columns / samples + 1, rows / samples + 1);
 
     use_smooth(scene, programs.smooth, view);
     glBindTextureUnit(3, target.corners.name());
+    bind_sheet(target.corner_sheet);
     draw(target.mean_frame, columns / samples, rows / samples);
 
     // The test of depth leaves out what is done before a shader runs: software renderers execute
@@ -160,6 +169,7 @@ void draw_gl_layers(const DrawScene& scene, const LayerPrograms& programs, const
     glUseProgram(programs.spread.name());
     glUniform1i(0, samples);
     glBindTextureUnit(3, target.means.name());
+    bind_sheet(target.mean_sheet);
     draw(target.sample_frame, columns, rows);
 
     glDepthFunc(GL_EQUAL);

@@ -11,13 +11,20 @@ struct LayerPrograms {
     GlProgram see;             ///< along the rays of corners and of samples
     GlProgram smooth, spread;  ///< which pixels corners do for; to their samples
 };
-/// For layers.defines. Errors: resource. Precondition: layers.shown.
-formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers);
+/// For layers.defines; `sheet`: write what volumes need of the layer (clouds/layer_sheet.h), too.
+/// Errors: resource. Precondition: layers.shown.
+formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers, bool sheet);
+
+/// A LayerSheet a texel: its radiance with its distance [m], its transmittance; none: not written.
+struct SheetTextures {
+    GlTexture light, through;
+};
 
 /// What a layer is drawn into, besides the samples.
 struct LayerTarget {
     GlTexture corners, means;    ///< of pixels
     GlTexture samples, is_done;  ///< composed; a depth buffer: 0 where a sample is left
+    SheetTextures corner_sheet, mean_sheet, sample_sheet;
     GlFramebuffer corner_frame, mean_frame, sample_frame;
 };
 

@@ -13,6 +13,7 @@
 #include "runtime/gl/gl_layer_pass.h"
 #include "runtime/gl/gl_layers.h"
 #include "runtime/gl/gl_view.h"
+#include "runtime/gl/gl_volume_pass.h"
 #include "runtime/gl/gl_volumes.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/specular.h"
@@ -47,6 +48,20 @@ struct Resources {
     ViewPrograms view_programs;
     DrawPrograms draw_programs;
 };
+
+formats::Status compile_layers(Resources& resources) {
+    const bool has_volumes = !resources.volumes.empty();
+    auto layers = make_layer_programs(resources.layers, has_volumes);
+    if (!layers) return layers.error();
+    resources.draw_programs.layers = std::move(layers).value();
+    if (!has_volumes || resources.draw_programs.volumes_around_layer.name() != 0) {
+        return formats::ok_status();
+    }
+    auto volumes = make_volume_program(resources.volumes, true);
+    if (!volumes) return volumes.error();
+    resources.draw_programs.volumes_around_layer = std::move(volumes).value();
+    return formats::ok_status();
+}
 
 std::uint32_t largest_target() {
     GLint texture = 0, viewport[2] = {};
@@ -178,13 +193,11 @@ formats::Status GlRenderer::set_layers(const LayerLight& light) {
     state_->stats.gpu_bytes += layers.layer_bytes + layers.light_bytes;
     if (!status) return status;
     if (layers.defines != compiled_for) {
-        auto programs = make_layer_programs(layers);
-        if (!programs) {
+        if (auto made = compile_layers(resources); !made) {
             layers.shown = false;
             layers.defines.clear();
-            return programs.error();
+            return made;
         }
-        resources.draw_programs.layers = std::move(programs).value();
     }
     state_->stats.layer_seconds = clock.lap();
     return formats::ok_status();
@@ -201,8 +214,9 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
     const std::uint32_t s = options.supersampling;
     const std::uint32_t side =
         std::max(1u, std::min(options.max_tile_samples, largest_target()) / s);
-    const auto target = make_draw_target(std::min(side, camera.width),
-                                         std::min(side, camera.height), s, resources.layers.shown);
+    const auto target =
+        make_draw_target(std::min(side, camera.width), std::min(side, camera.height), s,
+                         {resources.layers.shown, !resources.volumes.empty()});
     if (!target) return target.error();
 
     auto picture = make_picture(camera.width, camera.height);

@@ -23,8 +23,8 @@ struct GlOptions {
     std::uint32_t lanes_per_row = 0;
     /// Upper bound on bytes that one dispatch may see of one buffer; 0: what the driver states.
     std::size_t max_block_bytes = 0;
-    /// What surfaces mirror, in the world's frame whatever the light's rotation: for those beneath a
-    /// cloud layer (clouds/environment_at.h). Nothing: the environment behind them.
+    /// What surfaces mirror, in the world's frame whatever the light's rotation: for those beneath
+    /// a cloud layer (clouds/environment_at.h). Nothing: the environment behind them.
     const formats::Environment* mirrored = nullptr;
 };
 

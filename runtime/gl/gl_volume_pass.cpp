@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/picture/volume_pass.h"
 #include "runtime/volumes/suns.h"
 #include "shader_text.h"
 
@@ -21,8 +22,11 @@ enum Uniform : GLint {
     kDown,
     kForward,
     kNearPlane,
-    kSuns
+    kSuns,
+    kEyeAboveGround = kSuns + static_cast<GLint>(kMaxSuns),  // with a layer
+    kUnitsOfMetre
 };
+static_assert(kEyeAboveGround == 15);
 
 // Volume of volume_march.glsl.
 struct ShaderVolume {
@@ -75,7 +79,7 @@ ShaderVolume shader_volume(const GlVolumes& volumes, const GlVolumes::Entry& ent
 
 }  // namespace
 
-formats::Result<GlProgram> make_volume_program(const GlVolumes& volumes) {
+formats::Result<GlProgram> make_volume_program(const GlVolumes& volumes, bool layer) {
     const std::string text = std::string(volume_march_text) + volumes_frag_text;
     const std::array<StageSource, 2> stages{
         {{GL_VERTEX_SHADER, screen_vert_text}, {GL_FRAGMENT_SHADER, text.c_str()}}};
@@ -83,7 +87,9 @@ formats::Result<GlProgram> make_volume_program(const GlVolumes& volumes) {
                         "#define VOLUMES " + std::to_string(volumes.entry.size()) +
                             "\n#define HARMONICS " + std::to_string(volumes.harmonics) +
                             "\n#define SUNS " + std::to_string(kMaxSuns) +
-                            "\n#define BRICK_WORDS " + std::to_string(kGlBrickWords) + "\n",
+                            "\n#define BRICK_WORDS " + std::to_string(kGlBrickWords) +
+                            "\n#define LAYER " + (layer ? "1" : "0") +
+                            "\n#define SHEET_TOLERANCE " + std::to_string(kSheetTolerance) + "\n",
                         stages);
 }
 
@@ -117,6 +123,12 @@ void draw_volumes_filtered(const DrawScene& scene, const GlProgram& program, con
     if (!suns.empty()) glUniform3fv(kSuns, static_cast<GLsizei>(suns.size()), &suns.front().x);
     glUniform1f(kNearPlane, static_cast<float>(view_unit(scene.camera) *
                                                static_cast<double>(scene.camera.near_plane)));
+    if (scene.layers.shown) {
+        const double height = static_cast<double>(scene.camera.eye.y) - scene.layers.ground_height;
+        const double unit = view_unit(scene.camera);
+        glUniform1f(kEyeAboveGround, static_cast<float>(unit * height));
+        glUniform1f(kUnitsOfMetre, static_cast<float>(unit));
+    }
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 

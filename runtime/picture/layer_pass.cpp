@@ -23,11 +23,14 @@ Rgb bounded(Rgb color) {
     return {bound(color.r), bound(color.g), bound(color.b)};
 }
 
-Rgb see_sample(const LayerPass& pass, double x, double y, double inverse_distance, Rgb behind) {
+SeenRay see_sample(const LayerPass& pass, double x, double y, double inverse_distance, Rgb behind) {
     const PictureRay ray = ray_through(pass.camera, pass.frame, x, y);
-    return bounded(see_through_layer(pass.scene,
-                                     layer_ray(pass, ray, distance_along(ray, inverse_distance)),
-                                     inverse_distance > 0 ? &behind : nullptr));
+    SeenRay seen =
+        see_along(pass.scene, layer_ray(pass, ray, distance_along(ray, inverse_distance)),
+                  inverse_distance > 0 ? &behind : nullptr);
+    seen.radiance = bounded(seen.radiance);
+    seen.sheet.radiance = bounded(seen.sheet.radiance);
+    return seen;
 }
 
 // Whether a sun's disc may touch the pixel whose centre is (x, y).
@@ -39,12 +42,12 @@ bool is_near_sun(const LayerPass& pass, double x, double y) {
     });
 }
 
-bool agree(const std::array<Rgb, 4>& corner) {
+bool agree(const std::array<SeenRay, 4>& corner) {
     const auto differs = [&](float Rgb::*band) {
-        float low = corner[0].*band, high = low;
-        for (const Rgb& c : corner) {
-            low = std::min(low, c.*band);
-            high = std::max(high, c.*band);
+        float low = corner[0].radiance.*band, high = low;
+        for (const SeenRay& c : corner) {
+            low = std::min(low, c.radiance.*band);
+            high = std::max(high, c.radiance.*band);
         }
         return high - low > kCornerTolerance * high;
     };
@@ -61,28 +64,35 @@ class CornerRow {
         y_ = y;
         std::ranges::fill(value_, std::nullopt);
     }
-    Rgb at(std::size_t x) {
+    const SeenRay& at(std::size_t x) {
         if (!value_[x]) value_[x] = see_sample(*pass_, static_cast<double>(x), y_, 0, {});
         return *value_[x];
     }
 
   private:
     const LayerPass* pass_;
-    std::vector<std::optional<Rgb>> value_;
+    std::vector<std::optional<SeenRay>> value_;
     double y_ = 0;
 };
 
 // The mean of a pixel's corners, if they agree.
-std::optional<Rgb> smooth_color(const LayerPass& pass, std::uint32_t x, double row,
-                                CornerRow& above, CornerRow& below) {
+std::optional<SeenRay> smooth_pixel(const LayerPass& pass, std::uint32_t x, double row,
+                                    CornerRow& above, CornerRow& below) {
     if (is_near_sun(pass, x + 0.5, row + 0.5)) return std::nullopt;
-    const std::array<Rgb, 4> corner{above.at(x), above.at(x + 1), below.at(x), below.at(x + 1)};
+    const std::array<SeenRay, 4> corner{above.at(x), above.at(x + 1), below.at(x), below.at(x + 1)};
     if (!agree(corner)) return std::nullopt;
-    return 0.25f * (corner[0] + corner[1] + corner[2] + corner[3]);
+    const Rgb color =
+        0.25f * (corner[0].radiance + corner[1].radiance + corner[2].radiance + corner[3].radiance);
+    return SeenRay{color, mean_sheet(std::array{corner[0].sheet, corner[1].sheet, corner[2].sheet,
+                                                corner[3].sheet})};
 }
 
 void draw_layer_pixel(const LayerPass& pass, const Band& band, std::uint32_t x, std::uint32_t y,
-                      CornerRow& above, CornerRow& below, std::span<Rgb> color) {
+                      CornerRow& above, CornerRow& below, const LayerSamples& samples) {
+    const auto set = [&](std::size_t sample, const SeenRay& seen) {
+        samples.color[sample] = seen.radiance;
+        if (!samples.sheet.empty()) samples.sheet[sample] = seen.sheet;
+    };
     const std::uint32_t s = pass.supersampling;
     const double row = static_cast<double>(band.first_row / s) + y;
     bool sees_surface = false;
@@ -90,22 +100,22 @@ void draw_layer_pixel(const LayerPass& pass, const Band& band, std::uint32_t x, 
         sees_surface = sees_surface || band.inverse_distance[sample] > 0;
     });
     if (!sees_surface) {
-        if (const auto smooth = smooth_color(pass, x, row, above, below)) {
+        if (const auto smooth = smooth_pixel(pass, x, row, above, below)) {
             for_samples(band, s, x, y, [&](std::size_t sample, std::uint32_t, std::uint32_t) {
-                color[sample] = *smooth;
+                set(sample, *smooth);
             });
             return;
         }
     }
     for_samples(band, s, x, y, [&](std::size_t sample, std::uint32_t i, std::uint32_t j) {
-        color[sample] = see_sample(pass, x + (i + 0.5) / s, row + (j + 0.5) / s,
-                                   band.inverse_distance[sample], color[sample]);
+        set(sample, see_sample(pass, x + (i + 0.5) / s, row + (j + 0.5) / s,
+                               band.inverse_distance[sample], samples.color[sample]));
     });
 }
 
 }  // namespace
 
-void draw_layers(const LayerPass& pass, const Band& band, std::span<Rgb> color) {
+void draw_layers(const LayerPass& pass, const Band& band, const LayerSamples& samples) {
     const std::uint32_t s = pass.supersampling;
     CornerRow above(pass, band.columns / s + 1), below(pass, band.columns / s + 1);
     const double first = static_cast<double>(band.first_row / s);
@@ -113,7 +123,7 @@ void draw_layers(const LayerPass& pass, const Band& band, std::span<Rgb> color) 
     for (std::uint32_t y = 0; y < band.rows / s; ++y) {
         below.move_to(first + y + 1);
         for (std::uint32_t x = 0; x < band.columns / s; ++x) {
-            draw_layer_pixel(pass, band, x, y, above, below, color);
+            draw_layer_pixel(pass, band, x, y, above, below, samples);
         }
         std::swap(above, below);
     }

@@ -9,7 +9,8 @@ namespace opaline::runtime {
 /// composes what it adds with both. Surfaces write colour and depth where they are nearest; the
 /// background fills what is left at depth 0. A cloud layer attenuates both and adds its own light,
 /// its ground hides what is behind. Volumes scatter light between the eye and the depth and come
-/// last: they attenuate the colour and add their own.
+/// last: they attenuate the colour and add their own, on both sides of the layer, whose part of the
+/// colour the samples keep for them (clouds/layer_sheet.h).
 enum class PicturePass { surfaces, background, layers, volumes };
 
 /// The passes of a picture, in order, by what it has besides surfaces.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/opal/rgb.h"
+#include "runtime/clouds/layer_sheet.h"
 #include "runtime/picture/band.h"
 #include "runtime/picture/picture.h"
 
@@ -14,6 +15,7 @@ namespace opaline::runtime {
 struct Samples {
     Band band;  ///< depth, and the triangle seen
     std::vector<formats::Rgb> color;
+    std::vector<LayerSheet> sheet;  ///< of a cloud layer, where volumes need it; else empty
 
     /// Calls draw(sample, column, row), the last two of the whole grid.
     template <class Draw>

@@ -162,10 +162,11 @@ void draw_pass(PicturePass pass, const Job& job, std::uint32_t number, Samples& 
                                 job.camera,
                                 job.frame,
                                 job.supersampling},
-                               samples.band, samples.color);
+                               samples.band, {samples.color, samples.sheet});
         case PicturePass::volumes:
-            return draw_volumes({job.volumes, job.camera, job.frame, job.supersampling},
-                                samples.band, samples.color);
+            return draw_volumes(
+                {job.volumes, job.camera, job.frame, job.supersampling, job.layers, samples.sheet},
+                samples.band, samples.color);
     }
 }
 
@@ -175,6 +176,9 @@ void render_band(const Job& job, std::uint32_t number, Picture& picture) {
     reset_band(samples.band, first, std::min(job.band_rows, job.grid.rows - first),
                job.grid.columns);
     samples.color.assign(samples.band.triangle.size(), Rgb{});
+    if (job.layers != nullptr && job.volumes.light != nullptr) {
+        samples.sheet.resize(samples.color.size());
+    }
     for (const PicturePass pass : job.passes) {
         draw_pass(pass, job, number, samples);
     }

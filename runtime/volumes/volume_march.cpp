@@ -182,6 +182,16 @@ MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
     return march.result;
 }
 
+double volumes_begin(const LitVolumes& volumes, const MarchRay& ray) {
+    double begin = ray.end;
+    for (const LitVolumes::Entry& entry : volumes.entry) {
+        const BrickWalk walk =
+            start_walk(entry.lattice, ray.origin, ray.direction, ray.begin, ray.end);
+        if (walk.t < walk.end) begin = std::min(begin, walk.t);
+    }
+    return begin;
+}
+
 double volumes_end(const LitVolumes& volumes, const MarchRay& ray) {
     double end = ray.begin;
     for (const LitVolumes::Entry& entry : volumes.entry) {

@@ -62,6 +62,8 @@ struct MarchResult {
 MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
                           const MarchOptions& options = {});
 
+/// The distance at which the ray enters the first table of bricks; ray.end if it meets none.
+double volumes_begin(const LitVolumes& volumes, const MarchRay& ray);
 /// The distance at which the ray leaves the last table of bricks; ray.begin if it meets none.
 double volumes_end(const LitVolumes& volumes, const MarchRay& ray);
 

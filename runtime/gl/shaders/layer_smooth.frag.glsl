@@ -11,6 +11,29 @@ layout(location = 5) uniform int supersampling;
 layout(location = 6) uniform float tolerance;
 layout(location = 7) uniform vec4 suns[2];  // direction, and the chord within which it may matter
 layout(location = 0) out vec4 color;
+#if SHEET
+layout(binding = 8) uniform sampler2D corner_light;    // of the layer, and its distance
+layout(binding = 9) uniform sampler2D corner_through;  // its transmittance
+layout(location = 1) out vec4 sheet_light;
+layout(location = 2) out vec4 sheet_through;
+
+// The mean_sheet of the corners (clouds/layer_sheet.cpp).
+void smooth_sheet(ivec2 pixel) {
+    vec4 light = vec4(0.0);
+    vec3 through = vec3(0.0);
+    float weights = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 at = pixel + ivec2(i & 1, i >> 1);
+        vec4 corner = texelFetch(corner_light, at, 0);
+        vec3 left = texelFetch(corner_through, at, 0).rgb;
+        light += vec4(corner.rgb, (1.0 - left.g) * corner.a);
+        through += left;
+        weights += 1.0 - left.g;
+    }
+    sheet_light = vec4(0.25 * light.rgb, weights > 0.0 ? light.a / weights : 0.0);
+    sheet_through = vec4(0.25 * through, 1.0);
+}
+#endif
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -27,4 +50,7 @@ void main() {
     is_smooth = is_smooth && length(suns[0].xyz - direction) >= suns[0].w &&
                 length(suns[1].xyz - direction) >= suns[1].w;
     color = is_smooth ? vec4(0.25 * (a + b + c + d), 1.0) : vec4(0.0);
+#if SHEET
+    smooth_sheet(pixel);
+#endif
 }

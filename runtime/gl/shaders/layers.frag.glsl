@@ -20,6 +20,10 @@ layout(location = 17) uniform int supersampling;
 layout(location = 18) uniform int sees_corners;  // 1: of pixels, 0: samples
 layout(location = 19) uniform int shows_sky;
 layout(location = 0) out vec4 color;
+#if SHEET
+layout(location = 1) out vec4 sheet_light;    // LayerSheet: radiance, distance
+layout(location = 2) out vec4 sheet_through;  // transmittance
+#endif
 
 // Bilinear in a level; beyond the edges the same again, or the outermost texels.
 vec3 sample_image(sampler2D image, vec2 uv, ivec2 size, int level) {
@@ -157,8 +161,14 @@ vec3 glow_along(vec3 direction, vec3 depth) {
     return sum;
 }
 
+// What a ray sees, and how much of that is the layer.
+struct SeenRay {
+    vec3 radiance, layer, transmittance;
+    float distance;
+};
+
 // Along a ray to a surface of that radiance at ray.end, or without end.
-vec3 see_through_layer(LayerRay ray, bool has_surface, vec3 surface) {
+SeenRay see_along(LayerRay ray, bool has_surface, vec3 surface) {
     vec3 d = ray.direction, behind = vec3(0.0), sun = vec3(0.0);
     float ground = d.y < 0.0 && eye_above_ground >= 0.0 ? eye_above_ground / -d.y : kNever;
     bool is_opaque = true;
@@ -174,15 +184,15 @@ vec3 see_through_layer(LayerRay ray, bool has_surface, vec3 surface) {
         if (shows_sky != 0) see_sky(d, behind, sun);
     }
     LayerMarch march = march_layer(ray, rest_kappa_peak.g);
-    if (!(march.length > 0.0)) return behind + sun;
+    if (!(march.length > 0.0)) return SeenRay(behind + sun, vec3(0.0), vec3(1.0), 0.0);
     vec3 depth = march.length * rest_kappa_peak.rgb;
     vec3 share = taken_shares(depth);
-    vec3 seen = haze_over(share * own_source(ray, march), march.distance, share);
-    seen += exp(-depth) * behind;
+    vec3 own = haze_over(share * own_source(ray, march), march.distance, share);
+    vec3 seen = own + exp(-depth) * behind;
     if (!is_opaque && shows_sky != 0) {
         seen += glow_along(d, depth) + exp(-march.length * kappa_haze.rgb) * sun;
     }
-    return seen;
+    return SeenRay(seen, own, exp(-depth), march.distance);
 }
 
 // Through the point `at` [samples of the tile], without end.
@@ -203,6 +213,10 @@ void main() {
         ray.end = near_plane / (inverse * cosine);
         surface = texelFetch(samples, here, 0).rgb;
     }
-    vec3 seen = see_through_layer(ray, inverse > 0.0, surface);
-    color = vec4(tame(seen.r), tame(seen.g), tame(seen.b), 1.0);
+    SeenRay seen = see_along(ray, inverse > 0.0, surface);
+    color = vec4(tame(seen.radiance.r), tame(seen.radiance.g), tame(seen.radiance.b), 1.0);
+#if SHEET
+    sheet_light = vec4(tame(seen.layer.r), tame(seen.layer.g), tame(seen.layer.b), seen.distance);
+    sheet_through = vec4(seen.transmittance, 1.0);
+#endif
 }

@@ -57,6 +57,15 @@ formats::Environment bright_day(double sine) {
     return environment;
 }
 
+TEST(SeeLayer, TheMeanSheetIsWhereLightIsTaken) {
+    const LayerSheet near{{1, 1, 1}, {0.5f, 0.5f, 0.5f}, 100}, far{{2, 2, 2}, {0, 0, 0}, 400};
+    const LayerSheet mean = mean_sheet(std::array{near, far, LayerSheet{}, LayerSheet{}});
+    EXPECT_FLOAT_EQ(mean.distance, 300);
+    EXPECT_EQ(mean.radiance, (Rgb{0.75f, 0.75f, 0.75f}));
+    EXPECT_EQ(mean.transmittance, (Rgb{0.625f, 0.625f, 0.625f}));
+    EXPECT_EQ(mean_sheet(std::array{LayerSheet{}}).distance, 0);
+}
+
 TEST(SeeLayer, OfNoThicknessIsInvisible) {
     for (const float highest : {0.0f, 100.0f}) {
         const test::LitLayer lit(nothing(highest), bright_day(0.5));

@@ -12,6 +12,7 @@
 #include "runtime/shade.h"
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
+#include "tests/runtime/volumes/synthetic_volume.h"
 #include "tests/support/cloud_layers.h"
 
 namespace opaline::runtime {
@@ -67,6 +68,26 @@ Asset layer_and_sheet(formats::Clouds clouds) {
     return asset;
 }
 
+// And two balls of smoke 560 m wide, partly in the layer and beneath or above it.
+Asset layer_sheet_and_smoke(formats::Clouds clouds) {
+    Asset asset = layer_and_sheet(std::move(clouds));
+    asset.volumes = test::make_volumes(kLayerLight);
+    test::TestVolume smoke;
+    smoke.extent = {4, 4, 4};
+    smoke.single_terms = 1;
+    smoke.sigma_t = {0.01f, 0.015f, 0.02f};
+    smoke.albedo = {0.9f, 0.6f, 0.3f};
+    smoke.density = [](float x, float y, float z) {
+        const float r2 = (x - 16) * (x - 16) + (y - 16) * (y - 16) + (z - 16) * (z - 16);
+        return std::max(0.0f, 1 - r2 / 200);
+    };
+    for (const float low : {520.0f, 1100.0f}) {
+        smoke.to_world = {20, 0, 0, -70, 0, 20, 0, low, 0, 0, 20, -820};
+        test::add_volume(asset.volumes, smoke);
+    }
+    return asset;
+}
+
 const formats::Environment kLayerSky = test::make_lat_long(64, 32, test::two_lights);
 
 formats::Environment sun_from(formats::Vec3 direction) {
@@ -119,6 +140,11 @@ Picture draw_layer_on_cpu(const Asset& asset, const LitAsset& lit, const Camera&
     software.supersampling = options.supersampling;
     software.background = options.background;
     software.layers = &lit.layers;
+    VolumeLight volumes;
+    if (!asset.volumes.records.empty()) {
+        volumes = relight_volumes(asset.view().volumes, lit.vector);
+        software.volumes = &volumes;
+    }
     auto picture =
         render_software(asset.view(), radiance, lit.environment, lit.rotation, camera, software);
     EXPECT_TRUE(picture.has_value());
@@ -160,6 +186,27 @@ TEST_F(Gl, AMeshPartlyBehindALayerAgrees) {
     expect_layer_agreement(asset, lit, std::span(kPlaces).first(2));
     expect_layer_agreement(asset, lit, std::span(kPlaces).first(1),
                            {.supersampling = 1, .background = false});
+}
+
+TEST_F(Gl, SmokeBeforeInAndBehindALayerAgrees) {
+    const Asset asset = layer_sheet_and_smoke(broken_clouds());
+    const LitAsset lit(asset, sun_from(kToSun));
+    const std::array<LayerPlace, 4> places{{{"below", {0, 2, 0}, {200, 1000, -500}},
+                                            {"above", {0, 3000, 0}, {250, 1200, -500}},
+                                            {"grazing", {0, 1400, 600}, {250, 1250, -500}},
+                                            {"inside", {-300, 1080, 200}, {250, 1100, -500}}}};
+    expect_layer_agreement(asset, lit, places);
+    const Asset without = layer_and_sheet(broken_clouds());
+    for (const LayerPlace& place : places) {
+        const Camera camera = layer_camera(place);
+        const Picture smoky = draw_layer_on_cpu(asset, lit, camera, {});
+        const Picture clear = draw_layer_on_cpu(without, lit, camera, {});
+        int changed = 0;
+        for (std::size_t i = 0; i < smoky.pixel.size(); ++i) {
+            changed += std::abs(smoky.pixel[i].b / clear.pixel[i].b - 1) > 0.1f ? 1 : 0;
+        }
+        EXPECT_GT(changed, 40) << place.name;
+    }
 }
 
 TEST_F(Gl, LayersWithLessInThemAgree) {

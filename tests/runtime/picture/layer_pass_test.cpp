@@ -118,7 +118,7 @@ TEST(LayerPass, SurfacesStayWhereTheyAreInFrontOfEverything) {
     std::vector<Rgb> color(4, red);
     Camera small = camera;
     small.width = small.height = 2;
-    draw_layers({lit.scene(), small, camera_frame(small), 1}, band, color);
+    draw_layers({lit.scene(), small, camera_frame(small), 1}, band, {color, {}});
     EXPECT_EQ(color[0], red);
     EXPECT_GT(color[3].g, 0);
 }

@@ -196,6 +196,8 @@ TEST(VolumeMarch, ANegativeTableCornerAndMissingBricks) {
     }
     EXPECT_NEAR(volumes_end(scene.lit, {{-4, -4.5f, -1000}, {0, 0, 1}}), 1240, 1e-6);
     EXPECT_EQ(volumes_end(scene.lit, {{4, -4.5f, -1000}, {0, 0, 1}, 3}), 3);
+    EXPECT_EQ(volumes_begin(scene.lit, {{4, -4.5f, -1000}, {0, 0, 1}, 3, 9}), 9);
+    EXPECT_LT(volumes_begin(scene.lit, {{-4, -4.5f, -1000}, {0, 0, 1}}), 1240);
 }
 
 TEST(VolumeMarch, SourcesBelowZeroCountAsZeroBetweenNodesToo) {
