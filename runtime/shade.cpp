@@ -127,7 +127,7 @@ void shade_translucent_block(const Job& job, std::uint32_t first_vertex, std::sp
 
 }  // namespace
 
-void shade_range(const formats::AssetView& asset, const LightVector& light, std::uint32_t first,
+void shade_range(const formats::AssetView& asset, const PartLights& light, std::uint32_t first,
                  std::span<Rgb> out, const ShadeOptions& options) {
     std::fill(out.begin(), out.end(), Rgb{});
     const std::uint64_t last = first + std::uint64_t{out.size()};
@@ -137,7 +137,8 @@ void shade_range(const formats::AssetView& asset, const LightVector& light, std:
             std::min(last, std::uint64_t{primitive.first_vertex} + primitive.vertex_count);
         if (first >= end) continue;
         const SpecularLight* const specular = options.fresnel ? options.specular : nullptr;
-        const Job job{asset, light, options, surface_material(asset, p, options.terms, specular)};
+        const Job job{asset, light.light[light.number(p)], options,
+                      surface_material(asset, p, options.terms, specular)};
         for (std::uint64_t v = std::max(first, primitive.first_vertex); v < end; v += kBlock) {
             const std::size_t count = std::min<std::uint64_t>(kBlock, end - v);
             (primitive.shading == formats::Shading::translucent ? shade_translucent_block
@@ -147,7 +148,7 @@ void shade_range(const formats::AssetView& asset, const LightVector& light, std:
     }
 }
 
-void shade(const formats::AssetView& asset, const LightVector& light, std::span<Rgb> out,
+void shade(const formats::AssetView& asset, const PartLights& light, std::span<Rgb> out,
            const ShadeOptions& options) {
     constexpr std::uint32_t kGrain = 2048;  // some microseconds of work for each claim of a range
     for_ranges(asset.receivers(), kGrain, options.threads,
@@ -156,7 +157,7 @@ void shade(const formats::AssetView& asset, const LightVector& light, std::span<
                });
 }
 
-std::vector<Rgb> shade_for_picture(const formats::AssetView& asset, const LightVector& light,
+std::vector<Rgb> shade_for_picture(const formats::AssetView& asset, const PartLights& light,
                                    formats::Vec3 eye, TermSet terms, unsigned threads) {
     ShadeOptions options;
     options.threads = threads;

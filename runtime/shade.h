@@ -9,7 +9,7 @@
 #include "formats/opal/rgb.h"
 #include "formats/opal/vec3.h"
 #include "runtime/dot.h"
-#include "runtime/light_vector.h"
+#include "runtime/part_lights.h"
 #include "runtime/specular.h"
 #include "runtime/terms.h"
 
@@ -37,20 +37,20 @@ struct ShadeOptions {
 /// (1 - max E)) or base_color * Ft * sum_k h_k(w_o') <T_k, L> (Shading::translucent), plus L_spec
 /// where it is glossy (gloss.h, specular.h). Each of these values is clamped to [0, largest float];
 /// what belongs to no primitive is black, and so are translucent receivers that face away or have
-/// no normal. Preconditions: light.n == asset.cubemap_size, out.size() == asset.receivers(), the
-/// asset passed read_opal's checks.
-void shade(const formats::AssetView& asset, const LightVector& light, std::span<formats::Rgb> out,
+/// no normal. `light`: one for all, or by primitive. Preconditions: light.n == asset.cubemap_size,
+/// out.size() == asset.receivers(), the asset passed read_opal's checks.
+void shade(const formats::AssetView& asset, const PartLights& light, std::span<formats::Rgb> out,
            const ShadeOptions& options = {});
 
 /// The same for receivers first .. first + out.size(), on the calling thread; never allocates.
 /// `options.threads` does not matter.
-void shade_range(const formats::AssetView& asset, const LightVector& light, std::uint32_t first,
+void shade_range(const formats::AssetView& asset, const PartLights& light, std::uint32_t first,
                  std::span<formats::Rgb> out, const ShadeOptions& options = {});
 
 /// What render_software takes: every vertex without base colour, its sign and its factor Ft left to
 /// the renderer, seen from `eye`. Preconditions: as `shade`.
 std::vector<formats::Rgb> shade_for_picture(const formats::AssetView& asset,
-                                            const LightVector& light, formats::Vec3 eye,
+                                            const PartLights& light, formats::Vec3 eye,
                                             formats::TermSet terms, unsigned threads);
 
 }  // namespace opaline::runtime

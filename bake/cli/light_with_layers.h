@@ -1,11 +1,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "bake/cli/inputs.h"
 #include "formats/opal/asset.h"
 #include "runtime/clouds/layer_light.h"
+#include "runtime/clouds/light_points.h"
+#include "runtime/part_lights.h"
 
 namespace opaline::cli {
 
@@ -15,7 +19,11 @@ struct LightWithLayers {
     /// What meshes and volumes see of light and layer (runtime/clouds/environment_at.h), at the
     /// centre of their bounds; nothing: the light itself, or there are none.
     std::optional<OpenedLight> objects;
-    double seconds = 0;  ///< of both
+    runtime::LightPoints points;  ///< where their parts are lit, if there are `objects`
+    /// The same at each of several points, by which the parts differ in all but what they mirror;
+    /// empty: there is one, and `objects` is its.
+    std::vector<formats::Environment> at_point;
+    double seconds = 0;  ///< of all
 
     /// The light of meshes and volumes, `above` being that of the sky.
     const OpenedLight& of_objects(const OpenedLight& above) const {
@@ -26,6 +34,17 @@ struct LightWithLayers {
 /// `time` [s] moves the layer with its wind; `threads` 0: all cores.
 LightWithLayers light_layers_of(const formats::AssetView& view, const OpenedLight& above,
                                 double time, unsigned threads);
+
+/// Light vectors of the parts of an asset.
+struct PartVectors {
+    runtime::LightPoints points;
+    std::vector<runtime::LightVector> vector;
+
+    runtime::PartLights lights() const { return {vector, points.of_primitive, points.of_volumes}; }
+};
+/// For a cube map of n x n texels.
+PartVectors project_parts(const LightWithLayers& layers, const OpenedLight& above, std::uint32_t n,
+                          unsigned threads);
 
 /// The option `--time` of commands that light layers. Valid range: 1e9 s on either side of 0.
 void add_time_option(CLI::App& command, double& time);

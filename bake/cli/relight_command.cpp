@@ -155,10 +155,12 @@ int run(const RelightCommand& options) {
         print_note("opaline: the file has a cloud layer alone, which opaline render shows");
     }
     std::vector<formats::Rgb> radiance(view.receivers());
-    const runtime::LightVector vector = runtime::project_environment(
-        of_objects.environment, view.cubemap_size, of_objects.rotation, options.threads);
-    runtime::shade(view, vector, radiance, shading);
-    if (auto status = write_volumes(options, view.volumes, vector, shading); !status) {
+    const PartVectors parts = project_parts(layers, *light, view.cubemap_size, options.threads);
+    const runtime::PartLights lights = parts.lights();
+    runtime::shade(view, lights, radiance, shading);
+    if (auto status =
+            write_volumes(options, view.volumes, lights.light[lights.of_volumes], shading);
+        !status) {
         return report_error(status.error());
     }
     const std::vector<bake::RelightRow> rows = make_rows(view, radiance);
@@ -221,8 +223,9 @@ void add_relight_command(CLI::App& app, Job& job) {
     command->add_flag("--json", options->json,
                       "print JSON: receivers, mean and maximum of their radiance");
     command->footer(
-        "A cloud layer lights the receivers and nodes as it is seen from the centre of their "
-        "bounds.\n\n"
+        "A cloud layer lights receivers and nodes as it is seen from the centre of their bounds, "
+        "those\n"
+        "that stand far apart from several points.\n\n"
         "Example:\n  opaline relight scene.opal --light studio -o radiance.csv");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }

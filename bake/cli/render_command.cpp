@@ -118,7 +118,7 @@ void print_stat(const RenderCommand& options, const char* name, double seconds) 
 struct PictureLight {
     const OpenedLight& sky;
     const LightWithLayers& layers;
-    runtime::LightVector vector;
+    PartVectors parts;
 
     const OpenedLight& of_objects() const { return layers.of_objects(sky); }
 };
@@ -126,11 +126,13 @@ struct PictureLight {
 int render_on_cpu(const RenderCommand& options, const formats::AssetView& view,
                   const PictureLight& light, const runtime::Camera& camera, Shown shown) {
     formats::Vec3 shaded_for = camera.eye;
+    const runtime::PartLights lights = light.parts.lights();
     auto start = Clock::now();
     std::vector<formats::Rgb> radiance =
-        runtime::shade_for_picture(view, light.vector, shaded_for, shown.terms, options.threads);
-    const runtime::VolumeLight volumes = runtime::relight_volumes(
-        view.volumes, light.vector, {.terms = shown.terms, .threads = options.threads});
+        runtime::shade_for_picture(view, lights, shaded_for, shown.terms, options.threads);
+    const runtime::VolumeLight volumes =
+        runtime::relight_volumes(view.volumes, lights.light[lights.of_volumes],
+                                 {.terms = shown.terms, .threads = options.threads});
     print_stat(options, "dot products", seconds_since(start));
     runtime::SoftwareOptions software;
     software.volumes = &volumes;
@@ -152,8 +154,8 @@ int render_on_cpu(const RenderCommand& options, const formats::AssetView& view,
     return render_frames(options, camera, [&](const runtime::Camera& at) {
         if (depends_on_eye && shaded_for != at.eye) {
             shaded_for = at.eye;
-            radiance = runtime::shade_for_picture(view, light.vector, shaded_for, shown.terms,
-                                                  options.threads);
+            radiance =
+                runtime::shade_for_picture(view, lights, shaded_for, shown.terms, options.threads);
         }
         return runtime::render_software(view, radiance, light.sky.environment, light.sky.rotation,
                                         at, software);
@@ -178,7 +180,7 @@ int render_on_gpu([[maybe_unused]] const RenderCommand& options,
         error.diagnostics.front().remedy = "use --backend cpu";
         return report_error(error);
     }
-    if (auto status = renderer->set_light(light.vector, light.sky.rotation); !status) {
+    if (auto status = renderer->set_light(light.parts.lights(), light.sky.rotation); !status) {
         return report_error(status.error());
     }
     if (shown.background && light.layers.layers) {
@@ -238,15 +240,16 @@ int run(const RenderCommand& options) {
     }
     const LightWithLayers layers = light_layers_of(view, *light, options.time, options.threads);
     if (layers.layers) print_stat(options, "layer light", layers.seconds);
+    if (options.stats && layers.objects) {
+        fmt::print("{:<16} {}\n", "light points", layers.points.point.size());
+    }
     // A file without rows, a cloud layer alone, needs no light vector.
     const OpenedLight none;
     const bool has_rows = !view.primitives.empty() || !view.volumes.empty();
-    const OpenedLight& of_objects = has_rows ? layers.of_objects(*light) : none;
     const auto start = Clock::now();
     const PictureLight picture_light{
         *light, layers,
-        runtime::project_environment(of_objects.environment, view.cubemap_size, of_objects.rotation,
-                                     options.threads)};
+        project_parts(layers, has_rows ? *light : none, view.cubemap_size, options.threads)};
     print_stat(options, "light vector", seconds_since(start));
     return (options.backend == Backend::cpu ? render_on_cpu : render_on_gpu)(
         options, view, picture_light, *camera, show(*terms, view));
@@ -300,8 +303,8 @@ void add_render_command(CLI::App& app, Job& job) {
     command->footer(
         "A cloud layer lights the file's meshes and volumes as it is seen from the centre of "
         "their\n"
-        "bounds. A layer alone is seen from 1.7 m above the ground; --elevation 20 looks down on "
-        "it\n"
+        "bounds, those that stand far apart from several points.\n"
+        "A layer alone is seen from 1.7 m above the ground; --elevation 20 looks down on it\n"
         "from above, --azimuth 140 toward the sun of sky:T,EL.\n\n"
         "Example:\n  opaline render scene.opal --light sky:3,35 --rotate-light 90 -o scene.png");
     command->callback([options, &job] { job = [options] { return run(*options); }; });

@@ -89,10 +89,38 @@ formats::Result<DotPrograms> make_dot_programs(const GlAsset& asset, std::uint32
     return programs;
 }
 
+formats::Status check_lights(const PartLights& lights, const GlAsset& asset) {
+    const std::size_t texels = std::size_t{6} * asset.cubemap_size * asset.cubemap_size;
+    for (const LightVector& light : lights.light) {
+        if (light.n == asset.cubemap_size && light.rgba.size() == 4 * texels) continue;
+        return formats::make_error(formats::ErrorKind::usage, {}, "light vector",
+                                   "found a cube map of " + std::to_string(light.n) +
+                                       " texels and " + std::to_string(light.rgba.size()) +
+                                       " floats, expected " + std::to_string(asset.cubemap_size) +
+                                       " texels as the asset",
+                                   "project the environment at the asset's cube map size");
+    }
+    const std::size_t primitives = asset.primitives.size(), lit = lights.of_primitive.size();
+    if (lit != 0 && lit != primitives) {
+        return formats::make_error(formats::ErrorKind::usage, {}, "lights of primitives",
+                                   "found " + std::to_string(lit) + ", expected one for each of " +
+                                       std::to_string(primitives));
+    }
+    const auto is_one = [&](std::uint32_t number) { return number < lights.light.size(); };
+    if (!is_one(lights.of_volumes) || !std::ranges::all_of(lights.of_primitive, is_one)) {
+        return formats::make_error(
+            formats::ErrorKind::usage, {}, "lights of primitives",
+            "found one beyond the last of " + std::to_string(lights.light.size()) + " lights");
+    }
+    return formats::ok_status();
+}
+
 formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
-                              const GlBuffer& light) {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, light.name());
+                              const DotLights& lights) {
     for (const DotBatch& batch : asset.batches) {
+        const std::size_t light =
+            lights.of_primitive.empty() ? 0 : lights.of_primitive[batch.primitive];
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, lights.light[light].name());
         glUseProgram(programs.program[dot_kind(asset, batch).number()].name());
         // A result for each row: that of a vertex, or one of those to be added up toward an eye.
         const bool is_added = needs_view(asset.primitives[batch.primitive]);

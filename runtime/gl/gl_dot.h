@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "formats/opal/result.h"
 #include "runtime/gl/gl_asset.h"
 #include "runtime/gl/gl_objects.h"
+#include "runtime/part_lights.h"
 
 namespace opaline::runtime {
 
@@ -25,9 +27,17 @@ DotLimits query_dot_limits(std::size_t max_block_bytes, std::uint32_t lanes_per_
 
 formats::Result<DotPrograms> make_dot_programs(const GlAsset& asset, std::uint32_t lanes_per_row);
 
-/// Fills asset.radiance, or asset.product for primitives that need a view, from `light`, a buffer
-/// of 6 n n vec4.
+/// Errors: usage (another cube map size than the asset's, not one light for each primitive).
+formats::Status check_lights(const PartLights& lights, const GlAsset& asset);
+
+/// Lights as PartLights has them, each a buffer of 6 n n vec4.
+struct DotLights {
+    std::span<const GlBuffer> light;
+    std::span<const std::uint32_t> of_primitive;
+};
+
+/// Fills asset.radiance, or asset.product for primitives that need a view.
 formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
-                              const GlBuffer& light);
+                              const DotLights& lights);
 
 }  // namespace opaline::runtime

@@ -151,28 +151,27 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     return GlRenderer(std::move(state));
 }
 
-formats::Status GlRenderer::set_light(const LightVector& light, const Rotation& rotation) {
+formats::Status GlRenderer::set_light(const PartLights& lights, const Rotation& rotation) {
     Resources& resources = *state_->resources;
-    const std::size_t expected = std::size_t{24} * light.n * light.n;
-    if (light.n != resources.asset.cubemap_size || light.rgba.size() != expected) {
-        return make_error(ErrorKind::usage, {}, "light vector",
-                          "found a cube map of " + std::to_string(light.n) + " texels and " +
-                              std::to_string(light.rgba.size()) + " floats, expected " +
-                              std::to_string(resources.asset.cubemap_size) + " texels as the asset",
-                          "project the environment at the asset's cube map size");
-    }
+    if (auto status = check_lights(lights, resources.asset); !status) return status;
     const CurrentContext current(state_->context);
     if (auto status = current.status(); !status) return status;
 
     GlClock clock;
     std::size_t resident = 0;
-    const GlBuffer buffer = make_buffer_of(std::span<const float>(light.rgba), resident);
+    std::vector<GlBuffer> buffers;
+    for (const LightVector& light : lights.light) {
+        buffers.push_back(make_buffer_of(std::span<const float>(light.rgba), resident));
+    }
     if (auto status = check_gl("uploading the light"); !status) return status;
     state_->stats.light_seconds = clock.lap();
-    if (auto status = dispatch_dots(resources.asset, resources.dot_programs, buffer); !status) {
+    if (auto status =
+            dispatch_dots(resources.asset, resources.dot_programs, {buffers, lights.of_primitive});
+        !status) {
         return status;
     }
-    if (auto status = relight_gl_volumes(resources.volumes, light, formats::TermSet::all);
+    if (auto status = relight_gl_volumes(resources.volumes, lights.light[lights.of_volumes],
+                                         formats::TermSet::all);
         !status) {
         return status;
     }

@@ -12,6 +12,7 @@
 #include "formats/opal/terms.h"
 #include "runtime/clouds/layer_light.h"
 #include "runtime/light_vector.h"
+#include "runtime/part_lights.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/picture.h"
 
@@ -70,9 +71,9 @@ class GlRenderer {
 
     /// Computes <T_k, L> of every vertex in a compute shader, and those of the nodes of volumes on
     /// the CPU, from a copy of their rows. `rotation` turns the background; the
-    /// light vector must have been made with the same one. Errors: usage (another cube map size
-    /// than the asset's), resource.
-    formats::Status set_light(const LightVector& light, const Rotation& rotation);
+    /// light vectors must have been made with the same one. Errors: usage (another cube map size
+    /// than the asset's, not one light for each primitive), resource.
+    formats::Status set_light(const PartLights& lights, const Rotation& rotation);
 
     /// Shows the asset's cloud layer under this light, at its time, from the next picture on; the
     /// light must have been made with the environment of `create` and the rotation of set_light.

@@ -121,6 +121,27 @@ TEST_F(Gl, ResultDoesNotDependOnLanesBlocksOrTiles) {
     }
 }
 
+TEST_F(Gl, PrimitivesHaveLightsOfTheirOwn) {
+    const Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    const Asset asset = make_scene({16, 8, 3, 77});
+    const AssetView view = asset.view();
+    const std::vector<LightVector> light{project_environment(sky, 16),
+                                         project_environment(sky, 16, rotation_about_y(2))};
+    const std::vector<std::uint32_t> of_primitive{1, 0, 1, 1, 0};
+    std::vector<Rgb> radiance(asset.position.size());
+    shade(view, {light, of_primitive, 0}, radiance, {.base_color = false});
+    EXPECT_NE(radiance, radiance_on_cpu(view, light[0]));
+    auto renderer = GlRenderer::create(view, sky);
+    ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
+    ASSERT_TRUE(renderer->set_light({light, of_primitive, 0}, {}));
+    const auto on_gl = renderer->read_radiance();
+    ASSERT_TRUE(on_gl.has_value());
+    expect_same_radiance(radiance, *on_gl);
+    EXPECT_FALSE(renderer->set_light({light, std::span(of_primitive).first(4), 0}, {}));
+    EXPECT_FALSE(renderer->set_light({std::span(light).first(1), of_primitive, 0}, {}));
+    EXPECT_FALSE(renderer->set_light({light, of_primitive, 2}, {}));
+}
+
 TEST_F(Gl, BackgroundAgreesForEveryLayoutAndRotation) {
     Environment poles = test::make_lat_long(64, 33, test::two_lights);
     poles.rows_include_poles = true;
