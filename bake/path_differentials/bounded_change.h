@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 
 #include "bake/path_differentials/lobe.h"
-#include "bake/path_differentials/specular_event.h"
+#include "bake/path_differentials/smooth_event.h"
 
 namespace opaline::bake {
 

@@ -135,8 +135,8 @@ glm::dvec3 scatter_in_lobe(PathDifferential& path, const DifferentialRules& rule
 
 std::optional<glm::dvec3> scatter_on_facets(PathDifferential& path, const DifferentialRules& rules,
                                             const FacetEvent& event) {
-    const glm::dmat3 frame = frame_around(event.N), to_local = glm::transpose(frame);
-    const glm::dvec3 w_i = to_local * -event.D;
+    const glm::dmat3 frame = frame_around(event.N), to_frame = glm::transpose(frame);
+    const glm::dvec3 w_i = to_frame * -event.D;
     const VisibleNormal facet =
         sample_visible_normal(w_i, {event.alpha, event.alpha}, event.map, event.u, event.v);
     const Mirror mirror = make_mirror(-w_i, facet.m);
@@ -157,7 +157,7 @@ std::optional<glm::dvec3> scatter_on_facets(PathDifferential& path, const Differ
     for (DifferentialColumn& column : path.columns()) {
         // The frame turns with its normal: what is fixed in it moves by turn x.
         const glm::dvec3 turn = glm::cross(event.N, event.dN_dP * column.dP);
-        const glm::dvec3 dw_i = to_local * (glm::cross(turn, event.D) - column.dD);
+        const glm::dvec3 dw_i = to_frame * (glm::cross(turn, event.D) - column.dD);
         const double step = column_step(path, rules, column);
         column.dD = frame * change(dw_i, facet.dm_dwi * dw_i, step) + glm::cross(turn, direction);
     }

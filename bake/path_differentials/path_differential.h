@@ -17,9 +17,9 @@ namespace opaline::bake {
 /// What a path's steps and footprints are.
 struct DifferentialRules {
     enum class Steps {
-        local,  ///< each column has its own: filtering, bounces
-        global  ///< (samples survival)^(-1 / variables) for all: particles
-    } steps = Steps::local;
+        by_event,  ///< each column has its own: filtering, bounces
+        global     ///< (samples survival)^(-1 / variables) for all: particles
+    } steps = Steps::by_event;
     double samples = 1;  ///< paths of the whole estimate, for global steps
     GradientForm form = GradientForm::contribution;
     double gradient_limit = 0.7;  ///< limited_step's; > 0, infinite: none

@@ -10,7 +10,7 @@ namespace opaline::bake {
 
 /// Of the two numbers of an event that is sampled `samples` >= 1 times: samples^(-1/2). Of one that
 /// is stratified by itself: 1 over its strata.
-inline double local_step(double samples) {
+inline double event_step(double samples) {
     return std::min(1.0, 1 / std::sqrt(samples));
 }
 

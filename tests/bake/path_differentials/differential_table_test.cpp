@@ -8,7 +8,7 @@
 #include "bake/path_differentials/footprint.h"
 #include "bake/path_differentials/lobe.h"
 #include "bake/path_differentials/path_gradient.h"
-#include "bake/path_differentials/specular_event.h"
+#include "bake/path_differentials/smooth_event.h"
 #include "bake/path_differentials/steps.h"
 #include "bake/path_differentials/surface_shape.h"
 #include "bake/path_differentials/texture_filter.h"
@@ -279,7 +279,7 @@ NamedValues gradients(const DifferentialCase& row) {
 }
 
 NamedValues steps(const DifferentialCase& row) {
-    return {{"local", listed(local_step(row.number("N")))},
+    return {{"local", listed(event_step(row.number("N")))},
             {"global", listed(global_step(row.number("N"), static_cast<int>(row.number("M")),
                                           row.number("survival")))}};
 }

@@ -6,7 +6,7 @@
 #include "bake/path_differentials/camera_start.h"
 #include "bake/path_differentials/lobe.h"
 #include "bake/path_differentials/path_gradient.h"
-#include "bake/path_differentials/specular_event.h"
+#include "bake/path_differentials/smooth_event.h"
 #include "bake/path_differentials/surface_shape.h"
 #include "bake/path_differentials/transfer.h"
 #include "tests/bake/path_differentials/primal.h"

@@ -17,9 +17,9 @@ TEST(Steps, GlobalOnesAreThoseOfTheLiterature) {
 TEST(Steps, NeverExceedTheDomain) {
     EXPECT_EQ(global_step(10, 4, 0.01), 1);
     EXPECT_EQ(global_step(10, 0, 1), 1);
-    EXPECT_EQ(local_step(1), 1);
-    EXPECT_EQ(local_step(0.1), 1);
-    EXPECT_EQ(local_step(16), 0.25);
+    EXPECT_EQ(event_step(1), 1);
+    EXPECT_EQ(event_step(0.1), 1);
+    EXPECT_EQ(event_step(16), 0.25);
 }
 
 TEST(Steps, LimitHoldsForBothSignsAndLeavesEvenContributionsAlone) {

@@ -1,6 +1,6 @@
 #include "bake/path_differentials/visible_normal.h"
 
-#include "bake/path_differentials/specular_event.h"
+#include "bake/path_differentials/smooth_event.h"
 #include "tests/bake/path_differentials/event_check.h"
 
 namespace opaline::bake {

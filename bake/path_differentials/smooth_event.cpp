@@ -1,4 +1,4 @@
-#include "bake/path_differentials/specular_event.h"
+#include "bake/path_differentials/smooth_event.h"
 
 #include <cmath>
 

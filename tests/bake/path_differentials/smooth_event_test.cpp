@@ -1,4 +1,4 @@
-#include "bake/path_differentials/specular_event.h"
+#include "bake/path_differentials/smooth_event.h"
 
 #include <numbers>
 
@@ -10,7 +10,7 @@ namespace {
 
 using tests::moved;
 
-TEST(SpecularEvent, MirrorsAreDerivativesAndStayUnit) {
+TEST(SmoothEvent, MirrorsAreDerivativesAndStayUnit) {
     tests::RandomInputs random(7);
     tests::ColumnErrors errors;
     double along = 0;
@@ -26,7 +26,7 @@ TEST(SpecularEvent, MirrorsAreDerivativesAndStayUnit) {
     EXPECT_LT(along, 1e-12);
 }
 
-TEST(SpecularEvent, RefractionsAreDerivativesAndStayUnit) {
+TEST(SmoothEvent, RefractionsAreDerivativesAndStayUnit) {
     tests::RandomInputs random(8);
     tests::ColumnErrors errors, dispersion;
     double along = 0;
@@ -62,7 +62,7 @@ TEST(SpecularEvent, RefractionsAreDerivativesAndStayUnit) {
 }
 
 // Snell's law, differentiated: d(theta_t) / d(theta_i) = eta cos_i / cos_t.
-TEST(SpecularEvent, RefractionInThePlaneOfIncidenceIsSnells) {
+TEST(SmoothEvent, RefractionInThePlaneOfIncidenceIsSnells) {
     const double eta = 1 / 1.5, theta = 0.7;
     const glm::dvec3 D(std::sin(theta), 0, -std::cos(theta)), N(0, 0, 1);
     const auto event = make_refraction(D, N, eta);
@@ -71,14 +71,14 @@ TEST(SpecularEvent, RefractionInThePlaneOfIncidenceIsSnells) {
     EXPECT_NEAR(glm::length(dT), eta * std::cos(theta) / event->c_t, 1e-14);
 }
 
-TEST(SpecularEvent, TotalReflectionIsNoRefraction) {
+TEST(SmoothEvent, TotalReflectionIsNoRefraction) {
     const double beyond = std::asin(1 / 1.5) + 1e-6;
     EXPECT_FALSE(
         make_refraction({std::sin(beyond), 0, -std::cos(beyond)}, {0, 0, 1}, 1.5).has_value());
 }
 
 // What a flat mirror shows is what a camera behind it sees.
-TEST(SpecularEvent, PlaneMirrorIsTheUnfoldedCamera) {
+TEST(SmoothEvent, PlaneMirrorIsTheUnfoldedCamera) {
     const glm::dvec3 D = glm::normalize(glm::dvec3(0.3, -0.2, -1)), N(0, 0, 1);
     const glm::dvec3 dD = glm::dvec3(0.4, 0.1, 0) - D * glm::dot(D, glm::dvec3(0.4, 0.1, 0));
     const double first = 2 / -D.z, second = 3 / -D.z;
@@ -92,7 +92,7 @@ TEST(SpecularEvent, PlaneMirrorIsTheUnfoldedCamera) {
 }
 
 // A ray that meets a convex mirror head-on spreads by d + s (1 + 2 d / r) per radian.
-TEST(SpecularEvent, ConvexMirrorSpreadsByTheClosedForm) {
+TEST(SmoothEvent, ConvexMirrorSpreadsByTheClosedForm) {
     const double r = 1.5, d = 3, s = 2;
     const glm::dvec3 D(0, 0, -1), N(0, 0, 1), dD(1, 0, 0);
     const glm::dvec3 on_mirror = transfer_to_plane(D, N, d, glm::dvec3(0), dD).dP;
@@ -105,7 +105,7 @@ TEST(SpecularEvent, ConvexMirrorSpreadsByTheClosedForm) {
 
 // A plate of glass, from 40 degrees: widths on a parallel plane in closed form, and the direction
 // leaves as it came.
-TEST(SpecularEvent, PlateOfGlassSpreadsByTheClosedForm) {
+TEST(SmoothEvent, PlateOfGlassSpreadsByTheClosedForm) {
     const double n = 1.5, h = 0.7, d1 = 2, d2 = 1.3, theta = 40 * std::numbers::pi / 180;
     const double c_i = std::cos(theta), s_i = std::sin(theta), s_t = s_i / n;
     const double c_t = std::sqrt(1 - s_t * s_t);
