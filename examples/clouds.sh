@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Remakes figures of [Bouthors2006] with this program: 3 and 4 (droplets and what they do to light), 6 (orders of
-# scattering), 10 and 11 (fogbow and glory, back-lit edges, sunset from above, water and ice beneath a layer).
+# scattering), 8 and 9 (models against adding and doubling, by order and by direction), 10 and 11 (fogbow and glory, back-lit
+# edges, sunset from above, water and ice beneath a layer), these also with the formulas that the paper prints.
 # usage: clouds.sh OUT_DIR [OPALINE]     OPALINE: the program, default build/opaline
 # Needs the Debian packages imagemagick, fonts-dejavu-core and perl beside Opaline. Plots are SVG, with the numbers as CSV.
 # CLOUDS_SIZE=WxH in the environment sets the size of pictures.
@@ -107,6 +108,50 @@ perl -e '
     >"$out/figure6.csv"
 plot figure6 "Shares of light by orders 0 to n: 100 m, light at 70 degrees" "n" 7
 
+# NAME KEY=VALUE...: OUT_DIR/NAME.svg of NAME.csv, panels of curves.
+panels() { perl "$root/examples/plot_panels.pl" "$out/$1" "${@:2}"; }
+cosine() { perl -e 'printf "%.6f", cos($ARGV[0] * 3.14159265358979 / 180)' "$1"; }
+depth() { perl -e 'printf "%.6f", $ARGV[0] * $ARGV[1]' "$rest" "$1"; }
+
+# Figure 8: shares of the light by order, thickness and angle: the one-dimensional model, fitted at each angle, against adding
+# and doubling. RMS errors of three distributions of droplets: opaline_slab_accuracy prints them (tests/bench).
+angles=(0 30 60 80)
+for a in "${!angles[@]}"; do
+    for h in 3 5 8 13 20 30 50 80 130 200 300 500 800; do
+        slab=(--optical-depth "$(depth $h)" --phase rest.txt --cosine "$(cosine "${angles[$a]}")" --streams 24 --format csv)
+        "$opaline" slab "${slab[@]}" --method model | sed "s/^/$a,$h,,/"
+        "$opaline" slab "${slab[@]}" --orders 3 | sed "s/^/$a,$h,_,/"
+    done
+done >shares.txt
+perl -F, -lane 'BEGIN { print "panel,series,thickness,share" } my ($a, $h, $by, $what, $order, $v) = @F;
+    next unless $what eq "reflectance" || $what eq "transmittance"; next if $what eq "reflectance" && $order eq "0";
+    my $panel = $a + ($what eq "reflectance" ? 4 : 0); print join ",", $panel, ($order eq "all" ? "all" : "order $order") . $by, $h, $v' \
+    <shares.txt >"$out/figure8.csv"
+panels figure8 columns=4 log=x low=0 high=1 ticks=3,10,30,100,300,800 x="thickness [m]" y="share of the light" \
+    title="Shares of the light by order: one-dimensional model (lines), adding and doubling (dots); droplets of 7 um" \
+    "panels=transmitted, light at 0 degrees|at 30 degrees|at 60 degrees|at 80 degrees|reflected, light at 0 degrees|at 30 degrees|at 60 degrees|at 80 degrees" \
+    "series=order 0:#777:line|order 1:#c33:line|order 2:#e90:line|order 3+:#23c:line|all:#111:line|order 0_:#777:dots|order 1_:#c33:dots|order 2_:#e90:dots|order 3+_:#23c:dots|all_:#111:dots"
+
+# Figure 9: radiance in the plane of light and normal, of scattered light, by the table that renderers read and by the compact
+# model (orders 1 and 2 in closed form, the rest by the model's energy and one profile), against adding and doubling.
+case=0
+for view in 100:70 5:80 100:30; do
+    slab=(--optical-depth "$(depth "${view%:*}")" --phase rest.txt --cosine "$(cosine "${view#*:}")" --views 90 --format csv)
+    for method in adding table model; do
+        "$opaline" slab "${slab[@]}" --method $method | sed "s/^/$case,$method,/"
+    done
+    case=$((case + 1))
+done >radiances.txt
+perl -F, -lane 'BEGIN { print "panel,series,degrees,radiance" } my ($c, $by, $x, $side, $order, $v) = @F; next unless $v =~ /^[0-9]/;
+    my %name = (adding => "adding and doubling", table => "table (default)", model => "compact model");
+    my $name = $order eq "all" ? $name{$by} : $by eq "adding" && $order ne "2+" ? "order $order of it" : next;
+    print join ",", $c + ($side eq "transmitted" ? 3 : 0), $name, $x, $v' <radiances.txt >"$out/figure9.csv"
+panels figure9 columns=3 log=y low=0.01 high=30 ticks=-90,-60,-30,0,30,60,90 x="view [degrees from the normal]" \
+    y="radiance over that of a white surface" \
+    title="Scattered light by direction, droplets of 7 um; light comes from the left, below 0 degrees" \
+    "panels=reflected: 100 m, light at 70 degrees|5 m, at 80 degrees|100 m, at 30 degrees|transmitted: 100 m, light at 70 degrees|5 m, at 80 degrees|100 m, at 30 degrees" \
+    "series=order 1 of it:#999:dash|order 2 of it:#e90:dash|order 3+ of it:#292:dash|adding and doubling:#111:dots|table (default):#c33:line|compact model:#23c:line"
+
 # NAME JSON OPTIONS...: NAME.opal of one layer.
 layer() {
     echo "{\"clouds\": [{$2}]}" >"$1.json"
@@ -134,16 +179,28 @@ layer cells "$cells"
 layer thin '"thickness": 25, "repeat": true, "ground_albedo": [0.02, 0.03, 0.04]'
 picture thin fogbow --light sky:2,50 --eye 0,3000,0 --target 0,2233.96,642.79 --fov 95 --exposure 1.3
 picture thin glory --light sky:2,50 --eye 0,3000,0 --target 0,2233.96,642.79 --fov 14 --exposure 1.3
+layer thin-paper '"thickness": 25, "repeat": true, "ground_albedo": [0.02, 0.03, 0.04], "fidelity": "paper"'
+picture thin-paper fogbow-paper --light sky:2,50 --eye 0,3000,0 --target 0,2233.96,642.79 --fov 95 --exposure 1.3
+picture thin-paper glory-paper --light sky:2,50 --eye 0,3000,0 --target 0,2233.96,642.79 --fov 14 --exposure 1.3
 panel figure10 2x1 fogbow "fogbow and glory from above" glory "glory"
+panel figure10-fidelity 2x2 fogbow "physical: fogbow and glory" glory "physical: glory" \
+    fogbow-paper "paper: fogbow and glory" glory-paper "paper: glory"
 
 # Figure 11: toward the sun through broken clouds, sunset from above, and a ground that is half water, half ice.
 layer broken "$broken, \"visibility\": 60000"
-picture broken backlit --light sky:3,28 --eye 0,1.7,0 --target 0,22,-50 --fov 40 --exposure -1.3
-picture broken day --light sky:3,50 --eye 0,1.7,0 --target 0,22,50 --fov 50
-picture cells noon --light sky:3,50 --eye 0,2600,0 --target 0,2550,-100 --fov 50
-picture cells sunset --light sky:5,6 --eye 0,2600,0 --target 0,2550,-100 --fov 50 --exposure -1
+layer broken-paper "$broken, \"visibility\": 60000, \"fidelity\": \"paper\""
+layer cells-paper "$cells, \"fidelity\": \"paper\""
+for f in "" -paper; do
+    picture broken$f backlit$f --light sky:3,28 --eye 0,1.7,0 --target 0,22,-50 --fov 40 --exposure -1.3
+    picture broken$f day$f --light sky:3,50 --eye 0,1.7,0 --target 0,22,50 --fov 50
+    picture cells$f noon$f --light sky:3,50 --eye 0,2600,0 --target 0,2550,-100 --fov 50
+    picture cells$f sunset$f --light sky:5,6 --eye 0,2600,0 --target 0,2550,-100 --fov 50 --exposure -1
+done
 panel figure11 2x2 backlit "toward the sun, from below" day "full daylight, from below" \
     noon "full daylight, from above" sunset "sunset, from above"
+panel figure11-fidelity 2x4 backlit "physical: toward the sun, from below" backlit-paper "paper" \
+    day "physical: full daylight, from below" day-paper "paper" noon "physical: full daylight, from above" noon-paper "paper" \
+    sunset "physical: sunset, from above" sunset-paper "paper"
 convert -size 1024x16 xc:'srgb(60,60,66)' -size 1024x16 xc:'srgb(231,233,235)' +append ground.png
 shores='"procedural": {"type": "waves", "scale": 1500}, "thickness": 250, "repeat": false, "size": [20000, 20000], "ground": "ground.png"'
 layer with "$shores"

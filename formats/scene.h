@@ -158,11 +158,12 @@ struct CloudLayer {
     glm::dvec2 size{20000};               ///< along x and z
     glm::dvec2 wind{0};                   ///< [m/s] along x and z
     bool repeats = false;                 ///< goes on beyond its size, over and over
-    double visibility = 0;             ///< of the air: distance [m] where contrast is 5 %; 0: clear
-    double droplets = 3e8;             ///< N0, per volume [1/m^3]
-    double effective_radius = 7e-6;    ///< <r^3> / <r^2> [m]
-    double gamma = 2;                  ///< of the modified gamma distribution (bake/mie/droplets.h)
-    bool ice = false;                  ///< spheres of ice instead of water
+    double visibility = 0;           ///< of the air: distance [m] where contrast is 5 %; 0: clear
+    double droplets = 3e8;           ///< N0, per volume [1/m^3]
+    double effective_radius = 7e-6;  ///< <r^3> / <r^2> [m]
+    double gamma = 2;                ///< of the modified gamma distribution (bake/mie/droplets.h)
+    bool ice = false;                ///< spheres of ice instead of water
+    bool paper = false;  ///< fidelity "paper": [Bouthors2006] as printed (formats/media/README.md)
     std::optional<double> peak_angle;  ///< theta_f [rad]; nothing: where the phase function bends
     std::uint32_t ground_columns = 1, ground_rows = 1;       ///< over `size`, rows toward +z
     std::vector<std::array<std::uint8_t, 4>> ground_albedo;  ///< sRGB codes, last byte 255

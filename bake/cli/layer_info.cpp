@@ -52,6 +52,7 @@ nlohmann::ordered_json layers_json(const formats::CloudsView& clouds) {
              {"ground_cells", {layer.ground_columns, layer.ground_rows}},
              {"haze", layer.haze},
              {"kappa", each_band(layer, [](const auto& band) { return band.kappa; })},
+             {"fidelity", layer.is_paper() ? "paper" : "physical"},
              {"peak_angle", layer.peak_angle},
              {"peak_weight", each_band(layer, [](const auto& band) { return band.peak_weight; })},
              {"g", each_band(layer, [](const auto& band) { return band.g; })},
@@ -81,8 +82,9 @@ void print_layers(const formats::CloudsView& clouds) {
             i, layer.base, layer.ground, layer.size[0], layer.size[1],
             layer.repeats() ? " repeated" : "", largest_thickness(clouds, layer));
         fmt::print(
-            "       extinction {:.4g}, {:.4g}, {:.4g} 1/m, {:.1f} % of it within {:.2g} rad\n",
-            r.kappa, g.kappa, b.kappa, 100 * g.peak_weight, layer.peak_angle);
+            "       extinction {:.4g}, {:.4g}, {:.4g} 1/m, {:.1f} % of it within {:.2g} rad{}\n",
+            r.kappa, g.kappa, b.kappa, 100 * g.peak_weight, layer.peak_angle,
+            layer.is_paper() ? "; fidelity paper" : "");
         fmt::print(
             "       orders: {}; {} x {} cells, ground {} x {}{}\n"
             "       tables: phase {}, glow {} x {}, flux {} x {}, radiance {} x {} x {}; {}\n",

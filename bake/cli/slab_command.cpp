@@ -1,41 +1,26 @@
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bake/cli/command.h"
-#include "bake/cli/interrupt.h"
 #include "bake/cli/json_output.h"
-#include "bake/cli/memory_limit.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
-#include "bake/scattering/phase_series.h"
-#include "bake/slab/fit_column_model.h"
-#include "bake/slab/slab_walk.h"
+#include "bake/cli/slab_answer.h"
 #include "bake/slab/solve_slab.h"
 #include "formats/media/limits.h"
-#include "formats/media/read_phase_table.h"
 
 namespace opaline::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-enum class SlabMethod { adding, monte_carlo, model };
-
-struct SlabCommand {
-    double optical_depth = 0, albedo = 1, g = 0, cosine = 1, eta = 1;
-    std::string phase;
-    SlabMethod method = SlabMethod::adding;
-    unsigned orders = 8, streams = 48, threads = 0;
-    std::uint64_t photons = 1000000, seed = 0;
+struct SlabCommand : SlabQuestion {
     TextFormat format = TextFormat::json;
     CLI::Option *g_option = nullptr, *phase_option = nullptr, *orders_option = nullptr,
                 *streams_option = nullptr;
@@ -68,161 +53,39 @@ formats::Status check_slab_options(const SlabCommand& options) {
         }
     } else if (options.streams_option->count() > 0) {
         return refuse_slab_option("--streams", "photons have no streams",
-                                  "leave it out, or give --method adding or model");
+                                  "leave it out, or give another --method");
     } else if (options.optical_depth > kMostWalkDepth) {
         return refuse_slab_option("--optical-depth",
                                   fmt::format("photons take too long above {}", kMostWalkDepth),
                                   "use --method adding");
     }
-    if (options.method != SlabMethod::model) {
+    if (options.views > 0 && options.method == SlabMethod::monte_carlo) {
+        return refuse_slab_option("--views", "photons are not counted by direction",
+                                  "give --method adding, model or table");
+    }
+    if (options.views > 0 && options.eta != 1) {
+        return refuse_slab_option("--eta", "radiance has no boundaries", "leave out --views");
+    }
+    if (options.method != SlabMethod::model && options.method != SlabMethod::table) {
         return formats::ok_status();
     }
+    if (options.method == SlabMethod::table && options.streams_option->count() > 0) {
+        return refuse_slab_option("--streams", "tables have their own number of streams",
+                                  "leave it out, or give another --method");
+    }
     if (options.orders_option->count() > 0) {
-        return refuse_slab_option("--orders", "the model has the orders 0, 1 and 2 and the rest",
+        return refuse_slab_option("--orders", "this method has the orders 0, 1 and 2 and the rest",
                                   "leave it out");
     }
     if (options.eta != 1) {
-        return refuse_slab_option("--eta", "the model knows no boundaries",
+        return refuse_slab_option("--eta", "this method knows no boundaries",
                                   "give 1, or --method adding");
     }
     if (options.albedo != 1) {
-        return refuse_slab_option("--albedo", "the model knows no absorption",
+        return refuse_slab_option("--albedo", "this method knows no absorption",
                                   "give 1, or --method adding");
     }
     return formats::ok_status();
-}
-
-/// The phase function in both forms that the methods ask for.
-struct SlabPhase {
-    bake::CosineSampler sampler;
-    bake::SlabMedium medium;
-};
-
-formats::Result<SlabPhase> make_slab_phase(const SlabCommand& options) {
-    // For twice the streams, and the peak that those leave.
-    const unsigned moments = 4 * options.streams + 1;
-    if (options.phase.empty()) {
-        return SlabPhase{
-            bake::CosineSampler::henyey_greenstein(options.g),
-            {bake::expand_henyey_greenstein(options.g, moments).lambda, options.albedo}};
-    }
-    const auto table = formats::read_phase_table(options.phase);
-    if (!table) {
-        return table.error();
-    }
-    const std::vector<double> cosine(table->cosine.begin(), table->cosine.end());
-    const std::vector<double> value(table->value.begin(), table->value.end());
-    bake::SlabMedium medium{{1.0}, options.albedo};
-    if (options.method != SlabMethod::monte_carlo) {
-        medium.moment = bake::expand_phase(*table, moments).lambda;
-    }
-    return SlabPhase{bake::CosineSampler::tabulated(cosine, value), std::move(medium)};
-}
-
-std::string order_name(std::size_t order, bool is_rest) {
-    return std::to_string(order) + (is_rest ? "+" : "");
-}
-
-Json describe_shares(double reflectance, double transmittance) {
-    return {{"reflectance", reflectance},
-            {"transmittance", transmittance},
-            {"absorptance", std::max(0.0, 1 - reflectance - transmittance)}};
-}
-
-Json order_json(const std::string& name, double reflected, double transmitted) {
-    return {{"order", name}, {"reflectance", reflected}, {"transmittance", transmitted}};
-}
-
-Json solve_by_adding(const SlabCommand& options, const bake::SlabMedium& medium) {
-    const auto solve = [&](unsigned streams, unsigned orders) {
-        return bake::solve_slab(medium, {options.optical_depth,
-                                         0,
-                                         {options.cosine},
-                                         static_cast<int>(streams),
-                                         orders,
-                                         options.eta})
-            .front();
-    };
-    const bake::SlabSolution slab = solve(options.streams, options.orders);
-    const bake::SlabFluxes finer = solve(2 * options.streams, 0).total;
-    const double r = slab.total.reflectance[0], t = slab.total.transmittance[0];
-    Json all = describe_shares(r, t);
-    all["mean_reflectance"] = slab.total.mean_reflectance;
-    all["mean_transmittance"] = slab.total.mean_transmittance;
-    all["numerical_error"] =
-        std::max(std::abs(r - finer.reflectance[0]), std::abs(t - finer.transmittance[0]));
-    double reflected = r, transmitted = t;
-    for (std::size_t n = 0; n < slab.order.size(); ++n) {
-        const bake::SlabFluxes& order = slab.order[n];
-        all["by_order"].push_back(
-            order_json(order_name(n, false), order.reflectance[0], order.transmittance[0]));
-        reflected -= order.reflectance[0];
-        transmitted -= order.transmittance[0];
-    }
-    all["by_order"].push_back(
-        order_json(order_name(slab.order.size(), true), reflected, transmitted));
-    return all;
-}
-
-formats::Result<Json> solve_by_photons(const SlabCommand& options,
-                                       const bake::CosineSampler& phase) {
-    if (auto status = check_threads(options.threads); !status) {
-        return std::move(status).error();
-    }
-    bake::Context context;
-    context.threads = options.threads;
-    context.cancel = &catch_interrupts();
-    const bake::SlabWalk walk =
-        walk_slab(phase,
-                  {options.optical_depth, options.albedo, options.cosine, options.photons,
-                   options.seed, options.orders + 1, 0, 0, 0, options.eta},
-                  context);
-    if (walk.photons < options.photons) {
-        return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                                   "nothing was printed");
-    }
-    Json all;
-    const auto add = [](Json& to, const char* name, const bake::SlabEstimate& estimate) {
-        to[name] = estimate.share;
-        to[std::string(name) + "_standard_error"] = estimate.standard_error;
-    };
-    add(all, "reflectance", walk.reflectance);
-    add(all, "transmittance", walk.transmittance);
-    add(all, "absorptance", walk.absorptance);
-    for (std::size_t n = 0; n <= options.orders; ++n) {
-        Json order = {{"order", order_name(n, n == options.orders)}};
-        add(order, "reflectance", walk.reflected_order[n]);
-        add(order, "transmittance", walk.transmitted_order[n]);
-        all["by_order"].push_back(order);
-    }
-    return all;
-}
-
-Json solve_by_model(const SlabCommand& options, const bake::SlabMedium& medium) {
-    const bake::ColumnFit fit =
-        bake::fit_column_models(medium, {&options.cosine, 1}, bake::column_fit_depths(),
-                                static_cast<int>(options.streams))
-            .front();
-    const bake::OrderShares shares = bake::eval_column_model(
-        fit.model, options.optical_depth, std::exp(-options.optical_depth / options.cosine));
-    double reflected = 0, transmitted = 0;
-    Json by_order;
-    for (std::size_t n = 0; n < 4; ++n) {
-        reflected += shares.reflected[n];
-        transmitted += shares.transmitted[n];
-        by_order.push_back(
-            order_json(order_name(n, n == 3), shares.reflected[n], shares.transmitted[n]));
-    }
-    Json all = describe_shares(reflected, transmitted);
-    all["by_order"] = by_order;
-    all["model"] = {{"length", fit.model.length}, {"beta", fit.model.beta},
-                    {"c", fit.model.decay},       {"kappa_c", fit.model.extinction},
-                    {"t", fit.model.forward},     {"r", fit.model.back}};
-    all["fit_error"] = {{"rms_transmittance", fit.rms_transmittance},
-                        {"max_transmittance", fit.max_transmittance},
-                        {"rms_orders", fit.rms_orders},
-                        {"max_orders", fit.max_orders}};
-    return all;
 }
 
 /// Lines of quantity, order and value; "all" where it is no order's.
@@ -246,26 +109,31 @@ void print_slab_lines(const Json& all) {
     }
 }
 
+/// Lines of degrees, side, order and radiance.
+void print_view_lines(const Json& views) {
+    fmt::print("degrees,side,order,radiance\n");
+    for (const Json& view : views) {
+        for (const char* side : {"reflected", "transmitted"}) {
+            for (const Json& order : view[side]) {
+                fmt::print("{},{},{},{}\n", view["degrees"].dump(), side,
+                           order["order"].get<std::string>(), order["radiance"].dump());
+            }
+        }
+    }
+}
+
 int run(const SlabCommand& options) {
     if (const auto status = check_slab_options(options); !status) {
         return report_error(status.error());
     }
-    const auto phase = make_slab_phase(options);
-    if (!phase) {
-        return report_error(phase.error());
+    const auto answer = answer_slab(options);
+    if (!answer) {
+        return report_error(answer.error());
     }
-    Json all;
-    if (options.method == SlabMethod::monte_carlo) {
-        const auto walked = solve_by_photons(options, phase->sampler);
-        if (!walked) {
-            return report_error(walked.error());
-        }
-        all = *walked;
-    } else {
-        all = options.method == SlabMethod::adding ? solve_by_adding(options, phase->medium)
-                                                   : solve_by_model(options, phase->medium);
-    }
-    if (options.format == TextFormat::csv) {
+    const Json& all = *answer;
+    if (options.format == TextFormat::csv && options.views > 0) {
+        print_view_lines(all["views"]);
+    } else if (options.format == TextFormat::csv) {
         print_slab_lines(all);
     } else {
         fmt::print("{}", json_text(all));
@@ -314,7 +182,7 @@ void add_slab_command(CLI::App& app, Job& job) {
         ->option_text("T");
     command
         ->add_option("--albedo", options->albedo,
-                     "share of the extinction that scatters, 0 to 1; model: 1 alone")
+                     "share of the extinction that scatters, 0 to 1; model and table: 1 alone")
         ->check(real_number(0, 1))
         ->option_text("A [1]");
     options->g_option =
@@ -337,20 +205,31 @@ void add_slab_command(CLI::App& app, Job& job) {
     command
         ->add_option("--eta", options->eta,
                      "index of the layer over that of both sides, 1/3 to 3: smooth boundaries that "
-                     "reflect and refract; model: 1 alone")
+                     "reflect and refract; model and table: 1 alone")
         ->check(real_number(formats::media::kMinEta, formats::media::kMaxEta))
         ->option_text("E [1]");
     command
         ->add_option(
             "--method", options->method,
             "adding: exact but for a small error, which is printed; monte-carlo: photons, "
-            "with standard errors; model: one-dimensional, fitted to adding at this cosine")
+            "with standard errors; model: one-dimensional, fitted to adding at this cosine; table: "
+            "interpolated as renderers of cloud layers do")
         ->transform(one_of<SlabMethod>({{"adding", SlabMethod::adding},
                                         {"monte-carlo", SlabMethod::monte_carlo},
-                                        {"model", SlabMethod::model}}))
-        ->option_text("adding|monte-carlo|model [adding]");
+                                        {"model", SlabMethod::model},
+                                        {"table", SlabMethod::table}}))
+        ->option_text("adding|monte-carlo|model|table [adding]");
+    constexpr unsigned kMostViews = 1000;
+    command
+        ->add_option("--views", options->views,
+                     "also print radiance by order at so many angles in the plane of light and "
+                     "normal, 0: none; over that of a white diffuse surface in the same light")
+        ->transform(whole_number(0, kMostViews))
+        ->option_text("N [0]");
     add_slab_accuracy(*command, *options);
-    add_format_options(*command, options->format, "csv: lines of quantity,order,value");
+    add_format_options(
+        *command, options->format,
+        "csv: lines of quantity,order,value; with --views of degrees,side,order,radiance");
     command->footer(
         "Prints the shares of a beam's flux that a layer reflects, transmits and absorbs, all\n"
         "together and by number of scatterings: order 0 is light that goes straight through or "
@@ -358,7 +237,9 @@ void add_slab_command(CLI::App& app, Job& job) {
         "a boundary reflects. adding also prints the means under even light, and as its numerical\n"
         "error the difference to twice the streams. A peak of the phase function that the streams\n"
         "do not resolve goes straight on. model prints its parameters, lengths in optical depths,\n"
-        "and how far it is from adding, as far as it was fitted.\n"
+        "and how far it is from adding, as far as it was fitted. Views have degrees from the "
+        "normal,\n"
+        "above 0 on the side that the light goes to.\n"
         "Example:\n  opaline slab --optical-depth 10 --g 0.85 --cosine 0.5\n"
         "  opaline slab --optical-depth 2 --albedo 0.9 --g 0.75 --method monte-carlo --format csv\n"
         "  opaline slab --optical-depth 5 --albedo 0.99 --g 0.8 --eta 1.4");

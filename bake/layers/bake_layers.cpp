@@ -30,7 +30,8 @@ formats::LayerRecord make_record(const formats::CloudLayer& layer, const LayerLa
     record.peak_angle = as_float(bands[1].split.angle);
     record.haze = layer.visibility > 0 ? as_float(kVisibleDepth / layer.visibility) : 0;
     record.flags = (layer.repeats ? formats::LayerRecord::kRepeat : 0) |
-                   (layout.radiosity ? formats::LayerRecord::kRadiosity : 0);
+                   (layout.radiosity ? formats::LayerRecord::kRadiosity : 0) |
+                   (layer.paper ? formats::LayerRecord::kPaper : 0);
     record.columns = layer.columns;
     record.rows = layer.rows;
     record.ground_columns = layer.ground_columns;
@@ -97,7 +98,8 @@ formats::Result<BakedLayers> bake_layers(const LayerJob& job, const Context& con
         record.first_value = baked.clouds.value.size();
         run_stage(log, "tables of clouds", "cloud", [&](std::uint64_t&) {
             for (const DropletBand& band : *droplets) {
-                const auto values = make_band_tables(band, sizes, layout.often, context);
+                const auto values =
+                    make_band_tables(band, sizes, {layout.often, layer.paper}, context);
                 baked.clouds.value.insert(baked.clouds.value.end(), values.begin(), values.end());
             }
             return true;

@@ -28,9 +28,11 @@ formats::Result<DropletBands> scatter_bands(const formats::CloudLayer& layer,
             return error;
         }
         bands[band].optics = std::move(*optics);
-        bands[band].kappa = extinction(droplets, bands[band].optics);
+        bands[band].mie_kappa = extinction(droplets, bands[band].optics);
+        bands[band].kappa = layer.paper ? printed_extinction(droplets) : bands[band].mie_kappa;
     }
-    const double angle = layer.peak_angle.value_or(find_peak_angle(bands[1].optics.phase));
+    const double angle = layer.peak_angle.value_or(
+        layer.paper ? kPaperPeakAngle : find_peak_angle(bands[1].optics.phase));
     for (DropletBand& band : bands) {
         band.split = split_peak(band.optics.phase, angle);
     }

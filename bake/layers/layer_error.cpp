@@ -49,8 +49,9 @@ struct Squares {
     std::uint32_t radiances = 0;
 };
 
-// One depth of the chain: both sides, all lights, views and azimuths.
-void compare_radiance(const StoredTables& stored, const PeakSplit& split,
+// One depth of the chain: both sides, all lights, views and azimuths. `overstated`: the stored
+// depth over the true one.
+void compare_radiance(const StoredTables& stored, double overstated, const PeakSplit& split,
                       const SlabRadianceRequest& request, const SlabRadiance& truth, Random& random,
                       Squares& squares) {
     for (const bool transmitted : {false, true}) {
@@ -67,8 +68,8 @@ void compare_radiance(const StoredTables& stored, const PeakSplit& split,
                     const double expected =
                         once * eval_table(split.rest, angle) +
                         light / std::numbers::pi * eval_slab_radiance(truth, modes, v, l, azimuth);
-                    const double error = eval_scattered(stored, truth.optical_depth, light, view,
-                                                        azimuth, transmitted) -
+                    const double error = eval_scattered(stored, overstated * truth.optical_depth,
+                                                        light, view, azimuth, transmitted) -
                                          expected;
                     errors += error * error;
                     references += expected * expected;
@@ -80,8 +81,8 @@ void compare_radiance(const StoredTables& stored, const PeakSplit& split,
     }
 }
 
-double compare_flux(const StoredTables& stored, const SlabMedium& medium, double depth,
-                    const std::vector<double>& cosines) {
+double compare_flux(const StoredTables& stored, double overstated, const SlabMedium& medium,
+                    double depth, const std::vector<double>& cosines) {
     SlabRequest request;
     request.optical_depth = depth;
     request.halvings = kHalvings;
@@ -92,7 +93,8 @@ double compare_flux(const StoredTables& stored, const SlabMedium& medium, double
         const OnceFluxes once =
             scatter_once(medium, {&slab.optical_depth, 1}, cosines, kStreams).front();
         for (std::size_t i = 0; i < cosines.size(); ++i) {
-            const OrderShares shares = eval_slab_table(stored.flux, slab.optical_depth, cosines[i]);
+            const OrderShares shares =
+                eval_slab_table(stored.flux, overstated * slab.optical_depth, cosines[i]);
             const double all = 1 - shares.reflected[1] - shares.reflected[2] - shares.reflected[3];
             worst = std::max({worst, std::abs(all - slab.total.transmittance[i]),
                               std::abs(shares.transmitted[1] - once.transmitted[i]),
@@ -134,7 +136,10 @@ LayerErrorReport check_layer(const formats::CloudsView& clouds, const formats::L
                              const Context& context) {
     LayerErrorReport report;
     report.reference =
-        "adding and doubling with more streams and modes; droplets: even against odd radii";
+        record.is_paper()
+            ? "adding and doubling with the extinction of Mie theory: what the printed forms of "
+              "[Bouthors2006] err by"
+            : "adding and doubling with more streams and modes; droplets: even against odd radii";
     Squares squares;
     for (std::size_t band = 0; band < droplets.size() && !context.cancelled(); ++band) {
         Random random{seed, band};
@@ -144,7 +149,10 @@ LayerErrorReport check_layer(const formats::CloudsView& clouds, const formats::L
         SlabRadianceRequest request;
         const double thickest = static_cast<double>(record.band[band].rest_kappa()) *
                                 static_cast<double>(record.highest);
-        request.optical_depth = std::min(kMaxSlabDepth, thickest) * std::exp2(-random.next());
+        // 1 but with fidelity paper.
+        const double overstated = droplets[band].kappa / droplets[band].mie_kappa;
+        request.optical_depth =
+            std::min(kMaxSlabDepth, thickest / overstated) * std::exp2(-random.next());
         request.halvings = kHalvings;
         request.lights = draw_cosines(random, kLeastLight);
         request.view = draw_cosines(random, kLeastView);
@@ -152,10 +160,10 @@ LayerErrorReport check_layer(const formats::CloudsView& clouds, const formats::L
         request.modes = kModes;
         request.first_order = 2;
         for (const SlabRadiance& truth : solve_slab_radiance(medium, request)) {
-            compare_radiance(stored, split, request, truth, random, squares);
+            compare_radiance(stored, overstated, split, request, truth, random, squares);
         }
-        report.flux = std::max(report.flux,
-                               compare_flux(stored, medium, request.optical_depth, request.lights));
+        report.flux = std::max(report.flux, compare_flux(stored, overstated, medium,
+                                                         request.optical_depth, request.lights));
         report.droplets = std::max(report.droplets, droplets[band].optics.error.phase_rms);
     }
     if (!squares.relative.empty()) {

@@ -26,6 +26,7 @@ struct LayerErrorReport {
 
 /// Compares the tables of a layer with the solver at random: optical depths of thicknesses up to
 /// the largest, light up to 80 degrees from the normal, views down to 6 degrees above the horizon.
+/// With fidelity `paper` that is the error of the printed forms, of kappa too.
 /// Less than a tenth of the bake's time. `droplets`: what the tables were made from.
 /// Reports what it has so far once the context is cancelled.
 LayerErrorReport check_layer(const formats::CloudsView& clouds, const formats::LayerRecord& record,

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "bake/layers/paper_tables.h"
 #include "bake/mie/phase_texture.h"
 
 namespace opaline::bake {
 namespace {
-
-constexpr double kMostGlowEvents = 12, kMostGlowAngle = 4;  // the latter in angles of the peak
 
 void append(const std::vector<float>& from, std::vector<float>& to) {
     to.insert(to.end(), from.begin(), from.end());
@@ -29,20 +28,31 @@ SlabMedium rest_medium(const PeakSplit& split, int streams) {
     return {table_moments(split.rest, 2 * static_cast<unsigned>(streams) + 1), 1};
 }
 
+std::vector<double> glow_angles(const PeakSplit& split, unsigned angles) {
+    constexpr double kMost = 4;  // angles of the peak
+    std::vector<double> angle;
+    for (unsigned i = 0; i < angles; ++i) {
+        const double s = i / (angles - 1.0);
+        angle.push_back(kMost * split.angle * s * s);
+    }
+    return angle;
+}
+
+double glow_events(unsigned row, unsigned events) {
+    constexpr double kMost = 12;
+    const double q = row / (events - 1.0);
+    return kMost * q * q;
+}
+
 std::vector<float> tabulate_glow(const PeakSplit& split, unsigned angles, unsigned events) {
     std::vector<float> glow;
     if (!(split.angle > 0)) {
         return glow;
     }
     const std::vector<double> moments = table_moments(split.peak, kGlowMoments);
-    std::vector<double> angle;
-    for (unsigned i = 0; i < angles; ++i) {
-        const double s = i / (angles - 1.0);
-        angle.push_back(kMostGlowAngle * split.angle * s * s);
-    }
+    const std::vector<double> angle = glow_angles(split, angles);
     for (unsigned j = 0; j < events; ++j) {
-        const double q = j / (events - 1.0);
-        for (const double value : forward_glow(split, moments, kMostGlowEvents * q * q, angle)) {
+        for (const double value : forward_glow(split, moments, glow_events(j, events), angle)) {
             // The series leaves noise around 0 where there is next to no light.
             glow.push_back(static_cast<float>(std::max(0.0, value)));
         }
@@ -51,18 +61,23 @@ std::vector<float> tabulate_glow(const PeakSplit& split, unsigned angles, unsign
 }
 
 std::vector<float> make_band_tables(const DropletBand& band, const LayerTableSizes& sizes,
-                                    bool often, const Context& context) {
+                                    const BandContent& content, const Context& context) {
     std::vector<float> values = make_phase_texture(band.optics.phase, sizes.phase_angles).log_value;
-    append(tabulate_glow(band.split, sizes.glow_angles, sizes.glow_events), values);
-    const SlabTable flux = make_slab_table(rest_medium(band.split, sizes.flux_streams), sizes.flux,
-                                           sizes.flux_streams, context);
+    append((content.paper ? tabulate_paper_glow : tabulate_glow)(band.split, sizes.glow_angles,
+                                                                 sizes.glow_events),
+           values);
+    const SlabTable flux = content.paper
+                               ? make_paper_fluxes(band.split.weight, sizes.flux)
+                               : make_slab_table(rest_medium(band.split, sizes.flux_streams),
+                                                 sizes.flux, sizes.flux_streams, context);
     for (const std::vector<float>* part : {&flux.t1, &flux.t_ms, &flux.r1, &flux.mean_t}) {
         append(*part, values);
     }
-    if (often && !context.cancelled()) {
+    if (content.often && !context.cancelled()) {
         const RadianceTable radiance =
-            make_radiance_table(rest_medium(band.split, sizes.radiance_streams), sizes.radiance,
-                                sizes.radiance_streams, context);
+            content.paper ? make_paper_radiance(band.split, sizes.radiance)
+                          : make_radiance_table(rest_medium(band.split, sizes.radiance_streams),
+                                                sizes.radiance, sizes.radiance_streams, context);
         append_modes(radiance.reflected, sizes.radiance, values);
         append_modes(radiance.transmitted, sizes.radiance, values);
     }

@@ -80,8 +80,11 @@ LayerWork count_layer_work(const formats::CloudLayer& layer, const LayerLayout& 
         work.series_terms +=
             count_series_terms(droplets_of(layer), wavelength, radius_sampling(knobs));
     }
-    work.flux_products = kBands * count_flux_products(sizes.flux, sizes.flux_streams);
-    if (layout.often) {
+    // Printed forms (fidelity paper) are not solved for.
+    if (!layer.paper) {
+        work.flux_products = kBands * count_flux_products(sizes.flux, sizes.flux_streams);
+    }
+    if (layout.often && !layer.paper) {
         work.radiance_products =
             kBands * count_radiance_products(sizes.radiance, sizes.radiance_streams);
     }

@@ -98,7 +98,9 @@ LayerBounds bound_layer(const formats::CloudLayer& layer) {
     }
     for (const DropletBand& band : *bands) {
         bounds.cloud = std::max(bounds.cloud, scattered_share(kMargin * band.kappa * thickness));
-        bounds.often = std::max(bounds.often, scattered_often(band, thickness));
+        // As printed, two scatterings grow like the depth: no bound is less than all light.
+        bounds.often =
+            layer.paper ? bounds.cloud : std::max(bounds.often, scattered_often(band, thickness));
     }
     bounds.radiosity = largest_albedo(layer) * bounds.cloud;
     return bounds;
@@ -114,7 +116,11 @@ LayerPlan plan_layers(const formats::Scene& scene, const Knobs& knobs) {
         PlanEntry often = decide("cloud.multiple", "cloud", subject, bounds.often, knobs);
         PlanEntry ground = decide("radiosity", "radiosity", subject, bounds.radiosity, knobs);
         const char* const unseen = "the layer is so thin that it is not seen";
-        explain(cloud, "droplets scatter light: tables of a plane layer by its optical depth",
+        explain(cloud,
+                layer.paper
+                    ? "droplets scatter light: fidelity paper, tables of the forms that "
+                      "[Bouthors2006] prints"
+                    : "droplets scatter light: tables of a plane layer by its optical depth",
                 bounds.cloud > 0 ? unseen : "the layer has no thickness or no droplets");
         if (!cloud.on) {
             often.on = often.forced = ground.on = ground.forced = false;

@@ -76,6 +76,11 @@ double mean_geometric_section(const DropletDistribution& droplets) {
     return std::numbers::pi * droplets.gamma * (droplets.gamma + 1) * r_n * r_n;
 }
 
+double printed_extinction(const DropletDistribution& droplets) {
+    const double r_e = droplets.effective_radius;
+    return droplets.density * std::numbers::pi * r_e * r_e;
+}
+
 double liquid_water_content(const DropletDistribution& droplets) {
     // <r^3> = r_e <r^2>
     return 4.0 / 3 * kWaterDensity * droplets.density * droplets.effective_radius *

@@ -30,6 +30,10 @@ double mean_radius_power(const DropletDistribution& droplets, double power);
 /// pi <r^2> [m^2].
 double mean_geometric_section(const DropletDistribution& droplets);
 
+/// kappa = N0 pi r_e^2 [1/m], as [Bouthors2006] prints it: efficiency 1, and r_e^2 where <r^2>
+/// belongs. 25 % above Mie theory for its droplets. Fidelity `paper` alone.
+double printed_extinction(const DropletDistribution& droplets);
+
 /// Mass of water per volume, (4/3) pi rho N0 <r^3> [kg/m^3], for rho = 1000 kg/m^3.
 double liquid_water_content(const DropletDistribution& droplets);
 

@@ -113,7 +113,9 @@ namespace {
 
 // What droplets do to red, green and blue light.
 Json layer_json(const formats::LayerRecord& record) {
-    Json json{{"peak_angle", record.peak_angle}, {"bands", Json::array()}};
+    Json json{{"fidelity", record.is_paper() ? "paper" : "physical"},
+              {"peak_angle", record.peak_angle},
+              {"bands", Json::array()}};
     for (const formats::LayerBand& band : record.band) {
         json["bands"].push_back(
             {{"kappa", band.kappa}, {"peak_weight", band.peak_weight}, {"g", band.g}});

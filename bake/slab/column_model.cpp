@@ -1,6 +1,9 @@
 #include "bake/slab/column_model.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 
 namespace opaline::bake {
 namespace {
@@ -66,6 +69,17 @@ OrderShares eval_column_model(const ColumnModel& model, double thickness, double
 
 std::span<const ColumnModelAt> paper2006() {
     return kPaper2006;
+}
+
+ColumnModel paper2006_at(double degrees) {
+    constexpr double kStep = 10;
+    const double at = std::clamp(degrees / kStep, 0.0, std::size(kPaper2006) - 1.0);
+    const auto row = std::min(static_cast<std::size_t>(at), std::size(kPaper2006) - 2);
+    const double share = at - static_cast<double>(row);
+    const ColumnModel &a = kPaper2006[row].model, &b = kPaper2006[row + 1].model;
+    return {std::lerp(a.length, b.length, share),   std::lerp(a.beta, b.beta, share),
+            std::lerp(a.decay, b.decay, share),     std::lerp(a.extinction, b.extinction, share),
+            std::lerp(a.forward, b.forward, share), std::lerp(a.back, b.back, share)};
 }
 
 }  // namespace opaline::bake

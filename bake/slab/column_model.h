@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <span>
 
 #include "bake/slab/order_shares.h"
@@ -40,5 +41,11 @@ struct ColumnModelAt {
 /// metres: light at 0, 10, ... 90 degrees. Off by 0.01 of the light at most angles, by 0.1 at 80
 /// degrees; round values at 80 and 90 degrees.
 std::span<const ColumnModelAt> paper2006();
+
+/// The same between these angles, parameters linear in the angle [degrees], in [0, 90].
+ColumnModel paper2006_at(double degrees);
+
+/// kappa [1/m] of the droplets that paper2006 is for, by the paper's N0 pi r_e^2.
+inline constexpr double kPaper2006Extinction = 3e8 * std::numbers::pi * 7e-6 * 7e-6;
 
 }  // namespace opaline::bake

@@ -23,6 +23,7 @@ void read_droplets(const Fields& fields, CloudLayer& layer) {
                                  .value_or(layer.effective_radius);
     layer.gamma = number(fields, "gamma", kMinDropletGamma, kMaxDropletGamma).value_or(layer.gamma);
     layer.ice = choice(fields, "substance", {"water", "ice"}).value_or(0) == 1;
+    layer.paper = choice(fields, "fidelity", {"physical", "paper"}).value_or(0) == 1;
     // <r^3> = r_e <r^2>, <r^2> = gamma (gamma + 1) r_n^2, r_n = r_e / (gamma + 2).
     const double cube = std::pow(layer.effective_radius, 3) * layer.gamma * (layer.gamma + 1) /
                         ((layer.gamma + 2) * (layer.gamma + 2));
@@ -104,8 +105,8 @@ std::optional<CloudEntry> read_cloud(const nlohmann::json& entry, std::size_t in
     const Fields fields{entry, where, report};
     refuse_unknown_keys(
         fields, {"height_field", "procedural", "thickness", "N0", "r_e", "gamma", "substance",
-                 "base", "ground_height", "size", "center", "wind", "repeat", "visibility",
-                 "forward_angle", "ground", "ground_albedo"});
+                 "fidelity", "base", "ground_height", "size", "center", "wind", "repeat",
+                 "visibility", "forward_angle", "ground", "ground_albedo"});
     CloudEntry cloud;
     cloud.where = where;
     read_droplets(fields, cloud.layer);

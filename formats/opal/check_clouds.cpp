@@ -51,7 +51,8 @@ std::string find_place_fault(const LayerRecord& layer) {
         return "its haze of " + number_in_fault(layer.haze) +
                " per metre is below zero or not finite";
     }
-    constexpr std::uint32_t kKnown = LayerRecord::kRepeat | LayerRecord::kRadiosity;
+    constexpr std::uint32_t kKnown =
+        LayerRecord::kRepeat | LayerRecord::kRadiosity | LayerRecord::kPaper;
     if ((layer.flags & ~kKnown) != 0 || layer.reserved != std::array<std::uint32_t, 2>{}) {
         return "it has flags or values that only later versions know";
     }

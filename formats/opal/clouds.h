@@ -44,7 +44,7 @@ struct LayerRecord {
     float highest = 0;            ///< thickness of the code 65535, >= 0
     float peak_angle = 0;         ///< theta_f [rad], in [0, pi / 2)
     float haze = 0;               ///< extinction of the air below and above it [1/m], >= 0
-    std::uint32_t flags = 0;      ///< kRepeat, kRadiosity
+    std::uint32_t flags = 0;      ///< kRepeat, kRadiosity, kPaper
     /// Of the thickness and of the ground's albedo, along x and z: 1 ... kMaxLayerSide.
     std::uint32_t columns = 0, rows = 0;
     std::uint32_t ground_columns = 0, ground_rows = 0;
@@ -61,9 +61,13 @@ struct LayerRecord {
 
     static constexpr std::uint32_t kRepeat = 1;     ///< goes on beyond its size, over and over
     static constexpr std::uint32_t kRadiosity = 2;  ///< ground and base light each other
+    /// The tables hold printed forms of [Bouthors2006]: said of the file, nothing is read
+    /// otherwise.
+    static constexpr std::uint32_t kPaper = 256;
 
     bool repeats() const { return (flags & kRepeat) != 0; }
     bool has_radiosity() const { return (flags & kRadiosity) != 0; }
+    bool is_paper() const { return (flags & kPaper) != 0; }
     std::size_t thickness_count() const { return std::size_t{columns} * rows; }
     std::size_t ground_count() const { return std::size_t{ground_columns} * ground_rows; }
     std::size_t glow_count() const { return std::size_t{glow_angles} * glow_events; }

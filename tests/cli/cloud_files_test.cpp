@@ -46,10 +46,17 @@ TEST(CloudFiles, InfoListsTheLayer) {
     EXPECT_EQ(layer["kappa"][2], 0.046f);
     EXPECT_EQ(layer["multiple_scattering"], true);
     EXPECT_EQ(layer["repeats"], false);
+    EXPECT_EQ(layer["fidelity"], "physical");
+    EXPECT_THAT(text.out, Not(HasSubstr("fidelity")));
     EXPECT_EQ(layer["tables"]["flux"], nlohmann::json({4, 3}));
     EXPECT_EQ(layer["tables"]["radiance"], nlohmann::json({2, 3, 2}));
     EXPECT_EQ(layer["bytes"], 176 + 2 * 12 + 4 * 6 + 4 * asset.clouds.value.size());
     EXPECT_TRUE(info["volumes"].empty() && info["primitives"].empty());
+
+    formats::Asset paper = asset;
+    paper.clouds.records[0].flags |= formats::LayerRecord::kPaper;
+    EXPECT_THAT(run_opaline({"info", write_clouds(small, paper)}).out,
+                HasSubstr("; fidelity paper\n"));
 
     const formats::Asset single = make_cloud_asset({.has_radiance = false});
     EXPECT_THAT(run_opaline({"info", write_clouds(small, single)}).out,

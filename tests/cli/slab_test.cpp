@@ -64,6 +64,50 @@ TEST(Slab, EveryMethodSplitsTheSameLightByOrder) {
     EXPECT_GT(number(with({"--method", "model"}).at("fit_error"), "rms_transmittance"), 0);
 }
 
+double radiance(const Json& view, const char* side, const std::string& order) {
+    for (const Json& each : view.at(side)) {
+        if (each.at("order") == order) return number(each, "radiance");
+    }
+    ADD_FAILURE() << "no order " << order;
+    return 0;
+}
+
+// Both against the solver, in the plane of the light, and single scattering by hand.
+TEST(Slab, ViewsOfEveryMethodSeeTheSameLight) {
+    const Arguments layer = {"--optical-depth", "1",   "--g",     "0.7",
+                             "--cosine",        "0.6", "--views", "8"};
+    const auto with = [&](const char* method) {
+        Arguments all = layer;
+        all.insert(all.end(), {"--method", method});
+        return slab(all).at("views");
+    };
+    const Json solved = with("adding"), table = with("table"), model = with("model");
+    ASSERT_EQ(solved.size(), 8u);
+    for (std::size_t i = 0; i < 8; ++i) {
+        const double degrees = -90 + 22.5 * (static_cast<double>(i) + 0.5);
+        EXPECT_EQ(number(solved.at(i), "degrees"), degrees);
+        for (const char* side : {"reflected", "transmitted"}) {
+            const double all = radiance(solved.at(i), side, "all");
+            EXPECT_NEAR(radiance(table.at(i), side, "all"), all, 0.03 * all) << degrees << side;
+            EXPECT_NEAR(radiance(model.at(i), side, "all"), all, 0.5 * all) << degrees << side;
+            EXPECT_EQ(radiance(model.at(i), side, "1"), radiance(solved.at(i), side, "1"));
+        }
+        // pi / mu_l p mu_l / (mu_l + mu_v) (1 - e^-x): the angle between -l and v.
+        const double pi = std::acos(-1.0), mu = std::cos(degrees * pi / 180);
+        const double cosine = -std::cos(std::acos(0.6) + degrees * pi / 180), g = 0.7;
+        const double phase = (1 - g * g) / (4 * pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+        const double once = pi * phase / (0.6 + mu) * -std::expm1(-1 / 0.6 - 1 / mu);
+        EXPECT_NEAR(radiance(solved.at(i), "reflected", "1"), once, 1e-4 * once) << degrees;
+    }
+    EXPECT_THAT(run_opaline({"slab", "--optical-depth", "1", "--g", "0", "--views", "4", "--method",
+                             "monte-carlo"})
+                    .err,
+                HasSubstr("--views"));
+    const Outcome csv = run_opaline({"slab", "--optical-depth", "1", "--g", "0", "--views", "1",
+                                     "--streams", "8", "--format", "csv"});
+    EXPECT_THAT(csv.out, StartsWith("degrees,side,order,radiance\n0.0,reflected,1,"));
+}
+
 TEST(Slab, AbsorbedLightIsWhatDoesNotLeave) {
     const Json all = slab({"--optical-depth", "3", "--albedo", "0.8", "--g", "0"});
     EXPECT_NEAR(number(all, "absorptance"),

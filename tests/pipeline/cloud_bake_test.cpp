@@ -113,6 +113,26 @@ TEST(CloudBake, TargetErrorChoosesTheTables) {
     EXPECT_TRUE(result.warnings.empty());
 }
 
+// No knob lowers the error of printed forms, and none is named as if it did.
+TEST(CloudBake, FidelityPaperStatesTheErrorOfItsFormulas) {
+    Scene scene = make_layer_scene();
+    scene.layers[0].paper = true;
+    for (const bool has_target : {false, true}) {
+        bake::BakeOptions options = layer_bake();
+        if (has_target) options.error = 0.05;
+        const bake::BakeResult result = bake_scene(scene, options);
+        ASSERT_EQ(result.asset.clouds.records.size(), 1u);
+        EXPECT_GT(result.layer_error->rms_relative, 0.1);
+        ASSERT_EQ(result.warnings.size(), 1u);
+        EXPECT_THAT(result.warnings[0].fault, HasSubstr("because fidelity \"paper\" takes"));
+        EXPECT_THAT(result.warnings[0].remedy, HasSubstr("no option lowers it"));
+        const auto json = nlohmann::json::parse(result.asset.provenance);
+        EXPECT_EQ(json.at("layers").at(0).at("fidelity"), "paper");
+        EXPECT_THAT(json.at("plan").at(0).at("reason"), HasSubstr("fidelity paper"));
+        EXPECT_THAT(json.at("error").at("reference"), HasSubstr("printed forms"));
+    }
+}
+
 TEST(CloudBake, EqualDropletsAndCoarseTablesAreWarnedOf) {
     Scene scene = make_layer_scene();
     scene.layers[0].gamma = 500;

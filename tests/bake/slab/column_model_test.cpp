@@ -38,6 +38,16 @@ TEST(ColumnModelTest, HoldsThePrintedParametersOfThePaper) {
     }
 }
 
+TEST(ColumnModelTest, ParametersBetweenAnglesAreLinear) {
+    for (const bake::ColumnModelAt& at : bake::paper2006()) {
+        EXPECT_NEAR(bake::paper2006_at(at.degrees).beta, at.model.beta, 1e-12);
+    }
+    const ColumnModel between = bake::paper2006_at(72.5);
+    EXPECT_NEAR(between.back, 0.75 * 0.17 + 0.25 * 0.3554, 1e-12);
+    EXPECT_NEAR(between.decay, 0.75 * 0.0133 + 0.25 * 0.028, 1e-12);
+    EXPECT_EQ(bake::paper2006_at(91).forward, 0.1);
+}
+
 // Events at k and l below it: forward twice, or back and forth with the second event above the
 // first; what leaves goes on for the rest of the column.
 TEST(ColumnModelTest, OrdersAreIntegralsOverTheirEvents) {

@@ -30,7 +30,8 @@ std::string refuse_layer(const std::string& entry) {
 TEST(ReadCloud, EveryKeyArrives) {
     const CloudEntry cloud = read_layer(R"("procedural": {"type": "waves", "scale": 900,
         "coverage": 0.75, "seed": 4, "resolution": 128}, "thickness": 250, "N0": 2e8, "r_e": 9e-6,
-        "gamma": 6, "substance": "ice", "base": 1500, "ground_height": -20, "size": [10000, 12000],
+        "gamma": 6, "substance": "ice",
+        "fidelity": "paper", "base": 1500, "ground_height": -20, "size": [10000, 12000],
         "center": [100, -200], "wind": [5, -7], "repeat": true, "visibility": 30000,
         "forward_angle": 4.5, "ground_albedo": [0, 1, 0.2])");
     EXPECT_EQ(cloud.where, "clouds > 0");
@@ -47,6 +48,7 @@ TEST(ReadCloud, EveryKeyArrives) {
     EXPECT_EQ(layer.effective_radius, 9e-6);
     EXPECT_EQ(layer.gamma, 6);
     EXPECT_TRUE(layer.ice);
+    EXPECT_TRUE(layer.paper);
     EXPECT_EQ(layer.base, 1500);
     EXPECT_EQ(layer.ground, -20);
     EXPECT_EQ(layer.size, glm::dvec2(10000, 12000));
@@ -75,6 +77,7 @@ TEST(ReadCloud, DefaultsAreAClearDayOverGreyGround) {
     EXPECT_EQ(layer.effective_radius, plain.effective_radius);
     EXPECT_EQ(layer.gamma, plain.gamma);
     EXPECT_FALSE(layer.ice);
+    EXPECT_FALSE(layer.paper);
     EXPECT_EQ(layer.base, 1000);
     EXPECT_EQ(layer.ground, 0);
     EXPECT_EQ(layer.size, glm::dvec2(20000, 20000));
@@ -128,6 +131,8 @@ TEST(ReadCloud, FaultsAreNamedWithTheirPlaceAndWhatIsExpected) {
         {R"("gamma": 10001)", "clouds > 0 > gamma", "from 0.1 to 10000.0"},
         {R"("N0": 1e12, "r_e": 2e-5)", "clouds > 0", "more than a hundredth of the space"},
         {R"("substance": "steam")", "clouds > 0 > substance", "one of water, ice"},
+        {R"("fidelity": "high")", "clouds > 0 > fidelity", "one of physical, paper"},
+        {R"("fidelity": true)", "clouds > 0 > fidelity", "one of physical, paper"},
         {R"("base": 1e7)", "clouds > 0 > base", "from -1000000.0 to"},
         {R"("base": 0)", "clouds > 0 > base", "not above the ground"},
         {R"("ground_height": 1000)", "clouds > 0 > ground_height", "not above the ground"},

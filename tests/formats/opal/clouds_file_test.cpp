@@ -206,7 +206,7 @@ TEST(CloudsFile, BandsOutOfRangeAreRefusedByName) {
 }
 
 TEST(CloudsFile, FlagsAndValuesOfLaterVersionsAreRefused) {
-    for (const std::uint32_t flags : {0u, 1u, 2u, 3u}) {
+    for (const std::uint32_t flags : {0u, 1u, 2u, 3u, 256u, 259u}) {
         EXPECT_EQ(layer_fault([=](Clouds&, LayerRecord& l) { l.flags = flags; }), "");
     }
     const char* const later = "only later versions know";
