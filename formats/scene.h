@@ -151,13 +151,17 @@ struct Volume {
 struct CloudLayer {
     std::string name;                     ///< "layer 1 (layer.exr)", for messages
     std::uint32_t columns = 0, rows = 0;  ///< 2 or more
-    std::vector<float> thickness;         ///< [m], finite, >= 0; x fastest, rows toward +z
-    double base = 1000;                   ///< height of the flat lower side, above `ground`
-    double ground = 0;                    ///< height of the ground
-    glm::dvec2 center{0};                 ///< x, z
-    glm::dvec2 size{20000};               ///< along x and z
-    glm::dvec2 wind{0};                   ///< [m/s] along x and z
-    bool repeats = false;                 ///< goes on beyond its size, over and over
+    /// [m], finite, >= 0; x fastest, rows toward +z; `frames` of them, one after another.
+    std::vector<float> thickness;
+    std::uint32_t frames = 1;        ///< 1 or more; the first one is of time 0
+    double frame_seconds = 0;        ///< from one to the next, > 0; 0 of a single frame
+    bool loops = false;              ///< the first frame follows on the last one
+    double base = 1000;              ///< height of the flat lower side, above `ground`
+    double ground = 0;               ///< height of the ground
+    glm::dvec2 center{0};            ///< x, z
+    glm::dvec2 size{20000};          ///< along x and z
+    glm::dvec2 wind{0};              ///< [m/s] along x and z
+    bool repeats = false;            ///< goes on beyond its size, over and over
     double visibility = 0;           ///< of the air: distance [m] where contrast is 5 %; 0: clear
     double droplets = 3e8;           ///< N0, per volume [1/m^3]
     double effective_radius = 7e-6;  ///< <r^3> / <r^2> [m]

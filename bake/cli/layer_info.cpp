@@ -49,6 +49,9 @@ nlohmann::ordered_json layers_json(const formats::CloudsView& clouds) {
              {"repeats", layer.repeats()},
              {"largest_thickness", largest_thickness(clouds, layer)},
              {"thickness_cells", {layer.columns, layer.rows}},
+             {"frames", layer.frames},
+             {"frame_seconds", layer.frame_seconds},
+             {"loops", layer.loops()},
              {"ground_cells", {layer.ground_columns, layer.ground_rows}},
              {"haze", layer.haze},
              {"kappa", each_band(layer, [](const auto& band) { return band.kappa; })},
@@ -85,6 +88,10 @@ void print_layers(const formats::CloudsView& clouds) {
             "       extinction {:.4g}, {:.4g}, {:.4g} 1/m, {:.1f} % of it within {:.2g} rad{}\n",
             r.kappa, g.kappa, b.kappa, 100 * g.peak_weight, layer.peak_angle,
             layer.is_paper() ? "; fidelity paper" : "");
+        if (layer.frames > 1) {
+            fmt::print("       {} frames, one every {:g} s{}\n", layer.frames, layer.frame_seconds,
+                       layer.loops() ? ", over and over" : "");
+        }
         fmt::print(
             "       orders: {}; {} x {} cells, ground {} x {}{}\n"
             "       tables: phase {}, glow {} x {}, flux {} x {}, radiance {} x {} x {}; {}\n",

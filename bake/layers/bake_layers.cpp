@@ -34,6 +34,11 @@ formats::LayerRecord make_record(const formats::CloudLayer& layer, const LayerLa
                    (layer.paper ? formats::LayerRecord::kPaper : 0);
     record.columns = layer.columns;
     record.rows = layer.rows;
+    record.frames = layer.frames;
+    if (layer.frames > 1) {
+        record.frame_seconds = as_float(layer.frame_seconds);
+        record.flags |= layer.loops ? formats::LayerRecord::kLoop : 0;
+    }
     record.ground_columns = layer.ground_columns;
     record.ground_rows = layer.ground_rows;
     record.phase_angles = sizes.phase_angles;

@@ -18,6 +18,13 @@ inline bool is_cloudy(const RowLayout&, std::span<const PlanEntry> decisions) {
         return entry.on && entry.subject.kind == Subject::Kind::layer;
     });
 }
+// Steps of the sweep: sizes of the tables with the same work each time, about, and steps of radii.
+inline constexpr std::array kStepLadder{1.0, 0.3, 0.1, 0.05, 0.03, 0.02};
+inline constexpr std::array kStepDiagonal{0.3, 0.2, 0.1, 0.05, 0.03};
+inline constexpr std::array kStepTruths{0.01, 0.02};
+inline constexpr std::array kNodeLadder{8.0, 12.0, 15.0, 18.0, 24.0, 32.0};
+inline constexpr std::array kNodeDiagonal{12.0, 15.0, 18.0, 24.0, 32.0};
+inline constexpr std::array kNodeTruths{40.0, 32.0};
 inline constexpr const char* kWhyClear = "no cloud layer is seen";
 // What the presets err by: tests/bench/RESULTS.md, "Cloud layers".
 inline double step_for(double error) {
@@ -41,6 +48,14 @@ inline constexpr KnobSpec kCloudStep{
     .whole = false,
     .preset = {0.3, 0.1, 0.03, 0.02},
     .for_target = layer_knobs::step_for,
+    .label = "droplet step %g",
+    .ladder = layer_knobs::kStepLadder,
+    .diagonal = layer_knobs::kStepDiagonal,
+    .truths = layer_knobs::kStepTruths,
+    .theory = {.label = "step between droplets",
+               .words = "resonances of spheres, narrower than the step, are met by chance",
+               .rate = 0.5,
+               .fine_is_small = true},
     .matters = layer_knobs::is_cloudy,
     .why_idle = layer_knobs::kWhyClear};
 
@@ -56,6 +71,13 @@ inline constexpr KnobSpec kCloudNodes{
     .highest = 48,
     .preset = {12, 18, 24, 32},
     .for_target = layer_knobs::nodes_for,
+    .label = "table of %g cosines",
+    .ladder = layer_knobs::kNodeLadder,
+    .diagonal = layer_knobs::kNodeDiagonal,
+    .truths = layer_knobs::kNodeTruths,
+    .theory = {.label = "cosines of a cloud layer's table",
+               .words = "square of the distance between nodes, where radiance is smooth",
+               .rate = -2},
     .matters = layer_knobs::is_cloudy,
     .why_idle = layer_knobs::kWhyClear};
 

@@ -44,8 +44,10 @@ void bill_placing(const CostedBake& bake, Bill& bill) {
     }
     bill.open("receivers");
     bill.add({facts.receivers * rates.place_receiver.at(facts.triangles), 0});
-    bill.open("test lights");
-    bill.add({0, rates.test_lights});
+    if (facts.receivers > 0) {
+        bill.open("test lights");
+        bill.add({0, rates.test_lights});
+    }
 }
 
 // As run_step runs it.

@@ -165,13 +165,17 @@ void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjec
 formats::Status bake_inspected(const BakeInputs& bake, const Context& context, BakeResult& result) {
     Knobs& knobs = result.knobs;
     StageLog& log = result.stages;
-    auto lights = run_stage(log, "test lights", [&](std::uint64_t&) {
-        return make_test_lights(
-            knobs.cubemap_size, context.threads,
-            context.cache.empty() ? context.cache : context.cache / "test-lights");
-    });
-    if (!lights) {
-        return std::move(lights).error();
+    std::vector<TestLight> lights;  // none where there is nothing to relight
+    if (count_receivers(bake.receivers) > 0) {
+        auto made = run_stage(log, "test lights", [&](std::uint64_t&) {
+            return make_test_lights(
+                knobs.cubemap_size, context.threads,
+                context.cache.empty() ? context.cache : context.cache / "test-lights");
+        });
+        if (!made) {
+            return std::move(made).error();
+        }
+        lights = std::move(*made);
     }
     std::vector<SubjectState> subjects = begin_subjects(bake, result.plan, knobs);
     run_step(Step::study, bake, knobs, context, subjects, log);
@@ -181,7 +185,7 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context, B
     run_step(Step::study, bake, knobs, context, subjects, log);  // of effects that act only now
     if (knobs.error_target > 0) {
         result.accuracy.emplace();
-        knobs = choose_knobs(bake, knobs, context, {subjects, *lights, log, *result.accuracy});
+        knobs = choose_knobs(bake, knobs, context, {subjects, lights, log, *result.accuracy});
         result.plan = amend_plan(bake, subjects, knobs, context);
     } else {
         run_step(Step::samples, bake, knobs, context, subjects, log);
@@ -202,7 +206,7 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context, B
     result.asset = pack_asset(bake.scene, final_layouts(bake, subjects), std::move(*rows),
                               std::move(openness));
     result.error = run_stage(log, "self-check", "self-check", [&](std::uint64_t& traced) {
-        return check_file({bake, subjects, knobs, *lights}, result.asset.view(), context, traced);
+        return check_file({bake, subjects, knobs, lights}, result.asset.view(), context, traced);
     });
     if (context.cancelled()) {
         return interrupted();

@@ -181,6 +181,24 @@ std::optional<std::string> text(const Fields& fields, const char* key) {
     return value->get<std::string>();
 }
 
+std::optional<std::vector<std::string>> texts(const Fields& fields, const char* key,
+                                              std::size_t most) {
+    const Json* value = find(fields, key);
+    if (!value) {
+        return std::nullopt;
+    }
+    if (value->is_string()) {
+        return std::vector{value->get<std::string>()};
+    }
+    const auto is_text = [](const Json& one) { return one.is_string(); };
+    if (!value->is_array() || value->empty() || value->size() > most ||
+        !std::all_of(value->begin(), value->end(), is_text)) {
+        wrong(fields, key, *value, "a text or a list of 1 to " + std::to_string(most) + " texts");
+        return std::nullopt;
+    }
+    return value->get<std::vector<std::string>>();
+}
+
 std::optional<bool> truth(const Fields& fields, const char* key) {
     const Json* value = find(fields, key);
     if (!value) {

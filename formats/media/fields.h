@@ -48,6 +48,9 @@ std::optional<Rgb> rgb(const Fields& fields, const char* key, double least, doub
 std::optional<std::vector<Rgb>> rgb_list(const Fields& fields, const char* key, std::size_t fewest,
                                          std::size_t most, double least, double greatest);
 std::optional<std::string> text(const Fields& fields, const char* key);
+/// A text, or a list of 1 to `most` of them.
+std::optional<std::vector<std::string>> texts(const Fields& fields, const char* key,
+                                              std::size_t most);
 std::optional<bool> truth(const Fields& fields, const char* key);
 /// The bytes of the file that a text names, see read_inside.
 std::optional<gltf::Bytes> read_named_file(const Fields& fields, const char* key,

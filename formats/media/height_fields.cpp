@@ -3,141 +3,75 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
+
+#include "formats/media/lattice.h"
 
 namespace opaline::formats {
 namespace {
 
 constexpr double kTau = 2 * std::numbers::pi;
 
-struct Point {
-    double x = 0, y = 0;
-};
-
-// A lattice of unit squares that is repeated: `x` and `y` squares wide.
-struct Period {
-    int x = 1, y = 1;
-    int finest = 1;  // with more squares than this on a side it is finer than texels can show
-};
-
-Period times(Period period, int factor) {
-    return {period.x * factor, period.y * factor, period.finest};
-}
-
-bool is_too_fine(Period period) {
-    return std::max(period.x, period.y) > period.finest;
-}
-
-// Into [0, count), from not far outside.
-std::uint32_t wrap(int i, int count) {
-    for (; i < 0; i += count) {
-    }
-    for (; i >= count; i -= count) {
-    }
-    return static_cast<std::uint32_t>(i);
-}
-
-// Bits without a pattern for a square of the lattice: the output permutation of PCG, of each number
-// in turn.
-std::uint32_t hash(int x, int y, Period period, std::uint32_t seed) {
-    const auto mix = [](std::uint32_t bits) {
-        bits = bits * 747796405u + 2891336453u;
-        bits = ((bits >> ((bits >> 28) + 4)) ^ bits) * 277803737u;
-        return (bits >> 22) ^ bits;
-    };
-    return mix(wrap(x, period.x) + mix(wrap(y, period.y) + mix(seed)));
-}
-
-// The low and the high half of the bits, each in [0, 1).
-Point fractions(std::uint32_t bits) {
-    return {(bits & 0xffffu) / 65536.0, (bits >> 16) / 65536.0};
-}
-
-double fade(double t) {
-    return t * t * t * (t * (6 * t - 15) + 10);
-}
-
-// Gradient noise [Perlin1985], about -1 to 1 and 0 on average; features are one square wide.
-double noise(Point p, Period period, std::uint32_t seed) {
-    if (is_too_fine(period)) return 0;
-    const double left = std::floor(p.x), top = std::floor(p.y);
-    const double x = p.x - left, y = p.y - top;
-    const auto corner = [&](int i, int j) {
-        const Point slope =
-            fractions(hash(static_cast<int>(left) + i, static_cast<int>(top) + j, period, seed));
-        return (slope.x - 0.5) * (x - i) + (slope.y - 0.5) * (y - j);
-    };
-    return 4 * std::lerp(std::lerp(corner(0, 0), corner(1, 0), fade(x)),
-                         std::lerp(corner(0, 1), corner(1, 1), fade(x)), fade(y));
-}
-
-// Octaves of it from squares as large as the lattice's, each half as large and `gain` as strong.
-double fractal(Point p, Period period, int octaves, double gain, std::uint32_t seed) {
-    double sum = 0, weight = 1;
-    for (int i = 0, factor = 1; i < octaves; ++i, factor *= 2, weight *= gain) {
-        sum += weight * noise({factor * p.x, factor * p.y}, times(period, factor),
-                              seed + static_cast<std::uint32_t>(i));
-    }
-    return sum;
-}
-
-// Domes around one random point of each square, after [Worley1996]: 1 - (d/r)^2 of the nearest one,
-// with a soft maximum (the norm of order 8), so that the valleys between domes are round. In
-// [0, 1.3].
-double domes(Point p, Period period, std::uint32_t seed) {
-    if (is_too_fine(period)) return 0;
-    // No point beyond the 3 x 3 squares around `p` is nearer than the radius.
-    constexpr double kJitter = 0.85, kRadius = 1.5 - 0.5 * kJitter;
-    const double left = std::floor(p.x), top = std::floor(p.y);
-    double sum = 0;
-    for (int j = -1; j <= 1; ++j) {
-        for (int i = -1; i <= 1; ++i) {
-            const Point at = fractions(
-                hash(static_cast<int>(left) + i, static_cast<int>(top) + j, period, seed));
-            const double dx = left + i + 0.5 + kJitter * (at.x - 0.5) - p.x;
-            const double dy = top + j + 0.5 + kJitter * (at.y - 0.5) - p.y;
-            const double dome = std::max(0.0, 1 - (dx * dx + dy * dy) / (kRadius * kRadius));
-            const double square = dome * dome, fourth = square * square;
-            sum += fourth * fourth;
-        }
-    }
-    return std::sqrt(std::sqrt(std::sqrt(sum)));
-}
+// Height, of any origin and unit, at a place in [0, 1) x [0, 1).
+using HeightAt = std::function<double(LatticePoint)>;
 
 // The place of `p`, in tiles, on a lattice of squares.
-Point on(Point p, Period period) {
-    return {p.x * period.x, p.y * period.y};
+LatticePoint on(LatticePoint p, const Lattice& lattice) {
+    return {p.x * lattice.x, p.y * lattice.y};
+}
+
+LatticePoint times(double factor, LatticePoint p) {
+    return {factor * p.x, factor * p.y};
 }
 
 // Noise as large as several cells or waves.
-double patches(Point p, Period cells, int size, int octaves, std::uint32_t seed) {
-    const Period period{std::max(1, cells.x / size), std::max(1, cells.y / size), cells.finest};
-    return fractal(on(p, period), period, octaves, 0.5, seed);
-}
+struct Patches {
+    Lattice lattice;
+    std::vector<Noise> octaves;
+
+    Patches(const Lattice& cells, int size, int count, std::uint32_t seed) : lattice(cells) {
+        lattice.x = std::max(1, cells.x / size);
+        lattice.y = std::max(1, cells.y / size);
+        octaves = make_octaves(lattice, count, seed);
+    }
+    double operator()(LatticePoint p) const { return eval_octaves(octaves, 0.5, on(p, lattice)); }
+};
 
 // Closed cells: domes with smaller and smaller domes on them, in patches.
-double cellular(Point p, Period cells, std::uint32_t seed) {
-    const Point at = on(p, cells);
-    const Point bent{at.x + 0.16 * fractal(at, cells, 3, 0.4, seed + 10),
-                     at.y + 0.16 * fractal(at, cells, 3, 0.4, seed + 20)};
-    return 1.4 * domes(bent, cells, seed + 30) +
-           0.35 * domes({3 * at.x, 3 * at.y}, times(cells, 3), seed + 31) +
-           0.2 * domes({7 * at.x, 7 * at.y}, times(cells, 7), seed + 32) +
-           0.15 * fractal(at, cells, 4, 0.6, seed + 40) + 0.15 * patches(p, cells, 3, 2, seed + 50);
+HeightAt make_cells(const Lattice& cells, std::uint32_t seed) {
+    return
+        [=, bend_x = make_octaves(cells, 3, seed + 10), bend_y = make_octaves(cells, 3, seed + 20),
+         large = make_domes(cells, seed + 30), middle = make_domes(finer(cells, 3), seed + 31),
+         small = make_domes(finer(cells, 7), seed + 32), rough = make_octaves(cells, 4, seed + 40),
+         patches = Patches(cells, 3, 2, seed + 50)](LatticePoint p) {
+            const LatticePoint at = on(p, cells);
+            const LatticePoint bent{at.x + 0.16 * eval_octaves(bend_x, 0.4, at),
+                                    at.y + 0.16 * eval_octaves(bend_y, 0.4, at)};
+            return 1.4 * eval_domes(large, bent) + 0.35 * eval_domes(middle, times(3, at)) +
+                   0.2 * eval_domes(small, times(7, at)) + 0.15 * eval_octaves(rough, 0.6, at) +
+                   0.15 * patches(p);
+        };
 }
 
-// Billows: waves whose crests bend, fork and fade, with domes along them.
-double waves(Point p, Period cells, std::uint32_t seed) {
-    const Point at = on(p, cells);
-    const double tilt =
-        std::round(0.3 * cells.y);  // crests on the way across: they meet themselves
-    const double phase = at.x + tilt * p.y + 0.8 * patches(p, cells, 4, 2, seed + 10) +
-                         0.12 * fractal(at, cells, 2, 0.5, seed + 20);
-    const double wave = 0.5 + 0.5 * std::cos(kTau * phase);
-    const double strength = 0.7 + 0.4 * patches(p, cells, 3, 2, seed + 30);
-    return strength * wave + 0.35 * domes({2 * at.x, 2 * at.y}, times(cells, 2), seed + 40) +
-           0.2 * domes({5 * at.x, 5 * at.y}, times(cells, 5), seed + 41) +
-           0.25 * patches(p, cells, 3, 5, seed + 50);
+// Billows: waves whose crests bend, fork and fade, with domes along them. Where they evolve, crests
+// travel by a wavelength in a period, and bend where they come to a place that bends them.
+HeightAt make_waves(const Lattice& cells, std::uint32_t seed) {
+    Lattice still = cells;
+    still.turn = 0;
+    const double tilt = std::round(0.3 * cells.y);  // crests on the way across meet themselves
+    return [=, far_bend = Patches(still, 4, 2, seed + 10),
+            near_bend = make_octaves(still, 2, seed + 20), fading = Patches(cells, 3, 2, seed + 30),
+            middle = make_domes(finer(cells, 2), seed + 40),
+            small = make_domes(finer(cells, 5), seed + 41),
+            patches = Patches(cells, 3, 5, seed + 50)](LatticePoint p) {
+        const LatticePoint at = on(p, cells);
+        const double phase =
+            at.x + tilt * p.y + 0.8 * far_bend(p) + 0.12 * eval_octaves(near_bend, 0.5, at);
+        const double wave = 0.5 + 0.5 * std::cos(kTau * phase - cells.turn);
+        return (0.7 + 0.4 * fading(p)) * wave + 0.35 * eval_domes(middle, times(2, at)) +
+               0.2 * eval_domes(small, times(5, at)) + 0.25 * patches(p);
+    };
 }
 
 // From 0 to 1 and steep at 0: clouds have round edges.
@@ -149,6 +83,35 @@ int count_of(double size, double scale) {
     return static_cast<int>(std::clamp(std::round(size / scale), 1.0, 65536.0));
 }
 
+// Heights at the centres of texels.
+std::vector<float> heights_at(const HeightFieldShape& shape, const Lattice& cells) {
+    const std::uint32_t side = shape.resolution;
+    const HeightAt height = shape.type == HeightFieldShape::Type::cellular
+                                ? make_cells(cells, shape.seed)
+                                : make_waves(cells, shape.seed);
+    std::vector<float> field;
+    field.reserve(std::size_t{side} * side);
+    for (std::uint32_t y = 0; y < side; ++y) {
+        for (std::uint32_t x = 0; x < side; ++x) {
+            field.push_back(static_cast<float>(height({(x + 0.5) / side, (y + 0.5) / side})));
+        }
+    }
+    return field;
+}
+
+// Lowers a frame so that `empty` texels are at 0 or below. Gives the highest one.
+float sink(std::vector<float>& field, std::size_t empty) {
+    std::vector<float> sorted = field;
+    const auto sea = sorted.begin() + static_cast<std::ptrdiff_t>(empty == 0 ? 0 : empty - 1);
+    std::nth_element(sorted.begin(), sea, sorted.end());
+    const float low = *sea;
+    const float high = *std::max_element(sea, sorted.end());
+    for (float& value : field) {
+        value -= low;
+    }
+    return high - low;
+}
+
 }  // namespace
 
 std::vector<float> make_height_field(const HeightFieldShape& shape, std::array<double, 2> size) {
@@ -156,30 +119,26 @@ std::vector<float> make_height_field(const HeightFieldShape& shape, std::array<d
     const std::size_t texels = std::size_t{side} * side;
     const auto empty =
         static_cast<std::size_t>(std::llround((1 - shape.coverage) * static_cast<double>(texels)));
-    std::vector<float> field(texels, 0.0f);
     if (empty == texels) {
-        return field;
+        return std::vector<float>(texels * shape.frames, 0.0f);
     }
     constexpr int kTexels = 3;  // that show a dome or a ripple
-    const Period cells{count_of(size[0], shape.scale), count_of(size[1], shape.scale),
-                       static_cast<int>(side / kTexels)};
-    const auto height = shape.type == HeightFieldShape::Type::cellular ? cellular : waves;
-    for (std::uint32_t y = 0; y < side; ++y) {
-        for (std::uint32_t x = 0; x < side; ++x) {
-            field[std::size_t{y} * side + x] =
-                static_cast<float>(height({(x + 0.5) / side, (y + 0.5) / side}, cells, shape.seed));
-        }
+    Lattice cells{count_of(size[0], shape.scale), count_of(size[1], shape.scale),
+                  static_cast<int>(side / kTexels), shape.frames > 1};
+    std::vector<float> all;
+    all.reserve(texels * shape.frames);
+    float highest = 0;
+    for (std::uint32_t frame = 0; frame < shape.frames; ++frame) {
+        cells.turn = kTau * frame / shape.frames;
+        std::vector<float> field = heights_at(shape, cells);
+        highest = std::max(highest, sink(field, empty));
+        all.insert(all.end(), field.begin(), field.end());
     }
-    std::vector<float> sorted = field;
-    const auto sea = sorted.begin() + static_cast<std::ptrdiff_t>(empty == 0 ? 0 : empty - 1);
-    std::nth_element(sorted.begin(), sea, sorted.end());
-    const double low = static_cast<double>(*sea);
-    const double high = static_cast<double>(*std::max_element(sea, sorted.end()));
-    for (float& value : field) {
-        const double above = (static_cast<double>(value) - low) / (high - low);
+    for (float& value : all) {
+        const double above = static_cast<double>(value) / static_cast<double>(highest);
         value = static_cast<float>(profile(std::clamp(above, 0.0, 1.0)));
     }
-    return field;
+    return all;
 }
 
 }  // namespace opaline::formats

@@ -33,6 +33,12 @@ inline constexpr double kMinDropletGamma = 0.1, kMaxDropletGamma = 1e4;
 inline constexpr double kMaxDropletShare = 0.01;  ///< of the volume; denser ones are no cloud
 inline constexpr std::uint32_t kMinFieldSide = 2, kMaxFieldSide = 4096;       ///< texels
 inline constexpr std::uint32_t kMinFormulaSide = 16, kMaxFormulaSide = 2048;  ///< texels
+inline constexpr std::uint32_t kMaxFieldFrames = 4096;                        ///< of a layer
+inline constexpr std::size_t kMaxFieldTexels = std::size_t{1} << 26;  ///< of all frames together
+inline constexpr double kMinFrameSeconds = 0.01, kMaxFrameSeconds = 1e8;
+/// Of an evolution. With fewer frames blends between them lose their shape.
+inline constexpr double kMinEvolutionPeriod = 1, kMaxEvolutionPeriod = 1e8;  ///< [s]
+inline constexpr std::uint32_t kMinEvolutionFrames = 4, kMaxEvolutionFrames = 256;
 inline constexpr double kMinCellTexels = 4;  ///< that a cell or wave of a formula takes
 
 }  // namespace opaline::formats::media

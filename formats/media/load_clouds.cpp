@@ -12,6 +12,7 @@ CloudLayer load_layer(const CloudEntry& entry) {
     CloudLayer layer = entry.layer;
     if (entry.shape) {
         layer.columns = layer.rows = entry.shape->resolution;
+        layer.frames = entry.shape->frames;
         layer.thickness = make_height_field(*entry.shape, {layer.size.x, layer.size.y});
         for (float& thickness : layer.thickness) {
             thickness = static_cast<float>(static_cast<double>(thickness) * entry.thickness);

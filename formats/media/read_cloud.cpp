@@ -104,9 +104,10 @@ std::optional<CloudEntry> read_cloud(const nlohmann::json& entry, std::size_t in
     }
     const Fields fields{entry, where, report};
     refuse_unknown_keys(
-        fields, {"height_field", "procedural", "thickness", "N0", "r_e", "gamma", "substance",
-                 "fidelity", "base", "ground_height", "size", "center", "wind", "repeat",
-                 "visibility", "forward_angle", "ground", "ground_albedo"});
+        fields, {"height_field", "frame_seconds", "loop",          "procedural", "thickness",
+                 "N0",           "r_e",           "gamma",         "substance",  "fidelity",
+                 "base",         "ground_height", "size",          "center",     "wind",
+                 "repeat",       "visibility",    "forward_angle", "ground",     "ground_albedo"});
     CloudEntry cloud;
     cloud.where = where;
     read_droplets(fields, cloud.layer);

@@ -5,65 +5,39 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "formats/image/exr.h"
 #include "formats/media/limits.h"
+#include "formats/media/read_height_field.h"
 
 namespace opaline::formats::media {
 namespace {
 
 constexpr double kDefaultThickness = 300;  // of a formula [m]
 constexpr std::uint32_t kDefaultSide = 512;
+constexpr double kDefaultPeriod = 3600;  // about the life of a cell [s]
+constexpr std::uint32_t kDefaultFrames = 16;
 // Of an even layer: its border, half a texel wide, should be about as steep as a cloud's.
 constexpr std::uint32_t kEvenSide = 128;
 
-// Metres from the file's numbers; empty where one is not what a thickness can be.
-void scale_thickness(const Fields& fields, ScalarImage& image, double metres) {
-    for (std::size_t i = 0; i < image.value.size(); ++i) {
-        const auto value = static_cast<double>(image.value[i]);
-        const double scaled = metres * value;
-        if (!(scaled >= 0 && scaled <= kMaxLayerThickness)) {
-            const std::size_t row = i / image.width, column = i % image.width;
-            const std::string found = std::isnan(value)    ? "is not a number"
-                                      : !(value >= 0)      ? "is negative"
-                                      : std::isinf(scaled) ? "is infinite"
-                                                           : "is more than 1e5 m";
-            fields.report.error(place(fields.where, "height_field"),
-                                "its value in column " + std::to_string(column) + " of row " +
-                                    std::to_string(row) + " " + found,
-                                "give the layer's thickness, in metres unless `thickness` says "
-                                "how many metres 1 is");
-            image.value.clear();
-            return;
-        }
-        image.value[i] = static_cast<float>(std::abs(scaled));  // no -0
+// What changes of a formula with time.
+void read_evolution(const Fields& fields, HeightFieldShape& shape, CloudLayer& layer) {
+    refuse_unknown_keys(fields, {"period", "frames"});
+    const double period =
+        number(fields, "period", kMinEvolutionPeriod, kMaxEvolutionPeriod).value_or(kDefaultPeriod);
+    shape.frames =
+        count(fields, "frames", kMinEvolutionFrames, kMaxEvolutionFrames).value_or(kDefaultFrames);
+    const std::size_t texels = std::size_t{shape.resolution} * shape.resolution;
+    if (texels > kMaxFieldTexels / shape.frames) {
+        fields.report.error(place(fields.where, "frames"),
+                            std::to_string(shape.frames) + " frames of " + std::to_string(texels) +
+                                " texels are more than 67108864 in all",
+                            "give fewer frames or a lower resolution");
     }
+    layer.frame_seconds = period / shape.frames;
+    layer.loops = true;
 }
 
-void read_height_field(const Fields& fields, gltf::Resources& resources, CloudLayer& layer) {
-    const auto bytes = read_named_file(fields, "height_field", resources);
-    const auto metres = number(fields, "thickness", kMinLayerThickness, kMaxLayerThickness);
-    if (!bytes || (has(fields, "thickness") && !metres)) {
-        return;
-    }
-    const std::string where = place(fields.where, "height_field");
-    auto image = decode_exr_channel(*bytes, where, {"Y", "R"}, kMaxFieldSide);
-    if (!image) {
-        const Diagnostic& fault = image.error().diagnostics.front();
-        fields.report.error(where, fault.fault, fault.remedy);
-        return;
-    }
-    if (std::min(image->width, image->height) < kMinFieldSide) {
-        fields.report.error(where, "it has only one texel on a side", "give 2 or more");
-        return;
-    }
-    scale_thickness(fields, *image, metres.value_or(1));
-    layer.columns = image->width;
-    layer.rows = image->height;
-    layer.thickness = std::move(image->value);
-}
-
-std::optional<HeightFieldShape> read_shape(const Fields& fields, const CloudLayer& layer) {
-    refuse_unknown_keys(fields, {"type", "scale", "coverage", "seed", "resolution"});
+std::optional<HeightFieldShape> read_shape(const Fields& fields, CloudLayer& layer) {
+    refuse_unknown_keys(fields, {"type", "scale", "coverage", "seed", "resolution", "evolution"});
     HeightFieldShape shape;
     if (!has(fields, "type")) {
         fields.report.error(fields.where, "its type is missing", "give cellular or waves");
@@ -84,6 +58,15 @@ std::optional<HeightFieldShape> read_shape(const Fields& fields, const CloudLaye
             "give a larger scale, a higher resolution, or a smaller size with "
             "\"repeat\": true");
     }
+    if (const auto evolution = fields.object.find("evolution"); evolution != fields.object.end()) {
+        const std::string where = place(fields.where, "evolution");
+        if (evolution->is_object()) {
+            read_evolution({*evolution, where, fields.report}, shape, layer);
+        } else {
+            fields.report.error(where, "it is not an object",
+                                "give an object such as {\"period\": 3600}");
+        }
+    }
     return shape;
 }
 
@@ -94,6 +77,12 @@ void read_thickness(const Fields& fields, gltf::Resources& resources, CloudEntry
     if (has(fields, "height_field")) {
         read_height_field(fields, resources, cloud.layer);
         return;
+    }
+    for (const char* const key : {"frame_seconds", "loop"}) {
+        if (has(fields, key)) {
+            fields.report.error(place(fields.where, key), "there is no height_field",
+                                "give a list of pictures as height_field, or leave this out");
+        }
     }
     const auto thickness = number(fields, "thickness", kMinLayerThickness, kMaxLayerThickness);
     const auto formula = fields.object.find("procedural");
@@ -122,7 +111,14 @@ std::string describe_thickness(const Fields& fields) {
         return formula->at("type").get<std::string>();
     }
     const auto file = fields.object.find("height_field");
-    return file == fields.object.end() ? "even" : place("", file->get<std::string>());
+    if (file == fields.object.end()) {
+        return "even";
+    }
+    if (file->is_string()) {
+        return place("", file->get<std::string>());
+    }
+    const std::string first = place("", file->front().get<std::string>());
+    return file->size() == 1 ? first : first + " and " + std::to_string(file->size() - 1) + " more";
 }
 
 }  // namespace opaline::formats::media

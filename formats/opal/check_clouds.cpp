@@ -52,10 +52,25 @@ std::string find_place_fault(const LayerRecord& layer) {
                " per metre is below zero or not finite";
     }
     constexpr std::uint32_t kKnown =
-        LayerRecord::kRepeat | LayerRecord::kRadiosity | LayerRecord::kPaper;
-    if ((layer.flags & ~kKnown) != 0 || layer.reserved != std::array<std::uint32_t, 2>{}) {
-        return "it has flags or values that only later versions know";
+        LayerRecord::kRepeat | LayerRecord::kRadiosity | LayerRecord::kLoop | LayerRecord::kPaper;
+    if ((layer.flags & ~kKnown) != 0) {
+        return "it has flags that only later versions know";
     }
+    return {};
+}
+
+std::string find_frame_fault(const LayerRecord& layer) {
+    if (layer.frames < 1 || layer.frames > kMaxLayerFrames) {
+        return "it has " + number_in_fault(layer.frames) + " frames of thickness; expected 1 to " +
+               number_in_fault(kMaxLayerFrames);
+    }
+    const bool moves = layer.frames > 1;
+    if (moves ? !lies_within(layer.frame_seconds, kMinFrameSeconds, kMaxFrameSeconds)
+              : layer.frame_seconds != 0) {
+        return "its frames of thickness are " + number_in_fault(layer.frame_seconds) +
+               " s apart; expected 0.001 to 1e9, and 0 of one frame";
+    }
+    if (!moves && layer.loops()) return "it has one frame of thickness and says that they loop";
     return {};
 }
 
@@ -145,7 +160,7 @@ std::string find_part_fault(const CloudsView& clouds, const LayerRecord& layer,
         return "a table of it is larger than all tables";
     }
     // None of the terms in value_count() is beyond 32 bits or the size of an array in memory now:
-    // their sum cannot overflow. Sides cannot either, see kMaxLayerSide.
+    // their sum cannot overflow. Sides and frames cannot either, see kMaxLayerSide.
     if (!used.thickness.take(layer.first_thickness, layer.thickness_count(),
                              clouds.thickness.size()) ||
         !used.ground.take(layer.first_ground, layer.ground_count(), clouds.ground.size()) ||
@@ -217,6 +232,7 @@ Fault find_clouds_fault(const CloudsView& clouds) {
     UsedLayerParts used;
     return find_first(clouds, [&](const LayerRecord& layer) {
         std::string fault = find_place_fault(layer);
+        if (fault.empty()) fault = find_frame_fault(layer);
         if (fault.empty()) fault = find_band_fault(layer);
         if (fault.empty()) fault = find_count_fault(layer);
         return fault.empty() ? find_part_fault(clouds, layer, used) : fault;

@@ -15,6 +15,9 @@ namespace opaline::formats {
 inline constexpr std::uint32_t kMaxLayers = 1;  ///< of a file; layers do not light each other yet
 /// Of thickness and ground, along an edge: what every OpenGL 4 takes as a texture.
 inline constexpr std::uint32_t kMaxLayerSide = 16384;
+inline constexpr std::uint32_t kMaxLayerFrames = 65536;
+/// Between frames of thickness [s]: so that times are far below what a double holds.
+inline constexpr float kMinFrameSeconds = 1e-3f, kMaxFrameSeconds = 1e9f;
 inline constexpr float kMaxLayerLength = 1e9f;      ///< of heights, x, z, sizes [m], wind [m/s]
 inline constexpr float kMinLayerSize = 1e-3f;       ///< along x and z [m]
 inline constexpr float kMaxLayerExtinction = 1e6f;  ///< of kappa and haze [1/m]
@@ -44,7 +47,7 @@ struct LayerRecord {
     float highest = 0;            ///< thickness of the code 65535, >= 0
     float peak_angle = 0;         ///< theta_f [rad], in [0, pi / 2)
     float haze = 0;               ///< extinction of the air below and above it [1/m], >= 0
-    std::uint32_t flags = 0;      ///< kRepeat, kRadiosity, kPaper
+    std::uint32_t flags = 0;      ///< kRepeat, kRadiosity, kLoop, kPaper
     /// Of the thickness and of the ground's albedo, along x and z: 1 ... kMaxLayerSide.
     std::uint32_t columns = 0, rows = 0;
     std::uint32_t ground_columns = 0, ground_rows = 0;
@@ -57,10 +60,14 @@ struct LayerRecord {
     std::uint64_t first_thickness = 0;  ///< among CloudsView::thickness
     std::uint64_t first_ground = 0;     ///< among CloudsView::ground
     std::uint64_t first_value = 0;      ///< among CloudsView::value
-    std::array<std::uint32_t, 2> reserved{};
+    /// Frames of thickness, 1 ... kMaxLayerFrames: one after another, all of columns x rows codes.
+    std::uint32_t frames = 1;
+    float frame_seconds = 0;  ///< from one frame to the next [s]; 0 where there is one only
 
     static constexpr std::uint32_t kRepeat = 1;     ///< goes on beyond its size, over and over
     static constexpr std::uint32_t kRadiosity = 2;  ///< ground and base light each other
+    /// The first frame follows on the last one, over and over; else the last one stays.
+    static constexpr std::uint32_t kLoop = 4;
     /// The tables hold printed forms of [Bouthors2006]: said of the file, nothing is read
     /// otherwise.
     static constexpr std::uint32_t kPaper = 256;
@@ -68,7 +75,11 @@ struct LayerRecord {
     bool repeats() const { return (flags & kRepeat) != 0; }
     bool has_radiosity() const { return (flags & kRadiosity) != 0; }
     bool is_paper() const { return (flags & kPaper) != 0; }
-    std::size_t thickness_count() const { return std::size_t{columns} * rows; }
+    bool loops() const { return (flags & kLoop) != 0; }
+    /// Codes of one frame.
+    std::size_t frame_count() const { return std::size_t{columns} * rows; }
+    /// Codes of all frames.
+    std::size_t thickness_count() const { return frame_count() * frames; }
     std::size_t ground_count() const { return std::size_t{ground_columns} * ground_rows; }
     std::size_t glow_count() const { return std::size_t{glow_angles} * glow_events; }
     std::size_t flux_count() const { return std::size_t{flux_depths} * flux_cosines; }
@@ -113,6 +124,7 @@ struct CloudsView {
     std::span<const LayerRecord> records;
     /// Codes of thickness: highest * code / 65535 at the centres of columns x rows cells of `size`,
     /// x fastest, rows toward +z; bilinear. Where the layer does not repeat, cells beyond are 0.
+    /// Frame after frame: the first one is of time 0, linear in time between two.
     std::span<const std::uint16_t> thickness;
     std::span<const std::array<std::uint8_t, 4>> ground;  ///< sRGB codes of albedo; last byte 255
     std::span<const float> value;                         ///< tables, see tables_of

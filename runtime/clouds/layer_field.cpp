@@ -15,7 +15,40 @@ double wind_offset(double speed, double time, double period, bool repeats) {
     return repeats ? std::remainder(offset, period) : offset;
 }
 
+// [m]
+std::vector<float> blend_thickness(const formats::LayerRecord& record,
+                                   std::span<const std::uint16_t> codes, const FrameBlend& blend) {
+    const auto metres = [&](std::uint16_t code) {
+        return record.highest * (static_cast<float>(code) / 65535.0f);
+    };
+    const std::size_t count = record.frame_count();
+    const auto first = codes.subspan(blend.first * count, count);
+    const auto second = codes.subspan(blend.second * count, count);
+    std::vector<float> thickness;
+    thickness.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float now = metres(first[i]);
+        thickness.push_back(now + blend.share * (metres(second[i]) - now));
+    }
+    return thickness;
+}
+
 }  // namespace
+
+FrameBlend blend_frames(const formats::LayerRecord& record, double time) {
+    const std::uint32_t last = record.frames - 1;
+    if (last == 0 || !std::isfinite(time)) return {};
+    const auto step = static_cast<double>(record.frame_seconds);
+    // Within a period before it is divided: frames are short, times may be endless.
+    const double period = step * record.frames;
+    const double within =
+        record.loops() ? std::fmod(time, period) : std::clamp(time, 0.0, last * step);
+    const double at = (within < 0 ? within + period : within) / step;
+    const auto first = static_cast<std::uint32_t>(std::min(std::floor(at), last * 1.0));
+    const std::uint32_t next = first < last ? first + 1 : record.loops() ? 0 : last;
+    const auto share = static_cast<float>(std::clamp(at - first, 0.0, 1.0));
+    return {first, next, next == first ? 0 : share};
+}
 
 float LayerField::level_of(double length) const {
     return static_cast<float>(std::log2(std::max(length, 1e-30) / cell));
@@ -23,14 +56,11 @@ float LayerField::level_of(double length) const {
 
 LayerField make_layer_field(const formats::LayerRecord& record,
                             std::span<const std::uint16_t> codes, double time) {
-    std::vector<float> thickness;
-    thickness.reserve(codes.size());
-    for (const std::uint16_t code : codes) {
-        thickness.push_back(record.highest * (static_cast<float>(code) / 65535.0f));
-    }
     LayerField field;
-    field.thickness = make_pyramid(record.columns, record.rows, std::move(thickness),
-                                   record.repeats() ? MipBorder::repeat : MipBorder::zero);
+    field.frames = blend_frames(record, time);
+    field.thickness =
+        make_pyramid(record.columns, record.rows, blend_thickness(record, codes, field.frames),
+                     record.repeats() ? MipBorder::repeat : MipBorder::zero);
     field.size_x = static_cast<double>(record.size[0]);
     field.size_z = static_cast<double>(record.size[1]);
     field.low_x =

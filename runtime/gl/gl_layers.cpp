@@ -40,6 +40,18 @@ std::int32_t int_of(std::size_t value) {
     return static_cast<std::int32_t>(value);
 }
 
+template <class T>
+void fill_pyramid(const GlTexture& texture, std::span<const MipLevel<T>> levels) {
+    constexpr bool kIsColor = std::is_same_v<T, Rgb>;
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        glTextureSubImage2D(texture.name(), static_cast<GLint>(i), 0, 0,
+                            static_cast<GLsizei>(levels[i].columns),
+                            static_cast<GLsizei>(levels[i].rows), kIsColor ? GL_RGB : GL_RED,
+                            GL_FLOAT, levels[i].value.data());
+    }
+}
+
 // Shaders interpolate by themselves.
 template <class T>
 GlTexture upload_pyramid(std::span<const MipLevel<T>> levels, std::size_t& resident) {
@@ -52,13 +64,9 @@ GlTexture upload_pyramid(std::span<const MipLevel<T>> levels, std::size_t& resid
                        static_cast<GLsizei>(levels[0].rows));
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-        glTextureSubImage2D(name, static_cast<GLint>(i), 0, 0,
-                            static_cast<GLsizei>(levels[i].columns),
-                            static_cast<GLsizei>(levels[i].rows), kIsColor ? GL_RGB : GL_RED,
-                            GL_FLOAT, levels[i].value.data());
-        resident += levels[i].value.size() * (kIsColor ? 16 : 4);
+    fill_pyramid(texture, levels);
+    for (const MipLevel<T>& level : levels) {
+        resident += level.value.size() * (kIsColor ? 16 : 4);
     }
     return texture;
 }
@@ -120,6 +128,7 @@ formats::Status upload_layer(GlLayers& layers, const LayerLight& light) {
     layers.thickness = upload_pyramid(std::span<const MipLevel<float>>(light.field.thickness.level),
                                       layers.layer_bytes);
     filter_thickness(layers.thickness, light.field.repeats());
+    layers.frames = light.field.frames;
     layers.albedo =
         upload_pyramid(std::span<const MipLevel<Rgb>>(light.albedo.level), layers.layer_bytes);
     layers.phase = upload_phase(light, layers.layer_bytes);
@@ -212,6 +221,10 @@ formats::Status relight_gl_layers(GlLayers& layers, const LayerLight& light) {
     if (!layers.shown) {
         layers.layer_bytes = 0;
         if (auto status = upload_layer(layers, light); !status) return status;
+    } else if (layers.frames != light.field.frames) {
+        fill_pyramid(layers.thickness,
+                     std::span<const MipLevel<float>>(light.field.thickness.level));
+        layers.frames = light.field.frames;
     }
     layers.light_bytes = 0;
     upload_suns(layers, light);

@@ -77,6 +77,48 @@ TEST(LayerFiles, TurntablesAndTimingsAreThoseOfOtherFiles) {
     EXPECT_NE(read_text(small.path("t-0001.png")), read_text(small.path("t-0002.png")));
 }
 
+// The film stands still but for the clouds: each frame is what --time shows.
+TEST(LayerFiles, FilmsShowTheLayerAtTheTimeOfEachFrame) {
+    SmallScene small;
+    const std::string file = write_layer_file(small, make_cloud_asset());
+    const std::vector<std::string> common{"render",  file,        "--backend", "cpu",
+                                          "--light", "sun:30,40", "--size",    "16x12"};
+    const auto draw = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments = common;
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_opaline(arguments);
+    };
+    const auto film =
+        draw({"--frames", "3", "--time", "20", "--time-step", "30", "-o", small.path("film.png")});
+    ASSERT_EQ(film.exit_code, 0) << film.err;
+    for (const auto& [frame, time] :
+         {std::pair("film-0001.png", "20"), {"film-0002.png", "50"}, {"film-0003.png", "80"}}) {
+        ASSERT_EQ(draw({"--time", time, "-o", small.path("one.png")}).exit_code, 0);
+        EXPECT_EQ(read_text(small.path(frame)), read_text(small.path("one.png"))) << time;
+    }
+    EXPECT_NE(read_text(small.path("film-0001.png")), read_text(small.path("film-0003.png")));
+    ASSERT_EQ(draw({"--frames", "3", "--time", "20", "--time-step", "30", "--turn", "90", "-o",
+                    small.path("turn.png")})
+                  .exit_code,
+              0);
+    EXPECT_EQ(read_text(small.path("turn-0001.png")), read_text(small.path("film-0001.png")));
+    EXPECT_NE(read_text(small.path("turn-0002.png")), read_text(small.path("film-0002.png")));
+
+    const auto expect_refused = [&](std::vector<std::string> more, const char* fault) {
+        more.insert(more.end(), {"-o", small.path("bad.png")});
+        const Outcome outcome = draw(more);
+        EXPECT_EQ(outcome.exit_code, 2) << fault;
+        EXPECT_THAT(outcome.err, AllOf(HasSubstr("--time-step"), HasSubstr(fault)));
+    };
+    expect_refused({"--time-step", "3"}, "one frame only");
+    expect_refused({"--frames", "2", "--time-step", "nan"}, "");
+    const std::string clear = write_layer_file(small, make_small_asset(), "clear.opal");
+    const Outcome none = run_opaline({"render", clear, "--light", "white", "--frames", "2",
+                                      "--time-step", "3", "-o", small.path("bad.png")});
+    EXPECT_EQ(none.exit_code, 2);
+    EXPECT_THAT(none.err, HasSubstr("no cloud layer"));
+}
+
 // Sum of all numbers of a table of relight behind its vertices.
 double sum_of_table(const std::string& text) {
     double sum = 0;

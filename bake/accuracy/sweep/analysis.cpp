@@ -54,10 +54,11 @@ bool is_near(const Ladder& ladder, double value, double finest) {
            std::max(value, finest) <= near * std::min(value, finest);
 }
 
-// Of surfaces and volumes.
+// Of surfaces, volumes and layers.
 std::vector<double> all_luminance(const PointRecord& record) {
     std::vector<double> all = record.luminance;
     all.insert(all.end(), record.volume_luminance.begin(), record.volume_luminance.end());
+    all.insert(all.end(), record.layer_radiance.begin(), record.layer_radiance.end());
     return all;
 }
 

@@ -63,6 +63,13 @@ void compare_with_finest(SweepResult& result, const EffectTable& effects,
                         compare_probes(record.volume_luminance, finest.volume_luminance, of_volumes,
                                        volume_light_names()));
         }
+        if (!record.layer_radiance.empty()) {
+            const std::vector<std::string> of_layers(record.layer_radiance.size(), "cloud");
+            const std::string light[] = {"layers"};
+            take_larger(
+                record.against_finest,
+                compare_probes(record.layer_radiance, finest.layer_radiance, of_layers, light));
+        }
         add_error_of_truth(record.against_finest, finest.error);
     }
 }

@@ -180,6 +180,16 @@ Knobs with_truths(const LadderRequest& request, Knobs knobs, std::size_t at) {
     return knobs;
 }
 
+// Of nothing but layers.
+std::vector<SweepPoint> make_layer_truths(const LadderRequest& request) {
+    Points points{request.subject};
+    const Knobs reference = preset_knobs(request, Quality::reference);
+    points.list.push_back({"tables finer than reference", {}, with_truths(request, reference, 0)});
+    points.add("reference", Ladder::preset, 3, reference);
+    points.add("production", Ladder::preset, 2, preset_knobs(request, Quality::production));
+    return std::move(points.list);
+}
+
 }  // namespace
 
 bool SweepSubject::has(const KnobSpec& knob) const {
@@ -193,10 +203,12 @@ SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& sce
     subject.has_surfaces = !scene.primitives.empty();
     for (const EffectDescriptor& effect : effects.effects) {
         for (const KnobSpec* knob : effect.knobs) {
-            if (effect.concerns_volumes && knob->matters({}, volume_plan)) {
-                subject.has_volumes = true;
-                subject.knobs.push_back(knob);
+            if (!(effect.concerns_volumes || effect.concerns_layers) ||
+                !knob->matters({}, volume_plan)) {
+                continue;
             }
+            (effect.concerns_volumes ? subject.has_volumes : subject.has_layers) = true;
+            subject.knobs.push_back(knob);
         }
     }
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
@@ -223,10 +235,11 @@ SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& sce
 
 bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject) {
     const bool same_rows = a.cubemap_size == b.cubemap_size && a.coefficients == b.coefficients &&
-                           a.code_bits == b.code_bits && a.separate_terms == b.separate_terms &&
-                           a.effects == b.effects && a.simulate_all == b.simulate_all &&
-                           a.seed == b.seed;
-    return same_rows && (!subject.in_media || a.exact_rays == b.exact_rays) &&
+                           a.code_bits == b.code_bits && a.separate_terms == b.separate_terms;
+    const bool same_request =
+        a.effects == b.effects && a.simulate_all == b.simulate_all && a.seed == b.seed;
+    return same_request && (same_rows || subject.is_layer_alone()) &&
+           (!subject.in_media || a.exact_rays == b.exact_rays) &&
            std::all_of(subject.knobs.begin(), subject.knobs.end(), [&](const KnobSpec* knob) {
                return a[*knob] == b[*knob] &&
                       (!knob->exact_if_given || a.is_given(*knob) == b.is_given(*knob));
@@ -241,7 +254,7 @@ std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base)
     }
     add_choices(points, request);
     const Knobs knobs = preset_knobs(request, base);
-    if (request.subject.in_media || request.subject.has_volumes) {
+    if (request.subject.in_media || request.subject.has_volumes || request.subject.has_layers) {
         add_diagonal(points, knobs);
     }
     if (request.subject.has_surfaces) {
@@ -255,6 +268,9 @@ std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base)
 }
 
 std::vector<SweepPoint> make_truths(const LadderRequest& request) {
+    if (request.subject.is_layer_alone()) {
+        return make_layer_truths(request);
+    }
     Points points{request.subject};
     Knobs reference = preset_knobs(request, Quality::reference);
     std::string of;  // the choice, where there is one

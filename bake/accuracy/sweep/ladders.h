@@ -66,10 +66,13 @@ struct SweepSubject {
     bool in_media = false;               ///< light is simulated inside media
     bool has_surfaces = true;            ///< there are vertices, whose rows other knobs concern
     bool has_volumes = false;            ///< light is simulated in volumes
+    bool has_layers = false;             ///< and in cloud layers
 
     bool has(const KnobSpec& knob) const;
+    /// Nothing but cloud layers: knobs of rows do not matter.
+    bool is_layer_alone() const { return has_layers && !has_surfaces && !has_volumes; }
 };
-/// `volume_plan`: of the scene's volumes.
+/// `volume_plan`: of the scene's volumes and layers.
 SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& scene,
                            std::span<const PlanEntry> plan, const Knobs& knobs,
                            std::span<const PlanEntry> volume_plan = {});

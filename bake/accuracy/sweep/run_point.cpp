@@ -7,8 +7,12 @@
 #include <fstream>
 #include <utility>
 
+#include "bake/accuracy/sweep/sweep_layers.h"
 #include "bake/accuracy/volumes/volume_radiance.h"
 #include "formats/opal/write_opal.h"
+#include "runtime/clouds/environment_at.h"
+#include "runtime/clouds/layer_light.h"
+#include "runtime/picture/camera.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/shade.h"
 #include "runtime/volumes/relight_volumes.h"
@@ -33,24 +37,43 @@ double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+// What of the light above reaches meshes and volumes, as `opaline render` has it.
+formats::Environment light_below(const formats::AssetView& asset, const runtime::LayerLight& layers,
+                                 const formats::Environment& above, unsigned threads) {
+    const runtime::BoundingSphere bound = runtime::bound_asset(asset);
+    const formats::Vec3 centre{static_cast<float>(bound.x), static_cast<float>(bound.y),
+                               static_cast<float>(bound.z)};
+    return runtime::environment_at({layers, above, {}}, centre, {.threads = threads});
+}
+
 formats::Result<runtime::Picture> draw(const formats::AssetView& asset, const SweepView& view,
                                        unsigned threads) {
     // The default view of `opaline render`.
     constexpr float kFieldOfView = 32;
     const runtime::Camera camera =
         runtime::frame_asset(asset, kFieldOfView, view.picture_width, view.picture_height);
+    std::optional<runtime::LayerLight> layers;
+    if (!asset.clouds.empty()) {
+        layers = runtime::light_layers(asset.clouds, view.picture_light, {}, {.threads = threads});
+    }
+    const bool has_objects = !asset.primitives.empty() || !asset.volumes.empty();
+    const formats::Environment below =
+        layers && has_objects ? light_below(asset, *layers, view.picture_light, threads)
+                              : formats::Environment{};
+    const formats::Environment& of_objects = layers ? below : view.picture_light;
     const runtime::LightVector light =
-        runtime::project_environment(view.picture_light, asset.cubemap_size, {}, threads);
+        runtime::project_environment(of_objects, asset.cubemap_size, {}, threads);
     const std::vector<formats::Rgb> radiance =
         runtime::shade_for_picture(asset, light, camera.eye, formats::TermSet::all, threads);
     const runtime::SpecularNeeds needs = runtime::specular_needs(asset);
     const runtime::SpecularLight specular =
-        runtime::make_specular_light(view.picture_light, needs, {}, threads);
+        runtime::make_specular_light(of_objects, needs, {}, threads);
     const runtime::VolumeLight volumes =
         runtime::relight_volumes(asset.volumes, light, {.threads = threads});
     runtime::SoftwareOptions options;
     options.threads = threads;
     options.volumes = &volumes;
+    options.layers = layers ? &*layers : nullptr;
     options.specular = needs.any() ? &specular : nullptr;
     return runtime::render_software(asset, radiance, view.picture_light, {}, camera, options);
 }
@@ -111,6 +134,11 @@ formats::Result<PointRecord> run_point(const EffectTable& effects, const formats
         record.volumes = compare_volumes(marched, view.volumes.truth, point.knobs.seed);
         record.volume_luminance = relative_luminance(view.volumes, marched);
         take_larger(record.error, as_error_report(record.volumes));
+    }
+    record.layer = bake->layer_error;
+    if (record.layer) {
+        take_larger(record.error, *record.layer);
+        record.layer_radiance = read_layer_radiance(asset.clouds);
     }
     record.choices = list_choices(bake->plan);
     record.luminance = relight_probes(asset, view.probes, lights.probes);

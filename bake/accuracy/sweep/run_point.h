@@ -12,6 +12,7 @@
 #include "bake/accuracy/sweep/probes.h"
 #include "bake/accuracy/sweep/sweep_volumes.h"
 #include "bake/base/context.h"
+#include "bake/layers/layer_error.h"
 #include "bake/pipeline/pipeline.h"
 #include "formats/opal/environment.h"
 #include "formats/scene.h"
@@ -50,6 +51,7 @@ struct PointRecord {
     ErrorReport error;             ///< of the numbers, as the bake measured it; of volumes, if
                                    ///< larger, against path tracing
     VolumeErrorReport volumes;     ///< of volumes, against path tracing along SweepVolumes' rays
+    std::optional<LayerErrorReport> layer;  ///< of a cloud layer's tables
     std::string choices;         ///< of its plan (list_choices); only equal ones differ in numbers
                                  ///< alone
     std::size_t finest = 0;      ///< index of the finest point of the same choices
@@ -58,6 +60,7 @@ struct PointRecord {
     ModelErrorReport total;      ///< of model and numbers, against path tracing
     std::vector<double> luminance;                     ///< relight_probes
     std::vector<double> volume_luminance;              ///< relative_luminance
+    std::vector<double> layer_radiance;                ///< read_layer_radiance, at last scaled
     std::vector<std::vector<double>> model_luminance;  ///< relight_receivers, light by light
     runtime::Picture picture;                          ///< empty where none was wanted
 };

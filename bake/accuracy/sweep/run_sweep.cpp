@@ -12,9 +12,11 @@
 
 #include "bake/accuracy/sweep/finest.h"
 #include "bake/accuracy/sweep/point_order.h"
+#include "bake/accuracy/sweep/sweep_layers.h"
 #include "bake/accuracy/sweep/trace_for.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/environment/builtin_environment.h"
+#include "bake/layers/plan_layers.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/volumes/plan_volumes.h"
@@ -38,6 +40,18 @@ std::string amount(double value, const char* unit) {
     char text[48];
     std::snprintf(text, sizeof text, value < 10 ? "%.1f %s" : "%.0f %s", value, unit);
     return text;
+}
+
+// There is something that path tracing and test lights are for: a layer alone has neither.
+bool has_receivers(const formats::Scene& scene) {
+    return !scene.primitives.empty() || !scene.volumes.empty();
+}
+
+// Of volumes, then of layers, as BakeResult::volume_plan.
+std::vector<PlanEntry> plan_the_rest(const formats::Scene& scene, const Knobs& knobs) {
+    std::vector<PlanEntry> plan = plan_volumes(scene, knobs).entries;
+    std::ranges::copy(plan_layers(scene, knobs).entries, std::back_inserter(plan));
+    return plan;
 }
 
 // The state of a sweep in progress.
@@ -83,10 +97,12 @@ struct Sweep {
         return {};
     }
 
+    // None where nothing is relit.
     formats::Result<const SweepLights*> lights_of(std::uint32_t n) {
         auto known = lights.find(n);
         if (known == lights.end()) {
-            auto probes = make_probe_lights(n, context.threads);
+            auto probes = has_receivers(scene) ? make_probe_lights(n, context.threads)
+                                               : formats::Result<ProbeLights>(ProbeLights{});
             if (!probes) {
                 return std::move(probes).error();
             }
@@ -227,12 +243,14 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     }
     sweep.view.probes = choose_probes(result.receivers, options.probes);
     sweep.view.picture_light = std::move(picture_light->environment);
-    constexpr std::uint32_t kModelReceivers = 96;
-    auto model = choose_model_probes(scene, kModelReceivers, options.bake.seed, context);
-    if (!model) {
-        return std::move(model).error();
+    if (has_receivers(scene)) {
+        constexpr std::uint32_t kModelReceivers = 96;
+        auto model = choose_model_probes(scene, kModelReceivers, options.bake.seed, context);
+        if (!model) {
+            return std::move(model).error();
+        }
+        sweep.view.model = std::move(*model);
     }
-    sweep.view.model = std::move(*model);
 
     BakeOptions base = options.bake;
     base.quality = Quality::draft;
@@ -243,7 +261,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         return (draft ? preview : draft).error();
     }
     result.plan = plan_bake(effects, scene, facts, *preview);
-    result.volume_plan = plan_volumes(scene, *preview).entries;
+    result.volume_plan = plan_the_rest(scene, *preview);
     result.subject = sweep_subject(effects, scene, result.plan, *preview, result.volume_plan);
     constexpr double kShare = 1.0 / 20;
     if (result.subject.has_volumes) {
@@ -265,26 +283,30 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
                                    "not even a draft fits: it " + result.skipped.front().reason,
                                    "give more seconds, or a smaller scene");
     }
-    ReferenceLadderOptions climb;
-    climb.seconds = kShare * options.seconds;
-    climb.seed = options.bake.seed;
-    auto reference = climb_reference(scene, climb, context);
-    if (!reference) {
-        return std::move(reference).error();
-    }
-    result.reference = std::move(*reference);
-    auto traced = trace_for(scene, sweep.view.model,
-                            {.seconds = kShare * options.seconds,
-                             .seed = options.bake.seed,
-                             .simulated = held_light(effects, result.plan)},
-                            context);
-    if (!traced) {
-        return std::move(traced).error();
+    std::vector<LightCheck> traced;
+    if (has_receivers(scene)) {
+        ReferenceLadderOptions climb;
+        climb.seconds = kShare * options.seconds;
+        climb.seed = options.bake.seed;
+        auto reference = climb_reference(scene, climb, context);
+        if (!reference) {
+            return std::move(reference).error();
+        }
+        result.reference = std::move(*reference);
+        auto paths = trace_for(scene, sweep.view.model,
+                               {.seconds = kShare * options.seconds,
+                                .seed = options.bake.seed,
+                                .simulated = held_light(effects, result.plan)},
+                               context);
+        if (!paths) {
+            return std::move(paths).error();
+        }
+        traced = std::move(*paths);
     }
     if (sweep.predict_point(*preview).seconds * sweep.scale() > kShare * options.seconds) {
         result.base = Quality::draft;
         result.plan = plan_bake(effects, scene, facts, *draft);
-        result.volume_plan = plan_volumes(scene, *draft).entries;
+        result.volume_plan = plan_the_rest(scene, *draft);
     }
     std::vector<SweepPoint> points = make_ladders(sweep.ladder_request(), result.base);
     result.points.front().point = points.front();  // with the rungs of a base, if it is one
@@ -302,6 +324,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
             return std::move(status).error();
         }
     }
+    scale_layer_radiance(result.points);
     const std::vector<std::string>& names = sweep.lights.begin()->second.probes.names;
     compare_with_finest(result, effects, scene, sweep.view.probes, names);
     if (result.subject.has_surfaces) {
@@ -311,8 +334,10 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         std::ranges::copy(volume_light_names(), std::back_inserter(result.lights));
     }
     for (PointRecord& record : result.points) {
-        record.total = compare_with_truth(record.model_luminance, *traced, sweep.view.model,
-                                          options.bake.seed);
+        if (has_receivers(scene)) {
+            record.total = compare_with_truth(record.model_luminance, traced, sweep.view.model,
+                                              options.bake.seed);
+        }
         if (!record.volume_luminance.empty()) {
             take_larger(record.total, record.volumes);
         }

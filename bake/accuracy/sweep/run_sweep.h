@@ -36,7 +36,7 @@ struct SweepResult {
     SweepSubject subject;
     Quality base = Quality::preview;     ///< what the ladders change one knob of
     std::vector<PlanEntry> plan;         ///< of the base: of materials
-    std::vector<PlanEntry> volume_plan;  ///< and of volumes
+    std::vector<PlanEntry> volume_plan;  ///< and of volumes and layers
     std::vector<PointRecord> points;     ///< in the order in which they were baked
     /// index of the finest point of the choices that most points made (find_finest)
     std::size_t truth = 0;

@@ -172,6 +172,9 @@ Json point_json(const SweepResult& result, const SweepAnalysis& analysis, std::s
     if (record.volumes.rays_checked > 0) {
         json["volume_error"] = volume_error_json(record.volumes);
     }
+    if (record.layer) {
+        json["layer_error"] = layer_error_json(*record.layer);
+    }
     const Standing& standing = analysis.standing[i];
     json["on_front_time"] = standing.on_front_time;
     json["on_front_bytes"] = standing.on_front_bytes;

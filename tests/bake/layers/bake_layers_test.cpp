@@ -42,6 +42,27 @@ TEST(BakeLayers, ThicknessReturnsFromItsCodes) {
     }
 }
 
+TEST(BakeLayers, FramesFollowEachOtherInOneScale) {
+    formats::Scene scene = layer_scene();
+    formats::CloudLayer& layer = scene.layers[0];
+    layer.thickness = {0, 10, 20, 30, 90, 60, 40, 0};
+    layer.frames = 2;
+    layer.frame_seconds = 45;
+    layer.loops = true;
+    const formats::Clouds clouds = bake_layer(scene, least_layer_knobs()).clouds;
+    const formats::LayerRecord& record = clouds.records[0];
+    EXPECT_EQ(record.frames, 2u);
+    EXPECT_EQ(record.frame_seconds, 45);
+    EXPECT_TRUE(record.loops() && !record.repeats());
+    EXPECT_EQ(record.highest, 90);
+    ASSERT_EQ(clouds.thickness.size(), 8u);
+    EXPECT_EQ(clouds.thickness[4], 65535);
+    EXPECT_NEAR(clouds.thickness[3] * 90 / 65535.0, 30, 0.001);
+    EXPECT_EQ(formats::find_clouds_fault(clouds.view()).what, "");
+    EXPECT_EQ(draft().clouds.records[0].frames, 1u);
+    EXPECT_FALSE(draft().clouds.records[0].loops());
+}
+
 TEST(BakeLayers, ContrastIsFivePercentAtTheVisibility) {
     formats::Scene scene = layer_scene();
     scene.layers[0].visibility = 20000;

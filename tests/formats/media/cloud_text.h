@@ -39,12 +39,18 @@ inline bool is_sound(const formats::CloudEntry& cloud) {
     };
     const bool has_thickness =
         cloud.shape ? layer.thickness.empty() && within(cloud.shape->coverage, 0, 1) &&
-                          within(cloud.shape->scale, 1, 1e7) && cloud.shape->resolution >= 16
+                          within(cloud.shape->scale, 1, 1e7) && cloud.shape->resolution >= 16 &&
+                          within(cloud.shape->frames, 1, 256)
                     : layer.columns >= 2 && layer.rows >= 2 &&
-                          layer.thickness.size() == std::size_t{layer.columns} * layer.rows &&
+                          layer.thickness.size() ==
+                              std::size_t{layer.columns} * layer.rows * layer.frames &&
                           std::all_of(layer.thickness.begin(), layer.thickness.end(),
                                       [](float t) { return t >= 0 && t <= 1e5f; });
-    return has_thickness && static_cast<float>(layer.ground) < static_cast<float>(layer.base) &&
+    const std::uint32_t frames = cloud.shape ? cloud.shape->frames : layer.frames;
+    const bool has_times = frames > 1 ? within(layer.frame_seconds, 1e-3, 1e9)
+                                      : layer.frame_seconds == 0 && !layer.loops;
+    return has_thickness && has_times &&
+           static_cast<float>(layer.ground) < static_cast<float>(layer.base) &&
            std::abs(layer.base) <= 1e6 && within(layer.size.x, 1, 1e7) &&
            within(layer.size.y, 1, 1e7) && std::abs(layer.center.x) <= 1e7 &&
            std::abs(layer.center.y) <= 1e7 && std::abs(layer.wind.x) <= 1e4 &&

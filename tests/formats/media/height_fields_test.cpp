@@ -122,6 +122,106 @@ TEST(HeightFields, WavesHaveOneDirectionAndCellsHaveNone) {
     EXPECT_NEAR(anisotropy(Type::cellular), 1, 0.35);
 }
 
+// One frame of a sequence.
+std::vector<float> frame_of(const std::vector<float>& all, std::size_t texels, std::size_t frame) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(texels * frame);
+    return {first, first + static_cast<std::ptrdiff_t>(texels)};
+}
+
+TEST(HeightFields, CoverTheSameShareInEveryFrameOfAnEvolution) {
+    constexpr std::size_t kTexels = 96 * 96;
+    for (const Type type : {Type::cellular, Type::waves}) {
+        for (const double coverage : {0.0, 0.4, 1.0}) {
+            const auto all =
+                make({.type = type, .coverage = coverage, .resolution = 96, .frames = 6});
+            ASSERT_EQ(all.size(), 6 * kTexels);
+            EXPECT_EQ(*std::max_element(all.begin(), all.end()), coverage > 0 ? 1 : 0);
+            for (std::size_t frame = 0; frame < 6; ++frame) {
+                EXPECT_NEAR(share_above_zero(frame_of(all, kTexels, frame)), coverage, 0.001);
+            }
+        }
+    }
+}
+
+// RMS of the difference between two fields.
+double change(const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double difference = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+        sum += difference * difference;
+    }
+    return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+// From the last frame to the first one too. Half the step: half the change, and in between frames
+// are about the mean of their neighbours.
+TEST(HeightFields, EvolveSmoothlyAndPeriodically) {
+    constexpr std::size_t kTexels = 64 * 64, kFrames = 32;
+    for (const Type type : {Type::cellular, Type::waves}) {
+        const auto all = make(
+            {.type = type, .scale = 2000, .coverage = 0.9, .resolution = 64, .frames = kFrames});
+        double mean = 0, twice = 0, largest = 0, bend = 0;
+        for (std::size_t i = 0; i < kFrames; ++i) {
+            const auto now = frame_of(all, kTexels, i);
+            const auto next = frame_of(all, kTexels, (i + 1) % kFrames);
+            const auto later = frame_of(all, kTexels, (i + 2) % kFrames);
+            std::vector<float> blend;
+            for (std::size_t k = 0; k < kTexels; ++k) {
+                blend.push_back((now[k] + later[k]) / 2);
+            }
+            mean += change(now, next) / kFrames;
+            twice += change(now, later) / kFrames;
+            largest = std::max(largest, change(now, next));
+            bend += change(blend, next) / kFrames;
+        }
+        EXPECT_GT(mean, 0.005);
+        EXPECT_LT(largest, 1.5 * mean);
+        EXPECT_NEAR(twice / mean, 2, 0.15);
+        EXPECT_LT(bend, 0.3 * mean);
+        // Half a period later it is another layer.
+        EXPECT_GT(change(frame_of(all, kTexels, 0), frame_of(all, kTexels, kFrames / 2)), 5 * mean);
+    }
+}
+
+// The waves' part of a field: modes whose direction and length are about theirs.
+std::vector<std::complex<double>> wave_modes(const std::vector<float>& field, std::size_t side) {
+    std::vector<std::complex<double>> root, modes;
+    for (std::size_t i = 0; i < side; ++i) {
+        root.push_back(std::polar(
+            1.0, -2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(side)));
+    }
+    for (std::size_t kx = 5; kx <= 11; ++kx) {
+        for (std::size_t ky = side - 3; ky <= side + 7; ++ky) {
+            std::complex<double> sum;
+            for (std::size_t k = 0; k < field.size(); ++k) {
+                sum += static_cast<double>(field[k]) *
+                       root[(kx * (k % side) + ky * (k / side)) % side];
+            }
+            modes.push_back(sum);
+        }
+    }
+    return modes;
+}
+
+// cos(phase - turn): all modes turn back alike, wherever crests bend.
+TEST(HeightFields, CrestsTravelByAWavelengthInAPeriod) {
+    constexpr std::size_t kSide = 48, kFrames = 8;
+    const auto all =
+        make({.type = Type::waves, .scale = 1000, .resolution = kSide, .frames = kFrames});
+    std::vector<std::complex<double>> before;
+    for (std::size_t i = 0; i <= kFrames; ++i) {
+        const auto now = wave_modes(frame_of(all, kSide * kSide, i % kFrames), kSide);
+        if (i > 0) {
+            std::complex<double> sum;
+            for (std::size_t k = 0; k < now.size(); ++k) {
+                sum += now[k] * std::conj(before[k]);
+            }
+            EXPECT_NEAR(std::arg(sum), -2 * std::numbers::pi / kFrames, 0.25) << i;
+        }
+        before = now;
+    }
+}
+
 TEST(HeightFields, CellsAndWavesAreAsLargeInMetresAlongBothSides) {
     // Twice as long along z: twice as many cells there. Steps per metre are about equal.
     constexpr std::size_t kSide = 128;

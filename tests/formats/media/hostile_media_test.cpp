@@ -20,7 +20,8 @@ const std::string kRich = R"({"materials": {
     "Leaf": {"thin_walled": {"reflect": [0.1, 0.2, 0.3], "transmit": [0.4, 0.5, 0.6]}},
     "*": {"opaque": true}},
     "clouds": [{"procedural": {"type": "waves", "scale": 900, "coverage": 0.5, "seed": 3,
-                               "resolution": 256}, "thickness": 120, "N0": 3e8, "r_e": 7e-6,
+                               "resolution": 256,
+                               "evolution": {"period": 900, "frames": 8}}, "thickness": 120, "N0": 3e8, "r_e": 7e-6,
                 "gamma": 2, "substance": "ice", "base": 1000, "ground_height": 10,
                 "size": [9e3, 8000], "center": [1, 2], "wind": [3, 4], "repeat": true,
                 "visibility": 3e4, "forward_angle": 5, "ground_albedo": [0.1, 0.2, 0.3]}]})";

@@ -38,6 +38,23 @@ TEST(LoadClouds, AFormulaBecomesMetresOverTheWholeSize) {
     EXPECT_TRUE(is_sound(loaded));
 }
 
+TEST(LoadClouds, AFormulaThatEvolvesBecomesItsFrames) {
+    Scene scene;
+    ASSERT_TRUE(formats::load_clouds(
+        read_one(R"("thickness": 250, "size": [4000, 4000], "procedural": {"type": "cellular",
+            "resolution": 32, "evolution": {"period": 600, "frames": 5}})"),
+        scene));
+    ASSERT_EQ(scene.layers.size(), 1u);
+    const formats::CloudLayer& layer = scene.layers[0];
+    EXPECT_EQ(layer.frames, 5u);
+    EXPECT_EQ(layer.frame_seconds, 120);
+    EXPECT_TRUE(layer.loops);
+    EXPECT_FLOAT_EQ(*std::max_element(layer.thickness.begin(), layer.thickness.end()), 250);
+    formats::CloudEntry loaded;
+    loaded.layer = layer;
+    EXPECT_TRUE(is_sound(loaded));
+}
+
 TEST(LoadClouds, AnEvenLayerStaysAsItIs) {
     Scene scene;
     ASSERT_TRUE(formats::load_clouds(read_one(R"("thickness": 42)"), scene));

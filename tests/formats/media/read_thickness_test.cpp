@@ -97,6 +97,95 @@ TEST_F(ReadThickness, SidesHaveFrom2To4096Texels) {
     EXPECT_TRUE(is_sound(cloud_of(read(grey_image(4096, 2, std::vector<float>(2 * 4096, 1))))));
 }
 
+TEST_F(ReadThickness, AListOfPicturesIsAFrameAfterFrame) {
+    for (const char* name : {"a.exr", "b.exr", "c.exr"}) {
+        const auto first = static_cast<float>(name[0]);
+        write_text(folder_ / name,
+                   make_exr(grey_image(3, 2, {first, 1, 2, 3, 4, 5}), {.is_grey = true}));
+    }
+    write_text(folder_ / "wide.exr",
+               make_exr(grey_image(2, 3, {0, 1, 2, 3, 4, 5}), {.is_grey = true}));
+    const std::string list = R"("height_field": ["a.exr", "b.exr", "c.exr"], "frame_seconds": )";
+    const auto media = read_cloud_in(folder_, list + "30");
+    const formats::CloudLayer layer = cloud_of(media).layer;
+    EXPECT_TRUE(is_sound(cloud_of(media)));
+    EXPECT_EQ(media->inputs.size(), 4u);
+    EXPECT_EQ(layer.name, "layer 1 (a.exr and 2 more)");
+    EXPECT_EQ(layer.frames, 3u);
+    EXPECT_EQ(layer.frame_seconds, 30);
+    EXPECT_FALSE(layer.loops);
+    EXPECT_EQ(layer.columns, 3u);
+    EXPECT_THAT(layer.thickness,
+                ElementsAre(97, 1, 2, 3, 4, 5, 98, 1, 2, 3, 4, 5, 99, 1, 2, 3, 4, 5));
+    EXPECT_TRUE(cloud_of(read_cloud_in(folder_, list + R"(30, "loop": true)")).layer.loops);
+    const formats::CloudLayer one =
+        cloud_of(read_cloud_in(folder_, R"("height_field": ["a.exr"])")).layer;
+    EXPECT_EQ(one.frames, 1u);
+    EXPECT_EQ(one.frame_seconds, 0);
+
+    const struct {
+        const char *entry, *place, *fault;
+    } cases[] = {
+        {R"("height_field": ["a.exr", "b.exr"])", "clouds > 0", "how long each picture"},
+        {R"("height_field": ["a.exr", "b.exr"], "frame_seconds": 0)", "frame_seconds", "from 0.01"},
+        {R"("height_field": ["a.exr", "b.exr"], "frame_seconds": 1, "loop": 1)", "loop", "true or"},
+        {R"("height_field": ["a.exr", "wide.exr"], "frame_seconds": 1)", "height_field > 1",
+         "2 x 3 texels, the first one has 3 x 2"},
+        {R"("height_field": ["a.exr", "none.exr"], "frame_seconds": 1)", "height_field > 1", ""},
+        {R"("height_field": [])", "height_field", "a list of 1 to 4096 texts"},
+        {R"("height_field": ["a.exr", 3])", "height_field", "a list of 1 to 4096 texts"},
+        {R"("height_field": "a.exr", "frame_seconds": 3)", "frame_seconds", "one picture only"},
+        {R"("height_field": ["a.exr"], "loop": true)", "loop", "one picture only"},
+        {R"("thickness": 3, "loop": true)", "loop", "no height_field"},
+    };
+    for (const auto& c : cases) {
+        EXPECT_THAT(faults(read_cloud_in(folder_, c.entry)),
+                    AllOf(HasSubstr(c.place), HasSubstr(c.fault)))
+            << c.entry;
+    }
+}
+
+TEST_F(ReadThickness, AllFramesTogetherAreBounded) {
+    write_text(folder_ / "a.exr",
+               make_exr(grey_image(130, 130, std::vector<float>(130 * 130, 1)), {.is_grey = true}));
+    std::string names = "\"a.exr\"";
+    for (int i = 1; i < 4096; ++i) {
+        names += ",\"a.exr\"";
+    }
+    EXPECT_THAT(
+        faults(read_cloud_in(folder_, R"("frame_seconds": 1, "height_field": [)" + names + "]")),
+        AllOf(HasSubstr("height_field > 0"), HasSubstr("4096 frames of 130 x 130 texels")));
+}
+
+TEST_F(ReadThickness, FormulasEvolveOverAPeriodOfFrames) {
+    const auto evolving = [&](const std::string& evolution) {
+        return read_cloud_in(folder_, R"("procedural": {"type": "waves", "resolution": 128,
+            "scale": 4000, "evolution": )" +
+                                          evolution + "}");
+    };
+    const CloudEntry cloud = cloud_of(evolving(R"({"period": 1200, "frames": 20})"));
+    EXPECT_TRUE(is_sound(cloud));
+    EXPECT_EQ(cloud.shape->frames, 20u);
+    EXPECT_EQ(cloud.layer.frame_seconds, 60);
+    EXPECT_TRUE(cloud.layer.loops);
+    EXPECT_EQ(cloud_of(evolving("{}")).shape->frames, 16u);
+    EXPECT_EQ(cloud_of(evolving("{}")).layer.frame_seconds, 225);
+    const struct {
+        const char *evolution, *place, *fault;
+    } cases[] = {{"3", "evolution", "not an object"},
+                 {R"({"speed": 3})", "evolution > speed", "no such key"},
+                 {R"({"period": 0})", "evolution > period", "from 1.0"},
+                 {R"({"frames": 3})", "evolution > frames", "from 4 to 256"},
+                 {R"({"frames": 257})", "evolution > frames", "from 4 to 256"}};
+    for (const auto& c : cases) {
+        EXPECT_THAT(faults(evolving(c.evolution)), AllOf(HasSubstr(c.place), HasSubstr(c.fault)))
+            << c.evolution;
+    }
+    EXPECT_THAT(faults(read_cloud_in(folder_, R"("procedural": {"type": "waves",
+        "resolution": 2048, "evolution": {"frames": 17}})")),
+                AllOf(HasSubstr("evolution > frames"), HasSubstr("17 frames")));
+}
+
 TEST_F(ReadThickness, DamagedImagesGiveASoundLayerOrAMessage) {
     const std::string whole =
         make_exr(grey_image(5, 4, std::vector<float>(20, 250)), {.is_half = true, .is_grey = true});

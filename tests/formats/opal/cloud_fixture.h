@@ -15,7 +15,7 @@ namespace opaline::tests {
 struct LayerShape {
     bool has_peak = true;      ///< and glow
     bool has_radiance = true;  ///< light of two scatterings or more
-    std::uint32_t flags = formats::LayerRecord::kRadiosity;
+    std::uint32_t flags = formats::LayerRecord::kRadiosity | formats::LayerRecord::kLoop;
 };
 
 /// Tables of flux of one band: T = 1 / (1 + tau / 5), a random part of what it scatters is T_1, and
@@ -45,7 +45,7 @@ inline void append_flux(const formats::LayerRecord& layer, std::mt19937& generat
 inline void add_layer(formats::Asset& asset, const LayerShape& shape = {}) {
     using namespace formats;
     Clouds& clouds = asset.clouds;
-    std::mt19937 generator(5);
+    std::mt19937 generator(5), later(6);  // of all that there was at first; of further frames
     std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
     std::uniform_int_distribution<std::uint32_t> code(0, 65535);
     LayerRecord layer;
@@ -62,6 +62,8 @@ inline void add_layer(formats::Asset& asset, const LayerShape& shape = {}) {
     layer.rows = 3;
     layer.ground_columns = 2;
     layer.ground_rows = 3;
+    layer.frames = 2;
+    layer.frame_seconds = 90;
     layer.phase_angles = 5;
     layer.glow_angles = shape.has_peak ? 3 : 0;
     layer.glow_events = shape.has_peak ? 2 : 0;
@@ -80,7 +82,8 @@ inline void add_layer(formats::Asset& asset, const LayerShape& shape = {}) {
     layer.first_ground = clouds.ground.size();
     layer.first_value = clouds.value.size();
     for (std::size_t i = 0; i < layer.thickness_count(); ++i) {
-        clouds.thickness.push_back(static_cast<std::uint16_t>(code(generator)));
+        clouds.thickness.push_back(
+            static_cast<std::uint16_t>(i < layer.frame_count() ? code(generator) : code(later)));
     }
     for (std::size_t i = 0; i < layer.ground_count(); ++i) {
         const auto grey = static_cast<std::uint8_t>(40 * i);

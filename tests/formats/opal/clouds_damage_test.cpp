@@ -65,6 +65,10 @@ TEST(CloudsDamage, CountsWhoseProductsOverflowAreRefused) {
     for (const std::uint32_t a : huge) {
         for (const std::uint32_t b : huge) {
             Asset asset = tests::make_cloud_asset();
+            asset.clouds.records[0].frames = a;
+            asset.clouds.records[0].columns = b;
+            EXPECT_NE(tests::fault_of(asset, Checks::structure), "") << a << ' ' << b;
+            asset = tests::make_cloud_asset();
             LayerRecord& layer = asset.clouds.records[0];
             layer.radiance_depths = layer.radiance_modes = a;
             layer.radiance_cosines = b;

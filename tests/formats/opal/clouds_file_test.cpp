@@ -206,14 +206,35 @@ TEST(CloudsFile, BandsOutOfRangeAreRefusedByName) {
 }
 
 TEST(CloudsFile, FlagsAndValuesOfLaterVersionsAreRefused) {
-    for (const std::uint32_t flags : {0u, 1u, 2u, 3u, 256u, 259u}) {
+    for (const std::uint32_t flags : {0u, 1u, 2u, 3u, 4u, 7u, 256u, 259u}) {
         EXPECT_EQ(layer_fault([=](Clouds&, LayerRecord& l) { l.flags = flags; }), "");
     }
     const char* const later = "only later versions know";
-    EXPECT_THAT(layer_fault([](Clouds&, LayerRecord& l) { l.flags = 4; }), HasSubstr(later));
-    EXPECT_THAT(layer_fault([](Clouds&, LayerRecord& l) { l.reserved[1] = 1; }), HasSubstr(later));
+    EXPECT_THAT(layer_fault([](Clouds&, LayerRecord& l) { l.flags = 1u << 31; }), HasSubstr(later));
     EXPECT_THAT(layer_fault([](Clouds& c, LayerRecord& l) { c.records.push_back(l); }),
                 HasSubstr("section CLOU: it has 2 layers"));
+}
+
+TEST(CloudsFile, FramesThatDoNotExistAreRefusedByName) {
+    for (const std::uint32_t frames : {0u, kMaxLayerFrames + 1, 0xffffffffu}) {
+        EXPECT_THAT(layer_fault([=](Clouds&, LayerRecord& l) { l.frames = frames; }),
+                    HasSubstr("it has " + std::to_string(frames) + " frames of thickness"));
+    }
+    EXPECT_THAT(layer_fault([](Clouds&, LayerRecord& l) { l.frames = kMaxLayerFrames; }),
+                HasSubstr("lie outside their arrays"));
+    expect_refused("frames of thickness are",
+                   [](LayerRecord& l) -> float& { return l.frame_seconds; },
+                   {0, -1, 1e-4f, 2e9f, kNotANumber, kEndless});
+    const auto of_one = [](float seconds, std::uint32_t flags) {
+        return layer_fault([=](Clouds&, LayerRecord& l) {
+            l.frames = 1;
+            l.frame_seconds = seconds;
+            l.flags = flags;
+        });
+    };
+    EXPECT_EQ(of_one(0, 3), "");
+    EXPECT_THAT(of_one(90, 3), HasSubstr("0 of one frame"));
+    EXPECT_THAT(of_one(0, LayerRecord::kLoop), HasSubstr("says that they loop"));
 }
 
 TEST(CloudsFile, CountsThatDoNotExistAreRefusedByName) {

@@ -182,8 +182,12 @@ TEST_F(GoldenFile, CloudLayersToo) {
     EXPECT_EQ(layer.band[2].kappa, 0.046f);
     EXPECT_EQ(layer.band[1].peak_weight, 0.45f);
     EXPECT_EQ(layer.band[0].g, 0.85f);
-    ASSERT_EQ(layer.thickness_count(), 12u);
+    EXPECT_TRUE(layer.loops());
+    EXPECT_EQ(layer.frames, 2u);
+    EXPECT_EQ(layer.frame_seconds, 90);
+    ASSERT_EQ(layer.thickness_count(), 24u);
     EXPECT_EQ(clouds.thickness_of(layer)[11], 26000);
+    EXPECT_EQ(clouds.thickness_of(layer)[23], 6518);
     EXPECT_EQ(clouds.ground_of(layer)[5], (std::array<std::uint8_t, 4>{200, 128, 55, 255}));
     const LayerTables tables = tables_of(clouds, layer, 2);
     EXPECT_EQ(tables.log_phase[4], -2.33915567f);

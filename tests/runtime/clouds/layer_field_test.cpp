@@ -84,6 +84,66 @@ TEST(LayerField, MovesWithTheWind) {
     EXPECT_TRUE(std::isfinite(sample_thickness(make_layer_field(record, codes, 1e308), 10, 20, 0)));
 }
 
+formats::LayerRecord three_frames(bool loops) {
+    formats::LayerRecord record = field_record(5, 3, true);
+    record.frames = 3;
+    record.frame_seconds = 20;
+    record.flags |= loops ? formats::LayerRecord::kLoop : 0;
+    return record;
+}
+
+TEST(LayerField, ThicknessIsLinearInTimeBetweenFrames) {
+    const auto codes = uneven_codes(3 * 15);
+    for (const bool loops : {false, true}) {
+        const formats::LayerRecord record = three_frames(loops);
+        const auto single = [&](std::size_t frame) {
+            return make_layer_field(field_record(5, 3, true),
+                                    std::span(codes).subspan(15 * frame, 15), 0);
+        };
+        const auto expect_blend = [&](double time, std::size_t first, std::size_t second,
+                                      float share) {
+            const LayerField field = make_layer_field(record, codes, time);
+            const LayerField a = single(first), b = single(second);
+            ASSERT_EQ(field.thickness.level.size(), a.thickness.level.size());
+            for (std::size_t level = 0; level < a.thickness.level.size(); ++level) {
+                for (std::size_t i = 0; i < a.thickness.level[level].value.size(); ++i) {
+                    EXPECT_NEAR(field.thickness.level[level].value[i],
+                                (1 - share) * a.thickness.level[level].value[i] +
+                                    share * b.thickness.level[level].value[i],
+                                1e-3)
+                        << time << " " << loops;
+                }
+            }
+        };
+        expect_blend(0, 0, 1, 0);
+        expect_blend(15, 0, 1, 0.75f);
+        expect_blend(20, 1, 2, 0);
+        expect_blend(39, 1, 2, 0.95f);
+        expect_blend(40, 2, 2, 0);
+        expect_blend(50, 2, loops ? 0 : 2, 0.5f);
+        expect_blend(75, loops ? 0 : 2, loops ? 1 : 2, 0.75f);
+        expect_blend(-5, loops ? 2 : 0, 0, 0.75f);
+    }
+}
+
+TEST(LayerField, FramesOfAnyTimeAreThoseThatThereAre) {
+    for (const bool loops : {false, true}) {
+        for (const float seconds : {1e-3f, 20.0f, 1e9f}) {
+            formats::LayerRecord record = three_frames(loops);
+            record.frame_seconds = seconds;
+            for (const double time : {0.0, -1e-300, -1e-9, 60.0, 1e9, -1e9, 1e308, -1e308, HUGE_VAL,
+                                      -HUGE_VAL, std::nan("")}) {
+                const FrameBlend blend = blend_frames(record, time);
+                EXPECT_LT(blend.first, 3u);
+                EXPECT_LT(blend.second, 3u);
+                EXPECT_TRUE(blend.share >= 0 && blend.share <= 1) << time;
+            }
+            EXPECT_EQ(blend_frames(record, std::nan("")), FrameBlend{});
+        }
+    }
+    EXPECT_EQ(blend_frames(field_record(5, 3, true), 17), FrameBlend{});
+}
+
 TEST(LayerField, SlopeIsThatOfAPlane) {
     std::vector<std::uint16_t> codes;
     for (std::uint32_t row = 0; row < 16; ++row) {

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "runtime/clouds/layer_light.h"
 #include "runtime/gl/gl_renderer.h"
@@ -252,6 +255,36 @@ TEST_F(Gl, AnotherTimeMovesTheLayerAndTilesDoNot) {
     EXPECT_NE(first->pixel, moved->pixel);
     test::expect_same_picture(draw_layer_on_cpu(asset, later, camera, {}), *moved);
     test::expect_same_picture(*moved, *tiles);
+}
+
+TEST_F(Gl, AnotherTimeShowsABlendOfOtherFrames) {
+    Asset asset = layer_alone(broken_clouds());
+    formats::LayerRecord& record = asset.clouds.records[0];
+    record.frames = 2;
+    record.frame_seconds = 60;
+    record.flags |= formats::LayerRecord::kLoop;
+    std::vector<std::uint16_t>& codes = asset.clouds.thickness;
+    const std::vector<std::uint16_t> first = codes;
+    codes.insert(codes.end(), first.rbegin(), first.rend());
+    const Camera camera = layer_camera(kPlaces[1]);
+    std::optional<GlRenderer> renderer;
+    std::vector<Picture> pictures;
+    for (const double time : {0.0, 40.0, 75.0}) {
+        const LitAsset lit(asset, sun_from(kToSun), {.time = time});
+        if (!renderer) {
+            auto made = GlRenderer::create(asset.view(), lit.environment);
+            ASSERT_TRUE(made.has_value()) << text_of(made.error());
+            renderer.emplace(std::move(*made));
+            ASSERT_TRUE(renderer->set_light(lit.vector, lit.rotation));
+        }
+        ASSERT_TRUE(renderer->set_layers(lit.layers));
+        auto picture = renderer->render(camera);
+        ASSERT_TRUE(picture);
+        test::expect_same_picture(draw_layer_on_cpu(asset, lit, camera, {}), *picture);
+        pictures.push_back(std::move(*picture));
+    }
+    EXPECT_NE(pictures[0].pixel, pictures[1].pixel);
+    EXPECT_NE(pictures[1].pixel, pictures[2].pixel);
 }
 
 }  // namespace

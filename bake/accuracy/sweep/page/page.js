@@ -11,12 +11,19 @@ function introduce() {
         ? `; halving it takes ${significant(answer.times_for_half, 2)} times as long.`
         : '; no setting of this sweep halves it.')
     : 'Too few settings were baked to say what an error costs.');
-  fill('facts', `${data.scene.receivers} receivers, ${data.scene.triangles} triangles; ${points.length} bakes ` +
+  fill('facts', (ofLayer ? 'A cloud layer; ' : `${data.scene.receivers} receivers, ${data.scene.triangles} triangles; `) +
+    `${points.length} bakes ` +
     `in ${seconds(data.seconds_total)} on ${data.threads} thread${data.threads === 1 ? '' : 's'}; ` +
-    `errors: relative RMS of relit luminance over ${data.lights.length} lights.`);
-  fill('method', `Each bake measured its own error at receivers of its own choice under ${data.lights.join(', ')}, ` +
-    `against ${points[0].error.reference.split(';')[0].replace(/^[^:]*: /, '')}. Intervals are 95\u00a0% bootstrap intervals over receivers. ` +
-    `Besides, up to 2000 receivers were compared with the finest bake of the same model that the time allowed: \u201c${truth.label}\u201d ` +
+    (ofLayer ? 'errors: relative RMS of the radiance that its tables give.'
+      : `errors: relative RMS of relit luminance over ${data.lights.length} lights.`));
+  const reference = points[0].error.reference;
+  fill('method', (ofLayer
+    ? `Each bake measured its own error at optical depths, suns and views of its own choice, against ${reference}. ` +
+      'Intervals are 95\u00a0% intervals over these. Besides, the radiance at places that are the same for all bakes was compared'
+    : `Each bake measured its own error at receivers of its own choice under ${data.lights.join(', ')}, ` +
+      `against ${reference.split(';')[0].replace(/^[^:]*: /, '')}. Intervals are 95\u00a0% bootstrap intervals over receivers. ` +
+      'Besides, up to 2000 receivers were compared') +
+    ` with the finest bake of the same model that the time allowed: \u201c${truth.label}\u201d ` +
     `(${knobLines(truth).join('; ')}; ${seconds(truth.seconds)}, ${bytes(truth.bytes)}; it errs by ` +
     `${interval(truth.error)}, which is added in squares). The two intervals meet for ${data.agreement.agreeing} of ${data.agreement.of} ` +
     'bakes. Seconds are wall time of whole bakes with their self-checks, once each; CPU is that of all threads. ' +
@@ -145,5 +152,6 @@ data.slopes.forEach(slope => slopeChart(document.getElementById('slopes'), slope
 document.getElementById('convergence').hidden = data.slopes.length === 0;
 fill('base', data.base);
 picturesSection();
+document.getElementById('by-light').hidden = ofLayer;
 lightsChart();
 allTable();

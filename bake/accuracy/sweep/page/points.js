@@ -56,6 +56,8 @@ const isCompared = p => points[p.finest] !== p;
 const isPreset = p => 'preset' in p.ladders;
 // Of the truth's choices: only such bakes differ in numbers alone.
 const alike = points.filter(p => p.choices === truth.choices);
+// Nothing but a cloud layer: nothing is relit.
+const ofLayer = points.every(p => 'layer_error' in p) && data.lights.length === 0;
 const isJoint = p => 'grid' in p.ladders || 'diagonal' in p.ladders;
 const named = line => line.choices || 'bakes';
 const presets = points.filter(isPreset).sort((a, b) => a.ladders.preset - b.ladders.preset);
@@ -65,7 +67,7 @@ function interval(error) {
 }
 function knobLines(point) {
   const k = point.knobs;
-  const lines = [`N = ${k.cubemap}, M = ${k.coefficients}, ${k.code_bits}-bit codes`];
+  const lines = ofLayer ? [] : [`N = ${k.cubemap}, M = ${k.coefficients}, ${k.code_bits}-bit codes`];
   for (const [name, value] of Object.entries(k)) {
     if (data.knobs.includes(name)) {
       lines.push(`${name.replaceAll('_', ' ')} ${value}`);

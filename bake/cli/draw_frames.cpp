@@ -1,0 +1,187 @@
+#include "bake/cli/draw_frames.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include "bake/cli/exit_codes.h"
+#include "bake/cli/interrupt.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/write_picture.h"
+#include "runtime/picture/software_renderer.h"
+#include "runtime/shade.h"
+#include "runtime/volumes/relight_volumes.h"
+
+namespace opaline::cli {
+namespace {
+
+using formats::ErrorKind;
+using formats::make_error;
+using FrameClock = std::chrono::steady_clock;
+
+double elapsed_since(FrameClock::time_point start) {
+    return std::chrono::duration<double>(FrameClock::now() - start).count();
+}
+
+// Draws and writes with `draw(camera)`.
+template <class Draw>
+int write_frames(const FrameOptions& options, const runtime::Camera& camera, std::uint32_t end,
+                 Drawing& drawing, Draw&& draw) {
+    const std::atomic<bool>& interrupted = catch_interrupts();
+    for (; drawing.frames < end; ++drawing.frames) {
+        if (interrupted.load()) {
+            return report_error(make_error(ErrorKind::interrupted, "", "", "interrupted",
+                                           "frames written so far are whole"));
+        }
+        const double degrees = options.turn * drawing.frames / options.frames;
+        const auto start = FrameClock::now();
+        const auto picture = draw(runtime::orbit(camera, static_cast<float>(degrees)));
+        drawing.seconds += elapsed_since(start);
+        if (!picture) {
+            return report_error(picture.error());
+        }
+        if (auto status =
+                write_picture(frame_path(options, drawing.frames), *picture, options.exposure);
+            !status) {
+            return report_error(status.error());
+        }
+    }
+    return kExitSuccess;
+}
+
+int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
+                const PictureLight& light, const runtime::Camera& camera, Shown shown,
+                std::uint32_t end, Drawing& drawing) {
+    formats::Vec3 shaded_for = camera.eye;
+    const runtime::PartLights lights = light.parts.lights();
+    auto start = FrameClock::now();
+    std::vector<formats::Rgb> radiance =
+        runtime::shade_for_picture(view, lights, shaded_for, shown.terms, options.threads);
+    const runtime::VolumeLight volumes =
+        runtime::relight_volumes(view.volumes, lights.light[lights.of_volumes],
+                                 {.terms = shown.terms, .threads = options.threads});
+    print_seconds(options, "dot products", elapsed_since(start));
+    runtime::SoftwareOptions software;
+    software.volumes = &volumes;
+    software.threads = options.threads;
+    software.background = shown.background;
+    software.layers = shown.background && light.layers.layers ? &*light.layers.layers : nullptr;
+    runtime::SpecularLight specular;
+    if (const runtime::SpecularNeeds needs = runtime::specular_needs(view);
+        needs.any() && has_any(shown.terms, formats::TermSet::specular)) {
+        start = FrameClock::now();
+        specular = runtime::make_specular_light(light.of_objects().environment, needs,
+                                                light.of_objects().rotation, options.threads);
+        software.specular = &specular;
+        print_seconds(options, "mirrored light", elapsed_since(start));
+    }
+    const bool depends_on_eye = std::ranges::any_of(view.primitives, [](const auto& primitive) {
+        return primitive.shading != formats::Shading::diffuse;
+    });
+    return write_frames(options, camera, end, drawing, [&](const runtime::Camera& at) {
+        if (depends_on_eye && shaded_for != at.eye) {
+            shaded_for = at.eye;
+            radiance =
+                runtime::shade_for_picture(view, lights, shaded_for, shown.terms, options.threads);
+        }
+        return runtime::render_software(view, radiance, light.sky.environment, light.sky.rotation,
+                                        at, software);
+    });
+}
+
+#ifdef OPALINE_HAS_GL
+// A renderer for this light: the one of the light before, unless surfaces mirror what has changed.
+formats::Status prepare_renderer(const formats::AssetView& view, const PictureLight& light,
+                                 Drawing& drawing) {
+    if (drawing.renderer && !(light.layers.objects && runtime::specular_needs(view).any())) {
+        return formats::ok_status();
+    }
+    runtime::GlOptions upload;
+    if (light.layers.objects) upload.mirrored = &light.layers.objects->environment;
+    auto renderer = runtime::GlRenderer::create(view, light.sky.environment, upload);
+    if (!renderer) {
+        return renderer.error();
+    }
+    drawing.renderer.emplace(std::move(*renderer));
+    return formats::ok_status();
+}
+#endif
+
+int draw_on_gpu([[maybe_unused]] const FrameOptions& options,
+                [[maybe_unused]] const formats::AssetView& view,
+                [[maybe_unused]] const PictureLight& light,
+                [[maybe_unused]] const runtime::Camera& camera, [[maybe_unused]] Shown shown,
+                [[maybe_unused]] std::uint32_t end, [[maybe_unused]] Drawing& drawing) {
+#ifdef OPALINE_HAS_GL
+    const bool is_first = !drawing.renderer;
+    const auto prepared = prepare_renderer(view, light, drawing);
+    if (!prepared && options.backend == Backend::automatic && drawing.frames == 0) {
+        drawing.lacks_gl = true;
+        print_note("opaline: drawing on the CPU, as OpenGL cannot be used: " +
+                   printable(prepared.error().diagnostics.front().fault));
+        return draw_on_cpu(options, view, light, camera, shown, end, drawing);
+    }
+    if (!prepared) {
+        formats::Error error = prepared.error();
+        error.diagnostics.front().remedy = "use --backend cpu";
+        return report_error(error);
+    }
+    runtime::GlRenderer& renderer = *drawing.renderer;
+    if (auto status = renderer.set_light(light.parts.lights(), light.sky.rotation); !status) {
+        return report_error(status.error());
+    }
+    if (shown.background && light.layers.layers) {
+        if (auto status = renderer.set_layers(*light.layers.layers); !status) {
+            return report_error(status.error());
+        }
+    }
+    if (options.stats && is_first) {
+        fmt::print("{:<16} {}\n", "device", renderer.stats().device);
+        print_seconds(options, "upload", renderer.stats().upload_seconds);
+        print_seconds(options, "mirrored light", renderer.stats().specular_seconds);
+    }
+    print_seconds(options, "light upload", renderer.stats().light_seconds);
+    print_seconds(options, "dot products", renderer.stats().dot_seconds);
+    runtime::GlRenderOptions gl;
+    gl.terms = shown.terms;
+    gl.background = shown.background;
+    return write_frames(options, camera, end, drawing,
+                        [&](const runtime::Camera& at) { return renderer.render(at, gl); });
+#else
+    if (options.backend == Backend::automatic) {
+        return draw_on_cpu(options, view, light, camera, shown, end, drawing);
+    }
+    return report_error(make_error(ErrorKind::resource, "", "--backend",
+                                   "this program was built without OpenGL", "use --backend cpu"));
+#endif
+}
+
+}  // namespace
+
+std::string frame_path(const FrameOptions& options, std::uint32_t frame) {
+    if (options.frames == 1) {
+        return options.output;
+    }
+    const std::filesystem::path path(options.output);
+    return (path.parent_path() /
+            fmt::format("{}-{:04}{}", path.stem().string(), frame + 1, path.extension().string()))
+        .string();
+}
+
+void print_seconds(const FrameOptions& options, const char* name, double seconds) {
+    if (options.stats) {
+        fmt::print("{:<16} {}\n", name, format_seconds(seconds));
+    }
+}
+
+int draw_frames(const FrameOptions& options, const formats::AssetView& view,
+                const PictureLight& light, const runtime::Camera& camera, Shown shown,
+                std::uint32_t end, Drawing& drawing) {
+    const bool on_cpu = options.backend == Backend::cpu || drawing.lacks_gl;
+    return (on_cpu ? draw_on_cpu : draw_on_gpu)(options, view, light, camera, shown, end, drawing);
+}
+
+}  // namespace opaline::cli

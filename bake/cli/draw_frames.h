@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "bake/cli/inputs.h"
+#include "bake/cli/light_with_layers.h"
+#include "formats/opal/asset.h"
+#include "formats/opal/terms.h"
+#include "runtime/picture/camera.h"
+#ifdef OPALINE_HAS_GL
+#include "runtime/gl/gl_renderer.h"
+#endif
+
+namespace opaline::cli {
+
+/// `automatic`: OpenGL, and the processor where there is none.
+enum class Backend { automatic, gl, cpu };
+
+/// How pictures of a file are made.
+struct FrameOptions {
+    std::string output;
+    Backend backend = Backend::automatic;
+    float exposure = 0;        ///< [EV]
+    std::uint32_t frames = 1;  ///< 1 or more
+    double turn = 360;         ///< that the camera goes around the target in all frames [degrees]
+    unsigned threads = 0;
+    bool stats = false;
+};
+
+/// Where a frame is written: OUT.png, or OUT-0001.png and so on of several. `frame` from 0.
+std::string frame_path(const FrameOptions& options, std::uint32_t frame);
+
+/// Parts of the picture to show.
+struct Shown {
+    formats::TermSet terms = formats::TermSet::baked;
+    bool background = true;
+};
+
+/// The light of the sky, and what of it reaches meshes and volumes.
+struct PictureLight {
+    const OpenedLight& sky;
+    const LightWithLayers& layers;
+    PartVectors parts;
+
+    const OpenedLight& of_objects() const { return layers.of_objects(sky); }
+};
+
+/// What stays from one light to the next.
+struct Drawing {
+    std::uint32_t frames = 0;  ///< drawn and written so far
+    double seconds = 0;        ///< of drawing them
+    bool lacks_gl = false;     ///< OpenGL was tried, and cannot be used
+#ifdef OPALINE_HAS_GL
+    std::optional<runtime::GlRenderer> renderer;
+#endif
+};
+
+/// Draws the frames up to `end` that are not drawn yet, and writes them. `camera`: of the first
+/// frame. Gives an exit code, and reports errors. The file and the sky are the same in each call.
+int draw_frames(const FrameOptions& options, const formats::AssetView& view,
+                const PictureLight& light, const runtime::Camera& camera, Shown shown,
+                std::uint32_t end, Drawing& drawing);
+
+/// A line of `--stats`.
+void print_seconds(const FrameOptions& options, const char* name, double seconds);
+
+}  // namespace opaline::cli

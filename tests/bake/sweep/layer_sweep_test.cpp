@@ -1,0 +1,128 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "bake/accuracy/sweep/analysis.h"
+#include "bake/accuracy/sweep/run_sweep.h"
+#include "bake/accuracy/sweep/sweep_layers.h"
+#include "bake/accuracy/sweep/tables.h"
+#include "bake/layers/plan_layers.h"
+#include "tests/bake/layers/layer_support.h"
+#include "tests/support/effects.h"
+#include "tests/support/rates.h"
+
+namespace opaline::bake {
+namespace {
+
+SweepSubject subject_of_layer(const formats::Scene& scene) {
+    const Knobs preview = *resolve_knobs(all_effects(), {});
+    return sweep_subject(all_effects(), scene, {}, preview, plan_layers(scene, preview).entries);
+}
+
+TEST(LayerSweep, LaddersOfALayerAloneAreThoseOfItsTwoKnobs) {
+    const SweepSubject subject = subject_of_layer(layer_scene());
+    EXPECT_TRUE(subject.is_layer_alone());
+    EXPECT_THAT(subject.knobs, ::testing::UnorderedElementsAre(&kCloudStep, &kCloudNodes));
+    std::set<Ladder> ladders;
+    const auto points = make_ladders(LadderRequest{all_effects(), subject, {}}, Quality::preview);
+    for (std::size_t a = 0; a < points.size(); ++a) {
+        for (const Rung& rung : points[a].rungs) {
+            ladders.insert(rung.ladder);
+        }
+        for (std::size_t b = 0; b < a; ++b) {
+            EXPECT_FALSE(same_bake(points[a].knobs, points[b].knobs, subject))
+                << points[a].label << " and " << points[b].label;
+        }
+    }
+    EXPECT_EQ(ladders, (std::set<Ladder>{ladder_of(kCloudStep), ladder_of(kCloudNodes),
+                                         Ladder::preset, Ladder::diagonal}));
+}
+
+TEST(LayerSweep, TruthsOfALayerAloneAreFineTablesNotAllCoefficients) {
+    const auto truths =
+        make_truths(LadderRequest{all_effects(), subject_of_layer(layer_scene()), {}});
+    ASSERT_EQ(truths.size(), 3u);
+    for (std::size_t i = 0; i < truths.size(); ++i) {
+        EXPECT_THAT(truths[i].label, ::testing::Not(::testing::HasSubstr("coefficients")));
+        if (i > 0) {
+            EXPECT_LT(truths[i].knobs[kCloudNodes], truths[i - 1].knobs[kCloudNodes]);
+            EXPECT_GT(truths[i].knobs[kCloudStep], truths[i - 1].knobs[kCloudStep]);
+        }
+    }
+}
+
+TEST(LayerSweep, RadianceOfEachGroupIsRelativeToTheFirstBake) {
+    std::vector<PointRecord> points(2);
+    points[0].layer_radiance =
+        read_layer_radiance(bake_layer(layer_scene(), least_layer_knobs()).clouds.view());
+    ASSERT_EQ(points[0].layer_radiance.size(), 3u * 4 * 3 * 2 * 20);
+    for (const double radiance : points[0].layer_radiance) {
+        EXPECT_TRUE(std::isfinite(radiance) && radiance > 0);
+    }
+    for (const double radiance : points[0].layer_radiance) {
+        points[1].layer_radiance.push_back(1.5 * radiance);
+    }
+    scale_layer_radiance(points);
+    for (std::size_t group = 0; group < 72; ++group) {
+        double square = 0;
+        for (std::size_t i = 20 * group; i < 20 * (group + 1); ++i) {
+            square += points[0].layer_radiance[i] * points[0].layer_radiance[i] / 20;
+        }
+        EXPECT_NEAR(square, 1, 1e-9);
+    }
+    EXPECT_NEAR(relative_difference(points[1].layer_radiance, points[0].layer_radiance), 0.5, 1e-9);
+    std::vector<PointRecord> none;
+    scale_layer_radiance(none);
+}
+
+TEST(LayerSweep, AScenesErrorIsTheLargerOneOfItsLayerAndTheRest) {
+    LayerErrorReport layer;
+    layer.rms_relative = 0.02;
+    layer.reference = "slabs";
+    layer.radiances_checked = 7;
+    ErrorReport alone;
+    take_larger(alone, layer);
+    EXPECT_EQ(alone.rms_relative, 0.02);
+    EXPECT_EQ(alone.receivers_checked, 7u);
+    ErrorReport rest;
+    rest.rms_relative = 0.05;
+    rest.receivers_checked = 3;
+    take_larger(rest, layer);
+    EXPECT_EQ(rest.rms_relative, 0.05);
+    EXPECT_THAT(rest.reference, ::testing::HasSubstr("clouds: slabs"));
+}
+
+TEST(LayerSweep, PointsOfALayerAloneNeedNoTestLightsAndNoPathTracing) {
+    SweepOptions options;
+    options.seconds = 4;
+    options.rates = tests::make_rates();
+    // As those of a real machine: the others' would leave no time for a draft.
+    options.rates.series_term = options.rates.flux_product = options.rates.radiance_product = 5e-10;
+    options.bake.threads = 2;
+    const auto result = run_sweep(all_effects(), layer_scene(100, 1e-6), options, {}, {});
+    ASSERT_TRUE(result.has_value());
+    EXPECT_TRUE(result->lights.empty());
+    EXPECT_FALSE(result->reference);
+    ASSERT_GT(result->points.size(), 2u);
+    for (const PointRecord& point : result->points) {
+        ASSERT_TRUE(point.layer);
+        EXPECT_EQ(point.error.rms_relative, point.layer->rms_relative);
+        EXPECT_EQ(point.total.receivers_checked, 0u);
+        EXPECT_FALSE(point.picture.pixel.empty());
+        for (const StageReport& stage : point.stages) {
+            EXPECT_NE(stage.name, "test lights");
+        }
+    }
+    const PointRecord& truth = result->points[result->truth];
+    EXPECT_LT(truth.error.rms_relative, result->points.front().error.rms_relative);
+    EXPECT_GT(result->points.front().against_finest.rms_relative, 0.005);
+    const auto json = make_sweep_json(*result, analyse_sweep(*result));
+    EXPECT_GT(json["points"][0]["layer_error"]["tables"], 0);
+    EXPECT_EQ(json["knobs"], (nlohmann::ordered_json{"cloud_step", "cloud_nodes"}));
+    EXPECT_EQ(json["plan"].size(), 3u);
+}
+
+}  // namespace
+}  // namespace opaline::bake
