@@ -123,6 +123,9 @@ double ratio(const Sums& sums) {
 
 // Resample whole receivers, because the lights of one receiver are not independent.
 std::vector<Sums> sum_receivers(std::span<const CheckedPair> pairs, std::size_t lights) {
+    if (lights == 0) {
+        return {};  // where nothing is relit no light is made
+    }
     std::vector<Sums> of_receiver(pairs.size() / lights);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         of_receiver[i / lights].error += pairs[i].error[0] * pairs[i].error[1];

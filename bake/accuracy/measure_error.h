@@ -71,7 +71,7 @@ void append_point(const CheckedPoint& point, EffectCheck& check);
 double relative_rms(std::span<const CheckedPair> pairs);
 
 /// The same with the ends of its 95 % interval by bootstrap over receivers; each receiver has
-/// `lights` >= 1 consecutive pairs.
+/// `lights` consecutive pairs; without lights there are no pairs, and the error is 0.
 struct ErrorBounds {
     double rms = 0, lowest = 0, highest = 0;
 };

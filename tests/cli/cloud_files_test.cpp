@@ -50,7 +50,8 @@ TEST(CloudFiles, InfoListsTheLayer) {
     EXPECT_THAT(text.out, Not(HasSubstr("fidelity")));
     EXPECT_EQ(layer["tables"]["flux"], nlohmann::json({4, 3}));
     EXPECT_EQ(layer["tables"]["radiance"], nlohmann::json({2, 3, 2}));
-    EXPECT_EQ(layer["bytes"], 176 + 2 * 12 + 4 * 6 + 4 * asset.clouds.value.size());
+    EXPECT_EQ(layer["bytes"],
+              176 + 2 * asset.clouds.thickness.size() + 4 * 6 + 4 * asset.clouds.value.size());
     EXPECT_TRUE(info["volumes"].empty() && info["primitives"].empty());
 
     formats::Asset paper = asset;

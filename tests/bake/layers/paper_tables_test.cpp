@@ -1,4 +1,4 @@
-// Printed forms of [Bouthors2006] as tables. Expected values are those that clouds.md states of the
+// Printed forms of [Bouthors2006] as tables. Expected values are those that are known of the
 // paper, or are computed here from the paper's equations.
 #include "bake/layers/paper_tables.h"
 
@@ -93,14 +93,14 @@ TEST(PaperTables, FluxesAreThoseOfTheAppendixAtItsAngles) {
     EXPECT_TRUE(std::ranges::is_sorted(table.mean_t, std::greater<>{}));
 }
 
-// T_2a and T_2b of 60 m under light at the normal: clouds.md, corrections 12 and 13, has 0.1814 and
+// T_2a and T_2b of 60 m under light at the normal: corrected as bake/slab has it, 0.1814 and
 // 3.4e-4 for x = 1.59, r = .0547.
 TEST(PaperTables, SecondOrderOfTheColumnIsTheCorrectedOne) {
     const OrderShares shares = column_orders(paper2006_at(0), 60);
     EXPECT_NEAR(shares.transmitted[2], 0.1814 + 3.4e-4, 1e-4);
 }
 
-// Hemispheric totals of order 2: clouds.md 3.7, "printed form without kappa^2"; the rest is R_3+
+// Hemispheric totals of order 2: of the printed form without kappa^2; the rest is R_3+
 // and T_3+ of appendix A, as the profile 1 / (2 mu) has the energy that it is given.
 TEST(PaperTables, RadianceHasThePrintedEnergies) {
     const struct {
