@@ -96,6 +96,7 @@ double eval_noise(const Noise& noise, LatticePoint p) {
 
 std::vector<Noise> make_octaves(const Lattice& lattice, int octaves, std::uint32_t seed) {
     std::vector<Noise> all;
+    all.reserve(static_cast<std::size_t>(std::max(0, octaves)));
     for (int i = 0; i < octaves; ++i) {
         all.push_back(make_noise(finer(lattice, 1 << i), seed + static_cast<std::uint32_t>(i)));
     }

@@ -59,6 +59,7 @@ std::vector<Item> list_items(const formats::AssetView& asset,
         }
     }
     std::vector<Item> items;
+    items.reserve(of_node.size() + 1);
     for (auto& [node, item] : of_node) {
         items.push_back(std::move(item));
     }

@@ -70,10 +70,15 @@ std::vector<LayerSheet> sheets_of_pixel(const VolumePass& pass, const Band& band
     return sheets;
 }
 
+// Of a band that begins with a whole pixel.
+std::uint32_t first_pixel_row(const Band& band, std::uint32_t supersampling) {
+    return band.first_row / supersampling;
+}
+
 void draw_samples(const VolumePass& pass, const Band& band, std::uint32_t x, std::uint32_t y,
                   std::span<Rgb> color) {
     const std::uint32_t s = pass.supersampling;
-    const double row = static_cast<double>(band.first_row / s) + y;
+    const double row = first_pixel_row(band, s) + y;
     for_samples(band, s, x, y, [&](std::size_t sample, std::uint32_t i, std::uint32_t j) {
         const PictureRay ray =
             ray_through(pass.camera, pass.frame, x + (i + 0.5) / s, row + (j + 0.5) / s);
@@ -91,7 +96,7 @@ void draw_samples(const VolumePass& pass, const Band& band, std::uint32_t x, std
 void draw_pixel(const VolumePass& pass, const Band& band, std::uint32_t x, std::uint32_t y,
                 std::span<Rgb> color) {
     const std::uint32_t s = pass.supersampling;
-    const double row = static_cast<double>(band.first_row / s) + y;
+    const double row = first_pixel_row(band, s) + y;
     const PictureRay centre = ray_through(pass.camera, pass.frame, x + 0.5, row + 0.5);
     const MarchRay march = march_ray(pass, centre);
     const double end = volumes_end(pass.volumes, march);
