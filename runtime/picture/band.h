@@ -19,6 +19,11 @@ struct Band {
     std::vector<std::uint32_t> triangle;   ///< index into the triangles, or kNothing
 };
 
+/// The row of pixels that a band of whole pixels begins with. `supersampling` >= 1.
+inline std::uint32_t first_pixel_row(const Band& band, std::uint32_t supersampling) {
+    return band.first_row / supersampling;
+}
+
 /// Empties the band and moves it to `first_row`.
 void reset_band(Band& band, std::uint32_t first_row, std::uint32_t rows, std::uint32_t columns);
 

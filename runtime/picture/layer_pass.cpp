@@ -94,7 +94,7 @@ void draw_layer_pixel(const LayerPass& pass, const Band& band, std::uint32_t x, 
         if (!samples.sheet.empty()) samples.sheet[sample] = seen.sheet;
     };
     const std::uint32_t s = pass.supersampling;
-    const double row = static_cast<double>(band.first_row / s) + y;
+    const double row = first_pixel_row(band, s) + y;
     bool sees_surface = false;
     for_samples(band, s, x, y, [&](std::size_t sample, std::uint32_t, std::uint32_t) {
         sees_surface = sees_surface || band.inverse_distance[sample] > 0;
@@ -118,7 +118,7 @@ void draw_layer_pixel(const LayerPass& pass, const Band& band, std::uint32_t x, 
 void draw_layers(const LayerPass& pass, const Band& band, const LayerSamples& samples) {
     const std::uint32_t s = pass.supersampling;
     CornerRow above(pass, band.columns / s + 1), below(pass, band.columns / s + 1);
-    const double first = static_cast<double>(band.first_row / s);
+    const double first = first_pixel_row(band, s);
     above.move_to(first);
     for (std::uint32_t y = 0; y < band.rows / s; ++y) {
         below.move_to(first + y + 1);

@@ -70,11 +70,6 @@ std::vector<LayerSheet> sheets_of_pixel(const VolumePass& pass, const Band& band
     return sheets;
 }
 
-// Of a band that begins with a whole pixel.
-std::uint32_t first_pixel_row(const Band& band, std::uint32_t supersampling) {
-    return band.first_row / supersampling;
-}
-
 void draw_samples(const VolumePass& pass, const Band& band, std::uint32_t x, std::uint32_t y,
                   std::span<Rgb> color) {
     const std::uint32_t s = pass.supersampling;
