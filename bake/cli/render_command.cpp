@@ -38,18 +38,20 @@ Shown show(formats::TermSet terms, const formats::AssetView& view) {
     return {terms, has_all(terms, possible)};
 }
 
-formats::Status check_time_step(const RenderCommand& options, const formats::AssetView& view) {
-    if (!options.time_step) {
-        return formats::ok_status();
-    }
-    const auto refuse = [](const char* fault, const char* remedy) {
-        return formats::make_error(formats::ErrorKind::usage, "", "--time-step", fault, remedy);
+// Of options that set frames apart.
+formats::Status check_motion(const RenderCommand& options, const formats::AssetView& view) {
+    const auto refuse = [](const char* option, const char* fault, const char* remedy) {
+        return formats::make_error(formats::ErrorKind::usage, "", option, fault, remedy);
     };
-    if (options.frame.frames == 1) {
-        return refuse("there is one frame only", "give --frames, or --time for another time");
+    const char* const one = "there is one frame only";
+    if (options.turn && options.frame.frames == 1) {
+        return refuse("--turn", one, "give --frames, or --azimuth for another side");
     }
-    if (view.clouds.empty()) {
-        return refuse("the file has no cloud layer, and nothing else moves",
+    if (options.time_step && options.frame.frames == 1) {
+        return refuse("--time-step", one, "give --frames, or --time for another time");
+    }
+    if (options.time_step && view.clouds.empty()) {
+        return refuse("--time-step", "the file has no cloud layer, and nothing else moves",
                       "leave it out: --frames alone turns the camera");
     }
     return formats::ok_status();
@@ -97,7 +99,7 @@ int run(const RenderCommand& options) {
     if (auto status = runtime::check_terms(view, *terms, options.path); !status) {
         return report_error(status.error());
     }
-    if (auto status = check_time_step(options, view); !status) {
+    if (auto status = check_motion(options, view); !status) {
         return report_error(status.error());
     }
     const auto camera = make_camera(options.camera, view);

@@ -49,15 +49,15 @@ void compose(const TwoParts& seen, const LayerSheet& sheet, Rgb& color) {
 }
 
 // Whether one march does for all of them, on a ray that meets volumes from begin to end.
-bool agree(std::span<const LayerSheet> sheets, double begin, double end) {
-    double low = end, high = begin;
+bool agree(std::span<const LayerSheet> sheets, const MarchSpan& span) {
+    double low = span.end, high = span.begin;
     for (const LayerSheet& sheet : sheets) {
         if (!sheet.is_met()) continue;
-        const double at = std::clamp(static_cast<double>(sheet.distance), begin, end);
+        const double at = std::clamp(static_cast<double>(sheet.distance), span.begin, span.end);
         low = std::min(low, at);
         high = std::max(high, at);
     }
-    return high - low <= kSheetTolerance * (end - begin);
+    return high - low <= kSheetTolerance * (span.end - span.begin);
 }
 
 std::vector<LayerSheet> sheets_of_pixel(const VolumePass& pass, const Band& band, std::uint32_t x,
@@ -94,13 +94,13 @@ void draw_pixel(const VolumePass& pass, const Band& band, std::uint32_t x, std::
     const double row = first_pixel_row(band, s) + y;
     const PictureRay centre = ray_through(pass.camera, pass.frame, x + 0.5, row + 0.5);
     const MarchRay march = march_ray(pass, centre);
-    const double end = volumes_end(pass.volumes, march);
+    const MarchSpan span = volumes_span(pass.volumes, march);
     bool is_cut = false;
     for_samples(band, s, x, y, [&](std::size_t sample, std::uint32_t, std::uint32_t) {
-        is_cut = is_cut || distance_along(centre, band.inverse_distance[sample]) < end;
+        is_cut = is_cut || distance_along(centre, band.inverse_distance[sample]) < span.end;
     });
     if (is_cut) return draw_samples(pass, band, x, y, color);
-    if (end <= march.begin) return;
+    if (span.end <= march.begin) return;
     if (pass.layer == nullptr) {
         const MarchResult seen = march_volumes(pass.volumes, march);
         for_samples(band, s, x, y, [&](std::size_t sample, std::uint32_t, std::uint32_t) {
@@ -109,7 +109,7 @@ void draw_pixel(const VolumePass& pass, const Band& band, std::uint32_t x, std::
         return;
     }
     const std::vector<LayerSheet> sheets = sheets_of_pixel(pass, band, x, y);
-    if (!agree(sheets, volumes_begin(pass.volumes, march), end)) {
+    if (!agree(sheets, span)) {
         return draw_samples(pass, band, x, y, color);
     }
     const TwoParts seen = march_around(pass.volumes, march, mean_sheet(sheets).distance);

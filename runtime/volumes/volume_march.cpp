@@ -182,24 +182,16 @@ MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
     return march.result;
 }
 
-double volumes_begin(const LitVolumes& volumes, const MarchRay& ray) {
-    double begin = ray.end;
+MarchSpan volumes_span(const LitVolumes& volumes, const MarchRay& ray) {
+    MarchSpan span{ray.end, ray.begin};
     for (const LitVolumes::Entry& entry : volumes.entry) {
         const BrickWalk walk =
             start_walk(entry.lattice, ray.origin, ray.direction, ray.begin, ray.end);
-        if (walk.t < walk.end) begin = std::min(begin, walk.t);
+        if (walk.t < walk.end) {
+            span = {std::min(span.begin, walk.t), std::max(span.end, walk.end)};
+        }
     }
-    return begin;
-}
-
-double volumes_end(const LitVolumes& volumes, const MarchRay& ray) {
-    double end = ray.begin;
-    for (const LitVolumes::Entry& entry : volumes.entry) {
-        const BrickWalk walk =
-            start_walk(entry.lattice, ray.origin, ray.direction, ray.begin, ray.end);
-        if (walk.t < walk.end) end = std::max(end, walk.end);
-    }
-    return end;
+    return span;
 }
 
 }  // namespace opaline::runtime

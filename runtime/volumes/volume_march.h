@@ -62,9 +62,11 @@ struct MarchResult {
 MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
                           const MarchOptions& options = {});
 
-/// The distance at which the ray enters the first table of bricks; ray.end if it meets none.
-double volumes_begin(const LitVolumes& volumes, const MarchRay& ray);
-/// The distance at which the ray leaves the last table of bricks; ray.begin if it meets none.
-double volumes_end(const LitVolumes& volumes, const MarchRay& ray);
+/// The part of a ray where a march may see something.
+struct MarchSpan {
+    double begin = 0;  ///< where it enters the first table of bricks; its end if it meets none
+    double end = 0;    ///< where it leaves the last one; its beginning if it meets none
+};
+MarchSpan volumes_span(const LitVolumes& volumes, const MarchRay& ray);
 
 }  // namespace opaline::runtime

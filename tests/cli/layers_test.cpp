@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <sstream>
 #include <string>
 
@@ -112,6 +113,9 @@ TEST(LayerFiles, FilmsShowTheLayerAtTheTimeOfEachFrame) {
     };
     expect_refused({"--time-step", "3"}, "one frame only");
     expect_refused({"--frames", "2", "--time-step", "nan"}, "");
+    const Outcome turned = draw({"--turn", "90", "-o", small.path("bad.png")});
+    EXPECT_EQ(turned.exit_code, 2);
+    EXPECT_THAT(turned.err, AllOf(HasSubstr("--turn"), HasSubstr("one frame only")));
     const std::string clear = write_layer_file(small, make_small_asset(), "clear.opal");
     const Outcome none = run_opaline({"render", clear, "--light", "white", "--frames", "2",
                                       "--time-step", "3", "-o", small.path("bad.png")});
@@ -152,6 +156,46 @@ TEST(LayerFiles, LayerTakesLightFromTheMeshesOfItsFile) {
     EXPECT_LT(dull, 0.9 * day);
     EXPECT_NE(light_of(cloudy, "150"), dull);  // another part of it is overhead
     EXPECT_EQ(light_of(clear, "150"), day);
+}
+
+// Lines of a table of relight that are of one primitive.
+std::string table_of(const std::string& text, const std::string& primitive) {
+    std::istringstream lines(text);
+    std::string found = "\n";
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with(primitive + ",")) found += line + "\n";
+    }
+    return found;
+}
+
+// One of two nodes moves away: it gets the light of its new place, the other one keeps its own.
+TEST(LayerFiles, NodesThatStandFarApartHaveTheLightOfTheirPlaces) {
+    SmallScene small;
+    formats::Asset asset = make_small_asset();
+    add_layer(asset);
+    asset.primitives[1].node = 1;
+    const std::string near = write_layer_file(small, asset, "near.opal");
+    for (std::uint32_t v = 0; v < asset.primitives[1].vertex_count; ++v) {
+        asset.position[asset.primitives[1].first_vertex + v].x += 1500;
+    }
+    const std::string apart = write_layer_file(small, asset, "apart.opal");
+    const auto light_of = [&](const std::string& file, const char* primitive) {
+        const std::string out = small.path("r.csv");
+        const Outcome outcome = run_opaline({"relight", file, "--light", "sun:0,50", "-o", out});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return sum_of_table(table_of(read_text(out), primitive));
+    };
+    const double stays = light_of(near, "0"), goes = light_of(near, "1");
+    EXPECT_GT(stays, 0);
+    EXPECT_NEAR(light_of(apart, "0"), stays, 0.01 * stays);
+    EXPECT_GT(std::abs(light_of(apart, "1") - goes), 0.05 * goes);
+    for (const auto& [file, points] :
+         {std::pair(near, "points     1\n"), {apart, "points     2\n"}}) {
+        const Outcome drawn =
+            run_opaline({"render", file, "--light", "sun:0,50", "--backend", "cpu", "--size",
+                         "16x12", "--stats", "-o", small.path("o.png")});
+        EXPECT_THAT(drawn.out, HasSubstr(points)) << drawn.err;
+    }
 }
 
 TEST(LayerFiles, SingleTermsAreShownWithoutTheLayer) {

@@ -37,7 +37,8 @@ double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// What of the light above reaches meshes and volumes, as `opaline render` has it.
+// What of the light above reaches meshes and volumes, seen from one point for all of them:
+// `opaline render` lights those that stand far apart from several.
 formats::Environment light_below(const formats::AssetView& asset, const runtime::LayerLight& layers,
                                  const formats::Environment& above, unsigned threads) {
     const runtime::BoundingSphere bound = runtime::bound_asset(asset);

@@ -258,12 +258,15 @@ Seen march(Ray ray, float harmonic[HARMONICS]) {
     return seen;
 }
 
-// The distance at which the ray leaves the last table; ray.begin if it meets none.
-float volumes_end(Ray ray) {
-    float end = ray.begin;
+// Where the ray enters the first table and where it leaves the last one; its end and its beginning
+// if it meets none.
+vec2 volumes_span(Ray ray) {
+    vec2 span = vec2(ray.end, ray.begin);
     for (uint left = kAllVolumes; left != 0u; left &= left - 1u) {
         Traveller traveller = enter_table(volumes[findLSB(left)], ray);
-        if (traveller.t < traveller.end) end = max(end, traveller.end);
+        if (traveller.t < traveller.end) {
+            span = vec2(min(span.x, traveller.t), max(span.y, traveller.end));
+        }
     }
-    return end;
+    return span;
 }

@@ -88,15 +88,6 @@ float opaque_distance(float surface, vec3 direction) {
     return surface <= 1.001 * ground ? surface : ground;  // kGroundSlack of see_layer.h
 }
 
-float volumes_begin(Ray ray) {
-    float begin = ray.end;
-    for (uint left = kAllVolumes; left != 0u; left &= left - 1u) {
-        Traveller traveller = enter_table(volumes[findLSB(left)], ray);
-        if (traveller.t < traveller.end) begin = min(begin, traveller.t);
-    }
-    return begin;
-}
-
 // The mean_sheet of a pixel's samples, and whether one march does for all of them on a ray that
 // meets volumes between begin and end.
 Sheet mean_sheet(ivec2 first, float begin, float end, out bool agree) {
@@ -147,21 +138,21 @@ void main() {
 #if LAYER
     centre.end = opaque_distance(kNever, centre.direction);
 #endif
-    float end = volumes_end(centre);
+    vec2 span = volumes_span(centre);
     bool is_cut = false;
     vec3 mean = vec3(0.0);
     for (int i = 0; i < s * s; ++i) {
         ivec2 at = first + ivec2(i % s, i / s);
         mean += texelFetch(samples, at, 0).rgb / float(s * s);
-        is_cut = is_cut || distance_along(at, cosine) < end;
+        is_cut = is_cut || distance_along(at, cosine) < span.y;
     }
-    if (end <= centre.begin) {
+    if (span.y <= centre.begin) {
         color = vec4(mean, 1.0);
         return;
     }
 #if LAYER
     bool agree;
-    Sheet all = mean_sheet(first, volumes_begin(centre), end, agree);
+    Sheet all = mean_sheet(first, span.x, span.y, agree);
     is_cut = is_cut || !agree;
 #endif
     int count = is_cut ? s * s : 1;

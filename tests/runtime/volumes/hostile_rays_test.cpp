@@ -39,7 +39,8 @@ void expect_sound(const LitVolumes& lit, const MarchRay& ray) {
         }
     }
     ASSERT_LE(seen.transmittance.r, 1);
-    ASSERT_FALSE(std::isnan(volumes_end(lit, ray)));
+    const MarchSpan span = volumes_span(lit, ray);
+    ASSERT_FALSE(std::isnan(span.begin) || std::isnan(span.end));
 }
 
 TEST(HostileRays, GiveFiniteValuesInNoTime) {

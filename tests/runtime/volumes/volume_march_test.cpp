@@ -194,10 +194,10 @@ TEST(VolumeMarch, ANegativeTableCornerAndMissingBricks) {
             march_volumes(scene.lit, {{-4, -4.5f, -1000 * sign}, {0, 0, sign}});
         EXPECT_NEAR(seen.transmittance.r, std::exp(-0.8), 1e-5);
     }
-    EXPECT_NEAR(volumes_end(scene.lit, {{-4, -4.5f, -1000}, {0, 0, 1}}), 1240, 1e-6);
-    EXPECT_EQ(volumes_end(scene.lit, {{4, -4.5f, -1000}, {0, 0, 1}, 3}), 3);
-    EXPECT_EQ(volumes_begin(scene.lit, {{4, -4.5f, -1000}, {0, 0, 1}, 3, 9}), 9);
-    EXPECT_LT(volumes_begin(scene.lit, {{-4, -4.5f, -1000}, {0, 0, 1}}), 1240);
+    EXPECT_NEAR(volumes_span(scene.lit, {{-4, -4.5f, -1000}, {0, 0, 1}}).end, 1240, 1e-6);
+    EXPECT_EQ(volumes_span(scene.lit, {{4, -4.5f, -1000}, {0, 0, 1}, 3}).end, 3);
+    EXPECT_EQ(volumes_span(scene.lit, {{4, -4.5f, -1000}, {0, 0, 1}, 3, 9}).begin, 9);
+    EXPECT_LT(volumes_span(scene.lit, {{-4, -4.5f, -1000}, {0, 0, 1}}).begin, 1240);
 }
 
 TEST(VolumeMarch, SourcesBelowZeroCountAsZeroBetweenNodesToo) {
