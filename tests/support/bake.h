@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <vector>
 
 #include "bake/environment/builtin_environment.h"
@@ -13,10 +14,15 @@
 
 namespace opaline::tests {
 
+/// Options out of range throw std::invalid_argument: the test fails by name.
 inline bake::BakeResult bake_scene(const formats::Scene& scene, const bake::BakeOptions& options) {
     bake::Context context;
     context.threads = options.threads;
-    auto result = bake::run_bake(scene, *bake::resolve_knobs(options), context);
+    const auto knobs = bake::resolve_knobs(options);
+    if (!knobs) {
+        throw std::invalid_argument(knobs.error().diagnostics.front().fault);
+    }
+    auto result = bake::run_bake(scene, *knobs, context);
     EXPECT_TRUE(result);
     return std::move(result).value();
 }
