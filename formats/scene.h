@@ -125,6 +125,10 @@ struct Material {
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;  ///< of the base colour
     Gloss gloss = {};                                   ///< of opaque materials: unused in a medium
     bool double_sided = false;
+    Rgb emission{0, 0, 0};                 ///< radiance it sends out by itself [nit], finite, >= 0:
+                                           ///< emissiveFactor * KHR_materials_emissive_strength
+    std::uint32_t emission_image = kNone;  ///< index into Scene::images: multiplies `emission` by
+                                           ///< sRGB codes. Coordinates: Primitive::texcoord
     std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque
     std::optional<Sheet> sheet = std::nullopt;    ///< thin-walled; no medium then
     std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
@@ -173,6 +177,20 @@ struct CloudLayer {
     std::vector<std::array<std::uint8_t, 4>> ground_albedo;  ///< sRGB codes, last byte 255
 };
 
+/// A light without a surface: KHR_lights_punctual. Radiance of the scene is in nits [cd/m^2], so
+/// that intensities need no factor.
+struct Light {
+    enum class Type { point, spot, directional } type = Type::point;
+    std::string name;               ///< of the node, else of the light; unique among emitters
+    Rgb intensity{1, 1, 1};         ///< color * intensity, finite, >= 0: [cd] of point and spot,
+                                    ///< illuminance [lx] of directional
+    glm::vec3 position{0};          ///< [m] from Scene::origin; unused of directional
+    glm::vec3 direction{0, -1, 0};  ///< unit, in which its light goes; unused of point
+    float range = 0;                ///< [m], > 0; 0: endless. Beyond it there is no light
+    float inner_cone = 0;           ///< [rad] from the axis, of spot: all light within
+    float outer_cone = 0.785f;      ///< [rad], inner_cone < outer_cone <= pi/2: none outside
+};
+
 /// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.
 /// Vertices keep the original order and count: receivers and output rows use this numbering.
 struct Primitive {
@@ -212,6 +230,7 @@ struct Scene {
     std::vector<Material> materials;    ///< never empty
     std::vector<Volume> volumes;        ///< at most kMaxVolumes
     std::vector<CloudLayer> layers;     ///< at most formats::kMaxLayers (opal/clouds.h)
+    std::vector<Light> lights;          ///< nodes depth-first
     /// World position [m] of the origin of the scene's frame: world = origin + position. The
     /// frame's axes are parallel to those of the world. All stages compute in the frame, so float
     /// precision does not depend on the distance between the scene and the world's origin.
