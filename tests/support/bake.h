@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <stdexcept>
 #include <vector>
 
@@ -14,10 +15,16 @@
 
 namespace opaline::tests {
 
+/// Beside the test program: its cases share the test lights, which take longer than many a bake.
+inline std::filesystem::path test_cache() {
+    return std::filesystem::read_symlink("/proc/self/exe") += ".cache";
+}
+
 /// Options out of range throw std::invalid_argument: the test fails by name.
 inline bake::BakeResult bake_scene(const formats::Scene& scene, const bake::BakeOptions& options) {
     bake::Context context;
     context.threads = options.threads;
+    context.cache = test_cache();
     const auto knobs = bake::resolve_knobs(options);
     if (!knobs) {
         throw std::invalid_argument(knobs.error().diagnostics.front().fault);
