@@ -129,6 +129,13 @@ struct Material {
                                            ///< emissiveFactor * KHR_materials_emissive_strength
     std::uint32_t emission_image = kNone;  ///< index into Scene::images: multiplies `emission` by
                                            ///< sRGB codes. Coordinates: Primitive::texcoord
+    Wrap emission_wrap_u = Wrap::repeat, emission_wrap_v = Wrap::repeat;  ///< of that image
+    /// Coverage of the surface, of materials without a medium: alpha * Primitive::alpha * alpha of
+    /// the base colour's image. mask: there is no surface where it is below alpha_cutoff; blend: it
+    /// is there with that probability.
+    enum class AlphaMode { opaque, mask, blend } alpha_mode = AlphaMode::opaque;
+    float alpha = 1;                              ///< in [0, 1]
+    float alpha_cutoff = 0.5f;                    ///< >= 0, of mask
     std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque
     std::optional<Sheet> sheet = std::nullopt;    ///< thin-walled; no medium then
     std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
@@ -186,7 +193,8 @@ struct Light {
                                     ///< illuminance [lx] of directional
     glm::vec3 position{0};          ///< [m] from Scene::origin; unused of directional
     glm::vec3 direction{0, -1, 0};  ///< unit, in which its light goes; unused of point
-    float range = 0;                ///< [m], > 0; 0: endless. Beyond it there is no light
+    float range = 0;                ///< [m], > 0; 0: endless. Beyond it there is no light, and
+                                    ///< nearer it is dimmed (bake/scene/punctual_light.h)
     float inner_cone = 0;           ///< [rad] from the axis, of spot: all light within
     float outer_cone = 0.785f;      ///< [rad], inner_cone < outer_cone <= pi/2: none outside
 };
@@ -202,6 +210,7 @@ struct Primitive {
     std::vector<glm::vec2> texcoord;   ///< of the textures, set 0 without any; transform
                                        ///< applied; empty or one per vertex
     std::vector<Rgb> color;            ///< COLOR_0, linear; empty or one per vertex
+    std::vector<float> alpha;          ///< of COLOR_0; empty or one per vertex, in [0, 1]
     std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();
                                        ///< counter-clockwise seen from outside
 };

@@ -9,12 +9,14 @@
 namespace opaline::bake {
 namespace {
 
-// Mean luminance of what is not compared.
+// Mean luminance of what is not compared. Light of the scene's own emitters depends on no
+// environment and is no part of it.
 formats::Result<double> measure_missing(const PathSpace& space,
                                         std::span<const ReferenceReceiver> receivers,
                                         const ModelCheckOptions& options, const Context& context) {
     PathSpace other = space;
-    other.options.terms = TermSet::all & ~TermSet::specular & ~options.simulated;
+    other.options.terms =
+        TermSet::all & ~TermSet::specular & ~TermSet::emitters & ~options.simulated;
     EstimateOptions wanted;
     wanted.seed = options.seed;
     wanted.samples = 256;

@@ -178,7 +178,7 @@ formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_d
 }
 
 std::string light_help() {
-    return "lat-long .exr or .hdr, cube .exr, or a built-in: white, studio, sun:AZ,EL, "
+    return "lat-long .exr or .hdr, cube .exr, or a built-in: white, black, studio, sun:AZ,EL, "
            "sky:TURBIDITY,EL (`opaline example --list` explains them)";
 }
 

@@ -154,6 +154,22 @@ Status check_layers(const formats::Scene& scene) {
         "compare with a bake without it")});
 }
 
+// A line to a light without an extent is not bent, and no path meets such a light.
+Status check_lights(const formats::Scene& scene) {
+    const auto bends = [](const formats::Material& m) {
+        return m.medium && !bake::is_matched(m.medium->eta);
+    };
+    if (scene.lights.empty() ||
+        std::none_of(scene.materials.begin(), scene.materials.end(), bends)) {
+        return formats::ok_status();
+    }
+    return report_warnings({formats::make_warning(
+        scene.source, "KHR_lights_punctual",
+        "light of points, spots and directional lights does not pass boundaries that refract: "
+        "bodies are lit by it as far as other surfaces reflect it",
+        "give the light a surface: a small mesh with emissiveFactor")});
+}
+
 // As a bake sees them.
 formats::Result<bake::OrientedBodies> close_bodies(const formats::Scene& scene) {
     bake::OrientedBodies bodies = bake::orient_bodies(scene);
@@ -264,6 +280,9 @@ int run(const ReferenceCommand& options) {
     if (auto status = check_layers(imported->scene); !status) {
         return report_error(status.error());
     }
+    if (auto status = check_lights(imported->scene); !status) {
+        return report_error(status.error());
+    }
     if (options.paths.is_chosen()) {
         if (auto status = bake::check_path_scene(imported->scene); !status) {
             return report_error(status.error());
@@ -338,7 +357,8 @@ void add_estimate_options(CLI::App& command, ReferenceCommand& options) {
             "count only some of the light: " + formats::term_names(formats::TermSet::baked, ", ") +
                 " (scattered once or more often in volumes) as in `opaline relight`, unscattered "
                 "(straight through a body), interreflection (paths that meet a second surface or "
-                "body, or a volume and a surface)")
+                "body, or a volume and a surface), emitters (light of the scene's own glowing "
+                "surfaces and lights)")
         ->option_text("all|LIST [all]");
     command.add_option("--seed", options.seed, "another one gives other noise")
         ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))

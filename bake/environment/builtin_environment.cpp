@@ -20,7 +20,7 @@ using formats::Vec3;
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::string_view kForms =
-    "use white, sun:AZ,EL, studio, sky:TURBIDITY,EL, or the path of a lat-long .exr or .hdr";
+    "use white, black, sun:AZ,EL, studio, sky:TURBIDITY,EL, or the path of a lat-long .exr or .hdr";
 
 std::string_view name_of(std::string_view spec) {
     return spec.substr(0, spec.find(':'));
@@ -82,11 +82,12 @@ Vec3 direction_of(double azimuth_degrees, double elevation_degrees) {
 
 bool is_builtin(std::string_view spec) {
     const std::string_view name = name_of(spec);
-    return name == "white" || name == "sun" || name == "studio" || name == "sky";
+    return name == "white" || name == "black" || name == "sun" || name == "studio" || name == "sky";
 }
 
 Result<Environment> make_environment(std::string_view spec) {
     if (spec == "white") return make_white();
+    if (spec == "black") return Environment{};
     if (spec == "studio") return make_studio();
     const std::string_view name = name_of(spec);
     const std::optional<Pair> pair = parse_pair(spec);
@@ -129,6 +130,7 @@ Result<LoadedEnvironment> open_environment(std::string_view spec_or_path) {
 
 std::string list_builtin_environments() {
     return "white              radiance 1 from everywhere\n"
+           "black              no light: the scene's own lights and glowing surfaces alone\n"
            "sun:AZ,EL          the sun alone, 0.53 degrees across, irradiance pi; degrees: "
            "azimuth\n"
            "                   0 is +Z (the front of a model), 90 is +X; elevation above the "

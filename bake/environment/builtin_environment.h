@@ -17,11 +17,12 @@ inline constexpr double kSkyAzimuthDegrees = -40.0;
 formats::Vec3 direction_of(double azimuth_degrees, double elevation_degrees);
 
 /// True if the text names a built-in light, well-formed or not: the part before ':' is one of
-/// white, sun, studio, sky. (A file of that name is opened as "./white".)
+/// white, black, sun, studio, sky. (A file of that name is opened as "./white".)
 bool is_builtin(std::string_view spec);
 
 /// Makes a built-in light:
 /// - `white`: radiance 1 from everywhere;
+/// - `black`: none, for scenes that have light of their own;
 /// - `sun:AZ,EL`: a disc 0.53 degrees across over black, integral of its radiance over solid angle
 ///   pi, so that a white diffuse surface facing it has radiance 1; EL in [-90, 90];
 /// - `studio`: soft boxes in a dim room, see make_studio;

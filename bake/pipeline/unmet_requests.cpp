@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "bake/scene/coverage.h"
+#include "bake/scene/emission.h"
 #include "formats/opal/terms.h"
 
 namespace opaline::bake {
@@ -10,6 +12,8 @@ namespace {
 
 using formats::Diagnostic;
 using formats::make_warning;
+
+constexpr const char* kReferenceHasIt = "`opaline reference` simulates it";
 
 bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const Knobs& knobs,
                   std::string_view name) {
@@ -104,6 +108,34 @@ void describe_options(const DecidedBake& decided, const BakeOptions& options,
     }
 }
 
+// What a bake, or a picture of it, leaves out of materials and lights.
+void describe_materials(const formats::Scene& scene, std::vector<Diagnostic>& warnings) {
+    std::vector<bool> is_used(scene.materials.size(), false);
+    for (const formats::Primitive& p : scene.primitives) {
+        is_used[p.material] = is_used[p.material] || !p.index.empty();
+    }
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        if (is_used[m] && has_holes(scene.materials[m])) {
+            warnings.push_back(make_warning(scene.source,
+                                            "material '" + scene.materials[m].name + "'",
+                                            "light passes the holes of its alphaMode, but the file "
+                                            "does not keep them: pictures "
+                                            "show the whole surface",
+                                            "`opaline reference` shows them"));
+        }
+        if (is_used[m] && is_emissive(scene.materials[m])) {
+            warnings.push_back(make_warning(
+                scene.source, "material '" + scene.materials[m].name + "'",
+                "emission is not baked: the surface sends out no light", kReferenceHasIt));
+        }
+    }
+    if (!scene.lights.empty()) {
+        warnings.push_back(make_warning(
+            scene.source, "KHR_lights_punctual",
+            "lights of the file are not baked: light comes from the environment", kReferenceHasIt));
+    }
+}
+
 }  // namespace
 
 formats::Status check_effects(const EffectTable& effects, const formats::Scene& scene,
@@ -124,6 +156,7 @@ std::vector<Diagnostic> describe_unmet(const DecidedBake& decided, const BakeOpt
     std::vector<Diagnostic> warnings;
     describe_effects(decided, warnings);
     describe_options(decided, options, warnings);
+    describe_materials(decided.scene, warnings);
     for (const PlanEntry& entry : decided.plan) {
         const EffectDescriptor& effect = decided.effects[entry.effect];
         const std::uint32_t m = entry.subject.index;

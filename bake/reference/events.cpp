@@ -7,7 +7,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/reference/glossy_brdf.h"
-#include "bake/reference/volume_flight.h"
+#include "bake/reference/light_line.h"
 
 namespace opaline::bake {
 namespace {
@@ -29,73 +29,6 @@ glm::vec3 direction_about(glm::vec3 n, float cosine, float u) {
     return (1.5f - 0.5f * glm::dot(d, d)) * d;
 }
 
-/// Of `distance` [m] through a medium. Where its density varies, an estimate without bias by ratio
-/// tracking [Novak2014]: the share that is left at each collision with the densest channel.
-glm::vec3 transmittance(const ReferenceMedium& medium, glm::vec3 from, glm::vec3 direction,
-                        float distance, RandomStream& random) {
-    if (!medium.field || !medium.field->has_density()) {
-        return glm::exp(-medium.sigma_t * distance);
-    }
-    const float densest = std::max({medium.sigma_t.x, medium.sigma_t.y, medium.sigma_t.z});
-    glm::vec3 left(1);
-    for (float at = 0; left != glm::vec3(0);) {
-        at -= std::log(1 - random.next()) / densest;
-        if (!(at < distance)) {
-            break;
-        }
-        left *= 1.0f - medium.field->density(from + at * direction) / densest * medium.sigma_t;
-    }
-    return left;
-}
-
-/// Transmittance of a straight line to the sky. 0 if anything but a boundary between equal indices
-/// is in the way, or if the path would end in no requested term.
-glm::vec3 see_sky(const PathSpace& space, RayOrigin from, glm::vec3 direction,
-                  SurroundingMedia stack, PathState state, RandomStream& random) {
-    const ReferenceScene& scene = space.scene;
-    const HitScene& surfaces = scene.surfaces;
-    const auto pass_volumes = [&](glm::vec3 start, float reach) {
-        return scene.volumes.empty()
-                   ? glm::vec3(1)
-                   : estimate_transmittance(scene.volumes, start, direction, reach, random);
-    };
-    if (!scene.has_matched_boundary) {
-        return stack.empty() && has_any(term_of(state), space.options.terms) &&
-                       !surfaces.is_blocked(from, direction)
-                   ? pass_volumes(from.position, kForever)
-                   : glm::vec3(0);
-    }
-    glm::vec3 passing(1);
-    while (const auto hit = surfaces.closest_hit(from, direction, kForever)) {
-        passing *= stack.empty() ? pass_volumes(from.position, hit->distance)
-                                 : transmittance(scene.media[stack.top()], from.position, direction,
-                                                 hit->distance, random);
-        const std::uint32_t material = surfaces.scene().primitives[hit->primitive].material;
-        const std::uint32_t medium = scene.medium_of[material];
-        if (medium == formats::kNone) {
-            return glm::vec3(0);
-        }
-        const bool was_out = stack.empty();
-        const std::uint32_t before = stack.top();
-        glm::dot(direction, hit->flat) < 0 ? stack.enter(medium) : stack.leave(medium);
-        if (before != stack.top()) {
-            const float eta = before == formats::kNone ? 1 : scene.media[before].eta;
-            const float next = stack.empty() ? 1 : scene.media[stack.top()].eta;
-            if (!is_matched(next / eta)) {
-                return glm::vec3(0);
-            }
-            state = after_crossing(state, stack.empty());
-            if (was_out) {
-                passing *= base_color_at(surfaces.scene(), *hit);
-            }
-        }
-        from = leave_surface(*hit, direction);
-    }
-    return stack.empty() && has_any(term_of(state), space.options.terms)
-               ? passing * pass_volumes(from.position, kForever)
-               : glm::vec3(0);
-}
-
 /// An event that is sampled in proportion to its response for unit throughput.
 LobeValue even_response(float density) {
     return {glm::vec3(density), density};
@@ -104,8 +37,8 @@ LobeValue even_response(float density) {
 /// Light that arrives straight from the sky at an event, sampled from the light. `eval(d)`: the
 /// event's response for unit throughput, and the density of its own sampling over solid angle.
 template <class Eval>
-void gather_light(const PathSpace& space, Path& path, const RayOrigin& from, RandomStream& random,
-                  Eval&& eval) {
+void gather_sky(const PathSpace& space, Path& path, const RayOrigin& from, RandomStream& random,
+                Eval&& eval) {
     const glm::vec3 d = sample_light(space.light, random);
     if (d == glm::vec3(0)) {
         return;
@@ -114,10 +47,55 @@ void gather_light(const PathSpace& space, Path& path, const RayOrigin& from, Ran
     if (!(lobe.pdf > 0)) {
         return;
     }
-    const glm::vec3 passing = see_sky(space, from, d, path.stack, path.state, random);
+    const glm::vec3 passing = see_sky(space, from, d, path.stack, path.state, path.key, random);
     if (passing != glm::vec3(0)) {
         path.radiance += path.beta * passing * eval_light(space.light, d) *
                          (lobe.response / (pdf_light(space.light, d) + lobe.pdf));
+    }
+}
+
+/// The same of a glowing surface and of a light without a surface.
+template <class Eval>
+void gather_lamps(const PathSpace& space, Path& path, const RayOrigin& from, RandomStream& random,
+                  Eval&& eval) {
+    const LampSampler& lamps = space.scene.lamps;
+    const auto pass = [&](const LightLine& line) {
+        SurroundingMedia stack = path.stack;
+        const glm::vec3 passing = pass_line(space, line, stack, path.state, random);
+        return path.beta * passing * per_squared_index(space.scene, stack);
+    };
+    if (!lamps.triangles.empty()) {
+        const auto seen =
+            sample_triangle(lamps, space.scene.surfaces.scene(), from.position, random);
+        const LobeValue lobe = seen ? eval(seen->direction) : LobeValue{};
+        if (lobe.pdf > 0) {
+            path.radiance +=
+                pass({from, seen->direction, kForever, seen->primitive, seen->triangle, path.key}) *
+                seen->radiance * (lobe.response / (seen->pdf + lobe.pdf));
+        }
+    }
+    if (!lamps.lights.empty()) {
+        const auto arriving = sample_punctual(lamps, from.position, random);
+        const LobeValue lobe = arriving ? eval(arriving->to_light) : LobeValue{};
+        if (lobe.pdf > 0) {
+            const formats::Rgb e = arriving->irradiance;
+            path.radiance += pass({from, arriving->to_light, arriving->distance, formats::kNone,
+                                   formats::kNone, path.key}) *
+                             glm::vec3(e.r, e.g, e.b) * lobe.response;
+        }
+    }
+}
+
+/// All light that arrives straight at an event.
+template <class Eval>
+void gather_light(const PathSpace& space, Path& path, const RayOrigin& from, bool sees_sky,
+                  RandomStream& random, Eval&& eval) {
+    path.vertex = from.position;
+    if (sees_sky) {
+        gather_sky(space, path, from, random, eval);
+    }
+    if (counts_lamps(space)) {
+        gather_lamps(space, path, from, random, eval);
     }
 }
 
@@ -156,7 +134,7 @@ bool reflect_diffusely(const PathSpace& space, Path& path, const OpaquePoint& po
     if (!count_event(space, path) || path.beta == glm::vec3(0) || !is_wanted(space, path.state)) {
         return false;
     }
-    gather_light(space, path, point.from, random, [&](glm::vec3 d) {
+    gather_light(space, path, point.from, true, random, [&](glm::vec3 d) {
         return even_response(is_above(point, d) ? glm::dot(d, point.normal) / kPi : 0.0f);
     });
     const float cosine = std::sqrt(1 - random.next());
@@ -172,7 +150,7 @@ bool reflect_as_mirror(const PathSpace& space, Path& path, const OpaquePoint& po
     if (!count_event(space, path)) {
         return false;
     }
-    gather_light(space, path, point.from, random, [&](glm::vec3 d) {
+    gather_light(space, path, point.from, true, random, [&](glm::vec3 d) {
         return is_above(point, d) ? eval_mirrored(brdf, d) : LobeValue{};
     });
     const float u = random.next(), v = random.next();
@@ -210,21 +188,22 @@ bool scatter_diffusely(const PathSpace& space, Path& path, const OpaquePoint& po
                : reflect_diffusely(space, path, turned(point), transmitted / chance, random);
 }
 
-// A new direction by a phase function. `sees_sky`: straight lines from here may reach the light, so
+// A new direction by a phase function. `sees_sky`: straight lines from here may reach the sky, so
 // that it is sampled too.
 void turn(const PathSpace& space, Path& path, glm::vec3 at, const PhaseSampler& phase,
           bool sees_sky, RandomStream& random) {
     path.origin = {at};
     path.pdf = 0;
     const glm::vec3 before = path.direction;
-    if (sees_sky) {
-        gather_light(space, path, path.origin, random, [&](glm::vec3 d) {
+    const bool sees_light = sees_sky || counts_lamps(space);
+    if (sees_light) {
+        gather_light(space, path, path.origin, sees_sky, random, [&](glm::vec3 d) {
             return even_response(pdf_phase(phase, glm::dot(before, d)));
         });
     }
     const float cosine = sample_phase_cosine(phase, [&] { return random.next(); });
     path.direction = direction_about(before, cosine, random.next());
-    if (sees_sky) {
+    if (sees_light) {
         path.pdf = pdf_phase(phase, cosine);
     }
 }

@@ -19,8 +19,10 @@ struct Path {
     SurroundingMedia stack;
     PathState state;
     std::uint32_t events = 0;
+    std::uint32_t key = 0;  ///< of all its rays: HitScene::closest_hit
     /// [1/sr] of `direction` if the light was sampled at the last event too; else 0
     float pdf = 0;
+    glm::vec3 vertex{0};  ///< where that event was
     glm::vec3 radiance{0};
     bool lost = false;
 };
@@ -33,9 +35,14 @@ struct Crossing {
     glm::vec3 color{1};       ///< factor of light that enters a body
 };
 
-/// True if the path may still end in a term that is counted.
+/// True if light of the scene's own lamps is there and is counted.
+inline bool counts_lamps(const PathSpace& space) {
+    return !space.scene.lamps.empty() && has_any(space.options.terms, TermSet::emitters);
+}
+
+/// True if the path may still end in a term that is counted. It may meet lamps in any state.
 inline bool is_wanted(const PathSpace& space, PathState state) {
-    return has_any(reachable_terms(state), space.options.terms);
+    return has_any(reachable_terms(state), space.options.terms) || counts_lamps(space);
 }
 
 /// A point of an opaque surface that a path has arrived at. Normals face the path.

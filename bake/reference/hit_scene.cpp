@@ -14,13 +14,15 @@ namespace {
 using formats::Primitive;
 using formats::Scene;
 
-RTCRay make_ray(const RayOrigin& origin, glm::vec3 direction, float nearest, float reach) {
+RTCRay make_ray(const RayOrigin& origin, glm::vec3 direction, float nearest, float reach,
+                std::uint32_t key) {
     RTCRay ray{};
     ray.org_x = origin.position.x, ray.org_y = origin.position.y, ray.org_z = origin.position.z;
     ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
     ray.tnear = nearest;
     ray.tfar = reach;
     ray.mask = 0xffffffffu;
+    ray.id = key;
     return ray;
 }
 
@@ -57,13 +59,13 @@ HitScene::HitScene(const Scene& scene, EmbreeScene triangles)
 }
 
 std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::vec3 direction,
-                                                float reach) const {
+                                                float reach, std::uint32_t key) const {
     assert(origin.free >= 0);
     float nearest = origin.free;
     while (nearest <= reach) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        RTCRayHit ray{make_ray(origin, direction, nearest, reach), {}};
+        RTCRayHit ray{make_ray(origin, direction, nearest, reach, key), {}};
         ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(triangles_.handle(), &context, &ray);
         if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
@@ -103,13 +105,15 @@ std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::ve
     return std::nullopt;
 }
 
-bool HitScene::is_blocked(const RayOrigin& origin, glm::vec3 direction) const {
+bool HitScene::is_blocked(const RayOrigin& origin, glm::vec3 direction, std::uint32_t key) const {
     if (origin.triangle != formats::kNone) {
-        return closest_hit(origin, direction, std::numeric_limits<float>::infinity()).has_value();
+        return closest_hit(origin, direction, std::numeric_limits<float>::infinity(), key)
+            .has_value();
     }
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRay ray = make_ray(origin, direction, origin.free, std::numeric_limits<float>::infinity());
+    RTCRay ray =
+        make_ray(origin, direction, origin.free, std::numeric_limits<float>::infinity(), key);
     rtcOccluded1(triangles_.handle(), &context, &ray);
     return ray.tfar < 0;
 }

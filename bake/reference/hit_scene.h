@@ -35,11 +35,12 @@ class HitScene {
     /// `scene` must outlive the result. Errors: resource.
     static formats::Result<HitScene> build(const formats::Scene& scene, unsigned threads);
 
-    /// The first triangle within `reach` [m], front or back. `direction` is unit.
-    std::optional<SurfaceHit> closest_hit(const RayOrigin& origin, glm::vec3 direction,
-                                          float reach) const;
+    /// The first triangle within `reach` [m], front or back. `direction` is unit. `key`: of the
+    /// choices where a material covers a share of its surface (bake/scene/coverage.h).
+    std::optional<SurfaceHit> closest_hit(const RayOrigin& origin, glm::vec3 direction, float reach,
+                                          std::uint32_t key = 0) const;
     /// True if there is any.
-    bool is_blocked(const RayOrigin& origin, glm::vec3 direction) const;
+    bool is_blocked(const RayOrigin& origin, glm::vec3 direction, std::uint32_t key = 0) const;
 
     const formats::Scene& scene() const { return *scene_; }
     const EmbreeScene& hierarchy() const { return triangles_; }

@@ -7,7 +7,9 @@
 
 #include "bake/reference/boundary.h"
 #include "bake/reference/events.h"
+#include "bake/reference/light_line.h"
 #include "bake/reference/volume_flight.h"
+#include "bake/scene/emission.h"
 
 namespace opaline::bake {
 namespace {
@@ -47,9 +49,24 @@ bool meet_boundary(const PathSpace& space, Path& path, const SurfaceHit& hit, st
     return reflect_or_refract(space, path, crossing, random);
 }
 
+// Adds what a surface that a path has met sends out by itself.
+void meet_emission(const PathSpace& space, Path& path, const SurfaceHit& hit) {
+    const formats::Scene& scene = space.scene.surfaces.scene();
+    const formats::Material& material = scene.materials[scene.primitives[hit.primitive].material];
+    if (!counts_lamps(space) || !is_seen_to_glow(material, path.direction, hit.flat)) {
+        return;
+    }
+    const float weight =
+        path.pdf > 0 ? path.pdf / (path.pdf + pdf_triangle(space.scene.lamps, hit, path.vertex))
+                     : 1.0f;
+    path.radiance +=
+        weight * per_squared_index(space.scene, path.stack) * path.beta * emission_of(scene, hit);
+}
+
 bool meet_surface(const PathSpace& space, Path& path, const SurfaceHit& hit, RandomStream& random) {
     const formats::Scene& scene = space.scene.surfaces.scene();
     const std::uint32_t number = scene.primitives[hit.primitive].material;
+    meet_emission(space, path, hit);
     if (const std::uint32_t medium = space.scene.medium_of[number]; medium != formats::kNone) {
         return meet_boundary(space, path, hit, medium, random);
     }
@@ -86,7 +103,7 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
     const HitScene& surfaces = space.scene.surfaces;
     std::optional<SurfaceHit> hit;
     if (path.stack.empty()) {
-        hit = surfaces.closest_hit(path.origin, path.direction, kForever);
+        hit = surfaces.closest_hit(path.origin, path.direction, kForever, path.key);
         if (!space.scene.volumes.empty()) {
             const VolumeFlight flight =
                 sample_volume_flight(space.scene.volumes, path.origin.position, path.direction,
@@ -106,7 +123,8 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
             if (reach + margin < space.scene.clearance(path.origin.position)) {
                 return std::nullopt;
             }
-            const auto found = surfaces.closest_hit(path.origin, path.direction, reach + margin);
+            const auto found =
+                surfaces.closest_hit(path.origin, path.direction, reach + margin, path.key);
             is_near_surface = found.has_value();
             return found;
         };
@@ -145,6 +163,13 @@ RayOrigin enter_at(glm::vec3 vertex, glm::vec3 inside, glm::vec3 normal, glm::ve
     return {inside - way * direction, formats::kNone, formats::kNone, way};
 }
 
+// Of a path's rays, where a surface lets some pass by chance.
+std::uint32_t draw_key(const PathSpace& space, RandomStream& random) {
+    return space.scene.surfaces.hierarchy().has_chances()
+               ? static_cast<std::uint32_t>(random.next() * 0x1p24f)
+               : 0;
+}
+
 PathSample finish(const PathSpace& space, Path& path, RandomStream& random) {
     while (advance(space, path, random)) {
     }
@@ -164,6 +189,7 @@ PathSample trace_ray(const PathSpace& space, glm::vec3 origin, glm::vec3 directi
     if (!around.empty()) {
         path.state.stage = PathState::Stage::inside;
     }
+    path.key = draw_key(space, random);
     path.origin = {origin};
     path.direction = direction;
     return finish(space, path, random);
@@ -186,8 +212,13 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
         return {};
     }
     Path path;
+    path.key = draw_key(space, random);
     path.direction = -receiver.to_eye;
     path.stack = receiver.around;
+    if (counts_lamps(space) && is_emissive(material)) {
+        path.radiance += per_squared_index(space.scene, path.stack) *
+                         emission_of_vertex(scene, receiver.primitive, receiver.vertex);
+    }
     bool walks = false;
     if (opaque) {
         OpaquePoint point{outside, inside, normal, glm::vec3(0),

@@ -14,7 +14,8 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
     if (!surfaces) {
         return std::move(surfaces).error();
     }
-    ReferenceScene result{std::move(*surfaces), {}, {}, false, make_volume_space(scene), {}};
+    ReferenceScene result{std::move(*surfaces),    {}, {}, false, make_volume_space(scene), {},
+                          make_lamp_sampler(scene)};
     float densest = 0;
     for (const formats::Material& material : scene.materials) {
         result.medium_of.push_back(formats::kNone);

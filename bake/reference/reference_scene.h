@@ -5,6 +5,7 @@
 
 #include "bake/reference/free_flight.h"
 #include "bake/reference/hit_scene.h"
+#include "bake/reference/lamp_sampler.h"
 #include "bake/reference/volume_space.h"
 #include "bake/transport/clearance_grid.h"
 #include "formats/opal/result.h"
@@ -20,6 +21,7 @@ struct ReferenceScene {
     bool has_matched_boundary = false;     ///< some medium has an index of 1
     VolumeSpace volumes;                   ///< they fill the space outside of bodies
     ClearanceGrid clearance;               ///< trivial if there are no media
+    LampSampler lamps;                     ///< the scene's own light
 };
 
 /// `scene` must outlive the result. Errors: resource.

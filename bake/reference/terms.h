@@ -81,7 +81,8 @@ constexpr bool takes_straight_paths(PathState s) {
     return !s.reflected_inside && !s.changed_medium;
 }
 
-/// The term of a path that reaches the sky here; a direct view of the sky counts as all terms.
+/// The term of a path that reaches the sky here (of one that meets a lamp it is `emitters`); a
+/// direct view of the sky counts as all terms.
 constexpr TermSet term_of(PathState s) {
     switch (s.stage) {
         case PathState::Stage::camera:
@@ -104,7 +105,7 @@ constexpr TermSet term_of(PathState s) {
     return TermSet::interreflection;
 }
 
-/// All terms that a path may still end in.
+/// All terms that a path to the sky may still end in.
 constexpr TermSet reachable_terms(PathState s) {
     switch (s.stage) {
         case PathState::Stage::camera:

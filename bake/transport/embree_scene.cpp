@@ -9,8 +9,16 @@
 #include <utility>
 
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/scene/coverage.h"
 
 namespace opaline::bake {
+
+/// What a geometry's rays are asked for.
+struct PrimitiveHoles {
+    std::uint32_t primitive = 0;
+    Coverage coverage;
+};
+
 namespace {
 
 using formats::ErrorKind;
@@ -20,8 +28,31 @@ using formats::Scene;
 // Pinned: the last bits of hit distances differ between instruction sets.
 constexpr const char* kInstructionSet = "avx2";
 
+// Of Embree, for each triangle that some rays of a packet meet.
+void pass_holes(const RTCFilterFunctionNArguments* arguments) {
+    const PrimitiveHoles& holes = *static_cast<const PrimitiveHoles*>(arguments->geometryUserPtr);
+    const unsigned n = arguments->N;
+    for (unsigned i = 0; i < n; ++i) {
+        if (arguments->valid[i] == 0) {
+            continue;
+        }
+        const Passage passage{
+            {RTCRayN_org_x(arguments->ray, n, i), RTCRayN_org_y(arguments->ray, n, i),
+             RTCRayN_org_z(arguments->ray, n, i)},
+            {RTCRayN_dir_x(arguments->ray, n, i), RTCRayN_dir_y(arguments->ray, n, i),
+             RTCRayN_dir_z(arguments->ray, n, i)},
+            RTCRayN_id(arguments->ray, n, i),
+            holes.primitive,
+            RTCHitN_primID(arguments->hit, n, i)};
+        const float u = RTCHitN_u(arguments->hit, n, i), v = RTCHitN_v(arguments->hit, n, i);
+        if (!meets_surface(holes.coverage, passage, u, v)) {
+            arguments->valid[i] = 0;
+        }
+    }
+}
+
 // Returns false if memory runs out.
-bool add_triangles(RTCDevice device, RTCScene scene, const Primitive& p) {
+bool add_triangles(RTCDevice device, RTCScene scene, const Primitive& p, PrimitiveHoles* holes) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                                RTC_FORMAT_FLOAT3, 3 * sizeof(float),
@@ -37,6 +68,11 @@ bool add_triangles(RTCDevice device, RTCScene scene, const Primitive& p) {
             *vertex++ = position.z;
         }
         std::copy(p.index.begin(), p.index.end(), index);
+        if (holes != nullptr) {
+            rtcSetGeometryUserData(geometry, holes);
+            rtcSetGeometryIntersectFilterFunction(geometry, pass_holes);
+            rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);
+        }
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene, geometry);  // ids count up from 0
     }
@@ -55,6 +91,8 @@ EmbreeScene& EmbreeScene::operator=(EmbreeScene&& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(scene_, other.scene_);
     std::swap(geometries_, other.geometries_);
+    std::swap(holes_, other.holes_);
+    std::swap(has_chances_, other.has_chances_);
     std::swap(triangles_, other.triangles_);
     std::swap(low_, other.low_);
     std::swap(high_, other.high_);
@@ -83,6 +121,7 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
     built.scene_ = rtcNewScene(built.device_);
     rtcSetSceneFlags(built.scene_, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(built.scene_, RTC_BUILD_QUALITY_HIGH);
+    CoverageImages images;
     for (std::uint32_t number = 0; number < scene.primitives.size(); ++number) {
         const Primitive& p = scene.primitives[number];
         assert(p.index.size() % 3 == 0 && p.material < scene.materials.size());
@@ -95,7 +134,15 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
         if (p.index.empty()) {
             continue;
         }
-        if (!add_triangles(built.device_, built.scene_, p)) {
+        PrimitiveHoles* holes = nullptr;
+        if (auto coverage = make_coverage(scene, number, images)) {
+            built.has_chances_ =
+                built.has_chances_ || coverage->mode == formats::Material::AlphaMode::blend;
+            built.holes_.push_back(
+                std::make_unique<PrimitiveHoles>(PrimitiveHoles{number, std::move(*coverage)}));
+            holes = built.holes_.back().get();
+        }
+        if (!add_triangles(built.device_, built.scene_, p, holes)) {
             return failed("no memory for its geometry");
         }
         const float magnitude = std::max({farthest.x, farthest.y, farthest.z});

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,12 @@ struct RTCSceneTy;
 
 namespace opaline::bake {
 
+struct PrimitiveHoles;
+
 /// Owns an Embree device and the hierarchy over all triangles of a scene. Coordinates are those of
-/// the scene's frame, without further rounding. Immutable once built; any thread may trace.
+/// the scene's frame, without further rounding. Rays pass where a material has holes
+/// (bake/scene/coverage.h), whoever traces them; RTCRay::id is the key of their choices. Immutable
+/// once built; any thread may trace.
 class EmbreeScene {
   public:
     /// Builds the hierarchy with `threads` threads (0: all). A scene without triangles is valid:
@@ -38,6 +43,8 @@ class EmbreeScene {
     const Geometry& geometry(std::uint32_t id) const { return geometries_[id]; }
 
     std::uint64_t triangles() const { return triangles_; }
+    /// Some triangle may let rays pass by chance: choices depend on the key of a ray.
+    bool has_chances() const { return has_chances_; }
 
     /// Box around all vertices [m]; low > high where there are none.
     glm::vec3 low() const { return low_; }
@@ -53,6 +60,8 @@ class EmbreeScene {
     RTCDeviceTy* device_ = nullptr;
     RTCSceneTy* scene_ = nullptr;
     std::vector<Geometry> geometries_;
+    std::vector<std::unique_ptr<PrimitiveHoles>> holes_;  ///< Embree keeps their addresses
+    bool has_chances_ = false;
     std::uint64_t triangles_ = 0;
     glm::vec3 low_{std::numeric_limits<float>::max()};
     glm::vec3 high_{std::numeric_limits<float>::lowest()};

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "formats/gltf/add_emission.h"
+#include "formats/gltf/clamp_factor.h"
 #include "formats/gltf/load_texture.h"
 #include "formats/gltf/map_gloss.h"
 #include "formats/gltf/map_medium.h"
@@ -17,13 +19,12 @@ namespace {
 
 /// The meaning of an extension that is not simulated.
 std::string unsimulated_extension(const std::string& name) {
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kKnown = {{
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kKnown = {{
         {"KHR_materials_volume", "absorption inside the object"},
         {"KHR_materials_scatter", "scattering inside the object"},
         {"KHR_materials_volume_scatter", "scattering inside the object"},
         {"KHR_materials_diffuse_transmission", "diffuse transmission"},
         {"KHR_materials_transmission", "transmission"},
-        {"KHR_materials_emissive_strength", "emission"},
         {"KHR_materials_clearcoat", "clear coat"},
         {"KHR_materials_sheen", "sheen"},
         {"KHR_materials_iridescence", "iridescence"},
@@ -50,25 +51,20 @@ bool is_part_of_medium(std::string_view name) {
     return std::find(kParts.begin(), kParts.end(), name) != kParts.end();
 }
 
-/// The extensions that describe a surface's reflection, of a medium or opaque.
-bool is_part_of_gloss(std::string_view name) {
-    return name == "KHR_materials_ior" || name == "KHR_materials_specular";
+/// The extensions that describe a surface's reflection, of a medium or opaque, or its emission.
+bool is_part_of_surface(std::string_view name) {
+    return name == "KHR_materials_ior" || name == "KHR_materials_specular" ||
+           name == "KHR_materials_emissive_strength";
 }
 
 std::vector<std::string> unsimulated(const MaterialSource& material, const Material& mapped) {
     std::vector<std::string> faults;
     const bool has_medium = mapped.medium.has_value();
     for (const std::string& name : material.extensions) {
-        if (!is_part_of_gloss(name) && !((has_medium || mapped.sheet) && is_part_of_medium(name))) {
+        if (!is_part_of_surface(name) &&
+            !((has_medium || mapped.sheet) && is_part_of_medium(name))) {
             faults.push_back(unsimulated_extension(name));
         }
-    }
-    if (material.alpha_mode != "OPAQUE") {
-        faults.push_back("alphaMode " + in_quotes(material.alpha_mode) +
-                         " is not simulated: the surface is baked opaque");
-    }
-    if (material.emissive != glm::dvec3(0.0)) {
-        faults.push_back("emissiveFactor is not simulated: the surface sends out no light");
     }
     if (has_medium && material.translucency.metallic > 0.0) {
         faults.push_back(
@@ -182,6 +178,32 @@ void add_scatter_textures(const MaterialSource& source, const std::string& where
     }
 }
 
+void add_coverage(const MaterialSource& source, Material& material,
+                  std::vector<std::string>& remarks) {
+    if (source.alpha_mode == "OPAQUE") {
+        return;
+    }
+    const bool is_mask = source.alpha_mode == "MASK";
+    if (!is_mask && source.alpha_mode != "BLEND") {
+        remarks.push_back("alphaMode " + in_quotes(source.alpha_mode) +
+                          " is not one of glTF: the surface is baked opaque");
+        return;
+    }
+    if (material.medium) {
+        remarks.push_back("alphaMode " + in_quotes(source.alpha_mode) +
+                          " is not simulated of a medium: its boundary is closed");
+        return;
+    }
+    material.alpha_mode = is_mask ? Material::AlphaMode::mask : Material::AlphaMode::blend;
+    material.alpha = static_cast<float>(
+        clamp_factor(source.base_color.w, 0, 1, "the alpha of baseColorFactor", remarks));
+    if (is_mask) {
+        constexpr double kMostCutoff = 1e6;  // from just above 1 on all is cut out
+        material.alpha_cutoff = static_cast<float>(
+            clamp_factor(source.alpha_cutoff, 0, kMostCutoff, "alphaCutoff", remarks));
+    }
+}
+
 }  // namespace
 
 void build_materials(const Document& document, const std::vector<MeshInstance>& instances,
@@ -223,6 +245,8 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
             if (material.medium) {
                 add_scatter_textures(source, where, loader, material, remarks);
             }
+            add_emission(source, where, loader, material, remarks);
+            add_coverage(source, material, remarks);
             for (const std::string& fault : unsimulated(source, material)) {
                 lost[fault].push_back(where);
             }

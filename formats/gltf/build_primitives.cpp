@@ -68,6 +68,7 @@ void place_normals(const PrimitiveData& data, const glm::dmat4& world, Primitive
 void place_texcoords(const PrimitiveData& data, const Material& material, Primitive& out,
                      Report& report) {
     const bool has_image = material.base_color_image != kNone || material.gloss.image != kNone ||
+                           material.emission_image != kNone ||
                            (material.medium && material.medium->variation);
     if (data.texcoord.empty() && has_image) {
         report.warn(out.name,
@@ -96,7 +97,8 @@ void place_texcoords(const PrimitiveData& data, const Material& material, Primit
     }
 }
 
-void place_colors(const PrimitiveData& data, Primitive& out, Report& report) {
+void place_colors(const PrimitiveData& data, const Material& material, Primitive& out,
+                  Report& report) {
     const std::size_t stride = data.color_components;
     std::size_t bad = 0;
     const auto reflectance = [&](float c) {
@@ -110,6 +112,12 @@ void place_colors(const PrimitiveData& data, Primitive& out, Report& report) {
     for (std::size_t i = 0; i < out.color.size(); ++i) {
         const float* c = data.color.data() + i * stride;
         out.color[i] = {reflectance(c[0]), reflectance(c[1]), reflectance(c[2])};
+    }
+    if (stride == 4 && material.alpha_mode != Material::AlphaMode::opaque) {
+        out.alpha.resize(out.color.size());
+        for (std::size_t i = 0; i < out.alpha.size(); ++i) {
+            out.alpha[i] = reflectance(data.color[i * stride + 3]);
+        }
     }
     if (bad > 0) {
         report.warn(out.name,
@@ -243,7 +251,7 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
             place_positions(*data, instance.world, metres_per_unit, scene.origin, out, report);
             place_normals(*data, instance.world, out);
             place_texcoords(*data, material, out, report);
-            place_colors(*data, out, report);
+            place_colors(*data, material, out, report);
             place_indices(*data, mirrored, out, report);
             warn_of_coarse_positions(*data, out, scene.origin, report);
         }

@@ -14,13 +14,14 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kMaxIndex = 0x7ffffffe;   // what an int can hold
 constexpr std::uint64_t kMaxOffset = 1ull << 40;  // past any file we read
 
-constexpr std::array<std::string_view, 12> kRequirable = {
+constexpr std::array<std::string_view, 14> kRequirable = {
     "KHR_mesh_quantization",        "KHR_texture_transform",
     "KHR_draco_mesh_compression",   "EXT_meshopt_compression",
     "KHR_materials_volume",         "KHR_materials_scatter",
     "KHR_materials_volume_scatter", "KHR_materials_diffuse_transmission",
     "KHR_materials_transmission",   "KHR_materials_ior",
-    "KHR_materials_specular",       "OPALINE_media"};
+    "KHR_materials_specular",       "KHR_materials_emissive_strength",
+    "KHR_lights_punctual",          "OPALINE_media"};
 
 void check_version(const Json& root, Report& report) {
     const auto asset = root.find("asset");

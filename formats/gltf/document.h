@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,7 +72,7 @@ struct Mesh {
 
 struct Node {
     std::string name;
-    std::uint32_t mesh = kNone;
+    std::uint32_t mesh = kNone, light = kNone;
     std::vector<std::uint32_t> children;
     glm::dmat4 local{1.0};  ///< to the parent's frame
     bool has_skin = false, has_camera = false;
@@ -108,13 +109,31 @@ struct TranslucencySource {
                                         ///< nothing reads
 };
 
+/// What a surface sends out by itself.
+struct EmissionSource {
+    glm::dvec3 factor{0.0};
+    double strength = 1.0;  ///< KHR_materials_emissive_strength
+    TextureUse texture;
+};
+
+/// KHR_lights_punctual, with its defaults.
+struct LightSource {
+    std::string name;
+    Light::Type type = Light::Type::point;
+    glm::dvec3 color{1.0};
+    double intensity = 1.0;       ///< [cd] or [lx]
+    std::optional<double> range;  ///< file units
+    double inner_cone = 0.0, outer_cone = std::numbers::pi / 4;
+};
+
 struct MaterialSource {
     std::string name;
     glm::dvec4 base_color{1.0};
     TextureUse base_color_texture, metallic_roughness_texture;
-    glm::dvec3 emissive{0.0};
+    EmissionSource emission;
     bool double_sided = false, has_normal_map = false, has_occlusion_map = false;
     std::string alpha_mode;
+    double alpha_cutoff = 0.5;
     std::vector<std::string> extensions;
     TranslucencySource translucency;
 };
@@ -140,6 +159,7 @@ struct Document {
     std::vector<std::vector<std::uint32_t>> scenes;  ///< root nodes of each
     std::uint32_t default_scene = kNone;
     std::vector<MaterialSource> materials;
+    std::vector<LightSource> lights;
     std::vector<Texture> textures;
     std::vector<Sampler> samplers;
     std::vector<ImageSource> images;

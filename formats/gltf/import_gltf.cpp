@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "formats/gltf/build_lights.h"
 #include "formats/gltf/build_materials.h"
 #include "formats/gltf/build_primitives.h"
 #include "formats/gltf/check_json.h"
@@ -73,20 +74,21 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
     if (report.failed()) {
         return scene;
     }
-    const auto instances = walk_scene(*document, report);
+    const SceneNodes nodes = walk_scene(*document, report);
     if (report.failed()) {
         return scene;
     }
     if (options.check_size) {
-        if (Status status = options.check_size(count_world(*document, instances)); !status) {
+        if (Status status = options.check_size(count_world(*document, nodes.meshes)); !status) {
             report.errors = std::move(status).error().diagnostics;
             report.kind = ErrorKind::resource;
             return scene;
         }
     }
-    build_materials(*document, instances, options.metres_per_unit, resources, scene, report);
-    build_primitives(*document, instances, resources.buffers, options.metres_per_unit, scene,
+    build_materials(*document, nodes.meshes, options.metres_per_unit, resources, scene, report);
+    build_primitives(*document, nodes.meshes, resources.buffers, options.metres_per_unit, scene,
                      report);
+    build_lights(*document, nodes.lights, options.metres_per_unit, scene, report);
     const auto is_empty = [](const Primitive& primitive) { return primitive.index.empty(); };
     if (report.failed()) {
         return scene;

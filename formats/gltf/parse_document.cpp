@@ -17,6 +17,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
 
+#include "formats/gltf/read_lights.h"
 #include "formats/gltf/read_texture_use.h"
 #include "formats/gltf/read_translucency.h"
 
@@ -220,13 +221,11 @@ MaterialSource convert(const tinygltf::Material& in, std::size_t index, Report& 
         convert(pbr.baseColorTexture, label("material", index, in.name), report);
     out.metallic_roughness_texture =
         convert(pbr.metallicRoughnessTexture, label("material", index, in.name), report);
-    if (in.emissiveFactor.size() == 3) {
-        out.emissive = glm::make_vec3(in.emissiveFactor.data());
-    }
     out.double_sided = in.doubleSided;
     out.has_normal_map = in.normalTexture.index >= 0;
     out.has_occlusion_map = in.occlusionTexture.index >= 0;
     out.alpha_mode = in.alphaMode.empty() ? "OPAQUE" : in.alphaMode;
+    out.alpha_cutoff = in.alphaCutoff;
     out.extensions = names_of(in.extensions);
     return out;
 }
@@ -261,6 +260,7 @@ std::vector<ImageSource> read_images(const Json& root, Report& report) {
 std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     Document document;
     document.images = read_images(root, report);
+    document.lights = read_lights(root, report);
     document.has_animations = root.contains("animations") && !root["animations"].empty();
     if (const auto scene = root.find("scene"); scene != root.end()) {
         document.default_scene = scene->get<std::uint32_t>();
@@ -274,6 +274,8 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     const int no_view = give_every_accessor_a_view(root);
     const std::string text = root.dump(-1, ' ', true, Json::error_handler_t::replace);
     const std::vector<TranslucencySource> translucency = read_translucency(root, report);
+    const std::vector<EmissionSource> emission = read_emission(root, report);
+    const std::vector<std::uint32_t> node_lights = read_node_lights(root, report);
     root = nullptr;
 
     tinygltf::TinyGLTF reader;
@@ -302,6 +304,7 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     }
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
         document.nodes.push_back(convert(model.nodes[i], i, report));
+        document.nodes.back().light = node_lights.at(i);
     }
     for (const auto& scene : model.scenes) {
         auto& roots = document.scenes.emplace_back();
@@ -312,6 +315,7 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     for (std::size_t i = 0; i < model.materials.size(); ++i) {
         document.materials.push_back(convert(model.materials[i], i, report));
         document.materials.back().translucency = translucency.at(i);
+        document.materials.back().emission = emission.at(i);
     }
     for (const auto& texture : model.textures) {
         document.textures.push_back({link(texture.source), link(texture.sampler)});

@@ -164,7 +164,7 @@ void validate_links(const Document& document, Report& report) {
         for (const TextureUse& use :
              {material.base_color_texture, material.metallic_roughness_texture,
               material.translucency.scatter_strength_texture,
-              material.translucency.multiscatter_color_texture}) {
+              material.translucency.multiscatter_color_texture, material.emission.texture}) {
             check_link(use.texture, document.textures.size(), label("material", i, material.name),
                        "texture", report);
         }
@@ -191,6 +191,7 @@ void validate_nodes(const Document& document, Report& report) {
         const Node& node = document.nodes[i];
         const std::string where = label("node", i, node.name);
         check_link(node.mesh, document.meshes.size(), where, "mesh", report);
+        check_link(node.light, document.lights.size(), where, "light", report);
         for (const std::uint32_t child : node.children) {
             if (child >= count) {
                 check_link(child, count, where, "child node", report);

@@ -84,8 +84,9 @@ SceneCounts count_world(const Document& document, const std::vector<MeshInstance
     return count_instances(document, instances, node);
 }
 
-std::vector<MeshInstance> walk_scene(const Document& document, Report& report) {
-    std::vector<MeshInstance> instances, pending;
+SceneNodes walk_scene(const Document& document, Report& report) {
+    SceneNodes found;
+    std::vector<NodeInstance> pending;
     const auto roots = scene_roots(document, report);
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
         pending.push_back({*root, document.nodes[*root].local});
@@ -93,14 +94,17 @@ std::vector<MeshInstance> walk_scene(const Document& document, Report& report) {
     std::size_t skinned = 0, cameras = 0;
     std::set<std::string> extensions;
     while (!pending.empty()) {
-        const MeshInstance at = pending.back();
+        const NodeInstance at = pending.back();
         pending.pop_back();
         const Node& node = document.nodes[at.node];
         skinned += node.has_skin ? 1 : 0;
         cameras += node.has_camera ? 1 : 0;
         extensions.insert(node.extensions.begin(), node.extensions.end());
         if (node.mesh != kNone) {
-            instances.push_back(at);
+            found.meshes.push_back(at);
+        }
+        if (node.light != kNone) {
+            found.lights.push_back(at);
         }
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
             pending.push_back({*child, at.world * document.nodes[*child].local});
@@ -119,13 +123,12 @@ std::vector<MeshInstance> walk_scene(const Document& document, Report& report) {
         report.warn("", "cameras of the file are not used", "give the camera when rendering");
     }
     for (const std::string& name : extensions) {
-        report.warn("", name == "KHR_lights_punctual"
-                            ? "lights of the file (KHR_lights_punctual) are not simulated: light "
-                              "comes from the environment"
-                            : "node extension " + in_quotes(name) + " is not simulated");
+        if (name != "KHR_lights_punctual") {
+            report.warn("", "node extension " + in_quotes(name) + " is not simulated");
+        }
     }
-    check_totals(document, instances, report);
-    return instances;
+    check_totals(document, found.meshes, report);
+    return found;
 }
 
 }  // namespace opaline::formats::gltf

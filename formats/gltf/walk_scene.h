@@ -10,18 +10,27 @@
 
 namespace opaline::formats::gltf {
 
-/// A node of the default scene that carries a mesh.
-struct MeshInstance {
+/// A node of the default scene.
+struct NodeInstance {
     std::uint32_t node = 0;
-    glm::dmat4 world{1.0};  ///< from the mesh's frame to the scene's, file units
+    glm::dmat4 world{1.0};  ///< from the node's frame to the scene's, file units
+};
+
+/// One that carries a mesh.
+using MeshInstance = NodeInstance;
+
+/// The nodes of the default scene that carry something, depth-first.
+struct SceneNodes {
+    std::vector<MeshInstance> meshes;
+    std::vector<NodeInstance> lights;
 };
 
 /// What the primitives of all instances hold, as their accessors state it.
 SceneCounts count_world(const Document& document, const std::vector<MeshInstance>& instances);
 
-/// Mesh instances in running-number order: nodes depth-first, children in their listed order. Where
+/// Meshes in running-number order: nodes depth-first, children in their listed order. Where
 /// the file names no scene, the first one; where it has none, all nodes without a parent. Reports
 /// instance counts past the limits, and node extensions that are not simulated.
-std::vector<MeshInstance> walk_scene(const Document& document, Report& report);
+SceneNodes walk_scene(const Document& document, Report& report);
 
 }  // namespace opaline::formats::gltf

@@ -19,7 +19,8 @@ constexpr std::array kNamedTerms{NamedTerm{TermSet::multiple, "multiple"},
                                  NamedTerm{TermSet::unscattered, "unscattered"},
                                  NamedTerm{TermSet::interreflection, "interreflection"},
                                  NamedTerm{TermSet::volume_single, "volume-single"},
-                                 NamedTerm{TermSet::volume_multiple, "volume-multiple"}};
+                                 NamedTerm{TermSet::volume_multiple, "volume-multiple"},
+                                 NamedTerm{TermSet::emitters, "emitters"}};
 
 }  // namespace
 

@@ -8,8 +8,9 @@
 
 namespace opaline::formats {
 
-/// A set of components of outgoing radiance. The light of a path belongs to exactly one component,
-/// by what the path did between the sky and the receiver. Baker, reference and runtime use this one
+/// A set of components of outgoing radiance. The light of a path belongs to exactly one component:
+/// light of the scene's own emitters to one, light of the sky by what the path did between the sky
+/// and the receiver. Baker, reference and runtime use this one
 /// type; opaline.h has flags of its own.
 enum class TermSet : std::uint32_t {
     none = 0,
@@ -23,10 +24,11 @@ enum class TermSet : std::uint32_t {
     interreflection = 32,   ///< everything that met a second body or surface
     volume_single = 64,     ///< scattered once in a volume (smoke, a cloud) and met nothing else
     volume_multiple = 128,  ///< scattered more than once in volumes and met nothing else
+    emitters = 256,         ///< from surfaces and lights of the scene, whatever it met on its way
     /// What `.opal` files hold: multiple, single, specular, diffuse, and both of volumes.
     baked = 15 | volume_single | volume_multiple,
     separable = 3,  ///< what a body's rows hold as one or, if asked for, apart
-    all = 255
+    all = 511
 };
 
 constexpr TermSet operator|(TermSet a, TermSet b) {

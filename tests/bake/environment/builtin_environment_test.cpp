@@ -54,6 +54,12 @@ TEST(BuiltinEnvironment, WhiteLightsEveryPlaneWithPi) {
     }
 }
 
+TEST(BuiltinEnvironment, BlackIsNoLight) {
+    const Environment black = make("black");
+    EXPECT_EQ(formats::sample_map(black, {0, 1, 0}), (formats::Rgb{0, 0, 0}));
+    EXPECT_TRUE(black.discs.empty());
+}
+
 TEST(BuiltinEnvironment, SunHasIrradiancePiAndHalfADegree) {
     for (const char* name : {"sun:0,90", "sun:40,30", "sun:-170,2"}) {
         const Environment sun = make(name);
@@ -126,7 +132,7 @@ TEST(BuiltinEnvironment, StudioIsBoundedAndBrightestAtTheKeyLight) {
 
 TEST(BuiltinEnvironment, MalformedNamesAreUsageErrorsThatListTheForms) {
     for (const char* name : {"sun", "sun:", "sun:1", "sun:1,2,3", "sun:1,91", "sun:inf,0", "sky",
-                             "sky:1.6,10", "sky:11,10", "sky:3,0", "white:1", "studio:2", "moon"}) {
+                             "sky:1.6,10", "sky:11,10", "sky:3,0", "white:1", "black:1", "studio:2", "moon"}) {
         const auto made = make_environment(name);
         ASSERT_FALSE(made) << name;
         EXPECT_EQ(made.error().kind, formats::ErrorKind::usage);

@@ -16,8 +16,20 @@ AssetBuilder rich_asset() {
         asset.add<std::uint8_t>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, "VEC4", true);
     primitive["indices"] = asset.add<std::uint16_t>({0, 1, 2}, "SCALAR");
     primitive["material"] = 0u;
-    asset.json["materials"] = Json::array({{{"name", "m"}}});
+    asset.json["materials"] = Json::array(
+        {{{"name", "m"},
+          {"alphaMode", "MASK"},
+          {"alphaCutoff", 0.5},
+          {"emissiveFactor", {1, 1, 0}},
+          {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 2}}}}}}});
+    asset.json["extensions"]["KHR_lights_punctual"]["lights"] =
+        Json::array({{{"type", "spot"},
+                      {"intensity", 3},
+                      {"color", {1, 1, 1}},
+                      {"range", 9},
+                      {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}}});
     asset.json["nodes"].push_back({{"children", {0u}}, {"rotation", {0, 0, 0, 1}}});
+    asset.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0u;
     asset.json["scenes"][0]["nodes"] = {1u};
     return asset;
 }
@@ -25,6 +37,21 @@ AssetBuilder rich_asset() {
 /// What every accepted scene promises to the baker.
 void expect_sound(const formats::Scene& scene) {
     ASSERT_FALSE(scene.materials.empty());
+    for (const auto& m : scene.materials) {
+        for (const float band : {m.emission.r, m.emission.g, m.emission.b}) {
+            ASSERT_TRUE(band >= 0 && band <= 1e12f);
+        }
+        ASSERT_TRUE(m.alpha >= 0 && m.alpha <= 1 && m.alpha_cutoff >= 0);
+    }
+    for (const auto& light : scene.lights) {
+        ASSERT_FALSE(light.name.empty());
+        ASSERT_TRUE(light.intensity.r >= 0 && light.intensity.r <= 1e12f);
+        ASSERT_TRUE(std::isfinite(glm::dot(light.position, glm::vec3(1))));
+        ASSERT_LT(std::abs(glm::length(light.direction) - 1.0f), 1e-5f);
+        ASSERT_TRUE(light.range >= 0 && std::isfinite(light.range));
+        ASSERT_TRUE(0 <= light.inner_cone && light.inner_cone < light.outer_cone);
+        ASSERT_LE(light.outer_cone, 1.5707964f);
+    }
     for (const auto& p : scene.primitives) {
         ASSERT_LT(p.material, scene.materials.size());
         ASSERT_EQ(p.normal.size(), p.position.size());

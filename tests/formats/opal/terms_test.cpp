@@ -39,7 +39,7 @@ TEST(TermSets, OtherNamesAreRefusedWithTheOptionAndTheNames) {
 
 TEST(TermSets, ComplementsStayWithinAllTerms) {
     EXPECT_EQ(~TermSet::none, TermSet::all);
-    EXPECT_EQ(~TermSet::baked, TermSet::unscattered | TermSet::interreflection);
+    EXPECT_EQ(~TermSet::baked, TermSet::unscattered | TermSet::interreflection | TermSet::emitters);
 }
 
 }  // namespace

@@ -1,0 +1,94 @@
+#include "bake/scene/coverage.h"
+
+#include <bit>
+
+#include "bake/scene/sample_image.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Material;
+
+/// Finaliser of MurmurHash3: every bit of the input changes half of the output's.
+std::uint32_t mixed(std::uint32_t h) {
+    h ^= h >> 16;
+    h *= 0x85ebca6bu;
+    h ^= h >> 13;
+    h *= 0xc2b2ae35u;
+    return h ^ h >> 16;
+}
+
+std::uint32_t hash_of(const Passage& p) {
+    std::uint32_t h = 0x9e3779b9u;
+    const auto add = [&](std::uint32_t word) { h = mixed(h ^ word) + 0x9e3779b9u; };
+    for (int axis = 0; axis < 3; ++axis) {
+        add(std::bit_cast<std::uint32_t>(p.origin[axis]));
+        add(std::bit_cast<std::uint32_t>(p.direction[axis]));
+    }
+    add(p.key);
+    add(p.primitive);
+    add(p.triangle);
+    return mixed(h);
+}
+
+}  // namespace
+
+std::optional<Coverage> make_coverage(const formats::Scene& scene, std::uint32_t primitive,
+                                      CoverageImages& images) {
+    const formats::Primitive& p = scene.primitives[primitive];
+    const Material& material = scene.materials[p.material];
+    if (!has_holes(material)) {
+        return std::nullopt;
+    }
+    Coverage coverage;
+    coverage.mode = material.alpha_mode;
+    coverage.alpha = material.alpha;
+    coverage.cutoff = material.alpha_cutoff;
+    coverage.index = p.index;
+    coverage.vertex_alpha = p.alpha;
+    if (material.base_color_image != formats::kNone && !p.texcoord.empty()) {
+        const formats::Image8& image = scene.images[material.base_color_image];
+        if (image.width > 0 && image.height > 0) {
+            auto& shared = images[material.base_color_image];
+            if (shared == nullptr) {
+                shared = std::make_shared<const formats::Image8>(image);
+            }
+            coverage.image = shared;
+            coverage.texcoord = p.texcoord;
+            coverage.wrap_u = material.wrap_u;
+            coverage.wrap_v = material.wrap_v;
+        }
+    }
+    return coverage;
+}
+
+float coverage_at(const Coverage& coverage, std::uint32_t triangle, float u, float v) {
+    const std::uint32_t* corner = &coverage.index[3 * std::size_t{triangle}];
+    const float weight[3] = {1 - u - v, u, v};
+    float alpha = coverage.alpha;
+    if (!coverage.vertex_alpha.empty()) {
+        alpha *= weight[0] * coverage.vertex_alpha[corner[0]] +
+                 weight[1] * coverage.vertex_alpha[corner[1]] +
+                 weight[2] * coverage.vertex_alpha[corner[2]];
+    }
+    if (coverage.image != nullptr) {
+        const glm::vec2 uv = weight[0] * coverage.texcoord[corner[0]] +
+                             weight[1] * coverage.texcoord[corner[1]] +
+                             weight[2] * coverage.texcoord[corner[2]];
+        alpha *= sample_image({*coverage.image, coverage.wrap_u, coverage.wrap_v, true}, uv).a;
+    }
+    if (coverage.mode == Material::AlphaMode::mask) {
+        return alpha < coverage.cutoff ? 0.0f : 1.0f;
+    }
+    return alpha;
+}
+
+bool meets_surface(const Coverage& coverage, const Passage& passage, float u, float v) {
+    const float share = coverage_at(coverage, passage.triangle, u, v);
+    if (share <= 0 || share >= 1) {
+        return share > 0;
+    }
+    return static_cast<float>(hash_of(passage) >> 8) < share * 0x1p24f;
+}
+
+}  // namespace opaline::bake
