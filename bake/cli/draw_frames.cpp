@@ -73,8 +73,9 @@ int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
     if (const runtime::SpecularNeeds needs = runtime::specular_needs(view);
         needs.any() && has_any(shown.terms, formats::TermSet::specular)) {
         start = FrameClock::now();
-        specular = runtime::make_specular_light(light.of_objects().environment, needs,
-                                                light.of_objects().rotation, options.threads);
+        const OpenedLight mirrored = light.layers.mirrored(light.sky);
+        specular = runtime::make_specular_light(mirrored.environment, needs, mirrored.rotation,
+                                                options.threads);
         software.specular = &specular;
         print_seconds(options, "mirrored light", elapsed_since(start));
     }
@@ -96,11 +97,11 @@ int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
 // A renderer for this light: the one of the light before, unless surfaces mirror what has changed.
 formats::Status prepare_renderer(const formats::AssetView& view, const PictureLight& light,
                                  Drawing& drawing) {
-    if (drawing.renderer && !(light.layers.objects && runtime::specular_needs(view).any())) {
+    if (drawing.renderer && !(light.layers.parts && runtime::specular_needs(view).any())) {
         return formats::ok_status();
     }
     runtime::GlOptions upload;
-    if (light.layers.objects) upload.mirrored = &light.layers.objects->environment;
+    if (light.layers.parts) upload.mirrored = &light.layers.parts->mirrored();
     auto renderer = runtime::GlRenderer::create(view, light.sky.environment, upload);
     if (!renderer) {
         return renderer.error();

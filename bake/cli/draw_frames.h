@@ -43,8 +43,6 @@ struct PictureLight {
     const OpenedLight& sky;
     const LightWithLayers& layers;
     PartVectors parts;
-
-    const OpenedLight& of_objects() const { return layers.of_objects(sky); }
 };
 
 /// What stays from one light to the next.

@@ -78,6 +78,14 @@ void print_layers(const formats::CloudsView& clouds) {
     }
     for (std::size_t i = 0; i < clouds.records.size(); ++i) {
         const formats::LayerRecord& layer = clouds.records[i];
+        if (!(layer.highest > 0)) {
+            fmt::print(
+                "  {:>3}  no cloud: the ground at {:g} m alone, {} x {} cells of {:g} x {:g} m; "
+                "{}\n",
+                i, layer.ground, layer.ground_columns, layer.ground_rows, layer.size[0],
+                layer.size[1], format_bytes(static_cast<double>(bytes_of_layer(layer))));
+            continue;
+        }
         const auto& [r, g, b] = layer.band;
         fmt::print(
             "  {:>3}  base at {:g} m over ground at {:g} m, {:g} x {:g} m{}, up to {:.4g} m "

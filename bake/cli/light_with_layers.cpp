@@ -3,7 +3,6 @@
 #include <chrono>
 
 #include "bake/cli/option_values.h"
-#include "runtime/clouds/environment_at.h"
 #include "runtime/picture/camera.h"
 #include "runtime/volumes/volume_bounds.h"
 
@@ -27,15 +26,8 @@ LightWithLayers light_layers_of(const formats::AssetView& view, const OpenedLigh
                                        {.time = time, .threads = threads});
     if (!view.primitives.empty() || !view.volumes.empty()) {
         const runtime::LayerScene scene{*lit.layers, above.environment, above.rotation};
-        const formats::Vec3 centre = centre_of(view);
-        lit.objects = OpenedLight{runtime::environment_at(scene, centre, {.threads = threads}), {}};
-        lit.points = runtime::light_points(view, runtime::volume_corners(view.volumes),
-                                           lit.layers->field, centre);
-        if (lit.points.point.size() > 1) {
-            for (const formats::Vec3 point : lit.points.point) {
-                lit.at_point.push_back(runtime::environment_at(scene, point, {.threads = threads}));
-            }
-        }
+        lit.parts = runtime::environments_of_parts(
+            scene, view, runtime::volume_corners(view.volumes), centre_of(view), threads);
     }
     lit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return lit;
@@ -43,12 +35,11 @@ LightWithLayers light_layers_of(const formats::AssetView& view, const OpenedLigh
 
 PartVectors project_parts(const LightWithLayers& layers, const OpenedLight& above, std::uint32_t n,
                           unsigned threads) {
-    if (layers.at_point.empty()) {
-        const OpenedLight& all = layers.of_objects(above);
-        return {{}, {runtime::project_environment(all.environment, n, all.rotation, threads)}};
+    if (!layers.parts) {
+        return {{}, {runtime::project_environment(above.environment, n, above.rotation, threads)}};
     }
-    PartVectors parts{layers.points, {}};
-    for (const formats::Environment& environment : layers.at_point) {
+    PartVectors parts{layers.parts->points, {}};
+    for (const formats::Environment& environment : layers.parts->at_point) {
         parts.vector.push_back(runtime::project_environment(environment, n, {}, threads));
     }
     return parts;

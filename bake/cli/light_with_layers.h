@@ -8,7 +8,7 @@
 #include "bake/cli/inputs.h"
 #include "formats/opal/asset.h"
 #include "runtime/clouds/layer_light.h"
-#include "runtime/clouds/light_points.h"
+#include "runtime/clouds/part_environments.h"
 #include "runtime/part_lights.h"
 
 namespace opaline::cli {
@@ -16,18 +16,14 @@ namespace opaline::cli {
 /// A light above an asset's cloud layer, if there is one. Refers to the asset's bytes.
 struct LightWithLayers {
     std::optional<runtime::LayerLight> layers;  ///< nothing: the file has no layer
-    /// What meshes and volumes see of light and layer (runtime/clouds/environment_at.h), at the
-    /// centre of their bounds; nothing: the light itself, or there are none.
-    std::optional<OpenedLight> objects;
-    runtime::LightPoints points;  ///< where their parts are lit, if there are `objects`
-    /// The same at each of several points, by which the parts differ in all but what they mirror;
-    /// empty: there is one, and `objects` is its.
-    std::vector<formats::Environment> at_point;
+    /// What meshes and volumes see of light and layer; nothing: the light itself, or there are
+    /// none.
+    std::optional<runtime::PartEnvironments> parts;
     double seconds = 0;  ///< of all
 
-    /// The light of meshes and volumes, `above` being that of the sky.
-    const OpenedLight& of_objects(const OpenedLight& above) const {
-        return objects ? *objects : above;
+    /// What meshes and volumes mirror, `above` being the light of the sky.
+    OpenedLight mirrored(const OpenedLight& above) const {
+        return parts ? OpenedLight{parts->mirrored(), {}} : above;
     }
 };
 

@@ -145,10 +145,10 @@ int run(const RelightCommand& options) {
     }
     const formats::AssetView& view = asset->loaded.view;
     const LightWithLayers layers = light_layers_of(view, *light, options.time, options.threads);
-    const OpenedLight& of_objects = layers.of_objects(*light);
+    const OpenedLight mirrored = layers.mirrored(*light);
     const runtime::SpecularNeeds needs = runtime::specular_needs(view);
     const runtime::SpecularLight specular = runtime::make_specular_light(
-        of_objects.environment, needs, of_objects.rotation, options.threads);
+        mirrored.environment, needs, mirrored.rotation, options.threads);
     shading.terms = *terms;
     shading.specular = needs.any() ? &specular : nullptr;
     if (!view.clouds.empty() && view.receivers() == 0 && view.volumes.empty()) {

@@ -63,8 +63,8 @@ int draw_at(const RenderCommand& options, const formats::AssetView& view, const 
             Drawing& drawing) {
     const LightWithLayers layers = light_layers_of(view, light, time, options.frame.threads);
     if (layers.layers) print_seconds(options.frame, "layer light", layers.seconds);
-    if (options.frame.stats && layers.objects) {
-        fmt::print("{:<16} {}\n", "light points", layers.points.point.size());
+    if (options.frame.stats && layers.parts) {
+        fmt::print("{:<16} {}\n", "light points", layers.parts->at_point.size());
     }
     // A file without rows, a cloud layer alone, needs no light vector.
     const OpenedLight none;

@@ -17,6 +17,7 @@ namespace opaline::bake {
 /// What is baked of one layer.
 struct LayerLayout {
     std::uint32_t layer = 0;  ///< index into Scene::layers
+    bool cloud = true;        ///< what droplets do to light; false: the ground alone, and no more
     bool often = true;        ///< light that was scattered twice or more
     bool radiosity = true;    ///< ground and base light each other
 };
@@ -30,12 +31,12 @@ struct LayerJob {
 
 struct BakedLayers {
     formats::Clouds clouds;
-    std::vector<DropletBands> droplets;  ///< of each layout
+    std::vector<DropletBands> droplets;  ///< of each layout; of no use where there is no cloud
 };
 
 /// The layers of a file; two stages in the log. The same bits for any number of threads.
 /// Errors: `usage`, naming the layer, for droplets out of range; `interrupted`.
-/// Precondition: every layout's layer has a thickness above 0 somewhere.
+/// Precondition: every cloud has a thickness above 0 somewhere.
 formats::Result<BakedLayers> bake_layers(const LayerJob& job, const Context& context,
                                          StageLog& log);
 

@@ -43,21 +43,25 @@ std::vector<double> draw_cosines(Random& random, double least) {
     return cosines;
 }
 
-// Squares of relative errors, one a depth, light, side and band.
+// Squares of relative errors of one depth, light, side and band.
+struct Square {
+    double tables = 0, droplets = 0;
+};
 struct Squares {
-    std::vector<double> relative;
+    std::vector<Square> relative;
     std::uint32_t radiances = 0;
 };
 
 // One depth of the chain: both sides, all lights, views and azimuths. `overstated`: the stored
 // depth over the true one.
-void compare_radiance(const StoredTables& stored, double overstated, const PeakSplit& split,
+void compare_radiance(const StoredTables& stored, double overstated, const DropletBand& droplets,
                       const SlabRadianceRequest& request, const SlabRadiance& truth, Random& random,
                       Squares& squares) {
+    const PeakSplit& split = droplets.split;
     for (const bool transmitted : {false, true}) {
         const std::vector<double>& modes = transmitted ? truth.transmitted : truth.reflected;
         for (std::size_t l = 0; l < kCosines; ++l) {
-            double errors = 0, references = 0;
+            double errors = 0, noise = 0, references = 0;
             for (std::size_t v = 0; v < kCosines; ++v) {
                 const double light = request.lights[l], view = request.view[v];
                 const double once = transmitted ? transmitted_once(truth.optical_depth, light, view)
@@ -72,11 +76,17 @@ void compare_radiance(const StoredTables& stored, double overstated, const PeakS
                                                         light, view, azimuth, transmitted) -
                                          expected;
                     errors += error * error;
+                    if (angle >= split.angle) {
+                        const double off = once * eval_table(droplets.optics.phase_error, angle) /
+                                           (1 - split.weight);
+                        noise += off * off;
+                    }
                     references += expected * expected;
                     ++squares.radiances;
                 }
             }
-            squares.relative.push_back(references > 0 ? errors / references : 0);
+            squares.relative.push_back(
+                references > 0 ? Square{errors / references, noise / references} : Square{});
         }
     }
 }
@@ -104,23 +114,40 @@ double compare_flux(const StoredTables& stored, double overstated, const SlabMed
     return worst;
 }
 
+// Of one band and light, over depths and sides: what was drawn for them is shared, so that these
+// means alone vary independently.
+std::vector<double> mean_squares_by_light(const std::vector<Square>& squares) {
+    const std::size_t cases = std::size_t{2} * (kHalvings + 1) * kCosines;  // of a band
+    std::vector<double> means(squares.size() / cases * kCosines, 0.0);
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+        means[i / cases * kCosines + i % kCosines] +=
+            (squares[i].tables + squares[i].droplets) / (2.0 * (kHalvings + 1));
+    }
+    return means;
+}
+
 // Fills in what is computed from the squares.
 void summarise(const Squares& squares, LayerErrorReport& report) {
     const auto count = static_cast<double>(squares.relative.size());
-    double mean = 0, spread = 0;
-    for (const double square : squares.relative) {
-        mean += square / count;
-        report.worst = std::max(report.worst, std::sqrt(square));
+    double tables = 0, droplets = 0;
+    for (const Square& square : squares.relative) {
+        tables += square.tables / count;
+        droplets += square.droplets / count;
+        report.worst = std::max(report.worst, std::sqrt(square.tables));
     }
-    for (const double square : squares.relative) {
-        spread += (square - mean) * (square - mean) / count;
+    const double mean = tables + droplets;
+    const std::vector<double> drawn = mean_squares_by_light(squares.relative);
+    const auto draws = static_cast<double>(drawn.size());
+    double spread = 0;
+    for (const double square : drawn) {
+        spread += (square - mean) * (square - mean) / (draws - 1);
     }
-    const double margin = 1.96 * std::sqrt(spread / count);
-    const double own = report.droplets * report.droplets;
-    report.tables = std::sqrt(mean);
-    report.rms_relative = std::sqrt(mean + own);
-    report.ci95[0] = std::sqrt(std::max(0.0, mean - margin) + own);
-    report.ci95[1] = std::sqrt(mean + margin + own);
+    const double margin = 1.96 * std::sqrt(spread / draws);
+    report.tables = std::sqrt(tables);
+    report.droplets = std::sqrt(droplets);
+    report.rms_relative = std::sqrt(mean);
+    report.ci95[0] = std::sqrt(std::max(0.0, mean - margin));
+    report.ci95[1] = std::sqrt(mean + margin);
     report.radiances_checked = squares.radiances;
 }
 
@@ -160,11 +187,10 @@ LayerErrorReport check_layer(const formats::CloudsView& clouds, const formats::L
         request.modes = kModes;
         request.first_order = 2;
         for (const SlabRadiance& truth : solve_slab_radiance(medium, request)) {
-            compare_radiance(stored, overstated, split, request, truth, random, squares);
+            compare_radiance(stored, overstated, droplets[band], request, truth, random, squares);
         }
         report.flux = std::max(report.flux, compare_flux(stored, overstated, medium,
                                                          request.optical_depth, request.lights));
-        report.droplets = std::max(report.droplets, droplets[band].optics.error.phase_rms);
     }
     if (!squares.relative.empty()) {
         summarise(squares, report);

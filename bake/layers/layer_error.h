@@ -17,9 +17,11 @@ struct LayerErrorReport {
     /// RMS of the error of radiance over RMS of radiance, over views and azimuths of one depth,
     /// light, side and band; then RMS over these. All light that was scattered by the rest.
     double tables = 0;
-    double worst = 0;     ///< of these, the largest
-    double droplets = 0;  ///< RMS relative error of the phase function, by even and odd radii
-    double flux = 0;      ///< largest error of T_ms, T_1 and R_1 [share of the light]
+    double worst = 0;  ///< of these, the largest
+    /// The same of light scattered once, by what the phase functions of the even and of the odd
+    /// radii differ. Light scattered more often averages it over directions.
+    double droplets = 0;
+    double flux = 0;  ///< largest error of T_ms, T_1 and R_1 [share of the light]
     std::uint32_t radiances_checked = 0;
     std::string reference;  ///< in words
 };

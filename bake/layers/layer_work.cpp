@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/mie/forward_peak.h"
 #include "bake/mie/sphere_scattering.h"
 #include "bake/slab/solve_slab.h"
 #include "bake/slab/table_place.h"
@@ -37,6 +38,22 @@ double table_bytes(const LayerTableSizes& sizes, bool has_radiance) {
         record.radiance_modes = static_cast<std::uint32_t>(sizes.radiance.modes);
     }
     return sizeof(float) * static_cast<double>(record.value_count());
+}
+
+// Of one band. A Legendre polynomial takes as long as five terms of a sphere's series (measured).
+double count_glow_terms(const LayerTableSizes& sizes, bool is_paper) {
+    constexpr double kTermsOfPolynomial = 5, kConvolutions = 2;  // printed: below and above n
+    return kTermsOfPolynomial * (is_paper ? kConvolutions : 1) * sizes.glow_angles *
+           sizes.glow_events * kGlowMoments;
+}
+
+// Of one band: P * P, then its modes and the printed forms at all nodes (measured).
+double count_printed_terms(const RadianceTableSize& size) {
+    constexpr double kTermsOfConvolution = 3.6e7, kTermsOfNode = 38, kAzimuths = 128;
+    const auto cosines = static_cast<double>(size.cosines);
+    return kTermsOfConvolution + kTermsOfNode * 2 * cosines * cosines *
+                                     (kAzimuths + static_cast<double>(size.depths)) *
+                                     static_cast<double>(size.modes);
 }
 
 }  // namespace
@@ -80,7 +97,11 @@ LayerWork count_layer_work(const formats::CloudLayer& layer, const LayerLayout& 
         work.series_terms +=
             count_series_terms(droplets_of(layer), wavelength, radius_sampling(knobs));
     }
+    work.table_terms = kBands * count_glow_terms(sizes, layer.paper);
     // Printed forms (fidelity paper) are not solved for.
+    if (layer.paper && layout.often) {
+        work.table_terms += kBands * count_printed_terms(sizes.radiance);
+    }
     if (!layer.paper) {
         work.flux_products = kBands * count_flux_products(sizes.flux, sizes.flux_streams);
     }
@@ -99,7 +120,8 @@ Work droplet_work(const CostInput& input, const LayerWork& work) {
 }
 
 Work table_work(const CostInput& input, const LayerWork& work) {
-    return {0, work.flux_products * input.rates.flux_product +
+    return {0, work.table_terms * input.rates.series_term +
+                   work.flux_products * input.rates.flux_product +
                    work.radiance_products * input.rates.radiance_product};
 }
 

@@ -9,7 +9,10 @@ namespace opaline::bake {
 
 /// What a bake of one layer does, in counts of all three bands.
 struct LayerWork {
-    double series_terms = 0;       ///< orders of spheres, times angles of their intensities
+    double series_terms = 0;  ///< orders of spheres, times angles of their intensities
+    /// The same that tables take without solving for a slab: series of Legendre polynomials,
+    /// printed forms. Counted as terms of the same length.
+    double table_terms = 0;
     double flux_products = 0;      ///< multiplications of the adding of slabs, for fluxes
     double radiance_products = 0;  ///< the same for radiance
     double bytes = 0;              ///< of tables and pictures in the file

@@ -131,9 +131,7 @@ LayerPlan plan_layers(const formats::Scene& scene, const Knobs& knobs) {
                 !cloud.on              ? unseen
                 : bounds.radiosity > 0 ? "ground and layer return hardly any light to each other"
                                        : "the ground is black");
-        if (cloud.on) {
-            plan.layouts.push_back({i, often.on, ground.on});
-        }
+        plan.layouts.push_back({i, cloud.on, often.on, ground.on});
         for (PlanEntry* const entry : {&cloud, &often, &ground}) {
             plan.entries.push_back(std::move(*entry));
         }

@@ -11,7 +11,7 @@ namespace opaline::bake {
 
 struct LayerPlan {
     std::vector<PlanEntry> entries;    ///< three a layer, in order; they belong to no rule
-    std::vector<LayerLayout> layouts;  ///< of layers that are seen at all
+    std::vector<LayerLayout> layouts;  ///< of all layers, those without a cloud too
 };
 
 /// Decides from thickness, droplets and ground what to bake (README.md, "Bounds"). Droplets are

@@ -12,7 +12,7 @@ namespace opaline::bake {
 /// apart there. As a phase function it integrates to 1 over the sphere (the program's convention).
 struct AngularTable {
     std::vector<double> angle;  ///< [rad], strictly ascending, in [0, pi]; two rows or more
-    std::vector<double> value;  ///< [1/sr], >= 0
+    std::vector<double> value;  ///< [1/sr]; >= 0 but for differences of phase functions
 };
 
 /// cos(a) - cos(b), without cancellation.

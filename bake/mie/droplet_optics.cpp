@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
@@ -114,6 +115,24 @@ OpticsError compare_halves(const BothSums& sums) {
     return error;
 }
 
+// What halves differ by as phase functions of their own.
+AngularTable halve_difference(const BothSums& sums, const AngleGrid& grid) {
+    std::array<AngularTable, 2> half;
+    for (std::size_t k = 0; k < half.size(); ++k) {
+        for (std::size_t i = 0; i < grid.size(); ++i) {
+            half[k].angle.push_back(grid.angle(i));
+            half[k].value.push_back(sums[k].intensity[i]);
+        }
+        const double integral = integrate_table(half[k]);
+        if (integral > 0) scale_table(half[k], 1 / integral);
+    }
+    AngularTable difference = std::move(half[0]);
+    for (std::size_t i = 0; i < difference.value.size(); ++i) {
+        difference.value[i] = (difference.value[i] - half[1].value[i]) / 2;
+    }
+    return difference;
+}
+
 formats::Status check_inputs(const DropletDistribution& droplets, double wavelength,
                              std::complex<double> index) {
     if (auto status = check_droplets(droplets); !status) {
@@ -200,6 +219,7 @@ formats::Result<DropletOptics> average_droplets(const DropletDistribution& dropl
     optics.wavelength = wavelength;
     optics.index = index;
     optics.error = compare_halves(sums);
+    optics.phase_error = halve_difference(sums, grid);
     add_sums(sums[1], sums[0]);
     const HalfSums& all = sums[0];
     optics.c_ext = all.extinction;
@@ -229,6 +249,7 @@ DropletOptics mix_wavelengths(std::span<const DropletOptics> optics,
                                             });
     mean.phase.angle = most_rows->phase.angle;
     mean.phase.value.assign(mean.phase.angle.size(), 0.0);
+    mean.phase_error = mean.phase;
     mean.integral_before = 0;
     double total = 0, scattered = 0;
     for (std::size_t k = 0; k < optics.size(); ++k) {
@@ -254,6 +275,7 @@ DropletOptics mix_wavelengths(std::span<const DropletOptics> optics,
         mean.error.g = std::max(mean.error.g, one.error.g);
         for (std::size_t i = 0; i < mean.phase.angle.size(); ++i) {
             mean.phase.value[i] += power * eval_table(one.phase, mean.phase.angle[i]);
+            mean.phase_error.value[i] += power * eval_table(one.phase_error, mean.phase.angle[i]);
         }
     }
     scale_table(mean.phase, 1 / integrate_table(mean.phase));

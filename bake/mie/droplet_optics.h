@@ -37,7 +37,10 @@ struct DropletOptics {
     double c_geo = 0;             ///< mean geometric cross-section, pi <r^2> [m^2]
     double g = 0;                 ///< mean cosine, from the coefficients
     AngularTable phase;           ///< integrates to 1 over the sphere [1/sr]
-    double integral_before = 1;   ///< of the phase function before it was scaled to 1
+    /// Rows of `phase`: half of what the even radii's mean is above that of the odd ones, signed
+    /// [1/sr]. An error that directions share is not in it: both means integrate to 1.
+    AngularTable phase_error;
+    double integral_before = 1;  ///< of the phase function before it was scaled to 1
     OpticsError error;
     std::size_t radii = 0;  ///< spheres that were computed
 };

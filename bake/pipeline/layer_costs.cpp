@@ -29,9 +29,9 @@ void bill_layers(const CostRequest& request, std::span<PlanEntry> plan, Bill& bi
             continue;
         }
         const formats::CloudLayer& layer = request.scene.layers[i];
-        const LayerWork once = count_layer_work(layer, {i, false, false}, request.knobs);
+        const LayerWork once = count_layer_work(layer, {i, true, false, false}, request.knobs);
         const bool has_often = often == nullptr || often->on;
-        const LayerWork all = count_layer_work(layer, {i, has_often, false}, request.knobs);
+        const LayerWork all = count_layer_work(layer, {i, true, has_often, false}, request.knobs);
         bill.open("droplets of clouds");
         bill.add(droplet_work(input, once), cloud);
         bill.open("tables of clouds");

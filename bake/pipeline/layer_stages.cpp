@@ -61,6 +61,7 @@ formats::Status add_layers(const formats::Scene& scene, std::span<const LayerLay
     result.asset.clouds = std::move(baked->clouds);
     const formats::CloudsView clouds = result.asset.clouds.view();
     for (std::size_t i = 0; i < layouts.size(); ++i) {
+        if (!layouts[i].cloud) continue;
         result.layer_error =
             run_stage(result.stages, "self-check of clouds", "self-check", [&](std::uint64_t&) {
                 return check_layer(clouds, clouds.records[i], baked->droplets[i], result.knobs.seed,

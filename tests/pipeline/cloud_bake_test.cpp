@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -14,6 +15,8 @@
 #include "formats/opal/file_bytes.h"
 #include "formats/opal/read_opal.h"
 #include "formats/opal/write_opal.h"
+#include "runtime/clouds/layer_light.h"
+#include "runtime/clouds/see_layer.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/rates.h"
 #include "tests/support/scenes.h"
@@ -23,6 +26,7 @@
 namespace opaline::tests {
 namespace {
 
+using formats::Rgb;
 using ::testing::HasSubstr;
 
 formats::CloudLayer make_layer() {
@@ -96,12 +100,60 @@ TEST(CloudBake, LayerStandsBesideMeshesAndVolumes) {
     EXPECT_EQ(formats::find_clouds_fault(result.asset.clouds.view()).what, "");
 }
 
-TEST(CloudBake, LayerWithoutThicknessIsLeftOut) {
+// Under a white sky; from below, from above, and level, upward and downward.
+std::vector<Rgb> look_around(const formats::Asset& asset) {
+    formats::Environment white;
+    white.width = 16;
+    white.height = 8;
+    white.pixel.assign(16 * 8, {1, 1, 1});
+    const auto light = runtime::light_layers(asset.clouds.view(), white, {}, {.threads = 1});
+    std::vector<Rgb> seen;
+    for (const float eye : {2.0f, 3000.0f}) {
+        for (const float up : {0.9f, 0.1f, -0.1f, -0.9f}) {
+            runtime::LayerRay ray;
+            ray.origin = {10, eye, 20};
+            ray.direction = {std::sqrt(1 - up * up), up, 0};
+            seen.push_back(see_through_layer({light, white, {}}, ray));
+        }
+    }
+    return seen;
+}
+
+TEST(CloudBake, LayerThatIsNotSeenLeavesItsGround) {
     Scene scene = make_layer_scene();
-    scene.layers[0].thickness.assign(4, 0);
-    const bake::BakeResult result = bake_scene(scene, layer_bake());
-    EXPECT_TRUE(result.asset.clouds.records.empty());
-    EXPECT_FALSE(result.layer_error);
+    bake::BakeOptions options = layer_bake();
+    for (const float thickness : {0.0f, 1e-4f}) {
+        scene.layers[0].thickness.assign(4, thickness);
+        const bake::BakeResult left_out = bake_scene(scene, options);
+        ASSERT_EQ(left_out.asset.clouds.records.size(), 1u);
+        EXPECT_EQ(left_out.asset.clouds.records[0].highest, 0);
+        EXPECT_EQ(formats::find_clouds_fault(left_out.asset.clouds.view()).what, "");
+        EXPECT_FALSE(left_out.layer_error);
+        const std::vector<Rgb> seen = look_around(left_out.asset);
+        // The ground is of the code 100, an albedo of 0.127.
+        EXPECT_NEAR(seen[3].g, 0.127f, 1e-3f);
+        EXPECT_NEAR(seen[0].g, 1, 1e-5f);
+        if (thickness == 0) continue;
+        options.simulate_all = true;
+        const bake::BakeResult forced = bake_scene(scene, options);
+        EXPECT_GT(forced.asset.clouds.records[0].highest, 0);
+        const std::vector<Rgb> truth = look_around(forced.asset);
+        const double bound = left_out.volume_plan[0].bound;
+        EXPECT_EQ(left_out.volume_plan[0].name, "cloud");
+        for (std::size_t i = 0; i < seen.size(); ++i) {
+            EXPECT_NEAR(seen[i].r, truth[i].r, bound) << i;
+            EXPECT_NEAR(seen[i].b, truth[i].b, bound) << i;
+        }
+    }
+}
+
+TEST(CloudBake, EffectsWithoutTheCloudLeaveTheGround) {
+    bake::BakeOptions options = layer_bake();
+    options.effects = {"direct"};
+    const bake::BakeResult result = bake_scene(make_layer_scene(), options);
+    ASSERT_EQ(result.asset.clouds.records.size(), 1u);
+    EXPECT_EQ(result.asset.clouds.records[0].highest, 0);
+    EXPECT_FALSE(result.asset.clouds.records[0].has_radiosity());
 }
 
 TEST(CloudBake, TargetErrorChoosesTheTables) {
@@ -141,24 +193,27 @@ TEST(CloudBake, EqualDropletsAndCoarseTablesAreWarnedOf) {
     EXPECT_THAT(result.warnings.back().fault, HasSubstr("ripples"));
 }
 
-TEST(CloudBake, CostsArePredictedForItsEntries) {
-    const Scene scene = make_layer_scene();
-    const bake::BakeResult result = bake_scene(scene, layer_bake());
-    std::vector<bake::PlanEntry> plan = result.plan, layers = result.volume_plan;
-    const bake::Rates rates = make_rates();
-    const bake::CostPrediction cost = bake::predict_costs(
-        {bake::all_effects(), scene, result.facts, result.knobs, rates, 1}, plan, layers);
-    for (const bake::StageReport& stage : result.stages) {
-        if (stage.name.ends_with("of clouds")) {
-            EXPECT_EQ(std::ranges::count(cost.stages, stage.name, &bake::StageCost::name), 1)
-                << stage.name;
+TEST(CloudBake, CostsArePredictedForItsEntriesInBothFidelities) {
+    Scene scene = make_layer_scene();
+    for (const bool is_paper : {false, true}) {
+        scene.layers[0].paper = is_paper;
+        const bake::BakeResult result = bake_scene(scene, layer_bake());
+        std::vector<bake::PlanEntry> plan = result.plan, layers = result.volume_plan;
+        const bake::Rates rates = make_rates();
+        const bake::CostPrediction cost = bake::predict_costs(
+            {bake::all_effects(), scene, result.facts, result.knobs, rates, 1}, plan, layers);
+        for (const bake::StageReport& stage : result.stages) {
+            if (stage.name.ends_with("of clouds")) {
+                EXPECT_EQ(std::ranges::count(cost.stages, stage.name, &bake::StageCost::name), 1)
+                    << stage.name;
+            }
         }
+        EXPECT_GT(layers[0].predicted_seconds, 0);
+        EXPECT_GT(layers[1].predicted_seconds, 0);
+        const auto bytes = static_cast<double>(4 * result.asset.clouds.value.size());
+        EXPECT_NEAR(static_cast<double>(layers[0].predicted_bytes + layers[1].predicted_bytes),
+                    bytes, 0.01 * bytes);
     }
-    EXPECT_GT(layers[0].predicted_seconds, 0);
-    EXPECT_GT(layers[1].predicted_seconds, 0);
-    const auto bytes = static_cast<double>(4 * result.asset.clouds.value.size());
-    EXPECT_NEAR(static_cast<double>(layers[0].predicted_bytes + layers[1].predicted_bytes), bytes,
-                0.01 * bytes);
 }
 
 TEST(CloudBake, EffectsOfLayersConcernNothingElse) {

@@ -10,12 +10,14 @@
 #include "bake/accuracy/sweep/sweep_layers.h"
 #include "bake/accuracy/volumes/volume_radiance.h"
 #include "formats/opal/write_opal.h"
-#include "runtime/clouds/environment_at.h"
 #include "runtime/clouds/layer_light.h"
+#include "runtime/clouds/part_environments.h"
+#include "runtime/part_lights.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/shade.h"
 #include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/volume_bounds.h"
 
 namespace opaline::bake {
 namespace {
@@ -37,14 +39,15 @@ double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// What of the light above reaches meshes and volumes, seen from one point for all of them:
-// `opaline render` lights those that stand far apart from several.
-formats::Environment light_below(const formats::AssetView& asset, const runtime::LayerLight& layers,
-                                 const formats::Environment& above, unsigned threads) {
+// What of the light above reaches meshes and volumes, as `opaline render` has it.
+runtime::PartEnvironments light_below(const formats::AssetView& asset,
+                                      const runtime::LayerLight& layers,
+                                      const formats::Environment& above, unsigned threads) {
     const runtime::BoundingSphere bound = runtime::bound_asset(asset);
     const formats::Vec3 centre{static_cast<float>(bound.x), static_cast<float>(bound.y),
                                static_cast<float>(bound.z)};
-    return runtime::environment_at({layers, above, {}}, centre, {.threads = threads});
+    return runtime::environments_of_parts({layers, above, {}}, asset,
+                                          runtime::volume_corners(asset.volumes), centre, threads);
 }
 
 formats::Result<runtime::Picture> draw(const formats::AssetView& asset, const SweepView& view,
@@ -58,19 +61,26 @@ formats::Result<runtime::Picture> draw(const formats::AssetView& asset, const Sw
         layers = runtime::light_layers(asset.clouds, view.picture_light, {}, {.threads = threads});
     }
     const bool has_objects = !asset.primitives.empty() || !asset.volumes.empty();
-    const formats::Environment below =
-        layers && has_objects ? light_below(asset, *layers, view.picture_light, threads)
-                              : formats::Environment{};
-    const formats::Environment& of_objects = layers ? below : view.picture_light;
-    const runtime::LightVector light =
-        runtime::project_environment(of_objects, asset.cubemap_size, {}, threads);
+    runtime::PartEnvironments parts;
+    if (layers && has_objects) {
+        parts = light_below(asset, *layers, view.picture_light, threads);
+    } else {
+        parts.at_point.push_back(view.picture_light);
+    }
+    std::vector<runtime::LightVector> vectors;
+    vectors.reserve(parts.at_point.size());
+    for (const formats::Environment& environment : parts.at_point) {
+        vectors.push_back(
+            runtime::project_environment(environment, asset.cubemap_size, {}, threads));
+    }
+    const runtime::PartLights lights{vectors, parts.points.of_primitive, parts.points.of_volumes};
     const std::vector<formats::Rgb> radiance =
-        runtime::shade_for_picture(asset, light, camera.eye, formats::TermSet::all, threads);
+        runtime::shade_for_picture(asset, lights, camera.eye, formats::TermSet::all, threads);
     const runtime::SpecularNeeds needs = runtime::specular_needs(asset);
     const runtime::SpecularLight specular =
-        runtime::make_specular_light(of_objects, needs, {}, threads);
+        runtime::make_specular_light(parts.mirrored(), needs, {}, threads);
     const runtime::VolumeLight volumes =
-        runtime::relight_volumes(asset.volumes, light, {.threads = threads});
+        runtime::relight_volumes(asset.volumes, vectors[lights.of_volumes], {.threads = threads});
     runtime::SoftwareOptions options;
     options.threads = threads;
     options.volumes = &volumes;

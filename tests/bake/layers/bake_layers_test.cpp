@@ -103,7 +103,7 @@ TEST(BakeLayers, StatedAngleOfThePeakIsKeptAndNoneMeansNoGlow) {
 
 TEST(BakeLayers, WithoutMultipleScatteringThereIsNoRadianceTable) {
     const formats::Scene scene = layer_scene();
-    const LayerLayout layout{0, false, false};
+    const LayerLayout layout{0, true, false, false};
     StageLog log;
     const auto baked = bake_layers({scene, {&layout, 1}, least_layer_knobs()}, {}, log);
     const formats::LayerRecord& record = baked->clouds.records[0];
@@ -111,6 +111,21 @@ TEST(BakeLayers, WithoutMultipleScatteringThereIsNoRadianceTable) {
     EXPECT_EQ(baked->clouds.value.size(), record.value_count());
     EXPECT_FALSE(record.has_radiosity());
     EXPECT_EQ(log.size(), 2u);
+}
+
+TEST(BakeLayers, WithoutACloudThereIsTheGroundAlone) {
+    formats::Scene scene = layer_scene();
+    scene.layers[0].visibility = 5000;
+    const LayerLayout layout{0, false, false, false};
+    StageLog log;
+    const auto baked = bake_layers({scene, {&layout, 1}, least_layer_knobs()}, {}, log);
+    const formats::LayerRecord& record = baked->clouds.records[0];
+    EXPECT_EQ(record.highest, 0);
+    EXPECT_GT(record.haze, 0);
+    EXPECT_EQ(baked->clouds.ground.size(), scene.layers[0].ground_albedo.size());
+    EXPECT_EQ(baked->clouds.value.size(), record.value_count());
+    EXPECT_EQ(formats::find_clouds_fault(baked->clouds.view()).what, "");
+    EXPECT_TRUE(log.empty());
 }
 
 TEST(BakeLayers, AreTheSameForAnyNumberOfThreads) {

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "bake/layers/stored_tables.h"
 #include "tests/bake/layers/layer_support.h"
@@ -60,6 +62,44 @@ TEST(LayerError, FindsTablesThatAreOff) {
         }
     }
     EXPECT_NEAR(check_of(wrong.baked).tables, 0.1, 0.01);
+}
+
+// Against droplets of ten times as many radii the tables err by less than is stated, of which the
+// halves of the radii say not much more than that.
+TEST(LayerError, CoversWhatFewRadiiMiss) {
+    const formats::Scene scene = layer_scene(300);
+    Knobs knobs = layer_knobs_of(Quality::preview);
+    knobs.set(kCloudStep, 0.3);
+    const BakedLayers baked = bake_layer(scene, knobs);
+    const LayerErrorReport stated = check_of(baked);
+    DropletBands fine = *scatter_bands(scene.layers[0], {0.1, 2000, 2000}, {});
+    for (DropletBand& band : fine) {
+        band.split = split_peak(band.optics.phase, baked.droplets[0][0].split.angle);
+    }
+    const LayerErrorReport true_error =
+        check_layer(baked.clouds.view(), baked.clouds.records[0], fine, 1, {});
+    EXPECT_LT(true_error.tables, stated.rms_relative);
+    EXPECT_GT(true_error.tables, stated.tables);
+    const double missed =
+        std::sqrt(true_error.tables * true_error.tables - stated.tables * stated.tables);
+    EXPECT_LT(stated.droplets, 4 * missed);
+}
+
+TEST(LayerError, IntervalHoldsTheMeanOfOtherDraws) {
+    constexpr int kSeeds = 6;
+    const BakedLayers& baked = checked_draft().baked;
+    std::vector<LayerErrorReport> reports;
+    double square = 0;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+        reports.push_back(
+            check_layer(baked.clouds.view(), baked.clouds.records[0], baked.droplets[0], seed, {}));
+        square += reports.back().rms_relative * reports.back().rms_relative / kSeeds;
+    }
+    const auto holds = [&](const LayerErrorReport& report) {
+        return report.ci95[0] * report.ci95[0] <= square &&
+               square <= report.ci95[1] * report.ci95[1];
+    };
+    EXPECT_GE(std::ranges::count_if(reports, holds), kSeeds - 1);
 }
 
 TEST(LayerError, IsTheSameForTheSameSeed) {

@@ -56,7 +56,8 @@ TEST(PlanLayers, LayerIsOffWithoutThicknessAndWithoutDroplets) {
         Knobs knobs;
         knobs.simulate_all = true;
         const LayerPlan plan = plan_layers(scene, knobs);
-        EXPECT_TRUE(plan.layouts.empty());
+        ASSERT_EQ(plan.layouts.size(), 1u);
+        EXPECT_FALSE(plan.layouts[0].cloud);
         ASSERT_EQ(plan.entries.size(), 3u);
         for (const PlanEntry& entry : plan.entries) {
             EXPECT_FALSE(entry.on);
@@ -68,6 +69,7 @@ TEST(PlanLayers, LayerIsOffWithoutThicknessAndWithoutDroplets) {
 TEST(PlanLayers, ThickLayerHasEverythingAndItsSubjectIsTheLayer) {
     const LayerPlan plan = plan_of(100);
     ASSERT_EQ(plan.layouts.size(), 1u);
+    EXPECT_TRUE(plan.layouts[0].cloud);
     EXPECT_TRUE(plan.layouts[0].often);
     EXPECT_TRUE(plan.layouts[0].radiosity);
     for (const PlanEntry& entry : plan.entries) {
@@ -154,7 +156,9 @@ TEST(PlanLayers, EffectsThatAreNotWantedAreLeftOut) {
     EXPECT_TRUE(alone.layouts[0].often);
     EXPECT_FALSE(alone.layouts[0].radiosity);
     knobs.effects = {"direct"};
-    EXPECT_TRUE(plan_of(100, knobs).layouts.empty());
+    const LayerPlan neither = plan_of(100, knobs);
+    EXPECT_FALSE(neither.layouts[0].cloud || neither.layouts[0].often ||
+                 neither.layouts[0].radiosity);
 }
 
 TEST(PlanLayers, BoundOfDropletsOutOfRangeIsUnknown) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
+#include <string>
 #include <tuple>
 
 #include "bake/mie/droplet_optics.h"
@@ -77,6 +79,15 @@ double share_of(const SlabSolution& slab, const std::string& quantity, const std
     return side(slab.order.at(std::stoul(order)));
 }
 
+TEST(CloudTable, EveryRowIsOfAKindThatATestReads) {
+    OPALINE_NEEDS_REFERENCE("clouds.csv");
+    const std::set<std::string> read{"mie",         "dsd",     "phase", "forward_peak", "slab",
+                                     "slab_medium", "slab_hg", "fit",   "appendixB"};
+    for (const auto& cell : read_named_table(reference_folder() / "clouds.csv")) {
+        EXPECT_TRUE(read.contains(cell.at("kind"))) << CloudRow{cell}.name();
+    }
+}
+
 TEST(PaperSlab, MediumWithoutItsPeakIsThatOfTheTable) {
     OPALINE_CLOUD_ROWS(rows, "slab_medium");
     for (const CloudRow& row : rows) {
@@ -105,6 +116,8 @@ TEST(PaperSlab, SharesByOrderAreThoseOfTheTable) {
             squares += deviation * deviation;
             largest = std::max(largest, std::abs(deviation));
             ++photons;
+        } else {  // no photon of many thousands left so, or all did
+            EXPECT_NEAR(share, row.value(), 1e-4) << row.name();
         }
     }
     if (photons > 0) {

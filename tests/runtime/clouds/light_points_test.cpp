@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runtime/clouds/environment_at.h"
+#include "runtime/clouds/part_environments.h"
 #include "runtime/shade.h"
 #include "tests/runtime/clouds/lit_layer.h"
 #include "tests/runtime/picture/synthetic_asset.h"
@@ -142,6 +143,29 @@ TEST(LightPoints, AreFewHoweverManyTheNodesAre) {
         const Vec3 at = asset.position[asset.primitives[p].first_vertex];
         EXPECT_LT(length(point - at), 3000.0f);
     }
+}
+
+// What is mirrored is seen from the centre, which takes a map of its own: only where something is.
+TEST(PartEnvironments, AreThoseAtThePointsAndAtTheCentreIfSomethingIsMirrored) {
+    const test::LitLayer lit(half_clouds(), high_sun());
+    Asset asset = balls_at({kUnderCloud, kUnderHole});
+    const Vec3 centre{0, 5, 0};
+    PartEnvironments parts = environments_of_parts(lit.scene(), asset.view(), {}, centre, 1);
+    EXPECT_EQ(parts.points.point, (std::vector<Vec3>{kUnderCloud, kUnderHole}));
+    ASSERT_EQ(parts.at_point.size(), 2u);
+    const auto map_at = [&](Vec3 point) {
+        return environment_at(lit.scene(), point, {.threads = 1}).pixel;
+    };
+    EXPECT_EQ(parts.at_point[0].pixel, map_at(kUnderCloud));
+    EXPECT_EQ(parts.at_point[1].pixel, map_at(kUnderHole));
+    EXPECT_FALSE(parts.at_centre);
+    asset.roughness = {0.3f, formats::kNotGlossy};
+    parts = environments_of_parts(lit.scene(), asset.view(), {}, centre, 1);
+    EXPECT_EQ(parts.mirrored().pixel, map_at(centre));
+    const Asset one = balls_at({kUnderHole});
+    parts = environments_of_parts(lit.scene(), one.view(), {}, kUnderHole, 1);
+    EXPECT_EQ(parts.at_point.size(), 1u);
+    EXPECT_EQ(&parts.mirrored(), &parts.at_point[0]);
 }
 
 }  // namespace
