@@ -118,7 +118,7 @@ void print_volume_error(const Json& error) {
 }
 
 void print_layer_error(const Json& error) {
-    fmt::print("layer errs    {:.1f} % RMS: tables {:.1f} %, droplets {:.1f} %\n",
+    fmt::print("layer errs    {:.2f} % RMS: tables {:.2f} %, droplets {:.2f} %\n",
                percent_of(error, "rms_relative"), percent_of(error, "tables"),
                percent_of(error, "droplets"));
 }

@@ -189,6 +189,7 @@ LayerErrorReport check_layer(const formats::CloudsView& clouds, const formats::L
         for (const SlabRadiance& truth : solve_slab_radiance(medium, request)) {
             compare_radiance(stored, overstated, droplets[band], request, truth, random, squares);
         }
+        report.phase_rms = std::max(report.phase_rms, droplets[band].optics.error.phase_rms);
         report.flux = std::max(report.flux, compare_flux(stored, overstated, medium,
                                                          request.optical_depth, request.lights));
     }

@@ -21,7 +21,8 @@ struct LayerErrorReport {
     /// The same of light scattered once, by what the phase functions of the even and of the odd
     /// radii differ. Light scattered more often averages it over directions.
     double droplets = 0;
-    double flux = 0;  ///< largest error of T_ms, T_1 and R_1 [share of the light]
+    double phase_rms = 0;  ///< relative, of phase functions over their rows, by the same halves
+    double flux = 0;       ///< largest error of T_ms, T_1 and R_1 [share of the light]
     std::uint32_t radiances_checked = 0;
     std::string reference;  ///< in words
 };

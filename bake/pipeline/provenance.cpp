@@ -104,6 +104,7 @@ Json layer_error_json(const LayerErrorReport& error) {
             {"tables", error.tables},
             {"worst", error.worst},
             {"droplets", error.droplets},
+            {"phase_rms", error.phase_rms},
             {"flux", error.flux},
             {"radiances_checked", error.radiances_checked},
             {"reference", error.reference}};
