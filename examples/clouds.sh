@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Remakes figures of [Bouthors2006] with this program: 3 and 4 (droplets and what they do to light), 6 (orders of
-# scattering), 8 and 9 (models against adding and doubling, by order and by direction), 10 and 11 (fogbow and glory, back-lit
-# edges, sunset from above, water and ice beneath a layer), these also with the formulas that the paper prints.
+# scattering), 8 and 9 (models against adding and doubling, by order and by direction), 10 and 11 (fogbow, glory, pseudo-specular light,
+# back-lit edges, sunset from above, water and ice beneath a layer), these also with the formulas that the paper prints.
 # usage: clouds.sh OUT_DIR [OPALINE]     OPALINE: the program, default build/opaline
 # Needs the Debian packages imagemagick, fonts-dejavu-core and perl beside Opaline. Plots are SVG, with the numbers as CSV.
 # CLOUDS_SIZE=WxH in the environment sets the size of pictures.
@@ -182,7 +182,9 @@ picture thin glory --light sky:2,50 --eye 0,3000,0 --target 0,2233.96,642.79 --f
 layer thin-paper '"thickness": 25, "repeat": true, "ground_albedo": [0.02, 0.03, 0.04], "fidelity": "paper"'
 picture thin-paper fogbow-paper --light sky:2,50 --eye 0,3000,0 --target 0,2233.96,642.79 --fov 95 --exposure 1.3
 picture thin-paper glory-paper --light sky:2,50 --eye 0,3000,0 --target 0,2233.96,642.79 --fov 14 --exposure 1.3
-panel figure10 2x1 fogbow "fogbow and glory from above" glory "glory"
+# Toward a low sun the same layer shines as a mirror would, without being one.
+picture thin mirror --light sky:3,12 --eye 0,2000,0 --target 0,1985,-100 --fov 60 --exposure -2
+panel figure10 3x1 fogbow "fogbow and glory from above" glory "glory" mirror "toward a low sun: pseudo-specular"
 panel figure10-fidelity 2x2 fogbow "physical: fogbow and glory" glory "physical: glory" \
     fogbow-paper "paper: fogbow and glory" glory-paper "paper: glory"
 

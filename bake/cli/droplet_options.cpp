@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
 #include "bake/cli/interrupt.h"
@@ -17,19 +19,26 @@ namespace {
 constexpr double kLeastWavelength = 1e-8, kMostWavelength = 1e-1;      // [m]
 constexpr double kLeastDropletRadius = 1e-10, kMostDropletRadius = 1;  // [m]
 
-void add_substance_options(CLI::App& command, SubstanceOptions& options, bool one_wavelength) {
+void add_substance_options(CLI::App& command, SubstanceOptions& options, bool one_channel) {
     options.wavelength_option =
         command
             .add_option("--wavelength", options.wavelengths,
-                        one_wavelength ? "of the light in a vacuum, micrometres or with a unit"
-                                       : "of the light in a vacuum, micrometres or with a unit; "
-                                         "several for droplets, with commas between")
+                        std::string("of the light in a vacuum, micrometres or with a unit; ") +
+                            (one_channel ? "several with commas between make one channel of colour"
+                                         : "several for droplets, with commas between"))
             ->delimiter(',')
             ->allow_extra_args(false)
             ->transform(length(kLeastWavelength, kMostWavelength))
-            ->option_text(one_wavelength ? "W [550nm]" : "W,... [650nm,550nm,450nm]");
-    if (one_wavelength) {
-        options.wavelength_option->expected(1);
+            ->option_text(one_channel ? "W,... [550nm]" : "W,... [650nm,550nm,450nm]");
+    if (one_channel) {
+        options.weights_option =
+            command
+                .add_option("--weights", options.weights,
+                            "how much of each of several wavelengths the channel has, relative")
+                ->delimiter(',')
+                ->allow_extra_args(false)
+                ->check(real_number(0, 1e9))
+                ->option_text("A,... [equal]");
     }
     options.index_option =
         command
@@ -49,7 +58,7 @@ void add_substance_options(CLI::App& command, SubstanceOptions& options, bool on
 
 }  // namespace
 
-void add_droplet_options(CLI::App& command, DropletOptions& options, bool one_wavelength) {
+void add_droplet_options(CLI::App& command, DropletOptions& options, bool one_channel) {
     options.effective_radius_option =
         command
             .add_option("--effective-radius", options.droplets.effective_radius,
@@ -63,7 +72,7 @@ void add_droplet_options(CLI::App& command, DropletOptions& options, bool one_wa
                         "the larger, the narrower")
             ->check(real_number(bake::kMinGamma, bake::kMaxGamma))
             ->option_text("G [2]");
-    add_substance_options(command, options.substance, one_wavelength);
+    add_substance_options(command, options.substance, one_channel);
     options.size_step_option =
         command
             .add_option(
@@ -85,8 +94,9 @@ std::vector<std::string> given_droplet_options(const DropletOptions& options) {
     for (const CLI::Option* option :
          {options.effective_radius_option, options.gamma_option, options.size_step_option,
           options.threads_option, options.substance.wavelength_option,
-          options.substance.index_option, options.substance.substance_option}) {
-        if (option->count() > 0) {
+          options.substance.weights_option, options.substance.index_option,
+          options.substance.substance_option}) {
+        if (option != nullptr && option->count() > 0) {
             names.push_back(option->get_name());
         }
     }
@@ -113,6 +123,24 @@ formats::Result<std::complex<double>> parse_index(const std::string& text) {
 formats::Result<std::complex<double>> index_at(const SubstanceOptions& options, double wavelength) {
     return options.index.empty() ? bake::refractive_index(options.substance, wavelength)
                                  : parse_index(options.index);
+}
+
+formats::Result<std::vector<double>> weights_of(const SubstanceOptions& options,
+                                                std::size_t wavelengths) {
+    if (options.weights.empty()) {
+        return std::vector<double>(wavelengths, 1.0);
+    }
+    if (options.weights.size() != wavelengths) {
+        return formats::make_error(
+            formats::ErrorKind::usage, "", "--weights",
+            fmt::format("there are {} for {} wavelengths", options.weights.size(), wavelengths),
+            "give one for each wavelength of --wavelength");
+    }
+    if (std::ranges::none_of(options.weights, [](double weight) { return weight > 0; })) {
+        return formats::make_error(formats::ErrorKind::usage, "", "--weights", "all of them are 0",
+                                   "give one above 0");
+    }
+    return options.weights;
 }
 
 formats::Result<std::vector<bake::DropletOptics>> average_droplets(

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <complex>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -16,9 +17,11 @@ namespace opaline::cli {
 /// What a sphere or droplets are made of and which light meets them.
 struct SubstanceOptions {
     std::vector<double> wavelengths;  ///< [m]; empty: the command's default
+    std::vector<double> weights;      ///< of wavelengths that make one channel; empty: equal
     std::string index;                ///< "N" or "N,K"; empty: that of `substance`
     bake::Substance substance = bake::Substance::water;
-    CLI::Option *wavelength_option = nullptr, *index_option = nullptr, *substance_option = nullptr;
+    CLI::Option *wavelength_option = nullptr, *weights_option = nullptr, *index_option = nullptr,
+                *substance_option = nullptr;
 };
 
 /// Droplets of modified-gamma sizes: options that `mie` and `phase --type mie` share.
@@ -31,8 +34,8 @@ struct DropletOptions {
                 *size_step_option = nullptr, *threads_option = nullptr;
 };
 
-/// `one_wavelength`: the command takes one, otherwise a list.
-void add_droplet_options(CLI::App& command, DropletOptions& options, bool one_wavelength);
+/// `one_channel`: several wavelengths stand for one colour, with weights; otherwise for a list.
+void add_droplet_options(CLI::App& command, DropletOptions& options, bool one_channel);
 
 /// The options of a distribution that were given, by name; those of its substance too.
 std::vector<std::string> given_droplet_options(const DropletOptions& options);
@@ -42,6 +45,10 @@ formats::Result<std::complex<double>> parse_index(const std::string& text);
 
 /// The index that was given, or that of the substance at a wavelength [m]. Errors: usage.
 formats::Result<std::complex<double>> index_at(const SubstanceOptions& options, double wavelength);
+
+/// Weights of as many wavelengths, which make one channel. Errors: usage.
+formats::Result<std::vector<double>> weights_of(const SubstanceOptions& options,
+                                                std::size_t wavelengths);
 
 /// Means over the droplets at each wavelength [m]. Warns of distributions so narrow that ripples of
 /// equal spheres show. Errors: usage, resource, interrupted.

@@ -101,15 +101,25 @@ constexpr double kRowTolerance = 2e-3;
 
 formats::Result<Subject> make_droplet_subject(const DropletOptions& options) {
     const auto& given = options.substance.wavelengths;
-    auto optics = average_droplets(options, {given.empty() ? 550 / 1e9 : given.front()});
+    const std::vector<double> wavelengths = given.empty() ? std::vector{550 / 1e9} : given;
+    const auto weights = weights_of(options.substance, wavelengths.size());
+    if (!weights) {
+        return weights.error();
+    }
+    auto optics = average_droplets(options, wavelengths);
     if (!optics) {
         return std::move(optics).error();
     }
-    const bake::DropletOptics& droplets = optics->front();
+    const bake::DropletOptics droplets =
+        optics->size() == 1 ? optics->front() : bake::mix_wavelengths(*optics, *weights);
     Subject subject;
     subject.json = {{"type", "mie"},
                     {"wavelength_m", droplets.wavelength},
                     {"index", {droplets.index.real(), droplets.index.imag()}}};
+    if (wavelengths.size() > 1) {
+        subject.json["wavelengths_m"] = wavelengths;
+        subject.json["weights"] = *weights;
+    }
     subject.json.update(describe_droplets(options.droplets));
     subject.error = describe_error(droplets);
     subject.series = bake::expand_table(droplets.phase, kDegrees);
@@ -319,9 +329,12 @@ void add_phase_command(CLI::App& app, Job& job) {
         "of\n"
         "a 6 x 16 x 16 cube map, weighted by solid angle; its 100 largest singular values.\n"
         "Type mie is the mean over droplets (--effective-radius, see `opaline mie --help`) at one\n"
-        "wavelength, with rows where the function bends, and its numerical error.\n"
+        "wavelength, with rows where the function bends, and its numerical error; at several,\n"
+        "the mean by scattered power, which takes the hard colours out of a glory.\n"
         "Example:\n  opaline phase --type hg --g 0.6 --format csv\n"
-        "  opaline phase --type mie --effective-radius 7um --table-output droplets.txt");
+        "  opaline phase --type mie --effective-radius 7um --table-output droplets.txt\n"
+        "  opaline phase --type mie --effective-radius 7um --wavelength 600nm,650nm,700nm "
+        "--weights 1,2,1");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 

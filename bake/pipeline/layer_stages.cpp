@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bake/accuracy/error_warnings.h"
+#include "bake/mie/number_text.h"
 
 namespace opaline::bake {
 namespace {
@@ -43,7 +44,7 @@ void warn_of_layer(const formats::CloudLayer& layer, const Knobs& knobs,
     if (relative_width(droplets) < kMonodisperse) {
         warnings.push_back(formats::make_warning(
             "", layer.name,
-            "its droplets are so alike (gamma " + std::to_string(droplets.gamma) +
+            "its droplets are so alike (gamma " + number_text(droplets.gamma) +
                 ") that its phase function has the ripples of single spheres",
             "give a gamma below " +
                 std::to_string(static_cast<int>(1 / (kMonodisperse * kMonodisperse) - 4))));

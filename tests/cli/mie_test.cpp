@@ -208,6 +208,25 @@ TEST(PhaseOfDroplets, IntegratesTo1OnRowsThatCrowdAhead) {
     EXPECT_GT(all.at("error").at("phase_rms"), 0);
 }
 
+// By scattered power, which is alike in wavelengths so close.
+TEST(PhaseOfDroplets, SeveralWavelengthsAreOneChannelByTheirWeights) {
+    const auto mean_cosine = [](const Arguments& more) {
+        const Json all = print_json("phase", join(join({"--type", "mie"}, kSmallDroplets), more));
+        return all.at("mean_cosine").get<double>();
+    };
+    const double green = mean_cosine({"--wavelength", "550nm"});
+    const double red = mean_cosine({"--wavelength", "600nm"});
+    EXPECT_GT(std::abs(green - red), 1e-3);
+    EXPECT_NEAR(mean_cosine({"--wavelength", "550nm,600nm", "--weights", "1,0"}), green, 1e-5);
+    EXPECT_NEAR(mean_cosine({"--wavelength", "550nm,600nm"}), (green + red) / 2,
+                0.1 * std::abs(green - red));
+    EXPECT_NEAR(mean_cosine({"--wavelength", "550nm,600nm", "--weights", "1,3"}),
+                (green + 3 * red) / 4, 0.1 * std::abs(green - red));
+    const Json all = print_json(
+        "phase", join(join({"--type", "mie"}, kSmallDroplets), {"--wavelength", "550nm,600nm"}));
+    EXPECT_EQ(all.at("phase").at("weights"), (std::vector<double>{1, 1}));
+}
+
 TEST(PhaseOfDroplets, TableIsOneThatMediaFilesCanName) {
     const TemporaryFolder folder;
     const std::string path = folder / "droplets.txt";
@@ -237,7 +256,12 @@ TEST(PhaseOfDroplets, OptionsOfOtherTypesAreRefused) {
          {Arguments{"--type", "mie"},
           {"--type", "mie", "--effective-radius", "1", "--g", "0.5"},
           {"--type", "mie", "--effective-radius", "1", "--samples", "10"},
-          {"--type", "mie", "--effective-radius", "1", "--wavelength", "550nm,650nm"},
+          {"--type", "mie", "--effective-radius", "1", "--weights", "1,2"},
+          {"--type", "mie", "--effective-radius", "1", "--wavelength", "550nm,650nm", "--weights",
+           "0,0"},
+          {"--type", "mie", "--effective-radius", "1", "--wavelength", "550nm,650nm", "--weights",
+           "1,-1"},
+          {"--g", "0.5", "--weights", "1"},
           {"--g", "0.5", "--effective-radius", "1"},
           {"--g", "0.5", "--gamma", "2"},
           {"--type", "rayleigh", "--wavelength", "550nm"},
