@@ -10,6 +10,7 @@ PartEnvironments environments_of_parts(const LayerScene& scene, const formats::A
                                        formats::Vec3 centre, unsigned threads) {
     PartEnvironments parts;
     parts.points = light_points(asset, volume_corners, scene.light.field, centre);
+    parts.at_point.reserve(parts.points.point.size());
     for (const formats::Vec3 point : parts.points.point) {
         parts.at_point.push_back(environment_at(scene, point, {.threads = threads}));
     }

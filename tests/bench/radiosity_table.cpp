@@ -75,7 +75,8 @@ class AllPairs {
                 double k = 0;
                 for (int p = 0; p < kPoints * kPoints; ++p) {
                     const double dx = side * (x + (p % kPoints + 0.5) / kPoints - 0.5);
-                    const double dz = side * (z + (p / kPoints + 0.5) / kPoints - 0.5);
+                    const int row = p / kPoints;
+                    const double dz = side * (z + (row + 0.5) / kPoints - 0.5);
                     const double s = h * h + dx * dx + dz * dz;
                     k += h * h / (std::numbers::pi * s * s) * area / (kPoints * kPoints);
                 }

@@ -89,6 +89,7 @@ TEST(LayerError, IntervalHoldsTheMeanOfOtherDraws) {
     constexpr int kSeeds = 6;
     const BakedLayers& baked = checked_draft().baked;
     std::vector<LayerErrorReport> reports;
+    reports.reserve(kSeeds);
     double square = 0;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
         reports.push_back(
