@@ -104,6 +104,25 @@ TEST(DropletOptics, ErrorThatIsReportedIsTheErrorAgainstMoreRadii) {
     }
 }
 
+// By row what the halves differ by, of which the RMS is reported; both integrate to 1.
+TEST(DropletOptics, HalvesOfThePhaseFunctionDifferByItsErrorAndHoldTheSameLight) {
+    const DropletOptics& optics = tests::fine_optics();
+    ASSERT_EQ(optics.phase_error.angle, optics.phase.angle);
+    EXPECT_NEAR(integrate_table(optics.phase_error), 0, 1e-12);
+    double squares = 0;
+    for (std::size_t i = 0; i < optics.phase.value.size(); ++i) {
+        const double relative = optics.phase_error.value[i] / optics.phase.value[i];
+        squares += relative * relative / static_cast<double>(optics.phase.value.size());
+    }
+    EXPECT_NEAR(std::sqrt(squares) / optics.error.phase_rms, 1, 0.05);
+    // Of a channel: by the power that each wavelength scatters.
+    const DropletOptics both[] = {optics, optics};
+    const double weights[] = {1, 2};
+    const DropletOptics channel = mix_wavelengths(both, weights);
+    EXPECT_NEAR(channel.phase_error.value[7], optics.phase_error.value[7],
+                1e-9 * std::abs(optics.phase_error.value[7]));
+}
+
 TEST(DropletOptics, ExtremeDistributionsAreFinite) {
     for (const DropletDistribution& d : {DropletDistribution{1e8, 1e-6, 0.1},
                                          {1e8, 1e-6, 10000},
