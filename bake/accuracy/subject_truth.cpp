@@ -44,7 +44,14 @@ bool SubjectTruth::is_expensive() const {
 }
 
 std::string SubjectTruth::name() const {
-    return join(parts, "+", [](const EffectDescriptor& e) { return e.name; });
+    std::string all = join(parts, "+", [](const EffectDescriptor& e) { return e.name; });
+    for (const Part& part : parts) {
+        const OtherLight* const light = part.inputs.light();
+        if (part.effect->adds_other_light && light != nullptr && !light->name.empty()) {
+            return all + "+" + std::string(light->name);
+        }
+    }
+    return all;
 }
 
 std::string SubjectTruth::reference() const {

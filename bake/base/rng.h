@@ -27,7 +27,9 @@ enum class RandomStage : std::uint32_t {
     volume_rays = 15,
     volume_costs = 16,
     slab_walk = 17,
-    layer_check = 18
+    layer_check = 18,
+    bounce_rays = 19,
+    true_bounces = 20
 };
 
 /// Four uniform numbers in [0, 1), a pure function of the arguments. There is no state, so results

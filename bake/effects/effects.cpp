@@ -5,6 +5,7 @@
 #include "bake/effects/direct/direct.h"
 #include "bake/effects/gloss/gloss.h"
 #include "bake/effects/incident/incident.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "bake/effects/local/local.h"
 #include "bake/effects/multiple/multiple.h"
 #include "bake/effects/multiple/rule_spread.h"
@@ -26,6 +27,7 @@ const EffectTable& all_effects() {
                                          describe_local(Effect::local, spread_rules()),
                                          describe_specular(Effect::specular),
                                          describe_gloss(Effect::gloss),
+                                         describe_interreflection(Effect::interreflection),
                                          describe_scattered_once(Effect::volume_single),
                                          describe_scattered_often(Effect::volume_multiple),
                                          describe_cloud(Effect::cloud),

@@ -14,6 +14,7 @@ enum class Effect : std::uint8_t {
     local,            ///< scattered light in media so dense that light leaves where it entered
     specular,         ///< light mirrored at the boundary of media
     gloss,            ///< light mirrored by opaque surfaces
+    interreflection,  ///< light that goes from surface to surface
     volume_single,    ///< light scattered once in volumes
     volume_multiple,  ///< light scattered more than once in volumes
     cloud,            ///< light scattered by cloud layers

@@ -9,6 +9,7 @@
 #include "bake/pipeline/costed_bake.h"
 #include "bake/pipeline/layer_costs.h"
 #include "bake/pipeline/predict_memory.h"
+#include "bake/pipeline/shared_light.h"
 #include "bake/pipeline/volume_costs.h"
 #include "bake/rows/subject_states.h"
 #include "formats/opal/cubemap.h"
@@ -72,6 +73,53 @@ void bill_step(const CostedBake& bake, Step step, Bill& bill) {
             bill.add(own.work(bake.cost_of(
                          subject, bake.request.facts.material[subject.material].receivers)),
                      bake.payer(subject, e));
+        }
+    }
+}
+
+// As find_shared_light runs: rows of media at coarse knobs, and what the effect does itself.
+void bill_shared_light(const CostedBake& bake, Bill& bill) {
+    const CostRequest& request = bake.request;
+    const auto& effects = request.effects.effects;
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+        const auto concerned = std::ranges::find_if(
+            bake.subjects, [&](const CostedSubject& subject) { return subject.acts[e]; });
+        if (effects[e].light_work == nullptr || concerned == bake.subjects.end()) {
+            continue;
+        }
+        PlanEntry* const payer = bake.payer(*concerned, e);
+        const LightWork light = effects[e].light_work(bake.input);
+        bill.open(std::string(effects[e].name));
+        bill.add(light.work, payer);
+        const Knobs coarse = coarse_knobs(request.effects, request.knobs, light.cubemap_size);
+        const CostInput input{request.rates, coarse, request.facts.triangles,
+                              request.facts.receivers};
+        for (const CostedSubject& subject : bake.subjects) {
+            if (!subject.layout.translucent) {
+                continue;
+            }
+            SubjectCost cost{input,
+                             request.scene.materials[subject.material],
+                             request.facts.material[subject.material],
+                             subject.layout,
+                             light.points / static_cast<double>(bake.subjects.size()),
+                             bake.traces_rays};
+            for (std::size_t f = 0; f < effects.size(); ++f) {
+                EffectState state;
+                state.acts = subject.acts[f] && f != e;
+                for (const Step step : {Step::samples, Step::prepare}) {
+                    const auto work = step_of(effects[f], step).work;
+                    if (work != nullptr &&
+                        is_taken(effects[f], state, step, cost.material, subject.layout)) {
+                        bill.add(work(cost), payer);
+                    }
+                }
+                const GatherStep& gather = effects[f].gather;
+                if (state.acts && gather.work != nullptr &&
+                    (gather.applies == nullptr || gather.applies(subject.layout))) {
+                    bill.add(gather.work(cost), payer);
+                }
+            }
         }
     }
 }
@@ -141,6 +189,7 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bake.traces_rays = bake.traces_rays || (!volumes.empty() && request.facts.triangles > 0);
     bill_placing(bake, bill);
     bill_step(bake, Step::study, bill);
+    bill_shared_light(bake, bill);
     if (request.knobs.error_target > 0) {
         bill_pilot_truth(bake, bill);
         bill_fixed_trials(bake, bill);

@@ -14,6 +14,7 @@
 #include "bake/layers/plan_layers.h"
 #include "bake/pipeline/layer_stages.h"
 #include "bake/pipeline/provenance.h"
+#include "bake/pipeline/shared_light.h"
 #include "bake/pipeline/volume_stages.h"
 #include "bake/pipeline/volume_warnings.h"
 #include "bake/receivers/body_points.h"
@@ -162,11 +163,12 @@ void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjec
 }
 
 // What an inspected scene becomes: all stages from the receivers on.
-formats::Status bake_inspected(const BakeInputs& bake, const Context& context, BakeResult& result) {
+formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
+                               BakeResult& result) {
     Knobs& knobs = result.knobs;
     StageLog& log = result.stages;
     std::vector<TestLight> lights;  // none where there is nothing to relight
-    if (count_receivers(bake.receivers) > 0) {
+    if (count_receivers(unlit.receivers) > 0) {
         auto made = run_stage(log, "test lights", [&](std::uint64_t&) {
             return make_test_lights(
                 knobs.cubemap_size, context.threads,
@@ -177,12 +179,16 @@ formats::Status bake_inspected(const BakeInputs& bake, const Context& context, B
         }
         lights = std::move(*made);
     }
-    std::vector<SubjectState> subjects = begin_subjects(bake, result.plan, knobs);
-    run_step(Step::study, bake, knobs, context, subjects, log);
-    result.plan = amend_plan(bake, subjects, knobs, context);
-    settle_subjects(bake, result.plan, knobs, subjects);
+    std::vector<SubjectState> subjects = begin_subjects(unlit, result.plan, knobs);
+    run_step(Step::study, unlit, knobs, context, subjects, log);
+    result.plan = amend_plan(unlit, subjects, knobs, context);
+    settle_subjects(unlit, result.plan, knobs, subjects);
     knobs.model_error = find_model_error(result.plan);
-    run_step(Step::study, bake, knobs, context, subjects, log);  // of effects that act only now
+    run_step(Step::study, unlit, knobs, context, subjects, log);  // of effects that act only now
+    const std::unique_ptr<OtherLight> light =
+        find_shared_light(unlit, knobs, context, final_layouts(unlit, subjects), subjects, log);
+    BakeInputs bake = unlit;
+    bake.light = light.get();
     if (knobs.error_target > 0) {
         result.accuracy.emplace();
         knobs = choose_knobs(bake, knobs, context, {subjects, lights, log, *result.accuracy});

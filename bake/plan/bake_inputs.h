@@ -4,6 +4,7 @@
 
 #include "bake/receivers/receiver.h"
 #include "bake/scene/scene_facts.h"
+#include "bake/transport/other_light.h"
 #include "bake/transport/ray_scene.h"
 #include "formats/scene.h"
 
@@ -19,6 +20,10 @@ struct BakeInputs {
     const RayScene& rays;  ///< all triangles
     const RayScene& sky;   ///< none: what surrounds receivers that nothing occludes
     std::span<const ReceiverSet> receivers;  ///< in the order of the scene's primitives
+    /// Besides that of the environment; null: there is none.
+    const OtherLight* light = nullptr;
+
+    bool has_environment() const { return OtherLight::has_environment(light); }
 };
 
 }  // namespace opaline::bake

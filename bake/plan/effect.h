@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -59,6 +60,18 @@ struct EffectInputs {
     const formats::Medium& medium() const { return *bake.scene.materials[material].medium; }
     /// What stands before the light of the material's receivers; empty where nothing does.
     const RayScene& outside() const { return layout.occluded ? bake.rays : bake.sky; }
+    /// OtherLight::make_truth of light(); empty where there is none.
+    OtherLight::TrueIrradiance true_light(std::span<const TestLight> lights) const {
+        const OtherLight* const other = light();
+        return other != nullptr && other->make_truth ? other->make_truth(lights)
+                                                     : OtherLight::TrueIrradiance();
+    }
+    /// BakeInputs::light, or null where there is none that reaches the material.
+    const OtherLight* light() const {
+        const bool reaches = bake.light != nullptr && (bake.light->unreached.empty() ||
+                                                       bake.light->unreached[material] == 0);
+        return reaches ? bake.light : nullptr;
+    }
 };
 
 /// A step that runs once for a subject, before its rows. `run` null: the effect has none.
@@ -104,6 +117,28 @@ struct TruthStep {
     Work (*work)(const SubjectCost& cost, TruthEffort effort) = nullptr;
 };
 
+/// Work of an effect that lights all surfaces at once.
+struct LightWork {
+    Work work;                       ///< but for rows of media
+    double points = 0;               ///< of all media, at most, whose rows it asks for
+    std::uint32_t cubemap_size = 8;  ///< of these rows
+};
+
+/// What an effect works on that lights all surfaces at once.
+struct LightInputs {
+    const BakeInputs& bake;  ///< without BakeInputs::light
+    const Knobs& knobs;
+    const Context& context;
+    std::span<const RowLayout> layouts;  ///< by material
+    std::vector<std::uint8_t> acts;      ///< by material: whether the effect does
+    /// Rows of points of one medium, coarsely: T_k, terms * bands * 6 n n Haar coefficients each,
+    /// n = `cubemap_size`.
+    std::function<std::vector<std::vector<float>>(
+        std::uint32_t material, std::span<const Receiver> outside,
+        std::span<const BodyPoint> inside, std::uint32_t cubemap_size)>
+        rows_of_medium;
+};
+
 /// All that the rest of the baker knows of an effect. Plan, cost model, pilot, self-check, sweep,
 /// report and command line iterate the table of these and name no effect.
 struct EffectDescriptor {
@@ -124,7 +159,14 @@ struct EffectDescriptor {
     PreparationStep prepare{};  ///< what is left once every knob has its value
     GatherStep gather{};
     TruthStep truth{};
+    /// Finds the light that the effect makes arrive at surfaces (BakeInputs::light), once for the
+    /// bake, before samples. Null: it makes none. The result may be null: there is none.
+    std::unique_ptr<OtherLight> (*make_light)(const LightInputs& inputs,
+                                              std::uint64_t& rays) = nullptr;
+    LightWork (*light_work)(const CostInput& input) = nullptr;
     bool reads_openness = false;
+    /// It adds BakeInputs::light to its rows. Where that replaces the environment, no other acts.
+    bool adds_other_light = false;
     bool concerns_volumes = false;  ///< it is about volumes instead of materials
     bool concerns_layers = false;   ///< it is about cloud layers instead of materials
     /// Light of the reference that files with it hold, beside what all files are compared with.

@@ -56,6 +56,9 @@ struct Rates {
     double look_up_term = 0;   ///< each term beyond the first of a look-up
     double unpack_texel = 0;   ///< from packed rows into a receiver's, per term
     CostBySize entry_packet;   ///< sixteen rays out of a body, with their entries
+    // Light between surfaces.
+    CostBySize bounce_ray;   ///< to the nearest surface, and the cluster that it meets
+    double bounce_cell = 0;  ///< one number of a cluster into a receiver's row
     // Light that crosses bodies unscattered.
     CostBySize straight_view;  ///< a view through a body: its flights, and rays beyond its exits
     double straight_cell = 0;  ///< a texel of one row and band, and half an exit's share of one
@@ -114,6 +117,8 @@ void visit_rates(AnyRates&& rates, Visit&& visit) {
     visit("look_up_term", rates.look_up_term);
     visit("unpack_texel", rates.unpack_texel);
     by_size("entry_packet_few", "entry_packet_many", rates.entry_packet);
+    by_size("bounce_ray_few", "bounce_ray_many", rates.bounce_ray);
+    visit("bounce_cell", rates.bounce_cell);
     by_size("straight_view_few", "straight_view_many", rates.straight_view);
     visit("straight_cell", rates.straight_cell);
     visit("density_step", rates.density_step);

@@ -25,7 +25,8 @@ RowLayout layout_material(const EffectTable& effects, const formats::Material& m
     // A row for all views that stands alone is marked as such in the file.
     layout.separate = layout.translucent && (knobs.separate_terms || layout.all_harmonics() == 0);
     layout.at_entry = layout.at_entry && layout.translucent && layout.has_rows();
-    layout.grey = layout.grey && (layout.translucent || layout.sheet);
+    layout.coloured = layout.coloured && layout.constant;
+    layout.grey = layout.grey && !layout.coloured && (layout.translucent || layout.sheet);
     return layout;
 }
 

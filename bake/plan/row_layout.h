@@ -24,6 +24,7 @@ struct RowLayout {
     bool separate = false;             ///< the row for all views stands apart from the harmonics
     bool sheet = false;                ///< a row for each side that it may be seen from
     bool grey = false;                 ///< the three bands coincide: one stands for them
+    bool coloured = false;             ///< light that arrives differs between the three bands
     bool mirrors = false;              ///< its surface mirrors light: needs openness
     formats::Rgb tint{1, 1, 1};        ///< times the base colour
     /// Of the harmonics, those filled with light that nothing scatters: 0, 4 or 9.
@@ -37,7 +38,7 @@ struct RowLayout {
     std::uint32_t all_harmonics() const {
         return std::max({harmonics, view_harmonics, straight_harmonics});
     }
-    std::uint32_t bands() const { return (translucent || sheet) && !grey ? 3 : 1; }
+    std::uint32_t bands() const { return coloured || ((translucent || sheet) && !grey) ? 3 : 1; }
     /// Row of the first harmonic.
     std::uint32_t first_harmonic() const { return separate ? 1 : 0; }
     /// h_0 through which row 0 is seen: what is the same for all views is divided by it.

@@ -36,7 +36,9 @@ void settle_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan, co
         state.layout =
             layout_material(bake.effects, bake.scene.materials[state.material], decisions, knobs);
         for (std::size_t e = 0; e < state.effects.size(); ++e) {
-            state.effects[e].acts = acts_on(bake.effects.effects[e], decisions, state.layout);
+            const EffectDescriptor& effect = bake.effects.effects[e];
+            state.effects[e].acts = acts_on(effect, decisions, state.layout) &&
+                                    (bake.has_environment() || effect.adds_other_light);
         }
     }
 }

@@ -150,6 +150,44 @@ void inspect_colors(const Scene& scene, std::uint32_t material, MaterialFacts& f
     }
 }
 
+bool is_grey(formats::Rgb c) {
+    return c.r == c.g && c.g == c.b;
+}
+
+// Whether all that its rows are multiplied by is grey.
+bool shows_grey(const Scene& scene, std::uint32_t material) {
+    const formats::Material& m = scene.materials[material];
+    bool grey = is_grey(m.base_color) && m.base_color_image == formats::kNone && !m.marble;
+    for (const Primitive& p : scene.primitives) {
+        grey = grey && (p.material != material || std::ranges::all_of(p.color, is_grey));
+    }
+    return grey;
+}
+
+void inspect_surroundings(const Scene& scene, SceneFacts& facts) {
+    Surroundings all{0, true};
+    for (std::uint32_t m = 0; m < facts.material.size(); ++m) {
+        MaterialFacts& own = facts.material[m];
+        const formats::Material& material = scene.materials[m];
+        if (!(own.receivers > 0)) {
+            continue;
+        }
+        formats::Rgb c = material.base_color;
+        if (material.sheet) {
+            c = c * (material.sheet->reflect + material.sheet->transmit);
+        }
+        const float largest = std::max({c.r, c.g, c.b}) * own.brightest_vertex *
+                              (material.medium ? 1.0f : formats::diffuse_share(material));
+        own.brightest = std::min(1.0, static_cast<double>(largest));
+        all.brightest = std::max(all.brightest, own.brightest);
+        all.is_grey = all.is_grey && shows_grey(scene, m) &&
+                      (own.is_grey || (!material.medium && !material.sheet));
+    }
+    for (MaterialFacts& own : facts.material) {
+        own.surroundings = all;
+    }
+}
+
 // Parts, their convexity, and the horizon of their receivers. The `tree` of the whole scene is
 // built on first use.
 void inspect_shape(const Scene& scene, std::uint32_t material, SceneFacts& facts, HorizonTree& tree,
@@ -199,6 +237,7 @@ SceneFacts inspect_scene(const Scene& scene) {
             largest = glm::max(largest, glm::max(glm::abs(own.low), glm::abs(own.high)));
         }
     }
+    inspect_surroundings(scene, facts);
     find_nested_media(scene, facts);
     constexpr float kRoundings = 4 * 0x1p-23f;
     Searches searches{

@@ -27,6 +27,12 @@ struct InnerMedium {
     formats::Medium medium;
 };
 
+/// What the surfaces of a scene may send to each other.
+struct Surroundings {
+    double brightest = 1;  ///< largest MaterialFacts::brightest of all
+    bool is_grey = false;  ///< they reflect all three bands alike
+};
+
 /// Facts about the surfaces of one material, over all its primitives.
 struct MaterialFacts {
     double triangles = 0, receivers = 0;
@@ -47,6 +53,10 @@ struct MaterialFacts {
 
     float brightest_vertex = 0;  ///< largest component of its vertex colours; 1 without any
     float color_contrast = 0;    ///< ColorRange::contrast; 0: its colour is constant
+
+    /// Bound on the share of diffuse light that leaves its surface again, in any band.
+    double brightest = 1;
+    Surroundings surroundings;  ///< the same of all materials
 
     std::vector<InnerMedium> inner;  ///< of a medium: others that lie inside it
     bool is_buried = false;          ///< a medium all of whose surface lies inside others

@@ -63,47 +63,58 @@ void copy_samples(std::span<const SurfaceSample> samples, std::span<const float>
     tree.mean_norm = std::sqrt(squares / tree.total_area);
 }
 
-void sum_nodes(std::uint32_t cubemap_size, std::uint32_t kept, const Context& context,
-               ClusterTree& tree) {
+// The sums over samples of each node, truncated; their norms add up to those of the nodes.
+SparseVectors sum_nodes(const SparseVectors& samples, std::size_t texels, std::size_t kept,
+                        const Context& context, std::vector<ClusterNode>& nodes) {
+    SparseVectors sums;
+    sums.bands = samples.bands;
     struct Part {
         SparseVectors::Block sums;
         std::vector<float> norm;
     };
-    const std::size_t texels = formats::cubemap_texels(cubemap_size);
     for_each_block_in_order(
-        tree.nodes.size(), SparseVectors::kPerBlock, context,
+        nodes.size(), SparseVectors::kPerBlock, context,
         [&](Range range) {
             Part part;
-            reserve(part.sums, std::min<std::size_t>(kept, texels));
-            std::vector<float> dense(texels);
+            reserve(part.sums, sums.bands * std::min(kept, texels));
+            std::vector<float> dense(sums.bands * texels);
             for (std::size_t v = range.begin; v < range.end; ++v) {
-                const ClusterNode& node = tree.nodes[v];
+                const ClusterNode& node = nodes[v];
                 std::fill(dense.begin(), dense.end(), 0.0f);
                 for (std::size_t s = node.first; s < node.first + node.count; ++s) {
-                    const SparseVector sample = tree.samples[s];
+                    const SparseVector sample = samples[s];
                     for (std::size_t i = 0; i < sample.index.size(); ++i) {
-                        dense[sample.index[i]] += sample.value[i];
+                        for (std::size_t b = 0; b < sums.bands; ++b) {
+                            dense[b * texels + sample.index[i]] += sample.value[sums.bands * i + b];
+                        }
                     }
                 }
                 part.norm.push_back(norm(dense));
-                append_truncated(part.sums, dense, kept);
+                if (part.norm.back() > 0) {
+                    append_truncated_bands(part.sums, dense, sums.bands, kept);
+                } else {
+                    append_nothing(part.sums);
+                }
             }
             shrink(part.sums);
             return part;
         },
         [&](Range range, Part&& part) {
-            tree.sums.blocks.push_back(std::move(part.sums));
+            sums.blocks.push_back(std::move(part.sums));
             for (std::size_t v = range.begin; v < range.end; ++v) {
-                tree.nodes[v].norm = part.norm[v - range.begin];
+                float& all = nodes[v].norm;
+                const float own = part.norm[v - range.begin];
+                all = all == 0 ? own : std::hypot(all, own);
             }
         });
+    return sums;
 }
 
 }  // namespace
 
 ClusterTree build_cluster_tree(std::span<const SurfaceSample> samples, SampleTransport transport,
                                std::uint32_t cubemap_size, std::uint32_t kept,
-                               const Context& context) {
+                               const Context& context, std::uint32_t kept_of_light) {
     ClusterTree tree;
     if (samples.empty()) {
         return tree;
@@ -112,7 +123,12 @@ ClusterTree build_cluster_tree(std::span<const SurfaceSample> samples, SampleTra
                                                        static_cast<std::uint32_t>(samples.size()));
     copy_samples(samples, transport.norm, tree);
     tree.samples = std::move(transport.rows);
-    sum_nodes(cubemap_size, kept, context, tree);
+    const std::size_t texels = formats::cubemap_texels(cubemap_size);
+    tree.sums = sum_nodes(tree.samples, texels, kept, context, tree.nodes);
+    tree.other_samples = std::move(transport.other);
+    if (tree.other_samples.size() > 0) {
+        tree.other_sums = sum_nodes(tree.other_samples, texels, kept_of_light, context, tree.nodes);
+    }
     return tree;
 }
 

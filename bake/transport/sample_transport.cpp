@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -49,6 +50,19 @@ void multiply(std::span<float> values, std::span<const float> factors) {
     }
 }
 
+// int Ft(c) 2 c dc, by trapezoids.
+float mean_transmittance(std::span<const float> table) {
+    if (table.empty()) {
+        return 1;
+    }
+    const auto steps = static_cast<double>(table.size() - 1);
+    double sum = static_cast<double>(table.back());
+    for (std::size_t i = 1; i + 1 < table.size(); ++i) {
+        sum += 2 * static_cast<double>(i) / steps * static_cast<double>(table[i]);
+    }
+    return static_cast<float>(sum / steps);
+}
+
 float mean_over_sphere(std::span<const float> radiance, std::span<const double> solid_angle) {
     double sum = 0;
     for (std::size_t first = 0; first < radiance.size(); first += solid_angle.size()) {
@@ -64,52 +78,87 @@ float mean_over_sphere(std::span<const float> radiance, std::span<const double> 
 SampleTransport bake_sample_transport(const RayScene& rays, std::span<const SurfaceSample> samples,
                                       const SampleOptions& options, const Context& context) {
     const std::uint32_t n = options.cubemap_size;
-    const SharedDirections directions = make_shared_directions(n);
+    const bool environment = OtherLight::has_environment(options.light);
+    const SharedDirections directions =
+        environment ? make_shared_directions(n) : SharedDirections{};
     const std::vector<float> transmittance = tabulate_transmittance(options.eta);
-    const std::vector<double> solid_angle = formats::texel_solid_angles(n);
+    const std::vector<double> solid_angle =
+        environment ? formats::texel_solid_angles(n) : std::vector<double>{};
     const std::size_t texels = formats::cubemap_texels(n);
-    const std::array<std::vector<float>, 3> direction = texel_axes(n);
+    const std::array<std::vector<float>, 3> direction =
+        environment ? texel_axes(n) : std::array<std::vector<float>, 3>{};
     const std::size_t axes = options.moments > 0 ? 3 : 0;
     const std::size_t together = options.share_rays ? kSamplesPerGroup : 1;
+    const float entering = mean_transmittance(transmittance);
+    const std::size_t kept_of_light = environment ? options.kept_of_light : texels;
     SampleTransport result;
+    result.other.bands = options.light == nullptr ? 1 : options.light->bands;
     struct Part {
-        SparseVectors::Block rows;
+        SparseVectors::Block rows, other;
         std::array<SparseVectors::Block, 3> moments;
         std::vector<float> mean, norm;
         std::uint64_t rays = 0;
     };
     static_assert(SparseVectors::kPerBlock % kSamplesPerGroup == 0);
+    const auto gather_environment = [&](std::span<const Receiver> group, std::size_t first,
+                                        Part& part) {
+        std::vector<float> dense(group.size() * texels), moment;
+        part.rays += options.share_rays
+                         ? gather_irradiance_together(rays, directions, group, dense, transmittance)
+                         : gather_irradiance(rays, directions.sets[first % 4], group.front(), dense,
+                                             transmittance);
+        for (std::size_t i = 0; i < group.size(); ++i) {
+            const std::span<float> own = std::span(dense).subspan(i * texels, texels);
+            part.mean.push_back(mean_over_sphere(own, solid_angle));
+            for (std::size_t axis = 0; axis < axes; ++axis) {
+                moment.assign(own.begin(), own.end());
+                multiply(moment, direction[axis]);
+                formats::haar_forward_cube(moment, n);
+                append_truncated(part.moments[axis], moment, options.moments,
+                                 samples[first + i].area);
+            }
+            formats::haar_forward_cube(own, n);
+            part.norm.push_back(norm(own));
+            append_truncated(part.rows, own, options.kept, samples[first + i].area);
+        }
+    };
+    const auto gather_nothing = [&](std::size_t count, Part& part) {
+        for (std::size_t i = 0; i < count; ++i) {
+            part.mean.push_back(0);
+            part.norm.push_back(0);
+            append_nothing(part.rows);
+            for (std::size_t axis = 0; axis < axes; ++axis) {
+                append_nothing(part.moments[axis]);
+            }
+        }
+    };
+    const auto gather_other = [&](std::size_t s, float& all, Part& part) {
+        std::vector<float> dense(result.other.bands * texels);
+        part.rays += options.light->add({samples[s].receiver, true}, n, dense);
+        append_truncated_bands(part.other, dense, result.other.bands, kept_of_light,
+                               entering * samples[s].area);
+        all = std::hypot(all, entering * norm(dense));
+    };
     for_each_block_in_order(
         samples.size(), SparseVectors::kPerBlock, context,
         [&](Range range) {
             Part part;
-            reserve(part.rows, std::min<std::size_t>(options.kept, texels));
+            reserve(part.rows, environment ? std::min<std::size_t>(options.kept, texels) : 0);
             std::vector<Receiver> group;
-            std::vector<float> dense, moment;
             for (std::size_t s = range.begin; s < range.end; s += group.size()) {
                 group.clear();
                 while (group.size() < together && s + group.size() < range.end) {
                     group.push_back(samples[s + group.size()].receiver);
                 }
-                dense.resize(group.size() * texels);
-                part.rays +=
-                    options.share_rays
-                        ? gather_irradiance_together(rays, directions, group, dense, transmittance)
-                        : gather_irradiance(rays, directions.sets[s % 4], group.front(), dense,
-                                            transmittance);
-                for (std::size_t i = 0; i < group.size(); ++i) {
-                    const std::span<float> own = std::span(dense).subspan(i * texels, texels);
-                    part.mean.push_back(mean_over_sphere(own, solid_angle));
-                    for (std::size_t axis = 0; axis < axes; ++axis) {
-                        moment.assign(own.begin(), own.end());
-                        multiply(moment, direction[axis]);
-                        formats::haar_forward_cube(moment, n);
-                        append_truncated(part.moments[axis], moment, options.moments,
-                                         samples[s + i].area);
-                    }
-                    formats::haar_forward_cube(own, n);
-                    part.norm.push_back(norm(own));
-                    append_truncated(part.rows, own, options.kept, samples[s + i].area);
+                if (environment) {
+                    gather_environment(group, s, part);
+                } else {
+                    gather_nothing(group.size(), part);
+                }
+            }
+            if (options.light != nullptr) {
+                for (std::size_t s = range.begin; s < range.end; ++s) {
+                    gather_other(s, part.norm[s - range.begin], part);
                 }
             }
             shrink(part.rows);
@@ -118,6 +167,9 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
         },
         [&](Range range, Part&& part) {
             result.rows.blocks.push_back(std::move(part.rows));
+            if (options.light != nullptr) {
+                result.other.blocks.push_back(std::move(part.other));
+            }
             for (std::size_t axis = 0; axis < axes; ++axis) {
                 result.moments[axis].blocks.push_back(std::move(part.moments[axis]));
             }

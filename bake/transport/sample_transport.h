@@ -7,20 +7,23 @@
 
 #include "bake/base/context.h"
 #include "bake/receivers/receiver.h"
+#include "bake/transport/other_light.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/transport/sparse_vectors.h"
 
 namespace opaline::bake {
 
 /// Light that enters a medium through its surface samples, E(x, w) = Ft(eta, n.w) V(x, w) max(0,
-/// n.w) ([Wang2005] eq. (8)): the same for all bands.
+/// n.w) ([Wang2005] eq. (8)): the same for all bands. Other light enters as diffuse light does.
 struct SampleTransport {
     SparseVectors rows;       ///< Haar vectors of A_i E_i, truncated [m^2]
     std::vector<float> mean;  ///< mean of E over the sphere, before truncation
-    std::vector<float> norm;  ///< ||E||, before truncation
+    std::vector<float> norm;  ///< ||E||, before truncation, with other light
     /// Of A_i E_i(w) w, for each axis: with `rows`, E_i times any linear function of the direction.
     /// Empty unless asked for.
     std::array<SparseVectors, 3> moments;
+    /// Of A_i E_i of SampleOptions::light, times the mean of Ft over diffuse light; none without.
+    SparseVectors other;
     std::uint64_t rays = 0;
 };
 
@@ -30,9 +33,13 @@ struct SampleOptions {
     double eta = 1;
     bool share_rays = true;     ///< between the samples of a group (kd_order.h)
     std::uint32_t moments = 0;  ///< entries of each vector of SampleTransport::moments; 0: none
+    const OtherLight* light = nullptr;  ///< besides, or instead of, that of the environment
+    std::uint32_t kept_of_light = 32;   ///< entries of each vector of SampleTransport::other
 };
 
-/// Stops early, with fewer samples, if the context is cancelled.
+/// Without the environment (OtherLight::environment) `rows` and `moments` have no entries, and
+/// vectors of other light keep all of theirs. Stops early, with fewer samples, if the context is
+/// cancelled.
 SampleTransport bake_sample_transport(const RayScene& rays, std::span<const SurfaceSample> samples,
                                       const SampleOptions& options, const Context& context);
 

@@ -32,19 +32,34 @@ double sum_of_squares(std::span<const float> values) {
 
 void append_truncated(SparseVectors::Block& block, std::span<const float> dense, std::size_t kept,
                       float scale) {
-    const std::size_t face = dense.size() / 6;
-    std::vector<float> score(dense.size());
-    for (std::size_t k = 0; k < dense.size(); ++k) {
-        score[k] = std::abs(dense[k]);
+    append_truncated_bands(block, dense, 1, kept, scale);
+}
+
+void append_truncated_bands(SparseVectors::Block& block, std::span<const float> dense,
+                            std::uint32_t bands, std::size_t kept, float scale) {
+    constexpr std::array<float, 3> kWeight{0.2f, 0.7f, 0.1f};
+    const std::size_t size = dense.size() / bands, face = size / 6;
+    std::vector<float> score(size);
+    for (std::uint32_t b = 0; b < bands; ++b) {
+        const float weight = bands == 1 ? 1 : kWeight[b];
+        for (std::size_t k = 0; k < size; ++k) {
+            score[k] += weight * std::abs(dense[b * size + k]);
+        }
     }
-    for (std::size_t k = 0; k < dense.size(); k += face) {
+    for (std::size_t k = 0; k < size; k += face) {
         score[k] = std::numeric_limits<float>::max();
     }
     for (const std::uint32_t k : find_largest(score, std::max<std::size_t>(kept, 6))) {
         block.index.push_back(k);
-        block.value.push_back(scale * dense[k]);
+        for (std::uint32_t b = 0; b < bands; ++b) {
+            block.value.push_back(scale * dense[b * size + k]);
+        }
     }
     block.offset.push_back(static_cast<std::uint32_t>(block.index.size()));
+}
+
+void append_nothing(SparseVectors::Block& block) {
+    block.offset.push_back(block.offset.back());
 }
 
 void reserve(SparseVectors::Block& block, std::size_t entries) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "bake/plan/add_other_light.h"
 #include "bake/plan/walk_work.h"
 #include "bake/scattering/half_space_medium.h"
 #include "bake/transport/irradiance_transport.h"
@@ -68,41 +69,59 @@ struct Directions : Prepared {
 
 PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     auto directions = std::make_unique<Directions>();
-    directions->set = make_direction_set(inputs.knobs.cubemap_size);
+    if (inputs.bake.has_environment()) {
+        directions->set = make_direction_set(inputs.knobs.cubemap_size);
+    }
     return directions;
 }
 
 // T = V max(0, n.w) / pi: albedo 1.
-std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+std::uint64_t add_environment(const EffectInputs& inputs, const Receiver& receiver,
+                              const DenseRow& row) {
     const auto& directions = static_cast<const Directions&>(*inputs.own.prepared).set;
     std::vector<float> dense(row.size());
-    const std::uint64_t rays =
-        gather_irradiance(inputs.outside(), directions, receiver.outside, dense);
+    const std::uint64_t rays = gather_irradiance(inputs.outside(), directions, receiver, dense);
     for (float& value : dense) {
         value *= std::numbers::inv_pi_v<float>;
     }
     formats::haar_forward_cube(std::span<float>(dense), row.cubemap_size);
-    const std::span<float> to = row.plane(0, 0);
-    for (std::size_t k = 0; k < dense.size(); ++k) {
-        to[k] += dense[k];
+    for (std::uint32_t band = 0; band < row.bands; ++band) {
+        const std::span<float> to = row.plane(0, band);
+        for (std::size_t k = 0; k < dense.size(); ++k) {
+            to[k] += dense[k];
+        }
     }
     return rays;
 }
 
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+    constexpr float kShare = std::numbers::inv_pi_v<float>;
+    std::uint64_t rays = 0;
+    if (inputs.bake.has_environment()) {
+        rays += add_environment(inputs, receiver.outside, row);
+    }
+    return rays +
+           add_other_light(inputs.light(), receiver.outside, {{0, {kShare, kShare, kShare}}}, row);
+}
+
 struct Truth : Prepared {
     ReflectionTruth truth;
+    OtherLight::TrueIrradiance other;
 };
 
-PreparedPtr make_truth(const EffectInputs&, TruthEffort, std::span<const TestLight> lights) {
+PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort, std::span<const TestLight> lights) {
     auto truth = std::make_unique<Truth>();
     truth->truth = make_reflection_truth(lights);
+    truth->other = inputs.true_light(lights);
     return truth;
 }
 
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& own = static_cast<const Truth&>(prepared);
-    return eval_reflection(own.truth, inputs.bake.rays, receiver.outside, rays);
+    TwoEstimates seen = eval_reflection(own.truth, inputs.bake.rays, receiver.outside, rays);
+    rays += add_true_other_light(own.other, receiver.outside, receiver.key, 1, seen);
+    return seen;
 }
 
 }  // namespace
@@ -129,6 +148,7 @@ EffectDescriptor describe_direct(Effect id) {
                   .eval = eval,
                   .work = [](const SubjectCost& c,
                              TruthEffort) { return true_irradiance_work(c); }},
+        .adds_other_light = true,
         .tint = [](const Prepared& albedo) { return static_cast<const Albedo&>(albedo).value; }};
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "bake/plan/add_other_light.h"
 #include "bake/transport/banded_irradiance.h"
 #include "formats/opal/haar.h"
 
@@ -18,7 +19,9 @@ struct Answer : Prepared {
 
 PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     auto answer = std::make_unique<Answer>();
-    answer->directions = make_direction_set(inputs.knobs.cubemap_size);
+    if (inputs.bake.has_environment()) {
+        answer->directions = make_direction_set(inputs.knobs.cubemap_size);
+    }
     std::vector<std::vector<double>> factor(inputs.layout.bands(),
                                             std::vector<double>(kCosineSteps + 1));
     const auto& effects = inputs.bake.effects.effects;
@@ -35,7 +38,8 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     return answer;
 }
 
-std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+std::uint64_t add_environment(const EffectInputs& inputs, const GatherReceiver& receiver,
+                              const DenseRow& row) {
     const auto& answer = static_cast<const Answer&>(*inputs.own.prepared);
     std::vector<float> dense(row.bands * row.size());
     const std::uint64_t rays = gather_banded_irradiance(inputs.outside(), answer.directions,
@@ -51,6 +55,28 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
     return rays;
 }
 
+// int f(c) 2 c dc, by trapezoids: of diffuse light.
+float mean_factor(std::span<const float> factor) {
+    double sum = 0;
+    const auto steps = static_cast<double>(factor.size() - 1);
+    for (std::size_t i = 1; i < factor.size(); ++i) {
+        const double weight = i + 1 == factor.size() ? 0.5 : 1;
+        sum += weight * 2 * static_cast<double>(i) / steps * static_cast<double>(factor[i]);
+    }
+    return static_cast<float>(sum / steps);
+}
+
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+    const auto& answer = static_cast<const Answer&>(*inputs.own.prepared);
+    const std::uint64_t rays =
+        inputs.bake.has_environment() ? add_environment(inputs, receiver, row) : 0;
+    OtherLightShare share;
+    for (std::size_t band = 0; band < answer.factor.size(); ++band) {
+        share.factor[band] = mean_factor(answer.factor[band]);
+    }
+    return rays + add_other_light(inputs.light(), receiver.outside, {share}, row);
+}
+
 }  // namespace
 
 EffectDescriptor describe_local(Effect id, std::span<const DecisionRule> rules) {
@@ -59,9 +85,12 @@ EffectDescriptor describe_local(Effect id, std::span<const DecisionRule> rules) 
             .rules = rules,
             .acts = [](const RowLayout& layout) { return layout.at_entry; },
             .prepare = {.run = prepare},
-            .gather = {.add = add, .work = [](const SubjectCost& c) {
-                           return irradiance_work(c.input, c.receivers, c.layout.occluded);
-                       }}};
+            .gather = {.add = add,
+                       .work =
+                           [](const SubjectCost& c) {
+                               return irradiance_work(c.input, c.receivers, c.layout.occluded);
+                           }},
+            .adds_other_light = true};
 }
 
 }  // namespace opaline::bake

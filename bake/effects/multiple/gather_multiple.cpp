@@ -101,6 +101,41 @@ SparseVector entries_of(const ClusterTree& tree, const ClusterWeight& w) {
     return w.id < nodes ? tree.sums[w.id] : tree.samples[w.id - nodes];
 }
 
+SparseVector other_entries_of(const ClusterTree& tree, const ClusterWeight& w) {
+    const std::size_t nodes = tree.nodes.size();
+    return w.id < nodes ? tree.other_sums[w.id] : tree.other_samples[w.id - nodes];
+}
+
+// Adds weight * entries of other light, of one band or three.
+void add_other(const ClusterTree& tree, std::span<const ClusterWeight> weights,
+               std::span<float> rgbx) {
+    const std::size_t bands = tree.other_samples.bands;
+    for (const ClusterWeight& w : weights) {
+        const SparseVector entries = other_entries_of(tree, w);
+        for (std::size_t i = 0; i < entries.index.size(); ++i) {
+            float* const to = &rgbx[4 * std::size_t{entries.index[i]}];
+            for (std::size_t b = 0; b < 3; ++b) {
+                to[b] += w.weight[b] * entries.value[bands == 1 ? i : 3 * i + b];
+            }
+        }
+    }
+}
+
+void add_other_grey(const ClusterTree& tree, std::span<const ClusterWeight> weights,
+                    std::span<float> sums) {
+    constexpr std::array<float, 3> kLuminance{0.2126f, 0.7152f, 0.0722f};
+    const std::size_t bands = tree.other_samples.bands;
+    for (const ClusterWeight& w : weights) {
+        const SparseVector entries = other_entries_of(tree, w);
+        for (std::size_t i = 0; i < entries.index.size(); ++i) {
+            for (std::size_t b = 0; b < bands; ++b) {
+                const float share = bands == 1 ? 1 : kLuminance[b];
+                sums[entries.index[i]] += share * w.weight[0] * entries.value[bands * i + b];
+            }
+        }
+    }
+}
+
 // Adds weight * entries to sums that are as wide as the weight: one band, or several at once.
 template <class Weight>
 void add_entries(const SparseVector& entries, Weight weight, float* sums) {
@@ -152,6 +187,9 @@ void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
         add_entries(entries_of(tree, w), Float4{w.weight[0], w.weight[1], w.weight[2], 0.0f},
                     rgbx.data());
     }
+    if (tree.other_samples.size() > 0) {
+        add_other(tree, weights, rgbx);
+    }
 }
 
 void accumulate_grey(const ClusterTree& tree, std::span<const ClusterWeight> weights,
@@ -159,6 +197,9 @@ void accumulate_grey(const ClusterTree& tree, std::span<const ClusterWeight> wei
     std::fill(sums.begin(), sums.end(), 0.0f);
     for (const ClusterWeight& w : weights) {
         add_entries(entries_of(tree, w), w.weight[0], sums.data());
+    }
+    if (tree.other_samples.size() > 0) {
+        add_other_grey(tree, weights, sums);
     }
 }
 

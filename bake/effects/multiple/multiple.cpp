@@ -126,7 +126,8 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        std::max(1u, inputs.layout.view_harmonics),
                                        inputs.layout.all_orders,
                                        inner_materials(inputs),
-                                       inputs.layout.layered},
+                                       inputs.layout.layered,
+                                       inputs.light()},
                                       inputs.context);
     rays += samples->stage.rays;
     return samples;
@@ -198,6 +199,7 @@ struct Truth : Prepared {
     ExitLobe lobe;
     SunRays suns;
     SmoothLights smooth;
+    OtherLight::TrueIrradiance other;
     std::uint32_t points = 0;
 };
 
@@ -236,6 +238,7 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
     }
     truth->suns = make_sun_rays(lights, kRaysPerSun);
     truth->smooth = make_smooth_lights(lights);
+    truth->other = inputs.true_light(lights);
     truth->points = truth_points(effort);
     return truth;
 }
@@ -249,15 +252,16 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
         walked = walk_to_lights(
             truth.space,
             {inputs.bake.rays, truth.suns, truth.smooth, truth.lobe, profile_of(inputs.own).exit,
-             truth.points, inputs.layout.view_harmonics > 0},
+             truth.points, inputs.layout.view_harmonics > 0, &truth.other},
             receiver.inside, {inputs.layout.all_orders ? 1u : 2u}, inputs.knobs.seed, receiver.key,
             rays);
     }
     if (model != MultipleModel::walks) {
-        dipole = integrate_multiple(
-            truth.integral,
-            {inputs.bake.scene, inputs.bake.rays, truth.suns, truth.smooth, truth.points},
-            receiver.inside.position, {inputs.knobs.seed, receiver.key}, rays);
+        dipole =
+            integrate_multiple(truth.integral,
+                               {inputs.bake.scene, inputs.bake.rays, truth.suns, truth.smooth,
+                                truth.points, &truth.other},
+                               receiver.inside.position, {inputs.knobs.seed, receiver.key}, rays);
     }
     return model == MultipleModel::walks    ? walked
            : model == MultipleModel::dipole ? dipole
@@ -313,6 +317,7 @@ EffectDescriptor describe_multiple(Effect id) {
                           [](const SubjectCost& cost, TruthEffort effort) {
                               return multiple_truth_work(cost, truth_points(effort));
                           }},
+            .adds_other_light = true,
             .calibrate = calibrate_multiple,
             .sample_bytes = sample_bytes,
             .add_at_entry = add_at_entry,

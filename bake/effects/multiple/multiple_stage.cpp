@@ -8,11 +8,20 @@
 #include <utility>
 
 #include "bake/effects/multiple/gather_multiple.h"
+#include "bake/plan/knobs.h"
 #include "bake/receivers/surface_samples.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
 namespace {
+
+// Entries of vectors of other light, which is smooth.
+constexpr std::uint32_t kKeptOfLight = 32;
+
+// Entries of a site's rows.
+std::uint32_t kept_of(const MultipleOptions& options) {
+    return OtherLight::has_environment(options.light) ? options.kept : kAllCoefficients;
+}
 
 double scene_diagonal(const formats::Scene& scene, std::span<const std::uint32_t> primitives) {
     glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
@@ -99,13 +108,15 @@ struct EnteringLight {
     std::span<const SurfaceSample> samples;
     const SparseVectors& rows;
     const std::array<SparseVectors, 3>& moments;
+    const SparseVectors& other;
 };
 
 void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& entering, double walks,
           const MultipleOptions& options, const Context& context, MultipleStage& stage) {
     const bool scales = options.model == MultipleModel::scaled;
     const ExitLight light(entering.samples, entering.rows, scales ? nullptr : &entering.moments,
-                          stage.medium.eta, stage.medium.exit);
+                          stage.medium.eta, stage.medium.exit,
+                          options.light == nullptr ? nullptr : &entering.other);
     const bool is_inside = !scales && !plan.is_residual && options.all_orders &&
                            space.media.size() == 1 && !space.media.front().field;
     const WalkStageOptions wanted{.radius = plan.radius,
@@ -113,7 +124,7 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
                                   .is_inside = is_inside,
                                   .views = scales ? 1 : options.views,
                                   .rows = {.cubemap_size = options.cubemap_size,
-                                           .kept = scales ? 6 : options.kept,
+                                           .kept = scales ? 6 : kept_of(options),
                                            .bands = options.bands,
                                            .seed = options.seed,
                                            .orders = {options.all_orders ? 1u : 2u}}};
@@ -177,7 +188,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     SampleTransport transport = bake_sample_transport(
         rays, samples,
         {options.cubemap_size, options.kept, stage.medium.eta, options.share_rays,
-         options.model == MultipleModel::walks ? options.kept / 4 : 0},
+         options.model == MultipleModel::walks ? options.kept / 4 : 0, options.light, kKeptOfLight},
         context);
     stage.rays = transport.rays;
     SitePlan plan;
@@ -186,18 +197,22 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
         plan.is_residual = plan.is_residual && !options.layered;
     }
     const std::array<SparseVectors, 3> moments = std::move(transport.moments);
-    SparseVectors light;
+    SparseVectors light, other;
     if (options.model == MultipleModel::walks && !plan.is_residual) {
         light = std::move(transport.rows);
+        other = std::move(transport.other);
     } else if (!context.cancelled()) {
-        stage.tree = build_cluster_tree(samples, std::move(transport), options.cubemap_size,
-                                        options.kept, context);
+        stage.tree = build_cluster_tree(
+            samples, std::move(transport), options.cubemap_size, options.kept, context,
+            OtherLight::has_environment(options.light) ? kKeptOfLight : kAllCoefficients);
     }
     if (walks && !context.cancelled()) {
         const WalkSpace space =
             make_walk_space(scene, bodies.hierarchy(), material, options.bands == 1, options.inner);
         const bool has_tree = !stage.tree.nodes.empty();
-        walk(space, plan, {samples, has_tree ? stage.tree.samples : light, moments},
+        walk(space, plan,
+             {samples, has_tree ? stage.tree.samples : light, moments,
+              has_tree ? stage.tree.other_samples : other},
              count_walks(plan, area, options.walks), options, context, stage);
     }
     return stage;

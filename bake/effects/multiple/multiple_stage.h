@@ -49,12 +49,13 @@ struct MultipleOptions {
     std::uint32_t views = 1;
     bool all_orders = false;             ///< walks also count light that scatters once
     std::vector<std::uint32_t> inner{};  ///< materials of other media inside, for walks
-    bool layered = false;  ///< and these matter: the dipole tells nothing of the light
+    bool layered = false;               ///< and these matter: the dipole tells nothing of the light
+    const OtherLight* light = nullptr;  ///< besides, or instead of, that of the environment
 };
 
 /// Samples the surface of the material's medium with profile `medium`, traces the entering light,
 /// and builds the tree. `rays`: the occluders; no ray is traced if it is empty. Incomplete if the
-/// context is cancelled.
+/// context is cancelled. Where the environment does not count, all columns are kept.
 /// `bodies`: all triangles, for walks inside.
 MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays,
                                const RayScene& bodies, std::uint32_t material,

@@ -117,7 +117,7 @@ SurfaceIntegral make_surface_integral(const formats::Scene& scene, std::uint32_t
 
 TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const SurfaceLight& light,
                                 glm::vec3 position, IntegralKey key, std::uint64_t& traced) {
-    const auto& [scene, rays, suns, smooth, points] = light;
+    const auto& [scene, rays, suns, smooth, points, other] = light;
     const auto [seed, receiver] = key;
     const std::size_t lights = smooth.lights;
     TwoEstimates estimates{Luminance(lights), Luminance(lights)};
@@ -135,7 +135,7 @@ TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const SurfaceLi
         return estimates;
     }
     const double total = table.cumulative.back();
-    Luminance irradiance(lights);
+    Luminance irradiance(lights), diffuse(lights);
     std::uint32_t drawn = 0;
     for (Luminance* estimate : {&estimates.first, &estimates.second}) {
         const auto offset = static_cast<double>(
@@ -157,6 +157,15 @@ TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const SurfaceLi
             traced += add_sun_irradiance(rays, suns, sample.receiver, integral.eta, irradiance);
             traced += add_smooth_irradiance(rays, smooth, sample.receiver, integral.eta,
                                             {u[2], u[3]}, irradiance);
+            if (other != nullptr && *other) {
+                std::ranges::fill(diffuse, 0.0);
+                traced +=
+                    (*other)(sample.receiver, std::uint64_t{receiver} << 32 | drawn, 1, diffuse);
+                const double entering = 1 / (std::numbers::pi * integral.scale);
+                for (std::size_t l = 0; l < lights; ++l) {
+                    irradiance[l] += entering * diffuse[l];
+                }
+            }
             const glm::vec3 d = sample.position - position;
             const double weight = integral.scale * total / points *
                                   luminance_far(integral.profile, glm::dot(d, d)) / piece.density;

@@ -7,6 +7,7 @@
 
 #include "bake/effects/multiple/gather_profile.h"
 #include "bake/receivers/surface_points.h"
+#include "bake/transport/other_light.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/truth/luminance.h"
 #include "bake/truth/true_irradiance.h"
@@ -39,6 +40,8 @@ struct SurfaceLight {
     const SunRays& suns;
     const SmoothLights& smooth;
     std::uint32_t points = 0;  ///< of the surface, for each of the two estimates
+    /// Of other light, which enters as diffuse light does; null or empty: there is none.
+    const OtherLight::TrueIrradiance* other = nullptr;
 };
 
 /// Keys of the random numbers.

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bake/plan/add_other_light.h"
 #include "bake/transport/irradiance_transport.h"
 #include "bake/truth/true_reflection.h"
 #include "formats/opal/haar.h"
@@ -44,7 +45,9 @@ struct Directions : Prepared {
 
 PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     auto directions = std::make_unique<Directions>();
-    directions->set = make_direction_set(inputs.knobs.cubemap_size);
+    if (inputs.bake.has_environment()) {
+        directions->set = make_direction_set(inputs.knobs.cubemap_size);
+    }
     return directions;
 }
 
@@ -66,7 +69,8 @@ float in_band(formats::Rgb c, std::uint32_t band, std::uint32_t bands) {
 
 // T_0 = (r E+ + t E-) / pi, T_1 = (t E+ + r E-) / pi, E+ and E- the irradiance transport of the
 // side of the normal and of the other one.
-std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+std::uint64_t add_environment(const EffectInputs& inputs, const GatherReceiver& receiver,
+                              const DenseRow& row) {
     const auto& directions = static_cast<const Directions&>(*inputs.own.prepared).set;
     const formats::Sheet& sheet = sheet_of(inputs);
     std::vector<float> front(row.size()), back(row.size());
@@ -87,13 +91,37 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
     return rays;
 }
 
+// What rows take of one side's irradiance by other light.
+OtherLightShare share_of(formats::Rgb c, std::uint32_t term, std::uint32_t bands) {
+    OtherLightShare share{term, {}};
+    for (std::uint32_t band = 0; band < bands; ++band) {
+        share.factor[band] = std::numbers::inv_pi_v<float> * in_band(c, band, bands);
+    }
+    return share;
+}
+
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+    std::uint64_t rays = inputs.bake.has_environment() ? add_environment(inputs, receiver, row) : 0;
+    const formats::Sheet& sheet = sheet_of(inputs);
+    const auto share = [&](formats::Rgb c, std::uint32_t term) {
+        return share_of(c, term, row.bands);
+    };
+    rays += add_other_light(inputs.light(), receiver.outside,
+                            {share(sheet.reflect, 0), share(sheet.transmit, 1)}, row);
+    rays += add_other_light(inputs.light(), other_side(receiver.outside, receiver.inside),
+                            {share(sheet.transmit, 0), share(sheet.reflect, 1)}, row);
+    return rays;
+}
+
 struct Truth : Prepared {
     ReflectionTruth truth;
+    OtherLight::TrueIrradiance other;
 };
 
-PreparedPtr make_truth(const EffectInputs&, TruthEffort, std::span<const TestLight> lights) {
+PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort, std::span<const TestLight> lights) {
     auto truth = std::make_unique<Truth>();
     truth->truth = make_reflection_truth(lights);
+    truth->other = inputs.true_light(lights);
     return truth;
 }
 
@@ -113,6 +141,10 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
         seen.first[l] = r * seen.first[l] + t * through.first[l];
         seen.second[l] = r * seen.second[l] + t * through.second[l];
     }
+    const std::uint64_t key = 2 * std::uint64_t{receiver.key};
+    rays += add_true_other_light(own.other, receiver.outside, key, r, seen);
+    rays += add_true_other_light(own.other, other_side(receiver.outside, receiver.inside), key + 1,
+                                 t, seen);
     return seen;
 }
 
@@ -133,11 +165,13 @@ EffectDescriptor describe_sheet(Effect id) {
                                    "6 x 64 x 64",
                       .make = make_truth,
                       .eval = eval,
-                      .work = [](const SubjectCost& c, TruthEffort) {
-                          Work work = true_irradiance_work(c);
-                          work += true_irradiance_work(c);
-                          return work;
-                      }}};
+                      .work =
+                          [](const SubjectCost& c, TruthEffort) {
+                              Work work = true_irradiance_work(c);
+                              work += true_irradiance_work(c);
+                              return work;
+                          }},
+            .adds_other_light = true};
 }
 
 }  // namespace opaline::bake

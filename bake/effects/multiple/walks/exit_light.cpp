@@ -100,10 +100,12 @@ glm::vec4 ExitLobe::eval_diffuse(glm::vec3 normal, glm::vec3 drift) const {
 }
 
 ExitLight::ExitLight(std::span<const SurfaceSample> samples, const SparseVectors& light,
-                     const std::array<SparseVectors, 3>* moments, double eta, double escape)
+                     const std::array<SparseVectors, 3>* moments, double eta, double escape,
+                     const SparseVectors* other)
     : samples_(samples),
       light_(light),
       moments_(moments),
+      other_(other),
       lobe_(make_exit_lobe(eta)),
       scale_(static_cast<float>(1 / (std::numbers::pi * escape))),
       grid_(sample_points(samples), cell_size(samples)) {}
@@ -158,6 +160,27 @@ void ExitLight::add(std::uint32_t sample, const std::array<glm::vec4, 3>& factor
             add_to(&rgbx[4 * std::size_t{entries.index[i]}], factor * entries.value[i]);
         }
     }
+    if (other_ != nullptr) {
+        // The mean of a_0 + a . w over diffuse light that enters: w is lobe_.mean along n.
+        std::array<float, 3> weight{};
+        for (std::size_t b = 0; b < weight.size(); ++b) {
+            const glm::vec3 a{factors[b].y, factors[b].z, factors[b].w};
+            weight[b] = factors[b].x +
+                        static_cast<float>(lobe_.mean) * glm::dot(a, samples_[sample].normal);
+        }
+        add_other(sample, weight, rgbx);
+    }
+}
+
+void ExitLight::add_other(std::uint32_t sample, const std::array<float, 3>& weight,
+                          std::span<float> rgbx) const {
+    const SparseVector entries = (*other_)[sample];
+    for (std::size_t i = 0; i < entries.index.size(); ++i) {
+        float* const to = &rgbx[4 * std::size_t{entries.index[i]}];
+        for (std::size_t b = 0; b < weight.size(); ++b) {
+            to[b] += weight[b] * entries.value[other_->bands == 1 ? i : 3 * i + b];
+        }
+    }
 }
 
 void ExitLight::add_views(std::uint32_t sample, std::span<const std::array<float, 3>> weight,
@@ -172,6 +195,9 @@ void ExitLight::add_views(std::uint32_t sample, std::span<const std::array<float
         float* const to = &rows[row * size];
         for (std::size_t i = 0; i < entries.index.size(); ++i) {
             add_to(&to[4 * std::size_t{entries.index[i]}], factor * entries.value[i]);
+        }
+        if (other_ != nullptr) {
+            add_other(sample, {factor[0], factor[1], factor[2]}, rows.subspan(row * size, size));
         }
     }
 }

@@ -44,9 +44,11 @@ double extrapolation_length(double eta);
 class ExitLight {
   public:
     /// `light`: Haar vectors of A_j E_j; `moments`: of A_j E_j w, axis by axis, or null for exits
-    /// that forget their direction. `escape`: c_exit. All must outlive this.
+    /// that forget their direction. `escape`: c_exit. `other`: A_j E_j of light that is diffuse
+    /// (SampleTransport::other), or null. All must outlive this.
     ExitLight(std::span<const SurfaceSample> samples, const SparseVectors& light,
-              const std::array<SparseVectors, 3>* moments, double eta, double escape);
+              const std::array<SparseVectors, 3>* moments, double eta, double escape,
+              const SparseVectors* other = nullptr);
 
     /// The nearest sample that faces as the exit does; where there is none, the nearest.
     /// Precondition: there are samples.
@@ -64,9 +66,13 @@ class ExitLight {
                    std::span<float> rows) const;
 
   private:
+    void add_other(std::uint32_t sample, const std::array<float, 3>& weight,
+                   std::span<float> rgbx) const;
+
     std::span<const SurfaceSample> samples_;
     const SparseVectors& light_;
     const std::array<SparseVectors, 3>* moments_;
+    const SparseVectors* other_;
     ExitLobe lobe_;
     float scale_;  // 1 / (pi c_exit)
     PointGrid grid_;

@@ -55,7 +55,7 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
                           std::max(1, count_shells(space, point.inner, -point.normal)),
                           light.along_normal};
     std::vector<WalkExit> exits;
-    Luminance irradiance(lights);
+    Luminance irradiance(lights), diffuse(lights);
     std::uint32_t walk = 0;
     for (Luminance* estimate : {&estimates.first, &estimates.second}) {
         WalkCounts counts;
@@ -94,6 +94,13 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
                 add_sun_irradiance(light.rays, light.suns, at.receiver, eta, irradiance, lobe);
             traced += add_smooth_irradiance(light.rays, light.smooth, at.receiver, eta,
                                             {random.next(), random.next()}, irradiance, lobe);
+            if (light.other != nullptr && *light.other) {
+                std::ranges::fill(diffuse, 0.0);
+                traced += (*light.other)(at.receiver, std::uint64_t{key} << 32 | walk, 1, diffuse);
+                for (std::size_t l = 0; l < lights; ++l) {
+                    irradiance[l] += light.escape * diffuse[l];
+                }
+            }
             const double weight = sum / (std::numbers::pi * light.escape * light.walks);
             for (std::size_t l = 0; l < lights; ++l) {
                 (*estimate)[l] += weight * irradiance[l];

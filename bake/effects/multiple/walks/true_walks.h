@@ -5,6 +5,7 @@
 #include "bake/effects/multiple/walks/exit_light.h"
 #include "bake/effects/multiple/walks/walk_space.h"
 #include "bake/receivers/receiver.h"
+#include "bake/transport/other_light.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/truth/luminance.h"
 #include "bake/truth/true_irradiance.h"
@@ -20,6 +21,8 @@ struct WalkLight {
     double escape = 1;          ///< c_exit
     std::uint32_t walks = 0;    ///< for each of the two estimates
     bool along_normal = false;  ///< seen so, instead of the mean over all views
+    /// Of other light, which enters as diffuse light does; null or empty: there is none.
+    const OtherLight::TrueIrradiance* other = nullptr;
 };
 
 /// Luminance that leaves the surface at a receiver toward its normal, less the factor F_t, by light

@@ -1,0 +1,90 @@
+#include "bake/effects/interreflection/bounce_costs.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "bake/calibration/bench/calibration_bench.h"
+#include "bake/calibration/bench/stopwatch.h"
+#include "bake/effects/interreflection/bounce_gather.h"
+#include "bake/effects/interreflection/bounce_light.h"
+#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/scatterers.h"
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+// Rays that meet something, and clusters that they meet: statues on floors. An open scene has
+// fewer.
+constexpr double kHitShare = 0.25, kClustersPerHit = 0.8;
+constexpr double kBounces = 6;
+
+double row_cells(std::uint32_t bands) {
+    return static_cast<double>(bands * formats::cubemap_texels(kBounceCubemap));
+}
+
+double ray_work(const CostInput& input, double rays, double bands) {
+    return rays * (input.rates.bounce_ray.at(input.triangles) +
+                   kHitShare * kClustersPerHit * row_cells(static_cast<std::uint32_t>(bands)) *
+                       input.rates.bounce_cell);
+}
+
+}  // namespace
+
+Work bounce_rows_work(const SubjectCost& cost) {
+    const double sides = cost.layout.sheet ? 2 : 1;
+    // The light of a medium arrives at its samples, which stand for the receivers here.
+    const double rays = cost.layout.translucent && !cost.layout.at_entry
+                            ? kRaysOfAveraged
+                            : count_bounce_rays(cost.input.knobs[kBounceRays]);
+    return {0, ray_work(cost.input, sides * cost.receivers * rays, cost.layout.coloured ? 3 : 1)};
+}
+
+LightWork bounce_light_work(const CostInput& input) {
+    const auto scatterers = static_cast<double>(count_scatterers(input.knobs));
+    LightWork work;
+    work.cubemap_size = kBounceCubemap;
+    work.points = scatterers;
+    const double texel_rays = count_rays(kBounceCubemap);
+    work.work.shared += scatterers * texel_rays * input.rates.coherent_ray.at(input.triangles);
+    work.work.shared += ray_work(input, scatterers * kRaysOfScatterer, 3);
+    work.work.shared += (kBounces - 1) * scatterers * kRaysOfScatterer * kHitShare *
+                        kClustersPerHit * row_cells(3) * input.rates.bounce_cell;
+    return work;
+}
+
+void calibrate_bounces(const CalibrationBench& bench, Rates& rates) {
+    constexpr std::uint32_t kCount = 144;
+    std::vector<Scatterer> scatterers;
+    for (const BodyPoint& point : thinned(std::span<const BodyPoint>(bench.points), 2048)) {
+        Scatterer s;
+        s.position = point.position;
+        s.normal = point.normal;
+        s.material = point.material;
+        scatterers.push_back(s);
+    }
+    BounceTree tree(scatterers, bench.scene.materials.size(),
+                    3 * formats::cubemap_texels(kBounceCubemap));
+    const auto receivers = thinned(std::span<const Receiver>(bench.receivers), 64);
+    std::vector<std::vector<NodeWeight>> weights(receivers.size());
+    std::uint64_t rays = 0;
+    Stopwatch watch;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        rays += weigh_bounces(bench.scene, bench.rays, tree, receivers[i], kCount, 0, weights[i]);
+    }
+    bench.side_of(rates.bounce_ray) = watch.seconds() / static_cast<double>(rays);
+    if (!bench.is_many) {
+        return;
+    }
+    std::vector<float> row(tree.row_size());
+    std::size_t clusters = 0;
+    watch.restart();
+    for (const std::vector<NodeWeight>& own : weights) {
+        add_node_rows(tree, own, row);
+        clusters += own.size();
+    }
+    rates.bounce_cell = watch.seconds() / (static_cast<double>(std::max<std::size_t>(1, clusters)) *
+                                           static_cast<double>(row.size()));
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "bake/effects/interreflection/bounce_tree.h"
+#include "bake/effects/interreflection/scatterers.h"
+#include "bake/plan/effect.h"
+
+namespace opaline::bake {
+
+/// Cube map of bounced light, which is smooth: RESULTS.md, "Interreflection".
+inline constexpr std::uint32_t kBounceCubemap = 8;
+/// Rays of a scatterer to others, and of a point whose light is averaged.
+inline constexpr std::uint32_t kRaysOfScatterer = 64, kRaysOfAveraged = 16;
+/// Scatterers that are looked for.
+std::size_t count_scatterers(const Knobs& knobs);
+
+/// Light that goes from surface to surface: the radiosity B of scatterers, all bounces included.
+struct BounceLight {
+    const formats::Scene& scene;
+    const RayScene& rays;
+    std::uint32_t cubemap_size = kBounceCubemap;  ///< of its rows
+    std::uint32_t bands = 3;                      ///< or 1
+    std::uint64_t seed = 0;
+    std::vector<RowLayout> layouts;               ///< by material
+    BounceTree tree;                              ///< rows: B, band by band
+    std::uint32_t count = 64;                     ///< rays of a receiver
+    std::uint32_t of_averaged = kRaysOfAveraged;  ///< rays of a point whose light is averaged
+    std::uint32_t bounces = 0;                    ///< that were added before the next was too dark
+};
+
+/// Places scatterers and finds their light; null where receivers see no surface. `rays` counts up.
+std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
+                                                     std::uint64_t& rays);
+
+/// Adds irradiance at a point by final gathering: Haar rows as of OtherLight::add.
+std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
+                          std::uint32_t cubemap_size, std::span<float> rows);
+
+}  // namespace opaline::bake

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+
+#include "bake/plan/bake_plan.h"
+#include "bake/plan/knob.h"
+
+namespace opaline::bake {
+
+namespace bounce_knobs {
+inline bool bounces(const RowLayout&, std::span<const PlanEntry> decisions) {
+    for (const PlanEntry& entry : decisions) {
+        if (entry.name == "interreflection" && entry.on) {
+            return true;
+        }
+    }
+    return false;
+}
+inline constexpr std::array<double, 5> kRayLadder{16, 64, 144, 256, 1024};
+}  // namespace bounce_knobs
+
+/// Rays from a receiver to the surfaces that send light to it.
+inline constexpr KnobSpec kBounceRays{
+    .name = "bounce_rays",
+    .option = "--bounce-rays",
+    .placeholder = "N",
+    .help =
+        "rays from a receiver to other surfaces that reflect light to it; default as the "
+        "quality says",
+    .lowest = 16,
+    .highest = 65536,
+    .preset = {64, 144, 256, 1024},
+    .label = "%g rays to other surfaces",
+    .ladder = bounce_knobs::kRayLadder,
+    .theory = {.label = "rays to other surfaces",
+               .words = "independent rays; stratified ones do better",
+               .rate = -0.5},
+    .matters = bounce_knobs::bounces,
+    .why_idle = "no light goes from surface to surface"};
+
+}  // namespace opaline::bake

@@ -1,0 +1,121 @@
+#include "bake/effects/interreflection/scatterers.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/effects/interreflection/bounce_gather.h"
+#include "bake/effects/interreflection/surface_albedo.h"
+#include "bake/receivers/surface_samples.h"
+#include "bake/receivers/vertex_receivers.h"
+
+namespace opaline::bake {
+namespace {
+
+// Receivers that look for scatterers, and their rays.
+constexpr std::size_t kProbes = 4096;
+constexpr std::uint32_t kRaysOfProbe = 16;
+
+struct Seen {
+    AreaTable::Triangle triangle;
+    glm::vec3 barycentric{0};
+    bool behind = false;
+};
+
+std::vector<Receiver> draw_probes(std::span<const ReceiverSet> sets) {
+    const std::size_t all = count_receivers(sets);
+    const std::size_t count = std::min(all, kProbes);
+    std::vector<Receiver> probes;
+    probes.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto running = static_cast<std::uint32_t>((2 * i + 1) * all / (2 * count));
+        const ReceiverSet& set = set_of(sets, running);
+        probes.push_back(set.outside[running - set.first]);
+    }
+    return probes;
+}
+
+Scatterer make_scatterer(const LightInputs& inputs, const Seen& seen) {
+    const formats::Scene& scene = inputs.bake.scene;
+    const SurfacePoint point = make_surface_point(scene, seen.triangle, seen.barycentric);
+    const SurfaceSample sample = make_surface_sample(scene, point, 0);
+    Scatterer made;
+    made.position = point.position;
+    made.material = scene.primitives[point.primitive].material;
+    made.behind = seen.behind;
+    made.normal = seen.behind ? -point.normal : point.normal;
+    made.albedo = eval_surface_albedo(scene, inputs.layouts[made.material], point);
+    const glm::vec3 lift = sample.receiver.origin - point.position;
+    const glm::vec3 other = point.position - glm::dot(lift, point.normal) * point.normal;
+    made.outside = sample.receiver;
+    made.beyond = {other, -sample.normal};
+    if (seen.behind) {
+        std::swap(made.outside, made.beyond);
+    }
+    glm::vec3 largest(0);
+    const formats::Primitive& p = scene.primitives[point.primitive];
+    for (std::uint32_t k = 0; k < 3; ++k) {
+        largest = glm::max(largest, glm::abs(p.position[p.index[point.first_index + k]]));
+    }
+    const float error = intersection_error_bound(std::max({largest.x, largest.y, largest.z}));
+    made.inside = {point.position, sample.normal, point.position - error * point.normal,
+                   made.material};
+    return made;
+}
+
+}  // namespace
+
+SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::size_t lane) {
+    SeenSide side;
+    const glm::vec3 normal{hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]};
+    const formats::Material& material = scene.materials[hits.material[lane]];
+    side.behind = hits.cosine[lane] > 0;
+    side.is_seen = hits.hit[lane] != 0 && normal != glm::vec3(0) &&
+                   (!side.behind || material.sheet || (material.double_sided && !material.medium));
+    side.normal = side.behind ? -normal : normal;
+    side.cosine = std::abs(hits.cosine[lane]);
+    return side;
+}
+
+std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
+                                       std::uint64_t& rays) {
+    const std::vector<Receiver> probes = draw_probes(inputs.bake.receivers);
+    struct Part {
+        std::vector<Seen> seen;
+        std::uint64_t rays = 0;
+    };
+    std::vector<Seen> all;
+    constexpr std::size_t kBlock = 64;
+    for_each_block_in_order(
+        probes.size(), kBlock, inputs.context,
+        [&](Range range) {
+            Part part;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                part.rays += trace_bounces(
+                    inputs.bake.rays, probes[i], kRaysOfProbe, inputs.knobs.seed,
+                    [&](const PacketHits& hits, const RayPacket&, std::size_t lane, float) {
+                        const SeenSide side = side_of_hit(inputs.bake.scene, hits, lane);
+                        if (side.is_seen && inputs.layouts[hits.material[lane]].has_rows()) {
+                            const float u = hits.u[lane], v = hits.v[lane];
+                            part.seen.push_back({{hits.primitive[lane], hits.first_index[lane]},
+                                                 {1 - u - v, u, v},
+                                                 side.behind});
+                        }
+                    });
+            }
+            return part;
+        },
+        [&](Range, Part&& part) {
+            all.insert(all.end(), part.seen.begin(), part.seen.end());
+            rays += part.rays;
+        });
+    std::vector<Scatterer> scatterers;
+    const std::size_t kept = std::min(count, all.size());
+    scatterers.reserve(kept);
+    for (std::size_t i = 0; i < kept; ++i) {
+        scatterers.push_back(make_scatterer(inputs, all[i * all.size() / kept]));
+    }
+    return scatterers;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/plan/effect.h"
+#include "bake/receivers/surface_points.h"
+
+namespace opaline::bake {
+
+/// A point of a surface that others see, on one of its sides.
+struct Scatterer {
+    glm::vec3 position{0}, normal{0};  ///< [m]; unit, of the facet, toward the side that is seen
+    std::uint32_t material = 0;
+    bool behind = false;  ///< the side that the facet's normal points away from
+    Receiver outside;     ///< where light of that side is gathered
+    Receiver beyond;      ///< the same of the other side; used of thin-walled surfaces
+    BodyPoint inside;
+    formats::Rgb albedo{1, 1, 1};  ///< eval_surface_albedo
+};
+
+/// A hit of a ray as a scatterer sees it, or nothing: the back of a surface that has none.
+struct SeenSide {
+    bool is_seen = false, behind = false;
+    glm::vec3 normal{0};  ///< of the facet, toward the ray
+    float cosine = 0;     ///< of the ray with it, > 0
+};
+SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::size_t lane);
+
+/// At most `count` scatterers where cosine-distributed rays of receivers end: as dense as light
+/// from there is looked for. Only on materials whose rows are filled. None where receivers see
+/// nothing. Counts `rays`.
+std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
+                                       std::uint64_t& rays);
+
+}  // namespace opaline::bake

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "bake/plan/row_layout.h"
+#include "bake/receivers/surface_points.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// What the light of a row is multiplied by where it is shown, at a point of a surface: base colour
+/// with vertex colours, veins and image, and the share that gloss leaves to the diffuse lobe, as a
+/// mean over diffuse views. `layout`: of its material.
+formats::Rgb eval_surface_albedo(const formats::Scene& scene, const RowLayout& layout,
+                                 const SurfacePoint& point);
+
+}  // namespace opaline::bake

@@ -1,0 +1,180 @@
+#include "bake/effects/interreflection/true_bounces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bake/effects/interreflection/bounce_gather.h"
+#include "bake/effects/interreflection/surface_albedo.h"
+#include "bake/receivers/surface_samples.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Rgb;
+
+// Roulette ends nearly all paths before.
+constexpr std::uint32_t kMostDepth = 64;
+
+double luminance_of(Rgb c) {
+    return static_cast<double>(formats::luminance(c));
+}
+
+float largest(Rgb c) {
+    return std::max({c.r, c.g, c.b});
+}
+
+class TruePath {
+  public:
+    TruePath(const BounceTruth& truth, std::uint64_t key, std::span<double> irradiance)
+        : truth_(truth), key_(key), irradiance_(irradiance), from_sky_(irradiance.size()) {}
+
+    // One path of `count`, the number-th.
+    std::uint64_t follow(Receiver from, std::uint32_t number, std::uint32_t count) {
+        Rgb weight = (1 / static_cast<float>(count)) * Rgb{1, 1, 1};
+        rays_ = 0;
+        for (std::uint32_t depth = 0; depth < kMostDepth; ++depth) {
+            auto u = random_uniform(truth_.light->seed, RandomStage::true_bounces, key_,
+                                    number * kMostDepth + depth);
+            if (depth == 0) {
+                u[0] = std::fmod((static_cast<float>(number) + u[0]) / static_cast<float>(count),
+                                 1.0f);
+            }
+            if (from.normal == glm::vec3(0) || !step(from, {u[0], u[1]}, u[2], weight)) {
+                break;
+            }
+            const float survival = std::min(1.0f, largest(weight) * static_cast<float>(count));
+            if (!(u[3] < survival)) {
+                break;
+            }
+            weight = (1 / survival) * weight;
+        }
+        return rays_;
+    }
+
+  private:
+    // To the next surface, whose light counts. False: the path ends.
+    bool step(Receiver& from, glm::vec2 u, float side_choice, Rgb& weight) {
+        const BounceLight& light = *truth_.light;
+        RayPacket packet = rays_from(from.origin);
+        const glm::vec2 d = to_disk(u.x, u.y);
+        const glm::vec3 direction =
+            make_frame(from.normal)
+                .to_world({d.x, d.y, std::sqrt(std::max(0.0f, 1 - glm::dot(d, d)))});
+        packet.dir_x[0] = direction.x;
+        packet.dir_y[0] = direction.y;
+        packet.dir_z[0] = direction.z;
+        packet.tfar[0] = std::numeric_limits<float>::infinity();
+        LaneMask lanes{};
+        lanes[0] = -1;
+        const PacketHits hits = light.rays.closest(lanes, packet);
+        ++rays_;
+        const SeenSide side = hits.hit[0] != 0 ? side_of_hit(light.scene, hits, 0) : SeenSide{};
+        if (!side.is_seen || !light.layouts[hits.material[0]].has_rows()) {
+            return false;
+        }
+        const RowLayout& layout = light.layouts[hits.material[0]];
+        const SurfacePoint point =
+            make_surface_point(light.scene, {hits.primitive[0], hits.first_index[0]},
+                               {1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]});
+        if (layout.translucent) {
+            add_scatterer(
+                light.tree.find(point.position, {hits.material[0], side.behind, side.normal}, 0),
+                weight);
+            return false;
+        }
+        weight = weight * eval_surface_albedo(light.scene, layout, point);
+        const SurfaceSample sample = make_surface_sample(light.scene, point, 0);
+        const glm::vec3 lift = sample.receiver.origin - point.position;
+        Receiver front = sample.receiver,
+                 back{point.position - glm::dot(lift, point.normal) * point.normal, -sample.normal};
+        if (side.behind) {
+            std::swap(front, back);
+        }
+        const auto& sheet = light.scene.materials[hits.material[0]].sheet;
+        if (!sheet) {
+            add_sky(front, weight);
+            from = front;
+            return true;
+        }
+        add_sky(front, weight * sheet->reflect);
+        add_sky(back, weight * sheet->transmit);
+        const float reflect = largest(sheet->reflect), transmit = largest(sheet->transmit);
+        if (!(reflect + transmit > 0)) {
+            return false;
+        }
+        const float share = reflect / (reflect + transmit);
+        const bool is_reflected = side_choice < share;
+        from = is_reflected ? front : back;
+        weight = is_reflected ? (1 / share) * (weight * sheet->reflect)
+                              : (1 / (1 - share)) * (weight * sheet->transmit);
+        return true;
+    }
+
+    void add_sky(const Receiver& at, Rgb weight) {
+        std::ranges::fill(from_sky_, 0.0);
+        const auto u =
+            random_uniform(truth_.light->seed, RandomStage::true_bounces, key_of(at), 0xffffffffu);
+        rays_ += add_sun_irradiance(truth_.light->rays, truth_.suns, at, 1, from_sky_);
+        rays_ += add_smooth_irradiance(truth_.light->rays, truth_.smooth, at, 1, {u[0], u[1]},
+                                       from_sky_);
+        for (std::size_t l = 0; l < from_sky_.size(); ++l) {
+            irradiance_[l] += luminance_of(weight) * from_sky_[l];
+        }
+    }
+
+    void add_scatterer(std::uint32_t node, Rgb weight) {
+        if (node == formats::kNone) {
+            return;
+        }
+        const std::span<const float> row = truth_.light->tree.row(node);
+        const std::uint32_t bands = truth_.light->bands;
+        const std::size_t texels = row.size() / bands;
+        for (std::size_t l = 0; l < from_sky_.size(); ++l) {
+            std::array<double, 3> band{};
+            for (std::uint32_t b = 0; b < 3; ++b) {
+                band[b] =
+                    b < bands ? relit(row.subspan(b * texels, texels), truth_.coarse[l]) : band[0];
+            }
+            irradiance_[l] +=
+                luminance_of(weight * Rgb{static_cast<float>(band[0]), static_cast<float>(band[1]),
+                                          static_cast<float>(band[2])});
+        }
+    }
+
+    const BounceTruth& truth_;
+    std::uint64_t key_;
+    std::span<double> irradiance_;
+    std::vector<double> from_sky_;
+    std::uint64_t rays_ = 0;
+};
+
+}  // namespace
+
+BounceTruth make_bounce_truth(std::shared_ptr<const BounceLight> light,
+                              std::span<const TestLight> lights) {
+    BounceTruth truth;
+    truth.suns = make_sun_rays(lights, 4);
+    truth.smooth = make_smooth_lights(lights);
+    std::vector<TestLight> coarse(lights.begin(), lights.end());
+    project_test_lights(coarse, light->cubemap_size);
+    for (TestLight& own : coarse) {
+        truth.coarse.push_back(std::move(own.coarse));
+    }
+    truth.light = std::move(light);
+    return truth;
+}
+
+std::uint64_t add_true_bounces(const BounceTruth& truth, const Receiver& at, std::uint64_t key,
+                               std::uint32_t count, std::span<double> irradiance) {
+    std::uint64_t rays = 0;
+    TruePath path(truth, key, irradiance);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        rays += path.follow(at, i, count);
+    }
+    return rays;
+}
+
+}  // namespace opaline::bake

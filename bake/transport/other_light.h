@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "bake/receivers/receiver.h"
+
+namespace opaline::bake {
+
+struct TestLight;  // truth/test_lights.h
+
+/// Where light is asked for, outside of any boundary.
+struct LitPoint {
+    const Receiver& receiver;
+    /// One of many points whose light is averaged, as the samples of a medium: each may be noisy.
+    bool is_averaged = false;
+};
+
+/// Light that arrives at surfaces besides that of the distant environment, or instead of it: light
+/// that other surfaces reflect, or that emitters send. Effects that turn irradiance into rows add
+/// it to that of the environment. Its directions are not kept: effects take it for diffuse.
+struct OtherLight {
+    /// Adds E(x), the irradiance per unit of each basis light, to `rows`: `bands` planes of 6 n n
+    /// Haar coefficients of T's basis, n = `cubemap_size`. Returns the rays traced. Any thread; the
+    /// same bits for the same point. With `environment` false the columns may stand for anything
+    /// that is linear, as emitters, and n for any number of columns.
+    std::function<std::uint64_t(const LitPoint& point, std::uint32_t cubemap_size,
+                                std::span<float> rows)>
+        add;
+    /// 3, or 1: the three coincide. With 3, rows of all receivers have three bands as well
+    /// (RowLayout::coloured).
+    /// For truths, by a way that shares nothing with `add`: adds the luminance of the irradiance
+    /// under each of the lights, the mean of `count` independent samples keyed by `key`.
+    using TrueIrradiance = std::function<std::uint64_t(
+        const Receiver& at, std::uint64_t key, std::uint32_t count, std::span<double> irradiance)>;
+    /// `lights` must outlive the result. Null: truths leave the light out.
+    std::function<TrueIrradiance(std::span<const TestLight> lights)> make_truth{};
+    std::string_view name{};  ///< of what makes it, for reports
+    std::uint32_t bands = 3;
+    bool environment = true;  ///< that of the environment counts, too
+    /// By material: 1 where it is not worth the rays. Empty: it is everywhere.
+    std::vector<std::uint8_t> unreached{};
+
+    /// Whether the environment counts; `light` null: nothing else does.
+    static bool has_environment(const OtherLight* light) {
+        return light == nullptr || light->environment;
+    }
+};
+
+}  // namespace opaline::bake

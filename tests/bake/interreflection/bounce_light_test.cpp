@@ -1,0 +1,95 @@
+#include "bake/effects/interreflection/bounce_light.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/accuracy/check_model.h"
+#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "tests/bake/interreflection/bounce_support.h"
+
+namespace opaline::bake {
+namespace {
+
+const std::vector<std::string> kWith{"direct", "interreflection"};
+
+BakeOptions with_rays(double rays) {
+    BakeOptions options = tests::bounce_options(kWith);
+    options.set(kBounceRays, rays);
+    return options;
+}
+
+// White surfaces under white light, all paths of which end in the sky: radiance 1 everywhere, even
+// in the crack between ball and floor, after any number of bounces.
+TEST(BounceLight, WhiteFurnaceOfABallOverAFloor) {
+    const BakeResult baked = tests::bake_scene(tests::make_dented_ball(), with_rays(256));
+    double squares = 0, mean = 0;
+    const auto radiance = tests::relight(baked.asset.view(), "white");
+    for (const formats::Rgb& c : radiance) {
+        const double error = static_cast<double>(c.g) - 1;
+        squares += error * error / static_cast<double>(radiance.size());
+        mean += error / static_cast<double>(radiance.size());
+        EXPECT_NEAR(error, 0, 0.06);
+    }
+    EXPECT_LT(std::sqrt(squares), 0.012);
+    EXPECT_LT(std::abs(mean), 0.004);
+}
+
+// Two plates and a ball over its floor against path tracing, all orders of reflection.
+TEST(BounceLight, AgreesWithPathTracing) {
+    formats::Scene ball = tests::make_dented_ball();
+    ball.materials[0].base_color = {0.7f, 0.7f, 0.7f};
+    for (const formats::Scene& scene : {tests::make_plates(0.5f, 0.8f, 12), ball}) {
+        const BakeResult baked = tests::bake_scene(scene, with_rays(256));
+        ModelCheckOptions wanted;
+        wanted.simulated = TermSet::diffuse | TermSet::interreflection;
+        wanted.receivers = 96;
+        wanted.noise = 0.01;
+        wanted.noise_share = 1;
+        const auto report = check_model(scene, baked.asset.view(), wanted, {}).value();
+        for (const ModelErrorReport::Part& light : report.by_light) {
+            if (light.name == "white") {
+                EXPECT_LT(light.rms_relative, 0.015);
+            }
+            if (light.name == "white" || light.name == "studio") {
+                EXPECT_LT(std::abs(light.bias), 0.01) << light.name;
+                EXPECT_LT(light.missing, 1e-3) << light.name;
+            }
+        }
+    }
+}
+
+// A red floor lights the lower half of a white ball, and the ball's file has three bands.
+TEST(BounceLight, ColourBleeds) {
+    formats::Scene scene = tests::make_dented_ball();
+    scene.materials.push_back({.name = "Floor", .base_color = {0.8f, 0.1f, 0.1f}});
+    scene.primitives[1].material = 1;
+    const BakeResult baked = tests::bake_scene(scene, with_rays(64));
+    EXPECT_EQ(baked.asset.primitives[0].bands, 3u);
+    const auto radiance = tests::relight(baked.asset.view(), "sky:3,60");
+    const auto plain = tests::relight(
+        tests::bake_scene(scene, tests::bounce_options({"direct"})).asset.view(), "sky:3,60");
+    double red = 0, blue = 0;
+    for (std::size_t v = 0; v < scene.primitives[0].position.size(); ++v) {
+        if (scene.primitives[0].normal[v].y < -0.5f) {
+            red += radiance[v].r - plain[v].r;
+            blue += radiance[v].b - plain[v].b;
+        }
+    }
+    EXPECT_GT(red, 4 * blue);
+    EXPECT_GT(blue, 0);
+}
+
+TEST(BounceLight, IsTheSameForAnyNumberOfThreads) {
+    BakeOptions options = with_rays(64);
+    options.threads = 1;
+    const BakeResult one = tests::bake_scene(tests::make_dented_ball(), options);
+    options.threads = 3;
+    const BakeResult three = tests::bake_scene(tests::make_dented_ball(), options);
+    EXPECT_EQ(one.asset.transport.code8, three.asset.transport.code8);
+    EXPECT_EQ(one.asset.transport.detail_scale, three.asset.transport.detail_scale);
+}
+
+}  // namespace
+}  // namespace opaline::bake

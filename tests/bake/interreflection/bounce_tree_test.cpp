@@ -1,0 +1,93 @@
+#include "bake/effects/interreflection/bounce_tree.h"
+
+#include <gtest/gtest.h>
+
+#include "bake/base/rng.h"
+#include "bake/effects/interreflection/scatterers.h"
+
+namespace opaline::bake {
+namespace {
+
+// Points of the unit square of the floor, seen from above, and below it from below.
+std::vector<Scatterer> both_sides(std::uint32_t count) {
+    std::vector<Scatterer> all;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto u = random_uniform(3, RandomStage::bounce_rays, i);
+        Scatterer s;
+        s.behind = i % 2 == 1;
+        s.position = {u[0], s.behind ? -1e-3f : 0, u[1]};
+        s.normal = {0, s.behind ? -1.0f : 1.0f, 0};
+        all.push_back(s);
+    }
+    return all;
+}
+
+// The row of a scatterer: its place, and 1 behind.
+std::vector<float> rows_of(const std::vector<Scatterer>& all) {
+    std::vector<float> rows;
+    for (const Scatterer& s : all) {
+        rows.insert(rows.end(), {s.position.x, s.position.z, s.behind ? 1.0f : 0.0f});
+    }
+    return rows;
+}
+
+TEST(BounceTree, SidesOfAThinPlateDoNotMix) {
+    const auto all = both_sides(256);
+    BounceTree tree(all, 1, 3);
+    tree.set_rows(rows_of(all));
+    for (std::uint32_t i = 0; i < 64; ++i) {
+        const auto u = random_uniform(4, RandomStage::bounce_rays, i);
+        for (const bool behind : {false, true}) {
+            const glm::vec3 normal{0, behind ? -1 : 1, 0};
+            const auto node = tree.find({u[0], 0, u[1]}, {0, behind, normal}, u[2]);
+            EXPECT_EQ(tree.row(node)[2], behind ? 1 : 0);
+        }
+    }
+}
+
+TEST(BounceTree, TheFootprintOfNothingFindsANeighbourAndThatOfAllTheMean) {
+    const auto all = both_sides(2048);
+    BounceTree tree(all, 1, 3);
+    tree.set_rows(rows_of(all));
+    double x = 0, z = 0;
+    for (const Scatterer& s : all) {
+        x += s.behind ? 0 : s.position.x / 1024;
+        z += s.behind ? 0 : s.position.z / 1024;
+    }
+    const auto root = tree.find({0.2f, 0, 0.7f}, {0, false, {0, 1, 0}}, 4);
+    EXPECT_NEAR(tree.row(root)[0], x, 1e-5);
+    EXPECT_NEAR(tree.row(root)[1], z, 1e-5);
+    const auto leaf = tree.find({0.2f, 0, 0.7f}, {0, false, {0, 1, 0}}, 0);
+    EXPECT_NEAR(tree.row(leaf)[0], 0.2, 0.1);
+    EXPECT_NEAR(tree.row(leaf)[1], 0.7, 0.1);
+}
+
+// Means over a footprint lie closer to its middle the smaller it is.
+TEST(BounceTree, NodesAreAsLargeAsTheFootprint) {
+    const auto all = both_sides(4096);
+    BounceTree tree(all, 1, 3);
+    tree.set_rows(rows_of(all));
+    for (const float footprint : {0.25f, 0.0625f, 0.015625f}) {
+        double squares = 0;
+        for (std::uint32_t i = 0; i < 256; ++i) {
+            const auto u = random_uniform(5, RandomStage::bounce_rays, i);
+            const auto node = tree.find({u[0], 0, u[1]}, {0, false, {0, 1, 0}}, footprint);
+            const double dx = tree.row(node)[0] - u[0], dz = tree.row(node)[1] - u[1];
+            squares += (dx * dx + dz * dz) / 256;
+        }
+        // A square of area a has a mean squared distance of a / 6; nodes have a / 4 to a.
+        EXPECT_LT(squares, 0.25 * footprint);
+        EXPECT_GT(squares, footprint / 40);
+    }
+}
+
+TEST(BounceTree, SurfacesWithoutScatterersAnswerNothing) {
+    const auto all = both_sides(16);
+    const BounceTree tree(all, 2, 3);
+    EXPECT_EQ(tree.find({0, 0, 0}, {1, false, {0, 1, 0}}, 0), formats::kNone);
+    // Another facing of the same side: the nearest there is.
+    EXPECT_NE(tree.find({0, 0, 0}, {0, false, {1, 0, 0}}, 0), formats::kNone);
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,63 @@
+#include "bake/effects/interreflection/rule_interreflection.h"
+
+#include <gtest/gtest.h>
+
+#include "bake/scene/inspect_scene.h"
+#include "tests/bake/interreflection/bounce_support.h"
+
+namespace opaline::bake {
+namespace {
+
+const std::vector<std::string> kRuleEffects{"direct", "interreflection"};
+
+bool is_on(const formats::Scene& scene, std::uint32_t material = 0) {
+    const Knobs knobs = resolve_knobs(tests::bounce_options(kRuleEffects)).value();
+    const auto plan = plan_bake(scene, inspect_scene(scene), knobs);
+    return find_entry(plan, "interreflection", material)->on;
+}
+
+TEST(RuleInterreflection, ALoneConvexBodyHasNoneAndABodyOnAFloorHas) {
+    EXPECT_FALSE(is_on(tests::make_scene({tests::make_sphere(2)})));
+    EXPECT_TRUE(is_on(tests::make_dented_ball()));
+}
+
+TEST(RuleInterreflection, BlackSurfacesReflectNothingToOthers) {
+    EXPECT_TRUE(is_on(tests::make_plates(1, 0.5f, 1)));
+    EXPECT_FALSE(is_on(tests::make_plates(1, 0.02f, 1)));
+}
+
+// A lone ball: rays are looked for and none is found, so that forcing changes no bit.
+TEST(RuleInterreflection, BoundOfALoneBallIsProvenByForcingIt) {
+    const formats::Scene ball = tests::make_scene({tests::make_sphere(2)});
+    bake::BakeOptions options = tests::bounce_options(kRuleEffects);
+    const BakeResult off = tests::bake_scene(ball, options);
+    const PlanEntry& entry = *find_entry(off.plan, "interreflection", 0);
+    EXPECT_LT(entry.bound, 1.0 / 512);
+    options.simulate_all = true;
+    const BakeResult on = tests::bake_scene(ball, options);
+    ASSERT_TRUE(find_entry(on.plan, "interreflection", 0)->forced);
+    const auto a = tests::relight(off.asset.view(), "white");
+    const auto b = tests::relight(on.asset.view(), "white");
+    for (std::size_t v = 0; v < a.size(); ++v) {
+        EXPECT_NEAR(a[v].g, b[v].g, entry.bound + 1e-3);
+    }
+}
+
+// Where it is on, what it adds is below its bound: o rho rho_max.
+TEST(RuleInterreflection, AddsLessThanItsBound) {
+    const formats::Scene scene = tests::make_plates(0.5f, 0.6f, 4);
+    const auto with = tests::bake_scene(scene, tests::bounce_options(kRuleEffects));
+    const auto without = tests::bake_scene(scene, tests::bounce_options({"direct"}));
+    const double bound = find_entry(with.plan, "interreflection", 0)->bound;
+    const auto a = tests::relight(without.asset.view(), "white");
+    const auto b = tests::relight(with.asset.view(), "white");
+    double most = 0;
+    for (std::size_t v = 0; v < a.size(); ++v) {
+        most = std::max(most, static_cast<double>(b[v].g - a[v].g));
+    }
+    EXPECT_GT(most, 0.1 * bound);
+    EXPECT_LT(most, bound);
+}
+
+}  // namespace
+}  // namespace opaline::bake

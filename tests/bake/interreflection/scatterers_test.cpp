@@ -1,0 +1,84 @@
+#include "bake/effects/interreflection/scatterers.h"
+
+#include <gtest/gtest.h>
+
+#include "bake/receivers/body_points.h"
+#include "bake/receivers/vertex_receivers.h"
+#include "bake/scene/inspect_scene.h"
+#include "tests/bake/interreflection/bounce_support.h"
+
+namespace opaline::bake {
+namespace {
+
+struct Found {
+    std::vector<Scatterer> scatterers;
+    std::uint64_t rays = 0;
+};
+
+Found find_in(const formats::Scene& scene, std::size_t count, unsigned threads = 1) {
+    const RayScene rays = RayScene::build(scene, 1).value();
+    const RayScene sky = RayScene::build({}, 1).value();
+    const SceneFacts facts = inspect_scene(scene);
+    const auto receivers = make_vertex_receivers(scene);
+    const auto sets = make_vertex_sets(scene, receivers, make_body_points(scene, receivers));
+    const BakeInputs bake{all_effects(), scene, facts, rays, sky, sets};
+    RowLayout layout;
+    layout.constant = true;
+    const std::vector<RowLayout> layouts(scene.materials.size(), layout);
+    Context context;
+    context.threads = threads;
+    const Knobs knobs;
+    Found found;
+    found.scatterers = find_scatterers({bake, knobs, context, layouts, {}, {}}, count, found.rays);
+    return found;
+}
+
+TEST(Scatterers, LieWhereReceiversLook) {
+    const Found found = find_in(tests::make_plates(0.5f, 0.5f, 8), 256);
+    EXPECT_EQ(found.scatterers.size(), 256u);
+    EXPECT_EQ(found.rays, 2u * 81 * 16);
+    std::size_t upper = 0;
+    for (const Scatterer& s : found.scatterers) {
+        upper += s.material;
+        EXPECT_NEAR(s.position.y, s.material == 1 ? 0.5 : 0, 1e-6);
+        EXPECT_EQ(s.normal.y, s.material == 1 ? -1 : 1) << "the sides that face each other";
+        EXPECT_FALSE(s.behind);
+        EXPECT_NEAR(s.albedo.g, 0.5, 1e-6);
+        EXPECT_GT(s.outside.origin.y * s.normal.y, s.position.y * s.normal.y);
+    }
+    EXPECT_NEAR(static_cast<double>(upper), 128, 30);
+}
+
+TEST(Scatterers, ALoneConvexBodyHasNone) {
+    EXPECT_TRUE(find_in(tests::make_scene({tests::make_sphere(2)}), 64).scatterers.empty());
+}
+
+TEST(Scatterers, SheetsAreSeenFromBothSides) {
+    formats::Scene scene = tests::make_plates(0.5f, 0.5f, 8);
+    scene.materials[0].sheet = formats::Sheet{};
+    scene.primitives.push_back(tests::make_quad({0, -0.5f, 0}, {0, 0, 1}, {1, 0, 0}, 8));
+    scene.primitives[2].material = 1;
+    std::size_t front = 0, behind = 0;
+    for (const Scatterer& s : find_in(scene, 512).scatterers) {
+        if (s.material == 0) {
+            (s.behind ? behind : front) += 1;
+            EXPECT_EQ(s.normal.y, s.behind ? -1 : 1);
+            EXPECT_EQ(s.outside.origin.y > 0, !s.behind);
+            EXPECT_EQ(s.beyond.origin.y > 0, s.behind);
+        }
+    }
+    EXPECT_GT(front, 50u);
+    EXPECT_GT(behind, 50u);
+}
+
+TEST(Scatterers, AreTheSameForAnyNumberOfThreads) {
+    const formats::Scene scene = tests::make_dented_ball();
+    const auto one = find_in(scene, 100, 1).scatterers, four = find_in(scene, 100, 4).scatterers;
+    ASSERT_EQ(one.size(), four.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        EXPECT_EQ(one[i].position, four[i].position);
+    }
+}
+
+}  // namespace
+}  // namespace opaline::bake
