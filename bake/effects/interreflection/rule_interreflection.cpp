@@ -8,10 +8,10 @@ PlanEntry decide_interreflection(const PlanInput& input) {
     PlanEntry entry;
     const Surroundings& others = input.subject.surroundings;
     const Horizon& horizon = input.subject.horizon;
-    const double covered =
-        input.material.sheet
-            ? 1
-            : std::min(1.0, horizon.elevation * horizon.elevation + horizon.behind_facets);
+    // Light enters a medium anywhere on its facets, not only at vertices.
+    const double above =
+        horizon.elevation * horizon.elevation + (input.material.medium ? horizon.behind_facets : 0);
+    const double covered = input.material.sheet ? 1 : std::min(1.0, above);
     entry.bound = input.subject.brightest * covered * others.brightest;
     entry.has_bands = !others.is_grey;
     const bool has_rows = std::any_of(input.earlier.begin(), input.earlier.end(),

@@ -60,7 +60,7 @@ TEST(BounceGather, FootprintIsThatOfThePathDifferential) {
     for (std::uint32_t i = 0; i < 200; ++i) {
         const auto u = random_uniform(9, RandomStage::bounce_rays, i);
         const auto w = random_uniform(9, RandomStage::bounce_rays, i, 1);
-        const double count = 144, t = 0.2 + 3 * w[0];
+        const double count = 1e8, t = 0.2 + 3 * w[0];  // secants become tangents
         PathDifferential path;
         DifferentialRules rules;
         rules.extent = 1e6;
@@ -73,7 +73,7 @@ TEST(BounceGather, FootprintIsThatOfThePathDifferential) {
         move_to_surface(path, D, N_g, t);
         const double area = surface_footprint(path, rules, N_g, FootprintMode::polygon).area;
         const double scalar = std::numbers::pi * t * t / (count * D.z * std::abs(glm::dot(D, N_g)));
-        EXPECT_NEAR(area / scalar, 1, 1e-6) << i;
+        EXPECT_NEAR(area / scalar, 1, 1e-4) << i;
     }
 }
 

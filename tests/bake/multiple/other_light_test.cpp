@@ -35,8 +35,7 @@ OtherLight copy_of_environment(const RayScene& rays, std::uint32_t bands) {
 }
 
 struct OtherSetup {
-    formats::Scene scene = tests::make_scene(
-        {tests::make_sphere(3), tests::make_quad({-4, -1.2f, -4}, {0, 0, 8}, {8, 0, 0})});
+    formats::Scene scene = tests::make_scene({tests::make_sphere(3)});
     RayScene rays = RayScene::build(scene, 1).value();
     std::vector<SurfaceSample> samples = sample_surface(scene, {0}, 600, 1, {});
 
@@ -75,7 +74,7 @@ TEST(OtherLightOfMedia, EntersThroughSamplesAsTheEnvironmentDoes) {
         EXPECT_EQ(b[k + 2], 0);
     }
     EXPECT_GT(all, 0);
-    EXPECT_LT(std::sqrt(difference / all), 0.03) << "one ray a texel or four";
+    EXPECT_LT(std::sqrt(difference / all), 0.05) << "one ray a texel or four";
 }
 
 // Walks that forget their direction: an exit takes the light of its sample, whatever its kind.
