@@ -13,7 +13,7 @@ namespace {
 // Even in the cube root of the cosine: the albedo changes fast near grazing.
 constexpr std::size_t kCosines = 64, kRoughnesses = 64;
 constexpr int kSteps = 32;
-const double kLeastRoot = std::cbrt(kLeastCosine);
+const double kLeastRoot = std::cbrt(kGrazingCosine);
 
 struct Table {
     std::vector<DirectionalAlbedo> node;  ///< by roughness, then cosine
@@ -77,7 +77,7 @@ DirectionalAlbedo integrate_albedo(double cosine, double roughness, int steps) {
 DirectionalAlbedo directional_albedo(double cosine, double roughness) {
     static const Table table;
     const Place c = find_place(
-        (std::cbrt(std::max(cosine, kLeastCosine)) - kLeastRoot) / (1 - kLeastRoot), kCosines);
+        (std::cbrt(std::max(cosine, kGrazingCosine)) - kLeastRoot) / (1 - kLeastRoot), kCosines);
     const Place r = find_place(roughness, kRoughnesses);
     const DirectionalAlbedo* row = &table.node[r.i * kCosines + c.i];
     const DirectionalAlbedo* next = row + kCosines;

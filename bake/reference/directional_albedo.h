@@ -17,7 +17,7 @@ struct DirectionalAlbedo {
 DirectionalAlbedo integrate_albedo(double cosine, double roughness, int steps);
 
 /// Cosines below count as this one in `directional_albedo`.
-inline constexpr double kLeastCosine = 1e-3;
+inline constexpr double kGrazingCosine = 1e-3;
 
 /// The same from a table, computed at the first call (about a quarter of a second) and the same on
 /// every machine up to rounding. Errors: see kAlbedoError.

@@ -25,7 +25,7 @@ GlossyBrdf make_glossy_brdf(const OpaqueSurface& surface, glm::vec3 normal, glm:
     GlossyBrdf brdf;
     brdf.frame = make_frame(normal);
     brdf.to_eye = to_frame(brdf.frame, to_eye);
-    brdf.to_eye.z = std::max(brdf.to_eye.z, kLeastCosine);
+    brdf.to_eye.z = std::max(brdf.to_eye.z, kGrazingCosine);
     brdf.to_eye = glm::normalize(brdf.to_eye);
     const double roughness{surface.roughness}, metallic{surface.metallic};
     const glm::dvec3 base_color(surface.base_color);

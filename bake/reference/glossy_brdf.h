@@ -18,7 +18,7 @@ namespace opaline::bake {
 /// not reciprocal in these factors; together they reflect at most all light.
 struct GlossyBrdf {
     Frame frame;           ///< about the normal
-    glm::dvec3 to_eye{0};  ///< unit, local; at least kLeastCosine above the horizon
+    glm::dvec3 to_eye{0};  ///< unit, local; at least kGrazingCosine above the horizon
     double alpha = 1;      ///< GGX width
     glm::dvec3 f0{0};      ///< reflectance of a facet at normal incidence
     glm::dvec3 f90{0};     ///< and at grazing

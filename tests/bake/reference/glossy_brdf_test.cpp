@@ -94,7 +94,7 @@ TEST(ReferenceAlbedo, QuadratureAgreesWithOneOverAllNormals) {
 TEST(ReferenceAlbedo, TableIsWithinItsStatedErrorBetweenNodes) {
     for (int i = 0; i < 24; ++i) {
         for (int j = 0; j < 40; ++j) {
-            const double cosine = bake::kLeastCosine * std::pow(1000, (i + 0.5) / 24);
+            const double cosine = bake::kGrazingCosine * std::pow(1000, (i + 0.5) / 24);
             const double roughness = (j + 0.37) / 40;
             const double fine = bake::integrate_albedo(cosine, roughness, 80).unit();
             EXPECT_NEAR(bake::directional_albedo(cosine, roughness).unit(), fine,
