@@ -203,10 +203,15 @@ opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_ligh
         return fail(OPALINE_INVALID_ARGUMENT,
                     "the light was made for an asset of another cube map size");
     }
+    if (light->emitters.size() != view.emitters.size()) {
+        return fail(OPALINE_INVALID_ARGUMENT,
+                    "the light was made for an asset of another number of emitters");
+    }
     constexpr std::uint32_t kKnown = OPALINE_SHADE_WITHOUT_BASE_COLOR |
                                      OPALINE_SHADE_WITHOUT_FRESNEL |
                                      OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE |
-                                     OPALINE_SHADE_WITHOUT_SPECULAR | OPALINE_SHADE_WITHOUT_DIFFUSE;
+                                     OPALINE_SHADE_WITHOUT_SPECULAR |
+                                     OPALINE_SHADE_WITHOUT_DIFFUSE | OPALINE_SHADE_WITHOUT_EMISSION;
     if ((flags & ~kKnown) != 0) {
         return fail(OPALINE_INVALID_ARGUMENT, "unknown flags");
     }
@@ -224,6 +229,7 @@ opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_ligh
     options.base_color = (flags & OPALINE_SHADE_WITHOUT_BASE_COLOR) == 0;
     options.fresnel = (flags & OPALINE_SHADE_WITHOUT_FRESNEL) == 0;
     options.terms = terms_of(flags);
+    options.emitters = {light->emitters, (flags & OPALINE_SHADE_WITHOUT_EMISSION) == 0};
     if (has_any(options.terms, formats::TermSet::specular) && options.fresnel) {
         if (!is_prefiltered_for(*light, view)) {
             return fail(OPALINE_INVALID_ARGUMENT,

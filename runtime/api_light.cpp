@@ -41,6 +41,7 @@ opaline_light without_environment(const opaline_light& light) {
     black.threads = light.threads;
     black.rotation = light.rotation;
     black.needs = light.needs;
+    black.emitters = light.emitters;
     return black;
 }
 
@@ -86,6 +87,7 @@ opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** 
         auto light = std::make_unique<opaline_light>();
         light->n = asset->loaded.view.cubemap_size;
         light->needs = runtime::specular_needs(asset->loaded.view);
+        light->emitters.assign(asset->loaded.view.emitters.size(), {1, 1, 1});
         project_map(*light);
         project(*light);
         prefilter(*light);

@@ -31,6 +31,7 @@ struct opaline_light {
     opaline::runtime::LightVector vector;
     opaline::runtime::SpecularNeeds needs;  // of its asset
     opaline::runtime::SpecularLight specular;
+    std::vector<opaline::formats::Rgb> emitters;  // a colour for each of its asset's
 };
 
 struct opaline_volume_light {

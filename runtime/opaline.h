@@ -98,6 +98,34 @@ OPALINE_API opaline_status opaline_asset_primitive_shading(const opaline_asset* 
                                                            uint32_t index,
                                                            opaline_primitive_shading* shading);
 
+/* Emitters: lamps that are part of the asset, each baked by itself, so that they are switched,
+   dimmed and coloured (opaline_light_set_emitter) without another bake. 0 for NULL, and where none
+   was baked. Any thread, concurrently. */
+OPALINE_API uint32_t opaline_asset_emitter_count(const opaline_asset* asset);
+
+typedef struct opaline_emitter_info {
+    size_t struct_size; /* in: sizeof(opaline_emitter_info) */
+    char name[256]; /* of the node, light or group: UTF-8, not empty, no two alike, ends with 0 */
+} opaline_emitter_info;
+
+/* Fills `info`. Any thread, concurrently. */
+OPALINE_API opaline_status opaline_asset_emitter(const opaline_asset* asset, uint32_t index,
+                                                 opaline_emitter_info* info);
+
+#define OPALINE_NO_EMITTER 0xffffffffu
+
+typedef struct opaline_primitive_emission {
+    size_t struct_size; /* in: sizeof(opaline_primitive_emission) */
+    uint32_t emitter;   /* that it is part of, or OPALINE_NO_EMITTER */
+    float radiance[3];  /* [W m^-2 sr^-1], or nits where the source has them, that its surface sends
+                           out by itself, before its emissive texture and the emitter's colour */
+} opaline_primitive_emission;
+
+/* Fills `emission`: for hosts that draw emissive textures themselves. Any thread, concurrently. */
+OPALINE_API opaline_status opaline_asset_primitive_emission(const opaline_asset* asset,
+                                                            uint32_t index,
+                                                            opaline_primitive_emission* emission);
+
 /* --- Lights ------------------------------------------------------------------------------- */
 
 /* A light starts black: no map, no suns, no rotation. Functions that change a light project it on
@@ -138,7 +166,12 @@ OPALINE_API opaline_status opaline_light_set_lat_long(opaline_light* light, cons
 OPALINE_API opaline_status opaline_light_add_sun(opaline_light* light, const float direction[3],
                                                  float angular_radius, const float radiance[3]);
 
-/* Back to black; keeps the rotation and the number of threads. One writer. */
+/* Multiplies the light of an emitter, as authored, by three factors, finite and not negative: 0, 0,
+   0 switches it off. Each is 1, 1, 1 in a new light. Costs nothing. One writer. */
+OPALINE_API opaline_status opaline_light_set_emitter(opaline_light* light, uint32_t index,
+                                                     const float color[3]);
+
+/* Back to black; keeps the rotation, the number of threads and emitters' colours. One writer. */
 OPALINE_API opaline_status opaline_light_clear(opaline_light* light);
 
 /* --- Shading ------------------------------------------------------------------------------ */
@@ -157,16 +190,19 @@ typedef enum opaline_shade_flags {
     OPALINE_SHADE_WITHOUT_MULTIPLE = 4,  /* scattered often, in a translucent body or a volume */
     OPALINE_SHADE_WITHOUT_SINGLE = 8,    /* scattered once */
     OPALINE_SHADE_WITHOUT_SPECULAR = 16, /* mirrored by glossy surfaces, translucent or opaque */
-    OPALINE_SHADE_WITHOUT_DIFFUSE = 32   /* by opaque surfaces; by thin-walled ones, both ways */
+    OPALINE_SHADE_WITHOUT_DIFFUSE = 32,  /* by opaque surfaces; by thin-walled ones, both ways */
+    /* What surfaces of emitters send out by themselves; their light on other surfaces stays. Never
+       added where WITHOUT_BASE_COLOR or WITHOUT_FRESNEL is set. */
+    OPALINE_SHADE_WITHOUT_EMISSION = 64
 } opaline_shade_flags;
 
 /* out_rgb[3 i .. 3 i + 2]: outgoing radiance [W m^-2 sr^-1] of receiver i, finite and not
    negative. Translucent receivers are seen along their own normals; see opaline_shade_from.
    `out_count` floats, at least 3 * receiver_count. The light must have been made for an asset of
-   the same cube map size and, where it is glossy, the same roughnesses. `flags` is a sum of
-   opaline_shade_flags. Runs on the calling thread, never allocates, costs in proportion to the
-   stored coefficients, with gloss some microseconds a glossy opaque receiver more. Any thread,
-   concurrently; the light must not change meanwhile. */
+   the same cube map size and number of emitters and, where it is glossy, the same roughnesses.
+   `flags` is a sum of opaline_shade_flags. Runs on the calling thread, never allocates, costs in
+   proportion to the stored coefficients, with gloss some microseconds a glossy opaque receiver
+   more. Any thread, concurrently; the light must not change meanwhile. */
 OPALINE_API opaline_status opaline_shade(const opaline_asset* asset, const opaline_light* light,
                                          uint32_t flags, float* out_rgb, size_t out_count);
 

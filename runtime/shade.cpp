@@ -30,6 +30,7 @@ struct Job {
     const formats::AssetView& asset;
     const LightVector& light;
     const ShadeOptions& options;
+    std::uint32_t number;  // of the primitive
     SurfaceMaterial material;
 
     const formats::PrimitiveRecord& primitive() const { return *material.primitive; }
@@ -38,6 +39,10 @@ struct Job {
 Rgb base_color_of(const Job& job, std::uint32_t vertex) {
     return job.options.base_color ? vertex_base_color(job.asset, job.primitive(), vertex)
                                   : Rgb{1, 1, 1};
+}
+
+formats::Float2 texcoord_of(const Job& job, std::uint32_t vertex) {
+    return job.asset.texcoord.empty() ? formats::Float2{} : job.asset.texcoord[vertex];
 }
 
 // Of a glossy primitive.
@@ -52,20 +57,26 @@ ViewOfReceiver view_of(const Job& job, std::uint32_t vertex) {
                          job.options.eye);
 }
 
+// <T_k, L> and the light of emitters; rows count from the primitive's first one.
+void dot_and_emit(const Job& job, std::uint32_t first_row, std::span<Rgb> out) {
+    dot_rows(job.asset.transport, job.primitive().rows(), job.light, first_row, out,
+             job.options.path);
+    add_emitters(job.asset.emitters, job.options.emitters, job.number, first_row, out);
+}
+
 // <T_0, L> of each vertex; <T_1, L> of a thin-walled surface that is seen from behind.
 void dot_opaque_block(const Job& job, std::uint32_t first_vertex, std::span<Rgb> out) {
     const formats::PrimitiveRecord& primitive = job.primitive();
     const std::uint32_t first = first_vertex - primitive.first_vertex;
     if (primitive.shading == formats::Shading::diffuse) {
-        dot_rows(job.asset.transport, primitive.rows(), job.light, first, out, job.options.path);
+        dot_and_emit(job, first, out);
         return;
     }
     for (std::uint32_t i = 0; i < out.size(); ++i) {
         const std::uint32_t vertex = first_vertex + i;
         const bool behind = is_seen_from_behind(job.asset.position[vertex],
                                                 job.asset.normal[vertex], job.options.eye);
-        dot_rows(job.asset.transport, primitive.rows(), job.light,
-                 2 * (first + i) + (behind ? 1 : 0), out.subspan(i, 1), job.options.path);
+        dot_and_emit(job, 2 * (first + i) + (behind ? 1 : 0), out.subspan(i, 1));
     }
 }
 
@@ -73,7 +84,7 @@ void shade_opaque_block(const Job& job, std::uint32_t first_vertex, std::span<Rg
     const bool is_glossy = job.material.gloss != nullptr && job.options.fresnel;
     if (has_any(job.options.terms, TermSet::diffuse)) {
         dot_opaque_block(job, first_vertex, out);
-    } else if (!is_glossy) {
+    } else if (!is_glossy && job.material.own == nullptr) {
         return;  // out is black
     }
     SurfaceMaterial material = job.material;
@@ -83,11 +94,10 @@ void shade_opaque_block(const Job& job, std::uint32_t first_vertex, std::span<Rg
         SurfacePoint point;
         point.radiance = out[i];
         point.base_color = base_color_of(job, vertex);
+        set_own_light(job.asset, material, texcoord_of(job, vertex), point);
         if (is_glossy) {
             point.view = view_of(job, vertex);
-            const bool has_texcoord = !job.asset.texcoord.empty();
-            set_gloss_factors(job.asset, material,
-                              has_texcoord ? job.asset.texcoord[vertex] : formats::Float2{}, point);
+            set_gloss_factors(job.asset, material, texcoord_of(job, vertex), point);
             set_openness(job, vertex, point);
         }
         out[i] = shade_surface(material, point);
@@ -104,6 +114,7 @@ Rgb shade_translucent(const Job& job, std::uint32_t vertex, std::span<const Rgb>
         return {finite(radiance.r), finite(radiance.g), finite(radiance.b)};
     }
     if (job.material.lobe.radiance != nullptr) set_openness(job, vertex, point);
+    set_own_light(job.asset, job.material, texcoord_of(job, vertex), point);
     return shade_surface(job.material, point);
 }
 
@@ -115,14 +126,17 @@ void shade_translucent_block(const Job& job, std::uint32_t first_vertex, std::sp
     for (std::uint32_t done = 0; done < out.size(); done += step) {
         const std::uint32_t count = std::min(step, static_cast<std::uint32_t>(out.size()) - done);
         const std::span<Rgb> block = std::span<Rgb>(products).first(std::size_t{count} * terms);
-        dot_rows(job.asset.transport, job.primitive().rows(), job.light,
-                 (first_vertex + done - job.primitive().first_vertex) * terms, block,
-                 job.options.path);
+        dot_and_emit(job, (first_vertex + done - job.primitive().first_vertex) * terms, block);
         for (std::uint32_t i = 0; i < count; ++i) {
             out[done + i] = shade_translucent(job, first_vertex + done + i,
                                               block.subspan(std::size_t{i} * terms, terms));
         }
     }
+}
+
+// What of emitters is shaded with the surface itself: renderers add their own light per pixel.
+EmitterLight own_lights(const ShadeOptions& options) {
+    return options.base_color && options.fresnel ? options.emitters : dark_emitters();
 }
 
 }  // namespace
@@ -137,8 +151,8 @@ void shade_range(const formats::AssetView& asset, const PartLights& light, std::
             std::min(last, std::uint64_t{primitive.first_vertex} + primitive.vertex_count);
         if (first >= end) continue;
         const SpecularLight* const specular = options.fresnel ? options.specular : nullptr;
-        const Job job{asset, light.light[light.number(p)], options,
-                      surface_material(asset, p, options.terms, specular)};
+        const Job job{asset, light.light[light.number(p)], options, static_cast<std::uint32_t>(p),
+                      surface_material(asset, p, options.terms, specular, own_lights(options))};
         for (std::uint64_t v = std::max(first, primitive.first_vertex); v < end; v += kBlock) {
             const std::size_t count = std::min<std::uint64_t>(kBlock, end - v);
             (primitive.shading == formats::Shading::translucent ? shade_translucent_block
@@ -158,8 +172,10 @@ void shade(const formats::AssetView& asset, const PartLights& light, std::span<R
 }
 
 std::vector<Rgb> shade_for_picture(const formats::AssetView& asset, const PartLights& light,
-                                   formats::Vec3 eye, TermSet terms, unsigned threads) {
+                                   formats::Vec3 eye, TermSet terms, unsigned threads,
+                                   const EmitterLight& emitters) {
     ShadeOptions options;
+    options.emitters = emitters;
     options.threads = threads;
     options.base_color = options.fresnel = false;
     options.eye = eye;

@@ -9,6 +9,7 @@
 #include "formats/opal/rgb.h"
 #include "formats/opal/vec3.h"
 #include "runtime/dot.h"
+#include "runtime/emitter_light.h"
 #include "runtime/part_lights.h"
 #include "runtime/specular.h"
 #include "runtime/terms.h"
@@ -30,15 +31,19 @@ struct ShadeOptions {
     /// Light for specular reflections, of the same environment; nothing: none are added. Nor are
     /// they without `fresnel`: a renderer adds them per pixel.
     const SpecularLight* specular = nullptr;
+    /// Light of the asset's emitters, as authored by default. What surfaces send out by themselves
+    /// is added where `base_color` and `fresnel` are: renderers add it per pixel.
+    EmitterLight emitters = {};
 };
 
 /// Outgoing radiance [W m^-2 sr^-1] of every receiver: L_o = base_color * <T_0, L>
 /// (Shading::diffuse; Shading::sheet with the row of the side seen; with gloss times (1 - metallic)
 /// (1 - max E)) or base_color * Ft * sum_k h_k(w_o') <T_k, L> (Shading::translucent), plus L_spec
-/// where it is glossy (gloss.h, specular.h). Each of these values is clamped to [0, largest float];
-/// what belongs to no primitive is black, and so are translucent receivers that face away or have
-/// no normal. `light`: one for all, or by primitive. Preconditions: light.n == asset.cubemap_size,
-/// out.size() == asset.receivers(), the asset passed read_opal's checks.
+/// where it is glossy (gloss.h, specular.h). Products <T_k, L> have the light of emitters added.
+/// Each of these values is clamped to [0, largest float]; what belongs to no primitive is black,
+/// and so are translucent receivers that face away or have no normal. `light`: one for all, or by
+/// primitive. Preconditions: light.n == asset.cubemap_size, out.size() == asset.receivers(), the
+/// asset passed read_opal's checks.
 void shade(const formats::AssetView& asset, const PartLights& light, std::span<formats::Rgb> out,
            const ShadeOptions& options = {});
 
@@ -51,6 +56,7 @@ void shade_range(const formats::AssetView& asset, const PartLights& light, std::
 /// the renderer, seen from `eye`. Preconditions: as `shade`.
 std::vector<formats::Rgb> shade_for_picture(const formats::AssetView& asset,
                                             const PartLights& light, formats::Vec3 eye,
-                                            formats::TermSet terms, unsigned threads);
+                                            formats::TermSet terms, unsigned threads,
+                                            const EmitterLight& emitters = {});
 
 }  // namespace opaline::runtime

@@ -46,8 +46,12 @@ Rgb shade_gloss(const SurfaceMaterial& material, const SurfacePoint& point) {
 }  // namespace
 
 SurfaceMaterial surface_material(const formats::AssetView& asset, std::size_t primitive,
-                                 formats::TermSet terms, const SpecularLight* light) {
+                                 formats::TermSet terms, const SpecularLight* light,
+                                 const EmitterLight& emitters) {
     SurfaceMaterial material;
+    const auto number = static_cast<std::uint32_t>(primitive);
+    material.own_radiance = own_radiance(asset.emitters, emitters, number);
+    if (material.own_radiance != Rgb{}) material.own = asset.emitters.own_of(number);
     material.primitive = &asset.primitives[primitive];
     if (!asset.gloss.empty() && asset.gloss[primitive].is_glossy()) {
         material.gloss = &asset.gloss[primitive];
@@ -71,12 +75,21 @@ void set_gloss_factors(const formats::AssetView& asset, const SurfaceMaterial& m
     point.metallic *= values.b;
 }
 
+void set_own_light(const formats::AssetView& asset, const SurfaceMaterial& material,
+                   formats::Float2 texcoord, SurfacePoint& point) {
+    point.own = material.own_radiance;
+    if (material.own == nullptr || material.own->image == formats::kNoImage) return;
+    point.own = point.own * sample_image_linear(asset.images[material.own->image], texcoord,
+                                                material.own->wrap_u, material.own->wrap_v);
+}
+
 Rgb shade_surface(const SurfaceMaterial& material, const SurfacePoint& point) {
-    if (material.primitive->shading == formats::Shading::translucent) {
-        return shade_translucent(material, point);
-    }
-    return material.gloss != nullptr ? shade_gloss(material, point)
-                                     : displayable(point.radiance * point.base_color);
+    const Rgb scattered = material.primitive->shading == formats::Shading::translucent
+                              ? shade_translucent(material, point)
+                          : material.gloss != nullptr
+                              ? shade_gloss(material, point)
+                              : displayable(point.radiance * point.base_color);
+    return material.own == nullptr ? scattered : displayable(scattered + point.own);
 }
 
 }  // namespace opaline::runtime

@@ -6,6 +6,7 @@
 #include "formats/opal/rgb.h"
 #include "formats/opal/terms.h"
 #include "formats/opal/vec3.h"
+#include "runtime/emitter_light.h"
 #include "runtime/specular.h"
 #include "runtime/view_terms.h"
 
@@ -20,11 +21,14 @@ struct SurfaceMaterial {
     const formats::GlossRecord* gloss = nullptr;  ///< of a glossy opaque primitive; else nothing
     const SpecularLight* light = nullptr;         ///< nothing: no specular reflection is added
     SpecularLobe lobe;                            ///< of a glossy translucent primitive
+    const formats::OwnLight* own = nullptr;       ///< nothing: it sends out no light that is shown
+    formats::Rgb own_radiance;  ///< under the emitters' colours, without its image
 };
 
 /// `light`: as SoftwareOptions::specular. Without TermSet::specular in `terms` none is used.
 SurfaceMaterial surface_material(const formats::AssetView& asset, std::size_t primitive,
-                                 formats::TermSet terms, const SpecularLight* light);
+                                 formats::TermSet terms, const SpecularLight* light,
+                                 const EmitterLight& emitters);
 
 /// One point of it.
 struct SurfacePoint {
@@ -34,15 +38,21 @@ struct SurfacePoint {
     ViewOfReceiver view;                ///< diffuse primitives without gloss need none
     formats::Vec3 open_axis;            ///< glossy: mean open direction of the front, unit or zero
     float open_fraction = 1;
+    formats::Rgb own;  ///< radiance that the surface sends out by itself
 };
 
 /// Sets metallic and roughness from the primitive's record and image. Precondition: has gloss.
 void set_gloss_factors(const formats::AssetView& asset, const SurfaceMaterial& material,
                        formats::Float2 texcoord, SurfacePoint& point);
 
+/// Sets `own` from the primitive's record and image.
+void set_own_light(const formats::AssetView& asset, const SurfaceMaterial& material,
+                   formats::Float2 texcoord, SurfacePoint& point);
+
 /// Outgoing radiance toward the eye, finite and not negative: diffuse base_color * radiance;
 /// translucent base_color * Ft * radiance, plus what the boundary mirrors; glossy opaque
 /// base_color * radiance * (1 - metallic) (1 - max E), plus the specular lobe.
+/// What the surface sends out by itself is added to all of them.
 formats::Rgb shade_surface(const SurfaceMaterial& material, const SurfacePoint& point);
 
 }  // namespace opaline::runtime

@@ -54,6 +54,7 @@ std::vector<double> relight_receivers(const formats::AssetView& asset,
                                       std::span<const ReferenceReceiver> receivers,
                                       const FileLight& light) {
     runtime::ShadeOptions shading;
+    shading.emitters = runtime::dark_emitters();
     if (light.mirrored != nullptr) {
         shading.terms = TermSet::specular;
         shading.specular = light.mirrored;

@@ -29,7 +29,11 @@ enum class RandomStage : std::uint32_t {
     slab_walk = 17,
     layer_check = 18,
     bounce_rays = 19,
-    true_bounces = 20
+    true_bounces = 20,
+    particle_starts = 21,
+    particle_bounces = 22,
+    gather_rays = 23,
+    true_gather = 24
 };
 
 /// Four uniform numbers in [0, 1), a pure function of the arguments. There is no state, so results

@@ -58,8 +58,8 @@ int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
     formats::Vec3 shaded_for = camera.eye;
     const runtime::PartLights lights = light.parts.lights();
     auto start = FrameClock::now();
-    std::vector<formats::Rgb> radiance =
-        runtime::shade_for_picture(view, lights, shaded_for, shown.terms, options.threads);
+    std::vector<formats::Rgb> radiance = runtime::shade_for_picture(
+        view, lights, shaded_for, shown.terms, options.threads, shown.emitters);
     const runtime::VolumeLight volumes =
         runtime::relight_volumes(view.volumes, lights.light[lights.of_volumes],
                                  {.terms = shown.terms, .threads = options.threads});
@@ -68,6 +68,7 @@ int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
     software.volumes = &volumes;
     software.threads = options.threads;
     software.background = shown.background;
+    software.emitters = shown.emitters;
     software.layers = shown.background && light.layers.layers ? &*light.layers.layers : nullptr;
     runtime::SpecularLight specular;
     if (const runtime::SpecularNeeds needs = runtime::specular_needs(view);
@@ -85,8 +86,8 @@ int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
     return write_frames(options, camera, end, drawing, [&](const runtime::Camera& at) {
         if (depends_on_eye && shaded_for != at.eye) {
             shaded_for = at.eye;
-            radiance =
-                runtime::shade_for_picture(view, lights, shaded_for, shown.terms, options.threads);
+            radiance = runtime::shade_for_picture(view, lights, shaded_for, shown.terms,
+                                                  options.threads, shown.emitters);
         }
         return runtime::render_software(view, radiance, light.sky.environment, light.sky.rotation,
                                         at, software);
@@ -131,7 +132,8 @@ int draw_on_gpu([[maybe_unused]] const FrameOptions& options,
         return report_error(error);
     }
     runtime::GlRenderer& renderer = *drawing.renderer;
-    if (auto status = renderer.set_light(light.parts.lights(), light.sky.rotation); !status) {
+    if (auto status = renderer.set_light(light.parts.lights(), light.sky.rotation, shown.emitters);
+        !status) {
         return report_error(status.error());
     }
     if (shown.background && light.layers.layers) {

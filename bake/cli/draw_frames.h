@@ -8,6 +8,7 @@
 #include "bake/cli/light_with_layers.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/terms.h"
+#include "runtime/emitter_light.h"
 #include "runtime/picture/camera.h"
 #ifdef OPALINE_HAS_GL
 #include "runtime/gl/gl_renderer.h"
@@ -36,6 +37,8 @@ std::string frame_path(const FrameOptions& options, std::uint32_t frame);
 struct Shown {
     formats::TermSet terms = formats::TermSet::baked;
     bool background = true;
+    /// Of the file's emitters; what glows by itself belongs to the whole light, as the background.
+    runtime::EmitterLight emitters = {};
 };
 
 /// The light of the sky, and what of it reaches meshes and volumes.

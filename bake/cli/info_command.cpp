@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -31,6 +32,25 @@ const char* shading_name(formats::Shading shading) {
 
 bool is_glossy(const formats::AssetView& view, std::size_t primitive) {
     return !view.roughness.empty() && view.roughness[primitive] >= 0;
+}
+
+// What each adds to rows, and how many primitives glow.
+Json emitters_json(const formats::EmittersView& emitters) {
+    Json list = Json::array();
+    for (std::uint32_t e = 0; e < emitters.size(); ++e) {
+        const auto lit = std::ranges::count(emitters.block, e, &formats::EmitterBlock::emitter);
+        const auto glowing = std::ranges::count(emitters.own, e, &formats::OwnLight::emitter);
+        list.push_back({{"name", std::string(emitters.name(e))},
+                        {"lit_primitives", lit},
+                        {"glowing_primitives", glowing}});
+    }
+    return list;
+}
+
+void print_emitters(const formats::EmittersView& emitters) {
+    if (!emitters.empty()) {
+        fmt::print("emitters      {}\n", printable(list_emitters(emitters)));
+    }
 }
 
 Json describe(const OpenedAsset& asset) {
@@ -76,6 +96,7 @@ Json describe(const OpenedAsset& asset) {
                                    {"bytes_per_active_voxel", facts.bytes_per_active_voxel()}});
     }
     info["layers"] = layers_json(view.clouds);
+    info["emitters"] = emitters_json(view.emitters);
     info["sections"] = Json::array();
     for (const formats::SectionEntry& section : asset.loaded.sections) {
         info["sections"].push_back({{"id", formats::section_name(section.id)},
@@ -242,6 +263,7 @@ int run(const InfoCommand& options) {
     print_provenance(info["provenance"]);
     print_volumes(view.volumes);
     print_layers(view.clouds);
+    print_emitters(view.emitters);
     if (!view.primitives.empty()) {
         fmt::print("primitives\n");
     }

@@ -12,6 +12,7 @@
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
+#include "bake/emitters/plan_emitters.h"
 #include "bake/layers/plan_layers.h"
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"
@@ -69,6 +70,11 @@ int run(const PlanCommand& options) {
     auto plan = bake::plan_bake(effects, scene, facts, *knobs);
     std::vector<bake::PlanEntry> volumes = bake::plan_volumes(scene, *knobs).entries;
     std::ranges::copy(bake::plan_layers(scene, *knobs).entries, std::back_inserter(volumes));
+    const bake::EmitterPlan emitters = bake::plan_emitters(scene, *knobs);
+    if (auto status = bake::check_lamp_count(scene, emitters.lamps.size()); !status) {
+        return report_error(status.error());
+    }
+    std::ranges::copy(emitters.entries, std::back_inserter(volumes));
     std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, facts);
     if (evened) {
         warnings.insert(warnings.end(), evened->warnings.begin(), evened->warnings.end());

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "bake/cli/command.h"
+#include "bake/cli/emitter_options.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
 #include "bake/cli/light_with_layers.h"
@@ -20,6 +21,7 @@ namespace {
 
 struct RelightCommand {
     std::string path, light, output, eye, terms;
+    std::vector<std::string> emitters;
     double rotate_light = 0;
     double time = 0;  ///< [s]
     unsigned threads = 0;
@@ -139,6 +141,10 @@ int run(const RelightCommand& options) {
     if (auto status = runtime::check_terms(asset->loaded.view, *terms, options.path); !status) {
         return report_error(status.error());
     }
+    const auto emitters = parse_emitters(asset->loaded.view.emitters, options.emitters);
+    if (!emitters) {
+        return report_error(emitters.error());
+    }
     const auto light = open_light(options.light, options.rotate_light);
     if (!light) {
         return report_error(light.error());
@@ -150,6 +156,7 @@ int run(const RelightCommand& options) {
     const runtime::SpecularLight specular = runtime::make_specular_light(
         mirrored.environment, needs, mirrored.rotation, options.threads);
     shading.terms = *terms;
+    shading.emitters = {*emitters, has_all(*terms, formats::TermSet::baked)};
     shading.specular = needs.any() ? &specular : nullptr;
     if (!view.clouds.empty() && view.receivers() == 0 && view.volumes.empty()) {
         print_note("opaline: the file has a cloud layer alone, which opaline render shows");
@@ -204,6 +211,7 @@ void add_relight_command(CLI::App& app, Job& job) {
             "normal, and nodes of volumes in the mean of all directions. Only translucent, "
             "thin-walled and glossy surfaces and volumes depend on it")
         ->option_text("X,Y,Z");
+    add_emitter_option(*command, options->emitters);
     command
         ->add_option("--terms", options->terms,
                      "components to add up: all, or some of " +

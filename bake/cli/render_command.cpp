@@ -7,6 +7,7 @@
 #include "bake/cli/camera_options.h"
 #include "bake/cli/command.h"
 #include "bake/cli/draw_frames.h"
+#include "bake/cli/emitter_options.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/light_with_layers.h"
 #include "bake/cli/messages.h"
@@ -20,6 +21,7 @@ namespace {
 
 struct RenderCommand {
     std::string path, light, terms;
+    std::vector<std::string> emitters;
     CameraOptions camera;
     FrameOptions frame;
     double rotate_light = 0;
@@ -28,14 +30,16 @@ struct RenderCommand {
     std::optional<double> turn;       ///< [degrees]
 };
 
-// The background, cloud layers too, belongs to the whole light: to all components that the file may
-// have.
-Shown show(formats::TermSet terms, const formats::AssetView& view) {
+// The background, cloud layers and what glows too, belongs to the whole light: to all components
+// that the file may have.
+Shown show(formats::TermSet terms, const formats::AssetView& view,
+           std::span<const formats::Rgb> emitters) {
     constexpr formats::TermSet kOfVolumes =
         formats::TermSet::volume_single | formats::TermSet::volume_multiple;
     const formats::TermSet possible =
         view.volumes.empty() ? formats::TermSet::baked & ~kOfVolumes : formats::TermSet::baked;
-    return {terms, has_all(terms, possible)};
+    const bool shows_all = has_all(terms, possible);
+    return {terms, shows_all, {emitters, shows_all}};
 }
 
 // Of options that set frames apart.
@@ -99,6 +103,10 @@ int run(const RenderCommand& options) {
     if (auto status = runtime::check_terms(view, *terms, options.path); !status) {
         return report_error(status.error());
     }
+    const auto emitters = parse_emitters(view.emitters, options.emitters);
+    if (!emitters) {
+        return report_error(emitters.error());
+    }
     if (auto status = check_motion(options, view); !status) {
         return report_error(status.error());
     }
@@ -115,8 +123,8 @@ int run(const RenderCommand& options) {
     Drawing drawing;
     while (drawing.frames < frames) {
         const double time = options.time + options.time_step.value_or(0) * drawing.frames;
-        const int code = draw_at(options, view, *light, *camera, show(*terms, view), time,
-                                 drawing.frames + step, drawing);
+        const int code = draw_at(options, view, *light, *camera, show(*terms, view, *emitters),
+                                 time, drawing.frames + step, drawing);
         if (code != kExitSuccess) {
             return code;
         }
@@ -143,6 +151,7 @@ void add_render_command(CLI::App& app, Job& job) {
         ->required()
         ->check(file_name())
         ->option_text("OUT.png|.exr");
+    add_emitter_option(*command, options->emitters);
     add_camera_options(*command, options->camera);
     command
         ->add_option("--backend", options->frame.backend,

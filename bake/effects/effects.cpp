@@ -13,6 +13,7 @@
 #include "bake/effects/single/single.h"
 #include "bake/effects/specular/specular.h"
 #include "bake/effects/transmission/transmission.h"
+#include "bake/emitters/describe_emitters.h"
 #include "bake/layers/describe_layers.h"
 #include "bake/volumes/describe_volumes.h"
 
@@ -32,6 +33,7 @@ const EffectTable& all_effects() {
                                          describe_scattered_often(Effect::volume_multiple),
                                          describe_cloud(Effect::cloud),
                                          describe_radiosity(Effect::radiosity),
+                                         describe_emitters(Effect::emitters),
                                          describe_incident(Effect::incident)};
     static const EffectTable kTable{kDescriptors};
     return kTable;

@@ -19,6 +19,7 @@ enum class Effect : std::uint8_t {
     volume_multiple,  ///< light scattered more than once in volumes
     cloud,            ///< light scattered by cloud layers
     radiosity,        ///< light between cloud layers and the ground
+    emitters,         ///< light of lamps in the scene
     incident          ///< what all share: what stands before the light, and its colour
 };
 

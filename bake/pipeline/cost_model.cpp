@@ -7,6 +7,7 @@
 #include "bake/pipeline/accuracy_costs.h"
 #include "bake/pipeline/bill.h"
 #include "bake/pipeline/costed_bake.h"
+#include "bake/pipeline/emitter_stages.h"
 #include "bake/pipeline/layer_costs.h"
 #include "bake/pipeline/predict_memory.h"
 #include "bake/pipeline/shared_light.h"
@@ -204,6 +205,7 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bill_self_check(bake, bill);
     bill_volumes(request, volumes, count_rows(bake), volume_plan, bill);
     bill_layers(request, volume_plan, bill);
+    bill_lamps(request, volume_plan, bill);
     bill.add_bytes(mesh_bytes(request.scene, request.facts));
     bill.cost.memory_bytes = static_cast<std::uint64_t>(
         predict_memory(request.effects, count_memory(request.effects, request.scene, request.knobs),

@@ -9,9 +9,11 @@
 #include "bake/accuracy/check_rows.h"
 #include "bake/accuracy/error_warnings.h"
 #include "bake/base/ordered_parallel.h"
+#include "bake/emitters/plan_emitters.h"
 #include "bake/encode/pack_asset.h"
 #include "bake/encode/row_sink.h"
 #include "bake/layers/plan_layers.h"
+#include "bake/pipeline/emitter_stages.h"
 #include "bake/pipeline/layer_stages.h"
 #include "bake/pipeline/provenance.h"
 #include "bake/pipeline/shared_light.h"
@@ -269,21 +271,26 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     const formats::Scene& scene = evened ? evened->scene : facing;
     bool has_volumes = false;
     LayerPlan layers;
+    EmitterPlan emitters;
     result.plan = run_stage(log, "plan", [&](std::uint64_t&) {
         VolumePlan decided = plan_volumes(scene, wanted);
         has_volumes = !decided.layouts.empty();
         result.volume_plan = std::move(decided.entries);
         layers = plan_layers(scene, wanted);
+        emitters = plan_emitters(scene, wanted);
         result.facts = inspect_scene(scene);
         return plan_bake(effects, scene, result.facts, wanted);
     });
+    if (auto status = check_lamp_count(scene, emitters.lamps.size()); !status) {
+        return std::move(status).error();
+    }
     formats::Result<RayScene> sky = RayScene::build({}, context.threads);
     if (!sky) {
         return std::move(sky).error();
     }
     std::optional<RayScene> hierarchy;
     if (needs_hierarchy(layout_rows(effects, scene, result.plan, wanted)) ||
-        (has_volumes && !scene.primitives.empty())) {
+        (has_volumes && !scene.primitives.empty()) || !emitters.lamps.empty()) {
         formats::Result<RayScene> built = run_stage(log, "hierarchy", [&](std::uint64_t&) {
             return RayScene::build(scene, context.threads);
         });
@@ -308,6 +315,12 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     std::ranges::copy(layers.entries, std::back_inserter(result.volume_plan));
     if (!layers.layouts.empty()) {
         if (auto status = add_layers(scene, layers.layouts, context, result); !status) {
+            return std::move(status).error();
+        }
+    }
+    std::ranges::copy(emitters.entries, std::back_inserter(result.volume_plan));
+    if (!emitters.lamps.empty()) {
+        if (auto status = add_lamp_rows(bake, emitters.lamps, context, result); !status) {
             return std::move(status).error();
         }
     }

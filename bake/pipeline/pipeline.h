@@ -24,7 +24,7 @@ struct BakeResult {
     Knobs knobs;                         ///< as used
     unsigned threads = 1;                ///< as used
     std::vector<PlanEntry> plan;         ///< of materials
-    std::vector<PlanEntry> volume_plan;  ///< of volumes, then of layers
+    std::vector<PlanEntry> volume_plan;  ///< of volumes, then of layers and emitters
     SceneFacts facts;                    ///< that the plan was decided from
     StageLog stages;
     ErrorReport error;

@@ -13,14 +13,17 @@ namespace {
 using formats::Diagnostic;
 using formats::make_warning;
 
-constexpr const char* kReferenceHasIt = "`opaline reference` simulates it";
+bool sends_out_light(const formats::Scene& scene) {
+    return !scene.lights.empty() || std::ranges::any_of(scene.materials, is_emissive);
+}
 
 bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const Knobs& knobs,
                   std::string_view name) {
     const auto& all = effects.effects;
     if (std::ranges::any_of(all, [&](const EffectDescriptor& effect) {
             return effect.name == name && ((effect.concerns_volumes && !scene.volumes.empty()) ||
-                                           (effect.concerns_layers && !scene.layers.empty()));
+                                           (effect.concerns_layers && !scene.layers.empty()) ||
+                                           (effect.concerns_emitters && sends_out_light(scene)));
         })) {
         return true;
     }
@@ -38,7 +41,7 @@ bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const
 
 std::string concerns_nothing(const std::string& effect) {
     return "'" + effect +
-           "' concerns nothing in the scene: no material, volume or layer is of its kind";
+           "' concerns nothing in the scene: no material, volume, layer or light is of its kind";
 }
 
 // Effects that were named, and that no subject has.
@@ -108,7 +111,7 @@ void describe_options(const DecidedBake& decided, const BakeOptions& options,
     }
 }
 
-// What a bake, or a picture of it, leaves out of materials and lights.
+// What a bake, or a picture of it, leaves out of materials.
 void describe_materials(const formats::Scene& scene, std::vector<Diagnostic>& warnings) {
     std::vector<bool> is_used(scene.materials.size(), false);
     for (const formats::Primitive& p : scene.primitives) {
@@ -123,16 +126,6 @@ void describe_materials(const formats::Scene& scene, std::vector<Diagnostic>& wa
                                             "show the whole surface",
                                             "`opaline reference` shows them"));
         }
-        if (is_used[m] && is_emissive(scene.materials[m])) {
-            warnings.push_back(make_warning(
-                scene.source, "material '" + scene.materials[m].name + "'",
-                "emission is not baked: the surface sends out no light", kReferenceHasIt));
-        }
-    }
-    if (!scene.lights.empty()) {
-        warnings.push_back(make_warning(
-            scene.source, "KHR_lights_punctual",
-            "lights of the file are not baked: light comes from the environment", kReferenceHasIt));
     }
 }
 

@@ -167,8 +167,9 @@ struct EffectDescriptor {
     bool reads_openness = false;
     /// It adds BakeInputs::light to its rows. Where that replaces the environment, no other acts.
     bool adds_other_light = false;
-    bool concerns_volumes = false;  ///< it is about volumes instead of materials
-    bool concerns_layers = false;   ///< it is about cloud layers instead of materials
+    bool concerns_volumes = false;   ///< it is about volumes instead of materials
+    bool concerns_layers = false;    ///< it is about cloud layers instead of materials
+    bool concerns_emitters = false;  ///< it is about light that the scene itself sends out
     /// Light of the reference that files with it hold, beside what all files are compared with.
     formats::TermSet held_light = formats::TermSet::none;
 

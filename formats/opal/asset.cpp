@@ -24,6 +24,7 @@ AssetView Asset::view() const {
     view.gloss = gloss;
     view.volumes = volumes.view();
     view.clouds = clouds.view();
+    view.emitters = emitters.view();
     return view;
 }
 

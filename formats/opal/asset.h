@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/opal/clouds.h"
+#include "formats/opal/emitters.h"
 #include "formats/opal/gloss.h"
 #include "formats/opal/openness.h"
 #include "formats/opal/preview_image.h"
@@ -106,8 +107,9 @@ struct AssetView {
     std::span<const Openness> openness;
     /// Gloss of opaque primitives: empty (none), or one per primitive; needs `openness`.
     std::span<const GlossRecord> gloss;
-    VolumesView volumes;  ///< smoke, clouds; empty without any
-    CloudsView clouds;    ///< cloud layers; empty without any
+    VolumesView volumes;    ///< smoke, clouds; empty without any
+    CloudsView clouds;      ///< cloud layers; empty without any
+    EmittersView emitters;  ///< light that is not the environment's; empty without any
 
     std::uint32_t receivers() const { return static_cast<std::uint32_t>(position.size()); }
 };
@@ -130,6 +132,7 @@ struct Asset {
     std::vector<GlossRecord> gloss;  ///< empty, or one per primitive; kNotGlossy if translucent
     Volumes volumes;                 ///< empty without any
     Clouds clouds;                   ///< empty without any
+    Emitters emitters;               ///< empty without any
 
     AssetView view() const;
 };

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "formats/opal/check_clouds.h"
+#include "formats/opal/check_emitters.h"
 #include "formats/opal/check_rows.h"
 #include "formats/opal/check_volumes.h"
 #include "formats/opal/cubemap.h"
@@ -186,7 +187,10 @@ Fault find_structure_fault(const AssetView& asset) {
     if (Fault fault = find_volumes_fault(asset.volumes); !fault.what.empty()) {
         return fault;
     }
-    return find_clouds_fault(asset.clouds);
+    if (Fault fault = find_clouds_fault(asset.clouds); !fault.what.empty()) {
+        return fault;
+    }
+    return find_emitters_fault(asset);
 }
 
 Fault find_value_fault(const AssetView& asset) {
@@ -215,7 +219,10 @@ Fault find_value_fault(const AssetView& asset) {
     if (Fault fault = find_volume_value_fault(asset.volumes); !fault.what.empty()) {
         return fault;
     }
-    return find_cloud_value_fault(asset.clouds);
+    if (Fault fault = find_cloud_value_fault(asset.clouds); !fault.what.empty()) {
+        return fault;
+    }
+    return find_emitter_value_fault(asset.emitters);
 }
 
 }  // namespace opaline::formats

@@ -81,6 +81,13 @@ struct CloudsHead {
 };
 static_assert(sizeof(CloudsHead) == 48);
 
+struct EmittersHead {
+    std::uint32_t count = 0, text = 0, own = 0, own_size = 0;
+    std::uint64_t blocks = 0, values = 0;
+    std::uint32_t block_size = 0, reserved[3] = {};
+};
+static_assert(sizeof(EmittersHead) == 48);
+
 /// Largest ratio of decoded to stored size that a reader accepts and a writer makes: bounds what a
 /// hostile file can make a reader allocate.
 inline constexpr std::uint64_t kMaxCompressionRatio = 1024;

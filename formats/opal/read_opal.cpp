@@ -6,6 +6,7 @@
 
 #include "formats/opal/check_opal.h"
 #include "formats/opal/cloud_arrays.h"
+#include "formats/opal/emitter_arrays.h"
 #include "formats/opal/layout.h"
 #include "formats/opal/row_arrays.h"
 #include "formats/opal/section_cursor.h"
@@ -81,6 +82,10 @@ bool read_clouds(SectionCursor cursor, AssetView& view) {
     return take_clouds(cursor, view.clouds) && cursor.at_end();
 }
 
+bool read_emitters(SectionCursor cursor, AssetView& view) {
+    return take_emitters(cursor, view.emitters) && cursor.at_end();
+}
+
 }  // namespace
 
 Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::string& file,
@@ -133,6 +138,9 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 break;
             case kClouSection:
                 read = read_clouds;
+                break;
+            case kEmitSection:
+                read = read_emitters;
                 break;
             case kProvSection:
                 break;

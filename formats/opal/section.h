@@ -39,6 +39,7 @@ inline constexpr std::uint32_t kGlosSection = section_id("GLOS");
 inline constexpr std::uint32_t kTranSection = section_id("TRAN");
 inline constexpr std::uint32_t kVoluSection = section_id("VOLU");
 inline constexpr std::uint32_t kClouSection = section_id("CLOU");
+inline constexpr std::uint32_t kEmitSection = section_id("EMIT");
 
 struct FileHeader {
     std::array<char, 8> magic = kOpalMagic;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/opal/cloud_arrays.h"
+#include "formats/opal/emitter_arrays.h"
 #include "formats/opal/layout.h"
 #include "formats/opal/row_arrays.h"
 #include "formats/opal/section.h"
@@ -45,6 +46,7 @@ struct SectionHeads {
     VolumesHead volumes;
     TransportHead volume_rows;
     CloudsHead clouds;
+    EmittersHead emitters;
 };
 
 SectionHeads make_heads(const AssetView& asset) {
@@ -63,6 +65,7 @@ SectionHeads make_heads(const AssetView& asset) {
     heads.volumes = volumes_head(asset.volumes);
     heads.volume_rows = rows_head(asset.volumes.rows);
     heads.clouds = clouds_head(asset.clouds);
+    heads.emitters = emitters_head(asset.emitters);
     return heads;
 }
 
@@ -121,6 +124,9 @@ std::vector<StoredSection> store_sections(const AssetView& asset, const SectionH
     }
     if (!asset.clouds.empty()) {
         add(kClouSection, Codec::none, cloud_arrays(heads.clouds, asset.clouds));
+    }
+    if (!asset.emitters.empty()) {
+        add(kEmitSection, Codec::none, emitter_arrays(heads.emitters, asset.emitters));
     }
     return sections;
 }

@@ -102,6 +102,10 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& l
     gl.code_bits = asset.transport.code_bits;
     gl.index_bytes = asset.transport.index_bytes;
     gl.primitives.assign(asset.primitives.begin(), asset.primitives.end());
+    gl.emitters.name_end.assign(asset.emitters.name_end.begin(), asset.emitters.name_end.end());
+    gl.emitters.block.assign(asset.emitters.block.begin(), asset.emitters.block.end());
+    gl.emitters.own.assign(asset.emitters.own.begin(), asset.emitters.own.end());
+    gl.emitters.value.assign(asset.emitters.value.begin(), asset.emitters.value.end());
     if (asset.texcoord.empty()) {  // nowhere to look up images: the CPU leaves them out too
         for (formats::PrimitiveRecord& primitive : gl.primitives) {
             primitive.base_color_image = formats::kNoImage;

@@ -16,6 +16,7 @@ struct GlAsset {
     std::uint32_t cubemap_size = 0, vertices = 0, code_bits = 8, index_bytes = 2;
     std::vector<formats::PrimitiveRecord> primitives;
     std::vector<DotBatch> batches;
+    formats::Emitters emitters;  ///< a copy, which is added up on the CPU
 
     GlBuffer row_offset, index, code, average_scale, detail_scale, average_code;
     /// <T_0, L> of every vertex, four floats each; zeros at first. Of translucent and thin-walled

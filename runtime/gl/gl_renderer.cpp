@@ -9,6 +9,7 @@
 #include "runtime/gl/gl_asset.h"
 #include "runtime/gl/gl_dot.h"
 #include "runtime/gl/gl_draw.h"
+#include "runtime/gl/gl_emitters.h"
 #include "runtime/gl/gl_environment.h"
 #include "runtime/gl/gl_layer_pass.h"
 #include "runtime/gl/gl_layers.h"
@@ -88,6 +89,7 @@ struct GlRenderer::State {
     Rotation rotation;
     bool mirrors_world = false;  // GlOptions::mirrored was given
     GlStats stats;
+    std::vector<formats::Rgb> own;  ///< own_radiances of the last set_light
 };
 
 GlRenderer::GlRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -151,7 +153,8 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     return GlRenderer(std::move(state));
 }
 
-formats::Status GlRenderer::set_light(const PartLights& lights, const Rotation& rotation) {
+formats::Status GlRenderer::set_light(const PartLights& lights, const Rotation& rotation,
+                                      const EmitterLight& emitters) {
     Resources& resources = *state_->resources;
     if (auto status = check_lights(lights, resources.asset); !status) return status;
     const CurrentContext current(state_->context);
@@ -170,6 +173,8 @@ formats::Status GlRenderer::set_light(const PartLights& lights, const Rotation& 
         !status) {
         return status;
     }
+    add_gl_emitters(resources.asset, emitters);
+    state_->own = own_radiances(resources.asset, emitters);
     if (auto status = relight_gl_volumes(resources.volumes, lights.light[lights.of_volumes],
                                          formats::TermSet::all);
         !status) {
@@ -238,7 +243,8 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
                           camera,
                           s,
                           options.terms,
-                          options.background};
+                          options.background,
+                          state_->own};
     for (std::uint32_t y = 0; y < camera.height; y += side) {
         for (std::uint32_t x = 0; x < camera.width; x += side) {
             const Tile tile{x, y, std::min(side, camera.width - x),

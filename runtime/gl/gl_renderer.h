@@ -11,6 +11,7 @@
 #include "formats/opal/result.h"
 #include "formats/opal/terms.h"
 #include "runtime/clouds/layer_light.h"
+#include "runtime/emitter_light.h"
 #include "runtime/light_vector.h"
 #include "runtime/part_lights.h"
 #include "runtime/picture/camera.h"
@@ -73,7 +74,9 @@ class GlRenderer {
     /// the CPU, from a copy of their rows. `rotation` turns the background; the
     /// light vectors must have been made with the same one. Errors: usage (another cube map size
     /// than the asset's, not one light for each primitive), resource.
-    formats::Status set_light(const PartLights& lights, const Rotation& rotation);
+    /// `emitters`: of the asset, a colour for each or none.
+    formats::Status set_light(const PartLights& lights, const Rotation& rotation,
+                              const EmitterLight& emitters = {});
 
     /// Shows the asset's cloud layer under this light, at its time, from the next picture on; the
     /// light must have been made with the environment of `create` and the rotation of set_light.

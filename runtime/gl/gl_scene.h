@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "formats/opal/terms.h"
 #include "formats/opal/vec3.h"
@@ -25,7 +26,8 @@ struct DrawScene {
     const Camera& camera;
     std::uint32_t supersampling = 1;
     formats::TermSet terms = formats::TermSet::all;
-    bool background = true;  ///< false: black
+    bool background = true;               ///< false: black
+    std::span<const formats::Rgb> own{};  ///< own_radiances (gl_emitters.h)
 };
 
 /// Where a tile's samples lie in the picture.

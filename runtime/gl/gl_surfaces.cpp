@@ -31,7 +31,9 @@ enum Uniform : GLint {
     kF0F90,
     kMetallicRoughness,
     kGlossWrap,
-    kSuns
+    kSuns,
+    kOwnLight,
+    kOwnWrap
 };
 
 // What a surface's program has to do.
@@ -39,12 +41,18 @@ struct SurfaceKind {
     bool is_textured = false, is_translucent = false;
     bool is_mirroring = false;                        ///< translucent and glossy
     bool is_glossy = false, has_gloss_image = false;  ///< opaque
+    bool has_own_image = false;                       ///< sends out light by itself, with an image
 
+    bool has_image() const { return is_textured || has_gloss_image || has_own_image; }
     std::size_t number() const {
         return (is_textured ? 1u : 0u) + (is_translucent ? 2u : 0u) + (is_mirroring ? 4u : 0u) +
-               (is_glossy ? 8u : 0u) + (has_gloss_image ? 16u : 0u);
+               (is_glossy ? 8u : 0u) + (has_gloss_image ? 16u : 0u) + (has_own_image ? 32u : 0u);
     }
 };
+
+const formats::OwnLight* own_light_of(const GlAsset& asset, std::size_t primitive) {
+    return asset.emitters.view().own_of(static_cast<std::uint32_t>(primitive));
+}
 
 SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
     const formats::PrimitiveRecord& record = asset.primitives[primitive];
@@ -54,6 +62,8 @@ SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
     kind.is_mirroring = !asset.roughness.empty() && asset.roughness[primitive] >= 0;
     kind.is_glossy = !asset.gloss.empty() && asset.gloss[primitive].is_glossy();
     kind.has_gloss_image = kind.is_glossy && asset.gloss[primitive].image < asset.images.size();
+    const formats::OwnLight* const own = own_light_of(asset, primitive);
+    kind.has_own_image = own != nullptr && own->image < asset.images.size();
     return kind;
 }
 
@@ -68,7 +78,8 @@ std::string defines_of(SurfaceKind kind) {
     if (kind.is_mirroring) text += define("MIRRORING");
     if (kind.is_glossy) text += define("GLOSS");
     if (kind.has_gloss_image) text += define("GLOSS_TEXTURED");
-    if (kind.is_textured || kind.has_gloss_image) text += define("HAS_TEXCOORD");
+    if (kind.has_own_image) text += define("OWN_TEXTURED");
+    if (kind.has_image()) text += define("HAS_TEXCOORD");
     if (kind.is_translucent || kind.is_glossy) text += define("HAS_VIEW");
     if (kind.is_mirroring || kind.is_glossy) text += define("HAS_OPENNESS");
     return text;
@@ -77,7 +88,7 @@ std::string defines_of(SurfaceKind kind) {
 // The fragment shader with what it includes.
 std::string fragment_text(SurfaceKind kind) {
     std::string text;
-    if (kind.is_textured || kind.has_gloss_image) {
+    if (kind.has_image()) {
         text += define("WRAP_CLAMP", std::to_string(static_cast<int>(formats::Wrap::clamp))) +
                 define("WRAP_MIRROR", std::to_string(static_cast<int>(formats::Wrap::mirror))) +
                 image_text;
@@ -156,6 +167,19 @@ void set_gloss(const DrawScene& scene, GLuint program, const formats::GlossRecor
     }
 }
 
+void set_own_light(const DrawScene& scene, GLuint program, std::size_t primitive) {
+    const bool shows = !scene.own.empty();
+    set_vec3(program, kOwnLight,
+             shows ? formats::Vec3{scene.own[primitive].r, scene.own[primitive].g,
+                                   scene.own[primitive].b}
+                   : formats::Vec3{});
+    const formats::OwnLight* const own = own_light_of(scene.asset, primitive);
+    if (own == nullptr || own->image >= scene.asset.images.size()) return;
+    glBindTextureUnit(4, scene.asset.images[own->image].name());
+    glProgramUniform2i(program, kOwnWrap, static_cast<GLint>(own->wrap_u),
+                       static_cast<GLint>(own->wrap_v));
+}
+
 void draw_triangles(const formats::PrimitiveRecord& primitive) {
     // In pieces that a signed count holds; each a whole number of triangles.
     constexpr std::uint32_t kPiece = 3u << 28;
@@ -213,6 +237,7 @@ void draw_surfaces(const DrawScene& scene, const SurfacePrograms& programs, cons
         glUniform1f(kShown, is_shown(primitive, scene.terms) ? 1.0f : 0.0f);
         if (kind.is_mirroring) set_mirroring(scene, program, p);
         if (kind.is_glossy) set_gloss(scene, program, asset.gloss[p]);
+        set_own_light(scene, program, p);
         draw_triangles(primitive);
     }
 }

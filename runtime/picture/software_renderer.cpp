@@ -112,6 +112,7 @@ SurfacePoint point_at(const Job& job, const GridTriangle& triangle,
     if (is_glossy || primitive.shading == formats::Shading::translucent) {
         point.view = view_at(job, primitive, triangle, weight);
     }
+    set_own_light(job.asset, material, uv, point);
     if (is_glossy) set_openness(job, triangle, weight, point);
     if (material.gloss != nullptr) set_gloss_factors(job.asset, material, uv, point);
     return point;
@@ -243,7 +244,7 @@ formats::Result<Picture> render_software(const AssetView& asset, std::span<const
     if (has_volumes) job.volumes = light_volumes(asset.volumes, *options.volumes);
     for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
         job.materials.push_back(
-            surface_material(asset, p, formats::TermSet::all, options.specular));
+            surface_material(asset, p, formats::TermSet::all, options.specular, options.emitters));
     }
     job.vertices = project_vertices(asset.position, camera, grid);
     job.triangles = select_triangles(asset, job.vertices, grid);

@@ -8,6 +8,7 @@
 #include "formats/opal/result.h"
 #include "formats/opal/rgb.h"
 #include "runtime/clouds/layer_light.h"
+#include "runtime/emitter_light.h"
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/check_camera.h"
@@ -27,6 +28,9 @@ struct SoftwareOptions {
     const VolumeLight* volumes = nullptr;
     /// The asset's cloud layer under the light (light_layers); nothing: none is drawn.
     const LayerLight* layers = nullptr;
+    /// Of the asset's emitters: what surfaces send out by themselves. Their light on other surfaces
+    /// is part of `radiance`.
+    EmitterLight emitters = {};
 };
 
 /// A picture of the asset in front of its environment, on the CPU.

@@ -47,6 +47,7 @@ std::vector<double> relight_probes(const formats::AssetView& asset,
                                    const ProbeLights& lights) {
     runtime::ShadeOptions options;
     options.base_color = options.fresnel = false;
+    options.emitters = runtime::dark_emitters();
     std::vector<double> luminance;
     luminance.reserve(probes.size() * lights.vectors.size());
     for (const std::uint32_t probe : probes) {

@@ -15,6 +15,7 @@
 #include "bake/accuracy/sweep/sweep_layers.h"
 #include "bake/accuracy/sweep/trace_for.h"
 #include "bake/base/ordered_parallel.h"
+#include "bake/emitters/plan_emitters.h"
 #include "bake/environment/builtin_environment.h"
 #include "bake/layers/plan_layers.h"
 #include "bake/pipeline/cost_model.h"
@@ -51,6 +52,7 @@ bool has_receivers(const formats::Scene& scene) {
 std::vector<PlanEntry> plan_the_rest(const formats::Scene& scene, const Knobs& knobs) {
     std::vector<PlanEntry> plan = plan_volumes(scene, knobs).entries;
     std::ranges::copy(plan_layers(scene, knobs).entries, std::back_inserter(plan));
+    std::ranges::copy(plan_emitters(scene, knobs).entries, std::back_inserter(plan));
     return plan;
 }
 

@@ -3,11 +3,12 @@
 // TRANSLUCENT: the rows are multiplied by the Fresnel transmittance;
 // MIRRORING: translucent with a specular reflection on top (cube_map.glsl comes before this);
 // GLOSS: glossy opaque (cube_map.glsl and gloss.glsl come before this); GLOSS_TEXTURED: with an
-// image of roughness and metallic (image.glsl).
+// image of roughness and metallic (image.glsl); OWN_TEXTURED: what it sends out has an image (image.glsl).
 layout(location = 0) in vec3 v_radiance;
 layout(location = 1) in vec3 v_base_color;
 layout(location = 0) out vec4 color;
 layout(location = 11) uniform float shown;  // 1, or 0: left out
+layout(location = 19) uniform vec3 own_light;  // radiance that the surface sends out by itself
 
 float tame(float value) {
     return value > 0.0 ? min(value, 1e35) : 0.0;
@@ -19,6 +20,11 @@ layout(location = 2) in vec2 v_texcoord;
 #ifdef TEXTURED
 layout(binding = 0) uniform usampler2D base_color_image;
 layout(location = 8) uniform ivec2 wrap;
+#endif
+
+#ifdef OWN_TEXTURED
+layout(binding = 4) uniform usampler2D own_image;
+layout(location = 20) uniform ivec2 own_wrap;
 #endif
 
 #ifdef HAS_VIEW
@@ -165,5 +171,9 @@ void main() {
                     tame(eval_gloss(g, light_from_world * n, light_from_world * w, c));
     }
 #endif
-    color = vec4(tame(radiance), 1.0);
+    vec3 own = own_light;
+#ifdef OWN_TEXTURED
+    own *= sample_image(own_image, v_texcoord, own_wrap, true);
+#endif
+    color = vec4(tame(tame(radiance) + own), 1.0);
 }

@@ -1,0 +1,102 @@
+#include "bake/emitters/bake_emitters.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bake/emitters/emitter_knobs.h"
+#include "bake/emitters/receiver_light.h"
+#include "bake/emitters/trace_particles.h"
+#include "bake/scene/emission.h"
+
+namespace opaline::bake {
+namespace {
+
+// Elements at most: as many as a quarter of the particles, which some four reach each.
+double finest_area(const formats::Scene& scene, std::uint32_t particles) {
+    const double area = reflecting_area(scene);
+    return area > 0 ? 4 * area / particles : 1;
+}
+
+formats::Wrap to_wrap(formats::TextureWrap wrap) {
+    return wrap == formats::TextureWrap::repeat  ? formats::Wrap::repeat
+           : wrap == formats::TextureWrap::clamp ? formats::Wrap::clamp
+                                                 : formats::Wrap::mirror;
+}
+
+void append_own_light(const formats::Scene& scene, std::span<const Lamp> lamps,
+                      formats::Emitters& emitters) {
+    for (std::uint32_t e = 0; e < lamps.size(); ++e) {
+        for (const std::uint32_t p : lamps[e].primitives) {
+            const formats::Material& material = scene.materials[scene.primitives[p].material];
+            const bool has_image =
+                material.emission_image != formats::kNone && !scene.primitives[p].texcoord.empty();
+            emitters.own.push_back(
+                {p, e, material.emission, has_image ? material.emission_image : formats::kNoImage,
+                 has_image ? to_wrap(material.emission_wrap_u) : formats::Wrap::repeat,
+                 has_image ? to_wrap(material.emission_wrap_v) : formats::Wrap::repeat});
+        }
+    }
+    std::ranges::sort(emitters.own, {}, &formats::OwnLight::primitive);
+}
+
+formats::Error interrupted_bake() {
+    return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
+                               "nothing was written");
+}
+
+}  // namespace
+
+formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Context& context,
+                                             StageLog& log) {
+    const std::uint32_t particles = whole(job.knobs, kEmitterParticles);
+    std::vector<LampSources> sources;
+    sources.reserve(job.lamps.size());
+    for (const Lamp& lamp : job.lamps) {
+        sources.push_back(make_lamp_sources(job.scene, lamp));
+    }
+    const ElementLayout layout(job.scene, finest_area(job.scene, particles));
+    std::vector<std::vector<glm::vec3>> irradiance(job.lamps.size());
+    run_stage(log, "particles of emitters", [&](std::uint64_t& rays) {
+        for (std::uint32_t e = 0; e < job.lamps.size() && !context.cancelled(); ++e) {
+            const auto power = trace_particles(job.scene, job.rays, sources[e], layout,
+                                               {particles, e, job.knobs.seed, 0}, context, rays);
+            if (std::ranges::any_of(power, [](const auto& p) { return p != glm::dvec3(0); })) {
+                irradiance[e] = layout.push_down(power);
+            }
+        }
+        return true;
+    });
+    const LampLight light{job.scene,     job.rays,   sources,
+                          layout,        irradiance, whole(job.knobs, kEmitterRays),
+                          job.knobs.seed};
+    BakedEmitters baked;
+    for (const Lamp& lamp : job.lamps) {
+        append_emitter(baked.emitters, lamp.name);
+    }
+    append_own_light(job.scene, job.lamps, baked.emitters);
+    run_stage(log, "light of emitters", [&](std::uint64_t& rays) {
+        for (std::uint32_t p = 0; p < job.primitives.size() && !context.cancelled(); ++p) {
+            const formats::PrimitiveRecord& record = job.primitives[p];
+            const ReceiverSet& set = job.receivers[p];
+            if (record.shading == formats::Shading::translucent || set.size() == 0) continue;
+            const auto rows = make_lamp_rows(light, set, record.terms, context, rays);
+            for (std::uint32_t e = 0; e < rows.size(); ++e) {
+                append_block(baked.emitters, e, p, rows[e]);
+            }
+        }
+        return true;
+    });
+    if (context.cancelled()) return interrupted_bake();
+    baked.error = run_stage(log, "self-check of emitters", [&](std::uint64_t& rays) {
+        return check_emitters(
+            {job.scene, job.rays, job.receivers, job.primitives, sources, baked.emitters.view()},
+            job.knobs.seed, context, rays);
+    });
+    if (context.cancelled()) return interrupted_bake();
+    return baked;
+}
+
+}  // namespace opaline::bake

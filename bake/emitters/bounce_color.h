@@ -1,0 +1,21 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "bake/emitters/surface_elements.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// What a surface does to light that arrives at a point of one of its sides, both diffusely.
+struct BounceColor {
+    glm::dvec3 reflect{0};   ///< to the side that it came from, in [0, 1]
+    glm::dvec3 transmit{0};  ///< to the other side: of thin-walled surfaces
+};
+
+/// At a point of a triangle, `weights` barycentric. Gloss counts by its diffuse part alone; media
+/// take what arrives, and backs of single-sided surfaces too.
+BounceColor bounce_color(const formats::Scene& scene, const TriangleSide& side,
+                         const glm::vec3& weights);
+
+}  // namespace opaline::bake

@@ -1,0 +1,167 @@
+#include "bake/emitters/direct_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "bake/path_differentials/area_sample.h"
+#include "bake/scene/punctual_light.h"
+
+namespace opaline::bake {
+namespace {
+
+// A shadow ray ends before the surface that it goes to.
+constexpr float kShadowEnd = 1 - 1e-4f;
+
+/// Rays from one receiver, sixteen at a time.
+class ShadowRays {
+  public:
+    ShadowRays(const RayScene& scene, const Receiver& receiver, std::uint64_t& rays)
+        : scene_(scene), packet_(rays_from(receiver.origin)), rays_(rays) {}
+
+    /// Adds `light` to what arrives if nothing is up to `reach` along the unit direction.
+    void add(const glm::vec3& direction, float reach, const glm::dvec3& light) {
+        packet_.dir_x[count_] = direction.x;
+        packet_.dir_y[count_] = direction.y;
+        packet_.dir_z[count_] = direction.z;
+        packet_.tfar[count_] = reach;
+        lanes_[count_] = -1;
+        light_[count_] = light;
+        if (++count_ == RayPacket::kSize) trace();
+    }
+
+    glm::dvec3 arrived() {
+        if (count_ > 0) trace();
+        return arrived_;
+    }
+
+  private:
+    void trace() {
+        rays_ += count_;
+        if (!scene_.is_empty()) scene_.occluded(lanes_, packet_);
+        for (std::size_t i = 0; i < count_; ++i) {
+            if (packet_.tfar[i] >= 0) arrived_ += light_[i];
+        }
+        lanes_ = {};
+        count_ = 0;
+    }
+
+    const RayScene& scene_;
+    RayPacket packet_;
+    LaneMask lanes_{};
+    std::array<glm::dvec3, RayPacket::kSize> light_{};
+    std::size_t count_ = 0;
+    glm::dvec3 arrived_{0};
+    std::uint64_t& rays_;
+};
+
+// A point sequence of low discrepancy [Roberts2018].
+glm::dvec2 spread_point(std::uint32_t i) {
+    const double u = 0.5 + (i + 1) * 0.7548776662466927, v = 0.5 + (i + 1) * 0.5698402909980532;
+    return {u - std::floor(u), v - std::floor(v)};
+}
+
+// cos cos' / d^2 between a point and one of a triangle.
+double geometry(const glm::dvec3& way, const glm::dvec3& normal, const glm::dvec3& other) {
+    const double square = glm::dot(way, way);
+    return square > 0 ? std::max(0.0, glm::dot(normal, way)) * std::abs(glm::dot(other, way)) /
+                            (square * square)
+                      : 0.0;
+}
+
+double largest(const glm::dvec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+glm::dvec3 from_triangles(const RayScene& scene, const LampSources& lamp, const Receiver& receiver,
+                          std::uint32_t samples, std::uint64_t& rays) {
+    const glm::dvec3 point(receiver.origin), normal(receiver.normal);
+    std::vector<double> factor(lamp.triangles.size()), cumulative(lamp.triangles.size());
+    glm::dvec3 total(0);
+    double sum = 0;
+    for (std::size_t t = 0; t < factor.size(); ++t) {
+        const GlowingTriangle& triangle = lamp.triangles[t];
+        factor[t] = triangle_irradiance(triangle, point, normal);
+        total += factor[t] * triangle.radiance;
+        sum += factor[t] * largest(triangle.radiance);
+        cumulative[t] = sum;
+    }
+    if (!(sum > 0)) return glm::dvec3(0);
+    ShadowRays shadow(scene, receiver, rays);
+    glm::dvec3 all(0);
+    for (std::uint32_t i = 0; i < samples; ++i) {
+        const double at = (i + 0.5) / samples * sum;
+        const auto t = std::min<std::size_t>(
+            static_cast<std::size_t>(std::ranges::upper_bound(cumulative, at) - cumulative.begin()),
+            factor.size() - 1);
+        const GlowingTriangle& triangle = lamp.triangles[t];
+        const glm::dvec2 uv = spread_point(i);
+        const glm::dvec3 way = sample_triangle_folded(triangle.corner, uv.x, uv.y).P - point;
+        const double distance = glm::length(way);
+        // Its mean over the triangle is radiance / largest: the choice is in proportion to both.
+        const double weight = geometry(way, normal, triangle.normal) * triangle.area / factor[t];
+        if (!(distance > 0) || !std::isfinite(weight) || !(weight > 0)) continue;
+        const glm::dvec3 light = weight / largest(triangle.radiance) * triangle.radiance;
+        all += light;
+        shadow.add(glm::vec3(way / distance), static_cast<float>(distance) * kShadowEnd, light);
+    }
+    const glm::dvec3 arrived = shadow.arrived();
+    glm::dvec3 irradiance(0);
+    for (int band = 0; band < 3; ++band) {
+        if (all[band] > 0) irradiance[band] = total[band] * (arrived[band] / all[band]);
+    }
+    return irradiance;
+}
+
+glm::dvec3 from_lights(const RayScene& scene, const LampSources& lamp, const Receiver& receiver,
+                       std::uint64_t& rays) {
+    ShadowRays shadow(scene, receiver, rays);
+    for (const formats::Light& light : lamp.lights) {
+        const ArrivingLight arriving = light_at(light, receiver.origin);
+        const float cosine = glm::dot(arriving.to_light, receiver.normal);
+        if (!(cosine > 0) || arriving.irradiance == formats::Rgb{}) continue;
+        const formats::Rgb e = cosine * arriving.irradiance;
+        // Lights have no surface: the ray goes all the way.
+        shadow.add(arriving.to_light, arriving.distance, glm::dvec3(e.r, e.g, e.b));
+    }
+    return shadow.arrived();
+}
+
+}  // namespace
+
+double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& point,
+                           const glm::dvec3& normal) {
+    const double side = glm::dot(triangle.normal, point - triangle.corner[0]);
+    if (side == 0 || (side < 0 && !triangle.is_two_sided)) return 0;
+    // Four corners at most, once what is below the horizon is cut away.
+    std::array<glm::dvec3, 4> way;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec3 a = triangle.corner[k] - point, b = triangle.corner[(k + 1) % 3] - point;
+        const double above = glm::dot(normal, a), next = glm::dot(normal, b);
+        if (above >= 0) way[count++] = a;
+        if ((above > 0 && next < 0) || (above < 0 && next > 0)) {
+            way[count++] = a + above / (above - next) * (b - a);
+        }
+    }
+    if (count < 3) return 0;
+    double sum = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const glm::dvec3 &a = way[k], &b = way[(k + 1) % count];
+        const glm::dvec3 cross = glm::cross(a, b);
+        const double sine = glm::length(cross);
+        if (sine > 0) sum += std::atan2(sine, glm::dot(a, b)) * glm::dot(normal, cross) / sine;
+    }
+    return 0.5 * std::abs(sum);
+}
+
+glm::dvec3 direct_irradiance(const RayScene& scene, const LampSources& lamp,
+                             const Receiver& receiver, std::uint32_t samples, std::uint64_t& rays) {
+    if (receiver.normal == glm::vec3(0)) return glm::dvec3(0);
+    return from_triangles(scene, lamp, receiver, samples, rays) +
+           from_lights(scene, lamp, receiver, rays);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "bake/emitters/lamp_sources.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/ray_scene.h"
+
+namespace opaline::bake {
+
+/// Irradiance [lx] at a point with unit normal from a triangle of radiance 1 nit, nothing between:
+/// the part above the horizon, by the sum over its edges [Lambert1760]. 0 from behind it unless it
+/// has two sides.
+double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& point,
+                           const glm::dvec3& normal);
+
+/// Irradiance [lx] that comes from a lamp straight to a receiver.
+///
+/// Triangles: exact unoccluded irradiance, times the mean visibility of `samples` points, spread
+/// over them in proportion to it: without noise where nothing or all is hidden. Lights: one shadow
+/// ray each. `rays` counts those traced.
+glm::dvec3 direct_irradiance(const RayScene& scene, const LampSources& lamp,
+                             const Receiver& receiver, std::uint32_t samples, std::uint64_t& rays);
+
+}  // namespace opaline::bake

@@ -1,0 +1,239 @@
+#include "bake/emitters/emitter_error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "bake/base/frame.h"
+#include "bake/base/ordered_parallel.h"
+#include "bake/base/rng.h"
+#include "bake/emitters/bounce_color.h"
+#include "bake/scene/punctual_light.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::uint32_t kCheckedReceivers = 32, kPathsOfHalf = 2048, kMostBounces = 64;
+constexpr float kRayEnd = 1 - 1e-4f;
+
+/// The glowing triangles of all lamps, by power, and all lights.
+struct TrueSources {
+    std::vector<GlowingTriangle> triangles;
+    std::vector<double> cumulative;
+    std::vector<formats::Light> lights;
+};
+
+TrueSources collect_sources(std::span<const LampSources> lamps) {
+    TrueSources all;
+    double sum = 0;
+    for (const LampSources& lamp : lamps) {
+        for (const GlowingTriangle& triangle : lamp.triangles) {
+            const glm::dvec3 power = triangle.power();
+            all.triangles.push_back(triangle);
+            all.cumulative.push_back(sum += power.x + power.y + power.z);
+        }
+        all.lights.insert(all.lights.end(), lamp.lights.begin(), lamp.lights.end());
+    }
+    return all;
+}
+
+bool is_hidden(const RayScene& surfaces, const glm::vec3& from, const glm::vec3& direction,
+               float reach) {
+    RayPacket packet = rays_from(from);
+    packet.dir_x[0] = direction.x;
+    packet.dir_y[0] = direction.y;
+    packet.dir_z[0] = direction.z;
+    packet.tfar[0] = reach;
+    LaneMask lanes{};
+    lanes[0] = -1;
+    surfaces.occluded(lanes, packet);
+    return packet.tfar[0] < 0;
+}
+
+/// A path backward from a receiver.
+struct BackwardPath {
+    const EmitterCheck& check;
+    const TrueSources& sources;
+    std::uint64_t seed, key;
+    std::uint32_t draws = 0;
+    std::uint64_t rays = 0;
+
+    std::array<float, 4> draw() {
+        return random_uniform(seed, RandomStage::true_gather, key, draws++);
+    }
+
+    // Irradiance that comes straight: one point of the triangles, one shadow ray to each light.
+    glm::dvec3 straight(const Receiver& at) {
+        glm::dvec3 sum(0);
+        for (const formats::Light& light : sources.lights) {
+            const ArrivingLight arriving = light_at(light, at.origin);
+            const float cosine = glm::dot(arriving.to_light, at.normal);
+            if (!(cosine > 0) || arriving.irradiance == formats::Rgb{}) continue;
+            ++rays;
+            if (is_hidden(check.rays, at.origin, arriving.to_light, arriving.distance)) continue;
+            const formats::Rgb e = cosine * arriving.irradiance;
+            sum += glm::dvec3(e.r, e.g, e.b);
+        }
+        return sources.triangles.empty() ? sum : sum + from_a_triangle(at);
+    }
+
+    glm::dvec3 from_a_triangle(const Receiver& at) {
+        const auto x = draw();
+        const double total = sources.cumulative.back();
+        const auto t = std::min<std::size_t>(
+            static_cast<std::size_t>(
+                std::ranges::upper_bound(sources.cumulative, static_cast<double>(x[0]) * total) -
+                sources.cumulative.begin()),
+            sources.triangles.size() - 1);
+        const double chance =
+            (sources.cumulative[t] - (t == 0 ? 0 : sources.cumulative[t - 1])) / total;
+        const GlowingTriangle& triangle = sources.triangles[t];
+        const double root = std::sqrt(static_cast<double>(x[1])), v = static_cast<double>(x[2]);
+        const glm::dvec3 way = (1 - root) * triangle.corner[0] +
+                               root * (1 - v) * triangle.corner[1] + root * v * triangle.corner[2] -
+                               glm::dvec3(at.origin);
+        const double square = glm::dot(way, way), distance = std::sqrt(square);
+        const double facing = -glm::dot(triangle.normal, way);
+        const double cosine = glm::dot(glm::dvec3(at.normal), way);
+        if (!(square > 0) || !(cosine > 0) || (facing <= 0 && !triangle.is_two_sided)) {
+            return glm::dvec3(0);
+        }
+        ++rays;
+        if (is_hidden(check.rays, at.origin, glm::vec3(way / distance),
+                      static_cast<float>(distance) * kRayEnd)) {
+            return glm::dvec3(0);
+        }
+        return cosine * std::abs(facing) / (square * square) * triangle.area / chance *
+               triangle.radiance;
+    }
+
+    glm::dvec3 run(Receiver at) {
+        glm::dvec3 sum(0), throughput(1);
+        for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
+            sum += throughput * straight(at);
+            const auto x = draw();
+            const float radius = std::sqrt(x[0]), turn = 2 * std::numbers::pi_v<float> * x[1];
+            const glm::vec3 direction =
+                make_frame(at.normal).to_world({radius * std::cos(turn), radius * std::sin(turn),
+                                                std::sqrt(std::max(0.0f, 1 - x[0]))});
+            RayPacket packet = rays_from(at.origin);
+            packet.dir_x[0] = direction.x;
+            packet.dir_y[0] = direction.y;
+            packet.dir_z[0] = direction.z;
+            packet.tfar[0] = std::numeric_limits<float>::infinity();
+            LaneMask lanes{};
+            lanes[0] = -1;
+            ++rays;
+            const PacketHits hits = check.rays.closest(lanes, packet);
+            if (hits.hit[0] == 0 || hits.cosine[0] == 0) break;
+            const bool is_back = hits.cosine[0] > 0;
+            const BounceColor color =
+                bounce_color(check.scene, {hits.primitive[0], hits.first_index[0], is_back},
+                             {1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]});
+            const double reflect = std::max({color.reflect.x, color.reflect.y, color.reflect.z});
+            const double transmit =
+                std::max({color.transmit.x, color.transmit.y, color.transmit.z});
+            const double going_on = std::min(1.0, reflect + transmit);
+            const double roulette = static_cast<double>(x[2]);
+            if (!(roulette < going_on)) break;
+            const bool crosses = roulette * (reflect + transmit) >= reflect * going_on;
+            throughput *= (crosses ? color.transmit : color.reflect) * (reflect + transmit) /
+                          (going_on * (crosses ? transmit : reflect));
+            const glm::vec3 normal(hits.normal_x[0], hits.normal_y[0], hits.normal_z[0]);
+            const glm::vec3 toward = is_back == crosses ? normal : -normal;
+            at = {at.origin + hits.distance[0] * direction + 2 * hits.error[0] * toward, toward};
+        }
+        return sum;
+    }
+};
+
+glm::dvec3 mean_irradiance(const EmitterCheck& check, const TrueSources& sources,
+                           const Receiver& receiver, std::uint32_t paths, std::uint64_t seed,
+                           std::uint64_t key, std::uint64_t& rays) {
+    glm::dvec3 sum(0);
+    BackwardPath path{check, sources, seed, key};
+    for (std::uint32_t i = 0; i < paths; ++i) {
+        sum += path.run(receiver);
+    }
+    rays += path.rays;
+    return sum / static_cast<double>(paths);
+}
+
+double luminance_of(const glm::dvec3& c) {
+    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
+
+// Irradiance that the file states: opaque receivers have one row.
+double stored_irradiance(const EmitterCheck& check, std::uint32_t primitive, std::size_t vertex) {
+    double sum = 0;
+    for (const formats::EmitterBlock& block : check.emitters.blocks_of(primitive)) {
+        const formats::Rgb value = block_value(check.emitters, block, vertex);
+        sum += std::numbers::pi * luminance_of({value.r, value.g, value.b});
+    }
+    return sum;
+}
+
+struct CheckedReceiver {
+    double stored = 0;
+    std::array<double, 2> truth{};
+    std::uint64_t rays = 0;
+};
+
+}  // namespace
+
+glm::dvec3 trace_irradiance(const EmitterCheck& check, const Receiver& receiver,
+                            std::uint32_t paths, std::uint64_t seed, std::uint64_t key,
+                            std::uint64_t& rays) {
+    return mean_irradiance(check, collect_sources(check.sources), receiver, paths, seed, key, rays);
+}
+
+EmitterErrorReport check_emitters(const EmitterCheck& check, std::uint64_t seed,
+                                  const Context& context, std::uint64_t& rays) {
+    struct Place {
+        std::uint32_t primitive;
+        std::size_t vertex;
+    };
+    std::vector<Place> places;
+    for (std::uint32_t p = 0; p < check.primitives.size(); ++p) {
+        if (check.primitives[p].shading != formats::Shading::diffuse) continue;
+        for (std::size_t v = 0; v < check.receivers[p].size(); ++v) {
+            if (check.receivers[p].outside[v].normal != glm::vec3(0)) places.push_back({p, v});
+        }
+    }
+    EmitterErrorReport report;
+    const std::size_t count = std::min<std::size_t>(places.size(), kCheckedReceivers);
+    const TrueSources sources = collect_sources(check.sources);
+    double error = 0, reference = 0;
+    for_each_block_in_order(
+        count, 1, context,
+        [&](Range range) {
+            // One of each of `count` equal parts of the receivers.
+            const auto x = random_uniform(seed, RandomStage::true_gather, range.begin, 0xffffffffu);
+            const auto at = static_cast<std::size_t>(
+                (static_cast<double>(range.begin) + static_cast<double>(x[0])) *
+                static_cast<double>(places.size()) / static_cast<double>(count));
+            const Place place = places[std::min(at, places.size() - 1)];
+            CheckedReceiver checked;
+            checked.stored = stored_irradiance(check, place.primitive, place.vertex);
+            for (std::size_t half = 0; half < 2; ++half) {
+                checked.truth[half] = luminance_of(mean_irradiance(
+                    check, sources, check.receivers[place.primitive].outside[place.vertex],
+                    kPathsOfHalf, seed, 2 * range.begin + half, checked.rays));
+            }
+            return checked;
+        },
+        [&](Range, CheckedReceiver&& checked) {
+            error += (checked.stored - checked.truth[0]) * (checked.stored - checked.truth[1]);
+            reference += checked.truth[0] * checked.truth[1];
+            rays += checked.rays;
+            ++report.receivers_checked;
+        });
+    report.rms_relative = reference > 0 ? std::sqrt(std::max(0.0, error) / reference) : 0;
+    return report;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "bake/base/context.h"
+#include "bake/emitters/lamp_sources.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/opal/asset.h"
+
+namespace opaline::bake {
+
+/// How far rows of emitters err.
+struct EmitterErrorReport {
+    /// RMS of the error of luminance over the RMS of the truth, of all emitters as authored
+    /// together, the noise of the truth taken off.
+    double rms_relative = 0;
+    std::uint32_t receivers_checked = 0;
+};
+
+/// What a check compares.
+struct EmitterCheck {
+    const formats::Scene& scene;
+    const RayScene& rays;
+    std::span<const ReceiverSet> receivers;
+    std::span<const formats::PrimitiveRecord> primitives;
+    std::span<const LampSources> sources;
+    formats::EmittersView emitters;
+};
+
+/// Compares the first row of receivers drawn at random, opaque ones, with path tracing: a point of
+/// an emitter's surface and one of the lights at every vertex, and any number of diffuse bounces.
+/// It shares surfaces' colours with what it checks, but no elements, particles or form factors.
+EmitterErrorReport check_emitters(const EmitterCheck& check, std::uint64_t seed,
+                                  const Context& context, std::uint64_t& rays);
+
+/// Irradiance [lx] of a receiver from all lamps, by `paths` paths. (seed, key): key the numbers.
+glm::dvec3 trace_irradiance(const EmitterCheck& check, const Receiver& receiver,
+                            std::uint32_t paths, std::uint64_t seed, std::uint64_t key,
+                            std::uint64_t& rays);
+
+}  // namespace opaline::bake

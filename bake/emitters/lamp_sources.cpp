@@ -1,0 +1,106 @@
+#include "bake/emitters/lamp_sources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "bake/scene/emission.h"
+#include "bake/scene/punctual_light.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr int kTextureCuts = 4;  // halvings of a textured triangle's edges
+
+using Weights = std::array<glm::dvec3, 3>;  // barycentric coordinates of three corners
+
+struct TriangleSource {
+    const formats::Scene& scene;
+    std::uint32_t primitive;
+    std::array<std::uint32_t, 3> vertex;
+};
+
+glm::dvec3 emission_in(const TriangleSource& from, const glm::dvec3& weight) {
+    const formats::Rgb c = emission_at(
+        from.scene, from.primitive, from.vertex,
+        {static_cast<float>(weight.x), static_cast<float>(weight.y), static_cast<float>(weight.z)});
+    return {c.r, c.g, c.b};
+}
+
+void add_triangle(const TriangleSource& from, const Weights& weights, int cuts,
+                  std::vector<GlowingTriangle>& triangles) {
+    const auto& [a, b, c] = weights;
+    if (cuts > 0) {
+        const glm::dvec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+        for (const Weights& part :
+             {Weights{a, ab, ca}, Weights{ab, b, bc}, Weights{ca, bc, c}, Weights{ab, bc, ca}}) {
+            add_triangle(from, part, cuts - 1, triangles);
+        }
+        return;
+    }
+    const formats::Primitive& primitive = from.scene.primitives[from.primitive];
+    GlowingTriangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (int j = 0; j < 3; ++j) {
+            triangle.corner[k] +=
+                weights[k][j] *
+                glm::dvec3(primitive.position[from.vertex[static_cast<std::size_t>(j)]]);
+        }
+    }
+    const glm::dvec3 cross = glm::cross(triangle.corner[1] - triangle.corner[0],
+                                        triangle.corner[2] - triangle.corner[0]);
+    const double twice = glm::length(cross);
+    triangle.radiance = emission_in(from, (a + b + c) / 3.0);
+    if (!(twice > 0) || triangle.radiance == glm::dvec3(0)) return;
+    triangle.normal = cross / twice;
+    triangle.area = twice / 2;
+    triangle.is_two_sided = from.scene.materials[primitive.material].double_sided;
+    triangles.push_back(triangle);
+}
+
+}  // namespace
+
+glm::dvec3 GlowingTriangle::power() const {
+    return (is_two_sided ? 2 : 1) * std::numbers::pi * area * radiance;
+}
+
+LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp) {
+    LampSources sources;
+    for (const std::uint32_t p : lamp.primitives) {
+        const formats::Primitive& primitive = scene.primitives[p];
+        const bool is_textured =
+            scene.materials[primitive.material].emission_image != formats::kNone &&
+            !primitive.texcoord.empty();
+        for (std::size_t i = 0; i + 2 < primitive.index.size(); i += 3) {
+            add_triangle(
+                {scene, p, {primitive.index[i], primitive.index[i + 1], primitive.index[i + 2]}},
+                {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)},
+                is_textured ? kTextureCuts : 0, sources.triangles);
+        }
+    }
+    for (const std::uint32_t i : lamp.lights) {
+        sources.lights.push_back(scene.lights[i]);
+    }
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const formats::Primitive& primitive : scene.primitives) {
+        for (const glm::vec3& position : primitive.position) {
+            low = glm::min(low, glm::dvec3(position));
+            high = glm::max(high, glm::dvec3(position));
+        }
+    }
+    if (low.x <= high.x) {
+        sources.centre = 0.5 * (low + high);
+        sources.radius = 0.5 * glm::length(high - low);
+    }
+    return sources;
+}
+
+glm::dvec3 light_power(const LampSources& sources, const formats::Light& light) {
+    const glm::dvec3 intensity(light.intensity.r, light.intensity.g, light.intensity.b);
+    return light.type == formats::Light::Type::directional
+               ? 4 * sources.radius * sources.radius * intensity
+               : flux_per_intensity(light) * intensity;
+}
+
+}  // namespace opaline::bake

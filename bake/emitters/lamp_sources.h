@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "bake/emitters/lamps.h"
+
+namespace opaline::bake {
+
+/// A glowing triangle; or a part of one over which its texture counts as constant.
+struct GlowingTriangle {
+    std::array<glm::dvec3, 3> corner{};
+    glm::dvec3 normal{0};    ///< unit, of the front
+    double area = 0;         ///< [m^2], > 0
+    glm::dvec3 radiance{0};  ///< [nit], mean
+    bool is_two_sided = false;
+
+    /// Power [lm] of both sides that glow.
+    glm::dvec3 power() const;
+};
+
+/// What a lamp sends out.
+struct LampSources {
+    std::vector<GlowingTriangle> triangles;
+    std::vector<formats::Light> lights;
+    /// Sphere around all surfaces of the scene: directional lights shine on its square.
+    glm::dvec3 centre{0};
+    double radius = 0;
+
+    bool empty() const { return triangles.empty() && lights.empty(); }
+};
+
+/// Textured triangles are cut into 256 parts. Facets without area are left out.
+LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp);
+
+/// Power [lm] of a light; of a directional one that which falls on the square around the scene.
+glm::dvec3 light_power(const LampSources& sources, const formats::Light& light);
+
+}  // namespace opaline::bake

@@ -1,0 +1,80 @@
+#include "bake/emitters/lamps.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "bake/scene/emission.h"
+#include "formats/opal/emitters.h"
+
+namespace opaline::bake {
+namespace {
+
+// "Vase" of "node 'Vase' > mesh 3 > primitive 0", "node 5" of one without a name.
+std::string node_name(const formats::Primitive& primitive) {
+    std::string name = primitive.name.substr(0, primitive.name.find(" > "));
+    const std::size_t first = name.find('\''), last = name.rfind('\'');
+    if (first != std::string::npos && last > first + 1) {
+        name = name.substr(first + 1, last - first - 1);
+    }
+    return name.empty() ? "node " + std::to_string(primitive.node) : name;
+}
+
+// As a file takes it: without control characters, cut at a whole UTF-8 character.
+std::string clean_name(std::string name, std::size_t most) {
+    std::ranges::replace_if(
+        name, [](char c) { return c >= 0 && c < ' '; }, ' ');
+    if (name.size() > most) {
+        while (most > 0 && (static_cast<unsigned char>(name[most]) & 0xc0u) == 0x80u)
+            --most;
+        name.resize(most);
+    }
+    return name;
+}
+
+bool is_taken(const std::vector<Lamp>& lamps, std::string_view name) {
+    return std::ranges::any_of(lamps, [&](const Lamp& lamp) { return lamp.name == name; });
+}
+
+Lamp& add_lamp(std::vector<Lamp>& lamps, const std::string& wanted) {
+    constexpr std::size_t kSuffix = 16;
+    const std::string base = clean_name(wanted, formats::kMaxEmitterName - kSuffix);
+    std::string name = base;
+    for (int i = 2; is_taken(lamps, name); ++i) {
+        name = base + " (" + std::to_string(i) + ")";
+    }
+    return lamps.emplace_back(Lamp{std::move(name), {}, {}});
+}
+
+}  // namespace
+
+std::vector<Lamp> list_lamps(const formats::Scene& scene) {
+    std::vector<Lamp> lamps;
+    std::uint32_t node = formats::kNone;
+    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
+        const formats::Primitive& primitive = scene.primitives[p];
+        if (primitive.index.empty() || !is_emissive(scene.materials[primitive.material])) continue;
+        // Primitives of a node stand together.
+        if (lamps.empty() || primitive.node != node) add_lamp(lamps, node_name(primitive));
+        node = primitive.node;
+        lamps.back().primitives.push_back(p);
+    }
+    for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
+        const formats::Light& light = scene.lights[i];
+        if (light.intensity == formats::Rgb{}) continue;
+        add_lamp(lamps, light.name.empty() ? "light " + std::to_string(i) : light.name)
+            .lights.push_back(i);
+    }
+    return lamps;
+}
+
+formats::Status check_lamp_count(const formats::Scene& scene, std::size_t lamps) {
+    if (lamps <= formats::kMaxEmitters) return formats::ok_status();
+    return formats::make_error(
+        formats::ErrorKind::bad_input, scene.source, "emitters",
+        std::to_string(lamps) + " nodes and lights send out light; a file holds " +
+            std::to_string(formats::kMaxEmitters) + " emitters at most",
+        "join meshes of lamps that are switched together into one node, or leave emitters out with "
+        "--effects");
+}
+
+}  // namespace opaline::bake

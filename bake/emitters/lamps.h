@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// What is switched, dimmed and coloured as one: an emitter of the file.
+struct Lamp {
+    std::string name;                       ///< of the node, or of the light
+    std::vector<std::uint32_t> primitives;  ///< that glow: all of one node
+    std::vector<std::uint32_t> lights;      ///< into Scene::lights
+};
+
+/// Nodes whose surfaces glow, in the order of the scene, then lights that are not black. Names are
+/// unique: "Lamp", "Lamp (2)".
+std::vector<Lamp> list_lamps(const formats::Scene& scene);
+
+/// bad_input where there are more than a file holds, formats::kMaxEmitters.
+formats::Status check_lamp_count(const formats::Scene& scene, std::size_t lamps);
+
+}  // namespace opaline::bake

@@ -1,0 +1,142 @@
+#include "bake/emitters/particle_start.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "bake/base/rng.h"
+#include "bake/emitters/trace_particles.h"
+#include "bake/path_differentials/area_sample.h"
+#include "bake/scene/punctual_light.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr glm::dvec3 kStill(0);
+
+double largest_band(const glm::dvec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+// Two unit vectors across a direction.
+std::array<glm::dvec3, 2> axes_across(const glm::dvec3& d) {
+    const glm::dvec3 other = std::abs(d.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 first = glm::normalize(glm::cross(d, other));
+    return {first, glm::cross(d, first)};
+}
+
+void start_on_triangle(const GlowingTriangle& triangle, const DifferentialRules& rules,
+                       std::array<double, 4> x, Particle& p) {
+    glm::dvec3 normal = triangle.normal;
+    if (triangle.is_two_sided) {  // half of the first number chooses the side
+        p.path.survival *= 0.5;
+        if (x[0] >= 0.5) normal = -normal;
+        x[0] = 2 * x[0] - (x[0] >= 0.5 ? 1 : 0);
+    }
+    const AreaSample at = sample_triangle_folded(triangle.corner, x[0], x[1]);
+    add_variable(p.path, {at.dP_du, kStill, 0, 1});
+    add_variable(p.path, {at.dP_dv, kStill, 0, 1});
+    aim_at_normal(p.path, glm::dmat3(0.0));
+    p.direction =
+        scatter_in_lobe(p.path, rules, {.axis = normal, .u = x[2], .v = x[3], .N_g = normal});
+    const double size = std::max({glm::length(triangle.corner[0]), glm::length(triangle.corner[1]),
+                                  glm::length(triangle.corner[2])});
+    p.position = at.P + 1e-6 * size * normal;
+}
+
+void start_at_light(const LampSources& lamp, const formats::Light& light,
+                    const DifferentialRules& rules, const std::array<double, 4>& x, Particle& p) {
+    const glm::dvec3 axis = glm::normalize(glm::dvec3(light.direction));
+    if (light.type == formats::Light::Type::directional) {
+        const auto across = axes_across(axis);
+        const glm::dvec3 side = 2 * lamp.radius * across[0], other = 2 * lamp.radius * across[1];
+        const AreaSample at = sample_parallelogram(
+            lamp.centre - 2 * lamp.radius * axis - 0.5 * (side + other), side, other, x[0], x[1]);
+        add_variable(p.path, {at.dP_du, kStill, 0, 1});
+        add_variable(p.path, {at.dP_dv, kStill, 0, 1});
+        p.position = at.P;
+        p.direction = axis;
+        return;
+    }
+    p.position = glm::dvec3(light.position);
+    p.range = static_cast<double>(light.range);
+    const bool is_spot = light.type == formats::Light::Type::spot;
+    const double outer = std::cos(static_cast<double>(light.outer_cone));
+    const Lobe lobe =
+        is_spot ? Lobe{Lobe::Kind::cone, outer} : Lobe{Lobe::Kind::henyey_greenstein, 0};
+    p.direction =
+        scatter_in_lobe(p.path, rules, {.axis = axis, .lobe = lobe, .u = x[2], .v = x[3]});
+    if (!is_spot) return;
+    // Uniform over the cone; its share of the light at that angle over the mean one.
+    formats::Light bare = light;
+    bare.range = 0;
+    bare.intensity = {1, 1, 1};
+    const formats::Rgb there = light_at(bare, light.position + glm::vec3(p.direction)).irradiance;
+    p.power *= static_cast<double>(there.r) * 2 * std::numbers::pi * (1 - outer) /
+               flux_per_intensity(light);
+}
+
+}  // namespace
+
+StartTable make_start_table(const LampSources& lamp) {
+    StartTable table{lamp, {}};
+    table.cumulative.reserve(lamp.triangles.size() + lamp.lights.size());
+    double sum = 0;
+    for (const GlowingTriangle& triangle : lamp.triangles) {
+        table.cumulative.push_back(sum += largest_band(triangle.power()));
+    }
+    for (const formats::Light& light : lamp.lights) {
+        table.cumulative.push_back(sum += largest_band(light_power(lamp, light)));
+    }
+    return table;
+}
+
+double Particle::dimming(double distance) const {
+    if (!(range > 0)) return 1;
+    const double square = distance / range * (distance / range);
+    return std::max(0.0, 1 - square * square);
+}
+
+std::uint64_t particle_key(const ParticleRun& run, std::uint64_t particle) {
+    return (std::uint64_t{run.lamp} << 40) + particle;
+}
+
+Particle start_particle(const StartTable& table, const DifferentialRules& rules,
+                        const ParticleRun& run, std::uint64_t particle) {
+    const auto shift = random_uniform(run.seed, RandomStage::particle_starts, run.lamp);
+    std::array<double, 4> x{};
+    double turn = 1;
+    for (std::size_t k = 0; k < 4; ++k) {
+        turn /= 1.1673039782614187;  // the root of x^5 = x + 1
+        const double at = static_cast<double>(shift[k]) + static_cast<double>(particle) * turn;
+        x[k] = at - std::floor(at);
+    }
+    // Which source: independent of the lattice.
+    const double total = table.cumulative.back();
+    const auto choice =
+        random_uniform(run.seed, RandomStage::particle_starts, particle_key(run, particle), 1);
+    const double at = table.cumulative.size() == 1 ? 0 : static_cast<double>(choice[0]) * total;
+    const auto source = std::min<std::size_t>(
+        static_cast<std::size_t>(std::ranges::upper_bound(table.cumulative, at) -
+                                 table.cumulative.begin()),
+        table.cumulative.size() - 1);
+    const double before = source == 0 ? 0 : table.cumulative[source - 1];
+    const double chance = (table.cumulative[source] - before) / total;
+
+    Particle p;
+    p.path.survival = chance;
+    const LampSources& lamp = table.lamp;
+    const bool is_light = source >= lamp.triangles.size();
+    p.power = (is_light ? light_power(lamp, lamp.lights[source - lamp.triangles.size()])
+                        : lamp.triangles[source].power()) /
+              (chance * run.particles);
+    if (is_light) {
+        start_at_light(lamp, lamp.lights[source - lamp.triangles.size()], rules, x, p);
+    } else {
+        start_on_triangle(lamp.triangles[source], rules, x, p);
+    }
+    return p;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,152 @@
+#include "bake/emitters/receiver_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "bake/base/frame.h"
+#include "bake/base/ordered_parallel.h"
+#include "bake/base/rng.h"
+#include "bake/emitters/bounce_color.h"
+#include "bake/emitters/direct_light.h"
+#include "bake/path_differentials/disk_map.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::size_t kReceiversPerBlock = 16;
+
+double fraction(double x) {
+    return x - std::floor(x);
+}
+
+// Adds what the surface at a hit reflects toward the ray, of every lamp, times pi.
+void add_reflected(const LampLight& light, const PacketHits& hits, std::size_t lane,
+                   std::vector<glm::dvec3>& sum) {
+    const TriangleSide side{hits.primitive[lane], hits.first_index[lane], hits.cosine[lane] > 0};
+    const glm::vec3 weights(1 - hits.u[lane] - hits.v[lane], hits.u[lane], hits.v[lane]);
+    const BounceColor color = bounce_color(light.scene, side, weights);
+    const auto add = [&](const glm::dvec3& share, bool is_back) {
+        if (share == glm::dvec3(0)) return;
+        const std::size_t element = light.layout.finest_element(
+            {side.primitive, side.first_index, is_back}, glm::dvec3(weights));
+        if (element == light.layout.size()) return;
+        for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
+            if (!light.irradiance[lamp].empty()) {
+                sum[lamp] += share * glm::dvec3(light.irradiance[lamp][element]);
+            }
+        }
+    };
+    add(color.reflect, side.is_back);
+    add(color.transmit, !side.is_back);
+}
+
+// Behind a thin-walled surface; as effects/sheet has it.
+Receiver behind(const Receiver& front, const BodyPoint& inside) {
+    const glm::vec3 moved = front.origin - (2.0f * inside.position - inside.inner);
+    return {inside.inner + moved, -front.normal};
+}
+
+glm::dvec3 band_colors(formats::Rgb c) {
+    return {c.r, c.g, c.b};
+}
+
+formats::Rgb radiance_of(const glm::dvec3& exitance) {
+    const glm::vec3 c(exitance * std::numbers::inv_pi);
+    return {c.x, c.y, c.z};
+}
+
+}  // namespace
+
+std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& receiver,
+                                      std::uint64_t key, std::uint64_t& rays) {
+    std::vector<glm::dvec3> total(light.sources.size(), glm::dvec3(0));
+    if (receiver.normal == glm::vec3(0)) return total;
+    const bool has_bounces = std::ranges::any_of(
+        light.irradiance, [](const std::vector<glm::vec3>& of_lamp) { return !of_lamp.empty(); });
+    if (has_bounces && !light.rays.is_empty()) {
+        const auto shift = random_uniform(light.seed, RandomStage::gather_rays, key);
+        const Frame frame = make_frame(receiver.normal);
+        for (std::uint32_t first = 0; first < light.samples; first += RayPacket::kSize) {
+            RayPacket packet = rays_from(receiver.origin);
+            LaneMask lanes{};
+            const std::uint32_t count = std::min(light.samples - first, RayPacket::kSize);
+            for (std::uint32_t lane = 0; lane < count; ++lane) {
+                const std::uint32_t i = first + lane;
+                const DiskPoint disk =
+                    map_to_disk(DiskMap::concentric,
+                                fraction(static_cast<double>(shift[0]) + i * 0.7548776662466927),
+                                fraction(static_cast<double>(shift[1]) + i * 0.5698402909980532));
+                const glm::dvec2 across = disk.radius * disk.outward;
+                const glm::vec3 direction = frame.to_world(
+                    glm::vec3(across.x, across.y, std::sqrt(std::max(0.0, 1 - disk.q))));
+                packet.dir_x[lane] = direction.x;
+                packet.dir_y[lane] = direction.y;
+                packet.dir_z[lane] = direction.z;
+                packet.tfar[lane] = std::numeric_limits<float>::infinity();
+                lanes[lane] = -1;
+            }
+            const PacketHits hits = light.rays.closest(lanes, packet);
+            for (std::uint32_t lane = 0; lane < count; ++lane) {
+                if (hits.hit[lane] != 0) add_reflected(light, hits, lane, total);
+            }
+        }
+        rays += light.samples;
+        for (glm::dvec3& sum : total) {
+            sum /= light.samples;
+        }
+    }
+    for (std::size_t lamp = 0; lamp < total.size(); ++lamp) {
+        total[lamp] +=
+            direct_irradiance(light.rays, light.sources[lamp], receiver, light.samples, rays);
+    }
+    return total;
+}
+
+std::vector<std::vector<formats::Rgb>> make_lamp_rows(const LampLight& light,
+                                                      const ReceiverSet& set, std::uint32_t terms,
+                                                      const Context& context, std::uint64_t& rays) {
+    std::vector<std::vector<formats::Rgb>> rows(light.sources.size(),
+                                                std::vector<formats::Rgb>(set.size() * terms));
+    const auto& sheet = light.scene.materials[set.material].sheet;
+    struct Part {
+        std::vector<std::vector<glm::dvec3>> front, back;  // by receiver, by lamp
+        std::uint64_t rays = 0;
+    };
+    for_each_block_in_order(
+        set.size(), kReceiversPerBlock, context,
+        [&](Range range) {
+            Part part;
+            for (std::size_t r = range.begin; r < range.end; ++r) {
+                const std::uint64_t key = 2 * (std::uint64_t{set.first} + r);
+                part.front.push_back(receive_light(light, set.outside[r], key, part.rays));
+                if (sheet) {
+                    part.back.push_back(receive_light(light, behind(set.outside[r], set.inside[r]),
+                                                      key + 1, part.rays));
+                }
+            }
+            return part;
+        },
+        [&](Range range, Part&& part) {
+            for (std::size_t r = range.begin; r < range.end; ++r) {
+                for (std::size_t lamp = 0; lamp < rows.size(); ++lamp) {
+                    const glm::dvec3& front = part.front[r - range.begin][lamp];
+                    if (!sheet) {
+                        rows[lamp][r * terms] = radiance_of(front);
+                        continue;
+                    }
+                    const glm::dvec3& back = part.back[r - range.begin][lamp];
+                    const glm::dvec3 reflect = band_colors(sheet->reflect),
+                                     transmit = band_colors(sheet->transmit);
+                    rows[lamp][r * terms] = radiance_of(reflect * front + transmit * back);
+                    rows[lamp][r * terms + 1] = radiance_of(transmit * front + reflect * back);
+                }
+            }
+            rays += part.rays;
+        });
+    return rows;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/emitters/lamp_sources.h"
+#include "bake/emitters/surface_elements.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/opal/rgb.h"
+
+namespace opaline::bake {
+
+/// All lamps of a scene and what their particles brought to its surfaces.
+struct LampLight {
+    const formats::Scene& scene;
+    const RayScene& rays;
+    std::span<const LampSources> sources;  ///< of each lamp
+    const ElementLayout& layout;
+    /// Of each lamp, by element [lx]; an empty one: no surface reflects its light.
+    std::span<const std::vector<glm::vec3>> irradiance;
+    std::uint32_t samples = 1;  ///< shadow rays to a lamp, and gather rays
+    std::uint64_t seed = 0;
+};
+
+/// Irradiance [lx] of a receiver from each lamp: straight, and from surfaces that `samples` rays
+/// spread by the cosine meet, at their elements. (seed, key): key the rotation of these rays.
+std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& receiver,
+                                      std::uint64_t key, std::uint64_t& rays);
+
+/// The rows of a set of opaque or thin-walled receivers: [lamp][row], outgoing radiance [nit]
+/// without base colour, `terms` a receiver. Two terms: of the side of the normal, then of the other
+/// one, as Shading::sheet has them.
+std::vector<std::vector<formats::Rgb>> make_lamp_rows(const LampLight& light,
+                                                      const ReceiverSet& set, std::uint32_t terms,
+                                                      const Context& context, std::uint64_t& rays);
+
+}  // namespace opaline::bake

@@ -1,0 +1,120 @@
+#include "formats/opal/check_emitters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "formats/opal/half.h"
+#include "formats/opal/used_part.h"
+
+namespace opaline::formats {
+namespace {
+
+constexpr const char* kEmittersSection = "section EMIT";
+
+bool is_bounded(float x) {
+    return x >= 0 && x <= std::numeric_limits<float>::max();
+}
+
+std::string find_name_fault(const EmittersView& emitters, std::uint32_t i) {
+    const std::size_t first = i == 0 ? 0 : emitters.name_end[i - 1], end = emitters.name_end[i];
+    if (end <= first || end > emitters.text.size() || end - first > kMaxEmitterName) {
+        return "its name is empty, longer than " + number_in_fault(kMaxEmitterName) +
+               " bytes, or not in the file";
+    }
+    const std::string_view name = emitters.name(i);
+    if (std::ranges::any_of(name, [](char c) { return c >= 0 && c < ' '; })) {
+        return "its name has control characters";
+    }
+    return find_emitter(emitters, name) != i ? "its name stands twice" : "";
+}
+
+std::string find_block_fault(const AssetView& asset, std::size_t i, UsedPart& used) {
+    const EmittersView& emitters = asset.emitters;
+    const EmitterBlock& block = emitters.block[i];
+    if (block.primitive >= asset.primitives.size() || block.emitter >= emitters.size()) {
+        return "its primitive or emitter does not exist";
+    }
+    if (i > 0 && std::pair(block.primitive, block.emitter) <=
+                     std::pair(emitters.block[i - 1].primitive, emitters.block[i - 1].emitter)) {
+        return "it is out of order, or stands twice";
+    }
+    if (!is_bounded(block.scale) || block.reserved != 0) {
+        return "its scale is below zero or not finite, or it has a value that only later versions "
+               "know";
+    }
+    const PrimitiveRecord& primitive = asset.primitives[block.primitive];
+    const std::uint64_t values = std::uint64_t{3} * primitive.vertex_count * primitive.terms;
+    return used.take(block.first_value, values, emitters.value.size())
+               ? ""
+               : "its values lie outside their array, or overlap with those of another block";
+}
+
+std::string find_own_fault(const AssetView& asset, std::size_t i) {
+    const EmittersView& emitters = asset.emitters;
+    const OwnLight& own = emitters.own[i];
+    if (own.primitive >= asset.primitives.size() || own.emitter >= emitters.size()) {
+        return "its primitive or emitter does not exist";
+    }
+    if (i > 0 && own.primitive <= emitters.own[i - 1].primitive) {
+        return "it is out of order, or stands twice";
+    }
+    if (!is_bounded(own.radiance.r) || !is_bounded(own.radiance.g) || !is_bounded(own.radiance.b)) {
+        return "its radiance is below zero or not finite";
+    }
+    if (own.image != kNoImage && (own.image >= asset.images.size() || asset.texcoord.empty())) {
+        return "it uses an image or texture coordinates that are not there";
+    }
+    if (static_cast<std::uint32_t>(own.wrap_u) > 2 || static_cast<std::uint32_t>(own.wrap_v) > 2) {
+        return "unknown texture wrap mode";
+    }
+    return {};
+}
+
+// The first fault that `find` sees among `count` things called `what`.
+template <class Find>
+Fault find_first_of(const char* what, std::size_t count, Find find) {
+    for (std::size_t i = 0; i < count; ++i) {
+        if (std::string fault = find(i); !fault.empty()) {
+            return {std::string(kEmittersSection) + ", " + what + " " + number_in_fault(i),
+                    std::move(fault)};
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Fault find_emitters_fault(const AssetView& asset) {
+    const EmittersView& emitters = asset.emitters;
+    if (emitters.name_end.size() > kMaxEmitters) {
+        return {kEmittersSection, "it has " + number_in_fault(emitters.name_end.size()) +
+                                      " emitters; expected " + number_in_fault(kMaxEmitters) +
+                                      " at most"};
+    }
+    Fault fault = find_first_of("emitter", emitters.name_end.size(), [&](std::size_t i) {
+        return find_name_fault(emitters, static_cast<std::uint32_t>(i));
+    });
+    UsedPart used;
+    if (fault.what.empty()) {
+        fault = find_first_of("block", emitters.block.size(),
+                              [&](std::size_t i) { return find_block_fault(asset, i, used); });
+    }
+    if (fault.what.empty()) {
+        fault = find_first_of("own light", emitters.own.size(),
+                              [&](std::size_t i) { return find_own_fault(asset, i); });
+    }
+    return fault;
+}
+
+Fault find_emitter_value_fault(const EmittersView& emitters) {
+    const auto bad = std::ranges::find_if_not(emitters.value, is_half_finite);
+    if (bad == emitters.value.end()) return {};
+    return {
+        std::string(kEmittersSection) + ", value " + number_in_fault(bad - emitters.value.begin()),
+        "it is not finite"};
+}
+
+}  // namespace opaline::formats

@@ -1,0 +1,134 @@
+// Light straight from lamps, against closed forms.
+#include "bake/emitters/direct_light.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/bake/emitters/lamp_scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Light;
+
+/// Factor of irradiance from exitance between a point and a unit square that faces it at distance
+/// 1: corners' sums.
+double square_factor(double s, double t) {
+    const auto corner = [](double x, double y) {
+        const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
+        return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * std::numbers::pi);
+    };
+    return corner(1 - s, 1 - t) + corner(s, 1 - t) + corner(1 - s, t) + corner(s, t);
+}
+
+glm::dvec3 receive(const formats::Scene& scene, const Receiver& receiver,
+                   std::uint32_t samples = 64) {
+    const RayScene rays = tests::build_rays(scene);
+    const auto sources = tests::all_sources(scene);
+    glm::dvec3 sum(0);
+    std::uint64_t traced = 0;
+    for (const LampSources& lamp : sources) {
+        sum += direct_irradiance(rays, lamp, receiver, samples, traced);
+    }
+    return sum;
+}
+
+formats::Scene lit_by(Light light) {
+    formats::Scene scene;
+    tests::add_surface(scene, tests::make_quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}), 0.5f);
+    scene.lights.push_back(std::move(light));
+    return scene;
+}
+
+TEST(TriangleIrradiance, OfASquareIsTheClosedForm) {
+    const formats::Scene scene = tests::parallel_squares();
+    const auto sources = tests::all_sources(scene);
+    for (const auto& [s, t] : {std::pair{0.5, 0.5}, {0.1, 0.7}, {0.0, 0.0}, {1.5, 0.2}}) {
+        double sum = 0;
+        for (const GlowingTriangle& triangle : sources[0].triangles) {
+            sum += triangle_irradiance(triangle, {s, t, 1}, {0, 0, -1}) * triangle.radiance.x;
+        }
+        EXPECT_NEAR(sum, square_factor(s, t), 1e-6) << s << ' ' << t;
+    }
+}
+
+// Half of a square that stands on the horizon counts: the two halves of one that is cut by it add
+// up as seen by a normal turned either way.
+TEST(TriangleIrradiance, CountsThePartAboveTheHorizon) {
+    GlowingTriangle triangle;
+    triangle.corner = {glm::dvec3(1, -1, -1), glm::dvec3(1, 1, -1), glm::dvec3(1, 0, 2)};
+    triangle.normal = {-1, 0, 0};
+    const double up = triangle_irradiance(triangle, glm::dvec3(0), {0, 0, 1});
+    const double down = triangle_irradiance(triangle, glm::dvec3(0), {0, 0, -1});
+    // The vector of both is the signed sum over the whole triangle.
+    double signed_sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec3 &a = triangle.corner[k], &b = triangle.corner[(k + 1) % 3];
+        const glm::dvec3 cross = glm::cross(a, b);
+        signed_sum +=
+            std::atan2(glm::length(cross), glm::dot(a, b)) * cross.z / glm::length(cross) / 2;
+    }
+    EXPECT_GT(up, 0);
+    EXPECT_GT(down, 0);
+    EXPECT_NEAR(std::abs(up - down), std::abs(signed_sum), 1e-12);
+    EXPECT_EQ(triangle_irradiance(triangle, {2, 0, 0}, {-1, 0, 0}), 0);  // its back
+}
+
+TEST(DirectLight, UnoccludedSquareIsExactWithOneSample) {
+    const formats::Scene scene = tests::parallel_squares();
+    const glm::dvec3 E = receive(scene, {{0.3f, 0.4f, 0.9999f}, {0, 0, -1}}, 1);
+    EXPECT_NEAR(E.x, square_factor(0.3, 0.4), 1e-3);
+}
+
+// The far quarter of the lamp is hidden.
+TEST(DirectLight, PenumbraIsTheVisiblePart) {
+    formats::Scene scene = tests::parallel_squares();
+    tests::add_surface(scene, tests::make_quad({0.25f, 0.25f, 0.5f}, {10, 0, 0}, {0, 10, 0}), 0);
+    scene.primitives[1].position = {{5, 5, 5}, {5, 6, 5}, {6, 5, 5}, {6, 6, 5}};
+    // From (0, 0, 1) the blocker's corner is seen at (1/2, 1/2) of the lamp.
+    const auto rectangle = [](double x, double y) {
+        const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
+        return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * std::numbers::pi);
+    };
+    const double seen = 2 * rectangle(0.5, 1) - rectangle(0.5, 0.5);
+    EXPECT_NEAR(receive(scene, {{0, 0, 1}, {0, 0, -1}}, 4096).x, seen, 0.01 * seen);
+}
+
+TEST(DirectLight, PointLightFallsWithTheSquareOfTheDistanceAndTheCosine) {
+    const formats::Scene scene = lit_by({.name = "", .intensity = {9, 3, 0}, .position = {0, 3, 0}});
+    const glm::dvec3 below = receive(scene, {{0, 1e-4f, 0}, {0, 1, 0}});
+    EXPECT_NEAR(below.x, 1, 1e-3);
+    EXPECT_NEAR(below.y, 1.0 / 3, 1e-3);
+    EXPECT_EQ(below.z, 0);
+    const glm::dvec3 aside = receive(scene, {{4, 1e-4f, 0}, {0, 1, 0}});
+    EXPECT_NEAR(aside.x, 9.0 / 25 * 3 / 5, 1e-3);
+    EXPECT_EQ(receive(scene, {{0, 1e-4f, 0}, {0, -1, 0}}).x, 0);
+}
+
+TEST(DirectLight, SpotFallsOffBetweenItsCones) {
+    Light spot{.type = Light::Type::spot, .name = "", .intensity = {4, 4, 4}, .position = {0, 2, 0}};
+    spot.inner_cone = 0.2f;
+    spot.outer_cone = 0.6f;
+    const formats::Scene scene = lit_by(spot);
+    EXPECT_NEAR(receive(scene, {{0, 0, 0}, {0, 1, 0}}).x, 1, 1e-3);
+    const double angle = 0.4, x = 2 * std::tan(angle);
+    const double share = (std::cos(angle) - std::cos(0.6)) / (std::cos(0.2) - std::cos(0.6));
+    EXPECT_NEAR(receive(scene, {{float(x), 0, 0}, {0, 1, 0}}).x,
+                share * share * std::pow(std::cos(angle), 3), 1e-3);
+    EXPECT_EQ(receive(scene, {{2, 0, 0}, {0, 1, 0}}).x, 0);
+}
+
+TEST(DirectLight, DirectionalLightGivesItsLuxTimesTheCosine) {
+    Light sun{.type = Light::Type::directional, .name = "", .intensity = {100, 50, 10}};
+    sun.direction = glm::normalize(glm::vec3(3, -4, 0));
+    const formats::Scene scene = lit_by(sun);
+    const glm::dvec3 E = receive(scene, {{0, 1e-3f, 0}, {0, 1, 0}});
+    EXPECT_NEAR(E.x, 80, 1e-3);
+    EXPECT_NEAR(E.z, 8, 1e-4);
+    EXPECT_EQ(receive(scene, {{0, -1, 0}, {0, 1, 0}}).x, 0);  // beneath the floor
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "bake/emitters/lamp_sources.h"
+#include "bake/emitters/lamps.h"
+#include "bake/receivers/body_points.h"
+#include "bake/receivers/vertex_receivers.h"
+#include "bake/transport/ray_scene.h"
+#include "tests/support/scenes.h"
+
+namespace opaline::tests {
+
+/// Adds a quad of its own node and material. Radiance [nit] in all bands.
+inline formats::Material& add_surface(Scene& scene, Primitive primitive, float albedo,
+                                      float radiance = 0) {
+    primitive.node = static_cast<std::uint32_t>(scene.primitives.size());
+    primitive.material = static_cast<std::uint32_t>(scene.materials.size());
+    scene.primitives.push_back(std::move(primitive));
+    formats::Material material;
+    material.base_color = {albedo, albedo, albedo};
+    material.emission = {radiance, radiance, radiance};
+    scene.materials.push_back(std::move(material));
+    return scene.materials.back();
+}
+
+/// Square z = 0 of radiance 1 / pi (exitance 1) that shines up, and one at z = 1 that faces it.
+inline Scene parallel_squares(std::uint32_t cells = 1) {
+    Scene scene;
+    add_surface(scene, make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 0,
+                std::numbers::inv_pi_v<float>);
+    add_surface(scene, make_quad({0, 0, 1}, {0, 1, 0}, {1, 0, 0}, cells), 0);
+    return scene;
+}
+
+inline bake::RayScene build_rays(const Scene& scene) {
+    return std::move(*bake::RayScene::build(scene, 1));
+}
+
+/// The receivers of all primitives.
+inline std::vector<bake::ReceiverSet> receivers_of(const Scene& scene) {
+    const std::vector<bake::Receiver> outside = bake::make_vertex_receivers(scene);
+    std::vector<bake::BodyPoint> inside(outside.size());
+    for (std::size_t i = 0, p = 0; p < scene.primitives.size(); ++p) {
+        for (const glm::vec3& position : scene.primitives[p].position) {
+            // Mirrors the origin, as make_body_points does.
+            inside[i] = {position, outside[i].normal, 2.0f * position - outside[i].origin,
+                         scene.primitives[p].material};
+            ++i;
+        }
+    }
+    return bake::make_vertex_sets(scene, outside, inside);
+}
+
+inline std::vector<bake::LampSources> all_sources(const Scene& scene) {
+    std::vector<bake::LampSources> sources;
+    for (const bake::Lamp& lamp : bake::list_lamps(scene)) {
+        sources.push_back(bake::make_lamp_sources(scene, lamp));
+    }
+    return sources;
+}
+
+}  // namespace opaline::tests

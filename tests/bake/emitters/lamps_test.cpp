@@ -1,0 +1,97 @@
+// What an emitter is, and what it sends out.
+#include "bake/emitters/lamps.h"
+
+#include <gmock/gmock.h>
+
+#include "formats/opal/emitters.h"
+#include "tests/bake/emitters/lamp_scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Light;
+
+formats::Scene glowing_quads(std::initializer_list<const char*> names) {
+    formats::Scene scene;
+    for (const char* name : names) {
+        tests::add_surface(scene, tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 0.5f, 1);
+        scene.primitives.back().name = name;
+    }
+    return scene;
+}
+
+TEST(Lamps, AreNodesWhoseSurfacesGlowAndLightsByName) {
+    formats::Scene scene =
+        glowing_quads({"node 'Panel' > mesh 0 > primitive 0", "node 'Panel' > mesh 0 > primitive 1",
+                       "node 'Panel' > mesh 0 > primitive 0", "node 7 > mesh 1"});
+    scene.primitives[1].node = scene.primitives[0].node;
+    scene.materials[1].emission = {0, 2, 0};
+    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 0.5f);
+    scene.lights.push_back({.name = "Bulb"});
+    scene.lights.push_back({.name = "Off", .intensity = {0, 0, 0}});
+    scene.lights.push_back({});
+    const std::vector<Lamp> lamps = list_lamps(scene);
+    ASSERT_EQ(lamps.size(), 5u);
+    EXPECT_EQ(lamps[0].name, "Panel");
+    EXPECT_EQ(lamps[0].primitives, (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_EQ(lamps[1].name, "Panel (2)");
+    EXPECT_EQ(lamps[2].name, "node 7");
+    EXPECT_EQ(lamps[3].name, "Bulb");
+    EXPECT_EQ(lamps[3].lights, (std::vector<std::uint32_t>{0}));
+    EXPECT_EQ(lamps[4].name, "light 2");
+}
+
+TEST(Lamps, NamesFitIntoAFileAtWholeCharacters) {
+    std::string name = "node 'a";
+    for (int i = 0; i < 200; ++i)
+        name += "\xc3\xa4";
+    const std::vector<Lamp> lamps = list_lamps(glowing_quads({(name + "\n'").c_str()}));
+    EXPECT_LE(lamps[0].name.size(), formats::kMaxEmitterName);
+    EXPECT_EQ(lamps[0].name.back(), '\xa4');
+    EXPECT_EQ(lamps[0].name.find('\n'), std::string::npos);
+}
+
+TEST(Lamps, MoreThanAFileHoldsAreRefused) {
+    EXPECT_TRUE(check_lamp_count({}, formats::kMaxEmitters));
+    const auto status = check_lamp_count({}, formats::kMaxEmitters + 1);
+    ASSERT_FALSE(status);
+    EXPECT_THAT(status.error().diagnostics.front().fault,
+                testing::HasSubstr("65 nodes and lights"));
+}
+
+TEST(LampSources, PowerIsPiAreaRadianceOfASide) {
+    formats::Scene scene = glowing_quads({"a"});
+    LampSources sources = make_lamp_sources(scene, list_lamps(scene)[0]);
+    ASSERT_EQ(sources.triangles.size(), 2u);
+    EXPECT_NEAR(sources.triangles[0].power().x + sources.triangles[1].power().x, std::numbers::pi,
+                1e-12);
+    scene.materials[0].double_sided = true;
+    sources = make_lamp_sources(scene, list_lamps(scene)[0]);
+    EXPECT_NEAR(sources.triangles[0].power().x, std::numbers::pi, 1e-12);
+}
+
+TEST(LampSources, TexturedTrianglesAreCutIntoPartsOfTheirOwnRadiance) {
+    formats::Scene scene = glowing_quads({"a"});
+    scene.images.push_back({2, 1, {0, 0, 0, 255, 255, 255, 255, 255}});
+    scene.materials[0].emission_image = 0;
+    scene.primitives[0].texcoord = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+    const LampSources sources = make_lamp_sources(scene, list_lamps(scene)[0]);
+    EXPECT_GT(sources.triangles.size(), 300u);  // black parts are left out
+    double power = 0;
+    for (const GlowingTriangle& triangle : sources.triangles) {
+        power += triangle.power().x;
+    }
+    EXPECT_NEAR(power, 0.5 * std::numbers::pi, 0.01);
+}
+
+TEST(LampSources, PowerOfLights) {
+    formats::Scene scene = glowing_quads({"a"});
+    LampSources sources = make_lamp_sources(scene, list_lamps(scene)[0]);
+    Light light{.name = "", .intensity = {1, 2, 3}};
+    EXPECT_NEAR(light_power(sources, light).y, 8 * std::numbers::pi, 1e-5);
+    light.type = Light::Type::directional;
+    EXPECT_NEAR(light_power(sources, light).z, 3 * 2.0, 1e-5);  // a square of side sqrt 2
+}
+
+}  // namespace
+}  // namespace opaline::bake

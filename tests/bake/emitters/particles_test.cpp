@@ -1,0 +1,205 @@
+// Particles through scenes: form factors, energy, errors by level.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "bake/emitters/particle_start.h"
+#include "bake/emitters/trace_particles.h"
+#include "tests/bake/emitters/lamp_scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+// Closed form (2 / pi) (ln sqrt(4/3) + 2 sqrt 2 atan(1 / sqrt 2) - 2 atan 1).
+constexpr double kFormFactor = 0.19982490;
+
+using Power = std::vector<glm::dvec3>;
+
+Power trace(const formats::Scene& scene, const ElementLayout& layout, ParticleRun run,
+            unsigned threads = 1) {
+    const RayScene rays = tests::build_rays(scene);
+    Context context;
+    context.threads = threads;
+    std::uint64_t traced = 0;
+    Power power =
+        trace_particles(scene, rays, tests::all_sources(scene).at(0), layout, run, context, traced);
+    EXPECT_GE(traced, run.particles);
+    return power;
+}
+
+// Of elements first ... end - 1, red.
+double sum_of(const Power& power, std::size_t first, std::size_t end) {
+    return std::accumulate(power.begin() + static_cast<std::ptrdiff_t>(first),
+                           power.begin() + static_cast<std::ptrdiff_t>(end), 0.0,
+                           [](double sum, const glm::dvec3& of) { return sum + of.x; });
+}
+
+/// Irradiance at (s, t) from the parallel unit square of exitance 1 at distance 1.
+double irradiance_across(double s, double t) {
+    const auto corner = [](double x, double y) {
+        const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
+        return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * std::numbers::pi);
+    };
+    return corner(1 - s, 1 - t) + corner(s, 1 - t) + corner(1 - s, t) + corner(s, t);
+}
+
+/// RMS error of irradiance on the upper square over RMS irradiance, at 96 x 96 points.
+double relative_error(const formats::Scene& scene, const ElementLayout& layout,
+                      const Power& power) {
+    const std::vector<glm::vec3> irradiance = layout.push_down(power);
+    double error = 0, square = 0;
+    for (int i = 0; i < 96; ++i) {
+        for (int j = 0; j < 96; ++j) {
+            // The quad's sides are y, then x; its triangles (0, 1, 3) and (0, 3, 2).
+            const double s = (i + 0.5) / 96, t = (j + 0.25) / 96;
+            const bool is_first = s >= t;
+            const glm::dvec3 weights =
+                is_first ? glm::dvec3(1 - s, s - t, t) : glm::dvec3(1 - t, s, t - s);
+            const std::size_t element = layout.finest_element({1, is_first ? 0u : 3u}, weights);
+            const double exact = irradiance_across(t, s);
+            const double found = double{irradiance[element].x};
+            error += (found - exact) * (found - exact);
+            square += exact * exact;
+        }
+    }
+    EXPECT_EQ(scene.primitives.size(), 2u);
+    return std::sqrt(error / square);
+}
+
+void expect_near_the_best_level(std::uint32_t particles, double expected, double tolerance) {
+    const formats::Scene scene = tests::parallel_squares();
+    const ElementLayout layout(scene, 0.5 / 4096);
+    const std::size_t upper = layout.size() / 2;
+    const Power by_footprint = trace(scene, layout, {particles});
+    const double received = sum_of(by_footprint, upper, layout.size());
+    EXPECT_NEAR(received, kFormFactor, 3 * std::sqrt(0.2 * 0.8 / particles));
+    double best = 1;
+    for (int level = 0; level < 7; ++level) {
+        const Power fixed = trace(scene, layout, {particles, 0, 0, 0.5 / (1 << (2 * level))});
+        // Levels change where power goes, not how much there is.
+        EXPECT_NEAR(sum_of(fixed, upper, layout.size()), received, 1e-12);
+        best = std::min(best, relative_error(scene, layout, fixed));
+    }
+    const double error = relative_error(scene, layout, by_footprint);
+    ::testing::Test::RecordProperty("by_footprint", std::to_string(error));
+    ::testing::Test::RecordProperty("best_level", std::to_string(best));
+    EXPECT_LE(error, 1.15 * best);
+    EXPECT_NEAR(error, expected, tolerance);
+}
+
+TEST(ParticleRadiosity, BetweenParallelSquaresErrsNoMoreThanTheBestLevel) {
+    expect_near_the_best_level(20000, 0.08, 0.02);
+}
+
+TEST(ParticleRadiosity, ErrorFallsAsTheFourthRootOfTheirNumber) {
+    expect_near_the_best_level(400000, 0.04, 0.01);
+}
+
+// A closed box of exitance 1 and albedo 1/2: B = 1 / (1 - 1/2) and irradiance 2 everywhere. Each
+// particle of power 6 / N arrives twice on average; its number of arrivals has variance 2.
+TEST(ParticleRadiosity, FurnaceBoxIsEvenWithinItsNoise) {
+    formats::Scene scene;
+    tests::add_surface(scene, tests::make_cube(1, true), 0.5f, std::numbers::inv_pi_v<float>);
+    const std::uint32_t particles = 400000;
+    const ElementLayout layout(scene, 0.2);
+    const Power power = trace(scene, layout, {particles});
+    const double total = sum_of(power, 0, power.size()) / 24;  // faces of area 4
+    EXPECT_NEAR(total, 2, 3 * std::sqrt(2.0 / particles));
+    const std::size_t face = layout.size() / 6;
+    for (std::size_t f = 0; f < 6; ++f) {
+        EXPECT_NEAR(sum_of(power, f * face, (f + 1) * face) / 4, 2,
+                    3 * 6 * std::sqrt(2.0 / 6 / particles));
+    }
+}
+
+// Two walls and a floor of a corner, one wall glows: form factor of perpendicular unit squares
+// with a common edge.
+TEST(ParticleRadiosity, CornerOfARoomReceivesItsFormFactor) {
+    constexpr double kPerpendicular = 0.20004378;
+    formats::Scene scene;
+    const float glow = std::numbers::inv_pi_v<float>;
+    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}), 0, glow);  // x = 0
+    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 0);        // z = 0
+    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), 0);        // y = 0
+    const std::uint32_t particles = 100000;
+    const ElementLayout layout(scene, 0.01);
+    const Power power = trace(scene, layout, {particles});
+    const std::size_t third = layout.size() / 3;
+    for (const std::size_t wall : {1, 2}) {
+        EXPECT_NEAR(sum_of(power, wall * third, (wall + 1) * third), kPerpendicular,
+                    3 * std::sqrt(0.2 * 0.8 / particles));
+    }
+}
+
+formats::Scene closed_room(formats::Light light) {
+    formats::Scene scene;
+    tests::add_surface(scene, tests::make_cube(1, true), 0);
+    scene.lights.push_back(std::move(light));
+    return scene;
+}
+
+TEST(ParticleRadiosity, AllPowerOfLightsArrivesInAClosedRoom) {
+    using formats::Light;
+    Light spot{
+        .type = Light::Type::spot, .name = "", .direction = {0, 0, 1}, .inner_cone = 0.2f, .outer_cone = 0.9f};
+    Light sun{.type = Light::Type::directional, .name = "", .direction = {0, 0, 1}};
+    for (const Light& light : {Light{.name = "", .position = {0.3f, 0, 0}}, spot}) {
+        const formats::Scene scene = closed_room(light);
+        const ElementLayout layout(scene, 0.1);
+        const Power power = trace(scene, layout, {50000});
+        const double expected = light_power(tests::all_sources(scene)[0], light).x;
+        EXPECT_NEAR(sum_of(power, 0, power.size()), expected, 0.01 * expected);
+    }
+    // From outside, on the back of the room's walls, which reflects nothing and has no elements.
+    const formats::Scene scene = closed_room(sun);
+    const ElementLayout layout(scene, 0.1);
+    EXPECT_EQ(sum_of(trace(scene, layout, {1000}), 0, layout.size()), 0);
+}
+
+TEST(ParticleRadiosity, SunOnAFloorGivesItsLuxTimesTheArea) {
+    formats::Scene scene;
+    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {3, 0, 0}, {0, 2, 0}), 0.5f);
+    scene.lights.push_back({.type = formats::Light::Type::directional, .name = "",
+                            .intensity = {10, 10, 10},
+                            .direction = glm::normalize(glm::vec3(0, 3, -4))});
+    const ElementLayout layout(scene, 0.5);
+    EXPECT_NEAR(sum_of(trace(scene, layout, {100000}), 0, layout.size()), 10 * 6 * 0.8, 0.5);
+}
+
+TEST(ParticleRadiosity, HasTheSameBitsForAnyNumberOfThreads) {
+    formats::Scene scene;
+    tests::add_surface(scene, tests::make_cube(2, true), 0.7f, 1);
+    const ElementLayout layout(scene, 0.01);
+    const Power one = trace(scene, layout, {10000}, 1), many = trace(scene, layout, {10000}, 5);
+    EXPECT_EQ(one, many);
+    EXPECT_NE(one, trace(scene, layout, {10000, 0, 1}));  // another seed
+}
+
+TEST(ParticleStart, PowerOfAllIsTheLampsAndRangeDims) {
+    formats::Scene scene = tests::parallel_squares();
+    scene.materials[0].double_sided = true;
+    const auto sources = tests::all_sources(scene);
+    const StartTable table = make_start_table(sources[0]);
+    double sum = 0;
+    int up = 0;
+    for (std::uint64_t i = 0; i < 1000; ++i) {
+        const Particle p = start_particle(table, {}, {1000}, i);
+        sum += p.power.x;
+        up += p.direction.z > 0 ? 1 : 0;
+        EXPECT_NEAR(glm::length(p.direction), 1, 1e-12);
+        EXPECT_EQ(p.dimming(5), 1);
+    }
+    EXPECT_NEAR(sum, 2, 1e-5);
+    EXPECT_NEAR(up, 500, 60);
+    Particle dimmed;
+    dimmed.range = 2;
+    EXPECT_NEAR(dimmed.dimming(1), 15.0 / 16, 1e-12);
+    EXPECT_EQ(dimmed.dimming(2), 0);
+}
+
+}  // namespace
+}  // namespace opaline::bake

@@ -1,0 +1,116 @@
+// Light of emitters: rows beside those of the environment.
+#include "runtime/emitter_light.h"
+
+#include <gtest/gtest.h>
+
+#include "runtime/shade.h"
+#include "runtime/texture.h"
+#include "tests/formats/opal/emitter_fixture.h"
+#include "tests/runtime/light_test_support.h"
+#include "tests/runtime/row_test_support.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Asset;
+using formats::Rgb;
+
+// Opaque, thin-walled and translucent primitives.
+Asset emitting_asset() {
+    Asset asset = tests::make_small_asset();
+    tests::add_sheet_triangle(asset);
+    tests::add_translucent_triangle(asset, 4, 1.3f);
+    tests::add_emitters(asset);
+    return asset;
+}
+
+LightVector black_light() {
+    return {8, std::vector<float>(4 * 384)};
+}
+
+std::vector<Rgb> shaded(const Asset& asset, const LightVector& light, const EmitterLight& emitters,
+                        std::optional<formats::Vec3> eye = std::nullopt) {
+    std::vector<Rgb> out(asset.position.size());
+    ShadeOptions options;
+    options.emitters = emitters;
+    options.eye = eye;
+    shade(asset.view(), light, out, options);
+    return out;
+}
+
+TEST(EmitterLight, AllOffInBlackLightIsBlack) {
+    const Asset asset = emitting_asset();
+    for (const Rgb& value : shaded(asset, black_light(), dark_emitters())) {
+        EXPECT_EQ(value, Rgb{});
+    }
+    const std::vector<Rgb> off(2);
+    for (const Rgb& value : shaded(asset, black_light(), {off})) {
+        EXPECT_EQ(value, Rgb{});
+    }
+}
+
+TEST(EmitterLight, OpaqueSurfacesShowItTimesTheirBaseColourAndTheirOwn) {
+    const Asset asset = emitting_asset();
+    const formats::AssetView view = asset.view();
+    const std::vector<Rgb> out = shaded(asset, black_light(), {});
+    for (std::uint32_t v = 0; v < 4; ++v) {
+        const Rgb value = block_value(view.emitters, view.emitters.block[0], v);
+        const Rgb own =
+            Rgb{100, 50, 25} * sample_image_linear(view.images[0], asset.texcoord[v],
+                                                   formats::Wrap::mirror, formats::Wrap::clamp);
+        EXPECT_NEAR(out[v].r, 0.5f * value.r + own.r, 1e-3f);
+        EXPECT_NEAR(out[v].g, 0.6f * value.g + own.g, 1e-3f);
+    }
+    const std::vector<Rgb> without = shaded(asset, black_light(), {{}, false});
+    const Rgb value = block_value(view.emitters, view.emitters.block[0], 3);
+    EXPECT_NEAR(without[3].b, 0.7f * value.b, 1e-4f);
+}
+
+// The light of several emitters is the sum of that of each.
+TEST(EmitterLight, IsLinear) {
+    const Asset asset = emitting_asset();
+    const std::vector<Rgb> first{{1, 0.5f, 2}, {}}, second{{}, {3, 1, 0.25f}},
+        both{{1, 0.5f, 2}, {3, 1, 0.25f}};
+    const formats::Vec3 eye{0.2f, 0.3f, 5};
+    const auto a = shaded(asset, black_light(), {first}, eye),
+               b = shaded(asset, black_light(), {second}, eye),
+               sum = shaded(asset, black_light(), {both}, eye);
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+        EXPECT_NEAR(sum[i].r, a[i].r + b[i].r, 1e-3f) << i;
+        EXPECT_NEAR(sum[i].b, a[i].b + b[i].b, 1e-3f) << i;
+    }
+}
+
+TEST(EmitterLight, ThinWallsShowTheSideThatIsSeen) {
+    const Asset asset = emitting_asset();
+    const formats::AssetView view = asset.view();
+    const auto blocks = view.emitters.blocks_of(2);
+    ASSERT_EQ(blocks.size(), 1u);
+    const auto front = shaded(asset, black_light(), {}, formats::Vec3{0, 0, 5});
+    const auto behind = shaded(asset, black_light(), {}, formats::Vec3{0, 0, -5});
+    EXPECT_NEAR(front[9].g, block_value(view.emitters, blocks[0], 2).g, 1e-3f);
+    EXPECT_NEAR(behind[9].g, block_value(view.emitters, blocks[0], 3).g, 1e-3f);
+}
+
+TEST(EmitterLight, RangesAndThreadsDoNotMatter) {
+    const Asset asset = emitting_asset();
+    const LightVector light = tests::random_light(8, 5);
+    const std::vector<Rgb> all = shaded(asset, light, {});
+    std::vector<Rgb> part(3);
+    for (std::uint32_t first = 0; first + 3 <= all.size(); ++first) {
+        shade_range(asset.view(), light, first, part);
+        EXPECT_TRUE(std::equal(part.begin(), part.end(), all.begin() + first)) << first;
+    }
+}
+
+// What a renderer interpolates has no light of the surface itself.
+TEST(EmitterLight, PicturesAddTheirOwnLightPerPixel) {
+    const Asset asset = emitting_asset();
+    const auto with =
+        shade_for_picture(asset.view(), black_light(), {0, 0, 5}, formats::TermSet::all, 1);
+    const Rgb value = block_value(asset.emitters.view(), asset.emitters.block[0], 1);
+    EXPECT_NEAR(with[1].r, value.r, 1e-3f);
+}
+
+}  // namespace
+}  // namespace opaline::runtime
