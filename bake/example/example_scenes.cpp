@@ -12,6 +12,7 @@
 #include "bake/example/density_fields.h"
 #include "bake/example/floor.h"
 #include "bake/example/knot.h"
+#include "bake/example/lamp.h"
 #include "bake/example/leaves.h"
 #include "bake/example/polygonize.h"
 #include "bake/example/remesh.h"
@@ -44,9 +45,10 @@ struct Layer {
 
 struct Example {
     ExampleInfo info;
-    std::vector<GltfObject> (*make)() = nullptr;  // null: a volume or a layer alone
-    Smoke volume = {};                            // make null: there is none
-    Layer layer = {};                             // make_ground null: there is none
+    std::vector<GltfObject> (*make)() = nullptr;             // null: a volume or a layer alone
+    Smoke volume = {};                                       // make null: there is none
+    Layer layer = {};                                        // make_ground null: there is none
+    std::vector<GltfPointLight> (*make_lights)() = nullptr;  // null: none
 };
 
 TriangleMesh in_metres(TriangleMesh mesh) {
@@ -108,6 +110,30 @@ std::vector<GltfObject> make_plant() {
                 make_floor({.finest = 4.0, .fine_radius = 110.0, .growth = 0.15, .levels = 7}))};
 }
 
+// A table lamp with a paper shade, a panel that glows, and a ball between them.
+std::vector<GltfObject> make_lamp_scene() {
+    GltfObject shade{"Shade", "Paper", {1, 1, 1}, in_metres(make_shade({}))};
+    shade.base_color = {0.80, 0.72, 0.60};
+    shade.thin_wall = {.share = 0.5, .color = {0.74, 0.58, 0.40}};
+    GltfObject bulb{"Lamp", "Bulb", {0.5, 0.5, 0.5}, in_metres(make_sphere({0, 200, 0}, 22, 3))};
+    bulb.emission = {.color = {1, 0.72, 0.42}, .strength = 60};
+    GltfObject panel{"Panel", "Panel", {0.1, 0.1, 0.1}, in_metres(make_panel({}))};
+    panel.emission = {.color = {0.10, 0.35, 1}, .strength = 0.9};
+    GltfObject wall{"Wall", "Wall", {0.62, 0.60, 0.56}, in_metres(make_wall())};
+    return {std::move(shade),
+            std::move(bulb),
+            {"Foot", "Foot", {0.25, 0.14, 0.08}, in_metres(make_lamp_foot())},
+            std::move(panel),
+            ball_object("Ball", {0.75, 0.75, 0.75}, 150, {}),
+            std::move(wall),
+            floor_object(
+                make_floor({.finest = 8.0, .fine_radius = 250.0, .growth = 0.15, .levels = 7}))};
+}
+
+std::vector<GltfPointLight> make_lamp_lights() {
+    return {{"Spark", {1, 0.25, 0.1}, 0.02, {-0.16, 0.06, 0.14}}};
+}
+
 constexpr double kBallRadius = 40;  // [mm]
 
 // What smoulders, and a floor for the shadow.
@@ -141,6 +167,11 @@ constexpr Example kExamples[] = {
      make_glossy},
     {{"leaves", "a plant of eleven arched leaves: thin-walled surfaces that transmit light"},
      make_plant},
+    {.info = {"lamp",
+              "a lamp in a paper shade, a blue panel and a red spark: three emitters that are "
+              "switched by themselves"},
+     .make = make_lamp_scene,
+     .make_lights = make_lamp_lights},
     {{"smoke", "a plume that rises from a ball and widens as it curls: a volume beside meshes"},
      make_smouldering_ball,
      {.make = make_smoke, .sigma_t = grey(60), .albedo = grey(0.92), .g = 0.5}},
@@ -251,7 +282,9 @@ formats::Result<std::vector<std::filesystem::path>> write_example(
         others.insert(others.begin(), file);
         return others;
     }
-    auto files = write_gltf(folder, stem, example->make(), media);
+    auto files = write_gltf(
+        folder, stem, example->make(), media,
+        example->make_lights == nullptr ? std::vector<GltfPointLight>{} : example->make_lights());
     if (files) {
         files->insert(files->end(), others.begin(), others.end());
     }

@@ -20,6 +20,8 @@ constexpr int kFloat = 5126, kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr const char* kReflectionExtension = "KHR_materials_specular";
 constexpr const char* kThinWallExtension = "KHR_materials_diffuse_transmission";
+constexpr const char* kEmissionExtension = "KHR_materials_emissive_strength";
+constexpr const char* kLightsExtension = "KHR_lights_punctual";
 
 void append(std::string& bytes, std::uint32_t word) {
     for (int shift = 0; shift < 32; shift += 8) {
@@ -84,11 +86,18 @@ std::size_t add_indices(Draft& draft, const TriangleMesh& mesh) {
     return index;
 }
 
+void name_once(Json& extensions, const char* name) {
+    if (std::find(extensions.begin(), extensions.end(), name) == extensions.end()) {
+        extensions.push_back(name);
+    }
+}
+
 }  // namespace
 
 formats::Result<std::vector<std::filesystem::path>> write_gltf(
     const std::filesystem::path& folder, const std::string& name,
-    const std::vector<GltfObject>& objects, const std::string& media) {
+    const std::vector<GltfObject>& objects, const std::string& media,
+    const std::vector<GltfPointLight>& lights) {
     Draft draft;
     Json nodes = Json::array(), roots = Json::array();
     Json meshes = Json::array(), materials = Json::array();
@@ -120,10 +129,27 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
             material["extensions"][kThinWallExtension] = {
                 {"diffuseTransmissionFactor", thin.share},
                 {"diffuseTransmissionColorFactor", thin.color}};
-            if (extensions.size() == 1) {
-                extensions.push_back(kThinWallExtension);
-            }
+            name_once(extensions, kThinWallExtension);
         }
+        if (const GltfEmission& emission = object.emission;
+            emission.color != std::array<double, 3>{}) {
+            Json& material = materials.back();
+            material["emissiveFactor"] = emission.color;
+            material["extensions"][kEmissionExtension] = {{"emissiveStrength", emission.strength}};
+            name_once(extensions, kEmissionExtension);
+        }
+    }
+    Json light_sources = Json::array();
+    for (const GltfPointLight& light : lights) {
+        roots.push_back(nodes.size());
+        nodes.push_back({{"name", light.name},
+                         {"translation", light.position},
+                         {"extensions", {{kLightsExtension, {{"light", light_sources.size()}}}}}});
+        light_sources.push_back({{"type", "point"},
+                                 {"name", light.name},
+                                 {"color", light.color},
+                                 {"intensity", light.intensity}});
+        name_once(extensions, kLightsExtension);
     }
     Json document = {
         {"asset", {{"version", "2.0"}, {"generator", "Opaline"}}},
@@ -137,6 +163,9 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
         {"bufferViews", draft.views},
         {"buffers", Json::array({{{"uri", name + ".bin"}, {"byteLength", draft.bytes.size()}}})}};
 
+    if (!lights.empty()) {
+        document["extensions"][kLightsExtension] = {{"lights", light_sources}};
+    }
     if (!media.empty()) {
         document["extensionsUsed"].push_back("OPALINE_media");
         document["extensions"]["OPALINE_media"] = Json::parse(media);

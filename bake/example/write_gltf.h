@@ -23,6 +23,20 @@ struct GltfThinWall {
     std::array<double, 3> color{1, 1, 1};  ///< linear Rec. 709, each in [0, 1]
 };
 
+/// Light that a surface sends out: emissiveFactor and KHR_materials_emissive_strength.
+struct GltfEmission {
+    std::array<double, 3> color{0, 0, 0};  ///< each in [0, 1]; all 0: none
+    double strength = 1;                   ///< [nit]
+};
+
+/// A point light of KHR_lights_punctual in a node of its own.
+struct GltfPointLight {
+    std::string name;
+    std::array<double, 3> color{1, 1, 1};
+    double intensity = 1;  ///< [cd]
+    std::array<double, 3> position{0, 0, 0};
+};
+
 /// A mesh in a node of its own. Names are free; several objects may not share a material name.
 struct GltfObject {
     std::string name;                           ///< of node and mesh
@@ -31,6 +45,7 @@ struct GltfObject {
     TriangleMesh mesh;                          ///< positions in metres, one unit normal each
     GltfReflection reflection = {};
     GltfThinWall thin_wall = {};
+    GltfEmission emission = {};
 };
 
 /// Writes FOLDER/NAME.gltf and its buffer FOLDER/NAME.bin as glTF 2.0 and returns both paths; the
@@ -40,6 +55,7 @@ struct GltfObject {
 /// vertex, a triangle, and as many normals as positions.
 formats::Result<std::vector<std::filesystem::path>> write_gltf(
     const std::filesystem::path& folder, const std::string& name,
-    const std::vector<GltfObject>& objects, const std::string& media = {});
+    const std::vector<GltfObject>& objects, const std::string& media = {},
+    const std::vector<GltfPointLight>& lights = {});
 
 }  // namespace opaline::bake

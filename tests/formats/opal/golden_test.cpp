@@ -163,6 +163,22 @@ TEST_F(GoldenFile, VolumesToo) {
     }
 }
 
+TEST_F(GoldenFile, EmittersToo) {
+    const AssetView& asset = read("emit1.opal");
+    EXPECT_EQ(version_of(kEmitSection), 1u);
+    const EmittersView& emitters = asset.emitters;
+    EXPECT_EQ(list_emitters(emitters), "'Lamp', 'Panel'");
+    ASSERT_EQ(emitters.block.size(), 3u);
+    EXPECT_EQ(emitters.block[2].emitter, 1u);
+    EXPECT_EQ(emitters.block[2].primitive, 1u);
+    EXPECT_EQ(emitters.block[2].scale, kGoldenScale);
+    EXPECT_EQ(block_value(emitters, emitters.block[2], 3), kGoldenValue);
+    ASSERT_EQ(emitters.own.size(), 1u);
+    EXPECT_EQ(emitters.own[0].radiance, (Rgb{100, 50, 25}));
+    EXPECT_EQ(emitters.own[0].image, 0u);
+    EXPECT_EQ(emitters.own[0].wrap_u, Wrap::mirror);
+}
+
 TEST_F(GoldenFile, CloudLayersToo) {
     const AssetView& asset = read("clou1.opal");
     EXPECT_EQ(version_of(kClouSection), 1u);

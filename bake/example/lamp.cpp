@@ -1,0 +1,107 @@
+#include "bake/example/lamp.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+namespace opaline::bake {
+namespace {
+
+// A point of a profile: its distance from the axis, its height, and its normal in that plane.
+struct ProfilePoint {
+    double radius, height;
+    glm::dvec2 normal;
+};
+
+// The profile turned about +Y; from below to above its outside is in front.
+TriangleMesh turn_about_axis(std::span<const ProfilePoint> profile, unsigned around) {
+    TriangleMesh mesh;
+    for (const ProfilePoint& p : profile) {
+        for (unsigned i = 0; i <= around; ++i) {
+            const double turn = 2 * std::numbers::pi * (i % around) / around;
+            const double s = std::sin(turn), c = std::cos(turn);
+            mesh.position.push_back({p.radius * s, p.height, p.radius * c});
+            mesh.normal.push_back(
+                glm::normalize(glm::dvec3(p.normal.x * s, p.normal.y, p.normal.x * c)));
+        }
+    }
+    const std::uint32_t row = around + 1;
+    for (std::uint32_t j = 0; j + 1 < profile.size(); ++j) {
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const std::uint32_t v = j * row + i;
+            if (profile[j].radius > 0) mesh.triangles.push_back({v, v + 1, v + row + 1});
+            if (profile[j + 1].radius > 0) mesh.triangles.push_back({v, v + row + 1, v + row});
+        }
+    }
+    return mesh;
+}
+
+}  // namespace
+
+TriangleMesh make_shade(const ShadeOptions& options) {
+    const glm::dvec2 normal(options.high - options.low, options.low_radius - options.high_radius);
+    std::vector<ProfilePoint> profile;
+    for (unsigned j = 0; j <= options.along; ++j) {
+        const double t = static_cast<double>(j) / options.along;
+        profile.push_back({options.low_radius + t * (options.high_radius - options.low_radius),
+                           options.low + t * (options.high - options.low), normal});
+    }
+    return turn_about_axis(profile, options.around);
+}
+
+TriangleMesh make_lamp_foot() {
+    // Edges have a point for each of their two normals.
+    constexpr std::array<ProfilePoint, 8> kProfile{{{55, -0.4, {1, 0}},
+                                                    {55, 10, {1, 0}},
+                                                    {55, 10, {0, 1}},
+                                                    {6, 14, {0, 1}},
+                                                    {6, 14, {1, 0}},
+                                                    {6, 80, {1, 0}},
+                                                    {6, 165, {1, 0}},
+                                                    {0, 165, {1, 1}}}};
+    return turn_about_axis(kProfile, 48);
+}
+
+TriangleMesh make_wall() {
+    TriangleMesh mesh;
+    constexpr unsigned kAcross = 48, kUp = 28;
+    constexpr double kCell = 17;
+    for (unsigned j = 0; j <= kUp; ++j) {
+        for (unsigned i = 0; i <= kAcross; ++i) {
+            mesh.position.push_back({kCell * (i - kAcross / 2.0), kCell * j - 0.4, -230});
+            mesh.normal.push_back({0, 0, 1});
+        }
+    }
+    for (std::uint32_t j = 0; j < kUp; ++j) {
+        for (std::uint32_t i = 0; i < kAcross; ++i) {
+            const std::uint32_t v = j * (kAcross + 1) + i;
+            mesh.triangles.push_back({v, v + 1, v + kAcross + 2});
+            mesh.triangles.push_back({v, v + kAcross + 2, v + kAcross + 1});
+        }
+    }
+    return mesh;
+}
+
+TriangleMesh make_panel(const PanelOptions& options) {
+    TriangleMesh mesh;
+    const unsigned n = options.cells;
+    for (unsigned j = 0; j <= n; ++j) {
+        for (unsigned i = 0; i <= n; ++i) {
+            mesh.position.push_back(
+                {options.x, options.height * j / n,
+                 options.z + options.width * (static_cast<double>(i) / n - 0.5)});
+            mesh.normal.push_back({-1, 0, 0});
+        }
+    }
+    for (std::uint32_t j = 0; j < n; ++j) {
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t v = j * (n + 1) + i;
+            mesh.triangles.push_back({v, v + 1, v + n + 2});
+            mesh.triangles.push_back({v, v + n + 2, v + n + 1});
+        }
+    }
+    return mesh;
+}
+
+}  // namespace opaline::bake
