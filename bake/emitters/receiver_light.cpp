@@ -10,7 +10,7 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
 #include "bake/emitters/bounce_color.h"
-#include "bake/emitters/direct_light.h"
+#include "bake/emitters/straight_light.h"
 #include "bake/path_differentials/disk_map.h"
 
 namespace opaline::bake {
@@ -100,7 +100,7 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
     }
     for (std::size_t lamp = 0; lamp < total.size(); ++lamp) {
         total[lamp] +=
-            direct_irradiance(light.rays, light.sources[lamp], receiver, light.samples, rays);
+            straight_irradiance(light.rays, light.sources[lamp], receiver, light.samples, rays);
     }
     return total;
 }

@@ -144,8 +144,11 @@ formats::Scene closed_room(formats::Light light) {
 
 TEST(ParticleRadiosity, AllPowerOfLightsArrivesInAClosedRoom) {
     using formats::Light;
-    Light spot{
-        .type = Light::Type::spot, .name = "", .direction = {0, 0, 1}, .inner_cone = 0.2f, .outer_cone = 0.9f};
+    Light spot{.type = Light::Type::spot,
+               .name = "",
+               .direction = {0, 0, 1},
+               .inner_cone = 0.2f,
+               .outer_cone = 0.9f};
     Light sun{.type = Light::Type::directional, .name = "", .direction = {0, 0, 1}};
     for (const Light& light : {Light{.name = "", .position = {0.3f, 0, 0}}, spot}) {
         const formats::Scene scene = closed_room(light);
@@ -163,7 +166,8 @@ TEST(ParticleRadiosity, AllPowerOfLightsArrivesInAClosedRoom) {
 TEST(ParticleRadiosity, SunOnAFloorGivesItsLuxTimesTheArea) {
     formats::Scene scene;
     tests::add_surface(scene, tests::make_quad({0, 0, 0}, {3, 0, 0}, {0, 2, 0}), 0.5f);
-    scene.lights.push_back({.type = formats::Light::Type::directional, .name = "",
+    scene.lights.push_back({.type = formats::Light::Type::directional,
+                            .name = "",
                             .intensity = {10, 10, 10},
                             .direction = glm::normalize(glm::vec3(0, 3, -4))});
     const ElementLayout layout(scene, 0.5);

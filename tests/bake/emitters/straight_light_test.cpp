@@ -1,5 +1,5 @@
 // Light straight from lamps, against closed forms.
-#include "bake/emitters/direct_light.h"
+#include "bake/emitters/straight_light.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ glm::dvec3 receive(const formats::Scene& scene, const Receiver& receiver,
     glm::dvec3 sum(0);
     std::uint64_t traced = 0;
     for (const LampSources& lamp : sources) {
-        sum += direct_irradiance(rays, lamp, receiver, samples, traced);
+        sum += straight_irradiance(rays, lamp, receiver, samples, traced);
     }
     return sum;
 }
@@ -76,14 +76,14 @@ TEST(TriangleIrradiance, CountsThePartAboveTheHorizon) {
     EXPECT_EQ(triangle_irradiance(triangle, {2, 0, 0}, {-1, 0, 0}), 0);  // its back
 }
 
-TEST(DirectLight, UnoccludedSquareIsExactWithOneSample) {
+TEST(StraightLight, UnoccludedSquareIsExactWithOneSample) {
     const formats::Scene scene = tests::parallel_squares();
     const glm::dvec3 E = receive(scene, {{0.3f, 0.4f, 0.9999f}, {0, 0, -1}}, 1);
     EXPECT_NEAR(E.x, square_factor(0.3, 0.4), 1e-3);
 }
 
 // The far quarter of the lamp is hidden.
-TEST(DirectLight, PenumbraIsTheVisiblePart) {
+TEST(StraightLight, PenumbraIsTheVisiblePart) {
     formats::Scene scene = tests::parallel_squares();
     tests::add_surface(scene, tests::make_quad({0.25f, 0.25f, 0.5f}, {10, 0, 0}, {0, 10, 0}), 0);
     scene.primitives[1].position = {{5, 5, 5}, {5, 6, 5}, {6, 5, 5}, {6, 6, 5}};
@@ -96,8 +96,9 @@ TEST(DirectLight, PenumbraIsTheVisiblePart) {
     EXPECT_NEAR(receive(scene, {{0, 0, 1}, {0, 0, -1}}, 4096).x, seen, 0.01 * seen);
 }
 
-TEST(DirectLight, PointLightFallsWithTheSquareOfTheDistanceAndTheCosine) {
-    const formats::Scene scene = lit_by({.name = "", .intensity = {9, 3, 0}, .position = {0, 3, 0}});
+TEST(StraightLight, PointLightFallsWithTheSquareOfTheDistanceAndTheCosine) {
+    const formats::Scene scene =
+        lit_by({.name = "", .intensity = {9, 3, 0}, .position = {0, 3, 0}});
     const glm::dvec3 below = receive(scene, {{0, 1e-4f, 0}, {0, 1, 0}});
     EXPECT_NEAR(below.x, 1, 1e-3);
     EXPECT_NEAR(below.y, 1.0 / 3, 1e-3);
@@ -107,8 +108,9 @@ TEST(DirectLight, PointLightFallsWithTheSquareOfTheDistanceAndTheCosine) {
     EXPECT_EQ(receive(scene, {{0, 1e-4f, 0}, {0, -1, 0}}).x, 0);
 }
 
-TEST(DirectLight, SpotFallsOffBetweenItsCones) {
-    Light spot{.type = Light::Type::spot, .name = "", .intensity = {4, 4, 4}, .position = {0, 2, 0}};
+TEST(StraightLight, SpotFallsOffBetweenItsCones) {
+    Light spot{
+        .type = Light::Type::spot, .name = "", .intensity = {4, 4, 4}, .position = {0, 2, 0}};
     spot.inner_cone = 0.2f;
     spot.outer_cone = 0.6f;
     const formats::Scene scene = lit_by(spot);
@@ -120,7 +122,7 @@ TEST(DirectLight, SpotFallsOffBetweenItsCones) {
     EXPECT_EQ(receive(scene, {{2, 1e-4f, 0}, {0, 1, 0}}).x, 0);
 }
 
-TEST(DirectLight, DirectionalLightGivesItsLuxTimesTheCosine) {
+TEST(StraightLight, DirectionalLightGivesItsLuxTimesTheCosine) {
     Light sun{.type = Light::Type::directional, .name = "", .intensity = {100, 50, 10}};
     sun.direction = glm::normalize(glm::vec3(3, -4, 0));
     const formats::Scene scene = lit_by(sun);

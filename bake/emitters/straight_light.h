@@ -21,7 +21,8 @@ double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& po
 /// Triangles: exact unoccluded irradiance, times the mean visibility of `samples` points, spread
 /// over them in proportion to it: without noise where nothing or all is hidden. Lights: one shadow
 /// ray each. `rays` counts those traced.
-glm::dvec3 direct_irradiance(const RayScene& scene, const LampSources& lamp,
-                             const Receiver& receiver, std::uint32_t samples, std::uint64_t& rays);
+glm::dvec3 straight_irradiance(const RayScene& scene, const LampSources& lamp,
+                               const Receiver& receiver, std::uint32_t samples,
+                               std::uint64_t& rays);
 
 }  // namespace opaline::bake

@@ -1,4 +1,4 @@
-#include "bake/emitters/direct_light.h"
+#include "bake/emitters/straight_light.h"
 
 #include <algorithm>
 #include <cmath>
@@ -157,8 +157,9 @@ double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& po
     return 0.5 * std::abs(sum);
 }
 
-glm::dvec3 direct_irradiance(const RayScene& scene, const LampSources& lamp,
-                             const Receiver& receiver, std::uint32_t samples, std::uint64_t& rays) {
+glm::dvec3 straight_irradiance(const RayScene& scene, const LampSources& lamp,
+                               const Receiver& receiver, std::uint32_t samples,
+                               std::uint64_t& rays) {
     if (receiver.normal == glm::vec3(0)) return glm::dvec3(0);
     return from_triangles(scene, lamp, receiver, samples, rays) +
            from_lights(scene, lamp, receiver, rays);
