@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kOption = "--emitter";
 
-formats::Error refuse(const std::string& text, std::string fault, std::string remedy) {
+formats::Error refuse_emitter(const std::string& text, std::string fault, std::string remedy) {
     return formats::make_error(formats::ErrorKind::usage, "", std::string(kOption) + " " + text,
                                std::move(fault), std::move(remedy));
 }
@@ -52,19 +52,19 @@ formats::Result<std::vector<formats::Rgb>> parse_emitters(const formats::Emitter
     for (const std::string& text : texts) {
         const std::size_t equals = text.rfind('=');  // names may have one
         if (equals == std::string::npos) {
-            return refuse(text, "expected NAME=R,G,B", "give a name and three factors");
+            return refuse_emitter(text, "expected NAME=R,G,B", "give a name and three factors");
         }
         const std::uint32_t emitter =
             find_emitter(emitters, std::string_view(text).substr(0, equals));
         if (emitter == emitters.size()) {
-            return refuse(text, "the file has no emitter of that name",
-                          emitters.empty() ? "it has none at all: bake a scene with lamps"
-                                           : "it has " + list_emitters(emitters));
+            return refuse_emitter(text, "the file has no emitter of that name",
+                                  emitters.empty() ? "it has none at all: bake a scene with lamps"
+                                                   : "it has " + list_emitters(emitters));
         }
         const auto color = parse_color(std::string_view(text).substr(equals + 1));
         if (!color) {
-            return refuse(text, "expected three numbers, finite and not negative",
-                          "give factors such as 1,0.8,0.5, or one for all bands");
+            return refuse_emitter(text, "expected three numbers, finite and not negative",
+                                  "give factors such as 1,0.8,0.5, or one for all bands");
         }
         colors[emitter] = *color;
     }
