@@ -171,8 +171,9 @@ TEST_F(GoldenFile, EmittersToo) {
     ASSERT_EQ(emitters.block.size(), 3u);
     EXPECT_EQ(emitters.block[2].emitter, 1u);
     EXPECT_EQ(emitters.block[2].primitive, 1u);
-    EXPECT_EQ(emitters.block[2].scale, kGoldenScale);
-    EXPECT_EQ(block_value(emitters, emitters.block[2], 3), kGoldenValue);
+    EXPECT_EQ(emitters.block[2].scale, 0.001953125f);
+    EXPECT_EQ(block_value(emitters, emitters.block[2], 3),
+              (Rgb{5.44140625f, 0.266845703f, 38.03125f}));
     ASSERT_EQ(emitters.own.size(), 1u);
     EXPECT_EQ(emitters.own[0].radiance, (Rgb{100, 50, 25}));
     EXPECT_EQ(emitters.own[0].image, 0u);
