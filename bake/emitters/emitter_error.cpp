@@ -18,6 +18,7 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::uint32_t kCheckedReceivers = 32, kPathsOfHalf = 2048, kMostBounces = 64;
+constexpr double kCrease = 1e-3;  // of the scene's radius
 constexpr float kRayEnd = 1 - 1e-4f;
 
 /// The glowing triangles of all lamps, by power, and all lights.
@@ -54,6 +55,16 @@ bool is_hidden(const RayScene& surfaces, const glm::vec3& from, const glm::vec3&
     return packet.tfar[0] < 0;
 }
 
+// In front of a surface that was hit, on the side that `toward` points to. Back along the ray where
+// that is where it came from: in a corner, what is beside the surface may be outside.
+glm::vec3 leave_surface(const glm::vec3& origin, const glm::vec3& direction, const PacketHits& hits,
+                        const glm::vec3& toward) {
+    const float distance = hits.distance[0], away = 2 * hits.error[0];
+    if (glm::dot(direction, toward) > 0) return origin + distance * direction + away * toward;
+    const float back = std::min(away / std::abs(hits.cosine[0]), 0.5f * distance);
+    return origin + (distance - back) * direction;
+}
+
 /// A path backward from a receiver.
 struct BackwardPath {
     const EmitterCheck& check;
@@ -61,13 +72,26 @@ struct BackwardPath {
     std::uint64_t seed, key;
     std::uint32_t draws = 0;
     std::uint64_t rays = 0;
+    /// The first numbers of a path: a lattice over all paths [Roberts2018], shifted at random.
+    std::array<float, 5> first{};
+
+    void begin(std::uint32_t path) {
+        const auto shift = random_uniform(seed, RandomStage::true_gather, key, 0xfffffffeu);
+        const auto more = random_uniform(seed, RandomStage::true_gather, key, 0xfffffffdu);
+        double turn = 1;
+        for (std::size_t k = 0; k < first.size(); ++k) {
+            turn /= 1.1347241384015194;  // the root of x^6 = x + 1
+            const double at = static_cast<double>(k < 4 ? shift[k] : more[0]) + path * turn;
+            first[k] = static_cast<float>(at - std::floor(at));
+        }
+    }
 
     std::array<float, 4> draw() {
         return random_uniform(seed, RandomStage::true_gather, key, draws++);
     }
 
     // Irradiance that comes straight: one point of the triangles, one shadow ray to each light.
-    glm::dvec3 straight(const Receiver& at) {
+    glm::dvec3 straight(const Receiver& at, bool is_first) {
         glm::dvec3 sum(0);
         for (const formats::Light& light : sources.lights) {
             const ArrivingLight arriving = light_at(light, at.origin);
@@ -78,11 +102,12 @@ struct BackwardPath {
             const formats::Rgb e = cosine * arriving.irradiance;
             sum += glm::dvec3(e.r, e.g, e.b);
         }
-        return sources.triangles.empty() ? sum : sum + from_a_triangle(at);
+        return sources.triangles.empty() ? sum : sum + from_a_triangle(at, is_first);
     }
 
-    glm::dvec3 from_a_triangle(const Receiver& at) {
-        const auto x = draw();
+    glm::dvec3 from_a_triangle(const Receiver& at, bool is_first) {
+        auto x = draw();
+        if (is_first) std::copy_n(first.begin(), 3, x.begin());
         const double total = sources.cumulative.back();
         const auto t = std::min<std::size_t>(
             static_cast<std::size_t>(
@@ -114,8 +139,9 @@ struct BackwardPath {
     glm::dvec3 run(Receiver at) {
         glm::dvec3 sum(0), throughput(1);
         for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
-            sum += throughput * straight(at);
-            const auto x = draw();
+            sum += throughput * straight(at, bounce == 0);
+            auto x = draw();
+            if (bounce == 0) std::copy_n(first.begin() + 3, 2, x.begin());
             const float radius = std::sqrt(x[0]), turn = 2 * std::numbers::pi_v<float> * x[1];
             const glm::vec3 direction =
                 make_frame(at.normal).to_world({radius * std::cos(turn), radius * std::sin(turn),
@@ -145,7 +171,7 @@ struct BackwardPath {
                           (going_on * (crosses ? transmit : reflect));
             const glm::vec3 normal(hits.normal_x[0], hits.normal_y[0], hits.normal_z[0]);
             const glm::vec3 toward = is_back == crosses ? normal : -normal;
-            at = {at.origin + hits.distance[0] * direction + 2 * hits.error[0] * toward, toward};
+            at = {leave_surface(at.origin, direction, hits, toward), toward};
         }
         return sum;
     }
@@ -157,6 +183,7 @@ glm::dvec3 mean_irradiance(const EmitterCheck& check, const TrueSources& sources
     glm::dvec3 sum(0);
     BackwardPath path{check, sources, seed, key};
     for (std::uint32_t i = 0; i < paths; ++i) {
+        path.begin(i);
         sum += path.run(receiver);
     }
     rays += path.rays;
@@ -175,6 +202,27 @@ double stored_irradiance(const EmitterCheck& check, std::uint32_t primitive, std
         sum += std::numbers::pi * luminance_of({value.r, value.g, value.b});
     }
     return sum;
+}
+
+// Whether a surface is so near that paths between both would lose their way in rounding: in a
+// crease.
+bool is_in_crease(const EmitterCheck& check, const Receiver& receiver, float near) {
+    RayPacket packet = rays_from(receiver.origin);
+    const Frame frame = make_frame(receiver.normal);
+    LaneMask lanes{};
+    for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
+        const float turn = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / 8;
+        const float slope = i < 8 ? 0.2f : 1.0f;
+        const glm::vec3 direction =
+            glm::normalize(frame.to_world({std::cos(turn), std::sin(turn), slope}));
+        packet.dir_x[i] = direction.x;
+        packet.dir_y[i] = direction.y;
+        packet.dir_z[i] = direction.z;
+        packet.tfar[i] = near;
+        lanes[i] = -1;
+    }
+    check.rays.occluded(lanes, packet);
+    return std::ranges::any_of(packet.tfar, [](float t) { return t < 0; });
 }
 
 struct CheckedReceiver {
@@ -198,10 +246,14 @@ EmitterErrorReport check_emitters(const EmitterCheck& check, std::uint64_t seed,
         std::size_t vertex;
     };
     std::vector<Place> places;
+    const auto near = static_cast<float>(kCrease * check.sources.front().radius);
     for (std::uint32_t p = 0; p < check.primitives.size(); ++p) {
         if (check.primitives[p].shading != formats::Shading::diffuse) continue;
         for (std::size_t v = 0; v < check.receivers[p].size(); ++v) {
-            if (check.receivers[p].outside[v].normal != glm::vec3(0)) places.push_back({p, v});
+            const Receiver& receiver = check.receivers[p].outside[v];
+            if (receiver.normal != glm::vec3(0) && !is_in_crease(check, receiver, near)) {
+                places.push_back({p, v});
+            }
         }
     }
     EmitterErrorReport report;

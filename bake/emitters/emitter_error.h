@@ -31,6 +31,8 @@ struct EmitterCheck {
 
 /// Compares the first row of receivers drawn at random, opaque ones, with path tracing: a point of
 /// an emitter's surface and one of the lights at every vertex, and any number of diffuse bounces.
+/// Receivers in creases, with a surface nearer than a thousandth of the scene, are left out: there
+/// paths lose their way in rounding. Precondition: at least one source.
 /// It shares surfaces' colours with what it checks, but no elements, particles or form factors.
 EmitterErrorReport check_emitters(const EmitterCheck& check, std::uint64_t seed,
                                   const Context& context, std::uint64_t& rays);

@@ -85,18 +85,22 @@ void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
         p.position += at.distance * p.direction;
         move_to_surface(p.path, p.direction, at.normal, at.distance);
         if (flight == 0) p.power *= p.dimming(at.distance);
+        const auto x = random_uniform(tracer.run.seed, RandomStage::particle_bounces,
+                                      particle_key(tracer.run, particle), flight);
+        // Levels are a factor of four apart: the one below or above by chance, so that the mean
+        // size follows the footprint.
         const double area =
             tracer.run.fixed_area > 0
                 ? tracer.run.fixed_area
-                : surface_footprint(p.path, tracer.rules, at.normal, FootprintMode::polygon).area;
+                : std::pow(4.0, static_cast<double>(x[3]) - 0.25) *
+                      surface_footprint(p.path, tracer.rules, at.normal, FootprintMode::polygon)
+                          .area;
         const std::size_t element = tracer.layout.element(at.side, at.weights, area);
         if (element < tracer.layout.size()) out.deposits.push_back({element, p.power});
 
         const BounceColor color = bounce_color(tracer.scene, at.side, glm::vec3(at.weights));
         const double reflect = largest_of(color.reflect), transmit = largest_of(color.transmit);
         const double going_on = std::min(1.0, reflect + transmit);
-        const auto x = random_uniform(tracer.run.seed, RandomStage::particle_bounces,
-                                      particle_key(tracer.run, particle), flight);
         const double roulette = static_cast<double>(x[2]);
         if (!(roulette < going_on)) return;
         const bool crosses = roulette * (reflect + transmit) >= reflect * going_on;
@@ -104,7 +108,10 @@ void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
         p.power *= (crosses ? color.transmit : color.reflect) / chance;
         p.path.survival *= chance;
         const glm::dvec3 axis = crosses ? -at.normal : at.normal;
-        p.position += 2 * at.error * axis;
+        p.position += crosses ? 2 * at.error * axis
+                              : -std::min(2 * at.error / -glm::dot(p.direction, at.normal),
+                                          0.5 * at.distance) *
+                                    p.direction;
         aim_at_normal(p.path, glm::dmat3(0.0));
         p.direction = scatter_in_lobe(p.path, tracer.rules,
                                       {.axis = axis,

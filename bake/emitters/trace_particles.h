@@ -23,10 +23,11 @@ struct ParticleRun {
 /// Power [lm] that a lamp brings to each element of a scene, by particles [Suykens2001].
 ///
 /// A particle of 1 / N of the lamp's power gives it, at each surface that it meets, to the largest
-/// element that is not larger than its footprint: the polygon of global steps (N survival)^(-1/M),
-/// limited where its contribution varies. It goes on with the probability of the surface's largest
-/// band. One element takes all of it, so the sum over elements is what arrived. The same bits for
-/// any number of threads. `rays` counts those traced.
+/// element that is not larger than 4^(u - 1/4) times its footprint, u a random number that evens
+/// out the factors of four between levels. The footprint is the polygon of global steps (N
+/// survival)^(-1/M), limited where its contribution varies. It goes on with the probability of the
+/// surface's largest band. One element takes all of it, so the sum over elements is what arrived.
+/// The same bits for any number of threads. `rays` counts those traced.
 std::vector<glm::dvec3> trace_particles(const formats::Scene& scene, const RayScene& rays_scene,
                                         const LampSources& lamp, const ElementLayout& layout,
                                         const ParticleRun& run, const Context& context,
