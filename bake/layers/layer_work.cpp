@@ -49,10 +49,10 @@ double count_glow_terms(const LayerTableSizes& sizes, bool is_paper) {
 
 // Of one band: P * P, then its modes and the printed forms at all nodes (measured).
 double count_printed_terms(const RadianceTableSize& size) {
-    constexpr double kTermsOfConvolution = 3.6e7, kTermsOfNode = 38, kAzimuths = 128;
+    constexpr double kTermsOfConvolution = 3.6e7, kTermsOfNode = 38, kPlannedAzimuths = 128;
     const auto cosines = static_cast<double>(size.cosines);
     return kTermsOfConvolution + kTermsOfNode * 2 * cosines * cosines *
-                                     (kAzimuths + static_cast<double>(size.depths)) *
+                                     (kPlannedAzimuths + static_cast<double>(size.depths)) *
                                      static_cast<double>(size.modes);
 }
 
