@@ -28,6 +28,11 @@ TriangleMesh turn_about_axis(std::span<const ProfilePoint> profile, unsigned aro
     }
     const std::uint32_t row = around + 1;
     for (std::uint32_t j = 0; j + 1 < profile.size(); ++j) {
+        // Two normals of one edge: nothing is between them.
+        if (profile[j].radius == profile[j + 1].radius &&
+            profile[j].height == profile[j + 1].height) {
+            continue;
+        }
         for (std::uint32_t i = 0; i < around; ++i) {
             const std::uint32_t v = j * row + i;
             if (profile[j].radius > 0) mesh.triangles.push_back({v, v + 1, v + row + 1});

@@ -41,12 +41,13 @@ struct SurfaceKind {
     bool is_textured = false, is_translucent = false;
     bool is_mirroring = false;                        ///< translucent and glossy
     bool is_glossy = false, has_gloss_image = false;  ///< opaque
-    bool has_own_image = false;                       ///< sends out light by itself, with an image
+    bool glows = false, has_own_image = false;        ///< sends out light by itself; with an image
 
     bool has_image() const { return is_textured || has_gloss_image || has_own_image; }
     std::size_t number() const {
         return (is_textured ? 1u : 0u) + (is_translucent ? 2u : 0u) + (is_mirroring ? 4u : 0u) +
-               (is_glossy ? 8u : 0u) + (has_gloss_image ? 16u : 0u) + (has_own_image ? 32u : 0u);
+               (is_glossy ? 8u : 0u) + (has_gloss_image ? 16u : 0u) + (has_own_image ? 32u : 0u) +
+               (glows ? 64u : 0u);
     }
 };
 
@@ -63,6 +64,7 @@ SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
     kind.is_glossy = !asset.gloss.empty() && asset.gloss[primitive].is_glossy();
     kind.has_gloss_image = kind.is_glossy && asset.gloss[primitive].image < asset.images.size();
     const formats::OwnLight* const own = own_light_of(asset, primitive);
+    kind.glows = own != nullptr;
     kind.has_own_image = own != nullptr && own->image < asset.images.size();
     return kind;
 }
@@ -78,6 +80,7 @@ std::string defines_of(SurfaceKind kind) {
     if (kind.is_mirroring) text += define("MIRRORING");
     if (kind.is_glossy) text += define("GLOSS");
     if (kind.has_gloss_image) text += define("GLOSS_TEXTURED");
+    if (kind.glows) text += define("GLOWS");
     if (kind.has_own_image) text += define("OWN_TEXTURED");
     if (kind.has_image()) text += define("HAS_TEXCOORD");
     if (kind.is_translucent || kind.is_glossy) text += define("HAS_VIEW");
@@ -174,7 +177,7 @@ void set_own_light(const DrawScene& scene, GLuint program, std::size_t primitive
                                    scene.own[primitive].b}
                    : formats::Vec3{});
     const formats::OwnLight* const own = own_light_of(scene.asset, primitive);
-    if (own == nullptr || own->image >= scene.asset.images.size()) return;
+    if (own->image >= scene.asset.images.size()) return;
     glBindTextureUnit(4, scene.asset.images[own->image].name());
     glProgramUniform2i(program, kOwnWrap, static_cast<GLint>(own->wrap_u),
                        static_cast<GLint>(own->wrap_v));
@@ -237,7 +240,7 @@ void draw_surfaces(const DrawScene& scene, const SurfacePrograms& programs, cons
         glUniform1f(kShown, is_shown(primitive, scene.terms) ? 1.0f : 0.0f);
         if (kind.is_mirroring) set_mirroring(scene, program, p);
         if (kind.is_glossy) set_gloss(scene, program, asset.gloss[p]);
-        set_own_light(scene, program, p);
+        if (kind.glows) set_own_light(scene, program, p);
         draw_triangles(primitive);
     }
 }

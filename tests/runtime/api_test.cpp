@@ -181,7 +181,7 @@ TEST_F(Api, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
     EXPECT_EQ(opaline_light_set_cubemap(l, white, 0), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_light_set_threads(l, 257), OPALINE_INVALID_ARGUMENT);
     std::vector<float> out(3 * receivers);
-    EXPECT_EQ(opaline_shade(asset.get(), l, 64, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_shade(asset.get(), l, 128, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_shade(asset.get(), l, 0, out.data(), out.size() - 1),
               OPALINE_BUFFER_TOO_SMALL);
     EXPECT_EQ(opaline_shade(asset.get(), l, 0, nullptr, out.size()), OPALINE_INVALID_ARGUMENT);

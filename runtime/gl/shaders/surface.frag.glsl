@@ -3,12 +3,15 @@
 // TRANSLUCENT: the rows are multiplied by the Fresnel transmittance;
 // MIRRORING: translucent with a specular reflection on top (cube_map.glsl comes before this);
 // GLOSS: glossy opaque (cube_map.glsl and gloss.glsl come before this); GLOSS_TEXTURED: with an
-// image of roughness and metallic (image.glsl); OWN_TEXTURED: what it sends out has an image (image.glsl).
+// image of roughness and metallic (image.glsl); GLOWS: it sends out light by itself; OWN_TEXTURED: with
+// an image (image.glsl).
 layout(location = 0) in vec3 v_radiance;
 layout(location = 1) in vec3 v_base_color;
 layout(location = 0) out vec4 color;
 layout(location = 11) uniform float shown;  // 1, or 0: left out
+#ifdef GLOWS
 layout(location = 19) uniform vec3 own_light;  // radiance that the surface sends out by itself
+#endif
 
 float tame(float value) {
     return value > 0.0 ? min(value, 1e35) : 0.0;
@@ -171,9 +174,13 @@ void main() {
                     tame(eval_gloss(g, light_from_world * n, light_from_world * w, c));
     }
 #endif
+    radiance = tame(radiance);
+#ifdef GLOWS
     vec3 own = own_light;
 #ifdef OWN_TEXTURED
     own *= sample_image(own_image, v_texcoord, own_wrap, true);
 #endif
-    color = vec4(tame(tame(radiance) + own), 1.0);
+    radiance = tame(radiance + own);
+#endif
+    color = vec4(radiance, 1.0);
 }

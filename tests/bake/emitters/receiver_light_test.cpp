@@ -51,7 +51,8 @@ TEST(ReceiverLight, InAFurnaceIsEvenEverywhere) {
     formats::Scene scene;
     tests::add_surface(scene, tests::make_cube(2, true), 0.5f, std::numbers::inv_pi_v<float>);
     const LitScene lit(std::move(scene));
-    for (const formats::Rgb& row : lit.rows(0).at(0)) {
+    const auto rows = lit.rows(0);
+    for (const formats::Rgb& row : rows.at(0)) {
         EXPECT_NEAR(std::numbers::pi * double{row.g}, 2, 0.02);
     }
 }
@@ -62,7 +63,8 @@ TEST(ReceiverLight, DoesNotPassThroughAThinWall) {
     tests::add_surface(scene, tests::make_quad({-9, -9, 0.5f}, {20, 0, 0}, {0, 20, 0}), 0.8f);
     scene.materials[2].double_sided = true;
     const LitScene lit(std::move(scene));
-    for (const formats::Rgb& row : lit.rows(1).at(0)) {
+    const auto rows = lit.rows(1);
+    for (const formats::Rgb& row : rows.at(0)) {
         EXPECT_EQ(row, formats::Rgb{});
     }
 }
