@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "bake/cli/json_output.h"
@@ -182,10 +183,12 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
         const std::string seconds =
             entry.predicted_seconds > 0 ? format_seconds(entry.predicted_seconds) : "-";
         const std::string size = entry.predicted_bytes > 0 ? bytes(entry.predicted_bytes) : "-";
-        table += fmt::format("{:<{}} {:<{}} {:<8} {:>6.3f} {:>10} {:>10}  {}\n", entry.name,
-                             widest_effect, printable(entry.subject.name), widest,
-                             entry.on ? "on" : "off", entry.bound, seconds, size,
-                             printable(entry.reason) + savings_text(entry));
+        const std::string bound =
+            std::isnan(entry.bound) ? "none" : fmt::format("{:.3f}", entry.bound);
+        table +=
+            fmt::format("{:<{}} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", entry.name, widest_effect,
+                        printable(entry.subject.name), widest, entry.on ? "on" : "off", bound,
+                        seconds, size, printable(entry.reason) + savings_text(entry));
     }
     table += fmt::format("{:<{}} {:<{}} {:<8} {:>6} {:>10} {:>10}  {}\n", rest, widest_effect,
                          everything, widest, "always", "", format_seconds(cost.shared_seconds),

@@ -195,7 +195,7 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
 
 formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
     // Of later versions; whoever names one should not take it for a slip of the pen.
-    constexpr std::array<std::string_view, 2> kLater{"emitters", "filtering"};
+    constexpr std::array<std::string_view, 1> kLater{"filtering"};
     bake::BakeOptions wanted = options.bake;
     if (options.effects == "auto") {
         return wanted;

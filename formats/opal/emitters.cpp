@@ -8,8 +8,9 @@
 namespace opaline::formats {
 
 std::span<const EmitterBlock> EmittersView::blocks_of(std::uint32_t primitive) const {
-    const auto part = std::ranges::equal_range(block, primitive, {}, &EmitterBlock::primitive);
-    return {part.begin(), part.end()};
+    const auto first = std::ranges::lower_bound(block, primitive, {}, &EmitterBlock::primitive);
+    const auto last = std::ranges::upper_bound(block, primitive, {}, &EmitterBlock::primitive);
+    return {first, last};
 }
 
 const OwnLight* EmittersView::own_of(std::uint32_t primitive) const {

@@ -1,6 +1,7 @@
 // Convex bodies alone: what is not traced, and that tracing would find the same.
 #include <gtest/gtest.h>
 
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {
@@ -12,7 +13,7 @@ using tests::small_bake;
 
 BakeResult bake_convex(const formats::Scene& scene, bool forced,
                        BakeOptions options = small_bake()) {
-    options.simulate_all = forced;
+    if (forced) simulate_all_but_bounces(options);
     return tests::bake_scene(scene, options);
 }
 

@@ -12,6 +12,7 @@
 #include "bake/reference/reference_receivers.h"
 #include "formats/gltf/import_gltf.h"
 #include "tests/bake/reference/reference_support.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/sheets.h"
 #include "tests/support/temporary_folder.h"
@@ -92,7 +93,7 @@ TEST(FarScenes, WhatIsSmallAndAtTheOriginKeepsItsLightInALargeScene) {
     const BakeResult alone = tests::bake_scene(scene, tests::small_bake());
     scene.primitives.push_back(make_distant_triangle());
     BakeOptions options = tests::small_bake();
-    options.simulate_all = true;  // rays even where nothing can be met
+    simulate_all_but_bounces(options);  // rays even where nothing can be met
     const BakeResult large = tests::bake_scene(scene, options);
     const auto a = tests::relight_primitive(alone.asset, "white");
     const auto b = tests::relight_primitive(large.asset, "white");
@@ -105,7 +106,7 @@ TEST(FarScenes, WhatIsTranslucentAndAtTheOriginKeepsItsLightInALargeScene) {
     auto scene = tests::make_translucent_scene(tests::make_sheet(0.002f, 8, 0.05f),
                                                tests::make_grey_medium(500, 50));
     BakeOptions options = tests::small_bake();
-    options.simulate_all = true;
+    simulate_all_but_bounces(options);
     const BakeResult alone = tests::bake_scene(scene, options);
     scene.primitives.push_back(make_distant_triangle());
     const BakeResult large = tests::bake_scene(scene, options);

@@ -110,7 +110,7 @@ TEST(Gloss, LeftOutBelowItsBoundChangesLessThanTheBound) {
     faint.specular = 1e-3f;
     const auto white = make_environment("white").value();
     BakeOptions forced = small();
-    forced.simulate_all = true;
+    simulate_all_but_bounces(forced);
     const BakeResult chosen = tests::bake_scene(glossy_ball(faint), small());
     const BakeResult all = tests::bake_scene(glossy_ball(faint), forced);
     const PlanEntry& entry = *find_entry(chosen.plan, "gloss", 0);

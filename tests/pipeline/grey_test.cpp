@@ -47,7 +47,7 @@ BakeResult bake_grey(const formats::Scene& scene, bool forced, std::uint32_t pha
     BakeOptions options = tests::small_bake();
     options.set(kPhaseTerms, phase_terms);
     options.separate_terms = separate;
-    options.simulate_all = forced;
+    if (forced) simulate_all_but_bounces(options);
     return tests::bake_scene(scene, options);
 }
 

@@ -5,6 +5,7 @@
 #include <initializer_list>
 
 #include "runtime/specular.h"
+#include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {
@@ -22,7 +23,7 @@ formats::Scene dim_ball(float albedo) {
 BakeResult bake_effects(const formats::Scene& scene, bool forced) {
     BakeOptions options = tests::small_bake();
     options.coefficients = kAllCoefficients;
-    options.simulate_all = forced;
+    if (forced) simulate_all_but_bounces(options);
     return tests::bake_scene(scene, options);
 }
 
