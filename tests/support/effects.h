@@ -43,10 +43,11 @@ inline void predict_savings(const formats::Scene& scene, const SceneFacts& facts
     predict_savings({all_effects(), scene, facts, knobs, rates, threads}, plan);
 }
 
-/// Every shortcut forced off, and all light but that of other surfaces, which no bake simulates
-/// unasked: what a bake with shortcuts is compared with.
+/// Every shortcut forced off: what a bake with shortcuts is compared with. Without a list of
+/// effects all light but that of other surfaces, which no bake simulates unasked.
 inline void simulate_all_but_bounces(BakeOptions& options) {
     options.simulate_all = true;
+    if (!options.effects.empty()) return;
     for (const EffectDescriptor& effect : all_effects().effects) {
         if (!effect.help.empty() && effect.name != "interreflection") {
             options.effects.emplace_back(effect.name);

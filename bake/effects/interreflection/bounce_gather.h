@@ -74,9 +74,9 @@ std::uint64_t trace_bounces(const RayScene& rays, const Receiver& at, std::uint3
                     random_uniform(seed, RandomStage::bounce_rays, key, 8 * number + i / 2);
                 for (std::uint32_t j = 0; j < 2; ++j) {
                     const std::uint32_t lane = i + j;
-                    const glm::vec2 d =
-                        to_disk((static_cast<float>(column + lane % 4) + u[2 * j]) * width,
-                                (static_cast<float>(row + lane / 4) + u[2 * j + 1]) * width);
+                    const std::uint32_t across = column + lane % 4, along = row + lane / 4;
+                    const glm::vec2 d = to_disk((static_cast<float>(across) + u[2 * j]) * width,
+                                                (static_cast<float>(along) + u[2 * j + 1]) * width);
                     const float z = std::sqrt(std::max(0.0f, 1 - glm::dot(d, d)));
                     const glm::vec3 direction = frame.to_world({d.x, d.y, z});
                     packet.dir_x[lane] = direction.x;
