@@ -38,6 +38,8 @@ TEST(Bake, ReportHasTheKeysOfTheContract) {
         if (entry.at("effect") == "direct") {
             EXPECT_EQ(entry.at("decision"), "on");
             EXPECT_GT(entry.at("predicted_seconds").get<double>(), 0);
+        } else if (entry.at("effect") == "interreflection") {
+            EXPECT_EQ(entry.at("decision"), "off") << "nobody asked for it";
         } else {
             EXPECT_EQ(entry.at("effect"), "light.visibility");
         }
