@@ -15,13 +15,13 @@
 #include "bake/cli/outputs.h"
 #include "bake/cli/path_integration.h"
 #include "bake/cli/progress.h"
+#include "bake/cli/reference_checks.h"
 #include "bake/cli/scene_options.h"
 #include "bake/cli/write_picture.h"
 #include "bake/path_images/path_image.h"
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "bake/reference/write_receivers.h"
-#include "bake/scene/orient_bodies.h"
 #include "formats/image/exr.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/terms.h"
@@ -138,50 +138,6 @@ Status report_lost_paths(const ReferenceCommand& options, const bake::Estimate& 
         "close the holes of its mesh")});
 }
 
-// Paths do not know cloud layers.
-Status check_layers(const formats::Scene& scene) {
-    if (scene.layers.empty()) {
-        return formats::ok_status();
-    }
-    if (scene.primitives.empty() && scene.volumes.empty()) {
-        return make_error(ErrorKind::bad_input, scene.source, "clouds",
-                          "the scene is a cloud layer alone, which no paths are traced through",
-                          "a bake measures a layer's error itself; opaline slab computes layers by "
-                          "photons");
-    }
-    return report_warnings({formats::make_warning(
-        scene.source, "clouds", "the cloud layer is left out: no paths are traced through it",
-        "compare with a bake without it")});
-}
-
-// A line to a light without an extent is not bent, and no path meets such a light.
-Status check_lights(const formats::Scene& scene) {
-    const auto bends = [](const formats::Material& m) {
-        return m.medium && !bake::is_matched(m.medium->eta);
-    };
-    if (scene.lights.empty() ||
-        std::none_of(scene.materials.begin(), scene.materials.end(), bends)) {
-        return formats::ok_status();
-    }
-    return report_warnings({formats::make_warning(
-        scene.source, "KHR_lights_punctual",
-        "light of points, spots and directional lights does not pass boundaries that refract: "
-        "bodies are lit by it as far as other surfaces reflect it",
-        "give the light a surface: a small mesh with emissiveFactor")});
-}
-
-// As a bake sees them.
-formats::Result<bake::OrientedBodies> close_bodies(const formats::Scene& scene) {
-    bake::OrientedBodies bodies = bake::orient_bodies(scene);
-    for (bake::BodySurface& surface : bodies.surfaces) {
-        surface.open_edges = 0;  // paths are counted that are lost there
-    }
-    if (auto status = report_warnings(bake::describe_faults(scene, bodies.surfaces)); !status) {
-        return std::move(status).error();
-    }
-    return bodies;
-}
-
 Status make_table(const ReferenceCommand& options, const bake::PathSpace& space,
                   const bake::EstimateOptions& wanted, const bake::Context& context) {
     std::optional<glm::vec3> eye;
@@ -277,10 +233,7 @@ int run(const ReferenceCommand& options) {
     if (auto status = check_paths(options, imported->scene.inputs); !status) {
         return report_error(status.error());
     }
-    if (auto status = check_layers(imported->scene); !status) {
-        return report_error(status.error());
-    }
-    if (auto status = check_lights(imported->scene); !status) {
+    if (auto status = check_traceable(imported->scene); !status) {
         return report_error(status.error());
     }
     if (options.paths.is_chosen()) {

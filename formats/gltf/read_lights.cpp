@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "formats/gltf/named_object.h"
 #include "formats/gltf/read_texture_use.h"
 
 namespace opaline::formats::gltf {
@@ -14,42 +15,6 @@ using Json = nlohmann::json;
 
 constexpr const char* kLights = "KHR_lights_punctual";
 constexpr std::uint64_t kMostLights = 0x7ffffffe;
-
-/// An object of the file and how messages name it.
-struct NamedObject {
-    const Json& object;
-    std::string where;
-    Report& report;
-
-    void wrong(const char* key, const char* expected) const {
-        report.error(where, std::string(key) + " is not " + expected, kExportAgain);
-    }
-    void number(const char* key, double& value) const {
-        const auto found = object.find(key);
-        if (found == object.end()) {
-            return;
-        }
-        if (!found->is_number()) {
-            wrong(key, "a number");
-            return;
-        }
-        value = found->get<double>();
-    }
-    void color(const char* key, glm::dvec3& value) const {
-        const auto found = object.find(key);
-        if (found == object.end()) {
-            return;
-        }
-        const bool good = found->is_array() && found->size() == 3 &&
-                          std::all_of(found->begin(), found->end(),
-                                      [](const Json& band) { return band.is_number(); });
-        if (!good) {
-            wrong(key, "an array of three numbers");
-            return;
-        }
-        value = {(*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>()};
-    }
-};
 
 std::string name_of(const Json& object) {
     const auto name = object.find("name");

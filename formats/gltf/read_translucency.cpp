@@ -1,8 +1,8 @@
 #include "formats/gltf/read_translucency.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "formats/gltf/named_object.h"
 #include "formats/gltf/read_texture_use.h"
 
 namespace opaline::formats::gltf {
@@ -11,128 +11,93 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Reads the members of one extension (or of pbrMetallicRoughness) of one material.
-struct Extension {
-    const Json& object;
-    std::string where;  ///< "material 'Wax' > KHR_materials_volume"
-    TranslucencySource& out;
-    Report& report;
+// Each reads a member of an extension, or of pbrMetallicRoughness, that is a texture.
+void read_texture(const NamedObject& extension, const char* key, TextureUse& use) {
+    if (const auto found = extension.object.find(key); found != extension.object.end()) {
+        use = read_texture_use(*found, extension.where + " > " + key, extension.report);
+    }
+}
 
-    void wrong(const char* key, const char* expected) const {
-        report.error(where, std::string(key) + " is not " + expected, "export the file again");
+void note_texture(const NamedObject& extension, const char* key, TranslucencySource& out) {
+    if (extension.object.contains(key)) {
+        out.textures.emplace_back(key);
     }
-    void number(const char* key, double& value) const {
-        const auto found = object.find(key);
-        if (found == object.end()) {
-            return;
-        }
-        if (!found->is_number()) {
-            wrong(key, "a number");
-            return;
-        }
-        value = found->get<double>();
-    }
-    void color(const char* key, glm::dvec3& value) const {
-        const auto found = object.find(key);
-        if (found == object.end()) {
-            return;
-        }
-        const bool good = found->is_array() && found->size() == 3 &&
-                          std::all_of(found->begin(), found->end(),
-                                      [](const Json& band) { return band.is_number(); });
-        if (!good) {
-            wrong(key, "an array of three numbers");
-            return;
-        }
-        value = {(*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>()};
-    }
-    void texture(const char* key, TextureUse& use) const {
-        if (const auto found = object.find(key); found != object.end()) {
-            use = read_texture_use(*found, where + " > " + key, report);
-        }
-    }
-    void texture(const char* key) const {
-        if (object.contains(key)) {
-            out.textures.emplace_back(key);
-        }
-    }
-};
+}
 
 /// Calls `read` with the extension if the material has it; returns whether it has.
 template <class Read>
 bool read_extension(const Json& extensions, const char* name, const std::string& where,
-                    TranslucencySource& out, Report& report, const Read& read) {
+                    Report& report, const Read& read) {
     const auto found = extensions.find(name);
     if (found == extensions.end()) {
         return false;
     }
     if (!found->is_object()) {
-        report.error(where, std::string(name) + " is not an object", "export the file again");
+        report.error(where, std::string(name) + " is not an object", kExportAgain);
         return false;
     }
-    read(Extension{*found, where + " > " + name, out, report});
+    read(NamedObject{*found, where + " > " + name, report});
     return true;
 }
 
 void read_scattering(const Json& extensions, const std::string& where, TranslucencySource& out,
                      Report& report) {
     out.has_scatter = read_extension(
-        extensions, "KHR_materials_scatter", where, out, report, [&](const Extension& scatter) {
+        extensions, "KHR_materials_scatter", where, report, [&](const NamedObject& scatter) {
             if (scatter.object.contains("scatterStrengthFactor")) {
                 scatter.number("scatterStrengthFactor", out.scatter_strength.emplace(0.0));
             }
             scatter.color("multiscatterColorFactor", out.multiscatter_color);
             scatter.number("scatterAnisotropy", out.anisotropy);
-            scatter.texture("scatterStrengthTexture", out.scatter_strength_texture);
-            scatter.texture("multiscatterColorTexture", out.multiscatter_color_texture);
+            read_texture(scatter, "scatterStrengthTexture", out.scatter_strength_texture);
+            read_texture(scatter, "multiscatterColorTexture", out.multiscatter_color_texture);
         });
     if (out.has_scatter) {
         return;  // a file with both was written for readers of either
     }
     out.has_volume_scatter = read_extension(
-        extensions, "KHR_materials_volume_scatter", where, out, report,
-        [&](const Extension& scatter) {
+        extensions, "KHR_materials_volume_scatter", where, report, [&](const NamedObject& scatter) {
             out.multiscatter_color = glm::dvec3(0.0);
             // The draft's revisions differ in the name.
             scatter.color("multiscatterColor", out.multiscatter_color);
             scatter.color("multiscatterColorFactor", out.multiscatter_color);
             scatter.number("scatterAnisotropy", out.anisotropy);
-            scatter.texture("multiscatterColorTexture", out.multiscatter_color_texture);
+            read_texture(scatter, "multiscatterColorTexture", out.multiscatter_color_texture);
         });
 }
 
 void read_surface(const Json& material, const Json& extensions, const std::string& where,
                   TranslucencySource& out, Report& report) {
-    read_extension(material, "pbrMetallicRoughness", where, out, report, [&](const Extension& pbr) {
+    read_extension(material, "pbrMetallicRoughness", where, report, [&](const NamedObject& pbr) {
         pbr.number("metallicFactor", out.metallic);
         pbr.number("roughnessFactor", out.roughness);
-        pbr.texture("metallicRoughnessTexture");
+        note_texture(pbr, "metallicRoughnessTexture", out);
     });
     out.is_diffuse = extensions.contains("KHR_materials_unlit") ||
                      (extensions.contains("KHR_materials_pbrSpecularGlossiness") &&
                       !material.contains("pbrMetallicRoughness"));
-    out.has_ior = read_extension(extensions, "KHR_materials_ior", where, out, report,
-                                 [&](const Extension& ior) { ior.number("ior", out.ior); });
-    out.has_specular = read_extension(extensions, "KHR_materials_specular", where, out, report,
-                                      [&](const Extension& specular) {
+    out.has_ior = read_extension(extensions, "KHR_materials_ior", where, report,
+                                 [&](const NamedObject& ior) { ior.number("ior", out.ior); });
+    out.has_specular = read_extension(extensions, "KHR_materials_specular", where, report,
+                                      [&](const NamedObject& specular) {
                                           specular.number("specularFactor", out.specular);
                                           specular.color("specularColorFactor", out.specular_color);
-                                          specular.texture("specularTexture");
-                                          specular.texture("specularColorTexture");
+                                          note_texture(specular, "specularTexture", out);
+                                          note_texture(specular, "specularColorTexture", out);
                                       });
     out.has_transmission =
-        read_extension(extensions, "KHR_materials_transmission", where, out, report,
-                       [&](const Extension& transmission) {
+        read_extension(extensions, "KHR_materials_transmission", where, report,
+                       [&](const NamedObject& transmission) {
                            transmission.number("transmissionFactor", out.transmission);
-                           transmission.texture("transmissionTexture");
+                           note_texture(transmission, "transmissionTexture", out);
                        });
     out.has_diffuse_transmission = read_extension(
-        extensions, "KHR_materials_diffuse_transmission", where, out, report,
-        [&](const Extension& transmission) {
+        extensions, "KHR_materials_diffuse_transmission", where, report,
+        [&](const NamedObject& transmission) {
             transmission.number("diffuseTransmissionFactor", out.diffuse_transmission);
             transmission.color("diffuseTransmissionColorFactor", out.diffuse_transmission_color);
-            transmission.texture("diffuseTransmissionTexture");
-            transmission.texture("diffuseTransmissionColorTexture");
+            note_texture(transmission, "diffuseTransmissionTexture", out);
+            note_texture(transmission, "diffuseTransmissionColorTexture", out);
         });
 }
 
@@ -152,15 +117,15 @@ std::vector<TranslucencySource> read_translucency(const Json& root, Report& repo
                   name != material.end() && name->is_string() ? name->get<std::string>() : "");
         const Json extensions = material.value("extensions", Json::object());
         if (!extensions.is_object()) {
-            report.error(where, "extensions is not an object", "export the file again");
+            report.error(where, "extensions is not an object", kExportAgain);
             continue;
         }
         out.has_volume = read_extension(
-            extensions, "KHR_materials_volume", where, out, report, [&](const Extension& volume) {
+            extensions, "KHR_materials_volume", where, report, [&](const NamedObject& volume) {
                 volume.number("thicknessFactor", out.thickness);
                 volume.number("attenuationDistance", out.attenuation_distance);
                 volume.color("attenuationColor", out.attenuation_color);
-                volume.texture("thicknessTexture");
+                note_texture(volume, "thicknessTexture", out);
             });
         read_scattering(extensions, where, out, report);
         read_surface(material, extensions, where, out, report);

@@ -1,0 +1,65 @@
+#include "bake/cli/reference_checks.h"
+
+#include <algorithm>
+
+#include "bake/cli/messages.h"
+#include "bake/reference/reference_scene.h"
+
+namespace opaline::cli {
+namespace {
+
+using formats::ErrorKind;
+using formats::make_error;
+using formats::Status;
+
+// Paths do not know cloud layers.
+Status check_layers(const formats::Scene& scene) {
+    if (scene.layers.empty()) {
+        return formats::ok_status();
+    }
+    if (scene.primitives.empty() && scene.volumes.empty()) {
+        return make_error(ErrorKind::bad_input, scene.source, "clouds",
+                          "the scene is a cloud layer alone, which no paths are traced through",
+                          "a bake measures a layer's error itself; opaline slab computes layers by "
+                          "photons");
+    }
+    return report_warnings({formats::make_warning(
+        scene.source, "clouds", "the cloud layer is left out: no paths are traced through it",
+        "compare with a bake without it")});
+}
+
+// A line to a light without an extent is not bent, and no path meets such a light.
+Status check_lights(const formats::Scene& scene) {
+    const auto bends = [](const formats::Material& m) {
+        return m.medium && !bake::is_matched(m.medium->eta);
+    };
+    if (scene.lights.empty() ||
+        std::none_of(scene.materials.begin(), scene.materials.end(), bends)) {
+        return formats::ok_status();
+    }
+    return report_warnings({formats::make_warning(
+        scene.source, "KHR_lights_punctual",
+        "light of points, spots and directional lights does not pass boundaries that refract: "
+        "bodies are lit by it as far as other surfaces reflect it",
+        "give the light a surface: a small mesh with emissiveFactor")});
+}
+
+}  // namespace
+
+formats::Status check_traceable(const formats::Scene& scene) {
+    auto status = check_layers(scene);
+    return status ? check_lights(scene) : status;
+}
+
+formats::Result<bake::OrientedBodies> close_bodies(const formats::Scene& scene) {
+    bake::OrientedBodies bodies = bake::orient_bodies(scene);
+    for (bake::BodySurface& surface : bodies.surfaces) {
+        surface.open_edges = 0;  // paths are counted that are lost there
+    }
+    if (auto status = report_warnings(bake::describe_faults(scene, bodies.surfaces)); !status) {
+        return std::move(status).error();
+    }
+    return bodies;
+}
+
+}  // namespace opaline::cli
