@@ -21,6 +21,20 @@ TEST(RuleInterreflection, ALoneConvexBodyHasNoneAndABodyOnAFloorHas) {
     EXPECT_TRUE(is_on(tests::make_dented_ball()));
 }
 
+TEST(RuleInterreflection, ActsOnlyWhereItIsAskedForAndAListLimitsWhatAllForces) {
+    const formats::Scene scene = tests::make_dented_ball();
+    const auto decided = [&](std::vector<std::string> effects, bool all) {
+        BakeOptions options = tests::bounce_options(std::move(effects));
+        options.simulate_all = all;
+        const auto plan = plan_bake(scene, inspect_scene(scene), resolve_knobs(options).value());
+        return find_entry(plan, "interreflection", 0)->on;
+    };
+    EXPECT_FALSE(decided({}, false)) << "auto";
+    EXPECT_TRUE(decided({}, true)) << "all";
+    EXPECT_FALSE(decided({"direct"}, true));
+    EXPECT_TRUE(decided(kRuleEffects, false));
+}
+
 TEST(RuleInterreflection, BlackSurfacesReflectNothingToOthers) {
     EXPECT_TRUE(is_on(tests::make_plates(1, 0.5f, 1)));
     EXPECT_FALSE(is_on(tests::make_plates(1, 0.02f, 1)));
