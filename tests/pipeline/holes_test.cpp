@@ -1,0 +1,60 @@
+// Surfaces that light passes: alphaMode of a glTF file.
+#include <gmock/gmock.h>
+
+#include "bake/pipeline/unmet_requests.h"
+#include "bake/scene/inspect_scene.h"
+#include "tests/support/media_bake.h"
+
+namespace opaline::bake {
+namespace {
+
+// A floor under a plate that covers half of its sky.
+formats::Scene floor_under_plate(formats::Material::AlphaMode mode, float alpha) {
+    formats::Scene scene =
+        tests::make_scene({tests::make_quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 2),
+                           tests::make_quad({-1, 0.5f, 1}, {2, 0, 0}, {0, 0, -2}, 1)});
+    scene.primitives[1].material = 1;
+    scene.materials.push_back({.name = "Plate", .alpha_mode = mode, .alpha = alpha});
+    return scene;
+}
+
+double floor_light(const formats::Scene& scene) {
+    double sum = 0;
+    for (const formats::Rgb& c :
+         tests::relight_primitive(tests::bake_scene(scene, tests::small_bake()).asset, "white")) {
+        sum += static_cast<double>(c.g);
+    }
+    return sum / static_cast<double>(scene.primitives[0].position.size());
+}
+
+TEST(Holes, OfAMaskLetAllLightPassAndThoseOfABlendTheirShare) {
+    using enum formats::Material::AlphaMode;
+    formats::Scene open = floor_under_plate(opaque, 1);
+    open.primitives.pop_back();
+    const double bare = floor_light(open), covered = floor_light(floor_under_plate(opaque, 1));
+    EXPECT_LT(covered, 0.8 * bare);
+    EXPECT_DOUBLE_EQ(floor_light(floor_under_plate(mask, 0.4f)), bare);
+    EXPECT_DOUBLE_EQ(floor_light(floor_under_plate(mask, 0.6f)), covered);
+    EXPECT_NEAR(floor_light(floor_under_plate(blend, 0.3f)), 0.7 * bare + 0.3 * covered,
+                0.03 * bare);
+}
+
+TEST(Holes, ThatAFileDoesNotKeepAreNamed) {
+    using enum formats::Material::AlphaMode;
+    const auto warnings_of = [](const formats::Scene& scene) {
+        const Knobs knobs = *resolve_knobs({});
+        const SceneFacts facts = inspect_scene(scene);
+        const auto plan = plan_bake(all_effects(), scene, facts, knobs);
+        std::string all;
+        for (const auto& w : describe_unmet({all_effects(), scene, facts, knobs, plan}, {})) {
+            all += w.where + ": " + w.fault;
+        }
+        return all;
+    };
+    EXPECT_THAT(warnings_of(floor_under_plate(mask, 0.4f)),
+                ::testing::HasSubstr("material 'Plate': light passes the holes"));
+    EXPECT_EQ(warnings_of(floor_under_plate(opaque, 0.4f)), "");
+}
+
+}  // namespace
+}  // namespace opaline::bake
