@@ -259,7 +259,7 @@ EmitterErrorReport check_emitters(const EmitterCheck& check, std::uint64_t seed,
     EmitterErrorReport report;
     const std::size_t count = std::min<std::size_t>(places.size(), kCheckedReceivers);
     const TrueSources sources = collect_sources(check.sources);
-    double error = 0, reference = 0;
+    double error = 0, squares = 0, reference = 0;
     for_each_block_in_order(
         count, 1, context,
         [&](Range range) {
@@ -279,12 +279,20 @@ EmitterErrorReport check_emitters(const EmitterCheck& check, std::uint64_t seed,
             return checked;
         },
         [&](Range, CheckedReceiver&& checked) {
-            error += (checked.stored - checked.truth[0]) * (checked.stored - checked.truth[1]);
+            const double square =
+                (checked.stored - checked.truth[0]) * (checked.stored - checked.truth[1]);
+            error += square;
+            squares += square * square;
             reference += checked.truth[0] * checked.truth[1];
             rays += checked.rays;
             ++report.receivers_checked;
         });
-    report.rms_relative = reference > 0 ? std::sqrt(std::max(0.0, error) / reference) : 0;
+    // Where the truth's noise hides the error, the sum's standard error is what can be said of it.
+    const auto n = static_cast<double>(count);
+    const double standard_error =
+        count > 1 ? std::sqrt(std::max(0.0, squares - error * error / n) * n / (n - 1)) : 0;
+    report.rms_relative =
+        reference > 0 ? std::sqrt(std::max(error, standard_error) / reference) : 0;
     return report;
 }
 

@@ -14,7 +14,8 @@ namespace opaline::bake {
 /// How far rows of emitters err.
 struct EmitterErrorReport {
     /// RMS of the error of luminance over the RMS of the truth, of all emitters as authored
-    /// together, the noise of the truth taken off.
+    /// together, the noise of the truth taken off; no less than what the check can resolve, which
+    /// is the standard error of the mean square.
     double rms_relative = 0;
     std::uint32_t receivers_checked = 0;
 };

@@ -49,7 +49,7 @@ inline constexpr KnobSpec kEmitterRays{
         "all; default as the quality says",
     .lowest = 1,
     .highest = 1e6,
-    .preset = {64, 128, 256, 1024},
+    .preset = {128, 512, 1024, 4096},
     .for_target = emitter_knobs::rays_for,
     .label = "%g rays",
     .matters = emitter_knobs::is_lit,
