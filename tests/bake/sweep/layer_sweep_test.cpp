@@ -5,11 +5,11 @@
 #include <set>
 
 #include "bake/accuracy/sweep/analysis.h"
-#include "bake/accuracy/sweep/run_sweep.h"
 #include "bake/accuracy/sweep/sweep_layers.h"
 #include "bake/accuracy/sweep/tables.h"
 #include "bake/layers/plan_layers.h"
 #include "tests/bake/layers/layer_support.h"
+#include "tests/bake/sweep/enough_time.h"
 #include "tests/support/effects.h"
 #include "tests/support/rates.h"
 
@@ -101,7 +101,7 @@ TEST(LayerSweep, PointsOfALayerAloneNeedNoTestLightsAndNoPathTracing) {
     // As those of a real machine: the others' would leave no time for a draft.
     options.rates.series_term = options.rates.flux_product = options.rates.radiance_product = 5e-10;
     options.bake.threads = 2;
-    const auto result = run_sweep(all_effects(), layer_scene(100, 1e-6), options, {}, {});
+    const auto result = tests::sweep_with_enough_time(layer_scene(100, 1e-6), options, 3);
     ASSERT_TRUE(result.has_value());
     EXPECT_TRUE(result->lights.empty());
     EXPECT_FALSE(result->reference);

@@ -4,10 +4,10 @@
 #include <set>
 
 #include "bake/accuracy/sweep/analysis.h"
-#include "bake/accuracy/sweep/run_sweep.h"
 #include "bake/accuracy/sweep/tables.h"
 #include "bake/volumes/plan_volumes.h"
 #include "bake/volumes/volume_knobs.h"
+#include "tests/bake/sweep/enough_time.h"
 #include "tests/support/effects.h"
 #include "tests/support/rates.h"
 #include "tests/support/volumes.h"
@@ -52,7 +52,7 @@ TEST(VolumeSweep, PointsHaveErrorsOfFourKindsOfLight) {
     options.seconds = 25;
     options.rates = tests::make_rates();
     options.bake.threads = 2;
-    const auto result = run_sweep(all_effects(), make_cloud(), options, {}, {});
+    const auto result = tests::sweep_with_enough_time(make_cloud(), options, 3);
     ASSERT_TRUE(result.has_value());
     EXPECT_THAT(result->lights, ::testing::ElementsAre("forward", "side", "back", "even"));
     ASSERT_GT(result->points.size(), 2u);
