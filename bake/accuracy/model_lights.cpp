@@ -12,13 +12,6 @@
 namespace opaline::bake {
 namespace {
 
-bool refracts(const formats::Scene& scene) {
-    return std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const auto& p) {
-        const auto& medium = scene.materials[p.material].medium;
-        return medium && !p.index.empty() && !is_matched(medium->eta);
-    });
-}
-
 // Far from the point, in direction `to_eye`.
 formats::Vec3 far_eye(formats::Vec3 point, glm::vec3 to_eye) {
     const float away = 1 + std::abs(point.x) + std::abs(point.y) + std::abs(point.z);
@@ -27,9 +20,16 @@ formats::Vec3 far_eye(formats::Vec3 point, glm::vec3 to_eye) {
 
 }  // namespace
 
+bool has_refraction(const formats::Scene& scene) {
+    return std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const auto& p) {
+        const auto& medium = scene.materials[p.material].medium;
+        return medium && !p.index.empty() && !is_matched(medium->eta);
+    });
+}
+
 formats::Result<std::vector<ModelLight>> make_model_lights(const formats::Scene& scene,
                                                            std::vector<std::string>& left_out) {
-    const bool with_suns = !refracts(scene);
+    const bool with_suns = !has_refraction(scene);
     std::vector<ModelLight> lights;
     for (const char* name : published_lights()) {
         auto environment = make_environment(name);
@@ -54,7 +54,7 @@ std::vector<double> relight_receivers(const formats::AssetView& asset,
                                       std::span<const ReferenceReceiver> receivers,
                                       const FileLight& light) {
     runtime::ShadeOptions shading;
-    shading.emitters = runtime::dark_emitters();
+    shading.emitters = light.emitters;
     if (light.mirrored != nullptr) {
         shading.terms = TermSet::specular;
         shading.specular = light.mirrored;

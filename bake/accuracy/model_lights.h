@@ -9,10 +9,14 @@
 #include "formats/opal/environment.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
+#include "runtime/emitter_light.h"
 #include "runtime/light_vector.h"
 #include "runtime/specular.h"
 
 namespace opaline::bake {
+
+/// Whether light is refracted on its way into some medium of the scene.
+bool has_refraction(const formats::Scene& scene);
 
 /// A light under which files are compared with path tracing.
 struct ModelLight {
@@ -30,6 +34,7 @@ formats::Result<std::vector<ModelLight>> make_model_lights(const formats::Scene&
 struct FileLight {
     const runtime::LightVector& vector;
     const runtime::SpecularLight* mirrored = nullptr;  ///< not null: mirrored light alone
+    runtime::EmitterLight emitters = runtime::dark_emitters();
 };
 
 /// The file's luminance along the normals, in the order of the receivers.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bake/emitters/emitter_knobs.h"
+#include "bake/emitters/immersed_lamps.h"
 #include "bake/emitters/receiver_light.h"
 #include "bake/emitters/trace_particles.h"
 #include "bake/scene/emission.h"
@@ -69,10 +70,18 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
         }
         return true;
     });
-    const LampLight light{job.scene,     job.rays,   sources,
-                          layout,        irradiance, whole(job.knobs, kEmitterRays),
-                          job.knobs.seed};
+    MediaLight exitance;
+    const LampLight light{job.scene,      job.rays,   sources,
+                          layout,         irradiance, whole(job.knobs, kEmitterRays),
+                          job.knobs.seed, &exitance};
     BakedEmitters baked;
+    MediaRows of_media(job.primitives.size());
+    if (job.media.light_medium) {
+        of_media = run_stage(log, "media lit by emitters", [&](std::uint64_t& rays) {
+            return light_media({job.media, job.receivers, job.primitives, particles}, light,
+                               irradiance, exitance, context, rays);
+        });
+    }
     for (const Lamp& lamp : job.lamps) {
         append_emitter(baked.emitters, lamp.name);
     }
@@ -81,8 +90,10 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
         for (std::uint32_t p = 0; p < job.primitives.size() && !context.cancelled(); ++p) {
             const formats::PrimitiveRecord& record = job.primitives[p];
             const ReceiverSet& set = job.receivers[p];
-            if (record.shading == formats::Shading::translucent || set.size() == 0) continue;
-            const auto rows = make_lamp_rows(light, set, record.terms, context, rays);
+            if (set.size() == 0) continue;
+            const auto rows = record.shading == formats::Shading::translucent
+                                  ? std::move(of_media[p])
+                                  : make_lamp_rows(light, set, record.terms, context, rays);
             for (std::uint32_t e = 0; e < rows.size(); ++e) {
                 append_block(baked.emitters, e, p, rows[e]);
             }
@@ -91,11 +102,16 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     });
     if (context.cancelled()) return interrupted_bake();
     baked.error = run_stage(log, "self-check of emitters", [&](std::uint64_t& rays) {
-        return check_emitters(
-            {job.scene, job.rays, job.receivers, job.primitives, sources, baked.emitters.view()},
-            job.knobs.seed, context, rays);
+        return check_emitters({job.scene, job.rays, job.receivers, job.primitives, sources,
+                               baked.emitters.view(), &exitance},
+                              job.knobs.seed, context, rays);
     });
     if (context.cancelled()) return interrupted_bake();
+    for (std::size_t e = 0; e < sources.size(); ++e) {
+        if (is_immersed(job.scene, job.rays, sources[e])) {
+            baked.immersed.push_back(job.lamps[e].name);
+        }
+    }
     return baked;
 }
 

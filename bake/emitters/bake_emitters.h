@@ -6,6 +6,7 @@
 #include "bake/base/stage_log.h"
 #include "bake/emitters/emitter_error.h"
 #include "bake/emitters/lamps.h"
+#include "bake/emitters/light_media.h"
 #include "bake/plan/knobs.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
@@ -22,16 +23,17 @@ struct EmitterJob {
     std::span<const formats::PrimitiveRecord> primitives;  ///< of the file: their rows
     std::span<const Lamp> lamps;                           ///< at least one
     const Knobs& knobs;
+    LitMedia media{};  ///< none: rows of translucent primitives have no light of emitters
 };
 
 struct BakedEmitters {
     formats::Emitters emitters;
+    std::vector<std::string> immersed;  ///< lamps inside of media, whose light stays there
     EmitterErrorReport error;
 };
 
-/// The emitters of a file, and how far they err; three stages in the log. Opaque and thin-walled
-/// primitives are lit; rows of translucent ones have no light of emitters. The same bits for any
-/// number of threads. Errors: interrupted.
+/// The emitters of a file, and how far they err on opaque surfaces; three stages in the log, or
+/// four where media are lit. The same bits for any number of threads. Errors: interrupted.
 formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Context& context,
                                              StageLog& log);
 

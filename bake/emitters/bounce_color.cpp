@@ -63,4 +63,12 @@ BounceColor bounce_color(const formats::Scene& scene, const TriangleSide& side,
             color * glm::dvec3(color_of(material.sheet->transmit))};
 }
 
+glm::vec3 base_image_color(const formats::Scene& scene, const TriangleSide& side,
+                           const glm::vec3& weights) {
+    const formats::Primitive& primitive = scene.primitives[side.primitive];
+    const formats::Material& material = scene.materials[primitive.material];
+    return Corners{scene, primitive, &primitive.index[side.first_index], weights}.image(
+        material.base_color_image, material.wrap_u, material.wrap_v, false);
+}
+
 }  // namespace opaline::bake

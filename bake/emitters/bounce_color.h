@@ -13,9 +13,13 @@ struct BounceColor {
     glm::dvec3 transmit{0};  ///< to the other side: of thin-walled surfaces
 };
 
-/// At a point of a triangle, `weights` barycentric. Gloss counts by its diffuse part alone; media
-/// take what arrives, and backs of single-sided surfaces too.
+/// At a point of a triangle, `weights` barycentric. Gloss counts by its diffuse part alone. Nothing
+/// of media, whose light is not known here (media_light.h), and of backs of single-sided surfaces.
 BounceColor bounce_color(const formats::Scene& scene, const TriangleSide& side,
                          const glm::vec3& weights);
+
+/// The base color's image there, white without one.
+glm::vec3 base_image_color(const formats::Scene& scene, const TriangleSide& side,
+                           const glm::vec3& weights);
 
 }  // namespace opaline::bake

@@ -157,9 +157,15 @@ struct BackwardPath {
             const PacketHits hits = check.rays.closest(lanes, packet);
             if (hits.hit[0] == 0 || hits.cosine[0] == 0) break;
             const bool is_back = hits.cosine[0] > 0;
-            const BounceColor color =
-                bounce_color(check.scene, {hits.primitive[0], hits.first_index[0], is_back},
-                             {1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]});
+            const TriangleSide side{hits.primitive[0], hits.first_index[0], is_back};
+            const glm::vec3 weights(1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]);
+            if (check.media != nullptr) {
+                for (std::size_t lamp = 0; lamp < check.sources.size(); ++lamp) {
+                    sum +=
+                        throughput * media_exitance(check.scene, *check.media, lamp, side, weights);
+                }
+            }
+            const BounceColor color = bounce_color(check.scene, side, weights);
             const double reflect = std::max({color.reflect.x, color.reflect.y, color.reflect.z});
             const double transmit =
                 std::max({color.transmit.x, color.transmit.y, color.transmit.z});

@@ -1,6 +1,7 @@
 #include "bake/emitters/receiver_light.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -22,11 +23,25 @@ double fraction(double x) {
     return x - std::floor(x);
 }
 
-// Adds what the surface at a hit reflects toward the ray, of every lamp, times pi.
+bool has_bounces(const LampLight& light) {
+    return (light.media != nullptr && !light.media->empty()) ||
+           std::ranges::any_of(light.irradiance, [](const std::vector<glm::vec3>& of_lamp) {
+               return !of_lamp.empty();
+           });
+}
+
+// Adds what the surface at a hit sends toward the ray, of every lamp, times pi.
 void add_reflected(const LampLight& light, const PacketHits& hits, std::size_t lane,
                    std::vector<glm::dvec3>& sum) {
     const TriangleSide side{hits.primitive[lane], hits.first_index[lane], hits.cosine[lane] > 0};
     const glm::vec3 weights(1 - hits.u[lane] - hits.v[lane], hits.u[lane], hits.v[lane]);
+    if (light.media != nullptr && !side.is_back && side.primitive < light.media->exitance.size() &&
+        !light.media->exitance[side.primitive].empty()) {
+        for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
+            sum[lamp] += media_exitance(light.scene, *light.media, lamp, side, weights);
+        }
+        return;
+    }
     const BounceColor color = bounce_color(light.scene, side, weights);
     const auto add = [&](const glm::dvec3& share, bool is_back) {
         if (share == glm::dvec3(0)) return;
@@ -64,9 +79,7 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
                                       std::uint64_t key, std::uint64_t& rays) {
     std::vector<glm::dvec3> total(light.sources.size(), glm::dvec3(0));
     if (receiver.normal == glm::vec3(0)) return total;
-    const bool has_bounces = std::ranges::any_of(
-        light.irradiance, [](const std::vector<glm::vec3>& of_lamp) { return !of_lamp.empty(); });
-    if (has_bounces && !light.rays.is_empty()) {
+    if (has_bounces(light) && !light.rays.is_empty()) {
         const auto shift = random_uniform(light.seed, RandomStage::gather_rays, key);
         const Frame frame = make_frame(receiver.normal);
         for (std::uint32_t first = 0; first < light.samples; first += RayPacket::kSize) {
@@ -103,6 +116,17 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
             straight_irradiance(light.rays, light.sources[lamp], receiver, light.samples, rays);
     }
     return total;
+}
+
+std::uint64_t key_of_point(const Receiver& at) {
+    std::uint64_t key = 0x9e3779b97f4a7c15u;
+    for (const glm::vec3& v : {at.origin, at.normal}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            key = (key ^ std::bit_cast<std::uint32_t>(v[axis])) * 0xff51afd7ed558ccdu;
+            key ^= key >> 32;
+        }
+    }
+    return key;
 }
 
 std::vector<std::vector<formats::Rgb>> make_lamp_rows(const LampLight& light,

@@ -7,6 +7,7 @@
 
 #include "bake/base/context.h"
 #include "bake/emitters/lamp_sources.h"
+#include "bake/emitters/media_light.h"
 #include "bake/emitters/surface_elements.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
@@ -24,12 +25,17 @@ struct LampLight {
     std::span<const std::vector<glm::vec3>> irradiance;
     std::uint32_t samples = 1;  ///< shadow rays to a lamp, and gather rays
     std::uint64_t seed = 0;
+    const MediaLight* media = nullptr;  ///< what media send out again; null: nothing
 };
 
 /// Irradiance [lx] of a receiver from each lamp: straight, and from surfaces that `samples` rays
-/// spread by the cosine meet, at their elements. (seed, key): key the rotation of these rays.
+/// spread by the cosine meet, at their elements, or as media send it out. (seed, key): key the
+/// rotation of these rays.
 std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& receiver,
                                       std::uint64_t key, std::uint64_t& rays);
+
+/// Key of a point's random numbers, where it has no number: a hash of its place and normal.
+std::uint64_t key_of_point(const Receiver& at);
 
 /// The rows of a set of opaque or thin-walled receivers: [lamp][row], outgoing radiance [nit]
 /// without base colour, `terms` a receiver. Two terms: of the side of the normal, then of the other

@@ -49,6 +49,7 @@ struct Example {
     Smoke volume = {};                                       // make null: there is none
     Layer layer = {};                                        // make_ground null: there is none
     std::vector<GltfPointLight> (*make_lights)() = nullptr;  // null: none
+    const char* media = "";                                  // of materials, as a media file
 };
 
 TriangleMesh in_metres(TriangleMesh mesh) {
@@ -130,6 +131,29 @@ std::vector<GltfObject> make_lamp_scene() {
                 make_floor({.finest = 8.0, .fine_radius = 250.0, .growth = 0.15, .levels = 7}))};
 }
 
+// The same with a shade of wax, a body that light goes through.
+std::vector<GltfObject> make_wax_lamp() {
+    std::vector<GltfObject> objects = make_lamp_scene();
+    constexpr double kThickness = 5;
+    objects.front() = {"Shade",
+                       "Wax",
+                       {1, 1, 1},
+                       in_metres(make_thick_shade({.around = 64, .along = 16}, kThickness))};
+    return objects;
+}
+
+constexpr const char* kShadeOfWax = R"({
+  "materials": {
+    "Wax": {
+      "sigma_s_prime": [1.05, 1.00, 0.90],
+      "sigma_a": [0.0008, 0.0045, 0.026],
+      "unit": "1/mm",
+      "eta": 1.44,
+      "roughness": 0.3
+    }
+  }
+})";
+
 std::vector<GltfPointLight> make_lamp_lights() {
     return {{"Spark", {1, 0.25, 0.1}, 0.02, {-0.16, 0.06, 0.14}}};
 }
@@ -172,6 +196,11 @@ constexpr Example kExamples[] = {
               "switched by themselves"},
      .make = make_lamp_scene,
      .make_lights = make_lamp_lights},
+    {.info = {"wax-lamp",
+              "the same with a shade of wax: light of an emitter through a translucent body"},
+     .make = make_wax_lamp,
+     .make_lights = make_lamp_lights,
+     .media = kShadeOfWax},
     {{"smoke", "a plume that rises from a ball and widens as it curls: a volume beside meshes"},
      make_smouldering_ball,
      {.make = make_smoke, .sigma_t = grey(60), .albedo = grey(0.92), .g = 0.5}},
@@ -255,7 +284,7 @@ formats::Result<std::vector<std::filesystem::path>> write_example(
     }
     const std::string stem(name);
     std::vector<std::filesystem::path> others;
-    std::string media;
+    std::string media = example->media;
     if (example->volume.make != nullptr) {
         const formats::SparseGrid<float> density = example->volume.make();
         const std::filesystem::path file = folder / (stem + ".vdb");

@@ -55,6 +55,28 @@ TriangleMesh make_shade(const ShadeOptions& options) {
     return turn_about_axis(profile, options.around);
 }
 
+TriangleMesh make_thick_shade(const ShadeOptions& options, double thickness) {
+    const glm::dvec2 normal(options.high - options.low, options.low_radius - options.high_radius);
+    std::vector<ProfilePoint> profile;
+    profile.reserve(2 * std::size_t{options.along} + 7);
+    const auto add = [&](double t, bool is_inner, const glm::dvec2& facing) {
+        profile.push_back({options.low_radius + t * (options.high_radius - options.low_radius) -
+                               (is_inner ? thickness : 0),
+                           options.low + t * (options.high - options.low), facing});
+    };
+    for (unsigned j = 0; j <= options.along; ++j) {
+        add(static_cast<double>(j) / options.along, false, normal);
+    }
+    add(1, false, {0, 1});
+    add(1, true, {0, 1});
+    for (unsigned j = 0; j <= options.along; ++j) {
+        add(1 - static_cast<double>(j) / options.along, true, -normal);
+    }
+    add(0, true, {0, -1});
+    add(0, false, {0, -1});
+    return turn_about_axis(profile, options.around);
+}
+
 TriangleMesh make_lamp_foot() {
     // Edges have a point for each of their two normals.
     constexpr std::array<ProfilePoint, 8> kProfile{{{55, -0.4, {1, 0}},

@@ -14,6 +14,10 @@ struct ShadeOptions {
 };
 TriangleMesh make_shade(const ShadeOptions& options);
 
+/// The same with an inside, closed: it extends inward by `thickness` > 0, less than its radii, with
+/// a flat rim above and below.
+TriangleMesh make_thick_shade(const ShadeOptions& options, double thickness);
+
 /// A foot and a stem below the shade, turned about +Y.
 TriangleMesh make_lamp_foot();
 

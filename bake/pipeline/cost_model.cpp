@@ -93,33 +93,11 @@ void bill_shared_light(const CostedBake& bake, Bill& bill) {
         bill.open(std::string(effects[e].name));
         bill.add(light.work, payer);
         const Knobs coarse = coarse_knobs(request.effects, request.knobs, light.cubemap_size);
-        const CostInput input{request.rates, coarse, request.facts.triangles,
-                              request.facts.receivers};
         for (const CostedSubject& subject : bake.subjects) {
-            if (!subject.layout.translucent) {
-                continue;
-            }
-            SubjectCost cost{input,
-                             request.scene.materials[subject.material],
-                             request.facts.material[subject.material],
-                             subject.layout,
-                             light.points / static_cast<double>(bake.subjects.size()),
-                             bake.traces_rays};
-            for (std::size_t f = 0; f < effects.size(); ++f) {
-                EffectState state;
-                state.acts = subject.acts[f] && f != e;
-                for (const Step step : {Step::samples, Step::prepare}) {
-                    const auto work = step_of(effects[f], step).work;
-                    if (work != nullptr &&
-                        is_taken(effects[f], state, step, cost.material, subject.layout)) {
-                        bill.add(work(cost), payer);
-                    }
-                }
-                const GatherStep& gather = effects[f].gather;
-                if (state.acts && gather.work != nullptr &&
-                    (gather.applies == nullptr || gather.applies(subject.layout))) {
-                    bill.add(gather.work(cost), payer);
-                }
+            if (subject.layout.translucent) {
+                bill_points(
+                    bake, subject, coarse, light.points / static_cast<double>(bake.subjects.size()),
+                    [e](std::size_t f) { return f != e; }, payer, bill);
             }
         }
     }
@@ -205,7 +183,7 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bill_self_check(bake, bill);
     bill_volumes(request, volumes, count_rows(bake), volume_plan, bill);
     bill_layers(request, volume_plan, bill);
-    bill_lamps(request, volume_plan, bill);
+    bill_lamps(bake, volume_plan, bill);
     bill.add_bytes(mesh_bytes(request.scene, request.facts));
     bill.cost.memory_bytes = static_cast<std::uint64_t>(
         predict_memory(request.effects, count_memory(request.effects, request.scene, request.knobs),

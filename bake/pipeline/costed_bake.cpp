@@ -1,4 +1,5 @@
 #include "bake/pipeline/costed_bake.h"
+#include "bake/rows/subject_states.h"
 
 #include <algorithm>
 
@@ -86,6 +87,36 @@ CostedBake make_costed_bake(const CostRequest& request, std::vector<PlanEntry>& 
     }
     bake.traces_rays = needs_hierarchy(layouts);
     return bake;
+}
+
+void bill_points(const CostedBake& bake, const CostedSubject& subject, const Knobs& knobs,
+                 double points, const std::function<bool(std::size_t effect)>& counts,
+                 PlanEntry* payer, Bill& bill) {
+    const CostRequest& request = bake.request;
+    const auto& effects = request.effects.effects;
+    const CostInput input{request.rates, knobs, request.facts.triangles, request.facts.receivers};
+    const SubjectCost cost{input,
+                           request.scene.materials[subject.material],
+                           request.facts.material[subject.material],
+                           subject.layout,
+                           points,
+                           bake.traces_rays};
+    for (std::size_t f = 0; f < effects.size(); ++f) {
+        EffectState state;
+        state.acts = subject.acts[f] && counts(f);
+        for (const Step step : {Step::samples, Step::prepare}) {
+            const auto work = step_of(effects[f], step).work;
+            if (work != nullptr &&
+                is_taken(effects[f], state, step, cost.material, subject.layout)) {
+                bill.add(work(cost), payer);
+            }
+        }
+        const GatherStep& gather = effects[f].gather;
+        if (state.acts && gather.work != nullptr &&
+            (gather.applies == nullptr || gather.applies(subject.layout))) {
+            bill.add(gather.work(cost), payer);
+        }
+    }
 }
 
 void bill_rows(const CostedBake& bake, const CostedSubject& subject, double receivers, Bill& bill) {

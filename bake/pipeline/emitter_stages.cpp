@@ -4,9 +4,13 @@
 #include <string>
 #include <utility>
 
+#include "bake/accuracy/check_lit_media.h"
 #include "bake/accuracy/error_warnings.h"
 #include "bake/emitters/bake_emitters.h"
 #include "bake/emitters/emitter_knobs.h"
+#include "bake/emitters/media_patches.h"
+#include "bake/pipeline/lit_media.h"
+#include "bake/pipeline/shared_light.h"
 
 namespace opaline::bake {
 namespace {
@@ -15,28 +19,113 @@ namespace {
 constexpr double kFlights = 4;
 // Rays that meet surfaces everywhere, over rays beside each other.
 constexpr double kIncoherent = 4;
+// Passes between media and surfaces until the next adds little, mostly.
+constexpr double kPasses = 6;
 
-void warn_of_unlit(const formats::Scene& scene, std::vector<formats::Diagnostic>& warnings) {
-    const bool has_media = std::ranges::any_of(scene.primitives, [&](const auto& primitive) {
-        return scene.materials[primitive.material].medium.has_value();
+// Media that no effect of the plan lights with light of lamps.
+bool has_dark_media(const BakeInputs& bake, std::span<const PlanEntry> plan,
+                    std::span<const SubjectState> subjects) {
+    return std::ranges::any_of(subjects, [&](const SubjectState& subject) {
+        return subject.layout.translucent && subject.layout.has_rows() &&
+               !takes_other_light(bake.effects, entries_of(plan, subject.material), subject.layout);
     });
-    std::string unlit = has_media ? "translucent media" : "";
+}
+
+void warn_of_unlit(const formats::Scene& scene, bool has_dark,
+                   std::vector<formats::Diagnostic>& warnings) {
+    std::string unlit = has_dark ? "media whose multiple scattering is left out" : "";
     if (!scene.volumes.empty()) unlit += unlit.empty() ? "volumes" : ", volumes";
     if (!scene.layers.empty()) unlit += unlit.empty() ? "cloud layers" : ", cloud layers";
     if (unlit.empty()) return;
     warnings.push_back(formats::make_warning(
         "", "emitters", "their light does not reach " + unlit + ", which stay dark under it",
-        has_media ? "media that should be lit by lamps may be made thin-walled or opaque"
-                  : "nothing needs to be done where that is not seen"));
+        has_dark ? "let --effects have light scattered many times"
+                 : "nothing needs to be done where that is not seen"));
+}
+
+void warn_of_immersed(std::span<const std::string> immersed,
+                      std::vector<formats::Diagnostic>& warnings) {
+    for (const std::string& name : immersed) {
+        warnings.push_back(formats::make_warning(
+            "", "emitter '" + name + "'",
+            "it lies inside of a translucent medium: its light does not leave the body",
+            "put it into a hollow of the body, whose surface faces it"));
+    }
+}
+
+// By material; of those without receivers as RowLayout begins.
+std::vector<RowLayout> layouts_of(const BakeInputs& bake, std::span<const SubjectState> subjects) {
+    std::vector<RowLayout> layouts(bake.scene.materials.size());
+    for (const SubjectState& subject : subjects) {
+        layouts[subject.material] = subject.layout;
+    }
+    return layouts;
+}
+
+formats::Status check_media(const BakeInputs& bake, std::span<const Lamp> lamps,
+                            const Context& context, BakeResult& result) {
+    if (std::ranges::none_of(result.asset.primitives, [](const formats::PrimitiveRecord& record) {
+            return record.shading == formats::Shading::translucent;
+        })) {
+        return formats::ok_status();
+    }
+    auto checked =
+        run_stage(result.stages, "self-check of media lit by emitters", [&](std::uint64_t&) {
+            return check_lit_media(bake.scene, result.asset.view(), lamps, result.knobs.seed,
+                                   context);
+        });
+    if (!checked) {
+        return std::move(checked).error();
+    }
+    if (checked->receivers_checked > 0) {
+        result.error.by_effect.push_back({"emitters in media", checked->rms_relative});
+    } else {
+        result.error.not_measured.emplace_back("emitters in media");
+    }
+    return formats::ok_status();
+}
+
+// What media make of lamps' light, pass by pass. False: there are none.
+bool bill_media(const CostedBake& bake, std::size_t lamps, double particles, Bill& bill) {
+    const CostRequest& request = bake.request;
+    bool is_open = false;
+    for (const CostedSubject& subject : bake.subjects) {
+        if (!takes_other_light(request.effects, subject.decisions, subject.layout)) continue;
+        if (!is_open) bill.open("media lit by emitters");
+        is_open = true;
+        CostedSubject lit = subject;
+        lit.layout = lit_layout(subject.layout);
+        const auto counts = [&](std::size_t e) {
+            return request.effects.effects[e].adds_other_light;
+        };
+        const std::uint32_t n = lamp_basis(lamps);
+        const double receivers = request.facts.material[subject.material].receivers;
+        const Knobs coarse = coarse_knobs(request.effects, request.knobs, kPatchBasis);
+        bill_points(bake, lit, coarse, std::min(receivers, kPatchPoints), counts, nullptr, bill);
+        Knobs fine = request.knobs;
+        fine.cubemap_size = n;
+        bill_points(bake, lit, fine, receivers, counts, nullptr, bill);
+    }
+    if (is_open) {
+        bill.add({0, kPasses * static_cast<double>(lamps) * particles});
+    }
+    return is_open;
 }
 
 }  // namespace
 
 formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamps,
-                              const Context& context, BakeResult& result) {
-    auto baked = bake_emitters(
-        {bake.scene, bake.rays, bake.receivers, result.asset.primitives, lamps, result.knobs},
-        context, result.stages);
+                              const Context& context, std::vector<SubjectState>& subjects,
+                              BakeResult& result) {
+    const std::vector<RowLayout> layouts = layouts_of(bake, subjects);
+    LitMedia media;
+    if (std::ranges::any_of(layouts, &RowLayout::translucent)) {
+        media = {make_light_medium(bake, result.plan, result.knobs, context, subjects), layouts,
+                 result.asset.base_color};
+    }
+    auto baked = bake_emitters({bake.scene, bake.rays, bake.receivers, result.asset.primitives,
+                                lamps, result.knobs, media},
+                               context, result.stages);
     if (!baked) {
         return std::move(baked).error();
     }
@@ -55,29 +144,40 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
                 error_percent(limit),
             "give more --emitter-rays and --emitter-particles"));
     }
-    warn_of_unlit(bake.scene, result.warnings);
-    return formats::ok_status();
+    warn_of_unlit(bake.scene, has_dark_media(bake, result.plan, subjects), result.warnings);
+    warn_of_immersed(baked->immersed, result.warnings);
+    return check_media(bake, lamps, context, result);
 }
 
-void bill_lamps(const CostRequest& request, std::span<PlanEntry> plan, Bill& bill) {
+void bill_lamps(const CostedBake& bake, std::span<PlanEntry> plan, Bill& bill) {
+    const CostRequest& request = bake.request;
     const double ray = kIncoherent * request.rates.coherent_ray.at(request.facts.triangles);
     const double rays = request.knobs[kEmitterRays] * request.facts.receivers;
+    std::size_t lamps = 0;
     const auto for_each = [&](const char* stage, double seconds) {
         bool is_open = false;
+        lamps = 0;
         for (PlanEntry& entry : plan) {
             if (!entry.on || entry.subject.kind != Subject::Kind::emitter) continue;
             if (!is_open) bill.open(stage);
             is_open = true;
+            ++lamps;
             bill.add({0, seconds}, &entry);
         }
         return is_open;
     };
-    if (!for_each("particles of emitters", kFlights * request.knobs[kEmitterParticles] * ray)) {
+    const double particles = kFlights * request.knobs[kEmitterParticles] * ray;
+    if (!for_each("particles of emitters", particles)) {
         return;
     }
+    const bool has_media = bill_media(bake, lamps, particles, bill);
     for_each("light of emitters", rays * ray);
     bill.add({0, rays * ray});  // to surfaces that reflect, for all
     bill.open("self-check of emitters");
+    if (has_media) {
+        bill.open("self-check of media lit by emitters");
+        bill.add({0, kLitMediaEvents * request.rates.body_event.at(request.facts.triangles)});
+    }
     for (PlanEntry& entry : plan) {
         if (entry.on && entry.subject.kind == Subject::Kind::emitter) {
             bill.add_bytes(6 * request.facts.receivers, &entry);

@@ -22,6 +22,7 @@
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/rows/gather_rows.h"
+#include "bake/rows/rows_of_points.h"
 #include "bake/scene/even_media.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"
@@ -164,9 +165,9 @@ void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjec
     }
 }
 
-// What an inspected scene becomes: all stages from the receivers on.
+// What an inspected scene becomes: all stages from the receivers on. `subjects`: left studied.
 formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
-                               BakeResult& result) {
+                               std::vector<SubjectState>& subjects, BakeResult& result) {
     Knobs& knobs = result.knobs;
     StageLog& log = result.stages;
     std::vector<TestLight> lights;  // none where there is nothing to relight
@@ -181,7 +182,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
         }
         lights = std::move(*made);
     }
-    std::vector<SubjectState> subjects = begin_subjects(unlit, result.plan, knobs);
+    subjects = begin_subjects(unlit, result.plan, knobs);
     run_step(Step::study, unlit, knobs, context, subjects, log);
     result.plan = amend_plan(unlit, subjects, knobs, context);
     settle_subjects(unlit, result.plan, knobs, subjects);
@@ -230,6 +231,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
                               result.error.at_receivers.rms_relative, result.warnings);
         result.accuracy->met = result.accuracy->met && meets_target(result.error, knobs);
     }
+    std::ranges::for_each(subjects, forget_samples);
     return formats::ok_status();
 }
 
@@ -303,7 +305,8 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     const std::vector<ReceiverSet> receivers = run_stage(
         log, "receivers", [&](std::uint64_t&) { return place_receivers(scene, rays, context); });
     const BakeInputs bake{effects, scene, result.facts, rays, *sky, receivers};
-    if (auto status = bake_inspected(bake, context, result); !status) {
+    std::vector<SubjectState> subjects;
+    if (auto status = bake_inspected(bake, context, subjects, result); !status) {
         return std::move(status).error();
     }
     if (has_volumes) {
@@ -320,7 +323,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     }
     std::ranges::copy(emitters.entries, std::back_inserter(result.volume_plan));
     if (!emitters.lamps.empty()) {
-        if (auto status = add_lamp_rows(bake, emitters.lamps, context, result); !status) {
+        if (auto status = add_lamp_rows(bake, emitters.lamps, context, subjects, result); !status) {
             return std::move(status).error();
         }
     }

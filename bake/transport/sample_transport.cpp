@@ -73,6 +73,19 @@ float mean_over_sphere(std::span<const float> radiance, std::span<const double> 
     return static_cast<float>(sum / (4 * std::numbers::pi));
 }
 
+// Columns that are not 0 in all bands.
+std::size_t count_filled(std::span<const float> dense, std::size_t texels) {
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < texels; ++k) {
+        bool is_filled = false;
+        for (std::size_t at = k; at < dense.size(); at += texels) {
+            is_filled = is_filled || dense[at] != 0;
+        }
+        count += is_filled ? 1 : 0;
+    }
+    return count;
+}
+
 }  // namespace
 
 SampleTransport bake_sample_transport(const RayScene& rays, std::span<const SurfaceSample> samples,
@@ -90,7 +103,6 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
     const std::size_t axes = options.moments > 0 ? 3 : 0;
     const std::size_t together = options.share_rays ? kSamplesPerGroup : 1;
     const float entering = mean_transmittance(transmittance);
-    const std::size_t kept_of_light = environment ? options.kept_of_light : texels;
     SampleTransport result;
     result.other.bands = options.light == nullptr ? 1 : options.light->bands;
     struct Part {
@@ -135,7 +147,10 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
     const auto gather_other = [&](std::size_t s, float& all, Part& part) {
         std::vector<float> dense(result.other.bands * texels);
         part.rays += options.light->add({samples[s].receiver, true}, n, dense);
-        append_truncated_bands(part.other, dense, result.other.bands, kept_of_light,
+        // Those of the faces come first, whatever they are.
+        const std::size_t kept =
+            environment ? options.kept_of_light : std::min(texels, count_filled(dense, texels) + 6);
+        append_truncated_bands(part.other, dense, result.other.bands, kept,
                                entering * samples[s].area);
         all = std::hypot(all, entering * norm(dense));
     };

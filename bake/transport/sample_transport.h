@@ -38,7 +38,7 @@ struct SampleOptions {
 };
 
 /// Without the environment (OtherLight::environment) `rows` and `moments` have no entries, and
-/// vectors of other light keep all of theirs. Stops early, with fewer samples, if the context is
+/// vectors of other light keep all of theirs that are not 0. Stops early, with fewer samples, if the context is
 /// cancelled.
 SampleTransport bake_sample_transport(const RayScene& rays, std::span<const SurfaceSample> samples,
                                       const SampleOptions& options, const Context& context);

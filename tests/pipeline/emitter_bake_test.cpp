@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/emitters/emitter_knobs.h"
 #include "formats/opal/emitters.h"
 #include "tests/support/bake.h"
@@ -36,6 +37,9 @@ BakeResult bake_lamps(const formats::Scene& scene, std::vector<std::string> effe
     options.effects = std::move(effects);
     options.threads = threads;
     options.set(kEmitterParticles, 5000);
+    options.set(kSamples, 500);
+    options.set(kWalks, 5000);
+    options.set(kSites, 500);
     return tests::bake_scene(scene, options);
 }
 
@@ -93,19 +97,38 @@ TEST(EmitterBake, ThreadsDoNotMatter) {
     EXPECT_EQ(one.asset.emitters.value, many.asset.emitters.value);
 }
 
-TEST(EmitterBake, MediaStayDarkWithAWarning) {
+formats::Scene lamp_and_wax() {
     formats::Scene scene = lamp_scene();
     scene.primitives.push_back(tests::make_sphere(1, 0.1f, {0, 0.3f, 0}));
+    scene.primitives[2].node = 2;
     scene.primitives[2].material = 2;
     scene.materials.push_back({.name = "Wax"});
     scene.materials[2].medium.emplace();
     scene.materials[2].medium->sigma_s = {1000, 1000, 1000};
     scene.materials[2].medium->sigma_a = {1, 1, 1};
-    const BakeResult baked = bake_lamps(scene);
-    EXPECT_TRUE(baked.asset.emitters.view().blocks_of(2).empty());
-    EXPECT_TRUE(std::ranges::any_of(baked.warnings, [](const formats::Diagnostic& warning) {
-        return warning.fault.find("does not reach translucent media") != std::string::npos;
-    }));
+    return scene;
+}
+
+bool has_warning(const BakeResult& baked, const char* text) {
+    return std::ranges::any_of(baked.warnings, [&](const formats::Diagnostic& warning) {
+        return warning.fault.find(text) != std::string::npos;
+    });
+}
+
+TEST(EmitterBake, MediaAreLitWhereTheirMultipleScatteringIsSimulated) {
+    const BakeResult lit = bake_lamps(lamp_and_wax());
+    EXPECT_EQ(lit.asset.emitters.view().blocks_of(2).size(), 2u);
+    EXPECT_FALSE(has_warning(lit, "does not reach"));
+    const BakeResult dark = bake_lamps(lamp_and_wax(), {"direct", "single", "emitters"});
+    EXPECT_TRUE(dark.asset.emitters.view().blocks_of(2).empty());
+    EXPECT_TRUE(has_warning(dark, "does not reach media whose multiple scattering is left out"));
+}
+
+TEST(EmitterBake, LampInsideOfAMediumIsNamed) {
+    formats::Scene scene = lamp_and_wax();
+    scene.lights[0].position = {0, 0.3f, 0};
+    EXPECT_TRUE(has_warning(bake_lamps(scene), "it lies inside of a translucent medium"));
+    EXPECT_FALSE(has_warning(bake_lamps(lamp_and_wax()), "it lies inside of"));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/effects/interreflection/bounce_gather.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
-#include "bake/effects/interreflection/medium_exitance.h"
+#include "bake/plan/medium_exitance.h"
 #include "bake/transport/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"

@@ -112,6 +112,12 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
     return choice;
 }
 
+bool takes_walks_alone(const formats::Medium& medium, const RowLayout& layout, const Knobs& knobs) {
+    const auto asked = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
+    return !layout.at_entry && (asked == MultipleModel::walks ||
+                                (asked == MultipleModel::automatic && !is_fixed(medium)));
+}
+
 PlanEntry decide_model(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
     PlanEntry entry;

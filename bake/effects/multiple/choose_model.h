@@ -46,6 +46,12 @@ struct ModelChoice {
 ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profile,
                          std::uint64_t& traced);
 
+/// Whether light that replaces the environment takes walks through a medium, with all orders of
+/// scattering, whatever model the environment's light has: no other effect adds what scatters once,
+/// and where sites stand so far apart that they blur it, it is blurred. Not where the user chose
+/// another model or a profile.
+bool takes_walks_alone(const formats::Medium& medium, const RowLayout& layout, const Knobs& knobs);
+
 /// The rule `multiple.model`.
 PlanEntry decide_model(const PlanInput& input);
 

@@ -109,6 +109,8 @@ bool needs_samples(const formats::Material&, const RowLayout& layout) {
 
 PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
     const Knobs& knobs = inputs.knobs;
+    const bool walks_alone =
+        !inputs.bake.has_environment() && takes_walks_alone(inputs.medium(), inputs.layout, knobs);
     auto samples = std::make_unique<Samples>();
     samples->stage = prepare_multiple(inputs.bake.scene, inputs.outside(), inputs.bake.rays,
                                       inputs.material, profile_of(inputs.own),
@@ -120,11 +122,11 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        knobs.seed,
                                        !knobs.exact_rays,
                                        inputs.layout.bands(),
-                                       model_of(inputs.own),
+                                       walks_alone ? MultipleModel::walks : model_of(inputs.own),
                                        {knobs[kWalksAround], knobs[kWalks], whole(knobs, kSites)},
                                        knobs[kEpsilon],
                                        std::max(1u, inputs.layout.view_harmonics),
-                                       inputs.layout.all_orders,
+                                       inputs.layout.all_orders || walks_alone,
                                        inner_materials(inputs),
                                        inputs.layout.layered,
                                        inputs.light()},

@@ -20,9 +20,22 @@ void expect_facing_normals(const TriangleMesh& mesh) {
 
 TEST(LampExample, SurfacesFaceOutward) {
     expect_facing_normals(make_shade({}));
+    expect_facing_normals(make_thick_shade({}, 5));
     expect_facing_normals(make_lamp_foot());
     expect_facing_normals(make_panel({}));
     expect_facing_normals(make_wall());
+}
+
+TEST(LampExample, ThickShadeIsClosed) {
+    double volume = 0;
+    const TriangleMesh shade = make_thick_shade({}, 5);
+    for (const Triangle& t : shade.triangles) {
+        volume += glm::dot(shade.position[t[0]],
+                           glm::cross(shade.position[t[1]], shade.position[t[2]])) /
+                  6;
+    }
+    // 2 pi times the mean radius times the area of the profile; 48 chords are a little shorter.
+    EXPECT_NEAR(volume / (2 * 3.14159265 * 82.5 * 5 * 120), 0.997, 0.003);
 }
 
 TEST(LampExample, ShadeAndPanelHaveTheSizeAskedFor) {

@@ -1,4 +1,4 @@
-#include "bake/effects/interreflection/medium_exitance.h"
+#include "bake/plan/medium_exitance.h"
 
 #include <cmath>
 #include <numbers>

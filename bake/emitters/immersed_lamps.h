@@ -1,0 +1,13 @@
+#pragma once
+
+#include "bake/emitters/lamp_sources.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Whether most of a lamp's power starts inside of media: of the rays from where it starts, in all
+/// directions, most meet the back of a medium's surface first. Such light goes nowhere in a bake.
+bool is_immersed(const formats::Scene& scene, const RayScene& rays, const LampSources& lamp);
+
+}  // namespace opaline::bake

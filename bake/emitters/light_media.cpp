@@ -1,0 +1,179 @@
+#include "bake/emitters/light_media.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bake/emitters/media_patches.h"
+#include "bake/emitters/series_sum.h"
+#include "bake/emitters/trace_particles.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/emitters.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::uint32_t kMostPasses = 24;
+constexpr double kLeastChange = 0.01;
+// Rays of a point whose light is averaged over many.
+constexpr std::uint32_t kRaysOfAveraged = 16;
+
+MediaLight no_light(const MediaJob& job) {
+    return {std::vector<std::vector<glm::vec3>>(job.primitives.size())};
+}
+
+// The values of a medium's receivers, [lamp][receiver], as those of its primitives.
+template <class Value>
+void add_medium(const MediaJob& job, const LitMedium& medium, std::size_t lamps, Value&& value,
+                MediaLight& to) {
+    for (std::size_t i = 0; i < medium.primitives.size(); ++i) {
+        const std::uint32_t p = medium.primitives[i];
+        const std::size_t size = job.receivers[p].size();
+        to.exitance[p].resize(lamps * size);
+        for (std::size_t e = 0; e < lamps; ++e) {
+            for (std::size_t v = 0; v < size; ++v) {
+                to.exitance[p][e * size + v] = value(e, medium.first[i] + v);
+            }
+        }
+    }
+}
+
+// One more pass: what media send out of the light that `light` has arrive.
+MediaLight pass(const MediaJob& job, std::span<const LitMedium> media,
+                std::span<const MediumPatches> patches, const LampLight& light,
+                const Context& context, std::uint64_t& rays) {
+    MediaLight next = no_light(job);
+    for (std::size_t m = 0; m < media.size(); ++m) {
+        if (patches[m].answer.empty()) continue;
+        const std::size_t size = patches[m].size();
+        const std::vector<glm::vec3> exitance =
+            answer_patches(patches[m], light, media[m], context, rays);
+        add_medium(
+            job, media[m], light.sources.size(),
+            [&](std::size_t e, std::size_t receiver) {
+                return exitance[e * size + patches[m].of_receiver[receiver]];
+            },
+            next);
+    }
+    return next;
+}
+
+// Brings light of media to surfaces that reflect it: `irradiance` = `of_surfaces` and that.
+void send(const MediaJob& job, const LampLight& light, const MediaLight& exitance,
+          std::span<const std::vector<glm::vec3>> of_surfaces,
+          std::span<std::vector<glm::vec3>> irradiance, const Context& context,
+          std::uint64_t& rays) {
+    for (std::uint32_t e = 0; e < irradiance.size() && !context.cancelled(); ++e) {
+        const LampSources sources = media_sources(light.scene, exitance, e, light.sources[e]);
+        // Lamps have the numbers below.
+        const auto key = static_cast<std::uint32_t>(formats::kMaxEmitters) + e;
+        const auto power = trace_particles(light.scene, light.rays, sources, light.layout,
+                                           {job.particles, key, light.seed, 0}, context, rays);
+        irradiance[e] = of_surfaces[e];
+        if (std::ranges::all_of(power, [](const auto& p) { return p == glm::dvec3(0); })) continue;
+        irradiance[e] = light.layout.push_down(power);
+        for (std::size_t i = 0; i < of_surfaces[e].size(); ++i) {
+            irradiance[e][i] += of_surfaces[e][i];
+        }
+    }
+}
+
+// The rows of a medium's receivers as rows and exitance of its primitives.
+void read_columns(const MediaJob& job, const LampLight& light, const LitMedium& medium,
+                  std::size_t columns, const std::vector<std::vector<float>>& rows,
+                  MediaRows& result, MediaLight& exitance) {
+    const std::size_t lamps = light.sources.size();
+    const std::size_t terms = job.media.layouts[medium.material].terms();
+    for (std::size_t i = 0; i < medium.primitives.size(); ++i) {
+        const std::uint32_t p = medium.primitives[i];
+        const std::size_t receivers = job.receivers[p].size();
+        result[p].assign(lamps, std::vector<formats::Rgb>(receivers * terms));
+        exitance.exitance[p].resize(lamps * receivers);
+        for (std::size_t v = 0; v < receivers; ++v) {
+            const std::size_t receiver = medium.first[i] + v;
+            const std::vector<float>& row = rows[receiver];
+            const std::vector<glm::vec3> out =
+                exitance_of_row(weigh_rows_at(job.media, light.scene, medium, receiver),
+                                medium.color[receiver], row, columns);
+            for (std::size_t e = 0; e < lamps; ++e) {
+                exitance.exitance[p][e * receivers + v] = out[e];
+                for (std::size_t k = 0; k < terms; ++k) {
+                    const auto band = [&](std::size_t b) { return row[(3 * k + b) * columns + e]; };
+                    result[p][e][v * terms + k] = {band(0), band(1), band(2)};
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+
+std::uint32_t lamp_basis(std::size_t lamps) {
+    std::uint32_t n = 1;
+    while (formats::cubemap_texels(n) < lamps)
+        n *= 2;
+    return n;
+}
+
+OtherLight make_lamp_columns(const LampLight& light) {
+    OtherLight columns;
+    columns.bands = 3;
+    columns.environment = false;
+    columns.add = [&light](const LitPoint& point, std::uint32_t n, std::span<float> rows) {
+        LampLight own = light;
+        if (point.is_averaged) own.samples = std::min(own.samples, kRaysOfAveraged);
+        std::uint64_t rays = 0;
+        const std::vector<glm::dvec3> irradiance =
+            receive_light(own, point.receiver, key_of_point(point.receiver), rays);
+        const std::size_t texels = formats::cubemap_texels(n);
+        for (std::size_t e = 0; e < irradiance.size(); ++e) {
+            for (int b = 0; b < 3; ++b) {
+                rows[static_cast<std::size_t>(b) * texels + e] +=
+                    static_cast<float>(irradiance[e][b]);
+            }
+        }
+        return rays;
+    };
+    return columns;
+}
+
+MediaRows light_media(const MediaJob& job, const LampLight& light,
+                      std::span<std::vector<glm::vec3>> irradiance, MediaLight& exitance,
+                      const Context& context, std::uint64_t& rays) {
+    const std::vector<LitMedium> media = list_lit_media(job.media, job.receivers, job.primitives);
+    exitance = no_light(job);
+    MediaRows result(job.primitives.size());
+    if (media.empty()) return result;
+    const std::vector<std::vector<glm::vec3>> of_surfaces(irradiance.begin(), irradiance.end());
+    LampLight lit = light;
+    lit.irradiance = irradiance;
+    lit.media = &exitance;
+    std::vector<MediumPatches> patches;
+    patches.reserve(media.size());
+    for (const LitMedium& medium : media) {
+        patches.push_back(find_patches(job.media, lit, medium, context, rays));
+    }
+    SeriesSum series(light.sources.size(), kLeastChange);
+    for (std::uint32_t i = 0; i < kMostPasses && !context.cancelled(); ++i) {
+        MediaLight next = pass(job, media, patches, lit, context, rays);
+        const bool is_last = series.is_last(exitance, next, i + 1 == kMostPasses);
+        exitance = std::move(next);
+        send(job, light, exitance, of_surfaces, irradiance, context, rays);
+        if (is_last) break;
+    }
+    const OtherLight columns = make_lamp_columns(lit);
+    const std::uint32_t n = lamp_basis(light.sources.size());
+    MediaLight final_exitance = no_light(job);
+    for (const LitMedium& medium : media) {
+        if (context.cancelled()) break;
+        const std::vector<std::vector<float>> rows = job.media.light_medium(
+            {medium.material, medium.outside, medium.inside, columns, n, false}, rays);
+        if (rows.size() == medium.outside.size()) {
+            read_columns(job, light, medium, formats::cubemap_texels(n), rows, result,
+                         final_exitance);
+        }
+    }
+    exitance = std::move(final_exitance);
+    return result;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "bake/emitters/lamp_sources.h"
+#include "bake/emitters/surface_elements.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Light of lamps that media send out again, at the vertices of their surfaces.
+struct MediaLight {
+    /// Of each primitive: exitance [lm/m^2] without the base color's image, lamp * vertices +
+    /// vertex. Empty: it is no medium, or sends out nothing.
+    std::vector<std::vector<glm::vec3>> exitance;
+
+    bool empty() const;
+};
+
+/// Exitance [lm/m^2] of a lamp's light at a point of a triangle's front, its image included; 0 from
+/// behind and where the primitive sends out nothing.
+glm::dvec3 media_exitance(const formats::Scene& scene, const MediaLight& media, std::size_t lamp,
+                          const TriangleSide& side, const glm::vec3& weights);
+
+/// What media send out of a lamp's light, as triangles that glow evenly: the mean of their corners,
+/// times the image at their middle. `lamp_sources`: for the sphere around the scene.
+LampSources media_sources(const formats::Scene& scene, const MediaLight& media, std::size_t lamp,
+                          const LampSources& lamp_sources);
+
+}  // namespace opaline::bake

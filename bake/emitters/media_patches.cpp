@@ -1,0 +1,227 @@
+#include "bake/emitters/media_patches.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "bake/base/ordered_parallel.h"
+#include "formats/opal/cubemap.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::size_t kProbes = 3;  // of a patch
+constexpr std::uint32_t kRaysOfProbe = 64;
+
+// Place, in shares of all points' extent, and normal: opposite faces are half of that apart.
+std::array<float, 6> coordinates(const BodyPoint& point, float extent) {
+    constexpr float kNormals = 0.25f;
+    const glm::vec3 p = point.position / extent, n = kNormals * point.normal;
+    return {p.x, p.y, p.z, n.x, n.y, n.z};
+}
+
+struct Cutter {
+    std::span<const std::array<float, 6>> at;
+    std::vector<std::uint32_t>& patch;
+    std::uint32_t made = 0;
+
+    void cut(std::span<std::uint32_t> members, std::size_t parts) {
+        if (parts <= 1 || members.size() <= 1) {
+            for (const std::uint32_t i : members) {
+                patch[i] = made;
+            }
+            made += members.empty() ? 0 : 1;
+            return;
+        }
+        std::size_t widest = 0;
+        float most = -1;
+        for (std::size_t axis = 0; axis < 6; ++axis) {
+            float low = std::numeric_limits<float>::max(), high = -low;
+            for (const std::uint32_t i : members) {
+                low = std::min(low, at[i][axis]);
+                high = std::max(high, at[i][axis]);
+            }
+            if (high - low > most) {
+                most = high - low;
+                widest = axis;
+            }
+        }
+        const std::size_t left = parts / 2;
+        const std::size_t middle =
+            std::clamp<std::size_t>(members.size() * left / parts, 1, members.size() - 1);
+        std::ranges::nth_element(members, members.begin() + static_cast<std::ptrdiff_t>(middle), {},
+                                 [&](std::uint32_t i) { return std::pair(at[i][widest], i); });
+        cut(members.first(middle), left);
+        cut(members.subspan(middle), parts - left);
+    }
+};
+
+std::uint32_t basis_for(std::size_t receivers) {
+    std::uint32_t n = 1;
+    while (n < kPatchBasis && formats::cubemap_texels(n) < receivers)
+        n *= 2;
+    return n;
+}
+
+// The receiver of a medium nearest to the place where a ray straight down meets its surface.
+std::uint32_t receiver_below(const LampLight& light, const LitMedium& medium, const Receiver& at) {
+    RayPacket packet = rays_from(at.origin);
+    packet.dir_x[0] = -at.normal.x;
+    packet.dir_y[0] = -at.normal.y;
+    packet.dir_z[0] = -at.normal.z;
+    packet.tfar[0] = std::numeric_limits<float>::infinity();
+    LaneMask lanes{};
+    lanes[0] = -1;
+    const PacketHits hits = light.rays.closest(lanes, packet);
+    const auto own = hits.hit[0] == 0 ? medium.primitives.end()
+                                      : std::ranges::find(medium.primitives, hits.primitive[0]);
+    if (own == medium.primitives.end()) return formats::kNone;
+    const std::array<float, 3> weight{1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]};
+    const auto corner = static_cast<std::size_t>(std::ranges::max_element(weight) - weight.begin());
+    return medium.first[static_cast<std::size_t>(own - medium.primitives.begin())] +
+           light.scene.primitives[*own].index[hits.first_index[0] + corner];
+}
+
+// A few members of each patch, evenly spaced.
+std::vector<std::vector<std::uint32_t>> choose_probes(const LitMedium& medium,
+                                                      std::span<const std::uint32_t> patch) {
+    const std::size_t count = 1 + *std::ranges::max_element(patch);
+    std::vector<std::vector<std::uint32_t>> members(count);
+    for (std::uint32_t i = 0; i < patch.size(); ++i) {
+        if (medium.outside[i].normal != glm::vec3(0)) members[patch[i]].push_back(i);
+    }
+    for (std::vector<std::uint32_t>& own : members) {
+        if (own.size() <= kProbes) continue;
+        for (std::size_t k = 0; k < kProbes; ++k) {
+            own[k] = own[(2 * k + 1) * own.size() / (2 * kProbes)];
+        }
+        own.resize(kProbes);
+    }
+    return members;
+}
+
+// Irradiance 1 on one patch: its column.
+OtherLight make_patch_columns(const LampLight& light, const LitMedium& medium,
+                              std::span<const std::uint32_t> patch) {
+    OtherLight columns;
+    columns.bands = 1;
+    columns.environment = false;
+    columns.add = [&light, &medium, patch](const LitPoint& point, std::uint32_t,
+                                           std::span<float> rows) {
+        const std::uint32_t receiver = receiver_below(light, medium, point.receiver);
+        if (receiver != formats::kNone) rows[patch[receiver]] += 1;
+        return std::uint64_t{1};
+    };
+    return columns;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> cut_into_patches(std::span<const BodyPoint> points, std::size_t most) {
+    glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
+    for (const BodyPoint& point : points) {
+        low = glm::min(low, point.position);
+        high = glm::max(high, point.position);
+    }
+    const float extent = points.empty() ? 1 : std::max(glm::length(high - low), 1e-30f);
+    std::vector<std::array<float, 6>> at;
+    at.reserve(points.size());
+    for (const BodyPoint& point : points) {
+        at.push_back(coordinates(point, extent));
+    }
+    std::vector<std::uint32_t> patch(points.size()), members(points.size());
+    std::iota(members.begin(), members.end(), 0u);
+    Cutter{at, patch}.cut(members, std::min(most, points.size()));
+    return patch;
+}
+
+MediumPatches find_patches(const LitMedia& media, const LampLight& light, const LitMedium& medium,
+                           const Context& context, std::uint64_t& rays) {
+    const std::uint32_t n = basis_for(medium.inside.size());
+    const std::size_t columns = formats::cubemap_texels(n);
+    MediumPatches patches;
+    patches.of_receiver = cut_into_patches(medium.inside, columns);
+    patches.probes = choose_probes(medium, patches.of_receiver);
+    std::vector<Receiver> outside;
+    std::vector<BodyPoint> inside;
+    for (const std::vector<std::uint32_t>& probes : patches.probes) {
+        for (const std::uint32_t i : probes) {
+            outside.push_back(medium.outside[i]);
+            inside.push_back(medium.inside[i]);
+        }
+    }
+    const OtherLight light_of_patches = make_patch_columns(light, medium, patches.of_receiver);
+    const std::vector<std::vector<float>> rows =
+        media.light_medium({medium.material, outside, inside, light_of_patches, n, true}, rays);
+    if (rows.size() != outside.size() || context.cancelled()) return {};
+    patches.answer.assign(patches.size() * patches.size(), glm::vec3(0));
+    std::size_t row = 0;
+    for (std::size_t to = 0; to < patches.size(); ++to) {
+        const std::vector<std::uint32_t>& probes = patches.probes[to];
+        for (const std::uint32_t i : probes) {
+            const std::vector<glm::vec3> exitance =
+                exitance_of_row(weigh_rows_at(media, light.scene, medium, i), medium.color[i],
+                                rows[row++], columns);
+            for (std::size_t from = 0; from < patches.size(); ++from) {
+                patches.answer[to * patches.size() + from] +=
+                    exitance[from] / static_cast<float>(probes.size());
+            }
+        }
+    }
+    return patches;
+}
+
+std::vector<glm::vec3> answer_patches(const MediumPatches& patches, const LampLight& light,
+                                      const LitMedium& medium, const Context& context,
+                                      std::uint64_t& rays) {
+    const std::size_t lamps = light.sources.size(), size = patches.size();
+    LampLight coarse = light;
+    coarse.samples = std::min(coarse.samples, kRaysOfProbe);
+    struct Part {
+        std::vector<glm::dvec3> irradiance;
+        std::uint64_t rays = 0;
+    };
+    std::vector<glm::vec3> irradiance(lamps * size, glm::vec3(0));
+    constexpr std::size_t kBlock = 4;
+    for_each_block_in_order(
+        size, kBlock, context,
+        [&](Range range) {
+            Part part;
+            part.irradiance.assign((range.end - range.begin) * lamps, glm::dvec3(0));
+            for (std::size_t j = range.begin; j < range.end; ++j) {
+                for (const std::uint32_t i : patches.probes[j]) {
+                    const std::vector<glm::dvec3> own = receive_light(
+                        coarse, medium.outside[i], key_of_point(medium.outside[i]), part.rays);
+                    for (std::size_t e = 0; e < lamps; ++e) {
+                        part.irradiance[(j - range.begin) * lamps + e] +=
+                            own[e] / static_cast<double>(patches.probes[j].size());
+                    }
+                }
+            }
+            return part;
+        },
+        [&](Range range, Part&& part) {
+            for (std::size_t j = range.begin; j < range.end; ++j) {
+                for (std::size_t e = 0; e < lamps; ++e) {
+                    irradiance[e * size + j] =
+                        glm::vec3(part.irradiance[(j - range.begin) * lamps + e]);
+                }
+            }
+            rays += part.rays;
+        });
+    std::vector<glm::vec3> exitance(lamps * size, glm::vec3(0));
+    for (std::size_t e = 0; e < lamps; ++e) {
+        for (std::size_t to = 0; to < size; ++to) {
+            for (std::size_t from = 0; from < size; ++from) {
+                exitance[e * size + to] +=
+                    patches.answer[to * size + from] * irradiance[e * size + from];
+            }
+            exitance[e * size + to] = glm::max(exitance[e * size + to], glm::vec3(0));
+        }
+    }
+    return exitance;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,72 @@
+#include "bake/rows/rows_of_points.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/multiple_stage.h"
+#include "bake/scene/inspect_scene.h"
+#include "formats/opal/cubemap.h"
+#include "tests/bake/single/single_support.h"
+#include "tests/support/effects.h"
+
+namespace opaline::bake {
+namespace {
+
+// Light in the place of the environment, by columns that stand for anything: a medium's answer is
+// linear in it. What is left of the subject is its study.
+TEST(RowsOfPoints, AreLinearInLightThatReplacesTheEnvironment) {
+    const auto setup = tests::set_up(
+        tests::make_translucent_scene({tests::make_sphere(2)}, tests::make_grey_medium(6, 0.3f)),
+        4);
+    Knobs knobs;
+    knobs.cubemap_size = 1;
+    knobs.effects = {"multiple"};
+    knobs.set(kMultipleModel, static_cast<double>(MultipleModel::dipole));
+    knobs.set(kSamples, 500);
+    const SceneFacts facts = inspect_scene(setup.scene);
+    ReceiverSet set;
+    set.inside = setup.points;
+    set.outside.resize(setup.points.size());
+    const std::vector<ReceiverSet> sets{set};
+    const auto sky = RayScene::build({}, 1);
+    OtherLight light;
+    light.environment = false;
+    light.add = [](const LitPoint&, std::uint32_t n, std::span<float> rows) {
+        const std::size_t texels = formats::cubemap_texels(n);
+        rows[0] += 1;
+        rows[3] += 2;
+        rows[texels + 3] += 4;
+        return std::uint64_t{7};
+    };
+    BakeInputs bake{all_effects(), setup.scene, facts, setup.rays, *sky, sets, &light};
+    const std::vector<PlanEntry> plan = plan_bake(setup.scene, facts, knobs);
+    std::vector<SubjectState> subjects = begin_subjects(bake, plan, knobs);
+    subjects[0].layout.coloured = true;
+    StageLog log;
+    const Context context;
+    run_step(Step::study, bake, knobs, context, subjects, log);
+    std::uint64_t rays = 0;
+    const auto rows =
+        rows_of_points(bake, knobs, context, subjects[0], std::span(set.outside).first(9),
+                       std::span(set.inside).first(9), rays);
+    ASSERT_EQ(rows.size(), 9u);
+    EXPECT_GT(rays, 0u);
+    for (const std::vector<float>& row : rows) {
+        ASSERT_EQ(row.size(), subjects[0].layout.terms() * 3 * 6u);
+        EXPECT_GT(row[0], 0);
+        EXPECT_NEAR(row[3], 2 * row[0], 1e-4f * row[0]);
+        EXPECT_NEAR(row[6 + 3], 4 * row[0], 1e-3f * row[0]) << "the medium is grey";
+        EXPECT_EQ(row[1], 0);
+        EXPECT_EQ(row[6], 0);
+    }
+    EXPECT_TRUE(std::ranges::all_of(subjects[0].effects, [](const EffectState& effect) {
+        return effect.samples == nullptr && effect.prepared == nullptr;
+    }));
+    EXPECT_TRUE(std::ranges::any_of(
+        subjects[0].effects, [](const EffectState& effect) { return effect.study != nullptr; }));
+}
+
+}  // namespace
+}  // namespace opaline::bake

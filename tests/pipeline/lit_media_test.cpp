@@ -1,0 +1,173 @@
+// Light of emitters through media, against the sky, a furnace and path tracing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/multiple_stage.h"
+#include "bake/emitters/emitter_knobs.h"
+#include "formats/opal/emitters.h"
+#include "tests/support/bake.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Rgb;
+
+formats::Material wax(Rgb sigma_s, Rgb sigma_a, float eta) {
+    formats::Material material{.name = "Wax"};
+    material.medium.emplace();
+    material.medium->sigma_s = sigma_s;
+    material.medium->sigma_a = sigma_a;
+    material.medium->eta = eta;
+    return material;
+}
+
+// A ball of radius 0.5 in a cube of edge 2 whose inside glows.
+formats::Scene ball_in_a_cube(const formats::Material& ball, float albedo, Rgb emission) {
+    formats::Scene scene =
+        tests::make_scene({tests::make_sphere(2, 0.5f), tests::make_cube(2, true)});
+    scene.materials[0] = ball;
+    scene.materials.push_back({.name = "Walls", .base_color = {albedo, albedo, albedo}});
+    scene.materials[1].emission = emission;
+    scene.primitives[1].material = 1;
+    scene.primitives[1].node = 1;
+    return scene;
+}
+
+// The dipole has no light that scatters once: without it on both sides.
+BakeOptions options_of(MultipleModel model) {
+    BakeOptions options;
+    options.quality = Quality::draft;
+    options.threads = 1;
+    options.effects = {"direct", "multiple", "emitters"};
+    if (model != MultipleModel::dipole) {
+        options.effects.emplace_back("single");
+    }
+    options.set(kMultipleModel, static_cast<double>(model));
+    options.set(kEmitterParticles, 5000);
+    options.set(kSamples, 4000);
+    options.set(kWalks, 100000);
+    options.set(kSites, 2000);
+    return options;
+}
+
+std::vector<Rgb> show(const BakeResult& baked, const char* light, bool lamps) {
+    std::vector<Rgb> radiance(baked.asset.position.size());
+    runtime::ShadeOptions options;
+    options.emitters = lamps ? runtime::EmitterLight{} : runtime::dark_emitters();
+    runtime::shade(baked.asset.view(), tests::make_light(light, baked.knobs.cubemap_size), radiance,
+                   options);
+    return radiance;
+}
+
+double error_of(const BakeResult& baked, const char* name) {
+    const auto part =
+        std::ranges::find(baked.error.by_effect, std::string(name), &MeasuredError::Part::name);
+    return part == baked.error.by_effect.end() ? HUGE_VAL : part->rms_relative;
+}
+
+class LitMedia : public testing::TestWithParam<MultipleModel> {};
+
+// Walls of radiance 1 are a white sky: the same answer to the same light, by another way.
+TEST_P(LitMedia, GlowingWallsAreAWhiteSky) {
+    const formats::Material material = wax({20, 16, 12}, {0.1f, 0.2f, 0.4f}, 1.3f);
+    const formats::Scene alone = [&] {
+        formats::Scene scene = tests::make_scene({tests::make_sphere(2, 0.5f)});
+        scene.materials[0] = material;
+        return scene;
+    }();
+    const auto sky = show(tests::bake_scene(alone, options_of(GetParam())), "white", false);
+    const BakeResult lit =
+        tests::bake_scene(ball_in_a_cube(material, 0, {1, 1, 1}), options_of(GetParam()));
+    const auto walls = show(lit, "black", true);
+    double difference = 0, all = 0;
+    for (std::size_t v = 0; v < sky.size(); ++v) {
+        ASSERT_GT(sky[v].r, sky[v].b);
+        for (const auto& [a, b] : {std::pair(sky[v].r, walls[v].r), std::pair(sky[v].g, walls[v].g),
+                                   std::pair(sky[v].b, walls[v].b)}) {
+            difference += std::pow(a - b, 2);
+            all += a * a;
+        }
+    }
+    EXPECT_LT(std::sqrt(difference / all), 0.05);
+    // Dimmed and coloured without another bake.
+    std::vector<Rgb> red(walls.size());
+    const std::vector<Rgb> colors{{0.5f, 0, 0}};
+    runtime::ShadeOptions shading;
+    shading.emitters = {colors};
+    runtime::shade(lit.asset.view(), tests::make_light("black", lit.knobs.cubemap_size), red,
+                   shading);
+    EXPECT_NEAR(red[7].r, 0.5f * walls[7].r, 1e-4f);
+    EXPECT_EQ(red[7].g, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, LitMedia,
+                         testing::Values(MultipleModel::dipole, MultipleModel::walks),
+                         [](const auto& model) {
+                             return std::string(model.param == MultipleModel::walks ? "Walks"
+                                                                                    : "Dipole");
+                         });
+
+// A medium that takes nothing, in walls that reflect half of what comes: all is as bright as the
+// walls would be without it, twice what they send out.
+TEST(LitMediaFurnace, MediumThatTakesNothingIsAsBrightAsTheWalls) {
+    const formats::Scene scene = ball_in_a_cube(wax({20, 20, 20}, {0, 0, 0}, 1), 0.5f, {1, 1, 1});
+    BakeOptions options = options_of(MultipleModel::walks);
+    options.set(kEmitterParticles, 20000);
+    const BakeResult baked = tests::bake_scene(scene, options);
+    const auto radiance = show(baked, "black", true);
+    const std::size_t ball = scene.primitives[0].position.size();
+    double mean = 0, walls = 0;
+    for (std::size_t v = 0; v < ball; ++v) {
+        mean += radiance[v].g / static_cast<double>(ball);
+    }
+    for (std::size_t v = ball; v < radiance.size(); ++v) {
+        walls += radiance[v].g / static_cast<double>(radiance.size() - ball);
+    }
+    EXPECT_NEAR(mean, 2, 0.06);
+    EXPECT_NEAR(walls, 2, 0.06);
+}
+
+// A lamp in a hollow ball, so thick that hardly any light crosses it unscattered: the outside
+// glows, and path tracing agrees.
+TEST(LitMediaReference, LampInAHollowBallGlowsOutside) {
+    formats::Primitive inner = tests::make_sphere(2, 0.35f);
+    for (std::size_t i = 0; i + 2 < inner.index.size(); i += 3) {
+        std::swap(inner.index[i], inner.index[i + 1]);
+    }
+    for (glm::vec3& n : inner.normal) {
+        n = -n;
+    }
+    formats::Scene scene =
+        tests::make_scene({tests::make_sphere(2, 0.5f), inner, tests::make_sphere(1, 0.15f),
+                           tests::make_quad({-2, -0.6f, 2}, {4, 0, 0}, {0, 0, -4}, 6)});
+    scene.materials[0] = wax({40, 36, 32}, {0.2f, 0.4f, 1}, 1.3f);
+    scene.materials.push_back({.name = "Bulb", .base_color = {0.5f, 0.5f, 0.5f}});
+    scene.materials[1].emission = {10, 8, 5};
+    scene.materials.push_back({.name = "Floor", .base_color = {0.5f, 0.5f, 0.5f}});
+    scene.primitives[2].material = 1;
+    scene.primitives[3].material = 2;
+    for (std::uint32_t p = 0; p < 4; ++p) {
+        scene.primitives[p].node = p;
+    }
+    scene.primitives[2].name = "node 'Bulb' > mesh 2";
+    BakeOptions options = options_of(MultipleModel::walks);
+    options.effects.clear();
+    const BakeResult baked = tests::bake_scene(scene, options);
+    const auto radiance = show(baked, "black", true);
+    EXPECT_GT(radiance[0].r, 0.05f);
+    EXPECT_GT(radiance[0].r, radiance[0].b);
+    // What leaves the ball lights the floor, most of all beneath it.
+    const std::size_t floor = radiance.size() - 49;
+    EXPECT_GT(radiance[floor + 24].r, 0.01f);
+    EXPECT_GT(radiance[floor + 24].r, 2 * radiance[floor].r);
+    EXPECT_LT(error_of(baked, "emitters in media"), 0.12);
+    for (const formats::Diagnostic& warning : baked.warnings) {
+        EXPECT_EQ(warning.fault.find("does not reach"), std::string::npos) << warning.fault;
+    }
+}
+
+}  // namespace
+}  // namespace opaline::bake
