@@ -95,9 +95,10 @@ void bill_shared_light(const CostedBake& bake, Bill& bill) {
         const Knobs coarse = coarse_knobs(request.effects, request.knobs, light.cubemap_size);
         for (const CostedSubject& subject : bake.subjects) {
             if (subject.layout.translucent) {
-                bill_points(
-                    bake, subject, coarse, light.points / static_cast<double>(bake.subjects.size()),
-                    [e](std::size_t f) { return f != e; }, payer, bill);
+                bill.add(work_of_points(bake, subject, coarse,
+                                        light.points / static_cast<double>(bake.subjects.size()),
+                                        [e](std::size_t f) { return f != e; }),
+                         payer);
             }
         }
     }

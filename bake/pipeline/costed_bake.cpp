@@ -89,9 +89,8 @@ CostedBake make_costed_bake(const CostRequest& request, std::vector<PlanEntry>& 
     return bake;
 }
 
-void bill_points(const CostedBake& bake, const CostedSubject& subject, const Knobs& knobs,
-                 double points, const std::function<bool(std::size_t effect)>& counts,
-                 PlanEntry* payer, Bill& bill) {
+Work work_of_points(const CostedBake& bake, const CostedSubject& subject, const Knobs& knobs,
+                    double points, const std::function<bool(std::size_t effect)>& counts) {
     const CostRequest& request = bake.request;
     const auto& effects = request.effects.effects;
     const CostInput input{request.rates, knobs, request.facts.triangles, request.facts.receivers};
@@ -101,6 +100,7 @@ void bill_points(const CostedBake& bake, const CostedSubject& subject, const Kno
                            subject.layout,
                            points,
                            bake.traces_rays};
+    Work all;
     for (std::size_t f = 0; f < effects.size(); ++f) {
         EffectState state;
         state.acts = subject.acts[f] && counts(f);
@@ -108,15 +108,16 @@ void bill_points(const CostedBake& bake, const CostedSubject& subject, const Kno
             const auto work = step_of(effects[f], step).work;
             if (work != nullptr &&
                 is_taken(effects[f], state, step, cost.material, subject.layout)) {
-                bill.add(work(cost), payer);
+                all += work(cost);
             }
         }
         const GatherStep& gather = effects[f].gather;
         if (state.acts && gather.work != nullptr &&
             (gather.applies == nullptr || gather.applies(subject.layout))) {
-            bill.add(gather.work(cost), payer);
+            all += gather.work(cost);
         }
     }
+    return all;
 }
 
 void bill_rows(const CostedBake& bake, const CostedSubject& subject, double receivers, Bill& bill) {

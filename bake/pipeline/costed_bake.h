@@ -35,9 +35,8 @@ CostedBake make_costed_bake(const CostRequest& request, std::vector<PlanEntry>& 
 
 /// Work of rows_of_points: samples and dense rows of `points` of one subject at other knobs, of the
 /// effects that act and that `counts` names.
-void bill_points(const CostedBake& bake, const CostedSubject& subject, const Knobs& knobs,
-                 double points, const std::function<bool(std::size_t effect)>& counts,
-                 PlanEntry* payer, Bill& bill);
+Work work_of_points(const CostedBake& bake, const CostedSubject& subject, const Knobs& knobs,
+                    double points, const std::function<bool(std::size_t effect)>& counts);
 
 /// Work of one subject's dense rows, effect by effect, each billed to its decisions: a part that
 /// adds rows pays for what they add.

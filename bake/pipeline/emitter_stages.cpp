@@ -1,8 +1,10 @@
 #include "bake/pipeline/emitter_stages.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bake/accuracy/check_lit_media.h"
 #include "bake/accuracy/error_warnings.h"
@@ -85,31 +87,27 @@ formats::Status check_media(const BakeInputs& bake, std::span<const Lamp> lamps,
     return formats::ok_status();
 }
 
-// What media make of lamps' light, pass by pass. False: there are none.
-bool bill_media(const CostedBake& bake, std::size_t lamps, double particles, Bill& bill) {
+// What media make of the light of some lamps, and of the particles of a pass between them; nothing
+// where there are none.
+std::optional<Work> work_of_media(const CostedBake& bake, std::size_t lamps, double particles) {
     const CostRequest& request = bake.request;
-    bool is_open = false;
+    std::optional<Work> all;
     for (const CostedSubject& subject : bake.subjects) {
         if (!takes_other_light(request.effects, subject.decisions, subject.layout)) continue;
-        if (!is_open) bill.open("media lit by emitters");
-        is_open = true;
+        if (!all) all = Work{0, kPasses * static_cast<double>(lamps) * particles};
         CostedSubject lit = subject;
         lit.layout = lit_layout(subject.layout);
         const auto counts = [&](std::size_t e) {
             return request.effects.effects[e].adds_other_light;
         };
-        const std::uint32_t n = lamp_basis(lamps);
         const double receivers = request.facts.material[subject.material].receivers;
-        const Knobs coarse = coarse_knobs(request.effects, request.knobs, kPatchBasis);
-        bill_points(bake, lit, coarse, std::min(receivers, kPatchPoints), counts, nullptr, bill);
+        *all += work_of_points(bake, lit, coarse_knobs(request.effects, request.knobs, kPatchBasis),
+                               std::min(receivers, kPatchPoints), counts);
         Knobs fine = request.knobs;
-        fine.cubemap_size = n;
-        bill_points(bake, lit, fine, receivers, counts, nullptr, bill);
+        fine.cubemap_size = lamp_basis(lamps);
+        *all += work_of_points(bake, lit, fine, receivers, counts);
     }
-    if (is_open) {
-        bill.add({0, kPasses * static_cast<double>(lamps) * particles});
-    }
-    return is_open;
+    return all;
 }
 
 }  // namespace
@@ -151,37 +149,35 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
 
 void bill_lamps(const CostedBake& bake, std::span<PlanEntry> plan, Bill& bill) {
     const CostRequest& request = bake.request;
+    std::vector<PlanEntry*> lamps;
+    for (PlanEntry& entry : plan) {
+        if (entry.on && entry.subject.kind == Subject::Kind::emitter) lamps.push_back(&entry);
+    }
+    if (lamps.empty()) return;
+    const auto for_each = [&](const char* stage, const Work& each) {
+        bill.open(stage);
+        for (PlanEntry* lamp : lamps) {
+            bill.add(each, lamp);
+        }
+    };
     const double ray = kIncoherent * request.rates.coherent_ray.at(request.facts.triangles);
     const double rays = request.knobs[kEmitterRays] * request.facts.receivers;
-    std::size_t lamps = 0;
-    const auto for_each = [&](const char* stage, double seconds) {
-        bool is_open = false;
-        lamps = 0;
-        for (PlanEntry& entry : plan) {
-            if (!entry.on || entry.subject.kind != Subject::Kind::emitter) continue;
-            if (!is_open) bill.open(stage);
-            is_open = true;
-            ++lamps;
-            bill.add({0, seconds}, &entry);
-        }
-        return is_open;
-    };
     const double particles = kFlights * request.knobs[kEmitterParticles] * ray;
-    if (!for_each("particles of emitters", particles)) {
-        return;
+    for_each("particles of emitters", {0, particles});
+    const std::optional<Work> media = work_of_media(bake, lamps.size(), particles);
+    if (media) {
+        const auto share = 1 / static_cast<double>(lamps.size());
+        for_each("media lit by emitters", {share * media->alone, share * media->shared});
     }
-    const bool has_media = bill_media(bake, lamps, particles, bill);
-    for_each("light of emitters", rays * ray);
+    for_each("light of emitters", {0, rays * ray});
     bill.add({0, rays * ray});  // to surfaces that reflect, for all
     bill.open("self-check of emitters");
-    if (has_media) {
+    if (media) {
         bill.open("self-check of media lit by emitters");
         bill.add({0, kLitMediaEvents * request.rates.body_event.at(request.facts.triangles)});
     }
-    for (PlanEntry& entry : plan) {
-        if (entry.on && entry.subject.kind == Subject::Kind::emitter) {
-            bill.add_bytes(6 * request.facts.receivers, &entry);
-        }
+    for (PlanEntry* lamp : lamps) {
+        bill.add_bytes(6 * request.facts.receivers, lamp);
     }
 }
 
