@@ -54,7 +54,7 @@ LightWork bounce_light_work(const CostInput& input) {
 }
 
 void calibrate_bounces(const CalibrationBench& bench, Rates& rates) {
-    constexpr std::uint32_t kCount = 144;
+    const BounceGrid grid = make_bounce_grid(144);
     std::vector<Scatterer> scatterers;
     for (const BodyPoint& point : thinned(std::span<const BodyPoint>(bench.points), 2048)) {
         Scatterer s;
@@ -70,7 +70,7 @@ void calibrate_bounces(const CalibrationBench& bench, Rates& rates) {
     std::uint64_t rays = 0;
     Stopwatch watch;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-        rays += weigh_bounces(bench.scene, bench.rays, tree, receivers[i], kCount, 0, weights[i]);
+        rays += weigh_bounces(bench.scene, bench.rays, tree, receivers[i], grid, 0, weights[i]);
     }
     bench.side_of(rates.bounce_ray) = watch.seconds() / static_cast<double>(rays);
     if (!bench.is_many) {

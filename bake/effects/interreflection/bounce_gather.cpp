@@ -1,35 +1,124 @@
 #include "bake/effects/interreflection/bounce_gather.h"
 
-#include "bake/effects/interreflection/scatterers.h"
-
 namespace opaline::bake {
+namespace {
+
+// The mean over nodes near a footprint whose linear part is that of its centre, wherever the nodes
+// lie: local linear regression.
+class KernelAverage {
+  public:
+    // Appends weights that add up to `share`. False: there is no node.
+    bool add(const BounceTree& tree, const FootprintKernel& kernel, const SurfaceSide& side,
+             float openness, float share, std::vector<NodeWeight>& weights) {
+        offsets_.clear();
+        const std::size_t first = weights.size();
+        float sum = 0;
+        glm::vec2 mean(0);
+        tree.find_near(kernel, side, openness,
+                       [&](std::uint32_t node, float weight, glm::vec2 offset) {
+                           weights.push_back({node, weight});
+                           offsets_.push_back(offset);
+                           sum += weight;
+                           mean += weight * offset;
+                       });
+        if (!(sum > 0)) {
+            weights.resize(first);
+            return false;
+        }
+        mean /= sum;
+        const std::span<NodeWeight> own = std::span(weights).subspan(first);
+        const glm::vec2 slope = slope_of(own, mean, sum);
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            own[i].weight *= share / sum * (1 + glm::dot(slope, offsets_[i] - mean));
+        }
+        return true;
+    }
+
+  private:
+    // What weights are tilted by, so that their mean offset is 0; less where one would turn
+    // negative.
+    glm::vec2 slope_of(std::span<const NodeWeight> own, glm::vec2 mean, float sum) const {
+        // Of the variance of the kernel, 1/12: nodes on a line have none across it.
+        constexpr float kLeastVariance = 0.004f;
+        float xx = kLeastVariance, xy = 0, yy = kLeastVariance;
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            const glm::vec2 d = offsets_[i] - mean;
+            const float w = own[i].weight / sum;
+            xx += w * d.x * d.x;
+            xy += w * d.x * d.y;
+            yy += w * d.y * d.y;
+        }
+        const float scale = -1 / (xx * yy - xy * xy);
+        const glm::vec2 slope =
+            scale * glm::vec2(yy * mean.x - xy * mean.y, xx * mean.y - xy * mean.x);
+        float steepest = 1;
+        for (const glm::vec2& offset : offsets_) {
+            steepest = std::max(steepest, -glm::dot(slope, offset - mean));
+        }
+        return slope / steepest;
+    }
+
+    std::vector<glm::vec2> offsets_;  // of the nodes of a ray, in widths of its footprint
+};
+
+}  // namespace
+
+FootprintKernel footprint_of(const BounceHit& hit, const Frame& frame, const SeenSide& side) {
+    // Cosines and areas that are not divided by.
+    constexpr float kGrazing = 1e-4f, kNoArea = 1e-30f;
+    const float t_hit = hit.hits.distance[hit.lane];
+    glm::vec3 toward = frame.to_world(hit.cell.middle);
+    float cosine = -glm::dot(toward, side.normal);
+    float t = t_hit * side.cosine / std::max(cosine, kGrazing);
+    // Beyond twice as far the plane says nothing about the surface.
+    if (!(cosine > kGrazing && t < 2 * t_hit)) {
+        toward = hit.direction;
+        cosine = std::max(side.cosine, kGrazing);
+        t = t_hit;
+    }
+    const auto moved = [&](glm::vec3 change) {
+        const glm::vec3 d = frame.to_world(change);
+        return t * (d + toward * (glm::dot(d, side.normal) / cosine));
+    };
+    const glm::vec3 across = moved(hit.cell.across), along = moved(hit.cell.along);
+    const float area = glm::dot(side.normal, glm::cross(across, along));
+    FootprintKernel kernel;
+    kernel.centre = hit.origin + t * toward;
+    kernel.area = std::max(std::abs(area), kNoArea);
+    const float inverse = std::copysign(1 / kernel.area, area);
+    kernel.across = inverse * glm::cross(along, side.normal);
+    kernel.along = inverse * glm::cross(side.normal, across);
+    kernel.above = side.normal / std::sqrt(kernel.area);
+    const float aa = glm::dot(kernel.across, kernel.across);
+    const float bb = glm::dot(kernel.along, kernel.along);
+    const float ab = glm::dot(kernel.across, kernel.along);
+    kernel.steepest = std::sqrt(0.5f * (aa + bb + std::sqrt((aa - bb) * (aa - bb) + 4 * ab * ab)));
+    return kernel;
+}
 
 std::uint64_t weigh_bounces(const formats::Scene& scene, const RayScene& rays,
-                            const BounceTree& tree, const Receiver& at, std::uint32_t count,
-                            std::uint64_t seed, std::vector<NodeWeight>& weights, bool nearest) {
+                            const BounceTree& tree, const Receiver& at, const BounceGrid& grid,
+                            std::uint64_t seed, std::vector<NodeWeight>& weights, LookUp look_up) {
     weights.clear();
-    const float share = 1 / static_cast<float>(count);
-    const std::uint64_t traced = trace_bounces(
-        rays, at, count, seed,
-        [&](const PacketHits& hits, const RayPacket& packet, std::size_t lane, float cosine) {
-            const SeenSide side = side_of_hit(scene, hits, lane);
+    const float share = 1 / static_cast<float>(grid.count());
+    KernelAverage average;
+    const std::uint64_t traced =
+        trace_bounces(rays, at, grid, seed, [&](const BounceHit& hit, const Frame& frame) {
+            const SeenSide side = side_of_hit(scene, hit.hits, hit.lane);
             if (!side.is_seen) {
                 return;
             }
-            constexpr float kGrazing = 1e-4f;
-            const float t = hits.distance[lane];
-            const glm::vec3 y{packet.org_x[lane] + t * packet.dir_x[lane],
-                              packet.org_y[lane] + t * packet.dir_y[lane],
-                              packet.org_z[lane] + t * packet.dir_z[lane]};
-            const float footprint =
-                nearest ? 0
-                        : std::numbers::pi_v<float> * t * t * share /
-                              (std::max(cosine, kGrazing) * std::max(side.cosine, kGrazing));
+            const SurfaceSide wanted{hit.hits.material[hit.lane], side.behind, side.normal};
+            const FootprintKernel kernel = footprint_of(hit, frame, side);
+            const glm::vec3 y = hit.origin + hit.hits.distance[hit.lane] * hit.direction;
             const std::uint32_t node =
-                tree.find(y, {hits.material[lane], side.behind, side.normal}, footprint);
-            if (node != formats::kNone) {
-                weights.push_back({node, share});
+                tree.find(y, wanted, look_up == LookUp::node ? kernel.area : 0);
+            if (node == formats::kNone ||
+                (look_up == LookUp::kernel &&
+                 average.add(tree, kernel, wanted, tree.openness(node), share, weights))) {
+                return;
             }
+            weights.push_back({node, share});
         });
     std::ranges::sort(weights, {}, &NodeWeight::node);
     std::size_t kept = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
@@ -28,12 +29,23 @@ Colour to_bands(formats::Rgb c, std::uint32_t bands) {
     return bands == 1 ? Colour{formats::luminance(c), 0, 0} : Colour{c.r, c.g, c.b};
 }
 
+std::vector<float> make_even_sky() {
+    const std::vector<double> face = formats::texel_solid_angles(kCubemap);
+    std::vector<float> light(kTexels);
+    for (std::size_t t = 0; t < kTexels; ++t) {
+        light[t] = static_cast<float>(face[t % face.size()]);
+    }
+    formats::haar_forward_cube(std::span<float>(light), kCubemap);
+    return light;
+}
+
 // Everything about scatterers but their bounced light.
 struct Field {
     const LightInputs& inputs;
-    std::span<const Scatterer> scatterers;
+    std::span<Scatterer> scatterers;
     std::uint32_t bands;
     std::vector<float> emitted;             // B without bounces, scatterer by scatterer
+    std::vector<float> even_sky;            // a light of radiance 1, in the basis of rows
     std::vector<Colour> reflect, transmit;  // of bounced light, from this side and the other one
 
     std::size_t row_size() const { return bands * kTexels; }
@@ -71,9 +83,15 @@ float even_light(std::span<const float> plane) {
     return sum;
 }
 
+// Of E.
+float openness_of(const Field& field, std::span<const float> row) {
+    return std::clamp(static_cast<float>(relit(row, field.even_sky)) / std::numbers::pi_v<float>,
+                      0.0f, 1.0f);
+}
+
 // B of an opaque or thin-walled surface: rho E.
 std::uint64_t light_surface(Field& field, const DirectionSet& directions, std::size_t i) {
-    const Scatterer& s = field.scatterers[i];
+    Scatterer& s = field.scatterers[i];
     std::vector<float> row(kTexels);
     formats::Rgb reflect = s.albedo, transmit{0, 0, 0};
     if (const auto& sheet = field.material(i).sheet) {
@@ -83,6 +101,7 @@ std::uint64_t light_surface(Field& field, const DirectionSet& directions, std::s
     field.reflect[i] = to_bands(reflect, field.bands);
     field.transmit[i] = to_bands(transmit, field.bands);
     std::uint64_t rays = gather_row(field, directions, s.outside, row);
+    s.openness = openness_of(field, row);
     add_scaled(row, field.reflect[i], field.bands, field.row(i));
     if (field.material(i).sheet) {
         rays += gather_row(field, directions, s.beyond, row);
@@ -110,7 +129,7 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
     std::vector<float> around(kTexels);
     for (std::size_t m = 0; m < members.size() && m < rows.size(); ++m) {
         const std::size_t i = members[m];
-        const Scatterer& s = field.scatterers[i];
+        Scatterer& s = field.scatterers[i];
         const Colour albedo = to_bands(s.albedo, field.bands);
         const std::vector<float> weight = weigh_rows_of_medium(layout, eta, s.inside.normal);
         for (std::size_t k = 0; k < weight.size(); ++k) {
@@ -125,6 +144,7 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
         }
         rays += gather_row(field, directions, s.outside, around);
         const float light = even_light(around);
+        s.openness = openness_of(field, around);
         for (std::uint32_t b = 0; b < field.bands; ++b) {
             const float out = even_light(field.row(i).subspan(b * kTexels, kTexels));
             field.reflect[i][b] = light > 0 ? std::clamp(out / light, 0.0f, 1.0f) : 0;
@@ -175,10 +195,11 @@ struct Arrivals {
 std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tree,
                                        std::uint64_t& rays) {
     std::vector<Arrivals> arrivals(field.scatterers.size());
+    const BounceGrid grid = make_bounce_grid(kRaysOfScatterer);
     constexpr std::size_t kBlock = 16;
     const auto weigh = [&](const Receiver& at, std::vector<NodeWeight>& weights) {
-        return weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at,
-                             kRaysOfScatterer, field.inputs.knobs.seed, weights);
+        return weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
+                             field.inputs.knobs.seed, weights);
     };
     for_each_block_in_order(
         arrivals.size(), kBlock, field.inputs.context,
@@ -254,13 +275,13 @@ std::size_t count_scatterers(const Knobs& knobs) {
 std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
                                                      std::uint64_t& rays) {
     const std::uint32_t count = count_bounce_rays(inputs.knobs[kBounceRays]);
-    const std::vector<Scatterer> scatterers =
+    std::vector<Scatterer> scatterers =
         find_scatterers(inputs, count_scatterers(inputs.knobs), rays);
     if (scatterers.empty()) {
         return nullptr;
     }
     const bool is_coloured = std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
-    Field field{inputs, scatterers, is_coloured ? 3u : 1u, {}, {}, {}};
+    Field field{inputs, scatterers, is_coloured ? 3u : 1u, {}, make_even_sky(), {}, {}};
     rays += light_scatterers(field);
     auto light = std::make_shared<BounceLight>(
         BounceLight{.scene = inputs.bake.scene,
@@ -270,7 +291,8 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
                     .seed = inputs.knobs.seed,
                     .layouts = {inputs.layouts.begin(), inputs.layouts.end()},
                     .tree = BounceTree(scatterers, inputs.layouts.size(), field.row_size()),
-                    .count = count});
+                    .of_receiver = make_bounce_grid(count),
+                    .of_averaged = make_bounce_grid(kRaysOfAveraged)});
     const std::vector<Arrivals> arrivals = weigh_scatterers(field, light->tree, rays);
     light->bounces = add_bounces(field, arrivals, light->tree);
     return light;
@@ -279,9 +301,9 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
 std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
                           std::uint32_t cubemap_size, std::span<float> rows) {
     std::vector<NodeWeight> weights;
-    const std::uint64_t rays =
-        weigh_bounces(light.scene, light.rays, light.tree, point.receiver,
-                      point.is_averaged ? light.of_averaged : light.count, light.seed, weights);
+    const std::uint64_t rays = weigh_bounces(
+        light.scene, light.rays, light.tree, point.receiver,
+        point.is_averaged ? light.of_averaged : light.of_receiver, light.seed, weights);
     if (!weights.empty()) {
         std::vector<float> own(light.tree.row_size());
         add_node_rows(light.tree, weights, own);

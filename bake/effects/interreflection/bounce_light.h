@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/effects/interreflection/bounce_tree.h"
 #include "bake/effects/interreflection/scatterers.h"
 #include "bake/plan/effect.h"
@@ -23,11 +24,10 @@ struct BounceLight {
     std::uint32_t cubemap_size = kBounceCubemap;  ///< of its rows
     std::uint32_t bands = 3;                      ///< or 1
     std::uint64_t seed = 0;
-    std::vector<RowLayout> layouts;               ///< by material
-    BounceTree tree;                              ///< rows: B, band by band
-    std::uint32_t count = 64;                     ///< rays of a receiver
-    std::uint32_t of_averaged = kRaysOfAveraged;  ///< rays of a point whose light is averaged
-    std::uint32_t bounces = 0;                    ///< that were added before the next was too dark
+    std::vector<RowLayout> layouts;       ///< by material
+    BounceTree tree;                      ///< rows: B, band by band
+    BounceGrid of_receiver, of_averaged;  ///< rays; of a point whose light is averaged
+    std::uint32_t bounces = 0;            ///< that were added before the next was too dark
 };
 
 /// Places scatterers and finds their light; null where receivers see no surface. `rays` counts up.

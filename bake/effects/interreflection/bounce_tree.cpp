@@ -9,53 +9,84 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::size_t kAxes = 6;
-
-std::size_t first_of(std::uint32_t material, bool behind) {
-    return (std::size_t{2} * material + (behind ? 1 : 0)) * kAxes;
+// Area of a facet's part in a box: that of its shadow along the nearest axis over the cosine.
+float area_of(glm::vec3 extent, glm::vec3 normal) {
+    constexpr float kSmallest = 1e-20f;
+    const auto axis = static_cast<glm::length_t>(nearest_side_axis(normal) / 2);
+    return std::max(kSmallest, extent[(axis + 1) % 3] * extent[(axis + 2) % 3] /
+                                   std::max(0.5f, std::abs(normal[axis])));
 }
 
-glm::vec3 axis_of(std::size_t number) {
-    glm::vec3 axis(0);
-    axis[static_cast<glm::length_t>(number / 2)] = number % 2 == 0 ? 1.0f : -1.0f;
-    return axis;
+// Product of the two longest edges of a box.
+float largest_side(glm::vec3 extent) {
+    const float second =
+        std::max(std::min(extent.x, extent.y), std::min(std::max(extent.x, extent.y), extent.z));
+    return second * std::max({extent.x, extent.y, extent.z});
 }
 
-std::size_t nearest_axis(glm::vec3 normal) {
-    std::size_t best = 0;
-    for (std::size_t a = 1; a < kAxes; ++a) {
-        if (glm::dot(normal, axis_of(a)) > glm::dot(normal, axis_of(best))) {
-            best = a;
-        }
+// Orders members along an axis; returns how many go below the split: half of them. Where most lie
+// in a slab, as those of one of several parallel walls do, a split between these would part them by
+// rounding errors: the middle of all parts walls instead.
+std::size_t split_members(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
+                          glm::length_t axis) {
+    constexpr float kSlab = 0.01f;
+    const auto place = [&](std::uint32_t i) { return scatterers[i].position[axis]; };
+    std::ranges::sort(members, [&](std::uint32_t a, std::uint32_t b) {
+        return place(a) < place(b) || (place(a) == place(b) && a < b);
+    });
+    const std::size_t n = members.size();
+    const float low = place(members[0]), high = place(members[n - 1]);
+    const float slab = place(members[3 * n / 5]) - place(members[2 * n / 5]);
+    if (n < 5 || slab > kSlab * (high - low) || !(high > low)) {
+        return n / 2;
     }
-    return best;
+    const float middle = 0.5f * (low + high);
+    return static_cast<std::size_t>(
+        std::ranges::partition_point(members, [&](std::uint32_t i) { return place(i) <= middle; }) -
+        members.begin());
 }
 
 }  // namespace
 
 BounceTree::BounceTree(std::span<const Scatterer> scatterers, std::size_t materials,
                        std::size_t row_size)
-    : roots_(2 * kAxes * materials, formats::kNone), row_size_(row_size) {
+    : roots_(2 * kSideAxes * materials, formats::kNone), row_size_(row_size) {
     std::vector<std::vector<std::uint32_t>> members(roots_.size());
     for (std::uint32_t i = 0; i < scatterers.size(); ++i) {
         const Scatterer& s = scatterers[i];
-        members[first_of(s.material, s.behind) + nearest_axis(s.normal)].push_back(i);
+        members[first_side_axis(s.material, s.behind) + nearest_side_axis(s.normal)].push_back(i);
     }
     nodes_.reserve(2 * scatterers.size());
     for (std::size_t group = 0; group < members.size(); ++group) {
         if (!members[group].empty()) {
             roots_[group] = static_cast<std::uint32_t>(nodes_.size());
-            build(scatterers, members[group]);
+            Box all{scatterers[members[group][0]].position, scatterers[members[group][0]].position};
+            for (const std::uint32_t i : members[group]) {
+                all.low = glm::min(all.low, scatterers[i].position);
+                all.high = glm::max(all.high, scatterers[i].position);
+            }
+            build(scatterers, members[group], all);
         }
     }
     rows_.resize(nodes_.size() * row_size_);
 }
 
-void BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members) {
+float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
+                        const Box& cell) {
     const std::size_t self = nodes_.size();
-    nodes_.push_back({.count = static_cast<std::uint32_t>(members.size()), .axis = members[0]});
+    nodes_.push_back({.axis = members[0]});
+    nodes_[self].darkest = nodes_[self].brightest = scatterers[members[0]].openness;
+    for (const std::uint32_t i : members) {
+        nodes_[self].darkest = std::min(nodes_[self].darkest, scatterers[i].openness);
+        nodes_[self].brightest = std::max(nodes_[self].brightest, scatterers[i].openness);
+        nodes_[self].centre += (1 / static_cast<float>(members.size())) * scatterers[i].position;
+    }
+    for (const std::uint32_t i : members) {
+        nodes_[self].radius = std::max(nodes_[self].radius,
+                                       glm::distance(scatterers[i].position, nodes_[self].centre));
+    }
     if (members.size() == 1) {
-        return;
+        return nodes_[self].cell = area_of(cell.high - cell.low, scatterers[members[0]].normal);
     }
     glm::vec3 low(scatterers[members[0]].position), high(low);
     for (const std::uint32_t i : members) {
@@ -66,29 +97,30 @@ void BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::uin
     const glm::length_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0
                                : extent.y >= extent.z                       ? 1
                                                                             : 2;
-    const auto half = static_cast<std::ptrdiff_t>(members.size() / 2);
-    std::nth_element(members.begin(), members.begin() + half, members.end(),
-                     [&](std::uint32_t a, std::uint32_t b) {
-                         const float x = scatterers[a].position[axis];
-                         const float y = scatterers[b].position[axis];
-                         return x < y || (x == y && a < b);
-                     });
-    float below = low[axis];
-    for (const std::uint32_t i : members.first(static_cast<std::size_t>(half))) {
-        below = std::max(below, scatterers[i].position[axis]);
-    }
-    const float above = scatterers[members[static_cast<std::size_t>(half)]].position[axis];
+    const std::size_t half = split_members(scatterers, members, axis);
+    const auto last_below = std::ranges::max(
+        members.first(half), {}, [&](std::uint32_t i) { return scatterers[i].position[axis]; });
+    const auto first_above = std::ranges::min(
+        members.subspan(half), {}, [&](std::uint32_t i) { return scatterers[i].position[axis]; });
     nodes_[self].axis = static_cast<std::uint32_t>(axis);
-    nodes_[self].split = 0.5f * (below + above);
+    nodes_[self].split =
+        0.5f * (scatterers[last_below].position[axis] + scatterers[first_above].position[axis]);
     // Cells of scatterers reach beyond their own places: as far as n + 1 of them over n gaps.
     const float wider = std::sqrt(static_cast<float>(members.size())) /
                         std::max(1.0f, std::sqrt(static_cast<float>(members.size())) - 1);
-    const float second =
-        std::max(std::min(extent.x, extent.y), std::min(std::max(extent.x, extent.y), extent.z));
-    nodes_[self].area = wider * wider * extent[axis] * second;
-    build(scatterers, members.first(static_cast<std::size_t>(half)));
+    nodes_[self].area = wider * wider * largest_side(extent);
+    // Surfaces of a side lie apart: a cell ends a gap beyond its scatterers.
+    Box left = cell;
+    if (members.size() > 4) {
+        const glm::vec3 gap = extent / (std::sqrt(static_cast<float>(members.size())) - 1);
+        left = {glm::max(cell.low, low - gap), glm::min(cell.high, high + gap)};
+    }
+    Box right = left;
+    left.high[axis] = right.low[axis] = nodes_[self].split;
+    float area = build(scatterers, members.first(half), left);
     nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
-    build(scatterers, members.subspan(static_cast<std::size_t>(half)));
+    area += build(scatterers, members.subspan(half), right);
+    return nodes_[self].cell = area;
 }
 
 void BounceTree::set_rows(std::span<const float> rows) {
@@ -99,9 +131,7 @@ void BounceTree::set_rows(std::span<const float> rows) {
             std::copy_n(&rows[node.axis * row_size_], row_size_, to);
             continue;
         }
-        const auto left_count = static_cast<float>(nodes_[v + 1].count);
-        const auto right_count = static_cast<float>(nodes_[node.right].count);
-        const float left = left_count / (left_count + right_count), right = 1 - left;
+        const float left = nodes_[v + 1].cell / node.cell, right = 1 - left;
         const float* const a = &rows_[(v + 1) * row_size_];
         const float* const b = &rows_[node.right * row_size_];
         for (std::size_t k = 0; k < row_size_; ++k) {
@@ -111,17 +141,17 @@ void BounceTree::set_rows(std::span<const float> rows) {
 }
 
 std::uint32_t BounceTree::root_of(const SurfaceSide& side) const {
-    const std::size_t first = first_of(side.material, side.behind);
-    std::uint32_t best = roots_[first + nearest_axis(side.normal)];
+    const std::size_t first = first_side_axis(side.material, side.behind);
+    std::uint32_t best = roots_[first + nearest_side_axis(side.normal)];
     float facing = -1;
-    for (std::size_t a = 0; best == formats::kNone && a < kAxes; ++a) {
-        const float own = glm::dot(side.normal, axis_of(a));
+    for (std::size_t a = 0; best == formats::kNone && a < kSideAxes; ++a) {
+        const float own = glm::dot(side.normal, side_axis(a));
         if (roots_[first + a] != formats::kNone && own > facing) {
             facing = own;
         }
     }
-    for (std::size_t a = 0; best == formats::kNone && facing > -1 && a < kAxes; ++a) {
-        if (roots_[first + a] != formats::kNone && glm::dot(side.normal, axis_of(a)) == facing) {
+    for (std::size_t a = 0; best == formats::kNone && facing > -1 && a < kSideAxes; ++a) {
+        if (roots_[first + a] != formats::kNone && glm::dot(side.normal, side_axis(a)) == facing) {
             best = roots_[first + a];
         }
     }
@@ -130,7 +160,8 @@ std::uint32_t BounceTree::root_of(const SurfaceSide& side) const {
 
 std::uint32_t BounceTree::find(glm::vec3 y, const SurfaceSide& side, float footprint) const {
     std::uint32_t v = root_of(side);
-    while (v != formats::kNone && nodes_[v].right != 0 && nodes_[v].area > footprint) {
+    while (v != formats::kNone && nodes_[v].right != 0 &&
+           (footprint == 0 || nodes_[v].area > footprint)) {
         v = y[static_cast<glm::length_t>(nodes_[v].axis)] < nodes_[v].split ? v + 1
                                                                             : nodes_[v].right;
     }

@@ -1,22 +1,27 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
+#include "bake/effects/interreflection/surface_side.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
 struct Scatterer;
 
-/// Which scatterers may answer a ray: those of the surface's material and side that face as it
-/// does.
-struct SurfaceSide {
-    std::uint32_t material = 0;
-    bool behind = false;
-    glm::vec3 normal{0};  ///< unit, of that side
+/// Where a footprint is on a surface. Offsets from its centre, in its own widths: their dot
+/// products with three axes, the third normal to the surface.
+struct FootprintKernel {
+    glm::vec3 centre{0};                      ///< [m]
+    glm::vec3 across{0}, along{0}, above{0};  ///< [1/m]
+    float steepest = 0;                       ///< [1/m], longest that any of the first two is
+    float area = 0;                           ///< [m^2], > 0
 };
 
 /// kd-trees over scatterers, one for each material, side and nearest axis of the normal, so that
@@ -33,6 +38,15 @@ class BounceTree {
     /// cell y is. formats::kNone where that side of the material has no scatterer.
     std::uint32_t find(glm::vec3 y, const SurfaceSide& side, float footprint) const;
 
+    /// Calls visit(node, weight, offset) for nodes of that side under a Gaussian around the
+    /// footprint, of its second moments (1/12 in the square of its widths), out to three standard
+    /// deviations. Nodes are at most half as large in radius as the footprint is narrow, or
+    /// scatterers. `weight`: scatterers times the Gaussian; may call nothing.
+    template <class Visit>
+    void find_near(const FootprintKernel& kernel, const SurfaceSide& side, float openness,
+                   Visit&& visit) const;
+    float openness(std::uint32_t node) const { return nodes_[node].darkest; }
+
     std::span<const float> row(std::uint32_t node) const {
         return std::span(rows_).subspan(node * row_size_, row_size_);
     }
@@ -41,12 +55,19 @@ class BounceTree {
 
   private:
     struct Node {
-        float split = 0, area = 0;  // [m], [m^2] of the bounding box's largest side
-        std::uint32_t right = 0;    // second child; the first follows the node; 0: a leaf
-        std::uint32_t count = 0;    // scatterers
-        std::uint32_t axis = 0;     // 0 ... 2; of a leaf: its scatterer
+        float split = 0, area = 0;         // [m], [m^2] of the bounding box's largest side
+        std::uint32_t right = 0;           // second child; the first follows the node; 0: a leaf
+        float cell = 0;                    // [m^2], of its scatterers
+        std::uint32_t axis = 0;            // 0 ... 2; of a leaf: its scatterer
+        glm::vec3 centre{0};               // [m], mean of its scatterers'
+        float radius = 0;                  // [m], of the farthest
+        float darkest = 0, brightest = 0;  // Scatterer::openness
     };
-    void build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members);
+    struct Box {
+        glm::vec3 low, high;
+    };
+    float build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
+                const Box& cell);
     std::uint32_t root_of(const SurfaceSide& side) const;
 
     std::vector<Node> nodes_;
@@ -54,5 +75,47 @@ class BounceTree {
     std::vector<float> rows_;
     std::size_t row_size_;
 };
+
+inline float similarity(float a, float b) {
+    constexpr float kDark = 0.05f;
+    return std::max(0.0f, 1 - std::abs(std::log2((a + kDark) / (b + kDark))));
+}
+
+template <class Visit>
+void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& side, float openness,
+                           Visit&& visit) const {
+    const std::uint32_t root = root_of(side);
+    if (root == formats::kNone) {
+        return;
+    }
+    constexpr float kReach = 0.8660254f;  // 3 / sqrt(12)
+    constexpr float kLargest = 0.5f;
+    // At most as many as the tree is deep: twenty halvings, between which a few parts of an axis
+    // without half of the scatterers go.
+    std::array<std::uint32_t, 512> waiting;
+    waiting[0] = root;
+    std::size_t count = 1;
+    while (count > 0) {
+        const std::uint32_t v = waiting[--count];
+        const Node& node = nodes_[v];
+        const glm::vec3 offset = node.centre - kernel.centre;
+        const glm::vec3 d{glm::dot(offset, kernel.across), glm::dot(offset, kernel.along),
+                          glm::dot(offset, kernel.above)};
+        const float square = glm::dot(d, d), radius = node.radius * kernel.steepest;
+        if (square > (kReach + radius) * (kReach + radius)) {
+            continue;
+        }
+        if (node.right != 0 &&
+            (radius > kLargest || similarity(node.darkest, node.brightest) < 0.5f)) {
+            waiting[count++] = node.right;
+            waiting[count++] = v + 1;
+        } else if (square < kReach * kReach) {
+            const float like = similarity(openness, 0.5f * (node.darkest + node.brightest));
+            if (like > 0) {
+                visit(v, like * node.cell * std::exp(-6 * square), glm::vec2(d));
+            }
+        }
+    }
+}
 
 }  // namespace opaline::bake

@@ -4,7 +4,8 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/effects/interreflection/bounce_gather.h"
+#include "bake/effects/interreflection/bounce_rays.h"
+#include "bake/effects/interreflection/even_choice.h"
 #include "bake/effects/interreflection/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/receivers/vertex_receivers.h"
@@ -19,7 +20,7 @@ constexpr std::uint32_t kRaysOfProbe = 16;
 struct Seen {
     AreaTable::Triangle triangle;
     glm::vec3 barycentric{0};
-    bool behind = false;
+    SidePoint point;
 };
 
 std::vector<Receiver> draw_probes(std::span<const ReceiverSet> sets) {
@@ -42,14 +43,14 @@ Scatterer make_scatterer(const LightInputs& inputs, const Seen& seen) {
     Scatterer made;
     made.position = point.position;
     made.material = scene.primitives[point.primitive].material;
-    made.behind = seen.behind;
-    made.normal = seen.behind ? -point.normal : point.normal;
+    made.behind = seen.point.side.behind;
+    made.normal = seen.point.side.behind ? -point.normal : point.normal;
     made.albedo = eval_surface_albedo(scene, inputs.layouts[made.material], point);
     const glm::vec3 lift = sample.receiver.origin - point.position;
     const glm::vec3 other = point.position - glm::dot(lift, point.normal) * point.normal;
     made.outside = sample.receiver;
     made.beyond = {other, -sample.normal};
-    if (seen.behind) {
+    if (seen.point.side.behind) {
         std::swap(made.outside, made.beyond);
     }
     glm::vec3 largest(0);
@@ -85,6 +86,7 @@ std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t co
         std::uint64_t rays = 0;
     };
     std::vector<Seen> all;
+    const BounceGrid grid = make_bounce_grid(kRaysOfProbe);
     constexpr std::size_t kBlock = 64;
     for_each_block_in_order(
         probes.size(), kBlock, inputs.context,
@@ -92,14 +94,18 @@ std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t co
             Part part;
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 part.rays += trace_bounces(
-                    inputs.bake.rays, probes[i], kRaysOfProbe, inputs.knobs.seed,
-                    [&](const PacketHits& hits, const RayPacket&, std::size_t lane, float) {
+                    inputs.bake.rays, probes[i], grid, inputs.knobs.seed,
+                    [&](const BounceHit& hit, const Frame&) {
+                        const PacketHits& hits = hit.hits;
+                        const std::size_t lane = hit.lane;
                         const SeenSide side = side_of_hit(inputs.bake.scene, hits, lane);
                         if (side.is_seen && inputs.layouts[hits.material[lane]].has_rows()) {
                             const float u = hits.u[lane], v = hits.v[lane];
-                            part.seen.push_back({{hits.primitive[lane], hits.first_index[lane]},
-                                                 {1 - u - v, u, v},
-                                                 side.behind});
+                            part.seen.push_back(
+                                {{hits.primitive[lane], hits.first_index[lane]},
+                                 {1 - u - v, u, v},
+                                 {hit.origin + hits.distance[lane] * hit.direction,
+                                  {hits.material[lane], side.behind, side.normal}}});
                         }
                     });
             }
@@ -109,11 +115,15 @@ std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t co
             all.insert(all.end(), part.seen.begin(), part.seen.end());
             rays += part.rays;
         });
+    std::vector<SidePoint> points;
+    points.reserve(all.size());
+    for (const Seen& seen : all) {
+        points.push_back(seen.point);
+    }
     std::vector<Scatterer> scatterers;
-    const std::size_t kept = std::min(count, all.size());
-    scatterers.reserve(kept);
-    for (std::size_t i = 0; i < kept; ++i) {
-        scatterers.push_back(make_scatterer(inputs, all[i * all.size() / kept]));
+    scatterers.reserve(std::min(count, all.size()));
+    for (const std::uint32_t i : choose_evenly(points, count)) {
+        scatterers.push_back(make_scatterer(inputs, all[i]));
     }
     return scatterers;
 }

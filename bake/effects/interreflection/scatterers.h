@@ -18,6 +18,7 @@ struct Scatterer {
     Receiver outside;     ///< where light of that side is gathered
     Receiver beyond;      ///< the same of the other side; used of thin-walled surfaces
     BodyPoint inside;
+    float openness = 0;            ///< share of the light of an even sky that reaches it, in [0, 1]
     formats::Rgb albedo{1, 1, 1};  ///< eval_surface_albedo
 };
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "bake/effects/interreflection/bounce_gather.h"
+#include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/effects/interreflection/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
 
@@ -59,10 +59,7 @@ class TruePath {
     bool step(Receiver& from, glm::vec2 u, float side_choice, Rgb& weight) {
         const BounceLight& light = *truth_.light;
         RayPacket packet = rays_from(from.origin);
-        const glm::vec2 d = to_disk(u.x, u.y);
-        const glm::vec3 direction =
-            make_frame(from.normal)
-                .to_world({d.x, d.y, std::sqrt(std::max(0.0f, 1 - glm::dot(d, d)))});
+        const glm::vec3 direction = make_frame(from.normal).to_world(to_hemisphere(u.x, u.y));
         packet.dir_x[0] = direction.x;
         packet.dir_y[0] = direction.y;
         packet.dir_z[0] = direction.z;

@@ -37,7 +37,8 @@ TEST(BounceGather, SumOfWeightsIsTheFormFactor) {
     const double expected = 4 / std::numbers::pi * x / root * std::atan(x / root);
     double sum = 0;
     std::vector<NodeWeight> weights;
-    EXPECT_EQ(weigh_bounces(scene, rays, tree, {{0.5f, 1e-5f, 0.5f}, {0, 1, 0}}, 4096, 1, weights),
+    EXPECT_EQ(weigh_bounces(scene, rays, tree, {{0.5f, 1e-5f, 0.5f}, {0, 1, 0}},
+                            make_bounce_grid(4096), 1, weights),
               4096u);
     for (const NodeWeight& w : weights) {
         sum += w.weight;
@@ -51,29 +52,76 @@ TEST(BounceGather, BacksOfSingleSidedSurfacesSendNothing) {
     const RayScene rays = RayScene::build(scene, 1).value();
     const BounceTree tree(upper_plate(4), 2, 1);
     std::vector<NodeWeight> weights;
-    weigh_bounces(scene, rays, tree, {{0.5f, 2, 0.5f}, {0, -1, 0}}, 256, 1, weights);
+    weigh_bounces(scene, rays, tree, {{0.5f, 2, 0.5f}, {0, -1, 0}}, make_bounce_grid(256), 1,
+                  weights);
     EXPECT_TRUE(weights.empty());
 }
 
-// The scalar that the gather uses is the polygon that path_differentials carries along the ray.
-TEST(BounceGather, FootprintIsThatOfThePathDifferential) {
-    for (std::uint32_t i = 0; i < 200; ++i) {
+// A ray from the origin through a cell of width h, and where it meets a plane at distance t.
+struct Met {
+    static constexpr float h = 1 / 256.0f;
+    glm::vec2 uv;
+    glm::vec3 normal;  // of the plane, toward the ray
+    float t;
+    PacketHits hits{};
+    BounceCell cell;
+
+    explicit Met(std::uint32_t i) {
         const auto u = random_uniform(9, RandomStage::bounce_rays, i);
         const auto w = random_uniform(9, RandomStage::bounce_rays, i, 1);
-        const double count = 1e8, t = 0.2 + 3 * w[0];  // secants become tangents
+        uv = {0.02f + 0.96f * u[0], 0.02f + 0.96f * u[1]};
+        t = 0.2f + 3 * w[0];
+        cell.middle = through(0, 0);
+        cell.across = through(h / 2, 0) - through(-h / 2, 0);
+        cell.along = through(0, h / 2) - through(0, -h / 2);
+        normal = glm::normalize(glm::vec3(0.3f * u[2], 0.3f * u[3], 1) - 2.0f * cell.middle);
+        hits.distance[0] = t;
+    }
+    glm::vec3 through(float du, float dv) const { return to_hemisphere(uv.x + du, uv.y + dv); }
+    FootprintKernel footprint() const {
+        const SeenSide side{true, false, normal, -glm::dot(cell.middle, normal)};
+        return footprint_of({hits, 0, {0, 0, 0}, cell.middle, cell},
+                            {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, side);
+    }
+    glm::vec3 on_plane(glm::vec3 direction) const {
+        return t * glm::dot(cell.middle, normal) / glm::dot(direction, normal) * direction;
+    }
+};
+
+// The footprint that the gather uses is the polygon that path_differentials carries along the ray,
+//     a_f = pi t^2 / (N cos_x cos_y).
+TEST(BounceGather, FootprintIsThatOfThePathDifferential) {
+    for (std::uint32_t i = 0; i < 200; ++i) {
+        const Met met(i);
         PathDifferential path;
         DifferentialRules rules;
         rules.extent = 1e6;
         LobeEvent event;
-        event.u = 0.02 + 0.96 * u[0];
-        event.v = 0.02 + 0.96 * u[1];
-        event.step_u = event.step_v = 1 / std::sqrt(count);
+        event.u = met.uv.x;
+        event.v = met.uv.y;
+        event.step_u = event.step_v = Met::h;
         const glm::dvec3 D = scatter_in_lobe(path, rules, event);
-        const glm::dvec3 N_g = glm::normalize(glm::dvec3(0.3 * u[2], 0.3 * u[3], 1) - 2.0 * D);
-        move_to_surface(path, D, N_g, t);
+        const glm::dvec3 N_g(met.normal);
+        move_to_surface(path, D, N_g, met.t);
         const double area = surface_footprint(path, rules, N_g, FootprintMode::polygon).area;
-        const double scalar = std::numbers::pi * t * t / (count * D.z * std::abs(glm::dot(D, N_g)));
-        EXPECT_NEAR(area / scalar, 1, 1e-4) << i;
+        EXPECT_NEAR(met.footprint().area / area, 1, 0.03) << i;
+    }
+}
+
+// Directions through the edges of a ray's cell meet the surface half a width from its middle.
+TEST(BounceGather, FootprintEndsWhereTheEdgesOfTheCellLand) {
+    for (std::uint32_t i = 0; i < 200; ++i) {
+        const Met met(i);
+        const FootprintKernel kernel = met.footprint();
+        for (const float sign : {-0.5f, 0.5f}) {
+            const glm::vec3 a = met.on_plane(met.through(sign * Met::h, 0)) - kernel.centre;
+            const glm::vec3 b = met.on_plane(met.through(0, sign * Met::h)) - kernel.centre;
+            EXPECT_NEAR(glm::dot(a, kernel.across), sign, 0.03) << i;
+            EXPECT_NEAR(glm::dot(a, kernel.along), 0, 0.03) << i;
+            EXPECT_NEAR(glm::dot(b, kernel.along), sign, 0.03) << i;
+            EXPECT_NEAR(glm::dot(b, kernel.across), 0, 0.03) << i;
+            EXPECT_LE(0.5f, glm::length(a) * kernel.steepest * 1.03f) << i;
+        }
     }
 }
 

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "bake/base/frame.h"
+#include "bake/base/rng.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/ray_scene.h"
+
+namespace opaline::bake {
+
+/// Rays that `wanted` becomes: the square of a multiple of 4, at least 16.
+inline std::uint32_t count_bounce_rays(double wanted) {
+    const double side = 4 * std::max(1.0, std::round(0.25 * std::sqrt(wanted)));
+    return static_cast<std::uint32_t>(side * side);
+}
+
+/// Key of a point's random numbers: a hash of its place and normal, so that copies of a vertex
+/// gather the same.
+inline std::uint64_t key_of(const Receiver& at) {
+    std::uint64_t key = 0x9e3779b97f4a7c15u;
+    for (const float value :
+         {at.origin.x, at.origin.y, at.origin.z, at.normal.x, at.normal.y, at.normal.z}) {
+        key = (key ^ std::bit_cast<std::uint32_t>(value)) * 0xff51afd7ed558ccdu;
+        key ^= key >> 32;
+    }
+    return key;
+}
+
+/// The point of the unit disk of two numbers in [0, 1]: concentric squares become circles.
+inline glm::vec2 to_disk(float u, float v) {
+    const float a = 2 * u - 1, b = 2 * v - 1;
+    if (a == 0 && b == 0) {
+        return glm::vec2(0);
+    }
+    constexpr float kQuarter = std::numbers::pi_v<float> / 4;
+    const bool first = std::abs(a) > std::abs(b);
+    const float r = first ? a : b;
+    const float angle = first ? kQuarter * (b / a) : 2 * kQuarter - kQuarter * (a / b);
+    return {r * std::cos(angle), r * std::sin(angle)};
+}
+
+/// One cell of the square from which cosine-distributed directions are drawn.
+struct BounceCell {
+    glm::vec3 middle{0, 0, 1};      ///< direction of its middle; unit, the normal is z
+    glm::vec3 across{0}, along{0};  ///< how far directions change over its two widths: secants
+};
+
+/// All cells, row by row: as many as there are rays.
+struct BounceGrid {
+    std::uint32_t side = 0;  ///< a multiple of 4
+    std::vector<BounceCell> cells;
+
+    std::uint32_t count() const { return side * side; }
+};
+/// `count`: of count_bounce_rays.
+BounceGrid make_bounce_grid(std::uint32_t count);
+
+/// The direction of two numbers in [0, 1], cosine-distributed if these are random: unit, the normal
+/// is z.
+inline glm::vec3 to_hemisphere(float u, float v) {
+    const glm::vec2 d = to_disk(u, v);
+    return {d.x, d.y, std::sqrt(std::max(0.0f, 1 - glm::dot(d, d)))};
+}
+
+/// A hit, and the ray and its cell.
+struct BounceHit {
+    const PacketHits& hits;
+    std::size_t lane = 0;
+    glm::vec3 origin{0}, direction{0};  ///< [m], unit
+    const BounceCell& cell;
+};
+
+/// Traces a cosine-distributed ray in each cell, in packets of neighbouring cells, and calls
+/// visit(hit, frame) for each that hits something, in a fixed order; `frame`: that of the cells.
+/// Returns the rays. A point without a normal traces none.
+template <class Visit>
+std::uint64_t trace_bounces(const RayScene& rays, const Receiver& at, const BounceGrid& grid,
+                            std::uint64_t seed, Visit&& visit) {
+    if (at.normal == glm::vec3(0) || rays.is_empty()) {
+        return 0;
+    }
+    const float width = 1 / static_cast<float>(grid.side);
+    const Frame frame = make_frame(at.normal);
+    const std::uint64_t key = key_of(at);
+    RayPacket packet = rays_from(at.origin);
+    LaneMask lanes;
+    lanes.fill(-1);
+    std::uint32_t number = 0;
+    for (std::uint32_t row = 0; row < grid.side; row += 4) {
+        for (std::uint32_t column = 0; column < grid.side; column += 4, ++number) {
+            for (std::uint32_t i = 0; i < RayPacket::kSize; i += 2) {
+                const auto u =
+                    random_uniform(seed, RandomStage::bounce_rays, key, 8 * number + i / 2);
+                for (std::uint32_t j = 0; j < 2; ++j) {
+                    const std::uint32_t lane = i + j;
+                    const std::uint32_t across = column + lane % 4, along = row + lane / 4;
+                    const glm::vec3 direction = frame.to_world(
+                        to_hemisphere((static_cast<float>(across) + u[2 * j]) * width,
+                                      (static_cast<float>(along) + u[2 * j + 1]) * width));
+                    packet.dir_x[lane] = direction.x;
+                    packet.dir_y[lane] = direction.y;
+                    packet.dir_z[lane] = direction.z;
+                    packet.tfar[lane] = std::numeric_limits<float>::infinity();
+                }
+            }
+            const PacketHits hits = rays.closest(lanes, packet);
+            for (std::size_t lane = 0; lane < RayPacket::kSize; ++lane) {
+                if (hits.hit[lane] != 0) {
+                    const std::size_t cell = (row + lane / 4) * grid.side + column + lane % 4;
+                    const glm::vec3 direction{packet.dir_x[lane], packet.dir_y[lane],
+                                              packet.dir_z[lane]};
+                    visit(BounceHit{hits, lane, at.origin, direction, grid.cells[cell]}, frame);
+                }
+            }
+        }
+    }
+    return grid.count();
+}
+
+}  // namespace opaline::bake
