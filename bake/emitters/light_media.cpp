@@ -46,7 +46,7 @@ MediaLight pass(const MediaJob& job, std::span<const LitMedium> media,
         if (patches[m].answer.empty()) continue;
         const std::size_t size = patches[m].size();
         const std::vector<glm::vec3> exitance =
-            answer_patches(patches[m], light, media[m], context, rays);
+            answer_patches(patches[m], light_patches(patches[m], light, media[m], context, rays));
         add_medium(
             job, media[m], light.sources.size(),
             [&](std::size_t e, std::size_t receiver) {
@@ -101,6 +101,20 @@ void read_columns(const MediaJob& job, const LampLight& light, const LitMedium& 
                     result[p][e][v * terms + k] = {band(0), band(1), band(2)};
                 }
             }
+        }
+    }
+}
+
+// Light that the surface of a medium mirrors goes on to others, but stands in no rows.
+void add_mirrored(const MediaJob& job, const LitMedium& medium, const MediumPatches& patches,
+                  std::span<const glm::vec3> irradiance, MediaLight& exitance) {
+    for (std::size_t i = 0; i < medium.primitives.size(); ++i) {
+        std::vector<glm::vec3>& values = exitance.exitance[medium.primitives[i]];
+        const std::size_t receivers = job.receivers[medium.primitives[i]].size();
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            const std::size_t lamp = k / receivers;
+            const std::size_t patch = patches.of_receiver[medium.first[i] + k % receivers];
+            values[k] += patches.mirrored * irradiance[lamp * patches.size() + patch];
         }
     }
 }
@@ -163,13 +177,16 @@ MediaRows light_media(const MediaJob& job, const LampLight& light,
     const OtherLight columns = make_lamp_columns(lit);
     const std::uint32_t n = lamp_basis(light.sources.size());
     MediaLight final_exitance = no_light(job);
-    for (const LitMedium& medium : media) {
+    for (std::size_t m = 0; m < media.size(); ++m) {
+        const LitMedium& medium = media[m];
         if (context.cancelled()) break;
         const std::vector<std::vector<float>> rows = job.media.light_medium(
             {medium.material, medium.outside, medium.inside, columns, n, false}, rays);
-        if (rows.size() == medium.outside.size()) {
+        if (rows.size() == medium.outside.size() && !patches[m].answer.empty()) {
             read_columns(job, light, medium, formats::cubemap_texels(n), rows, result,
                          final_exitance);
+            add_mirrored(job, medium, patches[m],
+                         light_patches(patches[m], lit, medium, context, rays), final_exitance);
         }
     }
     exitance = std::move(final_exitance);

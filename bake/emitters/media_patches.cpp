@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -156,6 +157,9 @@ MediumPatches find_patches(const LitMedia& media, const LampLight& light, const 
     const std::vector<std::vector<float>> rows =
         media.light_medium({medium.material, outside, inside, light_of_patches, n, true}, rays);
     if (rows.size() != outside.size() || context.cancelled()) return {};
+    patches.mirrored = static_cast<float>(
+        fresnel_moments(static_cast<double>(light.scene.materials[medium.material].medium->eta))
+            .external);
     patches.answer.assign(patches.size() * patches.size(), glm::vec3(0));
     std::size_t row = 0;
     for (std::size_t to = 0; to < patches.size(); ++to) {
@@ -173,9 +177,9 @@ MediumPatches find_patches(const LitMedia& media, const LampLight& light, const 
     return patches;
 }
 
-std::vector<glm::vec3> answer_patches(const MediumPatches& patches, const LampLight& light,
-                                      const LitMedium& medium, const Context& context,
-                                      std::uint64_t& rays) {
+std::vector<glm::vec3> light_patches(const MediumPatches& patches, const LampLight& light,
+                                     const LitMedium& medium, const Context& context,
+                                     std::uint64_t& rays) {
     const std::size_t lamps = light.sources.size(), size = patches.size();
     LampLight coarse = light;
     coarse.samples = std::min(coarse.samples, kRaysOfProbe);
@@ -211,15 +215,19 @@ std::vector<glm::vec3> answer_patches(const MediumPatches& patches, const LampLi
             }
             rays += part.rays;
         });
-    std::vector<glm::vec3> exitance(lamps * size, glm::vec3(0));
-    for (std::size_t e = 0; e < lamps; ++e) {
-        for (std::size_t to = 0; to < size; ++to) {
-            for (std::size_t from = 0; from < size; ++from) {
-                exitance[e * size + to] +=
-                    patches.answer[to * size + from] * irradiance[e * size + from];
-            }
-            exitance[e * size + to] = glm::max(exitance[e * size + to], glm::vec3(0));
+    return irradiance;
+}
+
+std::vector<glm::vec3> answer_patches(const MediumPatches& patches,
+                                      std::span<const glm::vec3> irradiance) {
+    const std::size_t size = patches.size();
+    std::vector<glm::vec3> exitance(irradiance.size(), glm::vec3(0));
+    for (std::size_t i = 0; i < exitance.size(); ++i) {
+        const std::size_t to = i % size, lamp = i - to;
+        for (std::size_t from = 0; from < size; ++from) {
+            exitance[i] += patches.answer[to * size + from] * irradiance[lamp + from];
         }
+        exitance[i] = glm::max(exitance[i], glm::vec3(0)) + patches.mirrored * irradiance[i];
     }
     return exitance;
 }

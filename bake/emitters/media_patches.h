@@ -24,6 +24,7 @@ struct MediumPatches {
     /// Exitance of patch `to` by irradiance 1 on patch `from`, band by band, without the base
     /// color's image: to * size() + from.
     std::vector<glm::vec3> answer;
+    float mirrored = 0;  ///< share of diffuse light that the surface reflects from outside
 
     std::size_t size() const { return probes.size(); }
 };
@@ -38,10 +39,14 @@ std::vector<std::uint32_t> cut_into_patches(std::span<const BodyPoint> points, s
 MediumPatches find_patches(const LitMedia& media, const LampLight& light, const LitMedium& medium,
                            const Context& context, std::uint64_t& rays);
 
-/// Exitance [lm/m^2] of each patch, lamp * size() + patch, from the light that `light` has arrive
-/// at the patches.
-std::vector<glm::vec3> answer_patches(const MediumPatches& patches, const LampLight& light,
-                                      const LitMedium& medium, const Context& context,
-                                      std::uint64_t& rays);
+/// Irradiance [lx] that `light` brings to each patch: lamp * size() + patch.
+std::vector<glm::vec3> light_patches(const MediumPatches& patches, const LampLight& light,
+                                     const LitMedium& medium, const Context& context,
+                                     std::uint64_t& rays);
+
+/// Exitance [lm/m^2] of each patch from that, with what its surface mirrors, as if that went to all
+/// sides.
+std::vector<glm::vec3> answer_patches(const MediumPatches& patches,
+                                      std::span<const glm::vec3> irradiance);
 
 }  // namespace opaline::bake

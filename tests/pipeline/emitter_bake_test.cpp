@@ -104,7 +104,7 @@ formats::Scene lamp_and_wax() {
     scene.primitives[2].material = 2;
     scene.materials.push_back({.name = "Wax"});
     scene.materials[2].medium.emplace();
-    scene.materials[2].medium->sigma_s = {1000, 1000, 1000};
+    scene.materials[2].medium->sigma_s = {100, 100, 100};
     scene.materials[2].medium->sigma_a = {1, 1, 1};
     return scene;
 }
@@ -119,6 +119,7 @@ TEST(EmitterBake, MediaAreLitWhereTheirMultipleScatteringIsSimulated) {
     const BakeResult lit = bake_lamps(lamp_and_wax());
     EXPECT_EQ(lit.asset.emitters.view().blocks_of(2).size(), 2u);
     EXPECT_FALSE(has_warning(lit, "does not reach"));
+    EXPECT_FALSE(has_warning(lit, "it lies inside of"));
     const BakeResult dark = bake_lamps(lamp_and_wax(), {"direct", "single", "emitters"});
     EXPECT_TRUE(dark.asset.emitters.view().blocks_of(2).empty());
     EXPECT_TRUE(has_warning(dark, "does not reach media whose multiple scattering is left out"));
@@ -128,7 +129,6 @@ TEST(EmitterBake, LampInsideOfAMediumIsNamed) {
     formats::Scene scene = lamp_and_wax();
     scene.lights[0].position = {0, 0.3f, 0};
     EXPECT_TRUE(has_warning(bake_lamps(scene), "it lies inside of a translucent medium"));
-    EXPECT_FALSE(has_warning(bake_lamps(lamp_and_wax()), "it lies inside of"));
 }
 
 }  // namespace

@@ -47,9 +47,9 @@ BakeOptions options_of(MultipleModel model) {
     }
     options.set(kMultipleModel, static_cast<double>(model));
     options.set(kEmitterParticles, 5000);
-    options.set(kSamples, 4000);
-    options.set(kWalks, 100000);
-    options.set(kSites, 2000);
+    options.set(kSamples, 2000);
+    options.set(kWalks, 30000);
+    options.set(kSites, 1000);
     return options;
 }
 
@@ -163,7 +163,7 @@ TEST(LitMediaReference, LampInAHollowBallGlowsOutside) {
     const std::size_t floor = radiance.size() - 49;
     EXPECT_GT(radiance[floor + 24].r, 0.01f);
     EXPECT_GT(radiance[floor + 24].r, 2 * radiance[floor].r);
-    EXPECT_LT(error_of(baked, "emitters in media"), 0.12);
+    EXPECT_LT(error_of(baked, "emitters in media"), 0.18);
     for (const formats::Diagnostic& warning : baked.warnings) {
         EXPECT_EQ(warning.fault.find("does not reach"), std::string::npos) << warning.fault;
     }
