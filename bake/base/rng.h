@@ -33,19 +33,27 @@ enum class RandomStage : std::uint32_t {
     particle_starts = 21,
     particle_bounces = 22,
     gather_rays = 23,
-    true_gather = 24
+    true_gather = 24,
+    reference_group = 25
 };
 
-/// Four uniform numbers in [0, 1), a pure function of the arguments. There is no state, so results
-/// do not depend on threads or shards. Philox4x32-10 [Salmon2011].
-inline std::array<float, 4> random_uniform(std::uint64_t seed, RandomStage stage,
-                                           std::uint64_t receiver, std::uint32_t sample = 0) {
+/// Four random words, a pure function of the arguments. There is no state, so results do not depend
+/// on threads or shards. Philox4x32-10 [Salmon2011].
+inline std::array<std::uint32_t, 4> random_bits(std::uint64_t seed, RandomStage stage,
+                                                std::uint64_t receiver, std::uint32_t sample = 0) {
     const r123::Philox4x32::ctr_type counter{{static_cast<std::uint32_t>(receiver),
                                               static_cast<std::uint32_t>(receiver >> 32), sample,
                                               static_cast<std::uint32_t>(stage)}};
     const r123::Philox4x32::key_type key{
         {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
     const auto bits = r123::Philox4x32{}(counter, key);
+    return {bits[0], bits[1], bits[2], bits[3]};
+}
+
+/// The same as four uniform numbers in [0, 1), 24 bits each.
+inline std::array<float, 4> random_uniform(std::uint64_t seed, RandomStage stage,
+                                           std::uint64_t receiver, std::uint32_t sample = 0) {
+    const auto bits = random_bits(seed, stage, receiver, sample);
     std::array<float, 4> uniform{};
     for (std::size_t i = 0; i < 4; ++i) {
         uniform[i] = static_cast<float>(bits[i] >> 8) * 0x1p-24f;

@@ -19,6 +19,7 @@
 #include "bake/cli/scene_options.h"
 #include "bake/cli/write_picture.h"
 #include "bake/path_images/path_image.h"
+#include "bake/reference/path_filter.h"
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "bake/reference/write_receivers.h"
@@ -34,7 +35,7 @@ using formats::make_error;
 using formats::Status;
 
 struct ReferenceCommand {
-    std::string scene, media, light, output, terms;
+    std::string scene, media, light, output, terms, texture_filter = "none";
     CameraOptions camera;
     PathIntegrationOptions paths;
     double metres_per_unit = 1, rotate_light = 0, seconds = 0;
@@ -60,6 +61,14 @@ Status check_paths(const ReferenceCommand& options, std::vector<std::filesystem:
     if (auto status = check_outputs(outputs, inputs); !status) {
         return status;
     }
+    if (options.texture_filter != "none" && (table || options.seconds > 0)) {
+        return make_error(ErrorKind::usage, "", "--texture-filter",
+                          table ? "only the paths of a picture have footprints"
+                                : "footprints depend on the number of paths, which --seconds "
+                                  "leaves open",
+                          table ? "leave it out, or end the output's name in .exr or .png"
+                                : "give --spp instead of --seconds");
+    }
     if (table != (options.receivers > 0)) {
         return make_error(ErrorKind::usage, options.output, "",
                           table ? "a table needs receivers" : "receivers go into a table",
@@ -68,6 +77,24 @@ Status check_paths(const ReferenceCommand& options, std::vector<std::filesystem:
                               : "end the name in .csv, or leave out --receivers");
     }
     return formats::ok_status();
+}
+
+// Nothing: textures are looked up at points.
+std::unique_ptr<bake::TextureFiltering> make_filtering(const ReferenceCommand& options,
+                                                       const bake::HitScene& surfaces,
+                                                       std::uint32_t samples) {
+    if (options.texture_filter == "none") {
+        return nullptr;
+    }
+    bake::TextureFiltering filtering{bake::make_scene_pyramids(surfaces.scene())};
+    if (!filtering.pyramids.any()) {
+        return nullptr;
+    }
+    filtering.step = 1 / std::sqrt(static_cast<float>(samples));
+    filtering.gradient_limit =
+        options.texture_filter == "limited" ? 0.7f : std::numeric_limits<float>::infinity();
+    filtering.extent = 2 * glm::length(surfaces.half_size());
+    return std::make_unique<bake::TextureFiltering>(std::move(filtering));
 }
 
 // So that an unwritable folder is found out before the work.
@@ -219,6 +246,7 @@ int run(const ReferenceCommand& options) {
     const MonteCarloOption monte_carlo[] = {{"--receivers", options.receivers > 0},
                                             {"--seconds", options.seconds > 0},
                                             {"--max-depth", options.max_depth > 0},
+                                            {"--texture-filter", options.texture_filter != "none"},
                                             {"--seed", options.seed > 0}};
     if (auto status = check_method(options.paths, monte_carlo, paths.terms); !status) {
         return report_error(status.error());
@@ -274,9 +302,11 @@ int run(const ReferenceCommand& options) {
     context.threads = options.threads;
     context.cancel = &interrupted;
     context.on_progress = make_progress_printer(options.progress);
-    const bake::PathSpace space{*scene, sampler, paths};
-    const Status status = (options.receivers > 0 ? make_table : make_picture)(
-        options, space, estimate_options(options), context);
+    const bake::EstimateOptions wanted = estimate_options(options);
+    const auto filtering = make_filtering(options, scene->surfaces, wanted.samples);
+    const bake::PathSpace space{*scene, sampler, paths, filtering.get()};
+    const Status status =
+        (options.receivers > 0 ? make_table : make_picture)(options, space, wanted, context);
     return status ? kExitSuccess : report_error(status.error());
 }
 
@@ -313,6 +343,13 @@ void add_estimate_options(CLI::App& command, ReferenceCommand& options) {
                 "body, or a volume and a surface), emitters (light of the scene's own glowing "
                 "surfaces and lights)")
         ->option_text("all|LIST [all]");
+    command
+        .add_option("--texture-filter", options.texture_filter,
+                    "what textures are looked up over in pictures: none (a point: no bias), "
+                    "footprint (what a path stands for among --spp: less noise), limited (less of "
+                    "it where the density of directions varies, from the second scattering on)")
+        ->check(CLI::IsMember({"none", "footprint", "limited"}))
+        ->option_text("none|footprint|limited [none]");
     command.add_option("--seed", options.seed, "another one gives other noise")
         ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
         ->option_text("S [0]");

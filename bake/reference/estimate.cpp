@@ -9,6 +9,7 @@
 namespace opaline::bake {
 
 void Moments::add(glm::dvec3 sample) {
+    groups = std::max(groups, 1.0);
     count += 1;
     const glm::dvec3 deviation = sample - mean;
     mean += deviation / count;
@@ -22,11 +23,17 @@ void Moments::merge(const Moments& other) {
     const double sum = count + other.count;
     const glm::dvec3 deviation = other.mean - mean;
     mean += deviation * (other.count / sum);
-    squares += other.squares + deviation * deviation * (count * other.count / sum);
+    const glm::dvec3 between = deviation * deviation * (count * other.count / sum);
+    squares += other.squares + between;
+    group_squares += other.group_squares + between;
+    groups += other.groups;
     count = sum;
 }
 
 glm::dvec3 Moments::variance_of_mean() const {
+    if (groups >= kFewGroups) {
+        return group_squares / (count * (groups - 1));
+    }
     return count > 1 ? squares / (count * (count - 1)) : glm::dvec3(0);
 }
 
@@ -39,8 +46,9 @@ formats::Result<Estimate> estimate_pixels(
         return std::chrono::duration<double>(Clock::now() - start).count();
     };
     // A round takes some samples of every pixel, in pieces of equal size, so that few pixels also
-    // occupy all threads. The pieces do not depend on the number of threads.
-    constexpr std::uint32_t kPerPiece = 16;
+    // occupy all threads. The pieces do not depend on the number of threads; each is a group of
+    // stratified samples.
+    constexpr std::uint32_t kPerPiece = RandomStream::kGroup;
     const std::uint32_t pieces = std::clamp(256 / std::max(count, 1u), 1u, 64u);
     struct Piece {
         Moments moments;

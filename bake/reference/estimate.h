@@ -11,16 +11,22 @@
 
 namespace opaline::bake {
 
-/// Count, mean and spread of samples, per channel.
+/// Count, mean and spread of samples, per channel. Those added one by one are a group, whose
+/// samples may be stratified among each other; groups that are merged are independent.
 struct Moments {
     double count = 0;
     glm::dvec3 mean{0};
-    glm::dvec3 squares{0};  ///< sum of squared deviations from the mean
+    glm::dvec3 squares{0};  ///< sum of squared deviations of samples from the mean
+    double groups = 0;
+    glm::dvec3 group_squares{0};  ///< the same of the groups' means, times the count of each
 
     void add(glm::dvec3 sample);
     void merge(const Moments& other);
-    /// Variance of the mean: the square of its standard error. 0 for fewer than two samples.
+    /// Variance of the mean: the square of its standard error. Of fewer than kFewGroups groups from
+    /// the samples, as if they were independent: too large where they are stratified. 0 for fewer
+    /// than two samples.
     glm::dvec3 variance_of_mean() const;
+    static constexpr double kFewGroups = 4;
 };
 
 /// Effort of an estimate.

@@ -19,6 +19,14 @@ bool count_event(const PathSpace& space, Path& path) {
     return ++path.events <= space.options.max_depth;
 }
 
+// False where no texture is looked up any more: past the last event only emission counts.
+bool goes_on_filtering(const PathSpace& space, Path& path) {
+    if (path.events >= space.options.max_depth && space.scene.lamps.triangles.empty()) {
+        path.filter.reset();
+    }
+    return path.filter.has_value();
+}
+
 // The direction at cosine `cosine` to the unit vector n, with azimuth 2 pi u.
 glm::vec3 direction_about(glm::vec3 n, float cosine, float u) {
     const float sine = std::sqrt(std::max(0.0f, (1 - cosine) * (1 + cosine)));
@@ -134,11 +142,15 @@ bool reflect_diffusely(const PathSpace& space, Path& path, const OpaquePoint& po
     if (!count_event(space, path) || path.beta == glm::vec3(0) || !is_wanted(space, path.state)) {
         return false;
     }
+    const glm::vec2 uv = random.next_pair();
     gather_light(space, path, point.from, true, random, [&](glm::vec3 d) {
         return even_response(is_above(point, d) ? glm::dot(d, point.normal) / kPi : 0.0f);
     });
-    const float cosine = std::sqrt(1 - random.next());
-    path.direction = direction_about(point.normal, cosine, random.next());
+    const float cosine = std::sqrt(1 - uv.x);
+    path.direction = direction_about(point.normal, cosine, uv.y);
+    if (goes_on_filtering(space, path)) {
+        path.filter->scatter_diffusely(point.normal, path.direction);
+    }
     path.origin = point.from;
     path.pdf = cosine / kPi;
     return is_above(point, path.direction) && survives(path, kAtSurfaces, random);
@@ -150,15 +162,19 @@ bool reflect_as_mirror(const PathSpace& space, Path& path, const OpaquePoint& po
     if (!count_event(space, path)) {
         return false;
     }
+    const glm::vec2 uv = random.next_pair();
     gather_light(space, path, point.from, true, random, [&](glm::vec3 d) {
         return is_above(point, d) ? eval_mirrored(brdf, d) : LobeValue{};
     });
-    const float u = random.next(), v = random.next();
-    const auto sample = sample_mirrored(brdf, u, v);
+    const auto sample = sample_mirrored(brdf, uv.x, uv.y);
     if (!sample || !is_above(point, sample->direction)) {
         return false;
     }
     path.beta *= sample->weight;
+    if (goes_on_filtering(space, path)) {
+        path.filter->scatter_on_facets(path.direction, point.normal, static_cast<float>(brdf.alpha),
+                                       sample->direction);
+    }
     path.direction = sample->direction;
     path.origin = point.from;
     path.pdf = sample->pdf;
@@ -194,6 +210,8 @@ void turn(const PathSpace& space, Path& path, glm::vec3 at, const PhaseSampler& 
           bool sees_sky, RandomStream& random) {
     path.origin = {at};
     path.pdf = 0;
+    random.start_event();
+    path.filter.reset();  // not followed in volumes
     const glm::vec3 before = path.direction;
     const bool sees_light = sees_sky || counts_lamps(space);
     if (sees_light) {
@@ -212,6 +230,7 @@ void turn(const PathSpace& space, Path& path, glm::vec3 at, const PhaseSampler& 
 
 bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& point,
                         RandomStream& random) {
+    random.start_event();
     if (point.surface.is_diffuse()) {
         return scatter_diffusely(space, path, point, point.surface.base_color, random);
     }
@@ -252,11 +271,16 @@ bool reflect_or_refract(const PathSpace& space, Path& path, const Crossing& cros
         return false;
     }
     path.pdf = 0;
+    random.start_event();
     bool reflects = may_reflect;
     if (may_reflect && may_pass) {
         reflects = random.next() < reflectance;
     } else {
         path.beta *= may_reflect ? reflectance : 1 - reflectance;
+    }
+    if (path.filter) {
+        reflects ? path.filter->mirror(path.direction, crossing.normal)
+                 : path.filter->refract(path.direction, crossing.normal, crossing.ratio);
     }
     if (reflects) {
         path.direction = crossing.split.reflected;

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "bake/reference/boundary.h"
 #include "bake/reference/opaque_surface.h"
 #include "bake/reference/path.h"
+#include "bake/reference/path_filter.h"
 
 namespace opaline::bake {
 
@@ -22,7 +24,8 @@ struct Path {
     std::uint32_t key = 0;  ///< of all its rays: HitScene::closest_hit
     /// [1/sr] of `direction` if the light was sampled at the last event too; else 0
     float pdf = 0;
-    glm::vec3 vertex{0};  ///< where that event was
+    glm::vec3 vertex{0};                 ///< where that event was
+    std::optional<PathFilter> filter{};  ///< nothing: textures are looked up at points
     glm::vec3 radiance{0};
     bool lost = false;
 };
@@ -30,6 +33,8 @@ struct Path {
 /// Two sides of a boundary that a path has arrived at.
 struct Crossing {
     BoundarySplit split;
+    glm::vec3 normal{0};      ///< that it splits at, against the path
+    float ratio = 1;          ///< index of refraction beyond over that on this side
     RayOrigin near, far;      ///< where rays start on this side and beyond
     SurroundingMedia beyond;  ///< bodies on the far side
     glm::vec3 color{1};       ///< factor of light that enters a body

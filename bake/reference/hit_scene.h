@@ -10,6 +10,8 @@
 
 namespace opaline::bake {
 
+struct TextureView;  // path_filter.h
+
 /// A hit of a ray on a triangle.
 struct SurfaceHit {
     float distance = 0;  ///< [m] along the ray
@@ -66,8 +68,10 @@ class HitScene {
 /// the direction points to, by the hit's error bound.
 RayOrigin leave_surface(const SurfaceHit& hit, glm::vec3 direction);
 
-/// Base colour: factor, vertex colours, veins and texture (bilinear in linear light).
-glm::vec3 base_color_at(const formats::Scene& scene, const SurfaceHit& hit);
+/// Base colour: factor, vertex colours, veins and texture (in linear light). `view`: the footprint
+/// that textures are looked up over; null: at the point, bilinear.
+glm::vec3 base_color_at(const formats::Scene& scene, const SurfaceHit& hit,
+                        const TextureView* view = nullptr);
 /// Base colour of a vertex.
 glm::vec3 base_color_at_vertex(const formats::Scene& scene, std::uint32_t primitive,
                                std::uint32_t vertex);

@@ -112,12 +112,6 @@ bool is_seen_to_glow(const Material& material, glm::vec3 direction, glm::vec3 fl
     return is_emissive(material) && (is_two_sided(material) || glm::dot(direction, flat) < 0);
 }
 
-glm::vec3 emission_of(const formats::Scene& scene, const SurfaceHit& hit) {
-    return vec_of(emission_at(scene, hit.primitive,
-                              corners_of(scene.primitives[hit.primitive], hit.triangle),
-                              {1 - hit.u - hit.v, hit.u, hit.v}));
-}
-
 glm::vec3 emission_of_vertex(const formats::Scene& scene, std::uint32_t primitive,
                              std::uint32_t vertex) {
     return vec_of(emission_at(scene, primitive, {vertex, vertex, vertex}, {1, 0, 0}));
@@ -126,14 +120,14 @@ glm::vec3 emission_of_vertex(const formats::Scene& scene, std::uint32_t primitiv
 std::optional<SeenTriangle> sample_triangle(const LampSampler& lamps, const formats::Scene& scene,
                                             glm::vec3 from, RandomStream& random) {
     const double choice = static_cast<double>(random.next());
-    const float u = random.next(), v = random.next();
+    const glm::vec2 place = random.next_pair();
     const auto above =
         std::upper_bound(lamps.cumulative.begin(), lamps.cumulative.end() - 1, choice);
     const LampSampler::Triangle& one =
         lamps.triangles[static_cast<std::size_t>(above - lamps.cumulative.begin())];
     const Primitive& p = scene.primitives[one.primitive];
     const auto corner = corners_of(p, one.triangle);
-    const auto weight = place_in_triangle(u, v);
+    const auto weight = place_in_triangle(place.x, place.y);
     const glm::vec3 way = weight[0] * p.position[corner[0]] + weight[1] * p.position[corner[1]] +
                           weight[2] * p.position[corner[2]] - from;
     const float square = glm::dot(way, way);

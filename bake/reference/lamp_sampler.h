@@ -35,8 +35,9 @@ LampSampler make_lamp_sampler(const formats::Scene& scene);
 /// Whether light leaves the side of a surface from which a ray of `direction` sees it.
 bool is_seen_to_glow(const formats::Material& material, glm::vec3 direction, glm::vec3 flat);
 
-/// Radiance [nit] of a glowing surface.
-glm::vec3 emission_of(const formats::Scene& scene, const SurfaceHit& hit);
+/// Radiance [nit] of a glowing surface. `view`: as base_color_at's.
+glm::vec3 emission_of(const formats::Scene& scene, const SurfaceHit& hit,
+                      const TextureView* view = nullptr);
 glm::vec3 emission_of_vertex(const formats::Scene& scene, std::uint32_t primitive,
                              std::uint32_t vertex);
 

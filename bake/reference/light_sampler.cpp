@@ -171,28 +171,30 @@ glm::vec3 eval_light(const LightSampler& light, glm::vec3 direction) {
 }
 
 glm::vec3 sample_light(const LightSampler& light, RandomStream& random) {
-    double choice = static_cast<double>(random.next());
+    if (light.map_probability <= 0 && light.disc_probability.empty()) {
+        return glm::vec3(0);
+    }
+    const glm::dvec2 choices(random.next_pair());
+    const glm::vec2 place = random.next_pair();
+    double choice = choices.x;
     for (std::size_t i = 0; i < light.disc_probability.size(); ++i) {
         if (choice < light.disc_probability[i]) {
-            const float u = random.next();
             return light.world_from_light *
-                   sample_disc(light.environment->discs[i], u, random.next());
+                   sample_disc(light.environment->discs[i], place.x, place.y);
         }
         choice -= light.disc_probability[i];
     }
     if (light.map_probability <= 0) {
         return glm::vec3(0);
     }
-    const bool anywhere = static_cast<double>(random.next()) < kUniformShare;
-    const double u = static_cast<double>(random.next()), v = static_cast<double>(random.next());
-    if (anywhere) {
-        return light.world_from_light *
-               cell_direction(static_cast<float>(u), static_cast<float>(v), 1, 1);
+    if (choices.y < kUniformShare) {
+        return light.world_from_light * cell_direction(place.x, place.y, 1, 1);
     }
-    const std::size_t row = find_share(light.row_cumulative, u);
-    const std::size_t column = find_share(row_of(light, row), v);
-    const float x = static_cast<float>(column) + random.next();
-    const float y = static_cast<float>(row) + random.next();
+    const std::size_t row = find_share(light.row_cumulative, static_cast<double>(place.x));
+    const std::size_t column = find_share(row_of(light, row), static_cast<double>(place.y));
+    const glm::vec2 within = random.next_pair();
+    const float x = static_cast<float>(column) + within.x;
+    const float y = static_cast<float>(row) + within.y;
     return light.world_from_light *
            cell_direction(x, y, static_cast<float>(light.columns), static_cast<float>(light.rows));
 }

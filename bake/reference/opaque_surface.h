@@ -19,7 +19,9 @@ struct OpaqueSurface {
     bool is_diffuse() const { return metallic == 0 && f90 == 0; }
 };
 
-OpaqueSurface opaque_surface_at(const formats::Scene& scene, const SurfaceHit& hit);
+/// `view`: as base_color_at's.
+OpaqueSurface opaque_surface_at(const formats::Scene& scene, const SurfaceHit& hit,
+                                const TextureView* view = nullptr);
 OpaqueSurface opaque_surface_at_vertex(const formats::Scene& scene, std::uint32_t primitive,
                                        std::uint32_t vertex);
 

@@ -21,7 +21,7 @@ float index_of(const ReferenceScene& scene, const SurroundingMedia& stack) {
 }
 
 bool meet_boundary(const PathSpace& space, Path& path, const SurfaceHit& hit, std::uint32_t medium,
-                   RandomStream& random) {
+                   const TextureView* view, RandomStream& random) {
     const ReferenceScene& scene = space.scene;
     const bool enters = glm::dot(path.direction, hit.flat) < 0;
     Crossing crossing;
@@ -35,7 +35,7 @@ bool meet_boundary(const PathSpace& space, Path& path, const SurfaceHit& hit, st
         return true;
     }
     if (path.stack.empty()) {
-        crossing.color = base_color_at(scene.surfaces.scene(), hit);
+        crossing.color = base_color_at(scene.surfaces.scene(), hit, view);
     }
     const float ratio = index_of(scene, crossing.beyond) / index_of(scene, path.stack);
     if (is_matched(ratio)) {
@@ -43,14 +43,17 @@ bool meet_boundary(const PathSpace& space, Path& path, const SurfaceHit& hit, st
         return path.beta != glm::vec3(0) && is_wanted(space, path.state);
     }
     const float side = enters ? 1.0f : -1.0f;
+    crossing.normal = side * hit.smooth;
+    crossing.ratio = ratio;
     crossing.split =
-        split_at_smooth_boundary(path.direction, side * hit.smooth, side * hit.flat, ratio);
+        split_at_smooth_boundary(path.direction, crossing.normal, side * hit.flat, ratio);
     crossing.near = leave_surface(hit, crossing.split.reflected);
     return reflect_or_refract(space, path, crossing, random);
 }
 
 // Adds what a surface that a path has met sends out by itself.
-void meet_emission(const PathSpace& space, Path& path, const SurfaceHit& hit) {
+void meet_emission(const PathSpace& space, Path& path, const SurfaceHit& hit,
+                   const TextureView* view) {
     const formats::Scene& scene = space.scene.surfaces.scene();
     const formats::Material& material = scene.materials[scene.primitives[hit.primitive].material];
     if (!counts_lamps(space) || !is_seen_to_glow(material, path.direction, hit.flat)) {
@@ -59,16 +62,21 @@ void meet_emission(const PathSpace& space, Path& path, const SurfaceHit& hit) {
     const float weight =
         path.pdf > 0 ? path.pdf / (path.pdf + pdf_triangle(space.scene.lamps, hit, path.vertex))
                      : 1.0f;
-    path.radiance +=
-        weight * per_squared_index(space.scene, path.stack) * path.beta * emission_of(scene, hit);
+    path.radiance += weight * per_squared_index(space.scene, path.stack) * path.beta *
+                     emission_of(scene, hit, view);
 }
 
 bool meet_surface(const PathSpace& space, Path& path, const SurfaceHit& hit, RandomStream& random) {
     const formats::Scene& scene = space.scene.surfaces.scene();
     const std::uint32_t number = scene.primitives[hit.primitive].material;
-    meet_emission(space, path, hit);
+    std::optional<TextureView> over;
+    if (path.filter && path.filter->arrive(scene, path.direction, hit)) {
+        over.emplace(path.filter->view());
+    }
+    const TextureView* view = over ? &*over : nullptr;
+    meet_emission(space, path, hit, view);
     if (const std::uint32_t medium = space.scene.medium_of[number]; medium != formats::kNone) {
-        return meet_boundary(space, path, hit, medium, random);
+        return meet_boundary(space, path, hit, medium, view, random);
     }
     const bool back = glm::dot(path.direction, hit.flat) > 0;
     if (back && !scene.materials[number].double_sided) {
@@ -82,7 +90,7 @@ bool meet_surface(const PathSpace& space, Path& path, const SurfaceHit& hit, Ran
     const float side = back ? -1.0f : 1.0f;
     const OpaquePoint point{leave_surface(hit, side * hit.flat),
                             leave_surface(hit, -side * hit.flat), side * hit.smooth,
-                            side * hit.flat, opaque_surface_at(scene, hit)};
+                            side * hit.flat, opaque_surface_at(scene, hit, view)};
     return reflect_at_surface(space, path, point, random);
 }
 
@@ -183,8 +191,12 @@ PathSample finish(const PathSpace& space, Path& path, RandomStream& random) {
 }  // namespace
 
 PathSample trace_ray(const PathSpace& space, glm::vec3 origin, glm::vec3 direction,
-                     RandomStream& random, const SurroundingMedia& around) {
+                     RandomStream& random, const SurroundingMedia& around,
+                     const RaySpread& spread) {
     Path path;
+    if (space.filtering != nullptr) {
+        path.filter.emplace(*space.filtering, spread.dD_dx, spread.dD_dy);
+    }
     path.stack = around;
     if (!around.empty()) {
         path.state.stage = PathState::Stage::inside;

@@ -10,6 +10,8 @@
 
 namespace opaline::bake {
 
+struct TextureFiltering;  // path_filter.h
+
 /// The paths and light to count.
 struct PathOptions {
     TermSet terms = TermSet::all;
@@ -26,6 +28,13 @@ struct PathSpace {
     const ReferenceScene& scene;
     const LightSampler& light;
     PathOptions options;
+    /// Of the paths of `trace_ray`; null: textures are looked up at points.
+    const TextureFiltering* filtering = nullptr;
+};
+
+/// How the unit direction of an eye's ray changes over its pixel, to the right and up.
+struct RaySpread {
+    glm::vec3 dD_dx{0}, dD_dy{0};
 };
 
 /// A vertex whose radiance is estimated, and the direction from which it is seen.
@@ -50,9 +59,10 @@ struct PathSample {
 
 /// Radiance that arrives along a ray against its `direction`; `around`: the bodies it starts in.
 /// Volumetric path tracing. At each event from which a straight line may reach the light, the light
-/// is sampled too; the balance heuristic combines both.
+/// is sampled too; the balance heuristic combines both. `spread`: for PathSpace::filtering.
 PathSample trace_ray(const PathSpace& space, glm::vec3 origin, glm::vec3 direction,
-                     RandomStream& random, const SurroundingMedia& around = {});
+                     RandomStream& random, const SurroundingMedia& around = {},
+                     const RaySpread& spread = {});
 
 /// Radiance that leaves a receiver toward its eye; surfaces between them are ignored. Black where
 /// the receiver has no normal or faces away (unless its material is double-sided).

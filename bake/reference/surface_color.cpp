@@ -1,6 +1,9 @@
 #include <array>
 
+#include "bake/reference/lamp_sampler.h"
 #include "bake/reference/opaque_surface.h"
+#include "bake/reference/path_filter.h"
+#include "bake/scene/emission.h"
 #include "bake/scene/marble.h"
 #include "bake/scene/sample_image.h"
 
@@ -39,7 +42,18 @@ glm::vec2 texcoord_at(const Primitive& primitive, const Place& place) {
     return uv;
 }
 
-glm::vec3 base_color(const formats::Scene& scene, const Place& place) {
+// A texture at a place, over the footprint if there is one.
+glm::vec3 look_up(const ImageLookup& lookup, std::uint32_t number, glm::vec2 uv,
+                  const TextureView* view) {
+    if (view == nullptr) {
+        return sample_image(lookup, uv);
+    }
+    const ScenePyramids& all = view->pyramids;
+    return sample_footprint(lookup, (lookup.is_linear ? all.data : all.color)[number], uv,
+                            view->moments);
+}
+
+glm::vec3 base_color(const formats::Scene& scene, const Place& place, const TextureView* view) {
     const auto& [primitive, corner, weight] = place;
     const Primitive& p = scene.primitives[primitive];
     const Material& material = scene.materials[p.material];
@@ -54,8 +68,8 @@ glm::vec3 base_color(const formats::Scene& scene, const Place& place) {
     if (material.base_color_image != formats::kNone && !p.texcoord.empty()) {
         const formats::Image8& image = scene.images[material.base_color_image];
         if (image.width > 0 && image.height > 0) {
-            color *= glm::vec3(sample_image({image, material.wrap_u, material.wrap_v, false},
-                                            texcoord_at(p, place)));
+            color *= look_up({image, material.wrap_u, material.wrap_v, false},
+                             material.base_color_image, texcoord_at(p, place), view);
         }
     }
     if (material.marble) {
@@ -68,12 +82,13 @@ glm::vec3 base_color(const formats::Scene& scene, const Place& place) {
     return color;
 }
 
-OpaqueSurface opaque_surface(const formats::Scene& scene, const Place& place) {
+OpaqueSurface opaque_surface(const formats::Scene& scene, const Place& place,
+                             const TextureView* view) {
     const Primitive& p = scene.primitives[place.primitive];
     const Material& material = scene.materials[p.material];
     const formats::Gloss& gloss = material.gloss;
     OpaqueSurface surface;
-    surface.base_color = base_color(scene, place);
+    surface.base_color = base_color(scene, place, view);
     if (material.sheet) {
         surface.reflect = to_vec(material.sheet->reflect);
         surface.transmit = to_vec(material.sheet->transmit);
@@ -86,8 +101,8 @@ OpaqueSurface opaque_surface(const formats::Scene& scene, const Place& place) {
     if (gloss.image != formats::kNone && !p.texcoord.empty()) {
         const formats::Image8& image = scene.images[gloss.image];
         if (image.width > 0 && image.height > 0) {
-            const glm::vec3 factor(
-                sample_image({image, gloss.wrap_u, gloss.wrap_v, true}, texcoord_at(p, place)));
+            const glm::vec3 factor = look_up({image, gloss.wrap_u, gloss.wrap_v, true}, gloss.image,
+                                             texcoord_at(p, place), view);
             surface.roughness *= factor.g;
             surface.metallic *= factor.b;
         }
@@ -101,22 +116,38 @@ OpaqueSurface opaque_surface(const formats::Scene& scene, const Place& place) {
 
 }  // namespace
 
-glm::vec3 base_color_at(const formats::Scene& scene, const SurfaceHit& hit) {
-    return base_color(scene, place_of(scene, hit));
+glm::vec3 base_color_at(const formats::Scene& scene, const SurfaceHit& hit,
+                        const TextureView* view) {
+    return base_color(scene, place_of(scene, hit), view);
 }
 
 glm::vec3 base_color_at_vertex(const formats::Scene& scene, std::uint32_t primitive,
                                std::uint32_t vertex) {
-    return base_color(scene, place_of(primitive, vertex));
+    return base_color(scene, place_of(primitive, vertex), nullptr);
 }
 
-OpaqueSurface opaque_surface_at(const formats::Scene& scene, const SurfaceHit& hit) {
-    return opaque_surface(scene, place_of(scene, hit));
+OpaqueSurface opaque_surface_at(const formats::Scene& scene, const SurfaceHit& hit,
+                                const TextureView* view) {
+    return opaque_surface(scene, place_of(scene, hit), view);
 }
 
 OpaqueSurface opaque_surface_at_vertex(const formats::Scene& scene, std::uint32_t primitive,
                                        std::uint32_t vertex) {
-    return opaque_surface(scene, place_of(primitive, vertex));
+    return opaque_surface(scene, place_of(primitive, vertex), nullptr);
+}
+
+glm::vec3 emission_of(const formats::Scene& scene, const SurfaceHit& hit, const TextureView* view) {
+    const Place place = place_of(scene, hit);
+    const Primitive& p = scene.primitives[hit.primitive];
+    const Material& material = scene.materials[p.material];
+    if (view == nullptr || material.emission_image == formats::kNone || p.texcoord.empty() ||
+        scene.images[material.emission_image].rgba.empty()) {
+        return to_vec(emission_at(scene, hit.primitive, place.corner, place.weight));
+    }
+    const ImageLookup lookup{scene.images[material.emission_image], material.emission_wrap_u,
+                             material.emission_wrap_v, false};
+    return to_vec(material.emission) *
+           look_up(lookup, material.emission_image, texcoord_at(p, place), view);
 }
 
 }  // namespace opaline::bake

@@ -73,7 +73,7 @@ void measure(benchmark::State& state, const Case& of, glm::dvec3 channels = glm:
     }
     double variance = 0, square = 0, paths = 0;
     for (const Moments& m : moments) {
-        variance += glm::dot(channels, m.squares / (m.count - 1));
+        variance += glm::dot(channels, m.variance_of_mean() * m.count);
         square += glm::dot(channels, m.mean * m.mean);
         paths += m.count;
     }

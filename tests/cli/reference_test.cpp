@@ -235,17 +235,20 @@ TEST(Reference, BadArgumentsAreRefusedBeforeAnyWork) {
                       exr = small.path("out.exr");
     const auto before = list_folder(small.folder());
     const std::vector<Arguments> bad = {
-        {scene, "-o", exr},                                            // no light
-        {scene, "--light", "white"},                                   // no output
-        {scene, "--light", "white", "-o", csv},                        // no receivers
-        {scene, "--light", "white", "-o", exr, "--receivers", "5"},    // not a table
-        {scene, "--light", "white", "-o", small.path("out.jpg")},      // no such format
-        {scene, "--light", "white", "-o", csv, "--receivers", "0"},    //
-        {scene, "--light", "white", "-o", csv, "--receivers", "-3"},   //
-        {scene, "--light", "white", "-o", exr, "--spp", "0"},          //
-        {scene, "--light", "white", "-o", exr, "--seconds", "-1"},     //
-        {scene, "--light", "white", "-o", exr, "--max-depth", "0"},    //
-        {scene, "--light", "white", "-o", exr, "--terms", "glow"},     //
+        {scene, "-o", exr},                                           // no light
+        {scene, "--light", "white"},                                  // no output
+        {scene, "--light", "white", "-o", csv},                       // no receivers
+        {scene, "--light", "white", "-o", exr, "--receivers", "5"},   // not a table
+        {scene, "--light", "white", "-o", small.path("out.jpg")},     // no such format
+        {scene, "--light", "white", "-o", csv, "--receivers", "0"},   //
+        {scene, "--light", "white", "-o", csv, "--receivers", "-3"},  //
+        {scene, "--light", "white", "-o", exr, "--spp", "0"},         //
+        {scene, "--light", "white", "-o", exr, "--seconds", "-1"},    //
+        {scene, "--light", "white", "-o", exr, "--max-depth", "0"},   //
+        {scene, "--light", "white", "-o", exr, "--terms", "glow"},    //
+        {scene, "--light", "white", "-o", exr, "--texture-filter", "blurred"},
+        {scene, "--light", "white", "-o", csv, "--receivers", "5", "--texture-filter", "footprint"},
+        {scene, "--light", "white", "-o", exr, "--seconds", "1", "--texture-filter", "footprint"},
         {scene, "--light", "white", "-o", exr, "--terms", "single,"},  //
         {scene, "--light", "white", "-o", exr, "--eye", "1,2"},        //
         {scene, "--light", "white", "-o", exr, "--size", "0x4"},       //
@@ -349,8 +352,10 @@ TEST(Reference, PathIntegrationRefusesWhatItCannotDo) {
         return run_opaline(arguments);
     };
     const Arguments paths = {"--method", "path-integration"};
-    for (const Arguments& option :
-         {Arguments{"--seconds", "3"}, {"--max-depth", "2"}, {"--seed", "5"}}) {
+    for (const Arguments& option : {Arguments{"--seconds", "3"},
+                                    {"--max-depth", "2"},
+                                    {"--texture-filter", "limited"},
+                                    {"--seed", "5"}}) {
         Arguments more = paths;
         more.insert(more.end(), option.begin(), option.end());
         const Outcome outcome = try_with(milk, more);

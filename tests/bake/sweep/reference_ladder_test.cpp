@@ -54,8 +54,11 @@ TEST(ReferenceLadder, ErrorFallsWithTheRootOfTheSamplesOnSurfacesAndInMedia) {
 TEST(ReferenceLadder, MeasuredErrorIsWhatTheStoredVarianceSays) {
     for (const formats::Scene& scene : {ball_on_a_floor(), milky_ball()}) {
         for (const ReferenceRung& rung : climb(scene, 5).rungs) {
-            // 160 receivers or more; the truth's noise is half the last rung's variance.
-            EXPECT_NEAR(rung.error, rung.stated, 0.25 * rung.stated) << rung.samples;
+            // 160 receivers or more; the truth's noise is half the last rung's variance. Few
+            // samples state the error of independent ones.
+            const bool is_few = rung.samples < Moments::kFewGroups * RandomStream::kGroup;
+            EXPECT_LT(rung.error, 1.25 * rung.stated) << rung.samples;
+            EXPECT_GT(rung.error, (is_few ? 0.5 : 0.75) * rung.stated) << rung.samples;
         }
     }
 }

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <span>
+
+#include "bake/reference/hit_scene.h"
+#include "bake/reference/texture_pyramid.h"
+
+namespace opaline::bake {
+
+/// How textures are filtered over the footprints of the eye's paths.
+struct TextureFiltering {
+    ScenePyramids pyramids;
+    /// Full length that each random number of a path moves by, in (0, 1]: N^(-1/2) of N paths.
+    float step = 1;
+    /// From the second scattering on, ln of the density changes by at most this over a step;
+    /// infinite: no limit [Suykens2001].
+    float gradient_limit = std::numeric_limits<float>::infinity();
+    float extent = 1;  ///< [m] diameter of the scene; footprints are at most a quarter of it
+};
+
+/// Footprint on a surface, to look textures up with.
+struct TextureView {
+    const ScenePyramids& pyramids;
+    UvMoments moments;
+};
+
+/// What is similar to a path: how its vertices move with its random numbers, up to the surface that
+/// it has reached. It follows the path and changes nothing of it. A fast form of PathDifferential
+/// (bake/path_differentials): single precision, steps multiplied into the columns, second moments
+/// alone, at most six columns. Each scattering adds a cell of the area step^2 / density around the
+/// direction that was drawn; older columns turn with the normal.
+class PathFilter {
+  public:
+    /// `dD_dx`, `dD_dy`: change of the unit direction over a pixel.
+    PathFilter(const TextureFiltering& filtering, glm::vec3 dD_dx, glm::vec3 dD_dy);
+
+    /// Along `direction` to a hit. True if its material has a texture to look up over a footprint.
+    bool arrive(const formats::Scene& scene, glm::vec3 direction, const SurfaceHit& hit);
+    /// At the hit that it arrived at last.
+    TextureView view() const { return {filtering_->pyramids, moments_}; }
+
+    /// Events at that hit. `normal`: the shading normal on the side that the path came from, unit;
+    /// `direction`: the path's before the event.
+    void mirror(glm::vec3 direction, glm::vec3 normal);
+    /// `ratio`: index beyond over index on this side.
+    void refract(glm::vec3 direction, glm::vec3 normal, float ratio);
+    /// `drawn` by the cosine about a normal of either side. This one and the next take effect at
+    /// the next hit, so that paths to the sky do not pay for it.
+    void scatter_diffusely(glm::vec3 normal, glm::vec3 drawn) {
+        pending_ = {Scattering::diffuse, glm::vec3(0), normal, drawn, 1};
+    }
+    /// `drawn` by visible normals of GGX width `alpha`.
+    void scatter_on_facets(glm::vec3 direction, glm::vec3 normal, float alpha, glm::vec3 drawn) {
+        pending_ = {Scattering::facets, direction, normal, drawn, alpha};
+    }
+
+  private:
+    /// How the vertex moves with one random number, over its step.
+    struct Column {
+        glm::vec3 dP{0}, dD{0};
+        float limit = 1;  ///< the limited step over the step, not yet applied
+    };
+    static constexpr std::size_t kMost = 6, kMerged = 4;
+
+    enum class Scattering { none, diffuse, facets };
+    struct Pending {
+        Scattering kind = Scattering::none;
+        glm::vec3 direction{0}, normal{0}, drawn{0};
+        float alpha = 1;
+    };
+
+    std::span<Column> columns() { return std::span(column_).first(count_); }
+    glm::vec3 normal_change(const Column& column, glm::vec3 normal) const;
+    void apply_pending();
+    void add_diffuse_cell(const Pending& event);
+    void add_facet_cell(const Pending& event);
+    void add_cell(glm::vec3 drawn, const std::array<Column, 2>& own);
+    void merge(glm::vec3 direction);
+
+    const TextureFiltering* filtering_;
+    std::array<Column, kMost> column_;
+    std::size_t count_ = 2;
+    int scatterings_ = 0;
+    Pending pending_;
+    UvMoments moments_;
+    // The triangle of the last hit: gradients of its second and third weight, changes of normal
+    // along them, and the normal.
+    glm::vec3 flat_{0}, gradient_v_{0}, gradient_w_{0}, normal_v_{0}, normal_w_{0}, smooth_{0};
+};
+
+}  // namespace opaline::bake

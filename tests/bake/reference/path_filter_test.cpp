@@ -1,0 +1,410 @@
+#include "bake/reference/path_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "bake/path_differentials/smooth_event.h"
+#include "bake/path_differentials/surface_shape.h"
+#include "bake/path_differentials/transfer.h"
+#include "bake/reference/glossy_brdf.h"
+#include "bake/reference/reference_image.h"
+#include "tests/bake/reference/reference_support.h"
+
+namespace opaline::tests {
+namespace {
+
+using bake::PathFilter;
+using bake::TextureFiltering;
+
+/// Side x side texels in squares of 1 and 0.
+formats::Image8 checker_image(std::uint32_t side) {
+    formats::Image8 image{side, side, {}};
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+        const std::uint8_t value = (i % side + i / side) % 2 == 0 ? 255 : 0;
+        image.rgba.insert(image.rgba.end(), {value, value, value, 255});
+    }
+    return image;
+}
+
+/// A board at a height, facing up, its texture once over every 2 m.
+Scene textured_board(float height, float side = 2) {
+    const float half = side / 2;
+    Scene scene = make_scene({make_quad({-half, height, half}, {side, 0, 0}, {0, 0, -side})});
+    Primitive& p = scene.primitives[0];
+    p.texcoord.clear();
+    for (const glm::vec3& at : p.position) {
+        p.texcoord.emplace_back(0.5f * (at.x + 1), 0.5f * (at.z + 1));
+    }
+    scene.images = {checker_image(64)};
+    scene.materials[0].base_color_image = 0;
+    return scene;
+}
+
+TextureFiltering filtering_of(const Scene& scene, std::uint32_t samples) {
+    return {bake::make_scene_pyramids(scene), 1 / std::sqrt(static_cast<float>(samples)),
+            std::numeric_limits<float>::infinity(), 100};
+}
+
+/// Of the parallelogram that has these moments, in texture coordinates.
+double area_of(const bake::UvMoments& m) {
+    return std::sqrt(static_cast<double>(m.uu) * m.vv - static_cast<double>(m.uv) * m.uv);
+}
+
+TEST(PathFilter, APixelOnABoardIsItsAngleTimesTheDistance) {
+    const Scene scene = textured_board(0);
+    const auto fixture = make_fixture(scene, {});
+    const TextureFiltering filtering = filtering_of(scene, 16);
+    PathFilter filter(filtering, {0.01f, 0, 0}, {0, 0, 0.02f});
+    const auto hit = fixture->scene.surfaces.closest_hit({{0.3f, 3, 0.1f}}, {0, -1, 0}, 100);
+    ASSERT_TRUE(hit);
+    filter.arrive(scene, {0, -1, 0}, *hit);
+    // 3 m away, half a texture per metre, steps of 1/4: 0.00375 and 0.0075.
+    EXPECT_NEAR(area_of(filter.view().moments), 0.00375 * 0.0075, 1e-9);
+}
+
+TEST(PathFilter, AMirrorUnfoldsTheCamera) {
+    const Scene scene = textured_board(0);
+    const auto fixture = make_fixture(scene, {});
+    const TextureFiltering filtering = filtering_of(scene, 1);
+    const auto extent_after = [&](bool through_mirror) {
+        PathFilter filter(filtering, {0.01f, 0, 0}, {0, 0, 0.01f});
+        const glm::vec3 up(0, 1, 0);
+        if (through_mirror) {
+            // From below: 1 m up to a flat mirror and 2 m down to the board.
+            bake::SurfaceHit mirror;
+            mirror.distance = 1;
+            mirror.position = {0.3f, 2, 0.1f};
+            mirror.flat = mirror.smooth = -up;
+            filter.arrive(scene, up, mirror);
+            filter.mirror(up, -up);
+        }
+        const float height = through_mirror ? 2 : 3;
+        const auto hit = fixture->scene.surfaces.closest_hit({{0.3f, height, 0.1f}}, -up, 100);
+        EXPECT_TRUE(hit);
+        filter.arrive(scene, -up, *hit);
+        return area_of(filter.view().moments);
+    };
+    EXPECT_NEAR(extent_after(true) / extent_after(false), 1, 1e-5);
+}
+
+TEST(PathFilter, AnEventSpreadsItsDensityOverTheSurface) {
+    // Area of the footprint = step^2 d^2 / (pdf cosine), of whichever lobe drew the direction.
+    const Scene scene = textured_board(0);
+    const auto fixture = make_fixture(scene, {});
+    const TextureFiltering filtering = filtering_of(scene, 10000);
+    bake::OpaqueSurface surface;
+    surface.metallic = 1;
+    surface.roughness = 0.5f;
+    const glm::vec3 in = glm::normalize(glm::vec3(0.3f, 1, 0.2f)), normal(0, -1, 0);
+    const bake::GlossyBrdf brdf = bake::make_glossy_brdf(surface, normal, -in);
+    bake::RandomStream random(1, 2, 3);
+    int checked = 0;
+    while (checked < 60) {
+        const bool glossy = checked % 2 == 0;
+        bake::SurfaceHit start;
+        start.distance = 1;
+        start.position = {0, 1, 0};
+        start.flat = start.smooth = normal;
+        PathFilter filter(filtering, glm::vec3(0), glm::vec3(0));
+        filter.arrive(scene, in, start);
+        glm::vec3 out;
+        double pdf = 0;
+        if (glossy) {
+            const float u = random.next(), v = random.next();
+            const auto sample = bake::sample_mirrored(brdf, u, v);
+            if (!sample) {
+                continue;
+            }
+            out = sample->direction;
+            pdf = static_cast<double>(sample->pdf);
+            filter.scatter_on_facets(in, normal, static_cast<float>(brdf.alpha), out);
+        } else {
+            const float c = std::sqrt(1 - random.next()), s = std::sqrt(1 - c * c);
+            const float phi = 6.2831853f * random.next();
+            out = {s * std::cos(phi), -c, s * std::sin(phi)};
+            pdf = static_cast<double>(c) / std::numbers::pi;
+            filter.scatter_diffusely(normal, out);
+        }
+        const double cosine = -static_cast<double>(out.y);
+        const auto hit = fixture->scene.surfaces.closest_hit({start.position}, out, 100);
+        if (!hit || cosine < 0.4) {
+            continue;  // beside the board, or near the rim, where a secant replaces the derivative
+        }
+        filter.arrive(scene, out, *hit);
+        const double d2 = 1 / (cosine * cosine);
+        const double expected = 1e-4 * d2 / (pdf * cosine) / 4;  // 4 m^2 are the whole texture
+        EXPECT_NEAR(area_of(filter.view().moments) / expected, 1, 1e-2) << glossy;
+        ++checked;
+    }
+}
+
+// Beside the exact events of path_differentials.
+TEST(PathFilter, ACurvedMirrorIsThatOfPathDifferentials) {
+    Scene scene = textured_board(0);
+    scene.primitives.push_back(make_sphere(2, 1, {0, 2, 0}));
+    scene.materials[0].base_color_image = 0;
+    const auto fixture = make_fixture(scene, {});
+    const TextureFiltering filtering = filtering_of(scene, 1);
+    const glm::vec3 right(0.01f, 0, 0), up(0, 0.002f, 0.01f);
+    PathFilter filter(filtering, right, up);
+    const std::array<glm::dvec3, 2> start{glm::dvec3(right), glm::dvec3(up)};
+    // Up to the ball from below, a mirror, down to the board.
+    const glm::vec3 in = glm::normalize(glm::vec3(0.1f, 1, -0.1f));
+    const auto ball = fixture->scene.surfaces.closest_hit({{0.1f, 0.2f, 0.15f}}, in, 100);
+    ASSERT_TRUE(ball && ball->primitive == 1);
+    filter.arrive(scene, in, *ball);
+    filter.mirror(in, ball->smooth);
+    const glm::vec3 out = glm::reflect(in, ball->smooth);
+    const auto board =
+        fixture->scene.surfaces.closest_hit(bake::leave_surface(*ball, out), out, 100);
+    ASSERT_TRUE(board && board->primitive == 0);
+    EXPECT_TRUE(filter.arrive(scene, out, *board));
+
+    const Primitive& p = scene.primitives[1];
+    std::array<glm::dvec3, 3> corners;
+    bake::TriangleAttributes attributes;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t corner = p.index[3 * std::size_t{ball->triangle} + k];
+        corners[k] = glm::dvec3(p.position[corner]);
+        attributes.normal[k] = glm::dvec3(p.normal[corner]);
+    }
+    const bake::SurfaceShape shape = bake::interpolated_shape(
+        bake::triangle_gradients(corners, glm::dvec3(ball->position)), attributes);
+    const bake::Mirror mirror = bake::make_mirror(glm::dvec3(in), shape.N);
+    bake::UvMoments expected;
+    for (const glm::dvec3& dD : start) {
+        const glm::dvec3 dP = bake::transfer_to_plane(glm::dvec3(in), glm::dvec3(ball->flat),
+                                                      ball->distance, glm::dvec3(0), dD)
+                                  .dP;
+        const glm::dvec3 dR = mirror.change(dD, shape.dN_dP * dP);
+        const glm::dvec3 at = bake::transfer_to_plane(glm::dvec3(out), glm::dvec3(board->flat),
+                                                      board->distance, dP, dR)
+                                  .dP;
+        const glm::vec2 uv(0.5 * at.x, 0.5 * at.z);
+        expected.uu += uv.x * uv.x;
+        expected.uv += uv.x * uv.y;
+        expected.vv += uv.y * uv.y;
+    }
+    const bake::UvMoments found = filter.view().moments;
+    EXPECT_NEAR(found.uu / expected.uu, 1, 1e-3);
+    EXPECT_NEAR(found.vv / expected.vv, 1, 1e-3);
+    EXPECT_NEAR((found.uv - expected.uv) / std::sqrt(expected.uu * expected.vv), 0, 1e-3);
+}
+
+// A pane of index 1.5, 0.7 m thick, at normal incidence: a spread a becomes a (d1 + h / 1.5 + d2).
+TEST(PathFilter, APaneBringsTheBoardCloser) {
+    const Scene scene = textured_board(0);
+    const auto fixture = make_fixture(scene, {});
+    const TextureFiltering filtering = filtering_of(scene, 1);
+    const glm::vec3 up(0, 1, 0);
+    PathFilter filter(filtering, {0.01f, 0, 0}, {0, 0, 0.01f});
+    bake::SurfaceHit side;
+    side.distance = 2;
+    side.position = {0.3f, 1.7f, 0.1f};
+    side.flat = side.smooth = up;
+    filter.arrive(scene, -up, side);
+    filter.refract(-up, up, 1.5f);
+    side.distance = 0.7f;
+    side.position.y = 1;
+    filter.arrive(scene, -up, side);
+    filter.refract(-up, up, 1 / 1.5f);
+    const auto board = fixture->scene.surfaces.closest_hit({side.position}, -up, 100);
+    ASSERT_TRUE(board);
+    filter.arrive(scene, -up, *board);
+    const double expected = 0.5 * 0.01 * (2 + 0.7 / 1.5 + 1);
+    EXPECT_NEAR(area_of(filter.view().moments) / (expected * expected), 1, 1e-5);
+}
+
+// Everything after a column's birth is linear, so second moments of all columns are the sums of
+// those that each event makes by itself, whether columns were merged or not.
+TEST(PathFilter, MomentsOfManyScatteringsAreThoseOfEachTogether) {
+    Scene scene = textured_board(0, 2000);
+    Primitive ceiling = scene.primitives[0];
+    for (std::size_t i = 0; i < ceiling.position.size(); ++i) {
+        ceiling.position[i].y = 1;
+        ceiling.normal[i] = {0, -1, 0};
+    }
+    std::swap(ceiling.index[1], ceiling.index[2]);
+    std::swap(ceiling.index[4], ceiling.index[5]);
+    scene.primitives.push_back(ceiling);
+    const auto fixture = make_fixture(scene, {});
+    constexpr std::size_t kEvents = 5;
+    // `only`: the event whose numbers move; kEvents: those of all.
+    const auto moments_of = [&](std::size_t only) {
+        TextureFiltering filtering = filtering_of(scene, 1);
+        filtering.extent = 1e9f;
+        const auto step_of = [&](std::size_t i) { return only == kEvents || only == i ? 0.1f : 0; };
+        PathFilter filter(filtering, glm::vec3(0), glm::vec3(0));
+        bake::RayOrigin from{{0.3f, 0.5f, 0.1f}};
+        glm::vec3 d = glm::normalize(glm::vec3(0.4f, 1, -0.2f));
+        bake::RandomStream random(1, 1, 1);
+        for (std::size_t i = 0; i <= kEvents; ++i) {
+            const auto hit = fixture->scene.surfaces.closest_hit(from, d, 1e9f);
+            if (!hit) {
+                ADD_FAILURE();
+                break;
+            }
+            EXPECT_TRUE(filter.arrive(scene, d, *hit));
+            const glm::vec3 normal = d.y > 0 ? glm::vec3(0, -1, 0) : glm::vec3(0, 1, 0);
+            const glm::vec3 off(random.next() - 0.5f, 0, random.next() - 0.5f);
+            const glm::vec3 drawn =
+                glm::normalize(glm::normalize(glm::reflect(d, normal)) + 0.5f * off);
+            i % 2 == 0 ? filter.scatter_on_facets(d, normal, 0.3f, drawn)
+                       : filter.scatter_diffusely(normal, drawn);
+            filtering.step = step_of(i);  // takes effect with the event, at the next hit
+            d = drawn;
+            from = bake::leave_surface(*hit, d);
+        }
+        return filter.view().moments;
+    };
+    bake::UvMoments sum;
+    for (std::size_t i = 0; i < kEvents; ++i) {
+        const bake::UvMoments one = moments_of(i);
+        sum.uu += one.uu;
+        sum.uv += one.uv;
+        sum.vv += one.vv;
+    }
+    const bake::UvMoments all = moments_of(kEvents);
+    EXPECT_GT(all.uu, 0);
+    EXPECT_NEAR(all.uu / sum.uu, 1, 1e-4);
+    EXPECT_NEAR(all.vv / sum.vv, 1, 1e-4);
+    EXPECT_NEAR((all.uv - sum.uv) / std::sqrt(sum.uu * sum.vv), 0, 1e-4);
+}
+
+// The limit shortens steps over which the density changes, from the second scattering on alone.
+TEST(PathFilter, TheGradientLimitHoldsFromTheSecondScatteringOn) {
+    const Scene scene = textured_board(0, 2000);
+    const auto fixture = make_fixture(scene, {});
+    const auto area_after = [&](int scatterings, float limit) {
+        TextureFiltering filtering = filtering_of(scene, 4);
+        filtering.gradient_limit = limit;
+        filtering.extent = 1e9f;
+        PathFilter filter(filtering, glm::vec3(0), glm::vec3(0));
+        const glm::vec3 out = glm::normalize(glm::vec3(0.5f, 1, 0));
+        bake::SurfaceHit hit;
+        hit.distance = 1;
+        hit.position = {0, 0, 0};
+        hit.flat = hit.smooth = {0, 1, 0};
+        for (int i = 0; i < scatterings; ++i) {
+            filter.arrive(scene, -out, hit);
+            filter.scatter_on_facets({0, -1, 0}, hit.flat, 0.2f, out);
+        }
+        const auto board = fixture->scene.surfaces.closest_hit({{0, -1, 0}}, out, 100);
+        EXPECT_TRUE(board);
+        filter.arrive(scene, out, *board);
+        return area_of(filter.view().moments);
+    };
+    const float none = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(area_after(1, 0.1f), area_after(1, none));
+    EXPECT_LT(area_after(2, 0.1f), 0.5 * area_after(2, none));
+}
+
+/// The board seen in a rough mirror.
+struct View {
+    std::unique_ptr<ReferenceFixture> fixture;
+    TextureFiltering filtering;
+    runtime::Camera camera;
+
+    bake::ReferenceImage picture(bool filtered, std::uint32_t samples, std::uint64_t seed) const {
+        bake::PathOptions paths;
+        paths.max_depth = 2;
+        const bake::PathSpace space{fixture->scene, fixture->light, paths,
+                                    filtered ? &filtering : nullptr};
+        bake::EstimateOptions options;
+        options.samples = samples;
+        options.seed = seed;
+        auto image = bake::estimate_image(space, camera, options, {});
+        EXPECT_TRUE(image);
+        return std::move(*image);
+    }
+    std::vector<double> pixels(bool filtered, std::uint32_t samples, std::uint64_t seed) const {
+        const bake::ReferenceImage image = picture(filtered, samples, seed);
+        std::vector<double> values;
+        for (const formats::Rgb& c : image.mean.pixel) {
+            values.push_back(static_cast<double>(c.g));
+        }
+        return values;
+    }
+};
+View board_in_mirror(float roughness) {
+    Scene scene = textured_board(0, 40);
+    // A mirror over the middle of the board, facing down, high above it; the eye is between.
+    scene.primitives.push_back(make_quad({-1, 0.5f, -1}, {2, 0, 0}, {0, 0, 2}));
+    scene.primitives[1].material = 1;
+    formats::Material& mirror = scene.materials.emplace_back();
+    mirror.gloss.metallic = mirror.gloss.specular = 1;
+    mirror.gloss.roughness = roughness;
+    // The board is lit evenly, from below and through it, so that nothing but the texture varies.
+    scene.materials[0].double_sided = true;
+    scene.materials[0].sheet = formats::Sheet{{0, 0, 0}, {1, 1, 1}};
+    formats::Light& sun = scene.lights.emplace_back();
+    sun.type = formats::Light::Type::directional;
+    sun.direction = {0, 1, 0};
+    View view{make_fixture(std::move(scene), {}), {}, {}};
+    view.filtering = filtering_of(view.fixture->input, 4);
+    view.camera.eye = {0, 0.25f, 0.2f};
+    view.camera.target = {0, 0.5f, 0};
+    view.camera.fov_y = 30;
+    view.camera.width = view.camera.height = 12;
+    return view;
+}
+
+double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    }
+    return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+// By a factor of 2 and more on each seed, and to first order the mean is the same.
+TEST(PathFilter, ErrorOfAGlossyReflectionOfATextureFalls) {
+    const View view = board_in_mirror(0.35f);
+    const std::vector<double> truth = view.pixels(false, 1024, 99);
+    double sum = 0, whole = 0;
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        const std::vector<double> filtered = view.pixels(true, 4, seed);
+        EXPECT_GT(
+            rms_difference(view.pixels(false, 4, seed), truth) / rms_difference(filtered, truth),
+            2);
+        for (std::size_t i = 0; i < truth.size(); ++i) {
+            sum += filtered[i] - truth[i];
+            whole += truth[i];
+        }
+    }
+    EXPECT_LT(std::abs(sum / whole), 0.01);
+}
+
+TEST(PathFilter, PathsAreTheSame) {
+    View view = board_in_mirror(0.35f);
+    for (std::uint8_t& code : view.fixture->input.images[0].rgba) {
+        code = code == 0 ? 180 : code;  // bright enough that no path ends for its throughput
+    }
+    view.filtering = filtering_of(view.fixture->input, 16);
+    const bake::ReferenceImage plain = view.picture(false, 16, 1), with = view.picture(true, 16, 1);
+    EXPECT_EQ(plain.estimate.events, with.estimate.events);
+    EXPECT_EQ(plain.estimate.lost, with.estimate.lost);
+}
+
+// A filter that finds no varied texture changes no bit; footprints below a texel change none
+// either.
+TEST(PathFilter, EvenTexturesAndSmallFootprintsAreLookedUpAtPoints) {
+    View view = board_in_mirror(0.35f);
+    const std::vector<double> plain = view.pixels(false, 4, 1);
+    view.filtering.step = 1e-6f;
+    EXPECT_EQ(rms_difference(view.pixels(true, 4, 1), plain), 0);
+    for (std::uint8_t& code : view.fixture->input.images[0].rgba) {
+        code = 255;
+    }
+    view.filtering = filtering_of(view.fixture->input, 4);
+    EXPECT_FALSE(view.filtering.pyramids.any());
+    EXPECT_EQ(rms_difference(view.pixels(true, 4, 1), view.pixels(false, 4, 1)), 0);
+}
+
+}  // namespace
+}  // namespace opaline::tests
