@@ -267,7 +267,7 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
 }  // namespace
 
 std::size_t count_scatterers(const Knobs& knobs) {
-    constexpr double kPerRay = 16, kFewest = 1024, kMost = 16384;
+    constexpr double kPerRay = 36, kFewest = 1024, kMost = 16384;
     const double rays = count_bounce_rays(knobs[kBounceRays]);
     return static_cast<std::size_t>(std::clamp(kPerRay * rays, kFewest, kMost));
 }

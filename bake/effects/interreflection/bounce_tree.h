@@ -40,7 +40,7 @@ class BounceTree {
 
     /// Calls visit(node, weight, offset) for nodes of that side under a Gaussian around the
     /// footprint, of its second moments (1/12 in the square of its widths), out to three standard
-    /// deviations. Nodes are at most half as large in radius as the footprint is narrow, or
+    /// deviations. Nodes have radii of at most the narrow width of the footprint, or
     /// scatterers. `weight`: scatterers times the Gaussian; may call nothing.
     template <class Visit>
     void find_near(const FootprintKernel& kernel, const SurfaceSide& side, float openness,
@@ -89,7 +89,7 @@ void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& sid
         return;
     }
     constexpr float kReach = 0.8660254f;  // 3 / sqrt(12)
-    constexpr float kLargest = 0.5f;
+    constexpr float kLargest = 1;
     // At most as many as the tree is deep: twenty halvings, between which a few parts of an axis
     // without half of the scatterers go.
     std::array<std::uint32_t, 512> waiting;

@@ -16,7 +16,7 @@ inline bool bounces(const RowLayout&, std::span<const PlanEntry> decisions) {
     }
     return false;
 }
-inline constexpr std::array<double, 6> kRayLadder{16, 64, 144, 256, 576, 1024};
+inline constexpr std::array<double, 5> kRayLadder{16, 64, 144, 256, 1024};
 }  // namespace bounce_knobs
 
 /// Rays from a receiver to the surfaces that send light to it.
@@ -29,7 +29,7 @@ inline constexpr KnobSpec kBounceRays{
         "quality says",
     .lowest = 16,
     .highest = 65536,
-    .preset = {64, 144, 576, 1024},
+    .preset = {64, 144, 256, 1024},
     .label = "%g rays to other surfaces",
     .ladder = bounce_knobs::kRayLadder,
     .theory = {.label = "rays to other surfaces",
