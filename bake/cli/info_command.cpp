@@ -34,6 +34,12 @@ bool is_glossy(const formats::AssetView& view, std::size_t primitive) {
     return !view.roughness.empty() && view.roughness[primitive] >= 0;
 }
 
+// glTF's alphaMode.
+const char* alpha_mode_of(const formats::AssetView& view, std::size_t primitive) {
+    const formats::HoleRecord* hole = view.holes.of(static_cast<std::uint32_t>(primitive));
+    return hole == nullptr ? "OPAQUE" : hole->mode == formats::HoleMode::mask ? "MASK" : "BLEND";
+}
+
 // What each adds to rows, and how many primitives glow.
 Json emitters_json(const formats::EmittersView& emitters) {
     Json list = Json::array();
@@ -75,6 +81,7 @@ Json describe(const OpenedAsset& asset) {
                                       {"terms", p.terms},
                                       {"bands", p.bands}});
         Json& entry = info["primitives"].back();
+        entry["alpha_mode"] = alpha_mode_of(view, info["primitives"].size() - 1);
         if (p.shading == formats::Shading::translucent) {
             const std::size_t i = info["primitives"].size() - 1;
             entry["eta"] = p.eta;
@@ -270,14 +277,17 @@ int run(const InfoCommand& options) {
     for (std::size_t i = 0; i < view.primitives.size(); ++i) {
         const formats::PrimitiveRecord& p = view.primitives[i];
         fmt::print(
-            "  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}{}{}{}\n", i, p.vertex_count,
-            p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
+            "  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}{}{}{}{}\n", i,
+            p.vertex_count, p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
             p.shading == formats::Shading::sheet ? ", thin-walled" : "",
             p.is_separate()
                 ? ", " + formats::term_names(formats::TermSet::separable, " and ") + " separate"
                 : "",
             is_glossy(view, i) ? fmt::format(", roughness {:.2g}", view.roughness[i]) : "",
-            p.base_color_image == formats::kNoImage ? "" : ", textured");
+            p.base_color_image == formats::kNoImage ? "" : ", textured",
+            view.holes.of(static_cast<std::uint32_t>(i)) == nullptr
+                ? ""
+                : std::string(", alpha ") + alpha_mode_of(view, i));
     }
     fmt::print("sections\n");
     for (const formats::SectionEntry& section : asset->loaded.sections) {

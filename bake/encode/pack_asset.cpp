@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bake/encode/pack_holes.h"
 #include "bake/scene/lobe_record.h"
 #include "bake/scene/marble.h"
 
@@ -79,7 +80,8 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         codes += std::uint64_t{transport.row_offset[record.first_row + count] -
                                transport.row_offset[record.first_row]} *
                  record.bands;
-        const bool has_image = material.base_color_image != kNone || material.gloss.image != kNone;
+        const bool has_image = material.base_color_image != kNone ||
+                               material.gloss.image != kNone || material.emission_image != kNone;
         const bool mapped = has_image && !p.texcoord.empty();
         if (mapped && material.base_color_image != kNone) {
             record.base_color_image = material.base_color_image;
@@ -106,6 +108,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
     for (const Image8& image : scene.images) {
         asset.images.push_back(to_preview(image));
     }
+    asset.holes = pack_holes(scene, asset.images);
     if (std::none_of(asset.gloss.begin(), asset.gloss.end(),
                      [](const GlossRecord& g) { return g.is_glossy(); })) {
         asset.gloss.clear();

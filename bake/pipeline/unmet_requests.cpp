@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "bake/scene/coverage.h"
 #include "bake/scene/emission.h"
 #include "formats/opal/terms.h"
 
@@ -111,24 +110,6 @@ void describe_options(const DecidedBake& decided, const BakeOptions& options,
     }
 }
 
-// What a bake, or a picture of it, leaves out of materials.
-void describe_materials(const formats::Scene& scene, std::vector<Diagnostic>& warnings) {
-    std::vector<bool> is_used(scene.materials.size(), false);
-    for (const formats::Primitive& p : scene.primitives) {
-        is_used[p.material] = is_used[p.material] || !p.index.empty();
-    }
-    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        if (is_used[m] && has_holes(scene.materials[m])) {
-            warnings.push_back(make_warning(scene.source,
-                                            "material '" + scene.materials[m].name + "'",
-                                            "light passes the holes of its alphaMode, but the file "
-                                            "does not keep them: pictures "
-                                            "show the whole surface",
-                                            "`opaline reference` shows them"));
-        }
-    }
-}
-
 }  // namespace
 
 formats::Status check_effects(const EffectTable& effects, const formats::Scene& scene,
@@ -149,7 +130,6 @@ std::vector<Diagnostic> describe_unmet(const DecidedBake& decided, const BakeOpt
     std::vector<Diagnostic> warnings;
     describe_effects(decided, warnings);
     describe_options(decided, options, warnings);
-    describe_materials(decided.scene, warnings);
     for (const PlanEntry& entry : decided.plan) {
         const EffectDescriptor& effect = decided.effects[entry.effect];
         const std::uint32_t m = entry.subject.index;

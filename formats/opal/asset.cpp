@@ -22,6 +22,7 @@ AssetView Asset::view() const {
     view.roughness = roughness;
     view.openness = openness;
     view.gloss = gloss;
+    view.holes = holes.view();
     view.volumes = volumes.view();
     view.clouds = clouds.view();
     view.emitters = emitters.view();

@@ -6,6 +6,7 @@
 
 #include "formats/opal/check_clouds.h"
 #include "formats/opal/check_emitters.h"
+#include "formats/opal/check_holes.h"
 #include "formats/opal/check_rows.h"
 #include "formats/opal/check_volumes.h"
 #include "formats/opal/cubemap.h"
@@ -184,6 +185,9 @@ Fault find_structure_fault(const AssetView& asset) {
             return fault;
         }
     }
+    if (Fault fault = find_holes_fault(asset); !fault.what.empty()) {
+        return fault;
+    }
     if (Fault fault = find_volumes_fault(asset.volumes); !fault.what.empty()) {
         return fault;
     }
@@ -214,6 +218,9 @@ Fault find_value_fault(const AssetView& asset) {
         }
     }
     if (Fault fault = find_row_value_fault(asset.transport, "section TRAN"); !fault.what.empty()) {
+        return fault;
+    }
+    if (Fault fault = find_hole_value_fault(asset.holes); !fault.what.empty()) {
         return fault;
     }
     if (Fault fault = find_volume_value_fault(asset.volumes); !fault.what.empty()) {

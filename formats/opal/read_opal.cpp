@@ -70,6 +70,13 @@ bool read_gloss(SectionCursor cursor, AssetView& view) {
            cursor.take(head.primitives, view.gloss) && cursor.at_end();
 }
 
+bool read_holes(SectionCursor cursor, AssetView& view) {
+    HolesHead head;
+    return cursor.take_one(head) && head.record_size == sizeof(HoleRecord) &&
+           cursor.take(head.count, view.holes.record) &&
+           cursor.take(head.vertices, view.holes.vertex_alpha) && cursor.at_end();
+}
+
 bool read_transport(SectionCursor cursor, AssetView& view) {
     return take_rows(cursor, view.transport) && cursor.at_end();
 }
@@ -132,6 +139,9 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 break;
             case kGlosSection:
                 read = read_gloss;
+                break;
+            case kHoleSection:
+                read = read_holes;
                 break;
             case kVoluSection:
                 read = read_volumes;

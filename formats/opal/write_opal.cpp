@@ -43,6 +43,7 @@ struct SectionHeads {
     std::vector<ImageSize> image_sizes;
     SpecularHead specular;
     GlossHead gloss;
+    HolesHead holes;
     VolumesHead volumes;
     TransportHead volume_rows;
     CloudsHead clouds;
@@ -62,6 +63,8 @@ SectionHeads make_heads(const AssetView& asset) {
     }
     heads.specular = {count(asset.roughness), count(asset.openness), {}};
     heads.gloss = {count(asset.gloss), sizeof(GlossRecord), {}};
+    heads.holes = {count(asset.holes.record), sizeof(HoleRecord), count(asset.holes.vertex_alpha),
+                   0};
     heads.volumes = volumes_head(asset.volumes);
     heads.volume_rows = rows_head(asset.volumes.rows);
     heads.clouds = clouds_head(asset.clouds);
@@ -116,6 +119,11 @@ std::vector<StoredSection> store_sections(const AssetView& asset, const SectionH
     }
     if (!asset.gloss.empty()) {
         add(kGlosSection, Codec::zstd, Arrays{bytes_of(heads.gloss), std::as_bytes(asset.gloss)});
+    }
+    if (!asset.holes.empty()) {
+        add(kHoleSection, Codec::zstd,
+            Arrays{bytes_of(heads.holes), std::as_bytes(asset.holes.record),
+                   std::as_bytes(asset.holes.vertex_alpha)});
     }
     if (!asset.volumes.empty()) {
         assert(asset.volumes.rows.cubemap_size == asset.cubemap_size);

@@ -81,6 +81,9 @@ void make_vertex_array(const AssetView& asset, GlAsset& gl) {
         glVertexArrayAttribFormat(name, 6, 1, GL_UNSIGNED_BYTE, GL_TRUE,
                                   offsetof(formats::Openness, fraction));
     }
+    if (!asset.holes.vertex_alpha.empty()) {
+        bind_attribute(name, 7, gl.vertex_alpha, 1, sizeof(float));
+    }
     glVertexArrayElementBuffer(name, gl.triangle.name());
 }
 
@@ -140,6 +143,10 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& l
     }
     if (needs.any()) {
         gl.openness = make_buffer_of(asset.openness, gl.resident);
+    }
+    gl.holes.assign(asset.holes.record.begin(), asset.holes.record.end());
+    if (!asset.holes.vertex_alpha.empty()) {
+        gl.vertex_alpha = make_buffer_of(asset.holes.vertex_alpha, gl.resident);
     }
     gl.position = make_buffer_of(asset.position, gl.resident);
     gl.base_color = make_buffer_of(asset.base_color, gl.resident);

@@ -26,6 +26,8 @@ struct GlAsset {
     bool has_translucent = false;
     std::vector<float> roughness;  ///< of each primitive; empty: no translucent one is glossy
     std::vector<formats::GlossRecord> gloss;  ///< of each primitive; empty: no opaque one is
+    std::vector<formats::HoleRecord> holes;   ///< as formats::HolesView::record
+    GlBuffer vertex_alpha;                    ///< where vertices have alpha
     GlBuffer openness;                        ///< where one is: formats::Openness of each vertex
     GlBuffer normal;                          ///< where has_translucent, needs_view or glossy
     GlBuffer product;     ///< where a primitive needs_view: <T_k, L> of every row

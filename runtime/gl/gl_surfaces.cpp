@@ -33,7 +33,10 @@ enum Uniform : GLint {
     kGlossWrap,
     kSuns,
     kOwnLight,
-    kOwnWrap
+    kOwnWrap,
+    kHole,
+    kFirstSample,
+    kHoleWrap
 };
 
 // What a surface's program has to do.
@@ -42,17 +45,24 @@ struct SurfaceKind {
     bool is_mirroring = false;                        ///< translucent and glossy
     bool is_glossy = false, has_gloss_image = false;  ///< opaque
     bool glows = false, has_own_image = false;        ///< sends out light by itself; with an image
+    bool has_holes = false, has_hole_image = false;   ///< light passes it in places; with an image
 
-    bool has_image() const { return is_textured || has_gloss_image || has_own_image; }
+    bool has_image() const {
+        return is_textured || has_gloss_image || has_own_image || has_hole_image;
+    }
     std::size_t number() const {
         return (is_textured ? 1u : 0u) + (is_translucent ? 2u : 0u) + (is_mirroring ? 4u : 0u) +
                (is_glossy ? 8u : 0u) + (has_gloss_image ? 16u : 0u) + (has_own_image ? 32u : 0u) +
-               (glows ? 64u : 0u);
+               (glows ? 64u : 0u) + (has_holes ? 128u : 0u) + (has_hole_image ? 256u : 0u);
     }
 };
 
 const formats::OwnLight* own_light_of(const GlAsset& asset, std::size_t primitive) {
     return asset.emitters.view().own_of(static_cast<std::uint32_t>(primitive));
+}
+
+const formats::HoleRecord* hole_of(const GlAsset& asset, std::size_t primitive) {
+    return formats::HolesView{asset.holes, {}}.of(static_cast<std::uint32_t>(primitive));
 }
 
 SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
@@ -66,6 +76,9 @@ SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
     const formats::OwnLight* const own = own_light_of(asset, primitive);
     kind.glows = own != nullptr;
     kind.has_own_image = own != nullptr && own->image < asset.images.size();
+    const formats::HoleRecord* const hole = hole_of(asset, primitive);
+    kind.has_holes = hole != nullptr;
+    kind.has_hole_image = hole != nullptr && hole->image < asset.images.size();
     return kind;
 }
 
@@ -73,7 +86,7 @@ std::string define(const char* name, const std::string& value = {}) {
     return std::string("#define ") + name + " " + value + "\n";
 }
 
-std::string defines_of(SurfaceKind kind) {
+std::string defines_of(SurfaceKind kind, bool has_vertex_alpha) {
     std::string text;
     if (kind.is_textured) text += define("TEXTURED");
     if (kind.is_translucent) text += define("TRANSLUCENT");
@@ -82,6 +95,9 @@ std::string defines_of(SurfaceKind kind) {
     if (kind.has_gloss_image) text += define("GLOSS_TEXTURED");
     if (kind.glows) text += define("GLOWS");
     if (kind.has_own_image) text += define("OWN_TEXTURED");
+    if (kind.has_holes) text += define("HOLES");
+    if (kind.has_hole_image) text += define("HOLE_IMAGE");
+    if (kind.has_holes && has_vertex_alpha) text += define("HOLE_VERTICES");
     if (kind.has_image()) text += define("HAS_TEXCOORD");
     if (kind.is_translucent || kind.is_glossy) text += define("HAS_VIEW");
     if (kind.is_mirroring || kind.is_glossy) text += define("HAS_OPENNESS");
@@ -104,6 +120,7 @@ std::string fragment_text(SurfaceKind kind) {
                 define("NARROW_ROUGHNESS", std::to_string(kNarrowRoughness)) +
                 define("WIDE_ROUGHNESS", std::to_string(kWideRoughness)) + gloss_text;
     }
+    if (kind.has_holes) text += holes_text;
     return text + surface_frag_text;
 }
 
@@ -183,6 +200,17 @@ void set_own_light(const DrawScene& scene, GLuint program, std::size_t primitive
                        static_cast<GLint>(own->wrap_v));
 }
 
+void set_hole(const DrawScene& scene, const TileGrid& grid, GLuint program,
+              const formats::HoleRecord& hole) {
+    glProgramUniform3f(program, kHole, hole.alpha, hole.cutoff, static_cast<float>(hole.mode));
+    glProgramUniform2ui(program, kFirstSample, static_cast<GLuint>(grid.first_column),
+                        static_cast<GLuint>(grid.first_row));
+    if (hole.image >= scene.asset.images.size()) return;
+    glBindTextureUnit(5, scene.asset.images[hole.image].name());
+    glProgramUniform2i(program, kHoleWrap, static_cast<GLint>(hole.wrap_u),
+                       static_cast<GLint>(hole.wrap_v));
+}
+
 void draw_triangles(const formats::PrimitiveRecord& primitive) {
     // In pieces that a signed count holds; each a whole number of triangles.
     constexpr std::uint32_t kPiece = 3u << 28;
@@ -208,7 +236,7 @@ formats::Result<SurfacePrograms> make_surface_programs(const GlAsset& asset) {
         const std::string fragment = fragment_text(kind);
         const std::array<StageSource, 2> stages{
             {{GL_VERTEX_SHADER, surface_vert_text}, {GL_FRAGMENT_SHADER, fragment.c_str()}}};
-        auto made = make_program("surface", defines_of(kind), stages);
+        auto made = make_program("surface", defines_of(kind, asset.vertex_alpha.name() != 0), stages);
         if (!made) return made.error();
         program = std::move(made).value();
     }
@@ -240,6 +268,7 @@ void draw_surfaces(const DrawScene& scene, const SurfacePrograms& programs, cons
         glUniform1f(kShown, is_shown(primitive, scene.terms) ? 1.0f : 0.0f);
         if (kind.is_mirroring) set_mirroring(scene, program, p);
         if (kind.is_glossy) set_gloss(scene, program, asset.gloss[p]);
+        if (kind.has_holes) set_hole(scene, view.grid, program, *hole_of(asset, p));
         if (kind.glows) set_own_light(scene, program, p);
         draw_triangles(primitive);
     }

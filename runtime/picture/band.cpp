@@ -43,7 +43,8 @@ EdgeFunctions edge_functions(const std::array<GridVertex, 3>& corner) {
 }
 
 void draw_triangle(Band& band, std::uint32_t number, const GridTriangle& triangle,
-                   std::span<const GridVertex> vertices, const SampleGrid& grid) {
+                   std::span<const GridVertex> vertices, const SampleGrid& grid,
+                   const SampleTest& sees) {
     const std::array<GridVertex, 3> corner{
         vertices[triangle.vertex[0]], vertices[triangle.vertex[1]], vertices[triangle.vertex[2]]};
     const EdgeFunctions edges = edge_functions(corner);
@@ -68,7 +69,7 @@ void draw_triangle(Band& band, std::uint32_t number, const GridTriangle& triangl
             if (!is_inside(e[0], 0) || !is_inside(e[1], 1) || !is_inside(e[2], 2)) continue;
             const double inverse_distance = (e[0] + e[1] + e[2]) * edges.inverse_determinant;
             if (inverse_distance > band.inverse_distance[start + column] &&
-                inverse_distance <= nearest) {
+                inverse_distance <= nearest && (!sees || sees(e, column, row))) {
                 band.inverse_distance[start + column] = inverse_distance;
                 band.triangle[start + column] = number;
             }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -39,9 +40,15 @@ struct EdgeFunctions {
 };
 EdgeFunctions edge_functions(const std::array<GridVertex, 3>& corner);
 
+/// Whether a sample, whose edge functions these are, sees a triangle that covers it.
+using SampleTest = std::function<bool(const std::array<double, 3>& edges, std::uint32_t column,
+                                      std::uint32_t row)>;
+
 /// Draws triangle number `number` into the band: nearest wins, of equally near ones the first. A
-/// sample on an edge belongs to exactly one of the two triangles that share it.
+/// sample on an edge belongs to exactly one of the two triangles that share it. `sees` empty: all
+/// samples do.
 void draw_triangle(Band& band, std::uint32_t number, const GridTriangle& triangle,
-                   std::span<const GridVertex> vertices, const SampleGrid& grid);
+                   std::span<const GridVertex> vertices, const SampleGrid& grid,
+                   const SampleTest& sees);
 
 }  // namespace opaline::runtime

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "runtime/holes.h"
 #include "runtime/parallel.h"
 #include "runtime/picture/layer_pass.h"
 #include "runtime/picture/passes.h"
@@ -118,21 +119,40 @@ SurfacePoint point_at(const Job& job, const GridTriangle& triangle,
     return point;
 }
 
+std::array<float, 3> weights_of(const std::array<double, 3>& e) {
+    const double scale = 1.0 / (e[0] + e[1] + e[2]);
+    return {static_cast<float>(e[0] * scale), static_cast<float>(e[1] * scale),
+            static_cast<float>(e[2] * scale)};
+}
+
+// Empty where the triangle's surface is whole.
+SampleTest make_sample_test(const Job& job, const GridTriangle& triangle) {
+    const formats::HoleRecord* const hole = job.asset.holes.of(triangle.primitive);
+    if (hole == nullptr) return {};
+    return [&job, &triangle, hole](const std::array<double, 3>& edges, std::uint32_t column,
+                                   std::uint32_t row) {
+        const std::array<float, 3> weight = weights_of(edges);
+        const std::span<const float> alphas = job.asset.holes.vertex_alpha;
+        const float vertex_alpha =
+            alphas.empty() ? 1.0f : interpolate(alphas, triangle.vertex, weight);
+        const Float2 uv = interpolate_texcoord(job, triangle, weight);
+        return sees_surface(*hole, alpha_at(job.asset, *hole, uv, vertex_alpha),
+                            {column, row, triangle.vertex[2]});
+    };
+}
+
 Rgb shade_triangle(const Job& job, const GridTriangle& triangle, double x, double y) {
     const EdgeFunctions edges =
         edge_functions({job.vertices[triangle.vertex[0]], job.vertices[triangle.vertex[1]],
                         job.vertices[triangle.vertex[2]]});
-    const auto e = edges.at(x, y);
-    const double scale = 1.0 / (e[0] + e[1] + e[2]);
-    const std::array<float, 3> weight{static_cast<float>(e[0] * scale),
-                                      static_cast<float>(e[1] * scale),
-                                      static_cast<float>(e[2] * scale)};
+    const std::array<float, 3> weight = weights_of(edges.at(x, y));
     return tame(shade_surface(job.materials[triangle.primitive], point_at(job, triangle, weight)));
 }
 
 void draw_surfaces(const Job& job, std::uint32_t number, Samples& samples) {
     for (const std::uint32_t t : job.triangles_of_band[number]) {
-        draw_triangle(samples.band, t, job.triangles[t], job.vertices, job.grid);
+        draw_triangle(samples.band, t, job.triangles[t], job.vertices, job.grid,
+                      make_sample_test(job, job.triangles[t]));
     }
     samples.for_each([&](std::size_t i, std::uint32_t column, std::uint32_t row) {
         const std::uint32_t seen = samples.band.triangle[i];

@@ -1,8 +1,6 @@
 // Surfaces that light passes: alphaMode of a glTF file.
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
-#include "bake/pipeline/unmet_requests.h"
-#include "bake/scene/inspect_scene.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {
@@ -39,21 +37,16 @@ TEST(Holes, OfAMaskLetAllLightPassAndThoseOfABlendTheirShare) {
                 0.03 * bare);
 }
 
-TEST(Holes, ThatAFileDoesNotKeepAreNamed) {
+TEST(Holes, AreKeptInTheFileAndChangeNothingForWholeSurfaces) {
     using enum formats::Material::AlphaMode;
-    const auto warnings_of = [](const formats::Scene& scene) {
-        const Knobs knobs = *resolve_knobs({});
-        const SceneFacts facts = inspect_scene(scene);
-        const auto plan = plan_bake(all_effects(), scene, facts, knobs);
-        std::string all;
-        for (const auto& w : describe_unmet({all_effects(), scene, facts, knobs, plan}, {})) {
-            all += w.where + ": " + w.fault;
-        }
-        return all;
+    const auto record_of = [](const formats::Scene& scene) {
+        return tests::bake_scene(scene, tests::small_bake()).asset.holes.record;
     };
-    EXPECT_THAT(warnings_of(floor_under_plate(mask, 0.4f)),
-                ::testing::HasSubstr("material 'Plate': light passes the holes"));
-    EXPECT_EQ(warnings_of(floor_under_plate(opaque, 0.4f)), "");
+    const auto holes = record_of(floor_under_plate(mask, 0.4f));
+    ASSERT_EQ(holes.size(), 1u);
+    EXPECT_EQ(holes[0].primitive, 1u);
+    EXPECT_EQ(holes[0].alpha, 0.4f);
+    EXPECT_TRUE(record_of(floor_under_plate(opaque, 0.4f)).empty());
 }
 
 }  // namespace

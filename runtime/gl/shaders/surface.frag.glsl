@@ -4,7 +4,7 @@
 // MIRRORING: translucent with a specular reflection on top (cube_map.glsl comes before this);
 // GLOSS: glossy opaque (cube_map.glsl and gloss.glsl come before this); GLOSS_TEXTURED: with an
 // image of roughness and metallic (image.glsl); GLOWS: it sends out light by itself; OWN_TEXTURED: with
-// an image (image.glsl).
+// an image (image.glsl); HOLES: light passes it in places (holes.glsl comes before this).
 layout(location = 0) in vec3 v_radiance;
 layout(location = 1) in vec3 v_base_color;
 layout(location = 0) out vec4 color;
@@ -145,6 +145,13 @@ vec3 tame(vec3 v) {
 
 // As shade_surface of runtime/surface.cpp.
 void main() {
+#ifdef HOLES
+#ifdef HAS_TEXCOORD
+    if (!sees_surface(v_texcoord)) discard;
+#else
+    if (!sees_surface(vec2(0.0))) discard;
+#endif
+#endif
     vec3 base_color = v_base_color;
 #ifdef TEXTURED
     base_color *= sample_image(base_color_image, v_texcoord, wrap, true);

@@ -37,6 +37,14 @@ layout(location = 6) uniform vec4 tile;       // scale xy, offset zw: the tile o
 layout(location = 0) out vec3 v_radiance;
 layout(location = 1) out vec3 v_base_color;
 
+#ifdef HOLES
+flat layout(location = 6) out uint v_last_vertex;
+#endif
+#ifdef HOLE_VERTICES
+layout(location = 7) in float alpha;
+layout(location = 7) out float v_alpha;
+#endif
+
 void main() {
     vec3 p = (position - eye) * unit;
     float w = dot(forward, p);
@@ -44,6 +52,12 @@ void main() {
                        near_plane, w);
     v_radiance = radiance;
     v_base_color = base_color;
+#ifdef HOLES
+    v_last_vertex = uint(gl_VertexID);  // flat: of the last vertex
+#endif
+#ifdef HOLE_VERTICES
+    v_alpha = alpha;
+#endif
 #ifdef HAS_TEXCOORD
     v_texcoord = texcoord;
 #endif

@@ -69,5 +69,13 @@ TEST(PackAsset, OnlyPrimitivesWithAnImageStoreTextureCoordinates) {
     EXPECT_EQ(asset.primitives[1].base_color_image, 0u);
 }
 
+TEST(PackAsset, APrimitiveThatOnlyGlowsByAnImageStoresTextureCoordinatesToo) {
+    Scene scene = make_scene({make_quad({}, {1, 0, 0}, {0, 1, 0})});
+    scene.primitives[0].texcoord.assign(4, {0.25f, 0.5f});
+    scene.images.push_back({1, 1, {1, 2, 3, 255}});
+    scene.materials[0].emission_image = 0;
+    EXPECT_EQ(pack(scene).texcoord[2].x, 0.25f);
+}
+
 }  // namespace
 }  // namespace opaline::tests

@@ -180,6 +180,21 @@ TEST_F(GoldenFile, EmittersToo) {
     EXPECT_EQ(emitters.own[0].wrap_u, Wrap::mirror);
 }
 
+TEST_F(GoldenFile, HolesToo) {
+    const HolesView& holes = read("hole1.opal").holes;
+    EXPECT_EQ(version_of(kHoleSection), 1u);
+    ASSERT_EQ(holes.record.size(), 2u);
+    EXPECT_EQ(holes.record[0].mode, HoleMode::blend);
+    EXPECT_EQ(holes.record[0].alpha, 0.25f);
+    EXPECT_EQ(holes.record[0].image, kNoImage);
+    EXPECT_EQ(holes.record[1].primitive, 1u);
+    EXPECT_EQ(holes.record[1].image, 0u);
+    EXPECT_EQ(holes.record[1].wrap_v, Wrap::mirror);
+    EXPECT_EQ(holes.record[1].cutoff, 0.75f);
+    ASSERT_EQ(holes.vertex_alpha.size(), 8u);
+    EXPECT_EQ(holes.vertex_alpha[3], 0.75f);
+}
+
 TEST_F(GoldenFile, CloudLayersToo) {
     const AssetView& asset = read("clou1.opal");
     EXPECT_EQ(version_of(kClouSection), 1u);

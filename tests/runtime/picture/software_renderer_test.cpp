@@ -172,6 +172,32 @@ TEST(Surfaces, NearerOneHidesTheFartherInAnyOrder) {
     }
 }
 
+// A black sheet before a white sky; its mean is what is seen of the sky.
+TEST(Surfaces, AreSeenWhereTheyHaveNoHoles) {
+    Asset asset = test::make_asset(8, 8);
+    test::add_bare_primitive(asset, test::make_sheet({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 2, 1));
+    asset.images.push_back({2, 1, {0, 0, 0, 255, 255, 255}});
+    const std::vector<Rgb> radiance(asset.position.size());
+    const Environment sky = test::make_lat_long(8, 4, [](Vec3) { return Rgb{1, 1, 1}; });
+    const Camera camera = camera_at({0, 0, 2}, {0, 0, 0}, 32, 16, 0.5f);
+    const auto seen_sky = [&](const formats::HoleRecord& hole) {
+        asset.holes.record = {hole};
+        const Picture picture = draw(asset, radiance, sky, camera);
+        double sum = 0;
+        for (const Rgb& c : picture.pixel)
+            sum += static_cast<double>(c.g);
+        return sum / static_cast<double>(picture.pixel.size());
+    };
+    using formats::HoleMode, formats::Wrap;
+    const formats::HoleRecord mask{.image = 0, .wrap_u = Wrap::clamp, .wrap_v = Wrap::clamp};
+    EXPECT_NEAR(seen_sky(mask), 0.5, 0.02);  // alpha is one half in the middle of the sheet
+    EXPECT_EQ(seen_sky({.image = 0, .cutoff = 0}), 0);
+    EXPECT_EQ(seen_sky({.alpha = 0.4f}), 1);
+    EXPECT_NEAR(seen_sky({.alpha = 0.3f, .mode = HoleMode::blend}), 0.7, 0.005);
+    asset.holes.vertex_alpha.assign(asset.position.size(), 0.5f);
+    EXPECT_NEAR(seen_sky({.alpha = 0.3f, .mode = HoleMode::blend}), 0.85, 0.005);
+}
+
 TEST(Surfaces, TopOfTheObjectIsOnTopOfThePicture) {
     Asset asset = test::make_asset(8, 8);
     test::add_bare_primitive(asset, test::make_sphere({0, 0, 0}, 1.0f, 32, 16));

@@ -1,0 +1,66 @@
+#include "formats/opal/check_holes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace opaline::formats {
+namespace {
+
+bool is_alpha(float x) {
+    return x >= 0 && x <= 1;
+}
+
+std::string find_hole_fault(const AssetView& asset, std::size_t i) {
+    const HoleRecord& hole = asset.holes.record[i];
+    if (hole.primitive >= asset.primitives.size() ||
+        !asset.primitives[hole.primitive].is_opaque()) {
+        return "its primitive does not exist, or is translucent";
+    }
+    if (i > 0 && hole.primitive <= asset.holes.record[i - 1].primitive) {
+        return "it is out of order, or stands twice";
+    }
+    if (hole.mode != HoleMode::mask && hole.mode != HoleMode::blend) {
+        return "it is neither a mask nor a blend";
+    }
+    if (!is_alpha(hole.alpha) || !(hole.cutoff >= 0) || !std::isfinite(hole.cutoff) ||
+        hole.reserved != 0) {
+        return "its alpha is not in 0 ... 1, its cutoff is below zero or not finite, or it has a "
+               "value that only later versions know";
+    }
+    if (hole.image != kNoImage && (hole.image >= asset.images.size() || asset.texcoord.empty())) {
+        return "it uses an image or texture coordinates that are not there";
+    }
+    if (static_cast<std::uint32_t>(hole.wrap_u) > 2 ||
+        static_cast<std::uint32_t>(hole.wrap_v) > 2) {
+        return "unknown texture wrap mode";
+    }
+    return {};
+}
+
+}  // namespace
+
+Fault find_holes_fault(const AssetView& asset) {
+    const std::size_t alphas = asset.holes.vertex_alpha.size();
+    if (alphas != 0 && alphas != asset.position.size()) {
+        return {"section HOLE", "it has alpha of " + number_in_fault(alphas) +
+                                    " vertices; expected none, or " +
+                                    number_in_fault(asset.position.size())};
+    }
+    for (std::size_t i = 0; i < asset.holes.record.size(); ++i) {
+        if (std::string fault = find_hole_fault(asset, i); !fault.empty()) {
+            return {"section HOLE, record " + number_in_fault(i), std::move(fault)};
+        }
+    }
+    return {};
+}
+
+Fault find_hole_value_fault(const HolesView& holes) {
+    const auto bad = std::ranges::find_if_not(holes.vertex_alpha, is_alpha);
+    if (bad == holes.vertex_alpha.end()) return {};
+    return {"section HOLE, vertex " + number_in_fault(bad - holes.vertex_alpha.begin()),
+            "its alpha is not in 0 ... 1"};
+}
+
+}  // namespace opaline::formats

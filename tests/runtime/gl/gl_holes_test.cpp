@@ -1,0 +1,69 @@
+// Surfaces that light passes in places: the same picture as on the CPU.
+#include <gtest/gtest.h>
+
+#include "runtime/gl/gl_renderer.h"
+#include "runtime/picture/software_renderer.h"
+#include "runtime/shade.h"
+#include "tests/runtime/gl/gl_comparison.h"
+#include "tests/runtime/picture/synthetic_asset.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Asset;
+using test::Gl;
+
+// A whole floor under three sheets: a mask by an image, a blend by an image that repeats and by the
+// alpha of its vertices, a blend without an image, thin-walled.
+Asset asset_with_holes(bool has_vertex_alpha) {
+    Asset asset = test::make_asset(8, 8);
+    asset.images.push_back(test::make_noise_image(7, 5));
+    test::add_primitive(asset, test::make_sheet({0, 0, 0}, {4, 0, 0}, {0, 0, -4}, 4, 2), {});
+    test::add_primitive(asset, test::make_sheet({-1.5f, 1, 0}, {0.7f, 0, 0}, {0, 0.7f, 0}, 2, 1),
+                        {.bands = 3, .image = 0});
+    test::add_primitive(asset, test::make_sheet({0, 1, -1}, {0.7f, 0, 0}, {0, 0.7f, 0}, 2, 3), {});
+    test::add_primitive(asset, test::make_sheet({0.7f, 1, 0}, {0.7f, 0, 0}, {0, 0.7f, 0}, 1, 1),
+                        {.is_sheet = true});
+    using formats::HoleMode, formats::Wrap;
+    asset.holes.record = {{.primitive = 1, .image = 0, .wrap_u = Wrap::clamp, .cutoff = 0.4f},
+                          {.primitive = 2,
+                           .image = 0,
+                           .wrap_v = Wrap::mirror,
+                           .alpha = 0.9f,
+                           .mode = HoleMode::blend},
+                          {.primitive = 3, .alpha = 0.6f, .mode = HoleMode::blend}};
+    for (std::size_t v = 0; has_vertex_alpha && v < asset.position.size(); ++v) {
+        asset.holes.vertex_alpha.push_back(0.2f + 0.1f * static_cast<float>(v % 9));
+    }
+    return asset;
+}
+
+TEST_F(Gl, HolesAgreeWithTheCpuInTilesToo) {
+    const formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    const LightVector light = project_environment(sky, 8);
+    Camera camera;
+    camera.eye = {0.5f, 2, 5};
+    camera.target = {0, 0.8f, 0};
+    camera.width = 160;
+    camera.height = 120;
+    Picture pictures[2];
+    for (const bool has_vertex_alpha : {false, true}) {
+        const Asset asset = asset_with_holes(has_vertex_alpha);
+        auto renderer = GlRenderer::create(asset.view(), sky);
+        ASSERT_TRUE(renderer) << test::text_of(renderer.error());
+        ASSERT_TRUE(renderer->set_light(light, {}));
+        const auto gl = renderer->render(camera);
+        ASSERT_TRUE(gl);
+        const auto cpu = render_software(
+            asset.view(),
+            shade_for_picture(asset.view(), light, camera.eye, formats::TermSet::all, 0, {}), sky,
+            {}, camera);
+        ASSERT_TRUE(cpu);
+        test::expect_same_picture(*cpu, *gl);
+        pictures[has_vertex_alpha ? 1 : 0] = *cpu;
+    }
+    EXPECT_NE(pictures[0].pixel, pictures[1].pixel);
+}
+
+}  // namespace
+}  // namespace opaline::runtime
