@@ -22,7 +22,7 @@ struct ExampleCommand {
 int list_all() {
     fmt::print("Scenes:\n");
     for (const bake::ExampleInfo& example : bake::list_examples()) {
-        fmt::print("  {:<10} {}\n", example.name, example.summary);
+        fmt::print("  {:<14} {}\n", example.name, example.summary);
     }
     fmt::print("Lights (written as OpenEXR; also names for --light):\n{}",
                bake::list_builtin_environments());

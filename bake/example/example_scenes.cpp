@@ -14,6 +14,7 @@
 #include "bake/example/knot.h"
 #include "bake/example/lamp.h"
 #include "bake/example/leaves.h"
+#include "bake/example/playing_pieces.h"
 #include "bake/example/polygonize.h"
 #include "bake/example/remesh.h"
 #include "bake/example/sphere.h"
@@ -50,6 +51,7 @@ struct Example {
     Layer layer = {};                                        // make_ground null: there is none
     std::vector<GltfPointLight> (*make_lights)() = nullptr;  // null: none
     const char* media = "";                                  // of materials, as a media file
+    formats::Image8 (*make_image)() = nullptr;               // NAME.png, of an object; null: none
 };
 
 TriangleMesh in_metres(TriangleMesh mesh) {
@@ -158,6 +160,40 @@ std::vector<GltfPointLight> make_lamp_lights() {
     return {{"Spark", {1, 0.25, 0.1}, 0.02, {-0.16, 0.06, 0.14}}};
 }
 
+// In the middle of a square, counted from the board's.
+constexpr double square(int number) {
+    return (number + 0.5) * kSquareSide;
+}
+
+GltfObject piece_object(const char* name, std::array<double, 3> base_color, TriangleMesh mesh,
+                        const GltfReflection& reflection) {
+    return {name, name, base_color, in_metres(std::move(mesh)), reflection};
+}
+
+std::vector<GltfObject> make_playing_pieces() {
+    GltfObject board =
+        piece_object("Board", {1, 1, 1}, make_board(), {.roughness = 0.35, .strength = 1});
+    board.texcoord = board_coordinates(make_board());
+    board.image = "playing-pieces.png";
+    TriangleMesh table =
+        make_floor({.finest = 8.0, .fine_radius = 200.0, .growth = 0.15, .levels = 7});
+    for (glm::dvec3& p : table.position)
+        p.y -= 12;
+    constexpr GltfReflection kSatin{.metallic = 1, .roughness = 0.4, .strength = 1},
+        kPolished{.metallic = 1, .roughness = 0.2, .strength = 1},
+        kLacquer{.metallic = 0, .roughness = 0.25, .strength = 1};
+    return {
+        piece_object("Brass", {0.91, 0.78, 0.42}, make_pawn(square(-1), square(0)), kSatin),
+        piece_object("Steel", {0.56, 0.57, 0.58}, make_pawn(square(1), square(-1)), kPolished),
+        piece_object("Red", {0.60, 0.05, 0.04}, make_pawn(square(0), square(2)), kLacquer),
+        piece_object("Black", {0.02, 0.02, 0.02}, make_pawn(square(-3), square(-2)), kLacquer),
+        piece_object("Copper", {0.93, 0.62, 0.52}, make_draughtsman(square(2), square(1)), kSatin),
+        piece_object("Ivory", {0.80, 0.75, 0.62}, make_draughtsman(square(-2), square(2)),
+                     kLacquer),
+        std::move(board),
+        floor_object(std::move(table))};
+}
+
 constexpr double kBallRadius = 40;  // [mm]
 
 // What smoulders, and a floor for the shadow.
@@ -201,6 +237,11 @@ constexpr Example kExamples[] = {
      .make = make_wax_lamp,
      .make_lights = make_lamp_lights,
      .media = kShadeOfWax},
+    {.info =
+         {"playing-pieces",
+          "metal and lacquered pieces on a glossy chequered board: a texture in blurred mirrors"},
+     .make = make_playing_pieces,
+     .make_image = paint_board},
     {{"smoke", "a plume that rises from a ball and widens as it curls: a volume beside meshes"},
      make_smouldering_ball,
      {.make = make_smoke, .sigma_t = grey(60), .albedo = grey(0.92), .g = 0.5}},
@@ -295,12 +336,16 @@ formats::Result<std::vector<std::filesystem::path>> write_example(
         others.push_back(file);
         media = describe_volume(example->volume, stem + ".vdb");
     }
-    if (example->layer.make_ground != nullptr) {
+    const auto make_image =
+        example->make_image != nullptr ? example->make_image : example->layer.make_ground;
+    if (make_image != nullptr) {
         const std::filesystem::path file = folder / (stem + ".png");
-        if (auto status = formats::write_png(file, example->layer.make_ground()); !status) {
+        if (auto status = formats::write_png(file, make_image()); !status) {
             return std::move(status).error();
         }
         others.push_back(file);
+    }
+    if (example->layer.describe != nullptr) {
         media = example->layer.describe(stem + ".png");
     }
     if (example->make == nullptr) {

@@ -69,6 +69,15 @@ std::size_t add_vectors(Draft& draft, const std::vector<glm::dvec3>& vectors) {
     return index;
 }
 
+std::size_t add_texture_coordinates(Draft& draft, const std::vector<glm::dvec2>& coordinates) {
+    const std::size_t offset = draft.bytes.size();
+    for (const glm::dvec2& exact : coordinates) {
+        append(draft.bytes, std::bit_cast<std::uint32_t>(static_cast<float>(exact.x)));
+        append(draft.bytes, std::bit_cast<std::uint32_t>(static_cast<float>(exact.y)));
+    }
+    return add_accessor(draft, offset, kArrayBuffer, kFloat, "VEC2", coordinates.size());
+}
+
 std::size_t add_indices(Draft& draft, const TriangleMesh& mesh) {
     const std::size_t offset = draft.bytes.size();
     std::uint32_t low = mesh.triangles.front()[0], high = low;
@@ -100,7 +109,7 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
     const std::vector<GltfPointLight>& lights) {
     Draft draft;
     Json nodes = Json::array(), roots = Json::array();
-    Json meshes = Json::array(), materials = Json::array();
+    Json meshes = Json::array(), materials = Json::array(), images = Json::array();
     Json extensions = Json::array({kReflectionExtension});
     for (const GltfObject& object : objects) {
         assert(!object.mesh.position.empty() && !object.mesh.triangles.empty());
@@ -110,9 +119,13 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
         const std::size_t position = add_vectors(draft, object.mesh.position);
         const std::size_t normal = add_vectors(draft, object.mesh.normal);
         const std::size_t indices = add_indices(draft, object.mesh);
-        const Json primitive = {{"attributes", {{"POSITION", position}, {"NORMAL", normal}}},
-                                {"indices", indices},
-                                {"material", materials.size()}};
+        Json attributes = {{"POSITION", position}, {"NORMAL", normal}};
+        if (!object.image.empty()) {
+            assert(object.texcoord.size() == object.mesh.position.size());
+            attributes["TEXCOORD_0"] = add_texture_coordinates(draft, object.texcoord);
+        }
+        const Json primitive = {
+            {"attributes", attributes}, {"indices", indices}, {"material", materials.size()}};
         meshes.push_back({{"name", object.name}, {"primitives", Json::array({primitive})}});
         const auto& color = object.base_color;
         materials.push_back(
@@ -123,6 +136,11 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
                {"roughnessFactor", object.reflection.roughness}}},
              {"extensions",
               {{kReflectionExtension, {{"specularFactor", object.reflection.strength}}}}}});
+        if (!object.image.empty()) {
+            materials.back()["pbrMetallicRoughness"]["baseColorTexture"] = {
+                {"index", images.size()}};
+            images.push_back({{"uri", object.image}});
+        }
         if (const GltfThinWall& thin = object.thin_wall; thin.share > 0) {
             Json& material = materials.back();
             material["doubleSided"] = true;
@@ -163,6 +181,13 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
         {"bufferViews", draft.views},
         {"buffers", Json::array({{{"uri", name + ".bin"}, {"byteLength", draft.bytes.size()}}})}};
 
+    if (!images.empty()) {
+        document["images"] = images;
+        document["textures"] = Json::array();
+        for (std::size_t i = 0; i < images.size(); ++i) {
+            document["textures"].push_back({{"source", i}});
+        }
+    }
     if (!lights.empty()) {
         document["extensions"][kLightsExtension] = {{"lights", light_sources}};
     }

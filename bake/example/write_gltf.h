@@ -46,13 +46,16 @@ struct GltfObject {
     GltfReflection reflection = {};
     GltfThinWall thin_wall = {};
     GltfEmission emission = {};
+    std::vector<glm::dvec2> texcoord = {};  ///< one a vertex where there is an image
+    std::string image = {};  ///< file of the base colour's image, beside the .gltf; empty: none
 };
 
 /// Writes FOLDER/NAME.gltf and its buffer FOLDER/NAME.bin as glTF 2.0 and returns both paths; the
 /// buffer appears first, so that the .gltf never refers to a missing file. The bytes depend on the
 /// arguments only. `media`: a media file (formats/media/README.md) for the extension OPALINE_media,
 /// or nothing. Errors: resource, if either file cannot be written. Precondition: every object has a
-/// vertex, a triangle, and as many normals as positions.
+/// vertex, a triangle, and as many normals as positions, and texture coordinates where it has an
+/// image.
 formats::Result<std::vector<std::filesystem::path>> write_gltf(
     const std::filesystem::path& folder, const std::string& name,
     const std::vector<GltfObject>& objects, const std::string& media = {},

@@ -87,6 +87,22 @@ TEST_F(ExampleFiles, DescribeEveryByteOfTheBufferOnce) {
     EXPECT_EQ(end, bytes.size());
 }
 
+TEST_F(ExampleFiles, NameTheImageOfAnObjectAndHoldItsTextureCoordinates) {
+    std::vector<GltfObject> objects = small_scene();
+    objects[1].image = "wood.png";
+    objects[1].texcoord = {{0, 0}, {1, 0}, {0.5, 1}};
+    ASSERT_TRUE(write_gltf(folder_, "small", objects));
+    const auto document = nlohmann::json::parse(contents(folder_ / "small.gltf"));
+    EXPECT_EQ(document["images"][0]["uri"], "wood.png");
+    EXPECT_EQ(document["textures"][0]["source"], 0);
+    EXPECT_FALSE(document["materials"][0]["pbrMetallicRoughness"].contains("baseColorTexture"));
+    EXPECT_EQ(document["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0);
+    const auto& attributes = document["meshes"][1]["primitives"][0]["attributes"];
+    const auto& accessor = document["accessors"][attributes["TEXCOORD_0"].get<std::size_t>()];
+    EXPECT_EQ(accessor["type"], "VEC2");
+    EXPECT_EQ(accessor["count"], 3);
+}
+
 TEST_F(ExampleFiles, HoldPositionsAsLittleEndianFloatsWithTheirBounds) {
     ASSERT_TRUE(write_gltf(folder_, "small", small_scene()));
     const std::string bytes = contents(folder_ / "small.bin");

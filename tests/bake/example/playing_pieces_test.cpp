@@ -1,0 +1,89 @@
+// Parts of the example `playing-pieces`.
+#include "bake/example/playing_pieces.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "bake/example/example_scenes.h"
+#include "tests/bake/example/facing.h"
+
+namespace opaline::bake {
+namespace {
+
+TEST(PlayingPieces, SurfacesFaceOutward) {
+    expect_facing_normals(make_board());
+    for (const TriangleMesh& piece : {make_pawn(0, 0), make_draughtsman(0, 0)}) {
+        double volume = 0;
+        for (const Triangle& t : piece.triangles) {
+            volume += glm::dot(piece.position[t[0]],
+                               glm::cross(piece.position[t[1]], piece.position[t[2]])) /
+                      6;
+        }
+        EXPECT_GT(volume, 3000);
+        expect_facing_normals(piece);
+    }
+}
+
+TEST(PlayingPieces, StandInSquaresOfTheirOwn) {
+    const auto objects = make_example("playing-pieces");
+    ASSERT_TRUE(objects);
+    std::vector<std::pair<double, double>> squares;
+    for (const GltfObject& object : *objects) {
+        if (object.name == "Board" || object.name == "Floor") continue;
+        glm::dvec3 low(1), high(-1);
+        for (const glm::dvec3& p : object.mesh.position) {
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        }
+        EXPECT_NEAR(low.y, -0.0004, 1e-9) << object.name;
+        constexpr double kSquare = 1e-3 * kSquareSide;
+        const std::pair square{std::floor(low.x / kSquare), std::floor(low.z / kSquare)};
+        EXPECT_LT(high.x, (square.first + 1) * kSquare + 1e-3) << object.name;
+        EXPECT_LT(high.z, (square.second + 1) * kSquare + 1e-3) << object.name;
+        EXPECT_LE(std::abs(square.first + 0.5), 4);
+        EXPECT_LE(std::abs(square.second + 0.5), 4);
+        EXPECT_EQ(std::ranges::count(squares, square), 0);
+        squares.push_back(square);
+    }
+    EXPECT_EQ(squares.size(), 6u);
+}
+
+TEST(PlayingPieces, TheBoardsPictureIsChequeredAndCoversIt) {
+    const TriangleMesh board = make_board();
+    const auto coordinates = board_coordinates(board);
+    ASSERT_EQ(coordinates.size(), board.position.size());
+    const formats::Image8 picture = paint_board();
+    ASSERT_EQ(picture.rgba.size(), 4 * std::size_t{picture.width} * picture.height);
+    const auto red_at = [&](double x, double z) {  // [squares]
+        double sum = 0;
+        for (int i = 0; i < 100; ++i) {
+            const auto texel = [](double squares, int step, std::uint32_t side) {
+                const double mm = kSquareSide * (squares + 0.1 + 0.08 * step);
+                return static_cast<std::size_t>((0.5 + mm / kBoardSide) * side);
+            };
+            sum += picture.rgba[4 * (texel(z, i / 10, picture.height) * picture.width +
+                                     texel(x, i % 10, picture.width))];
+        }
+        return sum / 100;
+    };
+    for (int j = -4; j < 4; ++j) {
+        for (int i = -4; i < 4; ++i) {
+            EXPECT_EQ(red_at(i, j) > 140, (i + j + 8) % 2 == 0) << i << " " << j;
+        }
+    }
+    for (std::size_t v = 0; v < coordinates.size(); ++v) {
+        EXPECT_LT(std::abs(coordinates[v].x - 0.5), 0.5 + 1e-9);
+        EXPECT_LT(std::abs(coordinates[v].y - 0.5), 0.5 + 1e-9);
+        if (board.position[v].y == 0) {
+            EXPECT_NEAR(coordinates[v].x - 0.5, board.position[v].x / kBoardSide, 1e-12);
+            EXPECT_NEAR(coordinates[v].y - 0.5, board.position[v].z / kBoardSide, 1e-12);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace opaline::bake
