@@ -199,6 +199,12 @@ struct Light {
     float outer_cone = 0.785f;      ///< [rad], inner_cone < outer_cone <= pi/2: none outside
 };
 
+/// Emitters that are switched, dimmed and coloured as one.
+struct EmitterGroup {
+    std::string name;                  ///< 1 to 255 bytes without control characters
+    std::vector<std::string> members;  ///< names of emitters, none in two groups or twice
+};
+
 /// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.
 /// Vertices keep the original order and count: receivers and output rows use this numbering.
 struct Primitive {
@@ -240,6 +246,7 @@ struct Scene {
     std::vector<Volume> volumes;        ///< at most kMaxVolumes
     std::vector<CloudLayer> layers;     ///< at most formats::kMaxLayers (opal/clouds.h)
     std::vector<Light> lights;          ///< nodes depth-first
+    std::vector<EmitterGroup> emitter_groups;
     /// World position [m] of the origin of the scene's frame: world = origin + position. The
     /// frame's axes are parallel to those of the world. All stages compute in the frame, so float
     /// precision does not depend on the distance between the scene and the world's origin.

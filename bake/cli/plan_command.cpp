@@ -71,7 +71,7 @@ int run(const PlanCommand& options) {
     std::vector<bake::PlanEntry> volumes = bake::plan_volumes(scene, *knobs).entries;
     std::ranges::copy(bake::plan_layers(scene, *knobs).entries, std::back_inserter(volumes));
     const bake::EmitterPlan emitters = bake::plan_emitters(scene, *knobs);
-    if (auto status = bake::check_lamp_count(scene, emitters.lamps.size()); !status) {
+    if (auto status = bake::check_lamps(scene, emitters.lamps.size()); !status) {
         return report_error(status.error());
     }
     std::ranges::copy(emitters.entries, std::back_inserter(volumes));

@@ -1,7 +1,9 @@
 #include "bake/emitters/lamps.h"
 
 #include <algorithm>
+#include <map>
 #include <string_view>
+#include <utility>
 
 #include "bake/scene/emission.h"
 #include "formats/opal/emitters.h"
@@ -45,9 +47,7 @@ Lamp& add_lamp(std::vector<Lamp>& lamps, const std::string& wanted) {
     return lamps.emplace_back(Lamp{std::move(name), {}, {}});
 }
 
-}  // namespace
-
-std::vector<Lamp> list_lamps(const formats::Scene& scene) {
+std::vector<Lamp> list_single_lamps(const formats::Scene& scene) {
     std::vector<Lamp> lamps;
     std::uint32_t node = formats::kNone;
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
@@ -67,14 +67,84 @@ std::vector<Lamp> list_lamps(const formats::Scene& scene) {
     return lamps;
 }
 
-formats::Status check_lamp_count(const formats::Scene& scene, std::size_t lamps) {
+using GroupOf = std::map<std::string_view, const formats::EmitterGroup*>;  // by member
+
+GroupOf group_members(const formats::Scene& scene) {
+    GroupOf group_of;
+    for (const formats::EmitterGroup& group : scene.emitter_groups) {
+        for (const std::string& member : group.members)
+            group_of.emplace(member, &group);
+    }
+    return group_of;
+}
+
+formats::Error group_error(const formats::Scene& scene, const std::string& group, std::string fault,
+                           std::string remedy) {
+    return formats::make_error(formats::ErrorKind::bad_input, scene.source,
+                               "media > emitters > " + group, std::move(fault), std::move(remedy));
+}
+
+std::string list_names(const std::vector<Lamp>& lamps) {
+    constexpr std::size_t kShown = 12;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(lamps.size(), kShown); ++i) {
+        names += (i == 0 ? "'" : ", '") + lamps[i].name + "'";
+    }
+    return lamps.empty() ? "none" : lamps.size() > kShown ? names + ", ..." : names;
+}
+
+formats::Status check_groups(const formats::Scene& scene) {
+    const std::vector<Lamp> lamps = list_single_lamps(scene);
+    const GroupOf group_of = group_members(scene);
+    for (const formats::EmitterGroup& group : scene.emitter_groups) {
+        for (const std::string& member : group.members) {
+            if (!is_taken(lamps, member)) {
+                return group_error(scene, group.name, "there is no emitter '" + member + "'",
+                                   "the scene has: " + list_names(lamps));
+            }
+        }
+        if (is_taken(lamps, group.name) && !group_of.contains(group.name)) {
+            return group_error(scene, group.name, "an emitter outside has this name already",
+                               "give the group another name, or put that emitter into a group");
+        }
+    }
+    return formats::ok_status();
+}
+
+}  // namespace
+
+std::vector<Lamp> list_lamps(const formats::Scene& scene) {
+    const GroupOf group_of = group_members(scene);
+    std::vector<Lamp> lamps;
+    for (Lamp& single : list_single_lamps(scene)) {
+        const auto found = group_of.find(single.name);
+        if (found == group_of.end()) {
+            lamps.push_back(std::move(single));
+            continue;
+        }
+        auto group = std::ranges::find(lamps, found->second->name, &Lamp::name);
+        if (group == lamps.end()) {
+            group = lamps.insert(lamps.end(), Lamp{found->second->name, {}, {}});
+        }
+        const auto append = [](const auto& from, auto& to) {
+            to.insert(to.end(), from.begin(), from.end());
+        };
+        append(single.primitives, group->primitives);
+        append(single.lights, group->lights);
+    }
+    return lamps;
+}
+
+formats::Status check_lamps(const formats::Scene& scene, std::size_t lamps) {
+    if (auto status = check_groups(scene); !status) return status;
     if (lamps <= formats::kMaxEmitters) return formats::ok_status();
-    return formats::make_error(
-        formats::ErrorKind::bad_input, scene.source, "emitters",
-        std::to_string(lamps) + " nodes and lights send out light; a file holds " +
-            std::to_string(formats::kMaxEmitters) + " emitters at most",
-        "join meshes of lamps that are switched together into one node, or leave emitters out with "
-        "--effects");
+    return formats::make_error(formats::ErrorKind::bad_input, scene.source, "emitters",
+                               std::to_string(lamps) +
+                                   " nodes and lights send out light; a file holds " +
+                                   std::to_string(formats::kMaxEmitters) + " emitters at most",
+                               "group those that are switched together (\"emitters\" of a media "
+                               "file), or leave emitters out "
+                               "with --effects");
 }
 
 }  // namespace opaline::bake

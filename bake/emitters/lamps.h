@@ -12,16 +12,17 @@ namespace opaline::bake {
 
 /// What is switched, dimmed and coloured as one: an emitter of the file.
 struct Lamp {
-    std::string name;                       ///< of the node, or of the light
-    std::vector<std::uint32_t> primitives;  ///< that glow: all of one node
+    std::string name;                       ///< of the node, of the light, or of the group
+    std::vector<std::uint32_t> primitives;  ///< that glow: all of one node, or of several
     std::vector<std::uint32_t> lights;      ///< into Scene::lights
 };
 
 /// Nodes whose surfaces glow, in the order of the scene, then lights that are not black. Names are
-/// unique: "Lamp", "Lamp (2)".
+/// unique: "Lamp", "Lamp (2)". Those of a group are one, in the place of its first one.
 std::vector<Lamp> list_lamps(const formats::Scene& scene);
 
-/// bad_input where there are more than a file holds, formats::kMaxEmitters.
-formats::Status check_lamp_count(const formats::Scene& scene, std::size_t lamps);
+/// bad_input where there are more lamps than a file holds, formats::kMaxEmitters, where a group
+/// names one that there is not, and where two emitters would have the same name.
+formats::Status check_lamps(const formats::Scene& scene, std::size_t lamps);
 
 }  // namespace opaline::bake

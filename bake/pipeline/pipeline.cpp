@@ -283,7 +283,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         result.facts = inspect_scene(scene);
         return plan_bake(effects, scene, result.facts, wanted);
     });
-    if (auto status = check_lamp_count(scene, emitters.lamps.size()); !status) {
+    if (auto status = check_lamps(scene, emitters.lamps.size()); !status) {
         return std::move(status).error();
     }
     formats::Result<RayScene> sky = RayScene::build({}, context.threads);

@@ -147,6 +147,7 @@ Result<std::vector<Diagnostic>> apply_media(const MediaFile& media, Scene& scene
             fill(*entry, material, scene, known);
         }
     }
+    if (!media.emitter_groups.empty()) scene.emitter_groups = media.emitter_groups;
     std::vector<Diagnostic> warnings;
     warn_of_unmatched(media, scene, warnings);
     if (!media.inputs.empty()) {

@@ -47,7 +47,8 @@ struct MediaFile {
     std::string file;                       ///< for messages
     std::vector<MaterialMedium> materials;  ///< no name stands twice
     std::vector<VolumeEntry> volumes;
-    std::vector<CloudEntry> clouds;             ///< at most kMaxLayers
+    std::vector<CloudEntry> clouds;  ///< at most kMaxLayers
+    std::vector<EmitterGroup> emitter_groups;
     std::vector<std::filesystem::path> inputs;  ///< files read
     std::string sha256;                         ///< of their bytes, in reading order
 };

@@ -11,6 +11,7 @@
 #include "formats/gltf/resources.h"
 #include "formats/media/fields.h"
 #include "formats/media/read_cloud.h"
+#include "formats/media/read_emitter_groups.h"
 #include "formats/media/read_material.h"
 #include "formats/media/read_volume.h"
 #include "formats/opal/clouds.h"
@@ -120,12 +121,15 @@ void read_root(const Json& root, const std::string& where, Resources& resources,
         report.error(where, "the outermost value is not an object", "give {\"materials\": {...}}");
         return;
     }
-    media::refuse_unknown_keys({root, where, report}, {"materials", "volumes", "clouds"});
+    media::refuse_unknown_keys({root, where, report},
+                               {"materials", "volumes", "clouds", "emitters"});
     read_volumes(root, where, resources, media, report);
     read_clouds(root, where, resources, media, report);
+    media.emitter_groups = media::read_emitter_groups(root, where, report);
     const std::string at = media::place(where, "materials");
     const auto materials = root.find("materials");
-    if (materials == root.end() && (root.contains("volumes") || root.contains("clouds"))) {
+    if (materials == root.end() &&
+        (root.contains("volumes") || root.contains("clouds") || root.contains("emitters"))) {
         return;
     }
     if (materials == root.end() || !materials->is_object()) {

@@ -52,11 +52,47 @@ TEST(Lamps, NamesFitIntoAFileAtWholeCharacters) {
 }
 
 TEST(Lamps, MoreThanAFileHoldsAreRefused) {
-    EXPECT_TRUE(check_lamp_count({}, formats::kMaxEmitters));
-    const auto status = check_lamp_count({}, formats::kMaxEmitters + 1);
+    EXPECT_TRUE(check_lamps({}, formats::kMaxEmitters));
+    const auto status = check_lamps({}, formats::kMaxEmitters + 1);
     ASSERT_FALSE(status);
     EXPECT_THAT(status.error().diagnostics.front().fault,
                 testing::HasSubstr("65 nodes and lights"));
+}
+
+// A panel of two nodes, a lamp, a bulb.
+formats::Scene grouped_scene(std::vector<formats::EmitterGroup> groups) {
+    formats::Scene scene = glowing_quads({"node 'Panel'", "node 'Lamp'", "node 'Panel'"});
+    for (std::uint32_t p = 0; p < 3; ++p)
+        scene.primitives[p].node = p;
+    scene.lights.push_back({.name = "Bulb"});
+    scene.emitter_groups = std::move(groups);
+    return scene;
+}
+
+TEST(Lamps, ThoseOfAGroupAreOneInThePlaceOfItsFirst) {
+    const formats::Scene scene =
+        grouped_scene({{"Ceiling", {"Bulb", "Panel", "Panel (2)"}}, {"Panel", {"Lamp"}}});
+    EXPECT_TRUE(check_lamps(scene, 2));
+    const std::vector<Lamp> lamps = list_lamps(scene);
+    ASSERT_EQ(lamps.size(), 2u);
+    EXPECT_EQ(lamps[0].name, "Ceiling");
+    EXPECT_EQ(lamps[0].primitives, (std::vector<std::uint32_t>{0, 2}));
+    EXPECT_EQ(lamps[0].lights, (std::vector<std::uint32_t>{0}));
+    EXPECT_EQ(lamps[1].name, "Panel");
+    EXPECT_EQ(lamps[1].primitives, (std::vector<std::uint32_t>{1}));
+    EXPECT_EQ(make_lamp_sources(scene, lamps[0]).triangles.size(), 4u);
+}
+
+TEST(Lamps, AGroupOfWhatIsNotThereOrOfATakenNameIsRefused) {
+    const auto error_of = [](std::vector<formats::EmitterGroup> groups) {
+        const auto status = check_lamps(grouped_scene(std::move(groups)), 3);
+        return status ? formats::Diagnostic{} : status.error().diagnostics.front();
+    };
+    const formats::Diagnostic unknown = error_of({{"Ceiling", {"Lmap"}}});
+    EXPECT_EQ(unknown.where, "media > emitters > Ceiling");
+    EXPECT_EQ(unknown.fault, "there is no emitter 'Lmap'");
+    EXPECT_EQ(unknown.remedy, "the scene has: 'Panel', 'Lamp', 'Panel (2)', 'Bulb'");
+    EXPECT_THAT(error_of({{"Lamp", {"Bulb"}}}).fault, testing::HasSubstr("has this name already"));
 }
 
 TEST(LampSources, PowerIsPiAreaRadianceOfASide) {
