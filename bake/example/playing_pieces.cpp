@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kSink = 0.4, kRim = 12;  // [mm]
+constexpr double kSole = 0.4, kRim = 12;  // [mm] below the board, below its upper side
 
 // Smooth through all points (Catmull-Rom), the normal on the outside of the way up.
 void append_smooth(std::span<const glm::dvec2> points, unsigned steps,
@@ -42,8 +42,8 @@ void append_smooth(std::span<const glm::dvec2> points, unsigned steps,
 
 // From the axis out along the floor: the lower side that closes a piece.
 void append_sole(double radius, std::vector<ProfilePoint>& profile) {
-    profile.push_back({0, -kSink, {0, -1}});
-    profile.push_back({radius, -kSink, {0, -1}});
+    profile.push_back({0, -kSole, {0, -1}});
+    profile.push_back({radius, -kSole, {0, -1}});
 }
 
 TriangleMesh moved(TriangleMesh mesh, double x, double z) {
@@ -86,7 +86,7 @@ double grain(double along, double across, double phase) {
 TriangleMesh make_pawn(double x, double z) {
     std::vector<ProfilePoint> profile;
     append_sole(12.6, profile);
-    std::vector<glm::dvec2> points{{12.6, -kSink}, {13.4, 0.6}, {13.2, 3.2}, {10.6, 5.6},
+    std::vector<glm::dvec2> points{{12.6, -kSole}, {13.4, 0.6}, {13.2, 3.2}, {10.6, 5.6},
                                    {7.4, 9.6},     {5.4, 15},   {4.7, 21},   {5.2, 23.6},
                                    {7.7, 24.8},    {7.7, 26.2}, {5.3, 27.4}};
     constexpr double kHead = 7.2;  // radius, about a point 33.6 above the floor
@@ -106,10 +106,10 @@ TriangleMesh make_draughtsman(double x, double z) {
     std::vector<glm::dvec2> rim;
     for (int degrees = -90; degrees <= 90; degrees += 15) {
         const double turn = degrees * pi / 180;
-        rim.emplace_back(10 + (4 + 0.5 * kSink) * std::cos(turn),
-                         4 - 0.5 * kSink + (4 + 0.5 * kSink) * std::sin(turn));
+        rim.emplace_back(10 + (4 + 0.5 * kSole) * std::cos(turn),
+                         4 - 0.5 * kSole + (4 + 0.5 * kSole) * std::sin(turn));
     }
-    rim.front() = {10, -kSink};  // the same bits as the sole: nothing is between them
+    rim.front() = {10, -kSole};  // the same bits as the sole: nothing is between them
     append_smooth(rim, 2, profile);
     // A shallow bowl.
     for (const double radius : {8.2, 6.0, 4.0, 2.0, 0.0}) {
