@@ -15,23 +15,21 @@ std::string refuse(const std::string& emitters) {
 
 TEST(EmitterGroups, AreReadWithoutMaterialsAndReplaceThoseOfTheScene) {
     const auto media = read_text_as_media(
-        R"({"emitters": {"Ceiling": ["Lamp", "Lamp (2)"], "Sun": "light 3"
-}
-})");
+        R"-({"emitters": {"Ceiling": ["Lamp", "Lamp (2)"], "Sun": "light 3"}})-");
     ASSERT_TRUE(media.has_value()) << faults(media);
-formats::Scene scene;
-scene.materials.emplace_back();
-scene.emitter_groups = {{"Old", {"Lamp"}}};
-ASSERT_TRUE(formats::apply_media(*media, scene));
-ASSERT_EQ(scene.emitter_groups.size(), 2u);
-EXPECT_EQ(scene.emitter_groups[0].name, "Ceiling");
-EXPECT_THAT(scene.emitter_groups[0].members, ElementsAre("Lamp", "Lamp (2)"));
-EXPECT_THAT(scene.emitter_groups[1].members, ElementsAre("light 3"));
+    formats::Scene scene;
+    scene.materials.emplace_back();
+    scene.emitter_groups = {{"Old", {"Lamp"}}};
+    ASSERT_TRUE(formats::apply_media(*media, scene));
+    ASSERT_EQ(scene.emitter_groups.size(), 2u);
+    EXPECT_EQ(scene.emitter_groups[0].name, "Ceiling");
+    EXPECT_THAT(scene.emitter_groups[0].members, ElementsAre("Lamp", "Lamp (2)"));
+    EXPECT_THAT(scene.emitter_groups[1].members, ElementsAre("light 3"));
 
-const auto other = read_text_as_media(R"({"materials": {}})");
-ASSERT_TRUE(other.has_value()) << faults(other);
-ASSERT_TRUE(formats::apply_media(*other, scene));
-EXPECT_EQ(scene.emitter_groups.size(), 2u);
+    const auto other = read_text_as_media(R"({"materials": {}})");
+    ASSERT_TRUE(other.has_value()) << faults(other);
+    ASSERT_TRUE(formats::apply_media(*other, scene));
+    EXPECT_EQ(scene.emitter_groups.size(), 2u);
 }
 
 TEST(EmitterGroups, WhatCannotBeIsNamedWithItsPlace) {
