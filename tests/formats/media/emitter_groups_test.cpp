@@ -7,7 +7,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::string refuse(const std::string& emitters) {
+std::string refuse_groups(const std::string& emitters) {
     const auto media = read_text_as_media("{\"emitters\": " + emitters + "}");
     EXPECT_FALSE(media.has_value()) << emitters;
     return faults(media);
@@ -33,15 +33,16 @@ TEST(EmitterGroups, AreReadWithoutMaterialsAndReplaceThoseOfTheScene) {
 }
 
 TEST(EmitterGroups, WhatCannotBeIsNamedWithItsPlace) {
-    EXPECT_THAT(refuse("[]"), HasSubstr("emitters: it is not an object"));
-    EXPECT_THAT(refuse(R"({"A": []})"), HasSubstr("emitters > A"));
-    EXPECT_THAT(refuse(R"({"A": [1]})"), HasSubstr("a list of 1 to 4096 texts"));
-    EXPECT_THAT(refuse(R"({"": ["x"]})"), HasSubstr("a group's name is empty"));
-    EXPECT_THAT(refuse(R"({"a\u0007": ["x"]})"), HasSubstr("control characters"));
-    EXPECT_THAT(refuse("{\"" + std::string(256, 'a') + R"(": ["x"]})"), HasSubstr("255 bytes"));
-    EXPECT_THAT(refuse(R"({"A": ["x", "x"]})"),
+    EXPECT_THAT(refuse_groups("[]"), HasSubstr("emitters: it is not an object"));
+    EXPECT_THAT(refuse_groups(R"({"A": []})"), HasSubstr("emitters > A"));
+    EXPECT_THAT(refuse_groups(R"({"A": [1]})"), HasSubstr("a list of 1 to 4096 texts"));
+    EXPECT_THAT(refuse_groups(R"({"": ["x"]})"), HasSubstr("a group's name is empty"));
+    EXPECT_THAT(refuse_groups(R"({"a\u0007": ["x"]})"), HasSubstr("control characters"));
+    EXPECT_THAT(refuse_groups("{\"" + std::string(256, 'a') + R"(": ["x"]})"),
+                HasSubstr("255 bytes"));
+    EXPECT_THAT(refuse_groups(R"({"A": ["x", "x"]})"),
                 HasSubstr("emitters > A: the emitter 'x' is in the group 'A' already"));
-    EXPECT_THAT(refuse(R"({"A": ["x"], "B": ["y", "x"]})"),
+    EXPECT_THAT(refuse_groups(R"({"A": ["x"], "B": ["y", "x"]})"),
                 HasSubstr("emitters > B: the emitter 'x' is in the group 'A' already"));
 }
 
