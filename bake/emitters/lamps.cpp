@@ -47,7 +47,7 @@ Lamp& add_lamp(std::vector<Lamp>& lamps, const std::string& wanted) {
     return lamps.emplace_back(Lamp{std::move(name), {}, {}});
 }
 
-std::vector<Lamp> list_single_lamps(const formats::Scene& scene) {
+std::vector<Lamp> list_ungrouped_lamps(const formats::Scene& scene) {
     std::vector<Lamp> lamps;
     std::uint32_t node = formats::kNone;
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
@@ -94,7 +94,7 @@ std::string list_names(const std::vector<Lamp>& lamps) {
 }
 
 formats::Status check_groups(const formats::Scene& scene) {
-    const std::vector<Lamp> lamps = list_single_lamps(scene);
+    const std::vector<Lamp> lamps = list_ungrouped_lamps(scene);
     const GroupOf group_of = group_members(scene);
     for (const formats::EmitterGroup& group : scene.emitter_groups) {
         for (const std::string& member : group.members) {
@@ -116,10 +116,10 @@ formats::Status check_groups(const formats::Scene& scene) {
 std::vector<Lamp> list_lamps(const formats::Scene& scene) {
     const GroupOf group_of = group_members(scene);
     std::vector<Lamp> lamps;
-    for (Lamp& single : list_single_lamps(scene)) {
-        const auto found = group_of.find(single.name);
+    for (Lamp& lamp : list_ungrouped_lamps(scene)) {
+        const auto found = group_of.find(lamp.name);
         if (found == group_of.end()) {
-            lamps.push_back(std::move(single));
+            lamps.push_back(std::move(lamp));
             continue;
         }
         auto group = std::ranges::find(lamps, found->second->name, &Lamp::name);
@@ -129,8 +129,8 @@ std::vector<Lamp> list_lamps(const formats::Scene& scene) {
         const auto append = [](const auto& from, auto& to) {
             to.insert(to.end(), from.begin(), from.end());
         };
-        append(single.primitives, group->primitives);
-        append(single.lights, group->lights);
+        append(lamp.primitives, group->primitives);
+        append(lamp.lights, group->lights);
     }
     return lamps;
 }
