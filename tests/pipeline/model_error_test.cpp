@@ -38,7 +38,7 @@ TEST(ModelError, UnderWhiteIsZeroWithinItsIntervalHoweverMuchNoiseThereIs) {
     for (quick.seed = 0; quick.seed < kSeeds; ++quick.seed) {
         const ModelErrorReport report = check(scene, baked, quick);
         const ModelErrorReport::Part& white = report.by_light[0];
-        EXPECT_GT(white.noise, 0.03);
+        EXPECT_GT(white.noise, 0.015);
         EXPECT_EQ(white.samples, 64u);
         share_of_noise += white.rms_relative / white.noise / kSeeds;
         bias += white.bias / kSeeds;
