@@ -17,6 +17,7 @@
 #include "bake/cli/progress.h"
 #include "bake/cli/reference_checks.h"
 #include "bake/cli/scene_options.h"
+#include "bake/cli/stand_in.h"
 #include "bake/cli/write_picture.h"
 #include "bake/path_images/path_image.h"
 #include "bake/reference/path_filter.h"
@@ -101,36 +102,6 @@ std::unique_ptr<bake::TextureFiltering> make_filtering(const ReferenceCommand& o
 Status try_to_create(const std::string& path) {
     const auto file = formats::AtomicFile::create(path);
     return file ? formats::ok_status() : Status(file.error());
-}
-
-/// The scene's surfaces and volumes as far as a camera is placed by them.
-formats::Asset make_stand_in(const formats::Scene& scene) {
-    formats::Asset asset;
-    for (const formats::Primitive& p : scene.primitives) {
-        formats::PrimitiveRecord record;
-        record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
-        record.vertex_count = static_cast<std::uint32_t>(p.position.size());
-        record.first_index = static_cast<std::uint32_t>(asset.index.size());
-        record.index_count = static_cast<std::uint32_t>(p.index.size());
-        asset.primitives.push_back(record);
-        for (const glm::vec3& v : p.position) {
-            const glm::vec3 world(scene.to_world(v));
-            asset.position.push_back({world.x, world.y, world.z});
-        }
-        asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
-    }
-    for (const formats::Volume& volume : scene.volumes) {
-        formats::PrimitiveRecord record;
-        record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
-        for (const glm::dvec3& corner : volume.density.corners()) {
-            const glm::vec3 world(scene.origin + corner);
-            asset.position.push_back({world.x, world.y, world.z});
-        }
-        record.vertex_count =
-            static_cast<std::uint32_t>(asset.position.size()) - record.first_vertex;
-        asset.primitives.push_back(record);
-    }
-    return asset;
 }
 
 void print_summary(const ReferenceCommand& options, const bake::Estimate& estimate) {

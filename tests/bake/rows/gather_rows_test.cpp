@@ -23,10 +23,7 @@ formats::SparseRows bake_single_alone(const tests::SingleSetup& setup, const Kno
     knobs.code_bits = 16;
     knobs.effects = {"single"};
     const SceneFacts facts = inspect_scene(setup.scene);
-    ReceiverSet set;
-    set.inside = setup.points;
-    set.outside.resize(setup.points.size());
-    const std::vector<ReceiverSet> sets{set};
+    const std::vector<ReceiverSet> sets = tests::receivers_of(setup);
     const auto sky = RayScene::build({}, 1);
     const BakeInputs bake{all_effects(), setup.scene, facts, setup.rays, *sky, sets};
     std::vector<PlanEntry> plan = plan_bake(setup.scene, facts, knobs);
@@ -41,7 +38,7 @@ formats::SparseRows bake_single_alone(const tests::SingleSetup& setup, const Kno
     const RowEncoder encoder =
         make_row_encoder(knobs.cubemap_size, knobs.coefficients, knobs.code_bits);
     std::uint64_t rays = 0;
-    return gather_rows({set, subjects[0].layout, encoder, 0, batch_bytes},
+    return gather_rows({sets[0], subjects[0].layout, encoder, 0, batch_bytes},
                        make_gatherers(bake, subjects[0], knobs, context), context, rays);
 }
 

@@ -26,10 +26,7 @@ TEST(RowsOfPoints, AreLinearInLightThatReplacesTheEnvironment) {
     knobs.set(kMultipleModel, static_cast<double>(MultipleModel::dipole));
     knobs.set(kSamples, 500);
     const SceneFacts facts = inspect_scene(setup.scene);
-    ReceiverSet set;
-    set.inside = setup.points;
-    set.outside.resize(setup.points.size());
-    const std::vector<ReceiverSet> sets{set};
+    const std::vector<ReceiverSet> sets = tests::receivers_of(setup);
     const auto sky = RayScene::build({}, 1);
     OtherLight light;
     light.environment = false;
@@ -49,8 +46,8 @@ TEST(RowsOfPoints, AreLinearInLightThatReplacesTheEnvironment) {
     run_step(Step::study, bake, knobs, context, subjects, log);
     std::uint64_t rays = 0;
     const auto rows =
-        rows_of_points(bake, knobs, context, subjects[0], std::span(set.outside).first(9),
-                       std::span(set.inside).first(9), rays);
+        rows_of_points(bake, knobs, context, subjects[0], std::span(sets[0].outside).first(9),
+                       std::span(sets[0].inside).first(9), rays);
     ASSERT_EQ(rows.size(), 9u);
     EXPECT_GT(rays, 0u);
     for (const std::vector<float>& row : rows) {

@@ -31,6 +31,14 @@ inline SingleSetup set_up(Scene scene, std::uint32_t depth_samples = 8) {
     return {std::move(scene), std::move(rays).value(), std::move(points), std::move(medium)};
 }
 
+/// Its points as receivers that see nothing of the outside.
+inline std::vector<bake::ReceiverSet> receivers_of(const SingleSetup& setup) {
+    std::vector<bake::ReceiverSet> sets(1);
+    sets[0].inside = setup.points;
+    sets[0].outside.resize(setup.points.size());
+    return sets;
+}
+
 inline std::vector<float> gather(const SingleSetup& setup, const bake::DirectionSet& directions,
                                  std::size_t point, bake::EntryCounts* counts = nullptr) {
     const std::size_t n = directions.cubemap_size;
