@@ -28,20 +28,22 @@ Status check_layers(const formats::Scene& scene) {
         "compare with a bake without it")});
 }
 
-// A line to a light without an extent is not bent, and no path meets such a light.
+// A line to a light without an extent is not bent by a smooth boundary, and no path meets such a
+// light.
 Status check_lights(const formats::Scene& scene) {
     const auto bends = [](const formats::Material& m) {
-        return m.medium && !bake::is_matched(m.medium->eta);
+        return m.medium && !bake::is_matched(m.medium->eta) && !bake::has_rough_boundary(*m.medium);
     };
     if (scene.lights.empty() ||
         std::none_of(scene.materials.begin(), scene.materials.end(), bends)) {
         return formats::ok_status();
     }
-    return report_warnings({formats::make_warning(
-        scene.source, "KHR_lights_punctual",
-        "light of points, spots and directional lights does not pass boundaries that refract: "
-        "bodies are lit by it as far as other surfaces reflect it",
-        "give the light a surface: a small mesh with emissiveFactor")});
+    return report_warnings(
+        {formats::make_warning(scene.source, "KHR_lights_punctual",
+                               "light of points, spots and directional lights does not pass smooth "
+                               "boundaries that refract: "
+                               "bodies are lit by it as far as other surfaces reflect it",
+                               "give the light a surface: a small mesh with emissiveFactor")});
 }
 
 }  // namespace

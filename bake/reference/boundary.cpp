@@ -25,8 +25,7 @@ BoundarySplit split_at_boundary(glm::vec3 direction, glm::vec3 normal, float rat
     return split;
 }
 
-BoundarySplit split_at_smooth_boundary(glm::vec3 direction, glm::vec3 smooth, glm::vec3 flat,
-                                       float ratio) {
+glm::vec3 fitting_normal(glm::vec3 direction, glm::vec3 smooth, glm::vec3 flat) {
     // A ray in the triangle's plane meets the triangles beside it by rounding.
     constexpr float kLeastSine = 1e-3f;
     const auto reflects_in_front = [&](glm::vec3 normal) {
@@ -46,7 +45,13 @@ BoundarySplit split_at_smooth_boundary(glm::vec3 direction, glm::vec3 smooth, gl
             (fits ? right : wrong) = middle;
         }
     }
-    BoundarySplit split = split_at_boundary(direction, normal, ratio);
+    return normal;
+}
+
+BoundarySplit split_at_smooth_boundary(glm::vec3 direction, glm::vec3 smooth, glm::vec3 flat,
+                                       float ratio) {
+    BoundarySplit split =
+        split_at_boundary(direction, fitting_normal(direction, smooth, flat), ratio);
     if (split.reflectance < 1 && !(glm::dot(split.transmitted, flat) < 0)) {
         split.reflectance = 1;  // beyond the angle of the triangle's own total reflection
     }

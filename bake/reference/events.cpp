@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "bake/base/frame.h"
+#include "bake/reference/gather_light.h"
 #include "bake/reference/glossy_brdf.h"
-#include "bake/reference/light_line.h"
+#include "bake/reference/rough_boundary.h"
 
 namespace opaline::bake {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kForever = std::numeric_limits<float>::infinity();
 
 bool count_event(const PathSpace& space, Path& path) {
     return ++path.events <= space.options.max_depth;
@@ -40,71 +39,6 @@ glm::vec3 direction_about(glm::vec3 n, float cosine, float u) {
 /// An event that is sampled in proportion to its response for unit throughput.
 LobeValue even_response(float density) {
     return {glm::vec3(density), density};
-}
-
-/// Light that arrives straight from the sky at an event, sampled from the light. `eval(d)`: the
-/// event's response for unit throughput, and the density of its own sampling over solid angle.
-template <class Eval>
-void gather_sky(const PathSpace& space, Path& path, const RayOrigin& from, RandomStream& random,
-                Eval&& eval) {
-    const glm::vec3 d = sample_light(space.light, random);
-    if (d == glm::vec3(0)) {
-        return;
-    }
-    const LobeValue lobe = eval(d);
-    if (!(lobe.pdf > 0)) {
-        return;
-    }
-    const glm::vec3 passing = see_sky(space, from, d, path.stack, path.state, path.key, random);
-    if (passing != glm::vec3(0)) {
-        path.radiance += path.beta * passing * eval_light(space.light, d) *
-                         (lobe.response / (pdf_light(space.light, d) + lobe.pdf));
-    }
-}
-
-/// The same of a glowing surface and of a light without a surface.
-template <class Eval>
-void gather_lamps(const PathSpace& space, Path& path, const RayOrigin& from, RandomStream& random,
-                  Eval&& eval) {
-    const LampSampler& lamps = space.scene.lamps;
-    const auto pass = [&](const LightLine& line) {
-        SurroundingMedia stack = path.stack;
-        const glm::vec3 passing = pass_line(space, line, stack, path.state, random);
-        return path.beta * passing * per_squared_index(space.scene, stack);
-    };
-    if (!lamps.triangles.empty()) {
-        const auto seen =
-            sample_triangle(lamps, space.scene.surfaces.scene(), from.position, random);
-        const LobeValue lobe = seen ? eval(seen->direction) : LobeValue{};
-        if (lobe.pdf > 0) {
-            path.radiance +=
-                pass({from, seen->direction, kForever, seen->primitive, seen->triangle, path.key}) *
-                seen->radiance * (lobe.response / (seen->pdf + lobe.pdf));
-        }
-    }
-    if (!lamps.lights.empty()) {
-        const auto arriving = sample_punctual(lamps, from.position, random);
-        const LobeValue lobe = arriving ? eval(arriving->to_light) : LobeValue{};
-        if (lobe.pdf > 0) {
-            const formats::Rgb e = arriving->irradiance;
-            path.radiance += pass({from, arriving->to_light, arriving->distance, formats::kNone,
-                                   formats::kNone, path.key}) *
-                             glm::vec3(e.r, e.g, e.b) * lobe.response;
-        }
-    }
-}
-
-/// All light that arrives straight at an event.
-template <class Eval>
-void gather_light(const PathSpace& space, Path& path, const RayOrigin& from, bool sees_sky,
-                  RandomStream& random, Eval&& eval) {
-    path.vertex = from.position;
-    if (sees_sky) {
-        gather_sky(space, path, from, random, eval);
-    }
-    if (counts_lamps(space)) {
-        gather_lamps(space, path, from, random, eval);
-    }
 }
 
 /// Russian roulette below the throughput `little`; survivors carry `little`. Paths in a closed room
@@ -226,6 +160,60 @@ void turn(const PathSpace& space, Path& path, glm::vec3 at, const PhaseSampler& 
     }
 }
 
+// Facets of a rough boundary reflect or refract; light is sampled on both sides.
+bool cross_facets(const PathSpace& space, Path& path, const Crossing& crossing,
+                  RandomStream& random) {
+    RoughBoundary boundary =
+        make_rough_boundary(crossing.normal, -path.direction, crossing.alpha, crossing.ratio);
+    const LightSide here{crossing.near, path.stack, after_reflection(path.state)};
+    const LightSide beyond{crossing.far, crossing.beyond,
+                           after_crossing(path.state, crossing.beyond.empty())};
+    boundary.reflects = !crossing.is_own_mirror && is_wanted(space, here.state);
+    boundary.transmits = is_wanted(space, beyond.state);
+    if (!count_event(space, path) || (!boundary.reflects && !boundary.transmits)) {
+        return false;
+    }
+    random.start_event();
+    const glm::vec2 uv = random.next_pair();
+    const float choice = random.next();
+    const glm::vec3 color = path.stack.empty() ? crossing.color : glm::vec3(1);
+    // The interpolated normal may take a direction to the other side of the triangle.
+    const auto is_on_side = [&](glm::vec3 d, bool transmits) {
+        const float along = glm::dot(d, crossing.flat);
+        return crossing.flat == glm::vec3(0) || (transmits ? along < 0 : along > 0);
+    };
+    const bool sees_sky =
+        here.stack.empty() || beyond.stack.empty() || space.scene.has_matched_boundary;
+    gather_from_sides(space, path, crossing.near.position, sees_sky, random,
+                      [&](glm::vec3 d) -> SidedLobe {
+                          const bool transmits = glm::dot(d, crossing.normal) < 0;
+                          if (!is_on_side(d, transmits)) {
+                              return {};
+                          }
+                          const BoundaryValue value = eval_rough_boundary(boundary, d);
+                          return {{value.response * (transmits ? color : glm::vec3(1)), value.pdf},
+                                  transmits ? &beyond : &here};
+                      });
+    const auto sample = sample_rough_boundary(boundary, uv.x, uv.y, choice);
+    if (!sample || !is_on_side(sample->direction, sample->transmits)) {
+        return false;
+    }
+    if (goes_on_filtering(space, path)) {
+        path.filter->scatter_on_facets(path.direction, crossing.normal, crossing.alpha,
+                                       sample->direction, sample->transmits ? crossing.ratio : 0);
+    }
+    path.beta *= sample->weight;
+    path.direction = sample->direction;
+    path.pdf = sample->pdf;
+    if (sample->transmits) {
+        pass_boundary(path, crossing);
+    } else {
+        path.origin = crossing.near;
+        path.state = here.state;
+    }
+    return path.beta != glm::vec3(0) && survives(path, kInBodies, random);
+}
+
 }  // namespace
 
 bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& point,
@@ -263,6 +251,9 @@ void pass_boundary(Path& path, const Crossing& crossing) {
 
 bool reflect_or_refract(const PathSpace& space, Path& path, const Crossing& crossing,
                         RandomStream& random) {
+    if (crossing.alpha > 0) {
+        return cross_facets(space, path, crossing, random);
+    }
     const float reflectance = crossing.split.reflectance;
     const bool may_reflect = reflectance > 0 && is_wanted(space, after_reflection(path.state));
     const bool may_pass =

@@ -32,12 +32,15 @@ struct Path {
 
 /// Two sides of a boundary that a path has arrived at.
 struct Crossing {
-    BoundarySplit split;
-    glm::vec3 normal{0};      ///< that it splits at, against the path
-    float ratio = 1;          ///< index of refraction beyond over that on this side
-    RayOrigin near, far;      ///< where rays start on this side and beyond
-    SurroundingMedia beyond;  ///< bodies on the far side
-    glm::vec3 color{1};       ///< factor of light that enters a body
+    BoundarySplit split;         ///< of a smooth one
+    float alpha = 0;             ///< GGX width of its facets; 0: smooth
+    glm::vec3 normal{0};         ///< that it splits at, against the path
+    glm::vec3 flat{0};           ///< of the triangle, on the same side; {0,0,0} at a vertex
+    float ratio = 1;             ///< index of refraction beyond over that on this side
+    RayOrigin near, far;         ///< where rays start on this side and beyond
+    SurroundingMedia beyond;     ///< bodies on the far side
+    glm::vec3 color{1};          ///< factor of light that enters a body
+    bool is_own_mirror = false;  ///< its reflection is left out: see PathOptions::own_mirror
 };
 
 /// True if light of the scene's own lamps is there and is counted.
@@ -70,7 +73,8 @@ bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& p
 void pass_boundary(Path& path, const Crossing& crossing);
 
 /// A boundary between different indices. The path is reflected or transmitted at random, or always
-/// takes one side if the other leads to no requested term. False: the path ends.
+/// takes one side if the other leads to no requested term. At a rough one light is sampled too.
+/// False: the path ends.
 bool reflect_or_refract(const PathSpace& space, Path& path, const Crossing& crossing,
                         RandomStream& random);
 

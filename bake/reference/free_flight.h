@@ -18,7 +18,8 @@ namespace opaline::bake {
 struct ReferenceMedium {
     glm::vec3 sigma_s{0}, sigma_t{0};
     std::optional<MediumField> field;
-    float eta = 1;  ///< index of refraction relative to the outside of everything
+    float eta = 1;             ///< index of refraction relative to the outside of everything
+    float boundary_alpha = 0;  ///< GGX width of its surface's facets; 0: smooth
     PhaseSampler phase;
 
     /// Extinction is equal in all channels, so no channel need be drawn.

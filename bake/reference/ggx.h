@@ -5,11 +5,19 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
+#include "bake/base/frame.h"
+
 namespace opaline::bake {
 
 /// The microfacet model of [Walter2007] with height-correlated masking [Heitz2014], isotropic.
 /// Vectors are unit, in a frame whose third axis is the surface's normal, in double precision:
 /// at alpha 1e-3 single precision cannot tell normals apart.
+
+inline glm::dvec3 to_local(const Frame& frame, glm::vec3 d) {
+    const glm::dvec3 world(d);
+    return {glm::dot(glm::dvec3(frame.u), world), glm::dot(glm::dvec3(frame.v), world),
+            glm::dot(glm::dvec3(frame.normal), world)};
+}
 
 inline double ggx_alpha(double roughness) {
     constexpr double kLeast = 1e-3;  // a mirror, for every purpose

@@ -8,12 +8,6 @@
 namespace opaline::bake {
 namespace {
 
-glm::dvec3 to_frame(const Frame& frame, glm::vec3 d) {
-    const glm::dvec3 world(d);
-    return {glm::dot(glm::dvec3(frame.u), world), glm::dot(glm::dvec3(frame.v), world),
-            glm::dot(glm::dvec3(frame.normal), world)};
-}
-
 // Of one facet, seen under cosine o.h.
 glm::dvec3 facet_reflectance(const GlossyBrdf& brdf, double o_h) {
     return brdf.f0 + (brdf.f90 - brdf.f0) * schlick_weight(o_h);
@@ -24,7 +18,7 @@ glm::dvec3 facet_reflectance(const GlossyBrdf& brdf, double o_h) {
 GlossyBrdf make_glossy_brdf(const OpaqueSurface& surface, glm::vec3 normal, glm::vec3 to_eye) {
     GlossyBrdf brdf;
     brdf.frame = make_frame(normal);
-    brdf.to_eye = to_frame(brdf.frame, to_eye);
+    brdf.to_eye = to_local(brdf.frame, to_eye);
     brdf.to_eye.z = std::max(brdf.to_eye.z, kGrazingCosine);
     brdf.to_eye = glm::normalize(brdf.to_eye);
     const double roughness{surface.roughness}, metallic{surface.metallic};
@@ -59,7 +53,7 @@ std::optional<LobeSample> sample_mirrored(const GlossyBrdf& brdf, float u, float
 }
 
 LobeValue eval_mirrored(const GlossyBrdf& brdf, glm::vec3 to_light) {
-    const glm::dvec3 l = to_frame(brdf.frame, to_light), &o = brdf.to_eye;
+    const glm::dvec3 l = to_local(brdf.frame, to_light), &o = brdf.to_eye;
     if (!(l.z > 0)) {
         return {};
     }

@@ -45,8 +45,15 @@ bool meet_boundary(const PathSpace& space, Path& path, const SurfaceHit& hit, st
     const float side = enters ? 1.0f : -1.0f;
     crossing.normal = side * hit.smooth;
     crossing.ratio = ratio;
+    crossing.flat = side * hit.flat;
+    crossing.alpha = scene.media[medium].boundary_alpha;
+    if (crossing.alpha > 0) {
+        crossing.normal = fitting_normal(path.direction, crossing.normal, crossing.flat);
+        crossing.near = leave_surface(hit, crossing.flat);
+        return reflect_or_refract(space, path, crossing, random);
+    }
     crossing.split =
-        split_at_smooth_boundary(path.direction, crossing.normal, side * hit.flat, ratio);
+        split_at_smooth_boundary(path.direction, crossing.normal, crossing.flat, ratio);
     crossing.near = leave_surface(hit, crossing.split.reflected);
     return reflect_or_refract(space, path, crossing, random);
 }
@@ -245,13 +252,18 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
         const float ratio =
             space.scene.media[receiver.medium].eta / index_of(space.scene, path.stack);
         crossing.split = split_at_boundary(path.direction, normal, ratio);
+        crossing.alpha = space.scene.media[receiver.medium].boundary_alpha;
+        crossing.normal = normal;
+        crossing.ratio = ratio;
         crossing.near = outside;
         crossing.far = inside;
         crossing.color = receiver.base_color;
+        crossing.is_own_mirror = !space.options.own_mirror;
         const bool matched = is_matched(ratio);
-        if (matched || !space.options.own_mirror) {
+        if (matched || (crossing.is_own_mirror && !(crossing.alpha > 0))) {
             path.beta *= matched ? 1 : 1 - crossing.split.reflectance;
             path.events += matched ? 0 : 1;
+            path.direction = matched ? path.direction : crossing.split.transmitted;
             pass_boundary(path, crossing);
             walks = path.beta != glm::vec3(0) && is_wanted(space, path.state);
         } else {

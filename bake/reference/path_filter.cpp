@@ -5,30 +5,59 @@
 #include <numbers>
 
 #include "bake/base/frame.h"
-#include "bake/path_differentials/bounded_change.h"
 
 namespace opaline::bake {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kLeastCosine = 1e-4f;  // where it divides: bake/path_differentials/bounded_change.h
+constexpr float kLeastCosine = 1e-4f;  // where it divides: path_differentials/bounded_change.h
 
 float square(float x) {
     return x * x;
 }
 
-// Where the normal that a point c of the sphere belongs to [Dupuy2023] reflects to_eye, in the
-// frame of the surface's normal; w: the centre of the cap.
-struct FacetReflection {
+// Refraction of D at N, by eta, with the secant of bounded_refraction where c_t is small.
+struct Refracted {
+    glm::vec3 D, N, T{0};
+    float eta, k, c_t = 0;
+
+    Refracted(glm::vec3 direction, glm::vec3 normal, float ratio)
+        : D(direction), N(normal), eta(1 / ratio), k(glm::dot(direction, normal)) {
+        const float squared = 1 - square(eta) * (1 - square(k));
+        if (squared > 0) {
+            c_t = std::sqrt(squared);
+            T = eta * D - (eta * k + c_t) * N;
+        }
+    }
+    bool is_total_reflection() const { return !(c_t > 0); }
+    glm::vec3 change(glm::vec3 dD, glm::vec3 dN) const {
+        const float dk = glm::dot(dD, N) + glm::dot(D, dN);
+        const float z = square(c_t), d = 2 * square(eta) * k * dk, half = 0.5f * std::abs(d);
+        const float upper = std::sqrt(z + half);
+        const float dc_t = half > z ? std::copysign(upper, d) : d / (upper + std::sqrt(z - half));
+        const glm::vec3 dT = eta * dD - (eta * k + c_t) * dN - (eta * dk + dc_t) * N;
+        return dT - T * glm::dot(T, dT);
+    }
+};
+
+// What the normal that a point c of the sphere belongs to [Dupuy2023] makes of light, in the frame
+// of the surface's normal; w: the centre of the cap.
+struct FacetLight {
     glm::vec3 direction;
     float spread;  ///< t of the density of normals, 1 / (pi alpha^2 t^2)
+    bool passes;   ///< false: refraction was asked for, but the facet reflects totally
 };
-inline FacetReflection reflect_by(glm::vec3 c, glm::vec3 w, glm::vec3 to_eye, float alpha) {
+inline FacetLight light_of_facet(glm::vec3 c, glm::vec3 w, glm::vec3 to_eye, float alpha,
+                                 float ratio) {
     const glm::vec3 h = c + w;
     const glm::vec3 m(alpha * h.x, alpha * h.y, std::max(h.z, 1e-6f));
     const float inverse = 1 / glm::dot(m, m);
-    return {2 * inverse * glm::dot(to_eye, m) * m - to_eye,
-            inverse * (square(h.x) + square(h.y) + square(m.z))};
+    const float spread = inverse * (square(h.x) + square(h.y) + square(m.z));
+    if (ratio > 0) {
+        const Refracted refracted(-to_eye, std::sqrt(inverse) * m, ratio);
+        return {refracted.T, spread, !refracted.is_total_reflection()};
+    }
+    return {2 * inverse * glm::dot(to_eye, m) * m - to_eye, spread, true};
 }
 
 }  // namespace
@@ -119,14 +148,12 @@ void PathFilter::mirror(glm::vec3 direction, glm::vec3 normal) {
 }
 
 void PathFilter::refract(glm::vec3 direction, glm::vec3 normal, float ratio) {
-    const auto event =
-        make_refraction(glm::dvec3(direction), glm::dvec3(normal), 1 / static_cast<double>(ratio));
-    if (!event) {
+    const Refracted event(direction, normal, ratio);
+    if (event.is_total_reflection()) {
         return;
     }
     for (Column& column : columns()) {
-        column.dD = glm::vec3(bounded_refraction(*event, glm::dvec3(column.dD),
-                                                 glm::dvec3(normal_change(column, normal)), 1));
+        column.dD = event.change(column.dD, normal_change(column, normal));
     }
 }
 
@@ -156,14 +183,22 @@ void PathFilter::add_diffuse_cell(const Pending& event) {
 void PathFilter::add_facet_cell(const Pending& event) {
     const glm::vec3 direction = event.direction, normal = event.normal, drawn = event.drawn;
     const float alpha = event.alpha;
-    const glm::vec3 facet = glm::normalize(drawn - direction);
+    const bool refracts = event.ratio > 0;
+    glm::vec3 facet =
+        glm::normalize(refracts ? direction - event.ratio * drawn : drawn - direction);
+    facet = refracts && glm::dot(facet, normal) < 0 ? -facet : facet;
+    const Refracted refracted(direction, facet, refracts ? event.ratio : 1);
     const float k = glm::dot(direction, facet);
     for (Column& column : columns()) {
         // The facet turns with the normal.
         const glm::vec3 turn = glm::cross(normal, normal_change(column, normal));
         const glm::vec3 dm = glm::cross(turn, facet);
-        const float dk = glm::dot(column.dD, facet) + glm::dot(direction, dm);
-        column.dD -= 2.0f * (k * dm + dk * facet);
+        if (refracts) {
+            column.dD = refracted.change(column.dD, dm);
+        } else {
+            const float dk = glm::dot(column.dD, facet) + glm::dot(direction, dm);
+            column.dD -= 2.0f * (k * dm + dk * facet);
+        }
     }
     const Frame frame = make_frame(normal);
     const auto to_frame = [&](glm::vec3 d) {
@@ -183,9 +218,14 @@ void PathFilter::add_facet_cell(const Pending& event) {
     const std::array<glm::vec3, 2> axis{around.u, around.v};
     const float rest = std::sqrt(1 - square(half));
     for (std::size_t i = 0; i < 2; ++i) {
-        const FacetReflection more = reflect_by(rest * c + half * axis[i], w, to_eye, alpha);
-        const FacetReflection less = reflect_by(rest * c - half * axis[i], w, to_eye, alpha);
-        own[i].dD = kRoot * frame.to_world(more.direction - less.direction);
+        const auto light_at = [&](float way) {
+            return light_of_facet(rest * c + way * axis[i], w, to_eye, alpha, event.ratio);
+        };
+        const FacetLight more = light_at(half), less = light_at(-half);
+        // Beside total reflection, twice the way to the other side.
+        const glm::vec3 to = more.passes ? frame.to_world(more.direction) : drawn;
+        const glm::vec3 from = less.passes ? frame.to_world(less.direction) : drawn;
+        own[i].dD = (more.passes && less.passes ? kRoot : 2 * kRoot) * (to - from);
         own[i].dD -= drawn * glm::dot(drawn, own[i].dD);
         if (std::isfinite(filtering_->gradient_limit)) {
             const float change = 2 * kRoot * std::abs(std::log(more.spread / less.spread));

@@ -51,11 +51,13 @@ class PathFilter {
     /// `drawn` by the cosine about a normal of either side. This one and the next take effect at
     /// the next hit, so that paths to the sky do not pay for it.
     void scatter_diffusely(glm::vec3 normal, glm::vec3 drawn) {
-        pending_ = {Scattering::diffuse, glm::vec3(0), normal, drawn, 1};
+        pending_ = {Scattering::diffuse, glm::vec3(0), normal, drawn, 1, 0};
     }
-    /// `drawn` by visible normals of GGX width `alpha`.
-    void scatter_on_facets(glm::vec3 direction, glm::vec3 normal, float alpha, glm::vec3 drawn) {
-        pending_ = {Scattering::facets, direction, normal, drawn, alpha};
+    /// `drawn` by visible normals of GGX width `alpha`: reflected, or refracted to an index `ratio`
+    /// times that on this side, which is not 1.
+    void scatter_on_facets(glm::vec3 direction, glm::vec3 normal, float alpha, glm::vec3 drawn,
+                           float ratio = 0) {
+        pending_ = {Scattering::facets, direction, normal, drawn, alpha, ratio};
     }
 
   private:
@@ -71,6 +73,7 @@ class PathFilter {
         Scattering kind = Scattering::none;
         glm::vec3 direction{0}, normal{0}, drawn{0};
         float alpha = 1;
+        float ratio = 0;  ///< 0: reflection
     };
 
     std::span<Column> columns() { return std::span(column_).first(count_); }

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "bake/reference/ggx.h"
+
 namespace opaline::bake {
 
 formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene,
@@ -27,6 +29,9 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
             medium.sigma_s = {m.sigma_s.r, m.sigma_s.g, m.sigma_s.b};
             medium.sigma_t = medium.sigma_s + glm::vec3(m.sigma_a.r, m.sigma_a.g, m.sigma_a.b);
             medium.eta = m.eta;
+            if (has_rough_boundary(m)) {
+                medium.boundary_alpha = static_cast<float>(ggx_alpha(double{m.roughness}));
+            }
             medium.phase = make_phase_sampler(m.phase);
             if (m.variation) {
                 medium.field.emplace(scene, number);

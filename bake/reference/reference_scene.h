@@ -27,6 +27,13 @@ struct ReferenceScene {
 /// `scene` must outlive the result. Errors: resource.
 formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene, unsigned threads);
 
+/// Of a medium that scatters, bakes and published measurements know a smooth boundary; a clear one
+/// has the roughness of its material.
+inline bool has_rough_boundary(const formats::Medium& medium) {
+    const formats::Rgb s = medium.sigma_s;
+    return s.r == 0 && s.g == 0 && s.b == 0 && medium.roughness > 0;
+}
+
 /// Two indices of refraction between which light neither bends nor is reflected.
 inline bool is_matched(float ratio) {
     return ratio > 1 - 1e-5f && ratio < 1 + 1e-5f;

@@ -12,6 +12,7 @@
 #include "bake/path_differentials/surface_shape.h"
 #include "bake/path_differentials/transfer.h"
 #include "bake/reference/glossy_brdf.h"
+#include "bake/reference/rough_boundary.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/reference/textured_board.h"
 
@@ -111,6 +112,77 @@ TEST(PathFilter, AnEventSpreadsItsDensityOverTheSurface) {
         const double expected = 1e-4 * d2 / (pdf * cosine) / 4;  // 4 m^2 are the whole texture
         EXPECT_NEAR(area_of(filter.view().moments) / expected, 1, 1e-2) << glossy;
         ++checked;
+    }
+}
+
+TEST(PathFilter, ARefractingFacetSpreadsItsDensityOverTheSurface) {
+    const Scene scene = textured_board(0);
+    const auto fixture = make_fixture(scene, {});
+    const TextureFiltering filtering = filtering_of(scene, 10000);
+    const glm::vec3 in = glm::normalize(glm::vec3(0.3f, -1, 0.2f)), normal(0, 1, 0);
+    for (const float ratio : {1.5f, 1 / 1.5f}) {
+        bake::RoughBoundary boundary = bake::make_rough_boundary(normal, -in, 0.25f, ratio);
+        boundary.reflects = false;
+        bake::RandomStream random(1, 2, 3);
+        for (int checked = 0; checked < 40;) {
+            const float u = random.next(), v = random.next();
+            const auto sample = sample_rough_boundary(boundary, u, v, 0);
+            if (!sample || sample->direction.y > -0.5f) {
+                continue;  // where a secant replaces the derivative
+            }
+            bake::SurfaceHit start;
+            start.distance = 1;
+            start.position = {0, 1, 0};
+            start.flat = start.smooth = normal;
+            PathFilter filter(filtering, glm::vec3(0), glm::vec3(0));
+            filter.arrive(scene, in, start);
+            filter.scatter_on_facets(in, normal, 0.25f, sample->direction, ratio);
+            const auto hit =
+                fixture->scene.surfaces.closest_hit({start.position}, sample->direction, 100);
+            if (!hit) {
+                continue;  // beside the board
+            }
+            filter.arrive(scene, sample->direction, *hit);
+            const double cosine = -static_cast<double>(sample->direction.y);
+            const double expected =
+                1e-4 / (static_cast<double>(sample->pdf) * cosine * cosine * cosine) / 4;
+            EXPECT_NEAR(area_of(filter.view().moments) / expected, 1, 2e-2) << ratio;
+            ++checked;
+        }
+    }
+}
+
+// A facet that is the normal turns with it, so that older columns are those of a smooth boundary.
+TEST(PathFilter, AFacetAtTheNormalOfACurvedBoundaryRefractsAsTheBoundaryDoes) {
+    Scene scene = textured_board(0, 200);
+    scene.primitives.push_back(make_sphere(2, 1, {0, 2, 0}));
+    const auto fixture = make_fixture(scene, {});
+    const glm::vec3 in = glm::normalize(glm::vec3(0.1f, -1, -0.1f));
+    const auto ball = fixture->scene.surfaces.closest_hit({{0.1f, 4, 0.15f}}, in, 100);
+    ASSERT_TRUE(ball && ball->primitive == 1);
+    for (const float ratio : {1.5f, 1 / 1.2f}) {
+        const auto moments_of = [&](bool rough) {
+            TextureFiltering filtering = filtering_of(scene, 1);
+            PathFilter filter(filtering, {0.01f, 0, 0}, {0, 0.002f, 0.01f});
+            filtering.step = 0;  // of the event's own numbers
+            filter.arrive(scene, in, *ball);
+            const glm::vec3 out = glm::refract(in, ball->smooth, 1 / ratio);
+            rough ? filter.scatter_on_facets(in, ball->smooth, 0.3f, out, ratio)
+                  : filter.refract(in, ball->smooth, ratio);
+            // The board, as if nothing were in between.
+            bake::SurfaceHit board;
+            board.distance = -ball->position.y / out.y;
+            board.position = ball->position + board.distance * out;
+            board.flat = board.smooth = {0, 1, 0};
+            board.primitive = 0;
+            filter.arrive(scene, out, board);
+            return filter.view().moments;
+        };
+        const bake::UvMoments smooth = moments_of(false), rough = moments_of(true);
+        EXPECT_GT(smooth.uu, 0);
+        EXPECT_NEAR(rough.uu / smooth.uu, 1, 1e-3);
+        EXPECT_NEAR(rough.vv / smooth.vv, 1, 1e-3);
+        EXPECT_NEAR((rough.uv - smooth.uv) / std::sqrt(smooth.uu * smooth.vv), 0, 1e-3);
     }
 }
 

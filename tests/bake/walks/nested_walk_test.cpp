@@ -13,7 +13,9 @@ namespace {
 
 /// Not scattering; all three bands alike.
 formats::Medium make_clear(float sigma_a, float eta) {
-    return make_grey_medium(0, sigma_a, eta);
+    formats::Medium clear = make_grey_medium(0, sigma_a, eta);
+    clear.roughness = 0;  // walks know smooth boundaries, the reference rough ones of clear bodies
+    return clear;
 }
 
 // A half space under a layer that starts at y = 0: as deep as light of 3 / m with albedo .9 gets,

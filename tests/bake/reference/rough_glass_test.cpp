@@ -1,0 +1,191 @@
+// Paths through clear bodies with a rough boundary.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <string>
+
+#include "bake/reference/ggx.h"
+#include "bake/reference/reference_image.h"
+#include "bake/reference/reference_receivers.h"
+#include "bake/reference/rough_boundary.h"
+#include "tests/bake/reference/reference_support.h"
+
+namespace opaline::tests {
+namespace {
+
+formats::Medium rough_glass(float roughness, float sigma_a = 1e-12f, float eta = 1.5f) {
+    formats::Medium glass = make_medium(sigma_a, 0, 0, eta);
+    glass.roughness = roughness;
+    return glass;
+}
+
+bake::Moments rays_of(const bake::PathSpace& space, glm::vec3 from, glm::vec3 direction,
+                      std::uint32_t samples, const bake::SurroundingMedia& around = {}) {
+    bake::EstimateOptions options;
+    options.samples = samples / 16;
+    const auto estimate =
+        bake::estimate_pixels(16, options, {}, [&](std::uint32_t, bake::RandomStream& random) {
+            return bake::trace_ray(space, from, direction, random, around);
+        });
+    EXPECT_TRUE(estimate);
+    bake::Moments all;
+    for (const bake::Moments& m : estimate->pixel) {
+        all.merge(m);
+    }
+    return all;
+}
+
+// The sky sends 1, a black plate right under the boundary as much per squared index: what is seen
+// is the share of light that facets return, reflected and refracted. Sky and plate are met and
+// sampled.
+TEST(RoughGlass, AFurnaceOnBothSidesShowsWhatFacetsReturn) {
+    for (const float roughness : {0.2f, 0.5f, 1.0f}) {
+        Scene input = make_slab(rough_glass(roughness), 0.5f);
+        input.primitives.push_back(make_quad({-100, 0, 100}, {200, 0, 0}, {0, 0, -200}));
+        input.primitives[1].material = 1;
+        formats::Material& plate = input.materials.emplace_back();
+        plate.base_color = {0, 0, 0};
+        plate.emission = {2.25f, 2.25f, 2.25f};
+        const auto scene = make_fixture(std::move(input), make_white_sky());
+        for (const float cosine : {0.95f, 0.4f}) {
+            const glm::vec3 to_eye(0.8f * std::sqrt(1 - cosine * cosine), cosine,
+                                   0.6f * std::sqrt(1 - cosine * cosine));
+            const auto boundary = bake::make_rough_boundary(
+                {0, 1, 0}, to_eye, static_cast<float>(bake::ggx_alpha(double{roughness})), 1.5f);
+            double kept = 0;
+            constexpr std::uint32_t kSamples = 40000;
+            for (std::uint32_t i = 0; i < kSamples; ++i) {
+                bake::RandomStream random(3, 1, i);
+                const float u = random.next(), v = random.next();
+                const auto s = sample_rough_boundary(boundary, u, v, random.next());
+                kept += s ? static_cast<double>(s->weight) / kSamples : 0;
+            }
+            const bake::Moments seen = rays_of(
+                scene->space(), glm::vec3(0.7f, 0.125f, 0.3f) + 2.0f * to_eye, -to_eye, 80000);
+            EXPECT_NEAR(seen.mean.y, kept, 4 * standard_error(seen) + 2e-3)
+                << roughness << ' ' << cosine;
+            EXPECT_LT(standard_error(seen), 4e-3);
+        }
+    }
+}
+
+constexpr float kRoughness = 0.5f, kIrradiance = 3;
+const glm::vec3 kToSun = glm::normalize(glm::vec3(0.4f, 0.8f, 0.1f));
+
+// A slab under a sun: a disc of the sky, or a light without a surface.
+std::unique_ptr<ReferenceFixture> slab_under_sun(bool is_disc) {
+    Scene input = make_slab(rough_glass(kRoughness), 0.5f);
+    formats::Environment sky;
+    if (is_disc) {
+        const float radius = 0.01f;
+        const float radiance = kIrradiance / static_cast<float>(formats::disc_solid_angle(radius));
+        sky.discs.push_back(
+            {{kToSun.x, kToSun.y, kToSun.z}, radius, {radiance, radiance, radiance}});
+    } else {
+        formats::Light& sun = input.lights.emplace_back();
+        sun.type = formats::Light::Type::directional;
+        sun.direction = {-kToSun.x, -kToSun.y, -kToSun.z};
+        sun.intensity = {kIrradiance, kIrradiance, kIrradiance};
+    }
+    return make_fixture(std::move(input), std::move(sky));
+}
+
+// An eye inside, looking up and out: a sun that no path would find is sampled through the boundary.
+// What else reaches the eye was reflected inside first.
+TEST(RoughGlass, ASunShinesThroughTheBoundaryAsFacetsRefractIt) {
+    bake::PathOptions once;
+    once.max_depth = 1;
+    const glm::vec3 up = glm::normalize(glm::vec3(0.2f, 1, 0.1f));
+    const auto boundary = bake::make_rough_boundary(
+        {0, -1, 0}, -up, static_cast<float>(bake::ggx_alpha(double{kRoughness})), 1 / 1.5f);
+    const double expected =
+        static_cast<double>(kIrradiance * eval_rough_boundary(boundary, kToSun).response);
+    ASSERT_GT(expected, 0.1);
+    for (const bool is_disc : {true, false}) {
+        const auto scene = slab_under_sun(is_disc);
+        bake::SurroundingMedia inside;
+        inside.enter(0);
+        const bake::Moments seen = rays_of(scene->space(once), {0.7f, 0, 0.3f}, up, 40000, inside);
+        EXPECT_NEAR(seen.mean.x, expected, 4 * standard_error(seen) + 3e-3 * expected) << is_disc;
+    }
+}
+
+TEST(RoughGlass, ASunIsReflectedAsFacetsMirrorIt) {
+    bake::PathOptions once;
+    once.max_depth = 1;
+    const glm::vec3 to_eye = glm::normalize(glm::vec3(-0.3f, 1, 0));
+    const auto boundary = bake::make_rough_boundary(
+        {0, 1, 0}, to_eye, static_cast<float>(bake::ggx_alpha(double{kRoughness})), 1.5f);
+    const double expected =
+        static_cast<double>(kIrradiance * eval_rough_boundary(boundary, kToSun).response);
+    for (const bool is_disc : {true, false}) {
+        const auto scene = slab_under_sun(is_disc);
+        const bake::Moments seen = rays_of(
+            scene->space(once), glm::vec3(0.7f, 0.125f, 0.3f) + 2.0f * to_eye, -to_eye, 40000);
+        EXPECT_NEAR(seen.mean.x, expected, 4 * standard_error(seen) + 3e-3 * expected) << is_disc;
+    }
+}
+
+bake::Moments seen_from(const ReferenceFixture& fixture, bake::PathOptions options,
+                        std::uint32_t samples) {
+    const auto chosen = bake::choose_receivers(fixture.scene, 12, 3, glm::vec3(0, 500, 0));
+    bake::EstimateOptions estimate;
+    estimate.samples = samples;
+    bake::Moments all;
+    const auto found = bake::estimate_receivers(fixture.space(options), chosen, estimate, {});
+    EXPECT_TRUE(found);
+    for (const bake::Moments& m : found->pixel) {
+        all.merge(m);
+    }
+    return all;
+}
+
+std::unique_ptr<ReferenceFixture> glass_ball(const formats::Medium& glass, bool lit_from_above) {
+    Scene input = make_scene({make_sphere(3)});
+    input.materials[0].medium = glass;
+    return make_fixture(std::move(input), make_half_sky(lit_from_above));
+}
+
+// Seen from aside the body is entered along the refracted ray, with and without its own mirror.
+TEST(RoughGlass, WithoutItsOwnMirrorAReceiverHasEverythingElse) {
+    using formats::TermSet;
+    for (const float roughness : {0.0f, 0.5f}) {
+        const auto ball = glass_ball(rough_glass(roughness, 1, 1.6f), true);
+        bake::PathOptions rest, no_mirror, mirror;
+        rest.terms =
+            TermSet::single | TermSet::multiple | TermSet::unscattered | TermSet::interreflection;
+        no_mirror.own_mirror = false;
+        mirror.terms = TermSet::specular;
+        const bake::Moments expected = seen_from(*ball, rest, 20000);
+        const bake::Moments found = seen_from(*ball, no_mirror, 20000);
+        EXPECT_NEAR(found.mean.x, expected.mean.x,
+                    4 * std::hypot(standard_error(found), standard_error(expected)))
+            << roughness;
+        const bake::Moments whole = seen_from(*ball, {}, 20000),
+                            mirrored = seen_from(*ball, mirror, 20000);
+        EXPECT_GT(mirrored.mean.x, 0.003);
+        EXPECT_NEAR(whole.mean.x, expected.mean.x + mirrored.mean.x,
+                    4 * std::hypot(standard_error(whole), standard_error(expected)) + 1e-3)
+            << roughness;
+    }
+}
+
+TEST(RoughGlass, NarrowFacetsShowWhatASmoothBallShows) {
+    const bake::Moments smooth = seen_from(*glass_ball(rough_glass(0), false), {}, 20000);
+    const bake::Moments narrow = seen_from(*glass_ball(rough_glass(0.04f), false), {}, 20000);
+    const bake::Moments wide = seen_from(*glass_ball(rough_glass(0.7f), false), {}, 20000);
+    const double noise = std::hypot(standard_error(smooth), standard_error(narrow));
+    EXPECT_NEAR(narrow.mean.x, smooth.mean.x, 4 * noise + 2e-3);
+    EXPECT_GT(std::abs(wide.mean.x - smooth.mean.x), 0.02);
+}
+
+TEST(RoughGlass, ABodyThatScattersKeepsASmoothBoundary) {
+    formats::Medium milk = make_medium(2, 0.5f, 0, 1.5f);
+    milk.roughness = 0;
+    const bake::Moments smooth = seen_from(*glass_ball(milk, false), {}, 64);
+    milk.roughness = 0.9f;
+    EXPECT_EQ(seen_from(*glass_ball(milk, false), {}, 64).mean, smooth.mean);
+}
+
+}  // namespace
+}  // namespace opaline::tests
