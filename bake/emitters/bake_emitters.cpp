@@ -10,7 +10,7 @@
 #include "bake/emitters/immersed_lamps.h"
 #include "bake/emitters/receiver_light.h"
 #include "bake/emitters/trace_particles.h"
-#include "bake/scene/emission.h"
+#include "bake/scene/lobe_record.h"
 
 namespace opaline::bake {
 namespace {
@@ -19,12 +19,6 @@ namespace {
 double finest_area(const formats::Scene& scene, std::uint32_t particles) {
     const double area = reflecting_area(scene);
     return area > 0 ? 4 * area / particles : 1;
-}
-
-formats::Wrap to_wrap(formats::TextureWrap wrap) {
-    return wrap == formats::TextureWrap::repeat  ? formats::Wrap::repeat
-           : wrap == formats::TextureWrap::clamp ? formats::Wrap::clamp
-                                                 : formats::Wrap::mirror;
 }
 
 void append_own_light(const formats::Scene& scene, std::span<const Lamp> lamps,
@@ -56,14 +50,15 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     std::vector<LampSources> sources;
     sources.reserve(job.lamps.size());
     for (const Lamp& lamp : job.lamps) {
-        sources.push_back(make_lamp_sources(job.scene, lamp));
+        sources.push_back(make_lamp_sources(job.scene, lamp, job.textures));
     }
     const ElementLayout layout(job.scene, finest_area(job.scene, particles));
     std::vector<std::vector<glm::vec3>> irradiance(job.lamps.size());
     run_stage(log, "particles of emitters", [&](std::uint64_t& rays) {
         for (std::uint32_t e = 0; e < job.lamps.size() && !context.cancelled(); ++e) {
-            const auto power = trace_particles(job.scene, job.rays, sources[e], layout,
-                                               {particles, e, job.knobs.seed, 0}, context, rays);
+            const auto power =
+                trace_particles(job.scene, job.rays, sources[e], layout,
+                                {particles, e, job.knobs.seed, 0, job.textures}, context, rays);
             if (std::ranges::any_of(power, [](const auto& p) { return p != glm::dvec3(0); })) {
                 irradiance[e] = layout.push_down(power);
             }
@@ -73,7 +68,7 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     MediaLight exitance;
     const LampLight light{job.scene,      job.rays,   sources,
                           layout,         irradiance, whole(job.knobs, kEmitterRays),
-                          job.knobs.seed, &exitance};
+                          job.knobs.seed, &exitance,  job.textures};
     BakedEmitters baked;
     MediaRows of_media(job.primitives.size());
     if (job.media.light_medium) {

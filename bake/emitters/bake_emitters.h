@@ -24,6 +24,7 @@ struct EmitterJob {
     std::span<const Lamp> lamps;                           ///< at least one
     const Knobs& knobs;
     LitMedia media{};  ///< none: rows of translucent primitives have no light of emitters
+    const ScenePyramids* textures = nullptr;  ///< BakeInputs::textures
 };
 
 struct BakedEmitters {

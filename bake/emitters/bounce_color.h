@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 
 #include "bake/emitters/surface_elements.h"
+#include "bake/scene/texture_pyramid.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -15,11 +16,12 @@ struct BounceColor {
 
 /// At a point of a triangle, `weights` barycentric. Gloss counts by its diffuse part alone. Nothing
 /// of media, whose light is not known here (media_light.h), and of backs of single-sided surfaces.
+/// `view`: what textures are looked up over; null: at the point.
 BounceColor bounce_color(const formats::Scene& scene, const TriangleSide& side,
-                         const glm::vec3& weights);
+                         const glm::vec3& weights, const TextureView* view = nullptr);
 
 /// The base color's image there, white without one.
 glm::vec3 base_image_color(const formats::Scene& scene, const TriangleSide& side,
-                           const glm::vec3& weights);
+                           const glm::vec3& weights, const TextureView* view = nullptr);
 
 }  // namespace opaline::bake

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "bake/scene/emission.h"
 #include "bake/scene/punctual_light.h"
+#include "bake/scene/texture_footprint.h"
 
 namespace opaline::bake {
 namespace {
@@ -19,12 +21,26 @@ struct TriangleSource {
     const formats::Scene& scene;
     std::uint32_t primitive;
     std::array<std::uint32_t, 3> vertex;
+    const ScenePyramids* textures;
 };
 
-glm::dvec3 emission_in(const TriangleSource& from, const glm::dvec3& weight) {
-    const formats::Rgb c = emission_at(
-        from.scene, from.primitive, from.vertex,
-        {static_cast<float>(weight.x), static_cast<float>(weight.y), static_cast<float>(weight.z)});
+// Mean over the part with these corners.
+glm::dvec3 emission_in(const TriangleSource& from, const Weights& corners) {
+    const glm::vec3 middle((corners[0] + corners[1] + corners[2]) / 3.0);
+    std::optional<TextureView> view;
+    const auto& texcoord = from.scene.primitives[from.primitive].texcoord;
+    if (from.textures != nullptr && !texcoord.empty()) {
+        std::array<glm::dvec2, 3> uv{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (int j = 0; j < 3; ++j) {
+                uv[k] +=
+                    corners[k][j] * glm::dvec2(texcoord[from.vertex[static_cast<std::size_t>(j)]]);
+            }
+        }
+        view.emplace(TextureView{*from.textures, moments_of_triangle(uv)});
+    }
+    const formats::Rgb c = emission_at(from.scene, from.primitive, from.vertex,
+                                       {middle.x, middle.y, middle.z}, view ? &*view : nullptr);
     return {c.r, c.g, c.b};
 }
 
@@ -51,7 +67,7 @@ void add_triangle(const TriangleSource& from, const Weights& weights, int cuts,
     const glm::dvec3 cross = glm::cross(triangle.corner[1] - triangle.corner[0],
                                         triangle.corner[2] - triangle.corner[0]);
     const double twice = glm::length(cross);
-    triangle.radiance = emission_in(from, (a + b + c) / 3.0);
+    triangle.radiance = emission_in(from, weights);
     if (!(twice > 0) || triangle.radiance == glm::dvec3(0)) return;
     triangle.normal = cross / twice;
     triangle.area = twice / 2;
@@ -65,7 +81,8 @@ glm::dvec3 GlowingTriangle::power() const {
     return (is_two_sided ? 2 : 1) * std::numbers::pi * area * radiance;
 }
 
-LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp) {
+LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp,
+                              const ScenePyramids* textures) {
     LampSources sources;
     for (const std::uint32_t p : lamp.primitives) {
         const formats::Primitive& primitive = scene.primitives[p];
@@ -73,10 +90,12 @@ LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp) {
             scene.materials[primitive.material].emission_image != formats::kNone &&
             !primitive.texcoord.empty();
         for (std::size_t i = 0; i + 2 < primitive.index.size(); i += 3) {
-            add_triangle(
-                {scene, p, {primitive.index[i], primitive.index[i + 1], primitive.index[i + 2]}},
-                {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)},
-                is_textured ? kTextureCuts : 0, sources.triangles);
+            add_triangle({scene,
+                          p,
+                          {primitive.index[i], primitive.index[i + 1], primitive.index[i + 2]},
+                          textures},
+                         {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)},
+                         is_textured ? kTextureCuts : 0, sources.triangles);
         }
     }
     for (const std::uint32_t i : lamp.lights) {

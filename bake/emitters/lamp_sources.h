@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/emitters/lamps.h"
+#include "bake/scene/texture_pyramid.h"
 
 namespace opaline::bake {
 
@@ -32,8 +33,10 @@ struct LampSources {
     bool empty() const { return triangles.empty() && lights.empty(); }
 };
 
-/// Textured triangles are cut into 256 parts. Facets without area are left out.
-LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp);
+/// Textured triangles are cut into 256 parts. Facets without area are left out. `textures`: a part
+/// has the mean of its texture; null: what is at its middle.
+LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp,
+                              const ScenePyramids* textures = nullptr);
 
 /// Power [lm] of a light; of a directional one that which falls on the square around the scene.
 glm::dvec3 light_power(const LampSources& sources, const formats::Light& light);

@@ -63,11 +63,13 @@ void send(const MediaJob& job, const LampLight& light, const MediaLight& exitanc
           std::span<std::vector<glm::vec3>> irradiance, const Context& context,
           std::uint64_t& rays) {
     for (std::uint32_t e = 0; e < irradiance.size() && !context.cancelled(); ++e) {
-        const LampSources sources = media_sources(light.scene, exitance, e, light.sources[e]);
+        const LampSources sources =
+            media_sources(light.scene, exitance, e, light.sources[e], light.textures);
         // Lamps have the numbers below.
         const auto key = static_cast<std::uint32_t>(formats::kMaxEmitters) + e;
-        const auto power = trace_particles(light.scene, light.rays, sources, light.layout,
-                                           {job.particles, key, light.seed, 0}, context, rays);
+        const auto power =
+            trace_particles(light.scene, light.rays, sources, light.layout,
+                            {job.particles, key, light.seed, 0, light.textures}, context, rays);
         irradiance[e] = of_surfaces[e];
         if (std::ranges::all_of(power, [](const auto& p) { return p == glm::dvec3(0); })) continue;
         irradiance[e] = light.layout.push_down(power);

@@ -1,10 +1,13 @@
 #include "bake/emitters/media_light.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include "bake/emitters/bounce_color.h"
+#include "bake/scene/texture_footprint.h"
 
 namespace opaline::bake {
 namespace {
@@ -18,11 +21,20 @@ std::span<const glm::vec3> exitance_of(const formats::Scene& scene, const MediaL
 }
 
 glm::dvec3 mix_corners(const formats::Scene& scene, std::span<const glm::vec3> exitance,
-                       const TriangleSide& side, const glm::vec3& weights) {
+                       const TriangleSide& side, const glm::vec3& weights,
+                       const TextureView* view) {
     const std::uint32_t* const corner = &scene.primitives[side.primitive].index[side.first_index];
     const glm::vec3 mixed = weights.x * exitance[corner[0]] + weights.y * exitance[corner[1]] +
                             weights.z * exitance[corner[2]];
-    return glm::dvec3(mixed * base_image_color(scene, side, weights));
+    return glm::dvec3(mixed * base_image_color(scene, side, weights, view));
+}
+
+std::array<glm::dvec2, 3> uv_of(const formats::Primitive& primitive, std::uint32_t first_index) {
+    std::array<glm::dvec2, 3> uv;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        uv[c] = glm::dvec2(primitive.texcoord[primitive.index[first_index + c]]);
+    }
+    return uv;
 }
 
 }  // namespace
@@ -32,14 +44,15 @@ bool MediaLight::empty() const {
 }
 
 glm::dvec3 media_exitance(const formats::Scene& scene, const MediaLight& media, std::size_t lamp,
-                          const TriangleSide& side, const glm::vec3& weights) {
+                          const TriangleSide& side, const glm::vec3& weights,
+                          const TextureView* view) {
     const auto exitance = exitance_of(scene, media, lamp, side.primitive);
     if (exitance.empty() || side.is_back) return glm::dvec3(0);
-    return mix_corners(scene, exitance, side, weights);
+    return mix_corners(scene, exitance, side, weights, view);
 }
 
 LampSources media_sources(const formats::Scene& scene, const MediaLight& media, std::size_t lamp,
-                          const LampSources& lamp_sources) {
+                          const LampSources& lamp_sources, const ScenePyramids* textures) {
     LampSources sources;
     sources.centre = lamp_sources.centre;
     sources.radius = lamp_sources.radius;
@@ -56,8 +69,13 @@ LampSources media_sources(const formats::Scene& scene, const MediaLight& media, 
             const glm::dvec3 across = glm::cross(triangle.corner[1] - triangle.corner[0],
                                                  triangle.corner[2] - triangle.corner[0]);
             const double twice_area = glm::length(across);
-            triangle.radiance = std::numbers::inv_pi *
-                                mix_corners(scene, exitance, {p, i, false}, glm::vec3(1.0f / 3));
+            std::optional<TextureView> view;
+            if (textures != nullptr && !primitive.texcoord.empty()) {
+                view.emplace(TextureView{*textures, moments_of_triangle(uv_of(primitive, i))});
+            }
+            triangle.radiance =
+                std::numbers::inv_pi * mix_corners(scene, exitance, {p, i, false},
+                                                   glm::vec3(1.0f / 3), view ? &*view : nullptr);
             if (!(twice_area > 0) || triangle.radiance == glm::dvec3(0)) continue;
             triangle.normal = across / twice_area;
             triangle.area = 0.5 * twice_area;

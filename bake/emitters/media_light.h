@@ -21,13 +21,16 @@ struct MediaLight {
 };
 
 /// Exitance [lm/m^2] of a lamp's light at a point of a triangle's front, its image included; 0 from
-/// behind and where the primitive sends out nothing.
+/// behind and where the primitive sends out nothing. `view`: what the image is looked up over;
+/// null: at the point.
 glm::dvec3 media_exitance(const formats::Scene& scene, const MediaLight& media, std::size_t lamp,
-                          const TriangleSide& side, const glm::vec3& weights);
+                          const TriangleSide& side, const glm::vec3& weights,
+                          const TextureView* view = nullptr);
 
 /// What media send out of a lamp's light, as triangles that glow evenly: the mean of their corners,
-/// times the image at their middle. `lamp_sources`: for the sphere around the scene.
+/// times that of the image, with `textures`, or what it is at their middle. `lamp_sources`: for the
+/// sphere around the scene.
 LampSources media_sources(const formats::Scene& scene, const MediaLight& media, std::size_t lamp,
-                          const LampSources& lamp_sources);
+                          const LampSources& lamp_sources, const ScenePyramids* textures = nullptr);
 
 }  // namespace opaline::bake

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "bake/base/frame.h"
@@ -13,6 +14,7 @@
 #include "bake/emitters/bounce_color.h"
 #include "bake/emitters/straight_light.h"
 #include "bake/path_differentials/disk_map.h"
+#include "bake/scene/texture_footprint.h"
 
 namespace opaline::bake {
 namespace {
@@ -30,19 +32,48 @@ bool has_bounces(const LampLight& light) {
            });
 }
 
+/// A gather ray: a cell of the directions over the horizon.
+struct GatherCell {
+    glm::vec3 direction{0};
+    double solid_angle = 0;  ///< [sr]
+};
+
+// Of N rays spread by the cosine one has pi / (N cosine); cells at the horizon begin there.
+double cell_of_ray(float cosine, std::uint32_t rays) {
+    const double least = 0.5 / std::sqrt(rays);
+    return std::numbers::pi / (rays * std::max(static_cast<double>(cosine), least));
+}
+
+// What the cell sees of the surface at a hit, to look its textures up over.
+std::optional<TextureView> view_of_cell(const LampLight& light, const PacketHits& hits,
+                                        std::size_t lane, const GatherCell& cell) {
+    const formats::Primitive& primitive = light.scene.primitives[hits.primitive[lane]];
+    if (light.textures == nullptr ||
+        !has_pyramid(*light.textures, light.scene.materials[primitive.material])) {
+        return std::nullopt;
+    }
+    return TextureView{
+        *light.textures,
+        moments_of_cone(uv_gradient(primitive, hits.first_index[lane]), cell.direction,
+                        {hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]},
+                        static_cast<double>(hits.distance[lane]), cell.solid_angle)};
+}
+
 // Adds what the surface at a hit sends toward the ray, of every lamp, times pi.
 void add_reflected(const LampLight& light, const PacketHits& hits, std::size_t lane,
-                   std::vector<glm::dvec3>& sum) {
+                   const GatherCell& cell, std::vector<glm::dvec3>& sum) {
+    const std::optional<TextureView> over = view_of_cell(light, hits, lane, cell);
+    const TextureView* const view = over ? &*over : nullptr;
     const TriangleSide side{hits.primitive[lane], hits.first_index[lane], hits.cosine[lane] > 0};
     const glm::vec3 weights(1 - hits.u[lane] - hits.v[lane], hits.u[lane], hits.v[lane]);
     if (light.media != nullptr && !side.is_back && side.primitive < light.media->exitance.size() &&
         !light.media->exitance[side.primitive].empty()) {
         for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
-            sum[lamp] += media_exitance(light.scene, *light.media, lamp, side, weights);
+            sum[lamp] += media_exitance(light.scene, *light.media, lamp, side, weights, view);
         }
         return;
     }
-    const BounceColor color = bounce_color(light.scene, side, weights);
+    const BounceColor color = bounce_color(light.scene, side, weights, view);
     const auto add = [&](const glm::dvec3& share, bool is_back) {
         if (share == glm::dvec3(0)) return;
         const std::size_t element = light.layout.finest_element(
@@ -103,7 +134,13 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
             }
             const PacketHits hits = light.rays.closest(lanes, packet);
             for (std::uint32_t lane = 0; lane < count; ++lane) {
-                if (hits.hit[lane] != 0) add_reflected(light, hits, lane, total);
+                if (hits.hit[lane] == 0) continue;
+                const glm::vec3 direction(packet.dir_x[lane], packet.dir_y[lane],
+                                          packet.dir_z[lane]);
+                add_reflected(
+                    light, hits, lane,
+                    {direction, cell_of_ray(glm::dot(direction, receiver.normal), light.samples)},
+                    total);
             }
         }
         rays += light.samples;

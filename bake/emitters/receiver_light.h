@@ -26,6 +26,8 @@ struct LampLight {
     std::uint32_t samples = 1;  ///< shadow rays to a lamp, and gather rays
     std::uint64_t seed = 0;
     const MediaLight* media = nullptr;  ///< what media send out again; null: nothing
+    /// Reflected light is filtered over the cells of gather rays; null: colours of points.
+    const ScenePyramids* textures = nullptr;
 };
 
 /// Irradiance [lx] of a receiver from each lamp: straight, and from surfaces that `samples` rays

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
@@ -12,6 +13,7 @@
 #include "bake/emitters/bounce_color.h"
 #include "bake/emitters/particle_start.h"
 #include "bake/path_differentials/path_differential.h"
+#include "bake/scene/texture_footprint.h"
 
 namespace opaline::bake {
 namespace {
@@ -74,6 +76,22 @@ double largest_of(const glm::dvec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
+// What the particle stands for of the surface, to look its textures up over.
+std::optional<TextureView> view_of_footprint(const Tracer& tracer, const PathDifferential& path,
+                                             const Arrival& at) {
+    const ScenePyramids* const textures = tracer.run.textures;
+    if (textures == nullptr || !has_pyramid(*textures, tracer.scene.materials[at.material])) {
+        return std::nullopt;
+    }
+    const FootprintPair pair = footprint_in_texture(
+        surface_footprint(path, tracer.rules, at.normal, FootprintMode::filter),
+        uv_gradient(tracer.scene.primitives[at.side.primitive], at.side.first_index));
+    UvMoments moments;
+    moments.add(pair.A);
+    moments.add(pair.B);
+    return TextureView{*textures, moments};
+}
+
 void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
     Particle p = start_particle(tracer.starts, tracer.rules, tracer.run, particle);
     for (std::uint32_t flight = 0; flight < kMostFlights && p.power != glm::dvec3(0); ++flight) {
@@ -98,7 +116,9 @@ void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
         const std::size_t element = tracer.layout.element(at.side, at.weights, area);
         if (element < tracer.layout.size()) out.deposits.push_back({element, p.power});
 
-        const BounceColor color = bounce_color(tracer.scene, at.side, glm::vec3(at.weights));
+        const std::optional<TextureView> view = view_of_footprint(tracer, p.path, at);
+        const BounceColor color =
+            bounce_color(tracer.scene, at.side, glm::vec3(at.weights), view ? &*view : nullptr);
         const double reflect = largest_of(color.reflect), transmit = largest_of(color.transmit);
         const double going_on = std::min(1.0, reflect + transmit);
         const double roulette = static_cast<double>(x[2]);

@@ -18,6 +18,8 @@ struct ParticleRun {
     /// Nothing: the footprint chooses the level of an element. Else all power goes to elements of
     /// about this area [m^2]: for comparisons.
     double fixed_area = 0;
+    /// Colours of surfaces are means over the footprint; null: of points.
+    const ScenePyramids* textures = nullptr;
 };
 
 /// Power [lm] that a lamp brings to each element of a scene, by particles [Suykens2001].

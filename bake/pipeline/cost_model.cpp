@@ -8,6 +8,7 @@
 #include "bake/pipeline/bill.h"
 #include "bake/pipeline/costed_bake.h"
 #include "bake/pipeline/emitter_stages.h"
+#include "bake/pipeline/filtered_textures.h"
 #include "bake/pipeline/layer_costs.h"
 #include "bake/pipeline/predict_memory.h"
 #include "bake/pipeline/shared_light.h"
@@ -30,7 +31,7 @@ double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
     return kCompressed * bytes;
 }
 
-void bill_placing(const CostedBake& bake, Bill& bill) {
+void bill_placing(const CostedBake& bake, bool has_lamps, Bill& bill) {
     const auto& [effects, scene, facts, knobs, rates, threads] = bake.request;
     double body_triangles = 0;
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
@@ -46,6 +47,13 @@ void bill_placing(const CostedBake& bake, Bill& bill) {
     }
     bill.open("receivers");
     bill.add({facts.receivers * rates.place_receiver.at(facts.triangles), 0});
+    std::vector<RowLayout> layouts(scene.materials.size());
+    for (const CostedSubject& subject : bake.subjects) {
+        layouts[subject.material] = subject.layout;
+    }
+    if (!filtered_materials(scene, layouts, has_lamps).empty()) {
+        bill.open("textures");  // too little to be predicted: tens of nanoseconds a texel
+    }
     if (facts.receivers > 0) {
         bill.open("test lights");
         bill.add({0, rates.test_lights});
@@ -167,7 +175,10 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     CostedBake bake = make_costed_bake(request, plan);
     const CostedVolumes volumes = make_costed_volumes(request);
     bake.traces_rays = bake.traces_rays || (!volumes.empty() && request.facts.triangles > 0);
-    bill_placing(bake, bill);
+    const bool has_lamps = std::ranges::any_of(volume_plan, [](const PlanEntry& entry) {
+        return entry.on && entry.subject.kind == Subject::Kind::emitter;
+    });
+    bill_placing(bake, has_lamps, bill);
     bill_step(bake, Step::study, bill);
     bill_shared_light(bake, bill);
     if (request.knobs.error_target > 0) {

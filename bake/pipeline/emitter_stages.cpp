@@ -122,7 +122,7 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
                  result.asset.base_color};
     }
     auto baked = bake_emitters({bake.scene, bake.rays, bake.receivers, result.asset.primitives,
-                                lamps, result.knobs, media},
+                                lamps, result.knobs, media, bake.textures},
                                context, result.stages);
     if (!baked) {
         return std::move(baked).error();

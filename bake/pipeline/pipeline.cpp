@@ -14,6 +14,7 @@
 #include "bake/encode/row_sink.h"
 #include "bake/layers/plan_layers.h"
 #include "bake/pipeline/emitter_stages.h"
+#include "bake/pipeline/filtered_textures.h"
 #include "bake/pipeline/layer_stages.h"
 #include "bake/pipeline/provenance.h"
 #include "bake/pipeline/shared_light.h"
@@ -304,7 +305,15 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     const RayScene& rays = hierarchy ? *hierarchy : *sky;
     const std::vector<ReceiverSet> receivers = run_stage(
         log, "receivers", [&](std::uint64_t&) { return place_receivers(scene, rays, context); });
-    const BakeInputs bake{effects, scene, result.facts, rays, *sky, receivers};
+    BakeInputs bake{effects, scene, result.facts, rays, *sky, receivers};
+    std::optional<ScenePyramids> textures;
+    if (const auto filtered = filtered_materials(
+            scene, layout_rows(effects, scene, result.plan, wanted), !emitters.lamps.empty());
+        !filtered.empty()) {
+        textures = run_stage(log, "textures",
+                             [&](std::uint64_t&) { return make_scene_pyramids(scene, filtered); });
+        bake.textures = &*textures;
+    }
     std::vector<SubjectState> subjects;
     if (auto status = bake_inspected(bake, context, subjects, result); !status) {
         return std::move(status).error();

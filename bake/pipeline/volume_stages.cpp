@@ -13,7 +13,7 @@
 namespace opaline::bake {
 namespace {
 
-formats::Error interrupted() {
+formats::Error interrupted_volumes() {
     return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
                                "nothing was written");
 }
@@ -37,7 +37,7 @@ formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const K
         return std::move(volumes).error();
     }
     if (context.cancelled()) {
-        return interrupted();
+        return interrupted_volumes();
     }
     baked.volumes = std::move(*volumes);
     if (std::ranges::none_of(baked.plan.layouts, &VolumeLayout::has_nodes)) {
@@ -153,7 +153,7 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
     const auto status = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t&) {
         return dim_surfaces(inputs.scene, result.knobs, context, result.asset);
     });
-    return status && context.cancelled() ? interrupted() : status;
+    return status && context.cancelled() ? interrupted_volumes() : status;
 }
 
 }  // namespace opaline::bake

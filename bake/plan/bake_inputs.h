@@ -4,6 +4,7 @@
 
 #include "bake/receivers/receiver.h"
 #include "bake/scene/scene_facts.h"
+#include "bake/scene/texture_pyramid.h"
 #include "bake/transport/other_light.h"
 #include "bake/transport/ray_scene.h"
 #include "formats/scene.h"
@@ -22,6 +23,8 @@ struct BakeInputs {
     std::span<const ReceiverSet> receivers;  ///< in the order of the scene's primitives
     /// Besides that of the environment; null: there is none.
     const OtherLight* light = nullptr;
+    /// Of textures that what a bake integrates over is filtered by; null: looked up at points.
+    const ScenePyramids* textures = nullptr;
 
     bool has_environment() const { return OtherLight::has_environment(light); }
 };

@@ -26,6 +26,7 @@ struct RowLayout {
     bool grey = false;                 ///< the three bands coincide: one stands for them
     bool coloured = false;             ///< light that arrives differs between the three bands
     bool mirrors = false;              ///< its surface mirrors light: needs openness
+    bool filtered = false;             ///< its textures, where others see it: means over areas
     formats::Rgb tint{1, 1, 1};        ///< times the base colour
     /// Of the harmonics, those filled with light that nothing scatters: 0, 4 or 9.
     std::uint32_t straight_harmonics = 0;

@@ -123,9 +123,7 @@ bool PathFilter::arrive(const formats::Scene& scene, glm::vec3 direction, const 
     for (const Column& column : columns()) {
         const glm::vec2 d =
             glm::dot(gradient_v_, column.dP) * uv_v + glm::dot(gradient_w_, column.dP) * uv_w;
-        moments_.uu += d.x * d.x;
-        moments_.uv += d.x * d.y;
-        moments_.vv += d.y * d.y;
+        moments_.add(d);
     }
     return true;
 }

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "bake/reference/hit_scene.h"
-#include "bake/reference/texture_pyramid.h"
+#include "bake/scene/texture_pyramid.h"
 
 namespace opaline::bake {
 
@@ -20,12 +20,6 @@ struct TextureFiltering {
     /// infinite: no limit [Suykens2001].
     float gradient_limit = std::numeric_limits<float>::infinity();
     float extent = 1;  ///< [m] diameter of the scene; footprints are at most a quarter of it
-};
-
-/// Footprint on a surface, to look textures up with.
-struct TextureView {
-    const ScenePyramids& pyramids;
-    UvMoments moments;
 };
 
 /// What is similar to a path: how its vertices move with its random numbers, up to the surface that

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "bake/scene/scene_facts.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -15,5 +16,9 @@ struct ColorRange {
     float contrast = 0;
 };
 ColorRange find_color_range(const formats::Scene& scene, std::uint32_t material);
+
+/// `brightest`: the material's largest albedo where its textures are white.
+TextureFacts find_texture_facts(const formats::Scene& scene, std::uint32_t material,
+                                double brightest);
 
 }  // namespace opaline::bake

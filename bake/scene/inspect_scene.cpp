@@ -179,6 +179,8 @@ void inspect_surroundings(const Scene& scene, SceneFacts& facts) {
         const float largest = std::max({c.r, c.g, c.b}) * own.brightest_vertex *
                               (material.medium ? 1.0f : formats::diffuse_share(material));
         own.brightest = std::min(1.0, static_cast<double>(largest));
+        own.textures = find_texture_facts(scene, m, own.brightest);
+        all.area += own.area;
         all.brightest = std::max(all.brightest, own.brightest);
         all.is_grey = all.is_grey && shows_grey(scene, m) &&
                       (own.is_grey || (!material.medium && !material.sheet));

@@ -8,7 +8,8 @@
 #include "bake/scattering/scattering_color.h"
 #include "bake/scene/marble.h"
 #include "bake/scene/nearest_grid.h"
-#include "bake/scene/sample_image.h"
+#include "bake/scene/texture_footprint.h"
+#include "bake/scene/texture_pyramid.h"
 
 namespace opaline::bake {
 namespace {
@@ -23,9 +24,26 @@ glm::vec3 to_vec(Rgb c) {
     return {c.r, c.g, c.b};
 }
 
-// Textures of a variation at a point of the surface: colour times strength, and density.
+/// Of the textures of a variation; empty ones are looked up at points.
+struct VariationPyramids {
+    TexturePyramid color, strength, density;
+};
+
+VariationPyramids make_variation_pyramids(const formats::Scene& scene, const Variation& variation) {
+    const auto make = [&](const InnerTexture& texture, bool is_linear) {
+        return texture.image == formats::kNone || is_even(scene.inner_images[texture.image])
+                   ? TexturePyramid{}
+                   : make_pyramid(scene.inner_images[texture.image], is_linear);
+    };
+    return {make(variation.color, false), make(variation.strength, true),
+            make(variation.density, true)};
+}
+
+// Textures of a variation on the surface, over a square of `area` [m^2] around a point: colour
+// times strength, and density.
 glm::vec4 sample_textures(const formats::Scene& scene, const Variation& variation,
-                          const NearestSurface::Place& place) {
+                          const VariationPyramids& pyramids, const NearestSurface::Place& place,
+                          double area) {
     const formats::Primitive& p = scene.primitives[place.primitive];
     if (p.texcoord.empty()) {
         return glm::vec4(1);
@@ -33,16 +51,19 @@ glm::vec4 sample_textures(const formats::Scene& scene, const Variation& variatio
     const std::uint32_t* const corner = &p.index[place.first_index];
     const glm::vec2 uv = (1 - place.u - place.v) * p.texcoord[corner[0]] +
                          place.u * p.texcoord[corner[1]] + place.v * p.texcoord[corner[2]];
-    const auto look = [&](const InnerTexture& texture, bool is_linear) {
+    const UvMoments over = moments_of_area(uv_gradient(p, place.first_index), area);
+    const auto look = [&](const InnerTexture& texture, const TexturePyramid& pyramid,
+                          bool is_linear) {
         if (texture.image == formats::kNone || scene.inner_images[texture.image].rgba.empty()) {
             return glm::vec4(1);
         }
-        return sample_image(
-            {scene.inner_images[texture.image], texture.wrap_u, texture.wrap_v, is_linear}, uv);
+        return sample_footprint(
+            {scene.inner_images[texture.image], texture.wrap_u, texture.wrap_v, is_linear}, pyramid,
+            uv, over);
     };
-    const glm::vec3 color =
-        glm::vec3(look(variation.color, false)) * look(variation.strength, true).a;
-    return {color, std::max(kLeastDensity, look(variation.density, true).r)};
+    const glm::vec3 color = glm::vec3(look(variation.color, pyramids.color, false)) *
+                            look(variation.strength, pyramids.strength, true).a;
+    return {color, std::max(kLeastDensity, look(variation.density, pyramids.density, true).r)};
 }
 
 bool is_grey(const formats::Image8& image) {
@@ -110,11 +131,14 @@ void MediumField::fill_grid(const formats::Scene& scene, std::uint32_t material)
     nodes_ = glm::ivec3(nodes.count);
     const std::vector<NearestSurface::Place> places = find_nearest(scene, surface, nodes);
     const Variation& variation = *scene.materials[material].medium->variation;
+    const VariationPyramids pyramids = make_variation_pyramids(scene, variation);
+    const double cell = static_cast<double>(nodes.cell);
     grid_.resize(places.size());
     for_each_index(places.size(), [&](std::size_t i) {
-        const glm::vec4 values = places[i].primitive == formats::kNone
-                                     ? glm::vec4(1)
-                                     : sample_textures(scene, variation, places[i]);
+        const glm::vec4 values =
+            places[i].primitive == formats::kNone
+                ? glm::vec4(1)
+                : sample_textures(scene, variation, pyramids, places[i], cell * cell);
         for (std::size_t c = 0; c < grid_[i].size(); ++c) {
             const float value = std::clamp(values[static_cast<int>(c)], 0.0f, 1.0f);
             grid_[i][c] = static_cast<std::uint16_t>(std::lround(kCodes * value));

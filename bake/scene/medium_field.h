@@ -13,7 +13,9 @@ namespace opaline::bake {
 /// What a medium with a formats::Variation is at each point inside its body: a fact of the scene,
 /// of which nothing is sampled here. Veins are evaluated at the point itself. Textures are those of
 /// the nearest point of the surface, found at the nodes of a grid over the body's box, a 96th of
-/// its longest side apart, and linear between: 8 MB at most. Immutable; any thread may look.
+/// its longest side apart, and linear between: 8 MB at most. A node has the mean over a square as
+/// wide as nodes are apart: colour, strength and density each by itself. Immutable; any thread may
+/// look.
 class MediumField {
   public:
     /// Of the scene's material, which has a medium with a variation. The same for any number of

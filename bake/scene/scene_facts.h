@@ -31,6 +31,15 @@ struct InnerMedium {
 struct Surroundings {
     double brightest = 1;  ///< largest MaterialFacts::brightest of all
     bool is_grey = false;  ///< they reflect all three bands alike
+    double area = 0;       ///< [m^2] of all
+};
+
+/// Textures that the light of a material is multiplied by: base colour and gloss.
+struct TextureFacts {
+    /// Most that its albedo differs by between two points, from textures alone, in any band. All
+    /// texels count, also those that no triangle shows.
+    double contrast = 0;
+    double texels_per_metre = 0;  ///< where they are densest, in any direction; 0: no textures
 };
 
 /// Facts about the surfaces of one material, over all its primitives.
@@ -53,6 +62,8 @@ struct MaterialFacts {
 
     float brightest_vertex = 0;  ///< largest component of its vertex colours; 1 without any
     float color_contrast = 0;    ///< ColorRange::contrast; 0: its colour is constant
+
+    TextureFacts textures;
 
     /// Bound on the share of diffuse light that leaves its surface again, in any band.
     double brightest = 1;

@@ -72,6 +72,17 @@ TEST(Prediction, LeftOutEffectsLeaveTheirStagesOut) {
     }
 }
 
+TEST(Prediction, TexturesThatBouncedLightIsFilteredByHaveAStage) {
+    Scene scene = make_dented_ball();
+    scene.images.push_back({2, 1, {0, 0, 0, 255, 255, 255, 255, 255}});
+    scene.materials[0].base_color_image = 0;
+    for (const glm::vec3& p : scene.primitives[1].position) {
+        scene.primitives[1].texcoord.emplace_back(9 * p.x, p.z);
+    }
+    expect_stages_as_predicted(scene, only({"direct", "interreflection"}));
+    expect_stages_as_predicted(scene, only({"direct"}));
+}
+
 TEST(Prediction, PilotHasTheStagesOfItsFirstRound) {
     bake::BakeOptions options = small_bake();
     options.error = 0.5;  // the first choice will do

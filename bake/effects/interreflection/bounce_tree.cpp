@@ -123,6 +123,17 @@ float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::ui
     return nodes_[self].cell = area;
 }
 
+std::vector<float> BounceTree::cells() const {
+    const auto is_leaf = [](const Node& node) { return node.right == 0; };
+    std::vector<float> cells(static_cast<std::size_t>(std::ranges::count_if(nodes_, is_leaf)));
+    for (const Node& node : nodes_) {
+        if (is_leaf(node)) {
+            cells[node.axis] = node.cell;
+        }
+    }
+    return cells;
+}
+
 void BounceTree::set_rows(std::span<const float> rows) {
     for (std::size_t v = nodes_.size(); v-- > 0;) {
         const Node& node = nodes_[v];

@@ -45,6 +45,8 @@ class BounceTree {
     template <class Visit>
     void find_near(const FootprintKernel& kernel, const SurfaceSide& side, float openness,
                    Visit&& visit) const;
+    /// Of each scatterer, the area of its part of the surface [m^2].
+    std::vector<float> cells() const;
     float openness(std::uint32_t node) const { return nodes_[node].darkest; }
 
     std::span<const float> row(std::uint32_t node) const {

@@ -7,16 +7,19 @@
 #include "bake/effects/interreflection/bounce_light.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "bake/effects/interreflection/rule_interreflection.h"
+#include "bake/effects/interreflection/rule_textures.h"
 #include "bake/effects/interreflection/true_bounces.h"
 
 namespace opaline::bake {
 namespace {
 
-constexpr std::array<DecisionRule, 1> kRules{
+constexpr std::array<DecisionRule, 2> kRules{
     {{"interreflection", is_any_material, decide_interreflection,
       [](const PlanEntry& entry, RowLayout& layout) {
           layout.coloured = entry.on && entry.has_bands;
-      }}}};
+      }},
+     {"interreflection.textures", has_textures, decide_textures,
+      [](const PlanEntry& entry, RowLayout& layout) { layout.filtered = entry.on; }}}};
 constexpr std::array<const KnobSpec*, 1> kKnobs{&kBounceRays};
 
 std::unique_ptr<OtherLight> make_light(const LightInputs& inputs, std::uint64_t& rays) {

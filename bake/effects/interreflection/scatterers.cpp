@@ -5,10 +5,12 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/effects/interreflection/bounce_rays.h"
+#include "bake/effects/interreflection/bounce_tree.h"
 #include "bake/effects/interreflection/even_choice.h"
 #include "bake/effects/interreflection/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/scene/texture_footprint.h"
 
 namespace opaline::bake {
 namespace {
@@ -62,6 +64,28 @@ Scatterer make_scatterer(const LightInputs& inputs, const Seen& seen) {
     made.inside = {point.position, sample.normal, point.position - error * point.normal,
                    made.material};
     return made;
+}
+
+// Over the part of the surface that each scatterer stands for.
+void filter_albedo(const LightInputs& inputs, std::span<const Seen> all,
+                   std::span<const std::uint32_t> chosen, std::span<Scatterer> scatterers) {
+    const formats::Scene& scene = inputs.bake.scene;
+    const ScenePyramids& textures = *inputs.bake.textures;
+    const std::vector<float> cells = BounceTree(scatterers, inputs.layouts.size(), 0).cells();
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        Scatterer& made = scatterers[i];
+        if (!has_pyramid(textures, scene.materials[made.material])) {
+            continue;
+        }
+        const Seen& seen = all[chosen[i]];
+        const auto& [primitive, first_index] = seen.triangle;
+        const TextureView view{
+            textures, moments_of_area(uv_gradient(scene.primitives[primitive], first_index),
+                                      static_cast<double>(cells[i]))};
+        made.albedo =
+            eval_surface_albedo(scene, inputs.layouts[made.material],
+                                make_surface_point(scene, seen.triangle, seen.barycentric), &view);
+    }
 }
 
 }  // namespace
@@ -122,8 +146,12 @@ std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t co
     }
     std::vector<Scatterer> scatterers;
     scatterers.reserve(std::min(count, all.size()));
-    for (const std::uint32_t i : choose_evenly(points, count)) {
+    const std::vector<std::uint32_t> chosen = choose_evenly(points, count);
+    for (const std::uint32_t i : chosen) {
         scatterers.push_back(make_scatterer(inputs, all[i]));
+    }
+    if (inputs.bake.textures != nullptr) {
+        filter_albedo(inputs, all, chosen, scatterers);
     }
     return scatterers;
 }

@@ -19,7 +19,7 @@ struct Scatterer {
     Receiver beyond;      ///< the same of the other side; used of thin-walled surfaces
     BodyPoint inside;
     float openness = 0;            ///< share of the light of an even sky that reaches it, in [0, 1]
-    formats::Rgb albedo{1, 1, 1};  ///< eval_surface_albedo
+    formats::Rgb albedo{1, 1, 1};  ///< eval_surface_albedo, with textures: mean over its cell
 };
 
 /// A hit of a ray as a scatterer sees it, or nothing: the back of a surface that has none.

@@ -11,9 +11,9 @@
 #include "bake/path_differentials/smooth_event.h"
 #include "bake/path_differentials/steps.h"
 #include "bake/path_differentials/surface_shape.h"
-#include "bake/path_differentials/texture_filter.h"
 #include "bake/path_differentials/transfer.h"
 #include "bake/path_differentials/visible_normal.h"
+#include "bake/scene/texture_taps.h"
 #include "tests/bake/path_differentials/glossy_chain.h"
 #include "tests/bake/path_differentials/primal.h"
 #include "tests/bake/path_differentials/table_case.h"
@@ -303,8 +303,11 @@ NamedValues footprint(const DifferentialCase& row) {
 NamedValues mip(const DifferentialCase& row) {
     const FootprintPair in_uv{row.pair("dA"), row.pair("dB")};
     const double resolution = row.number("res");
+    UvMoments moments;
+    moments.add(in_uv.A);
+    moments.add(in_uv.B);
     const TextureTaps taps =
-        texture_taps(in_uv, glm::dvec2(resolution), static_cast<int>(row.number("max_samples")));
+        texture_taps(moments, glm::dvec2(resolution), static_cast<int>(row.number("max_samples")));
     // The level of [Suykens2001], which overblurs skewed pairs: from the shorter vector.
     const double shorter = std::min(glm::length(in_uv.A), glm::length(in_uv.B));
     return {{"major_texels", listed(taps.major)},

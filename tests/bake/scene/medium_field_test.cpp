@@ -94,6 +94,32 @@ TEST(MediumField, DensityIsTheRedChannelAndNeverZero) {
     EXPECT_EQ(field.color({0, 0, 0}), glm::vec3(1));
 }
 
+// Squares a tenth of a node's distance wide: their mean, of each texture by itself. Points had one
+// or the other.
+TEST(MediumField, TexturesFinerThanItsNodesAreTheirMean) {
+    constexpr std::uint32_t kSide = 1024;
+    formats::Image8 checker{kSide, kSide, {}};
+    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+        const std::uint8_t code = (i % kSide + i / kSide) % 2 == 0 ? 255 : 0;
+        checker.rgba.insert(checker.rgba.end(), 4, code);
+    }
+    formats::Scene scene = make_ball(tests::make_grey_medium(9, 1));
+    formats::Primitive& body = scene.primitives[0];
+    body.texcoord.clear();
+    for (const glm::vec3& p : body.position) {
+        body.texcoord.emplace_back(0.5f * p.x, 0.5f * p.y);
+    }
+    variation_of(scene).color = tests::add_inner_texture(scene, checker);
+    variation_of(scene).density = tests::add_inner_texture(scene, checker);
+    scene.materials[0].medium->variation->color.wrap_u = formats::TextureWrap::repeat;
+    const MediumField field(scene, 0);
+    for (int i = 0; i < 50; ++i) {
+        const glm::vec3 at(0.7f * std::sin(static_cast<float>(i)), 0.3f, 0.01f * (i % 7) + 0.5f);
+        EXPECT_NEAR(field.color(at).y, 0.5, 0.05);
+        EXPECT_NEAR(field.density(at), 0.5, 0.05);
+    }
+}
+
 TEST(MediumField, IsTheSameForAnyNumberOfThreads) {
     formats::Scene scene = make_ball(tests::make_grey_medium(9, 1));
     variation_of(scene).color = tests::add_inner_texture(scene, tests::make_rising_image());

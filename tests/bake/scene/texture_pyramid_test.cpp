@@ -1,4 +1,4 @@
-#include "bake/reference/texture_pyramid.h"
+#include "bake/scene/texture_pyramid.h"
 
 #include <gtest/gtest.h>
 

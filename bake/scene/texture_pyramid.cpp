@@ -1,4 +1,4 @@
-#include "bake/reference/texture_pyramid.h"
+#include "bake/scene/texture_pyramid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,18 +10,10 @@ namespace {
 using formats::TextureWrap;
 using Level = TexturePyramid::Level;
 
-Level decoded(const formats::Image8& image, bool is_linear) {
-    Level level{image.width, image.height, {}};
-    level.texel.reserve(std::size_t{image.width} * image.height);
-    const ImageLookup lookup{image, TextureWrap::clamp, TextureWrap::clamp, is_linear};
-    for (std::uint32_t y = 0; y < image.height; ++y) {
-        for (std::uint32_t x = 0; x < image.width; ++x) {
-            level.texel.push_back(sample_image(
-                lookup, {(static_cast<float>(x) + 0.5f) / static_cast<float>(image.width),
-                         (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height)}));
-        }
-    }
-    return level;
+// A texel of the image itself, linear.
+glm::vec4 decoded(const ImageLookup& lookup, std::uint32_t x, std::uint32_t y) {
+    const glm::vec2 size(lookup.image.width, lookup.image.height);
+    return sample_image(lookup, (glm::vec2(x, y) + 0.5f) / size);
 }
 
 // Shares of `size` texels that the i-th of `smaller` covers, from `first` on.
@@ -51,17 +43,19 @@ std::vector<Shares> all_shares(std::uint32_t size, std::uint32_t smaller) {
     return all;
 }
 
-Level halved(const Level& fine) {
-    Level coarse{std::max(1u, fine.width / 2), std::max(1u, fine.height / 2), {}};
+// `texel`: of the finer level, by column and row.
+template <class Texel>
+Level halved(std::uint32_t width, std::uint32_t height, const Texel& texel) {
+    Level coarse{std::max(1u, width / 2), std::max(1u, height / 2), {}};
     coarse.texel.reserve(std::size_t{coarse.width} * coarse.height);
-    const std::vector<Shares> columns = all_shares(fine.width, coarse.width);
-    for (const Shares& row : all_shares(fine.height, coarse.height)) {
+    const std::vector<Shares> columns = all_shares(width, coarse.width);
+    for (const Shares& row : all_shares(height, coarse.height)) {
         for (const Shares& column : columns) {
             glm::vec4 sum(0);
-            for (std::size_t j = 0; j < row.weight.size(); ++j) {
-                const glm::vec4* texel = &fine.texel[(row.first + j) * fine.width + column.first];
-                for (std::size_t i = 0; i < column.weight.size(); ++i) {
-                    sum += row.weight[j] * column.weight[i] * texel[i];
+            for (std::uint32_t j = 0; j < row.weight.size(); ++j) {
+                for (std::uint32_t i = 0; i < column.weight.size(); ++i) {
+                    sum +=
+                        row.weight[j] * column.weight[i] * texel(column.first + i, row.first + j);
                 }
             }
             coarse.texel.push_back(sum);
@@ -121,6 +115,8 @@ glm::vec4 sample_any_level(const ImageLookup& lookup, const TexturePyramid& pyra
                                      {folded(uv.x, lookup.wrap_u), folded(uv.y, lookup.wrap_v)});
 }
 
+}  // namespace
+
 bool is_even(const formats::Image8& image) {
     const std::span<const std::uint8_t> all = image.rgba;
     for (std::size_t i = 4; i < all.size(); ++i) {
@@ -131,54 +127,57 @@ bool is_even(const formats::Image8& image) {
     return true;
 }
 
-}  // namespace
-
 TexturePyramid make_pyramid(const formats::Image8& image, bool is_linear) {
     TexturePyramid pyramid;
-    Level fine = decoded(image, is_linear);
-    while (fine.width > 1 || fine.height > 1) {
-        fine = halved(fine);
-        pyramid.coarser.push_back(fine);
+    const ImageLookup lookup{image, TextureWrap::clamp, TextureWrap::clamp, is_linear};
+    const auto of_image = [&](std::uint32_t x, std::uint32_t y) { return decoded(lookup, x, y); };
+    if (image.width > 1 || image.height > 1) {
+        pyramid.coarser.push_back(halved(image.width, image.height, of_image));
+    }
+    while (!pyramid.coarser.empty() &&
+           (pyramid.coarser.back().width > 1 || pyramid.coarser.back().height > 1)) {
+        const Level& fine = pyramid.coarser.back();
+        pyramid.coarser.push_back(
+            halved(fine.width, fine.height, [&](std::uint32_t x, std::uint32_t y) {
+                return fine.texel[std::size_t{y} * fine.width + x];
+            }));
     }
     return pyramid;
 }
 
 glm::vec4 sample_footprint(const ImageLookup& lookup, const TexturePyramid& pyramid, glm::vec2 uv,
                            const UvMoments& footprint) {
-    const auto width = static_cast<float>(lookup.image.width);
-    const auto height = static_cast<float>(lookup.image.height);
-    // Eigenvalues of the moments in texels: squares of the extents l1 >= l2.
-    const float a = footprint.uu * width * width, b = footprint.uv * width * height;
-    const float c = footprint.vv * height * height;
-    const float middle = 0.5f * (a + c), half = std::sqrt(0.25f * (a - c) * (a - c) + b * b);
-    const float major = middle + half;
-    if (!(major > 1) || pyramid.coarser.empty() || !std::isfinite(major)) {
+    if (pyramid.coarser.empty()) {
         return sample_image(lookup, uv);
     }
-    const float minor = std::max((a * c - b * b) / major, 0.0f);
-    const float wanted = std::ceil(std::sqrt(major / std::max(minor, 1.0f)));
-    const int count = static_cast<int>(std::min(wanted, static_cast<float>(kMostTaps)));
-    const float most = static_cast<float>(pyramid.coarser.size());
-    const float each = major / static_cast<float>(count * count);
-    const float level = std::min(0.5f * std::log2(std::max({minor, each, 1.0f})), most);
+    const TextureTaps taps =
+        texture_taps(footprint, {lookup.image.width, lookup.image.height}, kMostTaps);
+    if (!(taps.major > 1)) {
+        return sample_image(lookup, uv);
+    }
+    const auto most = static_cast<float>(pyramid.coarser.size());
+    const float level = std::min(static_cast<float>(taps.level), most);
     const auto below = static_cast<std::size_t>(level);
     const float share = level - static_cast<float>(below);
-    glm::vec2 axis(0);
-    if (count > 1) {
-        // Of the two forms of the eigenvector the one without cancellation.
-        const glm::vec2 e = a > c ? glm::vec2(major - c, b) : glm::vec2(b, major - a);
-        axis = std::sqrt(major / glm::dot(e, e)) * e / glm::vec2(width, height);
-    }
     glm::vec4 fine(0), coarse(0);
-    for (int i = 0; i < count; ++i) {
-        const float along = (static_cast<float>(i) + 0.5f) / static_cast<float>(count) - 0.5f;
-        const glm::vec2 at = uv + along * axis;
+    for (int i = 0; i < taps.count; ++i) {
+        const glm::vec2 at = taps.count > 1 ? uv + glm::vec2(taps.offset(i)) : uv;
         fine += sample_any_level(lookup, pyramid, below, at);
         if (share > 0) {
             coarse += sample_any_level(lookup, pyramid, below + 1, at);
         }
     }
-    return ((1 - share) * fine + share * coarse) / static_cast<float>(count);
+    return ((1 - share) * fine + share * coarse) / static_cast<float>(taps.count);
+}
+
+glm::vec4 sample_over(const ImageLookup& lookup, std::uint32_t number, glm::vec2 uv,
+                      const TextureView* view) {
+    if (view == nullptr) {
+        return sample_image(lookup, uv);
+    }
+    const auto& all = lookup.is_linear ? view->pyramids.data : view->pyramids.color;
+    return number < all.size() ? sample_footprint(lookup, all[number], uv, view->moments)
+                               : sample_image(lookup, uv);
 }
 
 bool ScenePyramids::any() const {
@@ -187,7 +186,8 @@ bool ScenePyramids::any() const {
            std::any_of(data.begin(), data.end(), filled);
 }
 
-ScenePyramids make_scene_pyramids(const formats::Scene& scene) {
+ScenePyramids make_scene_pyramids(const formats::Scene& scene,
+                                  std::span<const std::uint8_t> of_material) {
     ScenePyramids pyramids;
     pyramids.color.resize(scene.images.size());
     pyramids.data.resize(scene.images.size());
@@ -200,7 +200,11 @@ ScenePyramids make_scene_pyramids(const formats::Scene& scene) {
             to = make_pyramid(scene.images[image], is_linear);
         }
     };
-    for (const formats::Material& material : scene.materials) {
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        if (!of_material.empty() && of_material[m] == 0) {
+            continue;
+        }
+        const formats::Material& material = scene.materials[m];
         add(material.base_color_image, false);
         add(material.emission_image, false);
         add(material.gloss.image, true);
