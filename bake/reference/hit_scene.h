@@ -10,7 +10,7 @@
 
 namespace opaline::bake {
 
-struct TextureView;  // path_filter.h
+struct TextureView;  // scene/texture_pyramid.h
 
 /// A hit of a ray on a triangle.
 struct SurfaceHit {

@@ -72,7 +72,7 @@ glm::vec3 base_color_texture(const formats::Scene& scene, const SurfacePlace& pl
 }
 
 glm::vec3 roughness_texture(const formats::Scene& scene, const SurfacePlace& place,
-                        const TextureView* view) {
+                            const TextureView* view) {
     const formats::Gloss& gloss = material_of(scene, place).gloss;
     return look_up(scene, place, {gloss.image, gloss.wrap_u, gloss.wrap_v, true}, view);
 }

@@ -32,7 +32,7 @@ glm::vec3 base_color_texture(const formats::Scene& scene, const SurfacePlace& pl
 
 /// What the texture of gloss multiplies roughness (g) and metallic (b) by; 1 without one.
 glm::vec3 roughness_texture(const formats::Scene& scene, const SurfacePlace& place,
-                        const TextureView* view = nullptr);
+                            const TextureView* view = nullptr);
 
 /// Of emission; 1 without one.
 glm::vec3 emission_texture(const formats::Scene& scene, const SurfacePlace& place,
