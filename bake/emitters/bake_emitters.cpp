@@ -53,28 +53,27 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
         sources.push_back(make_lamp_sources(job.scene, lamp, job.textures));
     }
     const ElementLayout layout(job.scene, finest_area(job.scene, particles));
-    std::vector<std::vector<glm::vec3>> irradiance(job.lamps.size());
+    std::vector<ElementLight> elements(job.lamps.size()), caustics(job.lamps.size());
     run_stage(log, "particles of emitters", [&](std::uint64_t& rays) {
         for (std::uint32_t e = 0; e < job.lamps.size() && !context.cancelled(); ++e) {
-            const auto power =
+            const ParticleLight traced =
                 trace_particles(job.scene, job.rays, sources[e], layout,
                                 {particles, e, job.knobs.seed, 0, job.textures}, context, rays);
-            if (std::ranges::any_of(power, [](const auto& p) { return p != glm::dvec3(0); })) {
-                irradiance[e] = layout.push_down(power);
-            }
+            if (has_light(traced.all)) elements[e] = layout.join(traced.all, kGatheredShare);
+            if (has_light(traced.caustic)) caustics[e] = layout.join(traced.caustic);
         }
         return true;
     });
     MediaLight exitance;
-    const LampLight light{job.scene,      job.rays,   sources,
-                          layout,         irradiance, whole(job.knobs, kEmitterRays),
-                          job.knobs.seed, &exitance,  job.textures};
+    const LampLight light{
+        job.scene,      job.rays,  sources,      layout,  elements, whole(job.knobs, kEmitterRays),
+        job.knobs.seed, &exitance, job.textures, caustics};
     BakedEmitters baked;
     MediaRows of_media(job.primitives.size());
     if (job.media.light_medium) {
         of_media = run_stage(log, "media lit by emitters", [&](std::uint64_t& rays) {
             return light_media({job.media, job.receivers, job.primitives, particles}, light,
-                               irradiance, exitance, context, rays);
+                               elements, exitance, context, rays);
         });
     }
     for (const Lamp& lamp : job.lamps) {
@@ -98,7 +97,7 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     if (context.cancelled()) return interrupted_bake();
     baked.error = run_stage(log, "self-check of emitters", [&](std::uint64_t& rays) {
         return check_emitters({job.scene, job.rays, job.receivers, job.primitives, sources,
-                               baked.emitters.view(), &exitance},
+                               baked.emitters.view(), &light},
                               job.knobs.seed, context, rays);
     });
     if (context.cancelled()) return interrupted_bake();

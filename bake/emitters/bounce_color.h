@@ -14,11 +14,21 @@ struct BounceColor {
     glm::dvec3 transmit{0};  ///< to the other side: of thin-walled surfaces
 };
 
-/// At a point of a triangle, `weights` barycentric. Gloss counts by its diffuse part alone. Nothing
-/// of media, whose light is not known here (media_light.h), and of backs of single-sided surfaces.
+/// At a point of a triangle, `weights` barycentric. What is mirrored does not count (onward_ray.h).
+/// Nothing of media, whose light is not known here (media_light.h), and of backs of single-sided
+/// surfaces.
 /// `view`: what textures are looked up over; null: at the point.
 BounceColor bounce_color(const formats::Scene& scene, const TriangleSide& side,
                          const glm::vec3& weights, const TextureView* view = nullptr);
+
+/// The metal that a point of an opaque surface is made of: base color, how much of it is metal in
+/// [0, 1], GGX alpha. None of media, thin walls and backs of single-sided surfaces.
+struct MetalPart {
+    glm::dvec3 color{0};
+    double metallic = 0, alpha = 1;
+};
+MetalPart metal_part(const formats::Scene& scene, const TriangleSide& side,
+                     const glm::vec3& weights);
 
 /// The base color's image there, white without one.
 glm::vec3 base_image_color(const formats::Scene& scene, const TriangleSide& side,

@@ -12,6 +12,9 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
 #include "bake/emitters/bounce_color.h"
+#include "bake/emitters/largest_band.h"
+#include "bake/emitters/onward_ray.h"
+#include "bake/emitters/surface_arrival.h"
 #include "bake/scene/punctual_light.h"
 
 namespace opaline::bake {
@@ -53,16 +56,6 @@ bool is_hidden(const RayScene& surfaces, const glm::vec3& from, const glm::vec3&
     lanes[0] = -1;
     surfaces.occluded(lanes, packet);
     return packet.tfar[0] < 0;
-}
-
-// In front of a surface that was hit, on the side that `toward` points to. Back along the ray where
-// that is where it came from: in a corner, what is beside the surface may be outside.
-glm::vec3 leave_surface(const glm::vec3& origin, const glm::vec3& direction, const PacketHits& hits,
-                        const glm::vec3& toward) {
-    const float distance = hits.distance[0], away = 2 * hits.error[0];
-    if (glm::dot(direction, toward) > 0) return origin + distance * direction + away * toward;
-    const float back = std::min(away / std::abs(hits.cosine[0]), 0.5f * distance);
-    return origin + (distance - back) * direction;
 }
 
 /// A path backward from a receiver.
@@ -136,50 +129,91 @@ struct BackwardPath {
                triangle.radiance;
     }
 
-    glm::dvec3 run(Receiver at) {
-        glm::dvec3 sum(0), throughput(1);
-        for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
-            sum += throughput * straight(at, bounce == 0);
-            auto x = draw();
-            if (bounce == 0) std::copy_n(first.begin() + 3, 2, x.begin());
-            const float radius = std::sqrt(x[0]), turn = 2 * std::numbers::pi_v<float> * x[1];
-            const glm::vec3 direction =
-                make_frame(at.normal).to_world({radius * std::cos(turn), radius * std::sin(turn),
-                                                std::sqrt(std::max(0.0f, 1 - x[0]))});
-            RayPacket packet = rays_from(at.origin);
-            packet.dir_x[0] = direction.x;
-            packet.dir_y[0] = direction.y;
-            packet.dir_z[0] = direction.z;
-            packet.tfar[0] = std::numeric_limits<float>::infinity();
-            LaneMask lanes{};
-            lanes[0] = -1;
-            ++rays;
-            const PacketHits hits = check.rays.closest(lanes, packet);
-            if (hits.hit[0] == 0 || hits.cosine[0] == 0) break;
-            const bool is_back = hits.cosine[0] > 0;
-            const TriangleSide side{hits.primitive[0], hits.first_index[0], is_back};
-            const glm::vec3 weights(1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]);
-            if (check.media != nullptr) {
-                for (std::size_t lamp = 0; lamp < check.sources.size(); ++lamp) {
-                    sum +=
-                        throughput * media_exitance(check.scene, *check.media, lamp, side, weights);
-                }
-            }
-            const BounceColor color = bounce_color(check.scene, side, weights);
-            const double reflect = std::max({color.reflect.x, color.reflect.y, color.reflect.z});
-            const double transmit =
-                std::max({color.transmit.x, color.transmit.y, color.transmit.z});
-            const double going_on = std::min(1.0, reflect + transmit);
-            const double roulette = static_cast<double>(x[2]);
-            if (!(roulette < going_on)) break;
-            const bool crosses = roulette * (reflect + transmit) >= reflect * going_on;
-            throughput *= (crosses ? color.transmit : color.reflect) * (reflect + transmit) /
-                          (going_on * (crosses ? transmit : reflect));
-            const glm::vec3 normal(hits.normal_x[0], hits.normal_y[0], hits.normal_z[0]);
-            const glm::vec3 toward = is_back == crosses ? normal : -normal;
-            at = {leave_surface(at.origin, direction, hits, toward), toward};
+    // What lamps bring to a vertex without diffuse bounces.
+    glm::dvec3 from_lamps(const Receiver& at, bool is_first) {
+        glm::dvec3 sum = straight(at, is_first);
+        if (check.known == nullptr || check.known->caustics.empty()) return sum;
+        std::vector<glm::dvec3> caustic(check.sources.size(), glm::dvec3(0));
+        add_caustics(*check.known, at, caustic, rays);
+        for (const glm::dvec3& of_lamp : caustic)
+            sum += of_lamp;
+        return sum;
+    }
+
+    glm::dvec3 from_media(const Arrival& at) const {
+        glm::dvec3 sum(0);
+        if (check.known == nullptr || check.known->media == nullptr) return sum;
+        for (std::size_t lamp = 0; lamp < check.sources.size(); ++lamp) {
+            sum += media_exitance(check.scene, *check.known->media, lamp, at.side,
+                                  glm::vec3(at.weights));
         }
         return sum;
+    }
+
+    glm::dvec3 run(const Receiver& receiver) {
+        glm::dvec3 sum(0), throughput(1), from(receiver.origin), direction, axis(receiver.normal);
+        bool is_diffuse = true;  // the next direction is drawn around the axis
+        PathDifferential unused;
+        for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
+            if (is_diffuse) {
+                sum += throughput * from_lamps({glm::vec3(from), glm::vec3(axis)}, bounce == 0);
+            }
+            auto x = draw();
+            if (bounce == 0) std::copy_n(first.begin() + 3, 2, x.begin());
+            if (is_diffuse) {
+                const float radius = std::sqrt(x[0]), turn = 2 * std::numbers::pi_v<float> * x[1];
+                direction =
+                    glm::dvec3(make_frame(glm::vec3(axis))
+                                   .to_world({radius * std::cos(turn), radius * std::sin(turn),
+                                              std::sqrt(std::max(0.0f, 1 - x[0]))}));
+            }
+            ++rays;
+            const auto at = find_arrival(check.rays, glm::vec3(from), glm::vec3(direction));
+            if (!at) break;
+            throughput *= straight_transmittance(check.scene, *at);
+            sum += throughput * from_media(*at);
+            const Next next = choose(*at, direction, static_cast<double>(x[2]), unused);
+            if (next.weight == glm::dvec3(0)) break;
+            throughput *= next.weight;
+            from = leave_surface(from, direction, *at, next.crosses);
+            is_diffuse = next.is_diffuse;
+            direction = next.direction;
+            axis = next.crosses ? -at->normal : at->normal;
+        }
+        return sum;
+    }
+
+    // How a path goes on, with its weight over the probability; 0: it ends.
+    struct Next {
+        glm::dvec3 weight{0}, direction{0};
+        bool crosses = false, is_diffuse = false;
+    };
+    Next choose(const Arrival& at, const glm::dvec3& direction, double roulette,
+                PathDifferential& unused) {
+        unused.count = 0;
+        if (lets_through(check.scene, at)) {
+            const auto onward = cross_boundary(check.scene, at, direction, roulette, {}, unused);
+            return onward ? Next{onward->weight, onward->direction, onward->crosses, false}
+                          : Next{};
+        }
+        const BounceColor color = bounce_color(check.scene, at.side, glm::vec3(at.weights));
+        const double reflect = largest_band(color.reflect);
+        const double transmit = largest_band(color.transmit);
+        const double mirror = mirror_chance(check.scene, at, direction);
+        const double all = reflect + transmit + mirror, going_on = std::min(1.0, all);
+        if (!(roulette < going_on)) return {};
+        const double at_choice = roulette / going_on * all, over = all / going_on;
+        if (at_choice < mirror) {
+            const auto y = draw();
+            const auto onward =
+                mirror_ray(check.scene, at, direction,
+                           {static_cast<double>(y[0]), static_cast<double>(y[1])}, {}, unused);
+            return onward ? Next{over / mirror * onward->weight, onward->direction, false, false}
+                          : Next{};
+        }
+        const bool crosses = at_choice >= mirror + reflect;
+        return {over / (crosses ? transmit : reflect) * (crosses ? color.transmit : color.reflect),
+                glm::dvec3(0), crosses, true};
     }
 };
 

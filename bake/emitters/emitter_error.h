@@ -5,7 +5,7 @@
 
 #include "bake/base/context.h"
 #include "bake/emitters/lamp_sources.h"
-#include "bake/emitters/media_light.h"
+#include "bake/emitters/receiver_light.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
 #include "formats/opal/asset.h"
@@ -29,12 +29,14 @@ struct EmitterCheck {
     std::span<const formats::PrimitiveRecord> primitives;
     std::span<const LampSources> sources;
     formats::EmittersView emitters;
-    const MediaLight* media = nullptr;  ///< what media send out, taken as it is; null: nothing
+    /// What media send out, and what metals and media alone pass on from lamps, are taken from here
+    /// as they are; null: nothing.
+    const LampLight* known = nullptr;
 };
 
 /// Compares the first row of receivers drawn at random, opaque ones, with path tracing: a point of
-/// an emitter's surface and one of the lights at every vertex, and any number of diffuse bounces;
-/// at media they end in what is known of these.
+/// an emitter's surface and one of the lights at every vertex, and any number of bounces, diffuse
+/// or mirrored by metal; at media they end in what is known of these, or go straight through.
 /// Receivers in creases, with a surface nearer than a thousandth of the scene, are left out: there
 /// paths lose their way in rounding. Precondition: at least one source.
 /// It shares surfaces' colours with what it checks, but no elements, particles or form factors.

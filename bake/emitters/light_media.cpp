@@ -57,24 +57,25 @@ MediaLight pass(const MediaJob& job, std::span<const LitMedium> media,
     return next;
 }
 
-// Brings light of media to surfaces that reflect it: `irradiance` = `of_surfaces` and that.
+// Brings light of media to surfaces that reflect it: `elements` = `of_surfaces` and that.
 void send(const MediaJob& job, const LampLight& light, const MediaLight& exitance,
-          std::span<const std::vector<glm::vec3>> of_surfaces,
-          std::span<std::vector<glm::vec3>> irradiance, const Context& context,
-          std::uint64_t& rays) {
-    for (std::uint32_t e = 0; e < irradiance.size() && !context.cancelled(); ++e) {
+          std::span<const ElementLight> of_surfaces, std::span<ElementLight> elements,
+          const Context& context, std::uint64_t& rays) {
+    for (std::uint32_t e = 0; e < elements.size() && !context.cancelled(); ++e) {
         const LampSources sources =
             media_sources(light.scene, exitance, e, light.sources[e], light.textures);
         // Lamps have the numbers below.
         const auto key = static_cast<std::uint32_t>(formats::kMaxEmitters) + e;
-        const auto power =
+        // Rays of receivers find media by themselves, mirrored too.
+        const auto deposits =
             trace_particles(light.scene, light.rays, sources, light.layout,
-                            {job.particles, key, light.seed, 0, light.textures}, context, rays);
-        irradiance[e] = of_surfaces[e];
-        if (std::ranges::all_of(power, [](const auto& p) { return p == glm::dvec3(0); })) continue;
-        irradiance[e] = light.layout.push_down(power);
-        for (std::size_t i = 0; i < of_surfaces[e].size(); ++i) {
-            irradiance[e][i] += of_surfaces[e][i];
+                            {job.particles, key, light.seed, 0, light.textures}, context, rays)
+                .all;
+        elements[e] = of_surfaces[e];
+        if (!has_light(deposits)) continue;
+        elements[e] = light.layout.join(deposits, kGatheredShare);
+        for (std::size_t i = 0; i < of_surfaces[e].irradiance.size(); ++i) {
+            elements[e].irradiance[i] += of_surfaces[e].irradiance[i];
         }
     }
 }
@@ -152,16 +153,15 @@ OtherLight make_lamp_columns(const LampLight& light) {
     return columns;
 }
 
-MediaRows light_media(const MediaJob& job, const LampLight& light,
-                      std::span<std::vector<glm::vec3>> irradiance, MediaLight& exitance,
-                      const Context& context, std::uint64_t& rays) {
+MediaRows light_media(const MediaJob& job, const LampLight& light, std::span<ElementLight> elements,
+                      MediaLight& exitance, const Context& context, std::uint64_t& rays) {
     const std::vector<LitMedium> media = list_lit_media(job.media, job.receivers, job.primitives);
     exitance = no_light(job);
     MediaRows result(job.primitives.size());
     if (media.empty()) return result;
-    const std::vector<std::vector<glm::vec3>> of_surfaces(irradiance.begin(), irradiance.end());
+    const std::vector<ElementLight> of_surfaces(elements.begin(), elements.end());
     LampLight lit = light;
-    lit.irradiance = irradiance;
+    lit.elements = elements;
     lit.media = &exitance;
     std::vector<MediumPatches> patches;
     patches.reserve(media.size());
@@ -173,7 +173,7 @@ MediaRows light_media(const MediaJob& job, const LampLight& light,
         MediaLight next = pass(job, media, patches, lit, context, rays);
         const bool is_last = series.is_last(exitance, next, i + 1 == kMostPasses);
         exitance = std::move(next);
-        send(job, light, exitance, of_surfaces, irradiance, context, rays);
+        send(job, light, exitance, of_surfaces, elements, context, rays);
         if (is_last) break;
     }
     const OtherLight columns = make_lamp_columns(lit);

@@ -33,9 +33,8 @@ using MediaRows = std::vector<std::vector<std::vector<formats::Rgb>>>;
 /// on from B = 0 until one changes B by less than a hundredth. What further passes would add
 /// follows from the ratio of the last two, lamp by lamp and band by band. The rows are one more
 /// answer.
-MediaRows light_media(const MediaJob& job, const LampLight& light,
-                      std::span<std::vector<glm::vec3>> irradiance, MediaLight& exitance,
-                      const Context& context, std::uint64_t& rays);
+MediaRows light_media(const MediaJob& job, const LampLight& light, std::span<ElementLight> elements,
+                      MediaLight& exitance, const Context& context, std::uint64_t& rays);
 
 /// The smallest basis that has a column for each lamp: n of 6 n n, a power of two.
 std::uint32_t lamp_basis(std::size_t lamps);

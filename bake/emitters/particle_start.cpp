@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bake/base/rng.h"
+#include "bake/emitters/largest_band.h"
 #include "bake/emitters/trace_particles.h"
 #include "bake/path_differentials/area_sample.h"
 #include "bake/scene/punctual_light.h"
@@ -14,10 +15,7 @@ namespace opaline::bake {
 namespace {
 
 constexpr glm::dvec3 kStill(0);
-
-double largest_band(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
+constexpr float kBelowOne = 1 - 0x1p-24f;
 
 // Two unit vectors across a direction.
 std::array<glm::dvec3, 2> axes_across(const glm::dvec3& d) {
@@ -105,18 +103,17 @@ std::uint64_t particle_key(const ParticleRun& run, std::uint64_t particle) {
 Particle start_particle(const StartTable& table, const DifferentialRules& rules,
                         const ParticleRun& run, std::uint64_t particle) {
     const auto shift = random_uniform(run.seed, RandomStage::particle_starts, run.lamp);
-    std::array<double, 4> x{};
+    const auto more = random_uniform(run.seed, RandomStage::particle_starts, run.lamp, 1);
+    std::array<double, 8> lattice{};
     double turn = 1;
-    for (std::size_t k = 0; k < 4; ++k) {
-        turn /= 1.1673039782614187;  // the root of x^5 = x + 1
-        const double at = static_cast<double>(shift[k]) + static_cast<double>(particle) * turn;
-        x[k] = at - std::floor(at);
+    for (std::size_t k = 0; k < lattice.size(); ++k) {
+        turn /= 1.085070245491451;  // the root of x^9 = x + 1
+        const double at = static_cast<double>(k < 4 ? shift[k] : more[k - 4]) +
+                          static_cast<double>(particle) * turn;
+        lattice[k] = at - std::floor(at);
     }
-    // Which source: independent of the lattice.
-    const double total = table.cumulative.back();
-    const auto choice =
-        random_uniform(run.seed, RandomStage::particle_starts, particle_key(run, particle), 1);
-    const double at = table.cumulative.size() == 1 ? 0 : static_cast<double>(choice[0]) * total;
+    const std::array<double, 4> x{lattice[1], lattice[2], lattice[3], lattice[4]};
+    const double total = table.cumulative.back(), at = lattice[0] * total;
     const auto source = std::min<std::size_t>(
         static_cast<std::size_t>(std::ranges::upper_bound(table.cumulative, at) -
                                  table.cumulative.begin()),
@@ -125,6 +122,9 @@ Particle start_particle(const StartTable& table, const DifferentialRules& rules,
     const double chance = (table.cumulative[source] - before) / total;
 
     Particle p;
+    for (std::size_t k = 0; k < p.first_bounce.size(); ++k) {
+        p.first_bounce[k] = std::min(static_cast<float>(lattice[5 + k]), kBelowOne);
+    }
     p.path.survival = chance;
     const LampSources& lamp = table.lamp;
     const bool is_light = source >= lamp.triangles.size();

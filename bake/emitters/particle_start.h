@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -27,6 +28,7 @@ struct Particle {
     glm::dvec3 power{0};  ///< [lm]
     double range = 0;     ///< [m] of its light; 0: endless
     PathDifferential path;
+    std::array<float, 3> first_bounce{};  ///< its random numbers at the first surface
 
     /// Share that the light's range leaves at a distance [m].
     double dimming(double distance) const;
@@ -35,7 +37,7 @@ struct Particle {
 /// Random numbers of a lamp's particle.
 std::uint64_t particle_key(const ParticleRun& run, std::uint64_t particle);
 
-/// A particle at its source, with its share of the lamp's power. The first four numbers of all
+/// A particle at its source, with its share of the lamp's power. The first eight numbers of all
 /// particles are a lattice [Roberts2018], shifted by the seed. Precondition: the table is not
 /// empty.
 Particle start_particle(const StartTable& table, const DifferentialRules& rules,

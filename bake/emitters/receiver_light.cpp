@@ -1,6 +1,7 @@
 #include "bake/emitters/receiver_light.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -12,7 +13,10 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
 #include "bake/emitters/bounce_color.h"
+#include "bake/emitters/largest_band.h"
+#include "bake/emitters/onward_ray.h"
 #include "bake/emitters/straight_light.h"
+#include "bake/emitters/surface_arrival.h"
 #include "bake/path_differentials/disk_map.h"
 #include "bake/scene/texture_footprint.h"
 
@@ -20,6 +24,9 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::size_t kReceiversPerBlock = 16;
+constexpr std::uint32_t kMostGathered = 16;
+constexpr double kLeastGathered = 1e-3;  // of what a ray gathers
+constexpr double kNear = 0.01;           // of the scene: a receiver's surface is not farther
 
 double fraction(double x) {
     return x - std::floor(x);
@@ -27,9 +34,8 @@ double fraction(double x) {
 
 bool has_bounces(const LampLight& light) {
     return (light.media != nullptr && !light.media->empty()) ||
-           std::ranges::any_of(light.irradiance, [](const std::vector<glm::vec3>& of_lamp) {
-               return !of_lamp.empty();
-           });
+           std::ranges::any_of(light.elements,
+                               [](const ElementLight& of_lamp) { return !of_lamp.empty(); });
 }
 
 /// A gather ray: a cell of the directions over the horizon.
@@ -45,48 +51,83 @@ double cell_of_ray(float cosine, std::uint32_t rays) {
 }
 
 // What the cell sees of the surface at a hit, to look its textures up over.
-std::optional<TextureView> view_of_cell(const LampLight& light, const PacketHits& hits,
-                                        std::size_t lane, const GatherCell& cell) {
-    const formats::Primitive& primitive = light.scene.primitives[hits.primitive[lane]];
+std::optional<TextureView> view_of_cell(const LampLight& light, const Arrival& at,
+                                        const GatherCell& cell) {
+    const formats::Primitive& primitive = light.scene.primitives[at.side.primitive];
     if (light.textures == nullptr ||
         !has_pyramid(*light.textures, light.scene.materials[primitive.material])) {
         return std::nullopt;
     }
-    return TextureView{
-        *light.textures,
-        moments_of_cone(uv_gradient(primitive, hits.first_index[lane]), cell.direction,
-                        {hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]},
-                        static_cast<double>(hits.distance[lane]), cell.solid_angle)};
+    return TextureView{*light.textures,
+                       moments_of_cone(uv_gradient(primitive, at.side.first_index), cell.direction,
+                                       glm::vec3(at.normal), at.distance, cell.solid_angle)};
 }
 
-// Adds what the surface at a hit sends toward the ray, of every lamp, times pi.
-void add_reflected(const LampLight& light, const PacketHits& hits, std::size_t lane,
-                   const GatherCell& cell, std::vector<glm::dvec3>& sum) {
-    const std::optional<TextureView> over = view_of_cell(light, hits, lane, cell);
-    const TextureView* const view = over ? &*over : nullptr;
-    const TriangleSide side{hits.primitive[lane], hits.first_index[lane], hits.cosine[lane] > 0};
-    const glm::vec3 weights(1 - hits.u[lane] - hits.v[lane], hits.u[lane], hits.v[lane]);
+// Adds what the surface at a hit sends toward the ray, of every lamp, times pi and `weight`.
+void add_reflected(const LampLight& light, const Arrival& at, const glm::dvec3& weight,
+                   const TextureView* view, std::vector<glm::dvec3>& sum) {
+    const TriangleSide& side = at.side;
+    const glm::vec3 weights(at.weights);
     if (light.media != nullptr && !side.is_back && side.primitive < light.media->exitance.size() &&
         !light.media->exitance[side.primitive].empty()) {
         for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
-            sum[lamp] += media_exitance(light.scene, *light.media, lamp, side, weights, view);
+            sum[lamp] +=
+                weight * media_exitance(light.scene, *light.media, lamp, side, weights, view);
         }
         return;
     }
     const BounceColor color = bounce_color(light.scene, side, weights, view);
     const auto add = [&](const glm::dvec3& share, bool is_back) {
         if (share == glm::dvec3(0)) return;
-        const std::size_t element = light.layout.finest_element(
-            {side.primitive, side.first_index, is_back}, glm::dvec3(weights));
+        const std::size_t element =
+            light.layout.element({side.primitive, side.first_index, is_back}, at.weights);
         if (element == light.layout.size()) return;
         for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
-            if (!light.irradiance[lamp].empty()) {
-                sum[lamp] += share * glm::dvec3(light.irradiance[lamp][element]);
+            if (!light.elements[lamp].empty()) {
+                sum[lamp] += weight * share * glm::dvec3(light.elements[lamp].irradiance[element]);
             }
         }
     };
     add(color.reflect, side.is_back);
     add(color.transmit, !side.is_back);
+}
+
+/// A ray of a receiver.
+struct GatherRay {
+    glm::dvec3 from, direction;
+    std::uint64_t key;
+    std::uint32_t number;
+};
+
+// Adds what the surfaces along a ray send toward it that begins at `at`, the first of them: metals
+// and media pass on what is beyond. `view`: of the first surface's textures; others are points'.
+void gather_along(const LampLight& light, GatherRay ray, Arrival at, const TextureView* view,
+                  std::vector<glm::dvec3>& sum, std::uint64_t& rays) {
+    glm::dvec3 weight(1);
+    PathDifferential unused;
+    for (std::uint32_t flight = 0; flight < kMostGathered; ++flight) {
+        add_reflected(light, at, weight, flight == 0 ? view : nullptr, sum);
+        const bool is_medium = lets_through(light.scene, at);
+        if (!is_medium && mirror_chance(light.scene, at, ray.direction) == 0) return;
+        const auto x = random_uniform(light.seed, RandomStage::gather_rays, ray.key,
+                                      1 + ray.number * kMostGathered + flight);
+        unused.count = 0;
+        const auto onward =
+            is_medium
+                ? cross_boundary(light.scene, at, ray.direction, static_cast<double>(x[2]), {},
+                                 unused)
+                : mirror_ray(light.scene, at, ray.direction,
+                             {static_cast<double>(x[0]), static_cast<double>(x[1])}, {}, unused);
+        if (!onward) return;
+        ray.from = leave_surface(ray.from, ray.direction, at, onward->crosses);
+        ray.direction = onward->direction;
+        ++rays;
+        const auto next = find_arrival(light.rays, glm::vec3(ray.from), glm::vec3(ray.direction));
+        if (!next) return;
+        at = *next;
+        weight *= onward->weight * straight_transmittance(light.scene, at);
+        if (!(largest_band(weight) > kLeastGathered)) return;
+    }
 }
 
 // Behind a thin-walled surface; as effects/sheet has it.
@@ -134,13 +175,16 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
             }
             const PacketHits hits = light.rays.closest(lanes, packet);
             for (std::uint32_t lane = 0; lane < count; ++lane) {
-                if (hits.hit[lane] == 0) continue;
+                const auto at = arrival_of(hits, lane);
+                if (!at) continue;
                 const glm::vec3 direction(packet.dir_x[lane], packet.dir_y[lane],
                                           packet.dir_z[lane]);
-                add_reflected(
-                    light, hits, lane,
-                    {direction, cell_of_ray(glm::dot(direction, receiver.normal), light.samples)},
-                    total);
+                const double cell =
+                    cell_of_ray(glm::dot(direction, receiver.normal), light.samples);
+                const auto view = view_of_cell(light, *at, {direction, cell});
+                gather_along(
+                    light, {glm::dvec3(receiver.origin), glm::dvec3(direction), key, first + lane},
+                    *at, view ? &*view : nullptr, total, rays);
             }
         }
         rays += light.samples;
@@ -148,11 +192,48 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
             sum /= light.samples;
         }
     }
+    add_caustics(light, receiver, total, rays);
     for (std::size_t lamp = 0; lamp < total.size(); ++lamp) {
         total[lamp] +=
             straight_irradiance(light.rays, light.sources[lamp], receiver, light.samples, rays);
     }
     return total;
+}
+
+void add_caustics(const LampLight& light, const Receiver& receiver, std::span<glm::dvec3> total,
+                  std::uint64_t& rays) {
+    if (std::ranges::all_of(light.caustics, &ElementLight::empty)) return;
+    // Four rays down to what lies around it: at a vertex, some of the elements that meet there.
+    constexpr std::uint32_t kRays = 4;
+    RayPacket packet = rays_from(receiver.origin);
+    LaneMask lanes{};
+    const Frame frame = make_frame(receiver.normal);
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+        const glm::vec3 across(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, -1);
+        const glm::vec3 direction = glm::normalize(frame.to_world(across));
+        packet.dir_x[i] = direction.x;
+        packet.dir_y[i] = direction.y;
+        packet.dir_z[i] = direction.z;
+        packet.tfar[i] = static_cast<float>(kNear * light.sources.front().radius);
+        lanes[i] = -1;
+    }
+    rays += kRays;
+    const PacketHits hits = light.rays.closest(lanes, packet);
+    std::array<std::size_t, kRays> elements{};
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+        const auto at = arrival_of(hits, i);
+        if (!at || glm::dot(at->normal, glm::dvec3(receiver.normal)) < 0.5) continue;
+        const std::size_t element = light.layout.element(at->side, at->weights);
+        if (element < light.layout.size()) elements[count++] = element;
+    }
+    for (std::size_t lamp = 0; lamp < light.caustics.size(); ++lamp) {
+        if (light.caustics[lamp].empty()) continue;
+        for (std::size_t i = 0; i < count; ++i) {
+            total[lamp] += glm::dvec3(light.caustics[lamp].irradiance[elements[i]]) /
+                           static_cast<double>(count);
+        }
+    }
 }
 
 std::uint64_t key_of_point(const Receiver& at) {

@@ -15,26 +15,38 @@
 
 namespace opaline::bake {
 
+/// Of footprints that are gathered: rays average over many elements, so that these may be noisier
+/// and blur less than those that are read one by one.
+inline constexpr double kGatheredShare = 0.25;
+
 /// All lamps of a scene and what their particles brought to its surfaces.
 struct LampLight {
     const formats::Scene& scene;
     const RayScene& rays;
     std::span<const LampSources> sources;  ///< of each lamp
     const ElementLayout& layout;
-    /// Of each lamp, by element [lx]; an empty one: no surface reflects its light.
-    std::span<const std::vector<glm::vec3>> irradiance;
+    /// Of each lamp; an empty one: no surface reflects its light.
+    std::span<const ElementLight> elements;
     std::uint32_t samples = 1;  ///< shadow rays to a lamp, and gather rays
     std::uint64_t seed = 0;
     const MediaLight* media = nullptr;  ///< what media send out again; null: nothing
     /// Reflected light is filtered over the cells of gather rays; null: colours of points.
     const ScenePyramids* textures = nullptr;
+    /// Of each lamp, what metals and media alone passed on; an empty one, or none: nothing.
+    std::span<const ElementLight> caustics = {};
 };
 
-/// Irradiance [lx] of a receiver from each lamp: straight, and from surfaces that `samples` rays
-/// spread by the cosine meet, at their elements, or as media send it out. (seed, key): key the
+/// Irradiance [lx] of a receiver from each lamp: straight, as metals and media pass it on from the
+/// lamp, and from surfaces that `samples` rays spread by the cosine meet, mirrored by metals and
+/// straight through media too: at their elements, or as media send it out. (seed, key): key the
 /// rotation of these rays.
 std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& receiver,
                                       std::uint64_t key, std::uint64_t& rays);
+
+/// Adds to `total`, of each lamp, what metals and media alone pass on from it to a receiver [lx]:
+/// the mean over the elements around it.
+void add_caustics(const LampLight& light, const Receiver& receiver, std::span<glm::dvec3> total,
+                  std::uint64_t& rays);
 
 /// Key of a point's random numbers, where it has no number: a hash of its place and normal.
 std::uint64_t key_of_point(const Receiver& at);

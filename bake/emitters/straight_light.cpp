@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/emitters/largest_band.h"
 #include "bake/path_differentials/area_sample.h"
 #include "bake/scene/punctual_light.h"
 
@@ -71,10 +72,6 @@ double geometry(const glm::dvec3& way, const glm::dvec3& normal, const glm::dvec
                       : 0.0;
 }
 
-double largest(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
-
 glm::dvec3 from_triangles(const RayScene& scene, const LampSources& lamp, const Receiver& receiver,
                           std::uint32_t samples, std::uint64_t& rays) {
     const glm::dvec3 point(receiver.origin), normal(receiver.normal);
@@ -85,7 +82,7 @@ glm::dvec3 from_triangles(const RayScene& scene, const LampSources& lamp, const 
         const GlowingTriangle& triangle = lamp.triangles[t];
         factor[t] = triangle_irradiance(triangle, point, normal);
         total += factor[t] * triangle.radiance;
-        sum += factor[t] * largest(triangle.radiance);
+        sum += factor[t] * largest_band(triangle.radiance);
         cumulative[t] = sum;
     }
     if (!(sum > 0)) return glm::dvec3(0);
@@ -103,7 +100,7 @@ glm::dvec3 from_triangles(const RayScene& scene, const LampSources& lamp, const 
         // Its mean over the triangle is radiance / largest: the choice is in proportion to both.
         const double weight = geometry(way, normal, triangle.normal) * triangle.area / factor[t];
         if (!(distance > 0) || !std::isfinite(weight) || !(weight > 0)) continue;
-        const glm::dvec3 light = weight / largest(triangle.radiance) * triangle.radiance;
+        const glm::dvec3 light = weight / largest_band(triangle.radiance) * triangle.radiance;
         all += light;
         shadow.add(glm::vec3(way / distance), static_cast<float>(distance) * kShadowEnd, light);
     }

@@ -6,7 +6,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kMostLevels = 12;  // 4^11 elements of a triangle
+constexpr std::uint32_t kMostLevels = 11;  // 4^11 elements of a triangle
 
 std::uint32_t count_sides(const formats::Scene& scene, const formats::Primitive& primitive) {
     const formats::Material& material = scene.materials[primitive.material];
@@ -18,11 +18,6 @@ double triangle_area(const formats::Primitive& primitive, std::size_t first_inde
     const glm::dvec3 a(primitive.position[i[0]]);
     return 0.5 * glm::length(glm::cross(glm::dvec3(primitive.position[i[1]]) - a,
                                         glm::dvec3(primitive.position[i[2]]) - a));
-}
-
-// Elements of levels below `level`.
-std::uint32_t elements_before(std::uint32_t level) {
-    return ((1u << (2 * level)) - 1) / 3;
 }
 
 // Of the 4^level triangles: corner k's is child k, the middle one child 3. Its digits, base 4, are
@@ -47,6 +42,11 @@ std::uint32_t element_index(glm::dvec3 weights, std::uint32_t level) {
 
 }  // namespace
 
+bool has_light(std::span<const ElementDeposit> deposits) {
+    return std::ranges::any_of(deposits,
+                               [](const ElementDeposit& of) { return of.power != glm::dvec3(0); });
+}
+
 double reflecting_area(const formats::Scene& scene) {
     double sum = 0;
     for (const formats::Primitive& primitive : scene.primitives) {
@@ -59,15 +59,16 @@ ElementLayout::ElementLayout(const formats::Scene& scene, double finest) {
     for (const formats::Primitive& primitive : scene.primitives) {
         first_.push_back(static_cast<std::uint32_t>(hierarchies_.size()));
         sides_.push_back(count_sides(scene, primitive));
+        clusters_.push_back(cluster_triangles(primitive));
         for (std::size_t i = 0; i + 2 < primitive.index.size(); i += 3) {
             const double area = triangle_area(primitive, i);
-            std::uint32_t levels = 1;
+            std::uint32_t levels = 0;
             for (double part = area / 4; part >= finest && levels < kMostLevels; part /= 4) {
                 ++levels;
             }
             for (std::uint32_t side = 0; side < sides_.back(); ++side) {
                 hierarchies_.push_back({static_cast<std::uint32_t>(size_), levels, area});
-                size_ += elements_before(levels);
+                size_ += std::size_t{1} << (2 * levels);
             }
         }
     }
@@ -80,34 +81,10 @@ const ElementLayout::Hierarchy* ElementLayout::find(const TriangleSide& side) co
                          (side.is_back ? 1 : 0)];
 }
 
-std::size_t ElementLayout::element(const TriangleSide& side, const glm::dvec3& weights,
-                                   double footprint) const {
+std::size_t ElementLayout::element(const TriangleSide& side, const glm::dvec3& weights) const {
     const Hierarchy* const hierarchy = find(side);
     if (hierarchy == nullptr) return size_;
-    std::uint32_t level = 0;
-    for (double area = hierarchy->area; level + 1 < hierarchy->levels && area > footprint;
-         area /= 4) {
-        ++level;
-    }
-    return hierarchy->first + elements_before(level) + element_index(weights, level);
-}
-
-std::vector<glm::vec3> ElementLayout::push_down(std::span<const glm::dvec3> power) const {
-    std::vector<glm::vec3> irradiance(size_);
-    for (const Hierarchy& hierarchy : hierarchies_) {
-        double area = hierarchy.area;
-        for (std::uint32_t level = 0; level < hierarchy.levels; ++level, area /= 4) {
-            const std::size_t first = hierarchy.first + elements_before(level);
-            const std::size_t parents =
-                level == 0 ? 0 : hierarchy.first + elements_before(level - 1);
-            for (std::size_t i = 0; i < (std::size_t{1} << (2 * level)); ++i) {
-                const glm::vec3 above = level == 0 ? glm::vec3(0) : irradiance[parents + i / 4];
-                const glm::dvec3 own = area > 0 ? power[first + i] / area : glm::dvec3(0);
-                irradiance[first + i] = above + glm::vec3(own);
-            }
-        }
-    }
-    return irradiance;
+    return hierarchy->first + element_index(weights, hierarchy->levels);
 }
 
 }  // namespace opaline::bake

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/emitters/triangle_clusters.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -16,43 +17,58 @@ struct TriangleSide {
     bool is_back = false;                          ///< the side that its normal points away from
 };
 
-/// Elements of all triangles of a scene in hierarchies: level l cuts a triangle's edges into 2^l
-/// parts, which makes 4^l triangles alike. Sides that reflect nothing, backs of single-sided
-/// surfaces, have no elements.
+/// What particles gave to an element.
+struct ElementDeposit {
+    glm::dvec3 power{0};       ///< [lm]
+    double weight = 0;         ///< sum of largest bands [lm]
+    double log_footprint = 0;  ///< sum of largest bands times ln of the footprint [m^2]
+};
+
+/// Whether any element took light.
+bool has_light(std::span<const ElementDeposit> deposits);
+
+/// Light of all elements.
+struct ElementLight {
+    std::vector<glm::vec3> irradiance;    ///< [lx]
+    std::vector<std::uint32_t> together;  ///< the first of those joined with it at s = sqrt(2)
+
+    bool empty() const { return irradiance.empty(); }
+};
+
+/// Elements of all triangles of a scene: 4^l triangles alike, cuts of its edges into 2^l parts.
+/// Elements of a triangle join to those of fewer levels, and triangles of connected patches join to
+/// clusters. Sides that reflect nothing, backs of single-sided surfaces, have no elements.
 class ElementLayout {
   public:
-    /// The finest elements are about as large as `finest` [m^2] and not smaller, but of a triangle
-    /// of twice that area or less there is one. Preconditions: finest > 0; fewer than 2^32
-    /// elements.
+    /// Elements are about as large as `finest` [m^2] and not smaller, but of a triangle of twice
+    /// that area or less there is one. Preconditions: finest > 0; fewer than 2^32 elements.
     ElementLayout(const formats::Scene& scene, double finest);
 
-    /// Elements of all levels.
     std::size_t size() const { return size_; }
 
-    /// The largest element around a point that is not larger than the footprint [m^2], or the
-    /// finest one; size() where the side has none. `weights`: barycentric.
-    std::size_t element(const TriangleSide& side, const glm::dvec3& weights,
-                        double footprint) const;
+    /// The element around a point, or size() where the side has none. `weights`: barycentric.
+    std::size_t element(const TriangleSide& side, const glm::dvec3& weights) const;
 
-    /// The finest element around a point, or size().
-    std::size_t finest_element(const TriangleSide& side, const glm::dvec3& weights) const {
-        return element(side, weights, 0);
-    }
-
-    /// Irradiance of each element from the power that each took itself [lm]: the sum over it and
-    /// those that it is part of, power over area.
-    std::vector<glm::vec3> push_down(std::span<const glm::dvec3> power) const;
+    /// Joins elements as far as footprints reach, and spreads what each group took over its area.
+    /// Siblings join if all are whole and their parent is not larger than s times the footprints in
+    /// it, in the mean of logarithms weighted by power. What arrives where nothing else did joins
+    /// anything. Levels are a factor of four apart: the mean over three sizes s around sqrt(2),
+    /// spread over that factor, follows the footprint. Every group's mean is what arrived in it
+    /// over its area. `share`: by which footprints count smaller, in (0, 1].
+    ElementLight join(std::span<const ElementDeposit> deposits, double share = 1) const;
 
   private:
     struct Hierarchy {
-        std::uint32_t first = 0;  // element; its children follow level by level
+        std::uint32_t first = 0;  // element
         std::uint32_t levels = 0;
         double area = 0;
     };
+    class Joining;
     const Hierarchy* find(const TriangleSide& side) const;
 
-    std::vector<std::uint32_t> first_;  // of each primitive, into hierarchies_
-    std::vector<std::uint32_t> sides_;  // of each primitive, 1 or 2
+    std::vector<std::uint32_t> first_;        // of each primitive, into hierarchies_
+    std::vector<std::uint32_t> sides_;        // of each primitive, 1 or 2
+    std::vector<TriangleClusters> clusters_;  // of each primitive
     std::vector<Hierarchy> hierarchies_;
     std::size_t size_ = 0;
 };

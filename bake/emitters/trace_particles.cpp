@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
 #include "bake/emitters/bounce_color.h"
+#include "bake/emitters/largest_band.h"
+#include "bake/emitters/onward_ray.h"
 #include "bake/emitters/particle_start.h"
+#include "bake/emitters/surface_arrival.h"
 #include "bake/path_differentials/path_differential.h"
 #include "bake/scene/texture_footprint.h"
 
@@ -20,10 +21,14 @@ namespace {
 
 constexpr std::size_t kBlock = 2048;  // particles
 constexpr std::uint32_t kMostFlights = 64;
+constexpr double kLeastShare = 1e-4;       // of its power at first: a particle ends
+constexpr double kLeastFootprint = 1e-30;  // [m^2]: its logarithm is finite
 
 struct Deposit {
     std::size_t element;
     glm::dvec3 power;
+    double footprint;  // [m^2]
+    bool is_caustic;
 };
 
 struct Traced {
@@ -39,42 +44,6 @@ struct Tracer {
     const StartTable& starts;
     DifferentialRules rules;
 };
-
-/// What the first surface along a ray is.
-struct Arrival {
-    TriangleSide side;
-    glm::dvec3 weights{0};
-    glm::dvec3 normal{0};  ///< unit, of the side met
-    std::uint32_t material = 0;
-    double distance = 0, error = 0;
-};
-
-bool find_arrival(const RayScene& surfaces, const glm::vec3& from, const glm::vec3& direction,
-                  Arrival& arrival) {
-    RayPacket packet = rays_from(from);
-    packet.dir_x[0] = direction.x;
-    packet.dir_y[0] = direction.y;
-    packet.dir_z[0] = direction.z;
-    packet.tfar[0] = std::numeric_limits<float>::infinity();
-    LaneMask lanes{};
-    lanes[0] = -1;
-    const PacketHits hits = surfaces.closest(lanes, packet);
-    if (hits.hit[0] == 0 || hits.cosine[0] == 0) return false;
-    const bool is_back = hits.cosine[0] > 0;
-    const glm::dvec3 normal(hits.normal_x[0], hits.normal_y[0], hits.normal_z[0]);
-    arrival.side = {hits.primitive[0], hits.first_index[0], is_back};
-    const double u = hits.u[0], v = hits.v[0];
-    arrival.weights = {1 - u - v, u, v};
-    arrival.normal = is_back ? -normal : normal;
-    arrival.material = hits.material[0];
-    arrival.distance = hits.distance[0];
-    arrival.error = hits.error[0];
-    return true;
-}
-
-double largest_of(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
 
 // What the particle stands for of the surface, to look its textures up over.
 std::optional<TextureView> view_of_footprint(const Tracer& tracer, const PathDifferential& path,
@@ -92,64 +61,103 @@ std::optional<TextureView> view_of_footprint(const Tracer& tracer, const PathDif
     return TextureView{*textures, moments};
 }
 
+// What becomes of a particle at a surface: how its ray goes on, what share of its power.
+struct Choice {
+    glm::dvec3 direction{0}, power{0};
+    bool crosses = false, is_diffuse = false;
+};
+
+Choice scatter(const Tracer& tracer, const Arrival& at, const std::array<float, 4>& random,
+               Particle& p) {
+    const std::array<double, 2> x{static_cast<double>(random[0]), static_cast<double>(random[1])};
+    const std::optional<TextureView> view = view_of_footprint(tracer, p.path, at);
+    const BounceColor color =
+        bounce_color(tracer.scene, at.side, glm::vec3(at.weights), view ? &*view : nullptr);
+    const double reflect = largest_band(color.reflect), transmit = largest_band(color.transmit);
+    const double mirror = mirror_chance(tracer.scene, at, p.direction);
+    const double sum = reflect + transmit + mirror, going_on = std::min(1.0, sum);
+    const double roulette = static_cast<double>(random[2]);
+    if (!(roulette < going_on)) return {};
+    const double at_choice = roulette / going_on * sum;
+    Choice choice;
+    if (at_choice < mirror) {
+        const double chance = going_on * mirror / sum;
+        p.path.survival *= chance;
+        const auto onward = mirror_ray(tracer.scene, at, p.direction, x, tracer.rules, p.path);
+        if (onward) choice = {onward->direction, onward->weight / chance * p.power, false, false};
+        return choice;
+    }
+    choice.is_diffuse = true;
+    choice.crosses = at_choice >= mirror + reflect;
+    const double chance = going_on * (choice.crosses ? transmit : reflect) / sum;
+    choice.power = (choice.crosses ? color.transmit : color.reflect) / chance * p.power;
+    p.path.survival *= chance;
+    const glm::dvec3 axis = choice.crosses ? -at.normal : at.normal;
+    aim_at_normal(p.path, glm::dmat3(0.0));
+    choice.direction =
+        scatter_in_lobe(p.path, tracer.rules, {.axis = axis, .u = x[0], .v = x[1], .N_g = axis});
+    return choice;
+}
+
+Choice cross(const Tracer& tracer, const Arrival& at, double x, Particle& p) {
+    const auto onward = cross_boundary(tracer.scene, at, p.direction, x, tracer.rules, p.path);
+    return onward ? Choice{onward->direction, onward->weight * p.power, onward->crosses, false}
+                  : Choice{};
+}
+
 void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
     Particle p = start_particle(tracer.starts, tracer.rules, tracer.run, particle);
-    for (std::uint32_t flight = 0; flight < kMostFlights && p.power != glm::dvec3(0); ++flight) {
-        Arrival at;
+    const double least = kLeastShare * largest_band(p.power);
+    bool is_from_lamp = true;  // by metals and media alone
+    for (std::uint32_t flight = 0; flight < kMostFlights; ++flight) {
         ++out.rays;
-        if (!find_arrival(tracer.surfaces, glm::vec3(p.position), glm::vec3(p.direction), at)) {
-            return;
-        }
-        p.position += at.distance * p.direction;
-        move_to_surface(p.path, p.direction, at.normal, at.distance);
-        if (flight == 0) p.power *= p.dimming(at.distance);
-        const auto x = random_uniform(tracer.run.seed, RandomStage::particle_bounces,
-                                      particle_key(tracer.run, particle), flight);
-        // Levels are a factor of four apart: the one below or above by chance, so that the mean
-        // size follows the footprint.
-        const double area =
+        const auto at =
+            find_arrival(tracer.surfaces, glm::vec3(p.position), glm::vec3(p.direction));
+        if (!at) return;
+        move_to_surface(p.path, p.direction, at->normal, at->distance);
+        if (flight == 0) p.power *= p.dimming(at->distance);
+        p.power *= straight_transmittance(tracer.scene, *at);
+        if (!(largest_band(p.power) > least)) return;
+        const double footprint =
             tracer.run.fixed_area > 0
                 ? tracer.run.fixed_area
-                : std::pow(4.0, static_cast<double>(x[3]) - 0.25) *
-                      surface_footprint(p.path, tracer.rules, at.normal, FootprintMode::polygon)
-                          .area;
-        const std::size_t element = tracer.layout.element(at.side, at.weights, area);
-        if (element < tracer.layout.size()) out.deposits.push_back({element, p.power});
-
-        const std::optional<TextureView> view = view_of_footprint(tracer, p.path, at);
-        const BounceColor color =
-            bounce_color(tracer.scene, at.side, glm::vec3(at.weights), view ? &*view : nullptr);
-        const double reflect = largest_of(color.reflect), transmit = largest_of(color.transmit);
-        const double going_on = std::min(1.0, reflect + transmit);
-        const double roulette = static_cast<double>(x[2]);
-        if (!(roulette < going_on)) return;
-        const bool crosses = roulette * (reflect + transmit) >= reflect * going_on;
-        const double chance = going_on * (crosses ? transmit : reflect) / (reflect + transmit);
-        p.power *= (crosses ? color.transmit : color.reflect) / chance;
-        p.path.survival *= chance;
-        const glm::dvec3 axis = crosses ? -at.normal : at.normal;
-        p.position += crosses ? 2 * at.error * axis
-                              : -std::min(2 * at.error / -glm::dot(p.direction, at.normal),
-                                          0.5 * at.distance) *
-                                    p.direction;
-        aim_at_normal(p.path, glm::dmat3(0.0));
-        p.direction = scatter_in_lobe(p.path, tracer.rules,
-                                      {.axis = axis,
-                                       .u = static_cast<double>(x[0]),
-                                       .v = static_cast<double>(x[1]),
-                                       .N_g = axis});
+                : surface_footprint(p.path, tracer.rules, at->normal, FootprintMode::polygon).area;
+        const std::size_t element = tracer.layout.element(at->side, at->weights);
+        if (element < tracer.layout.size()) {
+            out.deposits.push_back({element, p.power, std::max(footprint, kLeastFootprint),
+                                    is_from_lamp && flight > 0});
+        }
+        auto x = random_uniform(tracer.run.seed, RandomStage::particle_bounces,
+                                particle_key(tracer.run, particle), flight);
+        if (flight == 0) std::ranges::copy(p.first_bounce, x.begin());
+        const bool is_medium = lets_through(tracer.scene, *at);
+        if (is_medium && at->side.is_back && flight == 0) return;
+        const Choice next = is_medium ? cross(tracer, *at, static_cast<double>(x[2]), p)
+                                      : scatter(tracer, *at, x, p);
+        if (next.power == glm::dvec3(0)) return;
+        p.position = leave_surface(p.position, p.direction, *at, next.crosses);
+        p.direction = next.direction;
+        p.power = next.power;
+        is_from_lamp = is_from_lamp && !next.is_diffuse;
     }
+}
+
+void add_deposit(const Deposit& deposit, std::vector<ElementDeposit>& elements) {
+    ElementDeposit& element = elements[deposit.element];
+    const double weight = largest_band(deposit.power);
+    element.power += deposit.power;
+    element.weight += weight;
+    element.log_footprint += weight * std::log(deposit.footprint);
 }
 
 }  // namespace
 
-std::vector<glm::dvec3> trace_particles(const formats::Scene& scene, const RayScene& rays_scene,
-                                        const LampSources& lamp, const ElementLayout& layout,
-                                        const ParticleRun& run, const Context& context,
-                                        std::uint64_t& rays) {
-    std::vector<glm::dvec3> power(layout.size(), glm::dvec3(0));
+ParticleLight trace_particles(const formats::Scene& scene, const RayScene& rays_scene,
+                              const LampSources& lamp, const ElementLayout& layout,
+                              const ParticleRun& run, const Context& context, std::uint64_t& rays) {
+    ParticleLight light{std::vector<ElementDeposit>(layout.size()), {}};
     const StartTable starts = make_start_table(lamp);
-    if (starts.empty() || rays_scene.is_empty()) return power;
+    if (starts.empty() || rays_scene.is_empty()) return light;
     const Tracer tracer{scene,
                         rays_scene,
                         layout,
@@ -157,6 +165,7 @@ std::vector<glm::dvec3> trace_particles(const formats::Scene& scene, const RaySc
                         starts,
                         {.steps = DifferentialRules::Steps::global,
                          .samples = static_cast<double>(run.particles),
+                         .gradient_limit = run.gradient_limit,
                          .extent = 2 * lamp.radius}};
     for_each_block_in_order(
         run.particles, kBlock, context,
@@ -170,11 +179,14 @@ std::vector<glm::dvec3> trace_particles(const formats::Scene& scene, const RaySc
         },
         [&](Range, Traced&& traced) {
             for (const Deposit& deposit : traced.deposits) {
-                power[deposit.element] += deposit.power;
+                add_deposit(deposit, light.all);
+                if (!deposit.is_caustic) continue;
+                light.caustic.resize(layout.size());
+                add_deposit(deposit, light.caustic);
             }
             rays += traced.rays;
         });
-    return power;
+    return light;
 }
 
 }  // namespace opaline::bake

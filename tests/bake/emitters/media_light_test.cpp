@@ -64,7 +64,7 @@ TEST(MediaLight, ColumnsHoldIrradiance) {
     const RayScene rays = tests::build_rays(scene);
     const auto sources = tests::all_sources(scene);
     const ElementLayout layout(scene, 1);
-    const std::vector<std::vector<glm::vec3>> nothing(2);
+    const std::vector<ElementLight> nothing(2);
     const LampLight light{scene, rays, sources, layout, nothing, 16, 0};
     const OtherLight columns = make_lamp_columns(light);
     EXPECT_FALSE(columns.environment);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
 #include <numeric>
 
 #include "tests/bake/emitters/lamp_scenes.h"
@@ -10,10 +12,10 @@
 namespace opaline::bake {
 namespace {
 
-// A triangle of area 1/2 in five levels.
-formats::Scene half_square() {
+// Two triangles of area 1/2.
+formats::Scene half_square(std::uint32_t cells = 1) {
     formats::Scene scene;
-    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 0.5f);
+    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, cells), 0.5f);
     return scene;
 }
 
@@ -23,19 +25,30 @@ glm::dvec3 random_weights(tests::RandomInputs& random) {
     return {1 - u - v, u, v};
 }
 
-TEST(SurfaceElements, LevelsAreThoseOfTheFootprint) {
+/// Power 1 in every element, with the same footprint.
+std::vector<ElementDeposit> even_deposits(const ElementLayout& layout, double footprint) {
+    return std::vector<ElementDeposit>(layout.size(),
+                                       {glm::dvec3(1, 0, 0), 1, std::log(footprint)});
+}
+
+std::map<std::uint32_t, std::size_t> count_groups(const ElementLight& light) {
+    std::map<std::uint32_t, std::size_t> groups;
+    for (const std::uint32_t group : light.together)
+        ++groups[group];
+    return groups;
+}
+
+TEST(SurfaceElements, AreAboutAsLargeAsTheFinest) {
     const formats::Scene scene = half_square();
     EXPECT_EQ(reflecting_area(scene), 1);
     const ElementLayout layout(scene, 0.5 / 256);
-    EXPECT_EQ(layout.size(), 2u * (1 + 4 + 16 + 64 + 256));
+    EXPECT_EQ(layout.size(), 2u * 256);
+    EXPECT_EQ(ElementLayout(scene, 0.5 / 257).size(), 2u * 256);
+    EXPECT_EQ(ElementLayout(scene, 9).size(), 2u);
     const glm::dvec3 at(0.9, 0.05, 0.05);
-    EXPECT_EQ(layout.element({0, 0}, at, 3), 0u);
-    EXPECT_EQ(layout.element({0, 0}, at, 0.5), 0u);
-    EXPECT_EQ(layout.element({0, 0}, at, 0.49), 1u);
-    EXPECT_EQ(layout.element({0, 0}, at, 0.5 / 16), 5u);
-    EXPECT_EQ(layout.element({0, 0}, at, 0), layout.finest_element({0, 0}, at));
-    EXPECT_GE(layout.finest_element({0, 3}, at), layout.size() / 2);
-    EXPECT_EQ(layout.finest_element({0, 0, true}, at), layout.size());  // the back
+    EXPECT_LT(layout.element({0, 0}, at), 256u);
+    EXPECT_GE(layout.element({0, 3}, at), 256u);
+    EXPECT_EQ(layout.element({0, 0, true}, at), layout.size());  // the back
 }
 
 TEST(SurfaceElements, BothSidesOfWhatIsSeenFromBothHaveElements) {
@@ -44,53 +57,102 @@ TEST(SurfaceElements, BothSidesOfWhatIsSeenFromBothHaveElements) {
     EXPECT_EQ(reflecting_area(scene), 2);
     const ElementLayout layout(scene, 0.1);
     const glm::dvec3 at(0.3, 0.3, 0.4);
-    EXPECT_NE(layout.finest_element({0, 0, true}, at), layout.finest_element({0, 0, false}, at));
-    EXPECT_LT(layout.finest_element({0, 3, true}, at), layout.size());
+    EXPECT_NE(layout.element({0, 0, true}, at), layout.element({0, 0, false}, at));
+    EXPECT_LT(layout.element({0, 3, true}, at), layout.size());
 }
 
-// Children tile their parent: what a level holds lands, pushed down, around the points it came
-// from, and the sum over the finest elements is what was given.
-TEST(SurfaceElements, SumIsThePowerReceivedWhateverTheLevels) {
+// Groups of a triangle are four times as large from level to level: the largest up to sqrt(2)
+// footprints.
+TEST(SurfaceElements, JoinUpToTheSizeOfFootprints) {
     const formats::Scene scene = half_square();
-    const ElementLayout layout(scene, 0.5 / 1024);
-    tests::RandomInputs random(50);
-    std::vector<glm::dvec3> power(layout.size(), glm::dvec3(0));
-    double received = 0;
-    for (int i = 0; i < 20000; ++i) {
-        const TriangleSide side{0, i % 2 == 0 ? 0u : 3u};
-        const double p = random.uniform(0, 1e-3);
-        received += p;
-        power[layout.element(side, random_weights(random), std::pow(10, random.uniform(-6, 1)))] +=
-            glm::dvec3(p, 0, 0);
-    }
-    const double kept = std::accumulate(
-        power.begin(), power.end(), 0.0,
-        [](double sum, const glm::dvec3& of_element) { return sum + of_element.x; });
-    EXPECT_NEAR(kept, received, 1e-12 * received);
-    const std::vector<glm::vec3> irradiance = layout.push_down(power);
-    double pushed = 0;
-    const std::size_t half = layout.size() / 2, finest = 1024;
-    for (const std::size_t end : {half, layout.size()}) {
-        for (std::size_t i = end - finest; i < end; ++i) {
-            pushed += double{irradiance[i].x} * 0.5 / 1024;
+    const ElementLayout layout(scene, 0.5 / 256);
+    EXPECT_EQ(count_groups(layout.join(even_deposits(layout, 0.5 / 1000))).size(), 512u);
+    EXPECT_EQ(count_groups(layout.join(even_deposits(layout, 0.5 / 64 / 1.41))).size(), 128u);
+    EXPECT_EQ(count_groups(layout.join(even_deposits(layout, 0.5 / 64 / 1.42))).size(), 512u);
+    EXPECT_EQ(count_groups(layout.join(even_deposits(layout, 0.36))).size(), 2u);
+    EXPECT_EQ(count_groups(layout.join(even_deposits(layout, 0.71))).size(), 1u);  // a cluster
+}
+
+// A square of 8192 triangles has groups as large as one of two triangles, and one value each.
+TEST(SurfaceElements, SmallTrianglesJoinAcrossTheirEdges) {
+    const formats::Scene scene = half_square(64);
+    const ElementLayout layout(scene, 1);
+    ASSERT_EQ(layout.size(), 8192u);
+    const ElementLight light = layout.join(even_deposits(layout, 1.0 / 128));
+    const auto groups = count_groups(light);
+    EXPECT_EQ(groups.size(), 128u);
+    for (const auto& [group, size] : groups)
+        EXPECT_EQ(size, 64u);
+    EXPECT_EQ(count_groups(layout.join(even_deposits(layout, 1e-9))).size(), 8192u);
+}
+
+// Normals of a cube's faces are 90 degrees apart; shelves do not touch.
+TEST(SurfaceElements, DoNotJoinAroundEdgesAndFromSurfaceToSurface) {
+    formats::Scene cube;
+    tests::add_surface(cube, tests::make_cube(8, true), 0.5f);
+    const ElementLayout of_cube(cube, 1);
+    EXPECT_EQ(count_groups(of_cube.join(even_deposits(of_cube, 1e9))).size(), 6u);
+
+    formats::Primitive shelves = tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const formats::Primitive upper = tests::make_quad({0, 0, 0.1f}, {1, 0, 0}, {0, 1, 0});
+    const auto first = static_cast<std::uint32_t>(shelves.position.size());
+    shelves.position.insert(shelves.position.end(), upper.position.begin(), upper.position.end());
+    for (const std::uint32_t i : upper.index)
+        shelves.index.push_back(first + i);
+    formats::Scene scene;
+    tests::add_surface(scene, shelves, 0.5f);
+    const ElementLayout layout(scene, 0.1);
+    for (const auto& [group, size] : count_groups(layout.join(even_deposits(layout, 1e9))))
+        EXPECT_LE(size, layout.size() / 2);
+}
+
+// What lands in a group is spread over it, whatever the footprints: the sum is what was given.
+TEST(SurfaceElements, SumIsThePowerReceivedWhateverTheFootprints) {
+    for (const std::uint32_t cells : {1u, 7u}) {
+        const formats::Scene scene = half_square(cells);
+        const ElementLayout layout(scene, 0.5 / 1024);
+        tests::RandomInputs random(50);
+        std::vector<ElementDeposit> deposits(layout.size());
+        double received = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const auto triangle = static_cast<std::uint32_t>(random.uniform() * 2 * cells * cells);
+            const double p = random.uniform(0, 1e-3);
+            ElementDeposit& to =
+                deposits[layout.element({0, 3 * triangle}, random_weights(random))];
+            received += p;
+            to.power += glm::dvec3(p, 0, 0);
+            to.weight += p;
+            to.log_footprint += p * random.uniform(-12, 1);
         }
+        const double kept =
+            std::accumulate(deposits.begin(), deposits.end(), 0.0,
+                            [](double sum, const ElementDeposit& of) { return sum + of.power.x; });
+        EXPECT_NEAR(kept, received, 1e-12 * received);
+        const ElementLight light = layout.join(deposits);
+        double spread = 0;
+        for (const glm::vec3& irradiance : light.irradiance)
+            spread += double{irradiance.x} / static_cast<double>(layout.size());
+        EXPECT_NEAR(spread, received, 1e-6 * received);  // floats
+        EXPECT_GT(count_groups(light).size(), 10u);
     }
-    EXPECT_NEAR(pushed, received, 1e-6 * received);  // floats
 }
 
-TEST(SurfaceElements, PushedDownPowerIsSpreadOverItsElementAlone) {
+// Small footprints at one corner keep what they brought there; the rest of the triangle is joined.
+TEST(SurfaceElements, AreFineOnlyWhereFootprintsAreSmall) {
     const formats::Scene scene = half_square();
-    const ElementLayout layout(scene, 0.5 / 64);
-    std::vector<glm::dvec3> power(layout.size(), glm::dvec3(0));
-    const glm::dvec3 at(0.2, 0.7, 0.1);
-    power[layout.element({0, 0}, at, 0.13)] += glm::dvec3(3, 0, 0);
-    const std::vector<glm::vec3> irradiance = layout.push_down(power);
-    tests::RandomInputs random(51);
-    for (int i = 0; i < 1000; ++i) {
-        const glm::dvec3 weights = random_weights(random);
-        const float expected = weights.y > 0.5 ? 3 / 0.125f : 0.0f;
-        EXPECT_EQ(irradiance[layout.finest_element({0, 0}, weights)].x, expected);
-    }
+    const ElementLayout layout(scene, 0.5 / 256);
+    std::vector<ElementDeposit> deposits = even_deposits(layout, 0.06);
+    const std::size_t fine = layout.element({0, 0}, {0.99, 0.005, 0.005});
+    deposits[fine] = {glm::dvec3(1000, 0, 0), 1000, 1000 * std::log(1e-6)};
+    const ElementLight light = layout.join(deposits);
+    const double area = 0.5 / 256;
+    EXPECT_NEAR(light.irradiance[fine].x, 1000 / area, 1);
+    EXPECT_NEAR(light.irradiance[fine + 1].x, 1 / area, 1e-3);  // a sibling
+    // Whole parts beside the corner's: 3 of each level; groups of 0.5 / 16 elsewhere, or smaller.
+    const auto groups = count_groups(light);
+    EXPECT_EQ(groups.at(light.together[fine]), 1u);
+    EXPECT_EQ(groups.at(light.together[layout.element({0, 3}, {0.3, 0.3, 0.4})]), 16u);
+    EXPECT_LT(groups.size(), 50u);
 }
 
 TEST(SurfaceElements, TrianglesWithoutAreaTakeNothing) {
@@ -98,8 +160,7 @@ TEST(SurfaceElements, TrianglesWithoutAreaTakeNothing) {
     for (glm::vec3& position : scene.primitives[0].position)
         position.y = 0;
     const ElementLayout layout(scene, 0.1);
-    const std::vector<glm::dvec3> power(layout.size(), glm::dvec3(1));
-    for (const glm::vec3& irradiance : layout.push_down(power)) {
+    for (const glm::vec3& irradiance : layout.join(even_deposits(layout, 1)).irradiance) {
         EXPECT_EQ(irradiance, glm::vec3(0));
     }
 }

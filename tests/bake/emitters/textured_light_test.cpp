@@ -47,9 +47,11 @@ std::vector<double> returned_light(const formats::Scene& scene, bool is_filtered
     const auto sources = tests::all_sources(scene);
     const ElementLayout layout(scene, 0.05);
     std::uint64_t traced = 0;
-    const std::vector<std::vector<glm::vec3>> irradiance{layout.push_down(trace_particles(
-        scene, rays, sources.at(0), layout, {20000, 0, 0, 0, used}, Context{}, traced))};
-    const LampLight light{scene, rays, sources, layout, irradiance, 64, 0, nullptr, used};
+    const std::vector<ElementLight> elements{
+        layout.join(trace_particles(scene, rays, sources.at(0), layout, {20000, 0, 0, 0, used},
+                                    Context{}, traced)
+                        .all)};
+    const LampLight light{scene, rays, sources, layout, elements, 64, 0, nullptr, used};
     const auto rows = make_lamp_rows(light, tests::receivers_of(scene)[0], 1, Context{}, traced);
     std::vector<double> green;
     for (const formats::Rgb c : rows.at(0)) {
@@ -85,12 +87,12 @@ TEST(TexturedLight, ParticlesLeaveAFineCheckerAsTheyLeaveItsMean) {
         std::uint64_t traced = 0;
         const auto power =
             trace_particles(scene, rays, tests::all_sources(scene).at(0), layout,
-                            {20000, 0, 0, 0, is_filtered ? &textures : nullptr}, Context{}, traced);
+                            {20000, 0, 0, 0, is_filtered ? &textures : nullptr}, Context{}, traced)
+                .all;
         double sum = 0;
-        const std::size_t first_of_floor =
-            layout.finest_element({1, 0, false}, glm::dvec3(1, 0, 0));
+        const std::size_t first_of_floor = layout.element({1, 0, false}, glm::dvec3(1, 0, 0));
         for (std::size_t e = 0; e < std::min(first_of_floor, power.size()); ++e) {
-            sum += power[e].y;
+            sum += power[e].power.y;
         }
         return sum;
     };

@@ -1,0 +1,154 @@
+#include "bake/emitters/onward_ray.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/emitters/bounce_color.h"
+#include "bake/emitters/largest_band.h"
+#include "bake/path_differentials/surface_shape.h"
+#include "bake/scattering/fresnel.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr double kSmoothest = 1e-3;  // alpha: a mirror, for every purpose
+constexpr double kGrazing = 1e-3;
+
+// The interpolated normal, facing the ray. The triangle's own where it does not.
+SurfaceShape shape_at(const formats::Scene& scene, const Arrival& at, const glm::dvec3& direction) {
+    const formats::Primitive& primitive = scene.primitives[at.side.primitive];
+    const SurfaceShape flat{at.normal, glm::dmat3(0.0), glm::dmat3x2(0.0)};
+    if (primitive.normal.empty()) return flat;
+    std::array<glm::dvec3, 3> corners;
+    TriangleAttributes attributes;
+    glm::dvec3 sum(0);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = primitive.index[at.side.first_index + k];
+        corners[k] = glm::dvec3(primitive.position[vertex]);
+        attributes.normal[k] = glm::dvec3(primitive.normal[vertex]);
+        sum += at.weights[static_cast<int>(k)] * attributes.normal[k];
+    }
+    if (!(glm::length(sum) > 0)) return flat;
+    const glm::dvec3 P =
+        at.weights.x * corners[0] + at.weights.y * corners[1] + at.weights.z * corners[2];
+    const SurfaceShape shape = interpolated_shape(triangle_gradients(corners, P), attributes);
+    const SurfaceShape facing = glm::dot(shape.N, at.normal) < 0 ? flipped(shape) : shape;
+    return -glm::dot(facing.N, direction) > kGrazing ? facing : flat;
+}
+
+glm::dvec3 schlick(const glm::dvec3& f0, double cosine) {
+    return f0 + (1.0 - f0) * std::pow(std::clamp(1 - cosine, 0.0, 1.0), 5);
+}
+
+// G2 / G1(o) of Smith's masking, correlated in height [Heitz2014].
+double shadowing(double c_o, double c_l, double alpha) {
+    const auto root = [&](double c) {
+        return std::sqrt(alpha * alpha + (1 - alpha * alpha) * c * c);
+    };
+    return c_l * (c_o + root(c_o)) / (c_o * root(c_l) + c_l * root(c_o));
+}
+
+// Relative changes of the lobe's value along the new columns, and along older ones unless they were
+// merged.
+void add_lobe_gradient(PathDifferential& path, const PathDifferential& before,
+                       const SurfaceShape& shape, const glm::dvec3& D, const glm::dvec3& out,
+                       double alpha) {
+    const bool is_merged = path.count != before.count + 2;
+    for (std::size_t i = 0; i < path.count; ++i) {
+        const bool is_new = i + 2 >= path.count;
+        if (!is_new && is_merged) continue;
+        DifferentialColumn& column = path.column[i];
+        const glm::dvec3 dD = is_new ? glm::dvec3(0) : before.column[i].dD;
+        const glm::dvec3 dN = is_new ? glm::dvec3(0) : shape.dN_dP * column.dP;
+        column.dlnW += dln_microfacet(shape.N, dN, {-D, out, -dD, column.dD}, alpha) +
+                       dln_cosine(shape.N, out, dN, column.dD);
+    }
+}
+
+}  // namespace
+
+double mirror_chance(const formats::Scene& scene, const Arrival& at, const glm::dvec3& direction) {
+    const MetalPart metal = metal_part(scene, at.side, glm::vec3(at.weights));
+    return metal.metallic == 0
+               ? 0.0
+               : metal.metallic *
+                     largest_band(schlick(metal.color, -glm::dot(at.normal, direction)));
+}
+
+std::optional<OnwardRay> mirror_ray(const formats::Scene& scene, const Arrival& at,
+                                    const glm::dvec3& direction, std::array<double, 2> x,
+                                    const DifferentialRules& rules, PathDifferential& path) {
+    const MetalPart metal = metal_part(scene, at.side, glm::vec3(at.weights));
+    if (!(metal.metallic > 0)) return std::nullopt;
+    const SurfaceShape shape = shape_at(scene, at, direction);
+    OnwardRay onward;
+    if (metal.alpha <= kSmoothest) {
+        const Mirror mirror = make_mirror(direction, shape.N);
+        reflect_columns(path, mirror, shape.dN_dP);
+        onward.direction = mirror.reflected;
+        onward.weight = metal.metallic * schlick(metal.color, -mirror.k);
+    } else {
+        const PathDifferential before = path;
+        const auto out = scatter_on_facets(path, rules,
+                                           {.D = direction,
+                                            .N = shape.N,
+                                            .dN_dP = shape.dN_dP,
+                                            .alpha = metal.alpha,
+                                            .u = x[0],
+                                            .v = x[1],
+                                            .N_g = at.normal});
+        if (!out) return std::nullopt;
+        add_lobe_gradient(path, before, shape, direction, *out, metal.alpha);
+        const glm::dvec3 facet = glm::normalize(*out - direction);
+        onward.direction = *out;
+        onward.weight =
+            metal.metallic *
+            shadowing(-glm::dot(direction, shape.N), glm::dot(*out, shape.N), metal.alpha) *
+            schlick(metal.color, glm::dot(*out, facet));
+    }
+    if (!(glm::dot(onward.direction, at.normal) > 0)) return std::nullopt;
+    return onward;
+}
+
+bool lets_through(const formats::Scene& scene, const Arrival& at) {
+    const auto& medium = scene.materials[at.material].medium;
+    return medium && !medium->variation && !(medium->thickness > 0);
+}
+
+std::optional<OnwardRay> cross_boundary(const formats::Scene& scene, const Arrival& at,
+                                        const glm::dvec3& direction, double x,
+                                        const DifferentialRules& rules, PathDifferential& path) {
+    const SurfaceShape shape = shape_at(scene, at, direction);
+    const double eta = double{scene.materials[at.material].medium->eta};
+    const double beyond = at.side.is_back ? 1 / eta : eta;  // over this side's
+    const double cosine = std::min(1.0, -glm::dot(direction, shape.N));
+    const double reflectance = fresnel_reflectance(cosine, beyond);
+    const auto refraction = make_refraction(direction, shape.N, 1 / beyond);
+    OnwardRay onward{.weight = glm::dvec3(1)};
+    if (refraction && !(at.side.is_back && x < reflectance)) {
+        refract_columns(path, rules, *refraction, shape.dN_dP);
+        onward.direction = refraction->refracted;
+        onward.crosses = true;
+        if (!at.side.is_back) onward.weight *= 1 - reflectance;
+        if (!(glm::dot(onward.direction, at.normal) < 0)) return std::nullopt;
+        return onward;
+    }
+    if (!at.side.is_back) return std::nullopt;
+    const Mirror mirror = make_mirror(direction, shape.N);
+    reflect_columns(path, mirror, shape.dN_dP);
+    onward.direction = mirror.reflected;
+    if (!(glm::dot(onward.direction, at.normal) > 0)) return std::nullopt;
+    return onward;
+}
+
+glm::dvec3 straight_transmittance(const formats::Scene& scene, const Arrival& at) {
+    const auto& medium = scene.materials[at.material].medium;
+    if (!medium || !at.side.is_back) return glm::dvec3(1);
+    const auto band = [&](float s, float a) {
+        return std::exp(-(double{s} + double{a}) * at.distance);
+    };
+    return {band(medium->sigma_s.r, medium->sigma_a.r), band(medium->sigma_s.g, medium->sigma_a.g),
+            band(medium->sigma_s.b, medium->sigma_a.b)};
+}
+
+}  // namespace opaline::bake

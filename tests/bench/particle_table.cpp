@@ -1,0 +1,96 @@
+// Elements of particles and rows that gather them: how even a furnace box is, what small triangles
+// cost, how near an error is to that of the best elements of one size. Prints the tables of
+// RESULTS.md, "Particles of lamps", as markdown; a minute.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "bake/emitters/receiver_light.h"
+#include "bake/emitters/trace_particles.h"
+#include "tests/bake/emitters/lamp_scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+struct Traced {
+    Traced(const formats::Scene& given, std::uint32_t particles, double fixed_area = 0)
+        : scene(given),
+          rays(tests::build_rays(scene)),
+          sources(tests::all_sources(scene)),
+          layout(scene, 4 * reflecting_area(scene) / particles) {
+        std::uint64_t traced = 0;
+        deposits = trace_particles(scene, rays, sources[0], layout, {particles, 0, 0, fixed_area},
+                                   Context{}, traced)
+                       .all;
+        elements.push_back(layout.join(deposits, kGatheredShare));
+    }
+    const formats::Scene& scene;
+    RayScene rays;
+    std::vector<LampSources> sources;
+    ElementLayout layout;
+    std::vector<ElementDeposit> deposits;
+    std::vector<ElementLight> elements;
+};
+
+struct Evenness {
+    double mean = 0, rms = 0, largest = 0, corners = 0;
+};
+
+// Rows of a furnace's vertices, irradiance 2, relative to it. `corners`: the mean of the eight.
+Evenness measure_rows(const Traced& traced, std::uint32_t samples) {
+    const auto receivers = tests::receivers_of(traced.scene);
+    const LampLight light{
+        traced.scene, traced.rays, traced.sources, traced.layout, traced.elements, samples, 0};
+    std::uint64_t rays = 0;
+    const auto rows = make_lamp_rows(light, receivers[0], 1, Context{}, rays);
+    Evenness even;
+    int corners = 0;
+    for (std::size_t r = 0; r < rows[0].size(); ++r) {
+        const double error = std::numbers::pi * static_cast<double>(rows[0][r].g) / 2 - 1;
+        const glm::vec3 at = glm::abs(receivers[0].outside[r].origin);
+        even.mean += error;
+        even.rms += error * error;
+        even.largest = std::max(even.largest, std::abs(error));
+        if (std::min({at.x, at.y, at.z}) > 0.99f) even.corners += error, ++corners;
+    }
+    const auto n = static_cast<double>(rows[0].size());
+    return {even.mean / n, std::sqrt(even.rms / n), even.largest, even.corners / corners};
+}
+
+void print_furnace() {
+    std::printf(
+        "| particles | faces | rows, mean | RMS | largest | corners | groups |\n"
+        "|---:|---:|---:|---:|---:|---:|---:|\n");
+    formats::Scene scene;
+    tests::add_surface(scene, tests::make_cube(8, true), 0.5f, std::numbers::inv_pi_v<float>);
+    for (const std::uint32_t particles : {20000u, 100000u, 400000u, 1600000u}) {
+        const Traced traced(scene, particles);
+        const std::size_t face = traced.layout.size() / 6;
+        double worst = 0;
+        for (std::size_t f = 0; f < 6; ++f) {
+            double sum = 0;
+            for (std::size_t i = f * face; i < (f + 1) * face; ++i)
+                sum += traced.deposits[i].power.x;
+            worst = std::max(worst, std::abs(sum / 8 - 1));
+        }
+        std::size_t groups = 0;
+        for (std::size_t i = 0; i < traced.layout.size(); ++i)
+            groups += traced.elements[0].together[i] == i ? 1 : 0;
+        const Evenness even = measure_rows(traced, 1024);
+        std::printf("| %u | %.2f %% | %+.2f %% | %.2f %% | %.2f %% | %+.2f %% | %zu |\n", particles,
+                    100 * worst, 100 * even.mean, 100 * even.rms, 100 * even.largest,
+                    100 * even.corners, groups);
+    }
+}
+
+}  // namespace
+}  // namespace opaline::bake
+
+int main() {
+    opaline::bake::print_furnace();
+}
