@@ -59,8 +59,9 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
             const ParticleLight traced =
                 trace_particles(job.scene, job.rays, sources[e], layout,
                                 {particles, e, job.knobs.seed, 0, job.textures}, context, rays);
-            if (has_light(traced.all)) elements[e] = layout.join(traced.all, kGatheredShare);
-            if (has_light(traced.caustic)) caustics[e] = layout.join(traced.caustic);
+            if (has_light(traced.all)) elements[e] = layout.join(traced.all, kGatheredElements);
+            if (has_light(traced.caustic))
+                caustics[e] = layout.join(traced.caustic, kCausticElements);
         }
         return true;
     });

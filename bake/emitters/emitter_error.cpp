@@ -192,7 +192,8 @@ struct BackwardPath {
                 PathDifferential& unused) {
         unused.count = 0;
         if (lets_through(check.scene, at)) {
-            const auto onward = cross_boundary(check.scene, at, direction, roulette, {}, unused);
+            const auto onward =
+                cross_boundary(check.scene, at, direction, first_three(draw()), {}, unused);
             return onward ? Next{onward->weight, onward->direction, onward->crosses, false}
                           : Next{};
         }

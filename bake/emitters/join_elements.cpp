@@ -22,12 +22,14 @@ struct Joined {
     void add(const Joined& part) {
         deposit.power += part.deposit.power;
         deposit.weight += part.deposit.weight;
+        deposit.weight_squares += part.deposit.weight_squares;
         deposit.log_footprint += part.deposit.log_footprint;
         area += part.area;
         is_whole = is_whole && part.is_whole;
     }
-    bool is_within_footprints(double size) const {
+    bool joins(double size, double particles) const {
         return !(deposit.weight > 0) ||
+               deposit.weight * deposit.weight < particles * deposit.weight_squares ||
                std::log(area / size) * deposit.weight <= deposit.log_footprint;
     }
     glm::vec3 irradiance() const {
@@ -40,11 +42,13 @@ struct Joined {
 /// One pass over all elements.
 class ElementLayout::Joining {
   public:
-    Joining(const ElementLayout& layout, std::span<const ElementDeposit> deposits, double size)
+    Joining(const ElementLayout& layout, std::span<const ElementDeposit> deposits,
+            const JoinRule& rule, double size)
         : light{std::vector<glm::vec3>(layout.size_), std::vector<std::uint32_t>(layout.size_)},
           layout_(layout),
           deposits_(deposits),
-          size_(size) {}
+          size_(rule.share * size),
+          particles_(rule.particles) {}
 
     Joined join_cluster(std::uint32_t primitive, std::uint32_t side,
                         const TriangleCluster& cluster) {
@@ -56,8 +60,7 @@ class ElementLayout::Joining {
         if (cluster.count == 1) return join_triangle(hierarchy_of(cluster.first), 0, 0);
         Joined joined = join_cluster(primitive, side, cluster.half(false));
         joined.add(join_cluster(primitive, side, cluster.half(true)));
-        joined.is_whole =
-            joined.is_whole && tree.joins(cluster) && joined.is_within_footprints(size_);
+        joined.is_whole = joined.is_whole && tree.joins(cluster) && joined.joins(size_, particles_);
         if (joined.is_whole) {
             const std::uint32_t first = hierarchy_of(cluster.first).first;
             for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
@@ -83,7 +86,7 @@ class ElementLayout::Joining {
         for (std::uint32_t child = 0; child < 4; ++child) {
             joined.add(join_triangle(hierarchy, level + 1, 4 * index + child));
         }
-        joined.is_whole = joined.is_whole && joined.is_within_footprints(size_);
+        joined.is_whole = joined.is_whole && joined.joins(size_, particles_);
         if (joined.is_whole) {
             const std::uint32_t within = 1u << (2 * (hierarchy.levels - level));
             const std::uint32_t first = hierarchy.first + index * within;
@@ -101,13 +104,14 @@ class ElementLayout::Joining {
 
     const ElementLayout& layout_;
     std::span<const ElementDeposit> deposits_;
-    double size_;
+    double size_, particles_;
 };
 
-ElementLight ElementLayout::join(std::span<const ElementDeposit> deposits, double share) const {
+ElementLight ElementLayout::join(std::span<const ElementDeposit> deposits,
+                                 const JoinRule& rule) const {
     ElementLight light{std::vector<glm::vec3>(size_, glm::vec3(0)), {}};
     for (std::size_t k = 0; k < kSizes.size(); ++k) {
-        Joining joining(*this, deposits, share * kSizes[k]);
+        Joining joining(*this, deposits, rule, kSizes[k]);
         for (std::uint32_t primitive = 0; primitive < clusters_.size(); ++primitive) {
             for (std::uint32_t side = 0; side < sides_[primitive]; ++side) {
                 for (const TriangleCluster& chart : clusters_[primitive].charts) {

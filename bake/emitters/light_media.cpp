@@ -73,7 +73,7 @@ void send(const MediaJob& job, const LampLight& light, const MediaLight& exitanc
                 .all;
         elements[e] = of_surfaces[e];
         if (!has_light(deposits)) continue;
-        elements[e] = light.layout.join(deposits, kGatheredShare);
+        elements[e] = light.layout.join(deposits, kGatheredElements);
         for (std::size_t i = 0; i < of_surfaces[e].irradiance.size(); ++i) {
             elements[e].irradiance[i] += of_surfaces[e].irradiance[i];
         }

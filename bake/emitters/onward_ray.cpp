@@ -5,7 +5,9 @@
 
 #include "bake/emitters/bounce_color.h"
 #include "bake/emitters/largest_band.h"
+#include "bake/path_differentials/axis_frame.h"
 #include "bake/path_differentials/surface_shape.h"
+#include "bake/path_differentials/visible_normal.h"
 #include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
@@ -48,21 +50,69 @@ double shadowing(double c_o, double c_l, double alpha) {
     return c_l * (c_o + root(c_o)) / (c_o * root(c_l) + c_l * root(c_o));
 }
 
-// Relative changes of the lobe's value along the new columns, and along older ones unless they were
-// merged.
-void add_lobe_gradient(PathDifferential& path, const PathDifferential& before,
-                       const SurfaceShape& shape, const glm::dvec3& D, const glm::dvec3& out,
-                       double alpha) {
-    const bool is_merged = path.count != before.count + 2;
-    for (std::size_t i = 0; i < path.count; ++i) {
-        const bool is_new = i + 2 >= path.count;
-        if (!is_new && is_merged) continue;
-        DifferentialColumn& column = path.column[i];
-        const glm::dvec3 dD = is_new ? glm::dvec3(0) : before.column[i].dD;
-        const glm::dvec3 dN = is_new ? glm::dvec3(0) : shape.dN_dP * column.dP;
-        column.dlnW += dln_microfacet(shape.N, dN, {-D, out, -dD, column.dD}, alpha) +
-                       dln_cosine(shape.N, out, dN, column.dD);
-    }
+/// A ray at the boundary of a medium.
+struct Crossing {
+    double beyond = 1;  ///< index of the other side over this one's
+    double alpha = 0;   ///< GGX, of what does not scatter
+    double choice = 0;  ///< random number
+    std::array<double, 2> x{};
+};
+
+/// A facet of a rough surface as a ray meets it.
+struct Facet {
+    double alpha = 0, eta = 0;  ///< FacetEvent's: 0 reflects
+    std::array<double, 2> x{};
+};
+
+// The direction by way of a facet. The new columns have the relative change of the density of
+// normals, D(m) = c / ((a^2 - 1) m_z^2 + 1)^2; older ones turn the lobe with them.
+std::optional<glm::dvec3> scatter_by_facet(const Facet& facet, const SurfaceShape& shape,
+                                           const Arrival& at, const glm::dvec3& D,
+                                           const DifferentialRules& rules, PathDifferential& path) {
+    const auto out = scatter_on_facets(path, rules,
+                                       {.D = D,
+                                        .N = shape.N,
+                                        .dN_dP = shape.dN_dP,
+                                        .alpha = facet.alpha,
+                                        .eta = facet.eta,
+                                        .u = facet.x[0],
+                                        .v = facet.x[1],
+                                        .N_g = at.normal});
+    if (!out) return out;
+    const VisibleNormal normal = sample_visible_normal(glm::transpose(frame_around(shape.N)) * -D,
+                                                       {facet.alpha, facet.alpha},
+                                                       DiskMap::concentric, facet.x[0], facet.x[1]);
+    const double a = facet.alpha * facet.alpha - 1, z = normal.m.z;
+    const auto change = [&](const glm::dvec3& dm) { return -4 * a * z * dm.z / (a * z * z + 1); };
+    path.column[path.count - 2].dlnW += change(normal.dm_du);
+    path.column[path.count - 1].dlnW += change(normal.dm_dv);
+    return out;
+}
+
+// Refraction or, from inside, reflection by a facet of rough glass.
+std::optional<OnwardRay> cross_rough_boundary(const Crossing& crossing, const SurfaceShape& shape,
+                                              const Arrival& at, const glm::dvec3& D,
+                                              const DifferentialRules& rules,
+                                              PathDifferential& path) {
+    const double cosine = std::min(1.0, -glm::dot(D, shape.N));
+    // A facet may do what the surface does not.
+    const double mirrored =
+        at.side.is_back ? std::clamp(fresnel_reflectance(cosine, crossing.beyond), 0.1, 0.9) : 0;
+    const bool refracts = !(crossing.choice < mirrored);
+    const auto out =
+        scatter_by_facet({crossing.alpha, refracts ? 1 / crossing.beyond : 0, crossing.x}, shape,
+                         at, D, rules, path);
+    if (!out) return std::nullopt;
+    const glm::dvec3 facet = refracts ? glm::normalize(crossing.beyond * *out - D)  // either sign
+                                      : glm::normalize(*out - D);
+    const double reflectance =
+        fresnel_reflectance(std::min(1.0, std::abs(glm::dot(D, facet))), crossing.beyond);
+    OnwardRay onward{.direction = *out, .crosses = refracts};
+    onward.weight =
+        glm::dvec3(shadowing(cosine, std::abs(glm::dot(*out, shape.N)), crossing.alpha) *
+                   (refracts ? (1 - reflectance) / (1 - mirrored) : reflectance / mirrored));
+    if ((glm::dot(*out, at.normal) < 0) != refracts) return std::nullopt;
+    return onward;
 }
 
 }  // namespace
@@ -88,17 +138,8 @@ std::optional<OnwardRay> mirror_ray(const formats::Scene& scene, const Arrival& 
         onward.direction = mirror.reflected;
         onward.weight = metal.metallic * schlick(metal.color, -mirror.k);
     } else {
-        const PathDifferential before = path;
-        const auto out = scatter_on_facets(path, rules,
-                                           {.D = direction,
-                                            .N = shape.N,
-                                            .dN_dP = shape.dN_dP,
-                                            .alpha = metal.alpha,
-                                            .u = x[0],
-                                            .v = x[1],
-                                            .N_g = at.normal});
+        const auto out = scatter_by_facet({metal.alpha, 0, x}, shape, at, direction, rules, path);
         if (!out) return std::nullopt;
-        add_lobe_gradient(path, before, shape, direction, *out, metal.alpha);
         const glm::dvec3 facet = glm::normalize(*out - direction);
         onward.direction = *out;
         onward.weight =
@@ -116,16 +157,22 @@ bool lets_through(const formats::Scene& scene, const Arrival& at) {
 }
 
 std::optional<OnwardRay> cross_boundary(const formats::Scene& scene, const Arrival& at,
-                                        const glm::dvec3& direction, double x,
+                                        const glm::dvec3& direction, std::array<double, 3> x,
                                         const DifferentialRules& rules, PathDifferential& path) {
     const SurfaceShape shape = shape_at(scene, at, direction);
-    const double eta = double{scene.materials[at.material].medium->eta};
-    const double beyond = at.side.is_back ? 1 / eta : eta;  // over this side's
+    const formats::Medium& medium = *scene.materials[at.material].medium;
+    const double eta{medium.eta}, roughness{medium.roughness};
+    const double beyond = at.side.is_back ? 1 / eta : eta;
+    const bool is_clear = medium.sigma_s == formats::Rgb{};
+    if (is_clear && eta != 1 && roughness * roughness > kSmoothest) {
+        return cross_rough_boundary({beyond, roughness * roughness, x[2], {x[0], x[1]}}, shape, at,
+                                    direction, rules, path);
+    }
     const double cosine = std::min(1.0, -glm::dot(direction, shape.N));
     const double reflectance = fresnel_reflectance(cosine, beyond);
     const auto refraction = make_refraction(direction, shape.N, 1 / beyond);
     OnwardRay onward{.weight = glm::dvec3(1)};
-    if (refraction && !(at.side.is_back && x < reflectance)) {
+    if (refraction && !(at.side.is_back && x[2] < reflectance)) {
         refract_columns(path, rules, *refraction, shape.dN_dP);
         onward.direction = refraction->refracted;
         onward.crosses = true;

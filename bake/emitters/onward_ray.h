@@ -32,12 +32,18 @@ std::optional<OnwardRay> mirror_ray(const formats::Scene& scene, const Arrival& 
 /// Whether light crosses a surface straight: media without variation that fill a body.
 bool lets_through(const formats::Scene& scene, const Arrival& at);
 
-/// Refraction into a medium, the share that enters; or out of it: refracted, or mirrored with the
-/// probability x of reflectance. What a medium's outside mirrors is left out: media_light.h has it.
-/// Precondition: lets_through.
+/// Refraction into a medium, the share that enters; or out of it: refracted, or mirrored by chance.
+/// What does not scatter has the roughness of its medium, as in the reference. x: three random
+/// numbers. What a medium's outside mirrors is left out: media_light.h has it. Precondition:
+/// lets_through.
 std::optional<OnwardRay> cross_boundary(const formats::Scene& scene, const Arrival& at,
-                                        const glm::dvec3& direction, double x,
+                                        const glm::dvec3& direction, std::array<double, 3> x,
                                         const DifferentialRules& rules, PathDifferential& path);
+
+/// Of four numbers as random_uniform gives them.
+inline std::array<double, 3> first_three(const std::array<float, 4>& x) {
+    return {static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])};
+}
 
 /// exp(-(sigma_s + sigma_a) distance) of the medium behind the back that a ray met; 1 where it met
 /// a front or no medium.

@@ -114,8 +114,7 @@ void gather_along(const LampLight& light, GatherRay ray, Arrival at, const Textu
         unused.count = 0;
         const auto onward =
             is_medium
-                ? cross_boundary(light.scene, at, ray.direction, static_cast<double>(x[2]), {},
-                                 unused)
+                ? cross_boundary(light.scene, at, ray.direction, first_three(x), {}, unused)
                 : mirror_ray(light.scene, at, ray.direction,
                              {static_cast<double>(x[0]), static_cast<double>(x[1])}, {}, unused);
         if (!onward) return;

@@ -15,9 +15,12 @@
 
 namespace opaline::bake {
 
-/// Of footprints that are gathered: rays average over many elements, so that these may be noisier
-/// and blur less than those that are read one by one.
-inline constexpr double kGatheredShare = 0.25;
+/// Rays average over many elements, which may be noisier and blur less than those that are read one
+/// by one.
+inline constexpr JoinRule kGatheredElements{0.25, 0};
+/// Paths of a caustic draw eight numbers or more, and the polygon of all their steps is far larger
+/// than the distance of similar particles.
+inline constexpr JoinRule kCausticElements{1.0 / 64, 16};
 
 /// All lamps of a scene and what their particles brought to its surfaces.
 struct LampLight {

@@ -19,9 +19,10 @@ struct TriangleSide {
 
 /// What particles gave to an element.
 struct ElementDeposit {
-    glm::dvec3 power{0};       ///< [lm]
-    double weight = 0;         ///< sum of largest bands [lm]
-    double log_footprint = 0;  ///< sum of largest bands times ln of the footprint [m^2]
+    glm::dvec3 power{0};        ///< [lm]
+    double weight = 0;          ///< sum of largest bands [lm]
+    double weight_squares = 0;  ///< sum of their squares
+    double log_footprint = 0;   ///< sum of largest bands times ln of the footprint [m^2]
 };
 
 /// Whether any element took light.
@@ -33,6 +34,12 @@ struct ElementLight {
     std::vector<std::uint32_t> together;  ///< the first of those joined with it at s = sqrt(2)
 
     bool empty() const { return irradiance.empty(); }
+};
+
+/// How far elements join.
+struct JoinRule {
+    double share = 1;      ///< by which footprints count smaller, in (0, 1]
+    double particles = 0;  ///< groups of fewer, were all alike, join beyond their footprints
 };
 
 /// Elements of all triangles of a scene: 4^l triangles alike, cuts of its edges into 2^l parts.
@@ -54,8 +61,8 @@ class ElementLayout {
     /// it, in the mean of logarithms weighted by power. What arrives where nothing else did joins
     /// anything. Levels are a factor of four apart: the mean over three sizes s around sqrt(2),
     /// spread over that factor, follows the footprint. Every group's mean is what arrived in it
-    /// over its area. `share`: by which footprints count smaller, in (0, 1].
-    ElementLight join(std::span<const ElementDeposit> deposits, double share = 1) const;
+    /// over its area.
+    ElementLight join(std::span<const ElementDeposit> deposits, const JoinRule& rule = {}) const;
 
   private:
     struct Hierarchy {

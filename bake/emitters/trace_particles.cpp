@@ -99,8 +99,10 @@ Choice scatter(const Tracer& tracer, const Arrival& at, const std::array<float, 
     return choice;
 }
 
-Choice cross(const Tracer& tracer, const Arrival& at, double x, Particle& p) {
-    const auto onward = cross_boundary(tracer.scene, at, p.direction, x, tracer.rules, p.path);
+Choice cross(const Tracer& tracer, const Arrival& at, const std::array<float, 4>& random,
+             Particle& p) {
+    const auto onward =
+        cross_boundary(tracer.scene, at, p.direction, first_three(random), tracer.rules, p.path);
     return onward ? Choice{onward->direction, onward->weight * p.power, onward->crosses, false}
                   : Choice{};
 }
@@ -132,8 +134,7 @@ void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
         if (flight == 0) std::ranges::copy(p.first_bounce, x.begin());
         const bool is_medium = lets_through(tracer.scene, *at);
         if (is_medium && at->side.is_back && flight == 0) return;
-        const Choice next = is_medium ? cross(tracer, *at, static_cast<double>(x[2]), p)
-                                      : scatter(tracer, *at, x, p);
+        const Choice next = is_medium ? cross(tracer, *at, x, p) : scatter(tracer, *at, x, p);
         if (next.power == glm::dvec3(0)) return;
         p.position = leave_surface(p.position, p.direction, *at, next.crosses);
         p.direction = next.direction;
@@ -147,6 +148,7 @@ void add_deposit(const Deposit& deposit, std::vector<ElementDeposit>& elements) 
     const double weight = largest_band(deposit.power);
     element.power += deposit.power;
     element.weight += weight;
+    element.weight_squares += weight * weight;
     element.log_footprint += weight * std::log(deposit.footprint);
 }
 

@@ -24,8 +24,10 @@ struct LitScene {
         for (std::uint32_t lamp = 0; lamp < sources.size(); ++lamp) {
             const ParticleLight light = trace_particles(scene, rays, sources[lamp], layout,
                                                         {particles, lamp}, Context{}, traced);
-            elements.push_back(layout.join(light.all, kGatheredShare));
-            caustics.push_back(light.caustic.empty() ? ElementLight{} : layout.join(light.caustic));
+            elements.push_back(layout.join(light.all, kGatheredElements));
+            caustics.push_back(light.caustic.empty()
+                                   ? ElementLight{}
+                                   : layout.join(light.caustic, kCausticElements));
         }
     }
     LampLight light(std::uint32_t samples = 256) const {

@@ -28,7 +28,7 @@ glm::dvec3 random_weights(tests::RandomInputs& random) {
 /// Power 1 in every element, with the same footprint.
 std::vector<ElementDeposit> even_deposits(const ElementLayout& layout, double footprint) {
     return std::vector<ElementDeposit>(layout.size(),
-                                       {glm::dvec3(1, 0, 0), 1, std::log(footprint)});
+                                       {glm::dvec3(1, 0, 0), 1, 1, std::log(footprint)});
 }
 
 std::map<std::uint32_t, std::size_t> count_groups(const ElementLight& light) {
@@ -71,6 +71,15 @@ TEST(SurfaceElements, JoinUpToTheSizeOfFootprints) {
     EXPECT_EQ(count_groups(layout.join(even_deposits(layout, 0.5 / 64 / 1.42))).size(), 512u);
     EXPECT_EQ(count_groups(layout.join(even_deposits(layout, 0.36))).size(), 2u);
     EXPECT_EQ(count_groups(layout.join(even_deposits(layout, 0.71))).size(), 1u);  // a cluster
+}
+
+TEST(SurfaceElements, JoinBeyondFootprintsUntilThereAreParticlesEnough) {
+    const formats::Scene scene = half_square();
+    const ElementLayout layout(scene, 0.5 / 256);
+    const auto deposits = even_deposits(layout, 1e-9);
+    EXPECT_EQ(count_groups(layout.join(deposits, {1, 16})).size(), 512u / 4);
+    EXPECT_EQ(count_groups(layout.join(deposits, {1, 17})).size(), 512u / 16);
+    EXPECT_EQ(count_groups(layout.join(deposits, {1, 1})).size(), 512u);
 }
 
 // A square of 8192 triangles has groups as large as one of two triangles, and one value each.
@@ -122,6 +131,7 @@ TEST(SurfaceElements, SumIsThePowerReceivedWhateverTheFootprints) {
             received += p;
             to.power += glm::dvec3(p, 0, 0);
             to.weight += p;
+            to.weight_squares += p * p;
             to.log_footprint += p * random.uniform(-12, 1);
         }
         const double kept =
@@ -143,7 +153,7 @@ TEST(SurfaceElements, AreFineOnlyWhereFootprintsAreSmall) {
     const ElementLayout layout(scene, 0.5 / 256);
     std::vector<ElementDeposit> deposits = even_deposits(layout, 0.06);
     const std::size_t fine = layout.element({0, 0}, {0.99, 0.005, 0.005});
-    deposits[fine] = {glm::dvec3(1000, 0, 0), 1000, 1000 * std::log(1e-6)};
+    deposits[fine] = {glm::dvec3(1000, 0, 0), 1000, 1e6, 1000 * std::log(1e-6)};
     const ElementLight light = layout.join(deposits);
     const double area = 0.5 / 256;
     EXPECT_NEAR(light.irradiance[fine].x, 1000 / area, 1);
