@@ -48,7 +48,7 @@ opaline_status check_pair(const opaline_asset& asset, const opaline_volume_light
                : OPALINE_OK;
 }
 
-formats::TermSet terms_of(std::uint32_t flags) {
+formats::TermSet volume_terms_of(std::uint32_t flags) {
     using formats::TermSet;
     TermSet terms = TermSet::volume_single | TermSet::volume_multiple;
     if ((flags & OPALINE_SHADE_WITHOUT_SINGLE) != 0) terms = terms & ~TermSet::volume_single;
@@ -176,7 +176,7 @@ opaline_status opaline_volume_light_update(opaline_volume_light* volume_light,
         // In place, so that volume_light->lit goes on referring to it.
         volume_light->light =
             runtime::relight_volumes(asset->loaded.view.volumes, light->vector,
-                                     {.terms = terms_of(flags), .threads = threads});
+                                     {.terms = volume_terms_of(flags), .threads = threads});
         return OPALINE_OK;
     });
 }

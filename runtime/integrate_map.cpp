@@ -24,7 +24,7 @@ std::uint32_t max_samples(std::uint32_t n) {
     return std::clamp(1024 / n, 16u, 128u);
 }
 
-void add(double* sum, double weight, const Rgb& value) {
+void add_texel(double* sum, double weight, const Rgb& value) {
     sum[0] += weight * static_cast<double>(value.r);
     sum[1] += weight * static_cast<double>(value.g);
     sum[2] += weight * static_cast<double>(value.b);
@@ -75,8 +75,8 @@ void integrate_grid(std::uint32_t n, std::uint32_t samples, unsigned threads,
             for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
                 double* texel = &integral[(std::size_t{face} * n + row) * n * 3];
                 for (std::uint32_t x = 0; x < size; ++x) {
-                    add(texel + std::size_t{3} * (x / samples), grid.solid_angle(x),
-                        value(face, y, x));
+                    add_texel(texel + std::size_t{3} * (x / samples), grid.solid_angle(x),
+                              value(face, y, x));
                 }
             }
         }

@@ -18,7 +18,6 @@ using formats::LoadedEnvironment;
 using formats::Result;
 using formats::Vec3;
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::string_view kForms =
     "use white, black, sun:AZ,EL, studio, sky:TURBIDITY,EL, or the path of a lat-long .exr or .hdr";
 
@@ -62,8 +61,8 @@ Environment make_white() {
 }
 
 Environment make_sun(double azimuth, double elevation) {
-    const auto radius = static_cast<float>(0.265 * kPi / 180);
-    const auto radiance = static_cast<float>(kPi / formats::disc_solid_angle(radius));
+    const auto radius = static_cast<float>(0.265 * std::numbers::pi / 180);
+    const auto radiance = static_cast<float>(std::numbers::pi / formats::disc_solid_angle(radius));
     Environment environment;
     environment.discs.push_back(
         {direction_of(azimuth, elevation), radius, {radiance, radiance, radiance}});
@@ -73,8 +72,8 @@ Environment make_sun(double azimuth, double elevation) {
 }  // namespace
 
 Vec3 direction_of(double azimuth_degrees, double elevation_degrees) {
-    const double azimuth = std::remainder(azimuth_degrees, 360.0) * kPi / 180;
-    const double elevation = elevation_degrees * kPi / 180;
+    const double azimuth = std::remainder(azimuth_degrees, 360.0) * std::numbers::pi / 180;
+    const double elevation = elevation_degrees * std::numbers::pi / 180;
     return {static_cast<float>(std::cos(elevation) * std::sin(azimuth)),
             static_cast<float>(std::sin(elevation)),
             static_cast<float>(std::cos(elevation) * std::cos(azimuth))};

@@ -7,8 +7,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 double perez(const std::array<double, 5>& k, double cos_theta, double gamma) {
     // At the horizon B / cos theta tends to minus infinity, as B < 0 for every turbidity here.
     const double height = std::max(cos_theta, 1e-3);
@@ -67,7 +65,7 @@ PerezSky make_perez_sky(double turbidity, double sun_zenith) {
                          -0.0641 * t - 0.8989, -0.0033 * t + 0.0452},
                         {-0.0167 * t - 0.2608, -0.0950 * t + 0.0092, -0.0079 * t + 0.2102,
                          -0.0441 * t - 1.6537, -0.0109 * t + 0.0529}}};
-    const double chi = (4.0 / 9.0 - t / 120.0) * (kPi - 2 * sun_zenith);
+    const double chi = (4.0 / 9.0 - t / 120.0) * (std::numbers::pi - 2 * sun_zenith);
     sky.zenith = {(4.0453 * t - 4.9710) * std::tan(chi) - 0.2155 * t + 2.4192,
                   zenith_chromaticity({{{0.00166, -0.00375, 0.00209, 0},
                                         {-0.02903, 0.06377, -0.03202, 0.00394},
@@ -94,7 +92,7 @@ Xyz eval_perez_sky(const PerezSky& sky, double cos_theta, double gamma) {
 }
 
 Xyz sun_irradiance(double turbidity, double sun_zenith) {
-    const double degrees = sun_zenith * 180 / kPi;
+    const double degrees = sun_zenith * 180 / std::numbers::pi;
     const double mass = 1.0 / (std::cos(sun_zenith) + 0.15 * std::pow(93.885 - degrees, -1.253));
     Xyz sum{};
     double outside = 0;

@@ -14,14 +14,12 @@ using formats::Image;
 using formats::Rgb;
 using formats::Vec3;
 
-constexpr double kPi = std::numbers::pi;
-
 struct Point {
     double x, y, z;
 };
 
 Point lat_long_point(double u, double v) {
-    const double theta = kPi * v, phi = kPi * (2 * u - 1);
+    const double theta = std::numbers::pi * v, phi = std::numbers::pi * (2 * u - 1);
     return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
 }
 
@@ -46,7 +44,7 @@ void rasterise_map(const Environment& environment, Image& image) {
             for (std::uint32_t i = 0; i < k * k; ++i) {
                 const double v = (row + (i / k + 0.5) / k) / image.height;
                 const double u = (column + (i % k + 0.5) / k) / image.width;
-                const double weight = std::sin(kPi * v);
+                const double weight = std::sin(std::numbers::pi * v);
                 const Rgb c = sample_map(environment, to_vec3(lat_long_point(u, v)));
                 r += weight * double{c.r};
                 g += weight * double{c.g};
@@ -72,12 +70,13 @@ void add_disc(const DistantDisc& disc, Image& image) {
                std::pow(p.z - center.z, 2);
     };
     // A point of a pixel is at most half the sum of the side lengths away from its centre.
-    const double reach = kPi * (1 / width + 0.5 / height);
-    const double outer = std::min(radius + reach, kPi), inner = std::max(radius - reach, 0.0);
+    const double reach = std::numbers::pi * (1 / width + 0.5 / height);
+    const double outer = std::min(radius + reach, std::numbers::pi),
+                 inner = std::max(radius - reach, 0.0);
     const double far_squared = 4 * std::pow(std::sin(0.5 * outer), 2);
     const double near_squared = 4 * std::pow(std::sin(0.5 * inner), 2);
     // Sub-pixels are an eighth of the radius apart, so that a tiny disc still covers some.
-    const double pixel_size = kPi * std::max(2 / width, 1 / height);
+    const double pixel_size = std::numbers::pi * std::max(2 / width, 1 / height);
     const int k = static_cast<int>(std::clamp(8 * pixel_size / radius, 16.0, 2048.0));
 
     struct Covered {
@@ -96,7 +95,8 @@ void add_disc(const DistantDisc& disc, Image& image) {
             if (middle >= near_squared || inner == 0) {
                 double inside = 0, total = 0;
                 for (int i = 0; i < k; ++i) {
-                    const double v = (row + (i + 0.5) / k) / height, weight = std::sin(kPi * v);
+                    const double v = (row + (i + 0.5) / k) / height,
+                                 weight = std::sin(std::numbers::pi * v);
                     for (int j = 0; j < k; ++j) {
                         const double u = (column + (j + 0.5) / k) / width;
                         total += weight;
@@ -114,8 +114,8 @@ void add_disc(const DistantDisc& disc, Image& image) {
         }
     }
     if (covered.empty()) {  // smaller than the finest sub-pixel
-        const double u = 0.5 + std::atan2(center.z, center.x) / (2 * kPi);
-        const double v = std::acos(std::clamp(center.y, -1.0, 1.0)) / kPi;
+        const double u = 0.5 + std::atan2(center.z, center.x) / (2 * std::numbers::pi);
+        const double v = std::acos(std::clamp(center.y, -1.0, 1.0)) / std::numbers::pi;
         const auto column = std::min(static_cast<std::uint32_t>(u * width), image.width - 1);
         const auto row = std::min(static_cast<std::uint32_t>(v * height), image.height - 1);
         covered.push_back({std::size_t{row} * image.width + column, 1});
@@ -132,8 +132,9 @@ void add_disc(const DistantDisc& disc, Image& image) {
 
 double lat_long_pixel_solid_angle(std::uint32_t width, std::uint32_t height, std::uint32_t row) {
     // cos a - cos b as a product, which does not cancel at the poles.
-    const double middle = kPi * (row + 0.5) / height, half = 0.5 * kPi / height;
-    return 2 * kPi / width * 2 * std::sin(middle) * std::sin(half);
+    const double middle = std::numbers::pi * (row + 0.5) / height,
+                 half = 0.5 * std::numbers::pi / height;
+    return 2 * std::numbers::pi / width * 2 * std::sin(middle) * std::sin(half);
 }
 
 Image rasterise_lat_long(const Environment& environment, std::uint32_t width,

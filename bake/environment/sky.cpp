@@ -14,9 +14,8 @@ using formats::Environment;
 using formats::Rgb;
 using formats::Vec3;
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::uint32_t kWidth = 1024, kHeight = 512;
-constexpr double kSunAngularRadius = 0.265 * kPi / 180;
+constexpr double kSunAngularRadius = 0.265 * std::numbers::pi / 180;
 
 using Color = std::array<double, 3>;
 
@@ -41,7 +40,7 @@ Rgb to_rgb(const Color& c, double scale) {
 
 Environment make_sky(double turbidity, double elevation, double azimuth) {
     const Vec3 sun = direction_of(azimuth, elevation);
-    const double sun_zenith = kPi / 2 - elevation * kPi / 180;
+    const double sun_zenith = std::numbers::pi / 2 - elevation * std::numbers::pi / 180;
     const PerezSky perez = make_perez_sky(turbidity, sun_zenith);
     const auto sky_color = [&](double x, double y, double z) {
         const double cosine = x * double{sun.x} + y * double{sun.y} + z * double{sun.z};
@@ -53,17 +52,18 @@ Environment make_sky(double turbidity, double elevation, double azimuth) {
     const Color sunlight = in_gamut(sun_irradiance(turbidity, sun_zenith));
     Color irradiance;
     for (std::size_t band = 0; band < 3; ++band) {
-        irradiance[band] = sunlight[band] * std::sin(elevation * kPi / 180);
+        irradiance[band] = sunlight[band] * std::sin(elevation * std::numbers::pi / 180);
     }
     const auto direction_at = [](std::uint32_t row, std::uint32_t column) -> Color {
-        const double theta = kPi * (row + 0.5) / kHeight;
-        const double phi = kPi * (2 * (column + 0.5) / kWidth - 1);
+        const double theta = std::numbers::pi * (row + 0.5) / kHeight;
+        const double phi = std::numbers::pi * (2 * (column + 0.5) / kWidth - 1);
         return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
     };
     for (std::uint32_t row = 0; row < kHeight / 2; ++row) {
-        const double sin0 = std::sin(kPi * row / kHeight),
-                     sin1 = std::sin(kPi * (row + 1) / kHeight);
-        const double weight = kPi / kWidth * (sin1 * sin1 - sin0 * sin0);  // integral of cos dw
+        const double sin0 = std::sin(std::numbers::pi * row / kHeight),
+                     sin1 = std::sin(std::numbers::pi * (row + 1) / kHeight);
+        const double weight =
+            std::numbers::pi / kWidth * (sin1 * sin1 - sin0 * sin0);  // integral of cos dw
         for (std::uint32_t column = 0; column < kWidth; ++column) {
             const auto [x, y, z] = direction_at(row, column);
             const Color color = sky_color(x, y, z);
@@ -77,7 +77,7 @@ Environment make_sky(double turbidity, double elevation, double azimuth) {
     // Lower half: a diffuse ground. It fades into the horizon over three degrees, so that
     // reflections and backgrounds show no hard line.
     const Color albedo{0.21, 0.19, 0.16};
-    const double haze = std::sin(3 * kPi / 180);
+    const double haze = std::sin(3 * std::numbers::pi / 180);
     for (std::uint32_t row = kHeight / 2; row < kHeight; ++row) {
         for (std::uint32_t column = 0; column < kWidth; ++column) {
             const auto [x, y, z] = direction_at(row, column);
@@ -86,14 +86,15 @@ Environment make_sky(double turbidity, double elevation, double azimuth) {
             Color color{};
             if (far > 0) color = sky_color(x / flat, 0, z / flat);
             for (std::size_t band = 0; band < 3; ++band) {
-                color[band] = far * color[band] + (1 - far) * albedo[band] * irradiance[band] / kPi;
+                color[band] = far * color[band] +
+                              (1 - far) * albedo[band] * irradiance[band] / std::numbers::pi;
             }
             map[std::size_t{row} * kWidth + column] = color;
         }
     }
 
     // Scale the luminance of a horizontal white diffuse surface, E / pi, to 1.
-    const double scale = kPi / luminance_of(irradiance);
+    const double scale = std::numbers::pi / luminance_of(irradiance);
     Environment environment;
     environment.width = kWidth;
     environment.height = kHeight;

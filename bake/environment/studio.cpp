@@ -12,8 +12,7 @@ using formats::Environment;
 using formats::Rgb;
 using formats::Vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr std::uint32_t kWidth = 1024, kHeight = 512;
+constexpr std::uint32_t kStudioWidth = 1024, kStudioHeight = 512;
 
 float smooth(float from, float to, float value) {
     const float t = std::clamp((value - from) / (to - from), 0.0f, 1.0f);
@@ -78,13 +77,15 @@ Environment make_studio() {
         make_soft_box(180, 78, 44, 20, 0.12f, 1.4f * neutral),  // overhead
     };
     Environment environment;
-    environment.width = kWidth;
-    environment.height = kHeight;
-    environment.pixel.reserve(std::size_t{kWidth} * kHeight);
-    for (std::uint32_t row = 0; row < kHeight; ++row) {
-        const float theta = kPi * (static_cast<float>(row) + 0.5f) / kHeight;
-        for (std::uint32_t column = 0; column < kWidth; ++column) {
-            const float phi = kPi * (2 * (static_cast<float>(column) + 0.5f) / kWidth - 1);
+    environment.width = kStudioWidth;
+    environment.height = kStudioHeight;
+    environment.pixel.reserve(std::size_t{kStudioWidth} * kStudioHeight);
+    for (std::uint32_t row = 0; row < kStudioHeight; ++row) {
+        const float theta =
+            std::numbers::pi_v<float> * (static_cast<float>(row) + 0.5f) / kStudioHeight;
+        for (std::uint32_t column = 0; column < kStudioWidth; ++column) {
+            const float phi = std::numbers::pi_v<float> *
+                              (2 * (static_cast<float>(column) + 0.5f) / kStudioWidth - 1);
             const Vec3 d{std::sin(theta) * std::cos(phi), std::cos(theta),
                          std::sin(theta) * std::sin(phi)};
             Rgb radiance = eval_room(d);

@@ -9,8 +9,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kLanes = RayPacket::kSize;
-
 struct Sums {
     double open = 0, all = 0;
     glm::dvec3 axis{0};
@@ -22,7 +20,7 @@ void gather_openness(const RayScene& rays, const DirectionSet& directions,
                      std::span<const Receiver> receivers, std::span<OpenHemisphere> seen) {
     RayPacket packet{};
     packet.mask.fill(0xffffffffu);
-    std::array<Sums, kLanes> sums{};
+    std::array<Sums, RayPacket::kSize> sums{};
     RayPacket::Lane normal_x{}, normal_y{}, normal_z{};
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         const glm::vec3 origin = receivers[i].origin, n = receivers[i].normal;
@@ -31,14 +29,14 @@ void gather_openness(const RayScene& rays, const DirectionSet& directions,
         seen[i] = {n == glm::vec3(0) ? glm::vec3(0, 0, 1) : n, 0, 0};
     }
     for (const DirectionBlock& block : directions.blocks) {
-        for (std::uint32_t cell = 0; cell < kLanes; ++cell) {
+        for (std::uint32_t cell = 0; cell < RayPacket::kSize; ++cell) {
             const glm::vec3 w(block.dir_x[cell], block.dir_y[cell], block.dir_z[cell]);
             const glm::vec3 moment(block.moment_x[cell], block.moment_y[cell],
                                    block.moment_z[cell]);
             LaneMask lanes;
             RayPacket::Lane cosine;  // integrated over the cell
             std::int32_t any = 0;
-            for (std::uint32_t i = 0; i < kLanes; ++i) {
+            for (std::uint32_t i = 0; i < RayPacket::kSize; ++i) {
                 cosine[i] =
                     normal_x[i] * moment.x + normal_y[i] * moment.y + normal_z[i] * moment.z;
                 // Skip cells whose ray is below the horizon although the cell is above: the surface
@@ -89,13 +87,13 @@ std::vector<formats::Openness> bake_openness(const RayScene& rays, const Directi
     const std::vector<std::uint32_t> order = spatial_order(positions);
     std::vector<formats::Openness> openness(receivers.size());
     for_each_block_in_order(
-        receivers.size(), 16 * kLanes, context,
+        receivers.size(), 16 * RayPacket::kSize, context,
         [&](Range range) {
             std::vector<OpenHemisphere> block(range.end - range.begin);
             std::vector<Receiver> group;
             for (std::size_t first = range.begin; first < range.end; first += group.size()) {
                 group.clear();
-                while (group.size() < kLanes && first + group.size() < range.end) {
+                while (group.size() < RayPacket::kSize && first + group.size() < range.end) {
                     group.push_back(receivers[order[first + group.size()]]);
                 }
                 gather_openness(rays, directions, group,

@@ -6,13 +6,11 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kLanes = RayPacket::kSize;
-
 // Integral of the cosine over each subtexel, and whether any is above the horizon.
 bool integrate_cosine(const DirectionBlock& block, glm::vec3 normal, RayPacket::Lane& cosine,
                       LaneMask& above) {
     std::int32_t any = 0;
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
         cosine[lane] = cosine_integral(block, lane, normal);
         above[lane] = cosine[lane] > 0.0f ? -1 : 0;
         any |= above[lane];
@@ -23,7 +21,7 @@ bool integrate_cosine(const DirectionBlock& block, glm::vec3 normal, RayPacket::
 void weight_by_boundary(const DirectionBlock& block, glm::vec3 normal,
                         std::span<const float> transmittance, RayPacket::Lane& cosine) {
     const float steps = static_cast<float>(transmittance.size() - 1);
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
         const float c = normal.x * block.dir_x[lane] + normal.y * block.dir_y[lane] +
                         normal.z * block.dir_z[lane];
         const float at = std::clamp(c, 0.0f, 1.0f) * steps;
@@ -56,7 +54,7 @@ std::uint64_t trace_block(const RayScene& rays, const DirectionBlock& block, glm
     packet.tfar.fill(std::numeric_limits<float>::infinity());
     rays.occluded(lanes, packet);
     std::uint64_t traced = 0;
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
         traced += static_cast<std::uint64_t>(-lanes[lane]);
         const bool lit = lanes[lane] != 0 && packet.tfar[lane] > 0.0f;
         transport[block.texel[lane]] += lit ? cosine[lane] : 0.0f;
@@ -74,7 +72,7 @@ void fill_block(const DirectionBlock& block, glm::vec3 normal, std::span<const f
     if (!transmittance.empty()) {
         weight_by_boundary(block, normal, transmittance, cosine);
     }
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
         transport[block.texel[lane]] += lanes[lane] != 0 ? cosine[lane] : 0.0f;
     }
 }

@@ -6,7 +6,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kLanes = RayPacket::kSize;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // More crossings than any body has; bounds the work that a hostile mesh can ask for.
@@ -128,7 +127,7 @@ PacketEntries find_entries(const RayScene& rays, std::uint32_t material, LaneMas
         packet.tfar.fill(kInfinity);
         const PacketHits hits = rays.closest(lanes, packet);
         std::int32_t any = 0;
-        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
             if (lanes[lane] == 0) {
                 continue;
             }
@@ -158,7 +157,7 @@ PacketEntries find_entries(const RayScene& rays, std::uint32_t material, LaneMas
     }
     packet.tfar.fill(kInfinity);
     rays.occluded(beyond, packet);
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
         counts.rays += static_cast<std::uint64_t>(-beyond[lane]);
         entries.lit[lane] = beyond[lane] != 0 && packet.tfar[lane] > 0.0f ? -1 : 0;
     }

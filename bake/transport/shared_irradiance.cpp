@@ -9,8 +9,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kLanes = RayPacket::kSize;
-
 enum class Seen : std::uint8_t { nothing, open, blocked, mixed };
 
 bool agrees(Seen seen) {
@@ -38,7 +36,7 @@ struct Group {
         packet.mask.fill(0xffffffffu);
         packet.tfar.fill(std::numeric_limits<float>::infinity());
         LaneMask lanes{};
-        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
             for (std::size_t turn = 0; turn < receivers.size() && lanes[lane] == 0; ++turn) {
                 const std::size_t i = (lane + shift + turn) % receivers.size();
                 if (cosine_integral(block(i, b), lane, receivers[i].normal) > 0.0f) {
@@ -55,7 +53,7 @@ struct Group {
         }
         rays.occluded(lanes, packet);
         bool open = false, blocked = false;
-        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
             const bool asked = lanes[lane] != 0, passed = packet.tfar[lane] > 0.0f;
             traced += asked ? 1 : 0;
             open |= asked && passed;

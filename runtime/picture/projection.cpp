@@ -5,7 +5,7 @@
 namespace opaline::runtime {
 namespace {
 
-bool is_finite(const GridVertex& v) {
+bool is_finite_vertex(const GridVertex& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.w);
 }
 
@@ -76,7 +76,7 @@ std::vector<GridTriangle> select_triangles(const formats::AssetView& asset,
                 triangle.vertex[k] = primitive.first_vertex + indices[i + k];
                 corner[k] = vertices[triangle.vertex[k]];
             }
-            if (!std::all_of(corner.begin(), corner.end(), is_finite)) continue;
+            if (!std::all_of(corner.begin(), corner.end(), is_finite_vertex)) continue;
             const GridBox box = visible_box(corner, grid.near_plane);
             if (!(box.low_x <= box.high_x)) continue;
             const SampleRange columns = samples_within(box.low_x, box.high_x, grid.columns);

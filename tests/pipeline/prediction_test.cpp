@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <string>
 
-#include "bake/calibration/calibration.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/volumes/plan_volumes.h"
@@ -130,31 +128,6 @@ TEST(Prediction, SecondsAndBytesOfVolumesBelongToTheirDecisions) {
         static_cast<double>(volumes[0].predicted_bytes + volumes[1].predicted_bytes);
     EXPECT_GT(predicted, 0.99 * stored);
     EXPECT_LT(predicted, 2 * stored);
-}
-
-// No assertion on time: on a machine that does other work as well it says nothing. The ratio stands
-// in the test's results (--gtest_output=xml) and on its output.
-TEST(Prediction, RatioOfPredictedToMeasuredSecondsIsReported) {
-    const bake::Rates rates = bake::measure_rates(bake::all_effects(), 2);
-    struct Case {
-        const char* name;
-        Scene scene;
-    };
-    for (const Case& c : {Case{"opaque", make_dented_ball()},
-                          Case{"medium", make_ball_on_floor(make_grey_medium(10, 1))}}) {
-        bake::BakeOptions options;
-        options.threads = 2;
-        const bake::Knobs knobs = *bake::resolve_knobs(options);
-        const bake::SceneFacts facts = bake::inspect_scene(c.scene);
-        auto plan = bake::plan_bake(c.scene, facts, knobs);
-        const double predicted = bake::predict_costs(c.scene, facts, knobs, rates, 2, plan).seconds;
-        const double measured = bake_scene(c.scene, options).seconds_total;
-        ASSERT_GT(predicted, 0) << c.name;
-        const std::string ratio = std::to_string(predicted / measured);
-        RecordProperty(std::string(c.name) + "_predicted_over_measured_seconds", ratio);
-        std::printf("%s: predicted %.2f s, measured %.2f s, ratio %s\n", c.name, predicted,
-                    measured, ratio.c_str());
-    }
 }
 
 TEST(Prediction, BytesAreThoseOfTheRowsInTheFile) {

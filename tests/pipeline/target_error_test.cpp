@@ -35,6 +35,7 @@ TEST(TargetError, MeasuredErrorIsWhatWasAskedForAndLessCostsMore) {
         EXPECT_LE(result.accuracy->predicted, error);
         EXPECT_LE(result.error.at_receivers.rms_relative, error);
         EXPECT_LE(result.error.between.rms_relative, error);
+        EXPECT_EQ(result.asset.primitives[0].bands, 1u) << "a grey medium";
         // What was not needed was not bought.
         EXPECT_GT(result.error.at_receivers.rms_relative, 0.2 * error);
         const std::uint64_t size = formats::opal_size(result.asset.view());

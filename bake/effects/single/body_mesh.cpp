@@ -10,7 +10,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFarthest = std::numeric_limits<float>::infinity();
 
 // Spatial order for locality in memory; the body's triangles stay first.
 void sort_in_space(BodyMesh& mesh) {
@@ -40,7 +40,7 @@ BodyMesh make_body_mesh(const formats::Scene& scene, const RayScene& rays, std::
     BodyMesh mesh;
     const std::vector<std::uint8_t> inner = find_inner_triangles(scene, rays, material, context);
     std::size_t next = 0;
-    glm::vec3 low(kInfinity), high(-kInfinity);
+    glm::vec3 low(kFarthest), high(-kFarthest);
     double edges = 0;
     for (const bool body : {true, false}) {
         for (const formats::Primitive& p : scene.primitives) {

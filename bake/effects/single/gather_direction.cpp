@@ -13,8 +13,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kLanes = RayPacket::kSize;
-
 // The point at which light enters on its way to a node.
 struct Arrival {
     float distance, cosine;
@@ -101,15 +99,15 @@ float trace_probability(const GatherJob& job, const InteriorNode& node, const Li
 
 template <std::size_t kBands>
 void trace_open(const GatherJob& job, const GatherDirection& direction, GatherWorkspace& work) {
-    for (std::size_t begin = 0; begin < work.open.size(); begin += kLanes) {
-        const std::size_t count = std::min<std::size_t>(kLanes, work.open.size() - begin);
+    for (std::size_t begin = 0; begin < work.open.size(); begin += RayPacket::kSize) {
+        const std::size_t count = std::min<std::size_t>(RayPacket::kSize, work.open.size() - begin);
         RayPacket packet{};
         packet.dir_x.fill(direction.w.x);
         packet.dir_y.fill(direction.w.y);
         packet.dir_z.fill(direction.w.z);
         packet.mask.fill(0xffffffffu);
         LaneMask lanes{};
-        std::array<std::int32_t, kLanes> shells{};
+        std::array<std::int32_t, RayPacket::kSize> shells{};
         for (std::size_t lane = 0; lane < count; ++lane) {
             const InteriorNode& node = *work.open[begin + lane].node;
             const glm::vec3 origin = node.position;

@@ -11,7 +11,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kLanes = RayPacket::kSize;
 constexpr std::size_t kPoints = 4, kRays = 3;
 
 struct Triangle {
@@ -31,15 +30,16 @@ std::vector<Triangle> triangles_of(const formats::Scene& scene, std::uint32_t ma
 
 // Number of shells of the medium around the start of each ray: shells left minus shells entered on
 // the way to infinity.
-std::array<std::int32_t, kLanes> count_shells(const RayScene& rays, std::uint32_t material,
-                                              LaneMask lanes, RayPacket packet) {
-    std::array<std::int32_t, kLanes> shells{};
+std::array<std::int32_t, RayPacket::kSize> count_shells(const RayScene& rays,
+                                                        std::uint32_t material, LaneMask lanes,
+                                                        RayPacket packet) {
+    std::array<std::int32_t, RayPacket::kSize> shells{};
     constexpr int kMostCrossings = 256;  // bounds the work for a hostile mesh
     for (int i = 0; i < kMostCrossings; ++i) {
         packet.tfar.fill(std::numeric_limits<float>::infinity());
         const PacketHits hits = rays.closest(lanes, packet);
         std::int32_t any = 0;
-        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
             if (lanes[lane] == 0 || hits.hit[lane] == 0) {
                 lanes[lane] = 0;
                 continue;

@@ -10,8 +10,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kLanes = RayPacket::kSize;
-
 // If the mean free path is shorter than the resolution of coordinates, distances to the boundary
 // are noise. At that scale every body is a half space, whose single scattering depends on the
 // albedo only. So a thinner medium of the same albedo, band by band, gives the same result.
@@ -75,7 +73,7 @@ std::vector<RayPacket::Lane> texel_shares(const DirectionSet& directions) {
     std::vector<float> total(directions.inverse_solid_angle.size(), 0.0f);
     for (const DirectionBlock& block : directions.blocks) {
         RayPacket::Lane& share = shares.emplace_back();
-        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
             // The first moment of a small cell is its solid angle times its direction.
             share[lane] = std::sqrt(block.moment_x[lane] * block.moment_x[lane] +
                                     block.moment_y[lane] * block.moment_y[lane] +
@@ -84,7 +82,7 @@ std::vector<RayPacket::Lane> texel_shares(const DirectionSet& directions) {
         }
     }
     for (std::size_t b = 0; b < shares.size(); ++b) {
-        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
             shares[b][lane] /= total[directions.blocks[b].texel[lane]];
         }
     }
@@ -107,7 +105,7 @@ EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
     LaneMask all;
     all.fill(-1);
     for (const InteriorNode& node : nodes) {
-        std::array<std::int32_t, kLanes> shells;
+        std::array<std::int32_t, RayPacket::kSize> shells;
         shells.fill(node.shells);
         RayPacket packet = rays_from(node.position);
         for (std::size_t b = 0; b < directions.blocks.size(); ++b) {
@@ -117,7 +115,7 @@ EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
             packet.dir_z = block.dir_z;
             const PacketEntries entries =
                 find_entries(rays, medium.material, all, packet, shells, counts);
-            for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+            for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
                 if (entries.lit[lane] == 0) {
                     continue;
                 }

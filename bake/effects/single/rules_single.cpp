@@ -16,7 +16,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr unsigned kDegrees = 5;
+constexpr unsigned kSeriesDegrees = 5;
 
 // Light scattered on a line across the whole body: alpha (1 - e^(-sigma_t d)), largest band.
 double largest_scattered_share(const PlanInput& input) {
@@ -98,12 +98,12 @@ PlanEntry decide_single(const PlanInput& input) {
 
 bool is_anisotropic(const PlanInput& input) {
     return input.material.medium &&
-           phase_rms(expand_phase(input.material.medium->phase, kDegrees), 1) > 0;
+           phase_rms(expand_phase(input.material.medium->phase, kSeriesDegrees), 1) > 0;
 }
 
 PlanEntry decide_terms(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
-    const PhaseSeries series = expand_phase(medium.phase, kDegrees);
+    const PhaseSeries series = expand_phase(medium.phase, kSeriesDegrees);
     PlanEntry entry;
     entry.least_terms = 4;
     entry.bound = largest_scattered_share(input) * 4 * std::numbers::pi * phase_rms(series, 1);
@@ -153,7 +153,7 @@ double single_share(const formats::Medium& medium) {
 
 std::uint32_t needed_terms(const formats::Medium& medium, const Knobs& knobs) {
     const double share = single_share(medium);
-    return share > 0 ? choose_phase_terms(expand_phase(medium.phase, kDegrees),
+    return share > 0 ? choose_phase_terms(expand_phase(medium.phase, kSeriesDegrees),
                                           knobs[kPhaseTolerance] / share)
                      : 1;
 }

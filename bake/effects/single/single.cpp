@@ -87,7 +87,7 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
 
 // alpha / (4 pi) (Ft J / c) c' / (1 + c'): the integral along a path without end, isotropic.
 void add_at_entry(const EffectInputs& inputs, std::span<std::vector<double>> factor) {
-    constexpr double kIsotropic = 0.25 * std::numbers::inv_pi;
+    constexpr double kEven = 0.25 * std::numbers::inv_pi;
     const formats::Medium& medium = inputs.medium();
     const PathMedium path = make_path_medium(medium);
     const Interface<double> boundary{static_cast<double>(medium.eta),
@@ -97,8 +97,8 @@ void add_at_entry(const EffectInputs& inputs, std::span<std::vector<double>> fac
         for (std::uint32_t i = 1; i <= kCosineSteps; ++i) {
             const double cosine = static_cast<double>(i) / kCosineSteps;
             const Entry<double> entry = enter(cosine, boundary);
-            factor[b][i] += kIsotropic * albedo * entry.throughput / cosine *
-                            entry.refracted_cosine / (1 + entry.refracted_cosine);
+            factor[b][i] += kEven * albedo * entry.throughput / cosine * entry.refracted_cosine /
+                            (1 + entry.refracted_cosine);
         }
     }
 }

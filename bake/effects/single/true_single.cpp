@@ -9,7 +9,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kLanes = RayPacket::kSize;
 constexpr std::uint32_t kCoarse = 8;  // its cells are those of 16 x 16 texels
 constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
 
@@ -27,16 +26,16 @@ std::vector<double> sum_over_cells(std::span<const float> smooth) {
 }
 
 // Contribution of one node through each lane, per unit of radiance times solid angle.
-std::array<double, kLanes> trace_node(const SingleQuadrature& q, const RayScene& rays,
-                                      const BodyPoint& point, const InteriorNode& node,
-                                      const RayPacket& packet, const LaneMask& lanes,
-                                      EntryCounts& counts) {
-    std::array<std::int32_t, kLanes> shells;
+std::array<double, RayPacket::kSize> trace_node(const SingleQuadrature& q, const RayScene& rays,
+                                                const BodyPoint& point, const InteriorNode& node,
+                                                const RayPacket& packet, const LaneMask& lanes,
+                                                EntryCounts& counts) {
+    std::array<std::int32_t, RayPacket::kSize> shells;
     shells.fill(node.shells);
     const PacketEntries entries =
         find_entries(rays, q.medium.material, lanes, packet, shells, counts);
-    std::array<double, kLanes> light{};
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    std::array<double, RayPacket::kSize> light{};
+    for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
         if (lanes[lane] == 0 || entries.lit[lane] == 0) {
             continue;
         }
@@ -69,12 +68,12 @@ SingleQuadrature make_single_quadrature(const formats::Scene& scene, std::uint32
                        make_direction_set(kCoarse),
                        {},
                        lights.size()};
-    q.integral.resize(q.directions.blocks.size() * kLanes * lights.size());
+    q.integral.resize(q.directions.blocks.size() * RayPacket::kSize * lights.size());
     for (std::size_t l = 0; l < lights.size(); ++l) {
         const std::vector<double> cells = sum_over_cells(lights[l].smooth);
         std::size_t at = l;
         for (const DirectionBlock& block : q.directions.blocks) {
-            for (std::uint32_t lane = 0; lane < kLanes; ++lane, at += lights.size()) {
+            for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane, at += lights.size()) {
                 q.integral[at] = static_cast<float>(cells[formats::texel_index(
                     2 * kCoarse, {block.dir_x[lane], block.dir_y[lane], block.dir_z[lane]})]);
             }
@@ -97,11 +96,11 @@ Luminance integrate_single(const SingleQuadrature& q, const RayScene& rays, cons
             packet.dir_y = sun.dir_y;
             packet.dir_z = sun.dir_z;
             LaneMask lanes;
-            for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+            for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
                 lanes[lane] = sun.flux[lane] > 0 ? -1 : 0;
             }
             const auto light = trace_node(q, rays, point, node, packet, lanes, counts);
-            for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+            for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
                 luminance[sun.light[lane]] += light[lane] * static_cast<double>(sun.flux[lane]);
             }
         }
@@ -111,7 +110,7 @@ Luminance integrate_single(const SingleQuadrature& q, const RayScene& rays, cons
             packet.dir_y = block.dir_y;
             packet.dir_z = block.dir_z;
             const auto light = trace_node(q, rays, point, node, packet, all, counts);
-            for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+            for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
                 for (std::size_t l = 0; l < q.lights; ++l) {
                     luminance[l] += light[lane] * static_cast<double>(*integral++);
                 }

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -265,15 +264,6 @@ TEST(GlossyExample, HasThreeBallsOfTheirVolumeThatDoNotTouch) {
             ASSERT_LT(std::abs(p.x - middle), 0.0301);
         }
     }
-}
-
-TEST(Examples, AreTheSameForAnyNumberOfThreads) {
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const auto again = make_example("statue");
-    ASSERT_TRUE(again);
-    EXPECT_EQ(again->front().mesh.position, figure("statue").position);
-    EXPECT_EQ(again->front().mesh.normal, figure("statue").normal);
-    EXPECT_EQ(again->front().mesh.triangles, figure("statue").triangles);
 }
 
 TEST(Remesh, PutsABallOnItsSphere) {
