@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,23 @@ namespace {
 double finest_area(const formats::Scene& scene, std::uint32_t particles) {
     const double area = reflecting_area(scene);
     return area > 0 ? 4 * area / particles : 1;
+}
+
+// Receivers read a caustic at one place each, and its particles end soon.
+std::uint32_t caustic_particles(std::uint32_t particles) {
+    constexpr std::uint32_t kTimes = 16, kMost = 2000000;
+    return std::max(particles,
+                    std::min(kMost, particles > kMost / kTimes ? kMost : kTimes * particles));
+}
+
+// Whether a caustic is worth more particles than the rest.
+bool is_bright(const ParticleLight& light) {
+    double all = 0, caustic = 0;
+    for (const ElementDeposit& deposit : light.all)
+        all += deposit.weight;
+    for (const ElementDeposit& deposit : light.caustic)
+        caustic += deposit.weight;
+    return caustic > all / 256;
 }
 
 void append_own_light(const formats::Scene& scene, std::span<const Lamp> lamps,
@@ -54,21 +72,38 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     }
     const ElementLayout layout(job.scene, finest_area(job.scene, particles));
     std::vector<ElementLight> elements(job.lamps.size()), caustics(job.lamps.size());
+    const std::uint32_t more = caustic_particles(particles);
+    std::optional<ElementLayout> caustic_layout;
     run_stage(log, "particles of emitters", [&](std::uint64_t& rays) {
         for (std::uint32_t e = 0; e < job.lamps.size() && !context.cancelled(); ++e) {
             const ParticleLight traced =
                 trace_particles(job.scene, job.rays, sources[e], layout,
                                 {particles, e, job.knobs.seed, 0, job.textures}, context, rays);
             if (has_light(traced.all)) elements[e] = layout.join(traced.all, kGatheredElements);
-            if (has_light(traced.caustic))
-                caustics[e] = layout.join(traced.caustic, kCausticElements);
+            if (!has_light(traced.caustic)) continue;
+            if (!caustic_layout) caustic_layout.emplace(job.scene, finest_area(job.scene, more));
+            caustics[e] = caustic_layout->join(
+                trace_particles(job.scene, job.rays, sources[e], *caustic_layout,
+                                {is_bright(traced) ? more : particles, e, job.knobs.seed, 0,
+                                 job.textures, true},
+                                context, rays)
+                    .caustic,
+                kCausticElements);
         }
         return true;
     });
     MediaLight exitance;
-    const LampLight light{
-        job.scene,      job.rays,  sources,      layout,  elements, whole(job.knobs, kEmitterRays),
-        job.knobs.seed, &exitance, job.textures, caustics};
+    const LampLight light{job.scene,
+                          job.rays,
+                          sources,
+                          layout,
+                          elements,
+                          whole(job.knobs, kEmitterRays),
+                          job.knobs.seed,
+                          &exitance,
+                          job.textures,
+                          caustics,
+                          caustic_layout ? &*caustic_layout : nullptr};
     BakedEmitters baked;
     MediaRows of_media(job.primitives.size());
     if (job.media.light_medium) {

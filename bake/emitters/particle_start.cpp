@@ -24,8 +24,10 @@ std::array<glm::dvec3, 2> axes_across(const glm::dvec3& d) {
     return {first, glm::cross(d, first)};
 }
 
-void start_on_triangle(const GlowingTriangle& triangle, const DifferentialRules& rules,
-                       std::array<double, 4> x, Particle& p) {
+// `chance`: of this triangle among those of the lamp, whose surface goes on beyond it: one number
+// spans as much of it as one of the density chance / area does.
+void start_on_triangle(const GlowingTriangle& triangle, double chance,
+                       const DifferentialRules& rules, std::array<double, 4> x, Particle& p) {
     glm::dvec3 normal = triangle.normal;
     if (triangle.is_two_sided) {  // half of the first number chooses the side
         p.path.survival *= 0.5;
@@ -33,8 +35,9 @@ void start_on_triangle(const GlowingTriangle& triangle, const DifferentialRules&
         x[0] = 2 * x[0] - (x[0] >= 0.5 ? 1 : 0);
     }
     const AreaSample at = sample_triangle_folded(triangle.corner, x[0], x[1]);
-    add_variable(p.path, {at.dP_du, kStill, 0, 1});
-    add_variable(p.path, {at.dP_dv, kStill, 0, 1});
+    const double scale = 1 / std::sqrt(chance);
+    add_variable(p.path, {scale * at.dP_du, kStill, 0, 1});
+    add_variable(p.path, {scale * at.dP_dv, kStill, 0, 1});
     aim_at_normal(p.path, glm::dmat3(0.0));
     p.direction =
         scatter_in_lobe(p.path, rules, {.axis = normal, .u = x[2], .v = x[3], .N_g = normal});
@@ -125,16 +128,16 @@ Particle start_particle(const StartTable& table, const DifferentialRules& rules,
     for (std::size_t k = 0; k < p.first_bounce.size(); ++k) {
         p.first_bounce[k] = std::min(static_cast<float>(lattice[5 + k]), kBelowOne);
     }
-    p.path.survival = chance;
     const LampSources& lamp = table.lamp;
     const bool is_light = source >= lamp.triangles.size();
     p.power = (is_light ? light_power(lamp, lamp.lights[source - lamp.triangles.size()])
                         : lamp.triangles[source].power()) /
               (chance * run.particles);
     if (is_light) {
+        p.path.survival = chance;
         start_at_light(lamp, lamp.lights[source - lamp.triangles.size()], rules, x, p);
     } else {
-        start_on_triangle(lamp.triangles[source], rules, x, p);
+        start_on_triangle(lamp.triangles[source], chance, rules, x, p);
     }
     return p;
 }

@@ -202,6 +202,8 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
 void add_caustics(const LampLight& light, const Receiver& receiver, std::span<glm::dvec3> total,
                   std::uint64_t& rays) {
     if (std::ranges::all_of(light.caustics, &ElementLight::empty)) return;
+    const ElementLayout& layout =
+        light.caustic_layout != nullptr ? *light.caustic_layout : light.layout;
     // Four rays down to what lies around it: at a vertex, some of the elements that meet there.
     constexpr std::uint32_t kRays = 4;
     RayPacket packet = rays_from(receiver.origin);
@@ -223,8 +225,8 @@ void add_caustics(const LampLight& light, const Receiver& receiver, std::span<gl
     for (std::uint32_t i = 0; i < kRays; ++i) {
         const auto at = arrival_of(hits, i);
         if (!at || glm::dot(at->normal, glm::dvec3(receiver.normal)) < 0.5) continue;
-        const std::size_t element = light.layout.element(at->side, at->weights);
-        if (element < light.layout.size()) elements[count++] = element;
+        const std::size_t element = layout.element(at->side, at->weights);
+        if (element < layout.size()) elements[count++] = element;
     }
     for (std::size_t lamp = 0; lamp < light.caustics.size(); ++lamp) {
         if (light.caustics[lamp].empty()) continue;

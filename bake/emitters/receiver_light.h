@@ -37,6 +37,7 @@ struct LampLight {
     const ScenePyramids* textures = nullptr;
     /// Of each lamp, what metals and media alone passed on; an empty one, or none: nothing.
     std::span<const ElementLight> caustics = {};
+    const ElementLayout* caustic_layout = nullptr;  ///< their elements; null: `layout`
 };
 
 /// Irradiance [lx] of a receiver from each lamp: straight, as metals and media pass it on from the

@@ -118,7 +118,8 @@ void print_caustic() {
         for (const double share : {1.0, 0.25, 0.0625, 0.0156}) {
             std::printf("| %u | %g |", particles, share);
             for (const double limit : {0.7, std::numeric_limits<double>::infinity()}) {
-                const auto found = caustic_of({particles, 0, 0, 0, nullptr, limit}, {share, 16});
+                const auto found =
+                    caustic_of({particles, 0, 0, 0, nullptr, false, limit}, {share, 16});
                 double error = 0, all = 0;
                 for (std::size_t i = 0; i < floor; ++i) {
                     const double exact{truth[i].x}, difference = double{found[i].x} - exact;

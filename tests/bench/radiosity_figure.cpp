@@ -227,22 +227,29 @@ void make_figure(const std::string& path, std::uint32_t particles) {
     std::uint64_t traced = 0;
     for (const double limit : {0.7, std::numeric_limits<double>::infinity()}) {
         const ParticleLight light =
-            trace_particles(scene, rays, sources[0], layout, {particles, 0, 0, 0, nullptr, limit},
-                            Context{}, traced);
+            trace_particles(scene, rays, sources[0], layout,
+                            {particles, 0, 0, 0, nullptr, false, limit}, Context{}, traced);
         std::printf("\n%s\n", limit < 1 ? "Limited by the gradient" : "Not limited");
         print_groups(view, layout.join(light.all), layout.join(light.caustic, kCausticElements));
         if (limit > 1) break;
         std::vector<Picture> panels;
         const std::vector<ElementLight> gathered{layout.join(light.all, kGatheredElements)};
-        const std::vector<ElementLight> caustics{layout.join(light.caustic, kCausticElements)};
+        // As a bake has it: 16 times the particles, 2 million at most.
+        const std::uint32_t more = std::max(particles, std::min(16 * particles, 2000000u));
+        const ElementLayout fine(scene, 4 * reflecting_area(scene) / more);
+        const std::vector<ElementLight> caustics{
+            fine.join(trace_particles(scene, rays, sources[0], fine, {more, 0, 0, 0, nullptr, true},
+                                      Context{}, traced)
+                          .caustic,
+                      kCausticElements)};
         const ElementLight elements = layout.join(light.all);
         for (const ElementLight* const shown : {&elements, gathered.data()}) {
             panels.push_back(render([&](std::uint32_t x, std::uint32_t y) {
                 return shade_elements(view, *shown, x, y);
             }));
         }
-        const LampLight lit{scene,       rays, sources, layout,  gathered,
-                            kGatherRays, 0,    nullptr, nullptr, caustics};
+        const LampLight lit{scene, rays,    sources, layout,   gathered, kGatherRays,
+                            0,     nullptr, nullptr, caustics, &fine};
         panels.push_back(render(
             [&](std::uint32_t x, std::uint32_t y) { return shade_gathered(view, lit, x, y); }));
         write(panels, path);

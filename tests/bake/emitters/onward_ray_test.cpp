@@ -168,7 +168,7 @@ TEST(OnwardRay, CausticOfRoughGlassIsSharperByTheLimitOfTheGradient) {
     std::array<double, 2> error{};
     for (std::size_t i = 0; i < 2; ++i) {
         const double limit = i == 0 ? 0.7 : std::numeric_limits<double>::infinity();
-        const auto found = caustic_of({20000, 0, 0, 0, nullptr, limit});
+        const auto found = caustic_of({20000, 0, 0, 0, nullptr, false, limit});
         for (std::size_t e = 0; e < layout.element({1, 0}, {1, 0, 0}); ++e)
             error[i] += std::pow(double{found[e].x} - double{truth[e].x}, 2);
     }

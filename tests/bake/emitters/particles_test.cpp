@@ -128,6 +128,31 @@ TEST(ParticleRadiosity, SmallTrianglesAreNoNoisierThanLargeOnes) {
     EXPECT_LT(error[0], 0.08);
 }
 
+// A spot below the ceiling shines down: the ceiling has the light of bounces alone, whose
+// footprints are larger [Suykens2001, 4.2].
+TEST(ParticleRadiosity, CeilingLitByBouncesHasCoarserElementsThanTheFloor) {
+    formats::Scene scene;
+    tests::add_surface(scene, tests::make_cube(1, true), 0.6f);
+    scene.lights.push_back({.type = formats::Light::Type::spot,
+                            .name = "",
+                            .position = {0, 0, 0.5f},
+                            .direction = {0, 0, -1},
+                            .inner_cone = 0.3f,
+                            .outer_cone = 0.6f});
+    const std::uint32_t particles = 100000;
+    const ElementLayout layout(scene, 4 * reflecting_area(scene) / particles);
+    const ElementLight light = layout.join(trace(scene, layout, {particles}));
+    // Faces of the cube by axis: the last two are z = -1 and z = 1.
+    const std::size_t face = layout.size() / 6;
+    const auto groups = [&](std::size_t of_face) {
+        std::size_t count = 0;
+        for (std::size_t i = of_face * face; i < (of_face + 1) * face; ++i)
+            count += light.together[i] == i ? 1 : 0;
+        return count;
+    };
+    EXPECT_GE(groups(4), 2 * groups(5));
+}
+
 // A closed box of exitance 1 and albedo 1/2: B = 1 / (1 - 1/2) and irradiance 2 everywhere. Each
 // particle of power 6 / N arrives at a face 1/3 times on average, with a variance of nearly that: a
 // mean errs by at most sqrt(3 / N) = 0.12 %: first flights and bounces are spread evenly.
