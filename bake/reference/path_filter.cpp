@@ -16,8 +16,41 @@ float square(float x) {
     return x * x;
 }
 
+// What the four points of a cell make of light: normals that the points c of the sphere belong to
+// [Dupuy2023], in the frame of the surface's normal; w: the centre of the cap.
+struct FacetLight {
+    Vectors4 direction;
+    Float4 spread;  ///< t of the density of normals, 1 / (pi alpha^2 t^2)
+    Int4 passes;    ///< false: refraction was asked for, but the facet reflects totally
+};
+FacetLight light_of_facets(const Vectors4& c, glm::vec3 w, glm::vec3 to_eye, float alpha,
+                           float ratio) {
+    const Vectors4 h{c.x + w.x, c.y + w.y, c.z + w.z};
+    const Float4 least{1e-6f, 1e-6f, 1e-6f, 1e-6f};
+    const Vectors4 m{alpha * h.x, alpha * h.y, h.z > least ? h.z : least};
+    const Float4 inverse = 1.0f / dot(m, m);
+    FacetLight light;
+    light.spread = inverse * (h.x * h.x + h.y * h.y + m.z * m.z);
+    light.passes = Int4{-1, -1, -1, -1};
+    const Float4 along = dot(to_eye, m);
+    Float4 share = 2.0f * inverse * along;
+    float back = 1;
+    if (ratio > 0) {
+        const float eta = 1 / ratio;
+        const Float4 squared = 1.0f - eta * eta * (1.0f - along * along * inverse);
+        const Float4 none{};
+        light.passes = squared > none;
+        share = eta * along * inverse - sqrt4((squared > none ? squared : none) * inverse);
+        back = eta;
+    }
+    light.direction = share * m - Float4{back, back, back, back} * to_eye;
+    return light;
+}
+
+}  // namespace
+
 // Refraction of D at N, by eta, with the secant of bounded_refraction where c_t is small.
-struct Refracted {
+struct PathFilter::Refracted {
     glm::vec3 D, N, T{0};
     float eta, k, c_t = 0;
 
@@ -30,42 +63,23 @@ struct Refracted {
         }
     }
     bool is_total_reflection() const { return !(c_t > 0); }
-    glm::vec3 change(glm::vec3 dD, glm::vec3 dN) const {
-        const float dk = glm::dot(dD, N) + glm::dot(D, dN);
-        const float z = square(c_t), d = 2 * square(eta) * k * dk, half = 0.5f * std::abs(d);
-        const float upper = std::sqrt(z + half);
-        const float dc_t = half > z ? std::copysign(upper, d) : d / (upper + std::sqrt(z - half));
-        const glm::vec3 dT = eta * dD - (eta * k + c_t) * dN - (eta * dk + dc_t) * N;
-        return dT - T * glm::dot(T, dT);
+    Vectors4 change(const Vectors4& dD, const Vectors4& dN) const {
+        const Float4 dk = dot(N, dD) + dot(D, dN), none{};
+        const float z = square(c_t);
+        const Float4 d = 2 * square(eta) * k * dk, half = 0.5f * (d < none ? -d : d);
+        const Float4 upper = sqrt4(z + half), left = z - half;
+        const Float4 beyond = d < none ? -upper : upper;
+        const Float4 dc_t = left < none ? beyond : d / (upper + sqrt4(left < none ? none : left));
+        const Vectors4 dT = eta * dD - (eta * k + c_t) * dN - (eta * dk + dc_t) * N;
+        return dT - dot(T, dT) * T;
     }
 };
-
-// What the normal that a point c of the sphere belongs to [Dupuy2023] makes of light, in the frame
-// of the surface's normal; w: the centre of the cap.
-struct FacetLight {
-    glm::vec3 direction;
-    float spread;  ///< t of the density of normals, 1 / (pi alpha^2 t^2)
-    bool passes;   ///< false: refraction was asked for, but the facet reflects totally
-};
-inline FacetLight light_of_facet(glm::vec3 c, glm::vec3 w, glm::vec3 to_eye, float alpha,
-                                 float ratio) {
-    const glm::vec3 h = c + w;
-    const glm::vec3 m(alpha * h.x, alpha * h.y, std::max(h.z, 1e-6f));
-    const float inverse = 1 / glm::dot(m, m);
-    const float spread = inverse * (square(h.x) + square(h.y) + square(m.z));
-    if (ratio > 0) {
-        const Refracted refracted(-to_eye, std::sqrt(inverse) * m, ratio);
-        return {refracted.T, spread, !refracted.is_total_reflection()};
-    }
-    return {2 * inverse * glm::dot(to_eye, m) * m - to_eye, spread, true};
-}
-
-}  // namespace
 
 PathFilter::PathFilter(const TextureFiltering& filtering, glm::vec3 dD_dx, glm::vec3 dD_dy)
     : filtering_(&filtering) {
-    column_[0].dD = filtering.step * dD_dx;
-    column_[1].dD = filtering.step * dD_dy;
+    block_[0] = {};
+    block_[0].dD.set_lane(0, filtering.step * dD_dx);
+    block_[0].dD.set_lane(1, filtering.step * dD_dy);
 }
 
 void PathFilter::apply_pending() {
@@ -80,68 +94,87 @@ void PathFilter::apply_pending() {
 bool PathFilter::arrive(const formats::Scene& scene, glm::vec3 direction, const SurfaceHit& hit) {
     apply_pending();
     flat_ = hit.flat;
-    const float cosine = glm::dot(direction, flat_);
-    const float divisor = std::copysign(std::max(std::abs(cosine), kLeastCosine), cosine);
-    const glm::vec3 along = direction / divisor;
-    const float longest = square(filtering_->extent / 4);
-    for (Column& column : columns()) {
-        // dP' = w - D (N_g.w) / (N_g.D), w = dP + t dD
-        const glm::vec3 w = column.dP + hit.distance * column.dD;
-        glm::vec3 moved = w - glm::dot(flat_, w) * along;
-        const float length = glm::dot(moved, moved);
-        column.dP = length > longest ? std::sqrt(longest / length) * moved : moved;
-    }
+    move_columns(direction, hit.distance);
     const formats::Primitive& p = scene.primitives[hit.primitive];
+    smooth_ = hit.smooth;
+    is_curved_ = hit.smooth != hit.flat;
+    const bool has_texture =
+        has_pyramid(filtering_->pyramids, scene.materials[p.material]) && !p.texcoord.empty();
+    if (!is_curved_ && !has_texture) {
+        return false;
+    }
     const std::uint32_t* corner = &p.index[3 * std::size_t{hit.triangle}];
     const glm::vec3 a = p.position[corner[0]];
     const glm::vec3 v = p.position[corner[1]] - a, w = p.position[corner[2]] - a;
     const glm::vec3 n = glm::cross(v, w);
     const float area = glm::dot(n, n);
-    smooth_ = hit.smooth;
     if (!(area > 1e-12f * glm::dot(v, v) * glm::dot(w, w))) {
-        gradient_v_ = gradient_w_ = normal_v_ = normal_w_ = glm::vec3(0);
-        moments_ = {};
+        is_curved_ = false;
         return false;
     }
-    gradient_v_ = glm::cross(w, n) / area;
-    gradient_w_ = glm::cross(n, v) / area;
-    if (hit.smooth == hit.flat) {
-        normal_v_ = normal_w_ = glm::vec3(0);
-    } else {
+    const float inverse = 1 / area;
+    gradient_v_ = inverse * glm::cross(w, n);
+    gradient_w_ = inverse * glm::cross(n, v);
+    if (is_curved_) {
         const glm::vec3 at_a = p.normal[corner[0]];
         const glm::vec3 at_v = p.normal[corner[1]] - at_a, at_w = p.normal[corner[2]] - at_a;
         const float scale = 1 / glm::length(at_a + hit.u * at_v + hit.v * at_w);
         normal_v_ = scale * at_v;
         normal_w_ = scale * at_w;
     }
-    if (!has_pyramid(filtering_->pyramids, scene.materials[p.material]) || p.texcoord.empty()) {
-        return false;
+    if (has_texture) {
+        const glm::vec2 uv = p.texcoord[corner[0]];
+        find_moments(p.texcoord[corner[1]] - uv, p.texcoord[corner[2]] - uv);
     }
-    const glm::vec2 uv = p.texcoord[corner[0]];
-    const glm::vec2 uv_v = p.texcoord[corner[1]] - uv, uv_w = p.texcoord[corner[2]] - uv;
-    moments_ = {};
-    for (const Column& column : columns()) {
-        const glm::vec2 d =
-            glm::dot(gradient_v_, column.dP) * uv_v + glm::dot(gradient_w_, column.dP) * uv_w;
-        moments_.add(d);
+    return has_texture;
+}
+
+void PathFilter::move_columns(glm::vec3 direction, float distance) {
+    const float cosine = glm::dot(direction, flat_);
+    const float divisor = std::copysign(std::max(std::abs(cosine), kLeastCosine), cosine);
+    const glm::vec3 along = direction / divisor;
+    const float longest = square(filtering_->extent / 4);
+    for (Block& block : blocks()) {
+        // dP' = w - D (N_g.w) / (N_g.D), w = dP + t dD
+        const Vectors4 w = block.dP + distance * block.dD;
+        block.dP = w - dot(flat_, w) * along;
+        const Float4 length = dot(block.dP, block.dP), one{1, 1, 1, 1};
+        const Int4 is_long = length > longest;
+        if (any4(is_long)) {
+            block.dP = sqrt4(is_long ? longest / length : one) * block.dP;
+        }
     }
-    return true;
+}
+
+void PathFilter::find_moments(glm::vec2 uv_v, glm::vec2 uv_w) {
+    Float4 uu{}, uv{}, vv{};
+    for (const Block& block : blocks()) {
+        const Float4 v = dot(gradient_v_, block.dP), w = dot(gradient_w_, block.dP);
+        const Float4 x = v * uv_v.x + w * uv_w.x, y = v * uv_v.y + w * uv_w.y;
+        uu += x * x;
+        uv += x * y;
+        vv += y * y;
+    }
+    moments_ = {sum4(uu), sum4(uv), sum4(vv)};
 }
 
 // Of the interpolated normal, turned as `normal` is.
-glm::vec3 PathFilter::normal_change(const Column& column, glm::vec3 normal) const {
-    const glm::vec3 dm =
-        glm::dot(gradient_v_, column.dP) * normal_v_ + glm::dot(gradient_w_, column.dP) * normal_w_;
-    const glm::vec3 dN = dm - smooth_ * glm::dot(smooth_, dm);
-    return glm::dot(normal, smooth_) < 0 ? -dN : dN;
+Vectors4 PathFilter::normal_change(const Block& block, glm::vec3 normal) const {
+    if (!is_curved_) {
+        return {};
+    }
+    const Vectors4 dm =
+        dot(gradient_v_, block.dP) * normal_v_ + dot(gradient_w_, block.dP) * normal_w_;
+    const Vectors4 dN = dm - dot(smooth_, dm) * smooth_;
+    return glm::dot(normal, smooth_) < 0 ? -1.0f * dN : dN;
 }
 
 void PathFilter::mirror(glm::vec3 direction, glm::vec3 normal) {
     const float k = glm::dot(direction, normal);
-    for (Column& column : columns()) {
-        const glm::vec3 dN = normal_change(column, normal);
-        const float dk = glm::dot(column.dD, normal) + glm::dot(direction, dN);
-        column.dD -= 2.0f * (k * dN + dk * normal);
+    for (Block& block : blocks()) {
+        const Vectors4 dN = normal_change(block, normal);
+        const Float4 dk = dot(normal, block.dD) + dot(direction, dN);
+        block.dD = block.dD - 2 * k * dN - 2.0f * dk * normal;
     }
 }
 
@@ -150,61 +183,68 @@ void PathFilter::refract(glm::vec3 direction, glm::vec3 normal, float ratio) {
     if (event.is_total_reflection()) {
         return;
     }
-    for (Column& column : columns()) {
-        column.dD = event.change(column.dD, normal_change(column, normal));
+    for (Block& block : blocks()) {
+        block.dD = event.change(block.dD, normal_change(block, normal));
     }
 }
 
 void PathFilter::add_diffuse_cell(const Pending& event) {
     const glm::vec3 normal = event.normal, drawn = event.drawn;
-    for (Column& column : columns()) {
-        column.dD = glm::cross(glm::cross(normal, normal_change(column, normal)), drawn);
+    for (Block& block : blocks()) {
+        block.dD = cross(cross(normal, normal_change(block, normal)), drawn);
     }
     // Of the sphere pi step^2 / cosine, by its chord; wider than high where it is seen flat.
     const float cosine = std::max(glm::dot(normal, drawn), 1e-3f);
     const float side = filtering_->step * std::sqrt(kPi / cosine);
     const float chord = std::min(side, std::numbers::sqrt2_v<float>);
     const Frame frame = make_frame(drawn);
-    std::array<Column, 2> own;
-    const std::array<glm::vec3, 2> axis{frame.u, frame.v};
-    for (std::size_t i = 0; i < 2; ++i) {
-        own[i].dD = chord * axis[i];
-        // ln of the density, the cosine.
-        const float change = std::abs(chord * glm::dot(axis[i], normal)) / cosine;
-        if (std::isfinite(filtering_->gradient_limit)) {
-            own[i].limit = std::min(1.0f, filtering_->gradient_limit / std::max(change, 1e-6f));
+    Cell cell{{chord * frame.u, chord * frame.v}};
+    if (is_limited()) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            // ln of the density, the cosine.
+            const float change = std::abs(glm::dot(cell.dD[i], normal)) / cosine;
+            cell.limit[i] = std::min(1.0f, filtering_->gradient_limit / std::max(change, 1e-6f));
         }
     }
-    add_cell(drawn, own);
+    add_cell(drawn, cell);
+}
+
+// Older columns: the facet turns with the normal.
+void PathFilter::turn_facet(const Pending& event, glm::vec3 facet) {
+    const glm::vec3 direction = event.direction, normal = event.normal;
+    const auto change_of_facet = [&](const Block& block) {
+        return cross(cross(normal, normal_change(block, normal)), facet);
+    };
+    if (event.ratio > 0) {
+        const Refracted refracted(direction, facet, event.ratio);
+        for (Block& block : blocks()) {
+            block.dD = refracted.change(block.dD, change_of_facet(block));
+        }
+        return;
+    }
+    const float k = glm::dot(direction, facet);
+    for (Block& block : blocks()) {
+        const Vectors4 dm = change_of_facet(block);
+        const Float4 dk = dot(facet, block.dD) + dot(direction, dm);
+        block.dD = block.dD - 2 * k * dm - 2.0f * dk * facet;
+    }
 }
 
 void PathFilter::add_facet_cell(const Pending& event) {
-    const glm::vec3 direction = event.direction, normal = event.normal, drawn = event.drawn;
+    const glm::vec3 drawn = event.drawn, normal = event.normal;
     const float alpha = event.alpha;
-    const bool refracts = event.ratio > 0;
     glm::vec3 facet =
-        glm::normalize(refracts ? direction - event.ratio * drawn : drawn - direction);
-    facet = refracts && glm::dot(facet, normal) < 0 ? -facet : facet;
-    const Refracted refracted(direction, facet, refracts ? event.ratio : 1);
-    const float k = glm::dot(direction, facet);
-    for (Column& column : columns()) {
-        // The facet turns with the normal.
-        const glm::vec3 turn = glm::cross(normal, normal_change(column, normal));
-        const glm::vec3 dm = glm::cross(turn, facet);
-        if (refracts) {
-            column.dD = refracted.change(column.dD, dm);
-        } else {
-            const float dk = glm::dot(column.dD, facet) + glm::dot(direction, dm);
-            column.dD -= 2.0f * (k * dm + dk * facet);
-        }
-    }
+        event.ratio > 0 ? event.direction - event.ratio * drawn : drawn - event.direction;
+    facet = glm::normalize(glm::dot(facet, normal) < 0 ? -facet : facet);
+    turn_facet(event, facet);
     const Frame frame = make_frame(normal);
     const auto to_frame = [&](glm::vec3 d) {
         return glm::vec3(glm::dot(frame.u, d), glm::dot(frame.v, d), glm::dot(frame.normal, d));
     };
-    const glm::vec3 to_eye = to_frame(-direction), m = to_frame(facet);
+    const glm::vec3 to_eye = to_frame(-event.direction), m = to_frame(facet);
     const glm::vec3 w = glm::normalize(glm::vec3(alpha * to_eye.x, alpha * to_eye.y, to_eye.z));
-    const glm::vec3 h(m.x / alpha, m.y / alpha, m.z);
+    const float inverse = 1 / alpha;
+    const glm::vec3 h(inverse * m.x, inverse * m.y, m.z);
     const glm::vec3 c = 2 * glm::dot(h, w) / glm::dot(h, h) * h - w;
     // Normals are uniform on the cap of height 1 + w.z. A cell of it: differences between points at
     // 1 / sqrt 3 of its half, where two points have the second moments of the whole.
@@ -212,38 +252,51 @@ void PathFilter::add_facet_cell(const Pending& event) {
     const float side = filtering_->step * std::sqrt(2 * kPi * (1 + w.z));
     const float half = std::min(0.5f * side / kRoot, 1.0f);
     const Frame around = make_frame(c);
-    std::array<Column, 2> own;
-    const std::array<glm::vec3, 2> axis{around.u, around.v};
+    const Float4 along_u{half, -half, 0, 0}, along_v{0, 0, half, -half};
     const float rest = std::sqrt(1 - square(half));
+    const FacetLight light = light_of_facets(
+        Float4{rest, rest, rest, rest} * c + along_u * around.u + along_v * around.v, w, to_eye,
+        alpha, event.ratio);
+    Cell cell;
     for (std::size_t i = 0; i < 2; ++i) {
-        const auto light_at = [&](float way) {
-            return light_of_facet(rest * c + way * axis[i], w, to_eye, alpha, event.ratio);
-        };
-        const FacetLight more = light_at(half), less = light_at(-half);
-        // Beside total reflection, twice the way to the other side.
-        const glm::vec3 to = more.passes ? frame.to_world(more.direction) : drawn;
-        const glm::vec3 from = less.passes ? frame.to_world(less.direction) : drawn;
-        own[i].dD = (more.passes && less.passes ? kRoot : 2 * kRoot) * (to - from);
-        own[i].dD -= drawn * glm::dot(drawn, own[i].dD);
-        if (std::isfinite(filtering_->gradient_limit)) {
-            const float change = 2 * kRoot * std::abs(std::log(more.spread / less.spread));
-            own[i].limit = std::min(1.0f, filtering_->gradient_limit / std::max(change, 1e-6f));
+        const std::size_t more = 2 * i, less = more + 1;
+        glm::vec3 change = kRoot * (light.direction.lane(more) - light.direction.lane(less));
+        if (light.passes[more] == 0 || light.passes[less] == 0) {
+            // Beside total reflection, twice the way to the other side.
+            const glm::vec3 own = to_frame(drawn);
+            change = light.passes[more] != 0   ? 2 * kRoot * (light.direction.lane(more) - own)
+                     : light.passes[less] != 0 ? 2 * kRoot * (own - light.direction.lane(less))
+                                               : glm::vec3(0);
+        }
+        cell.dD[i] = frame.to_world(change);
+        cell.dD[i] -= drawn * glm::dot(drawn, cell.dD[i]);
+        if (is_limited()) {
+            const float log = std::abs(std::log(light.spread[more] / light.spread[less]));
+            cell.limit[i] =
+                std::min(1.0f, filtering_->gradient_limit / std::max(2 * kRoot * log, 1e-6f));
         }
     }
-    add_cell(drawn, own);
+    add_cell(drawn, cell);
 }
 
-void PathFilter::add_cell(glm::vec3 drawn, const std::array<Column, 2>& own) {
+void PathFilter::add_cell(glm::vec3 drawn, const Cell& cell) {
     if (count_ > kMerged) {
         merge(drawn);
     }
-    column_[count_++] = own[0];
-    column_[count_++] = own[1];
-    if (++scatterings_ >= 2) {
-        for (Column& column : columns()) {
-            column.dP *= column.limit;
-            column.dD *= column.limit;
-            column.limit = 1;
+    Block& block = block_[count_ / 4];
+    if (count_ % 4 == 0) {
+        block = {};
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+        block.dD.set_lane(count_ % 4 + i, cell.dD[i]);
+        block.limit[count_ % 4 + i] = cell.limit[i];
+    }
+    count_ += 2;
+    if (++scatterings_ >= 2 && is_limited()) {
+        for (Block& each : blocks()) {
+            each.dP = each.limit * each.dP;
+            each.dD = each.limit * each.dD;
+            each.limit = Float4{1, 1, 1, 1};
         }
     }
 }
@@ -254,12 +307,12 @@ void PathFilter::merge(glm::vec3 direction) {
     const Frame place = make_frame(flat_), way = make_frame(direction);
     using Row = std::array<float, kMerged>;
     std::array<Row, kMerged> g{};
-    for (const Column& column : columns()) {
-        const Row x{glm::dot(place.u, column.dP), glm::dot(place.v, column.dP),
-                    glm::dot(way.u, column.dD), glm::dot(way.v, column.dD)};
+    for (const Block& block : blocks()) {
+        const std::array<Float4, kMerged> x{dot(place.u, block.dP), dot(place.v, block.dP),
+                                            dot(way.u, block.dD), dot(way.v, block.dD)};
         for (std::size_t i = 0; i < kMerged; ++i) {
             for (std::size_t j = 0; j <= i; ++j) {
-                g[i][j] += x[i] * x[j];
+                g[i][j] += sum4(x[i] * x[j]);
             }
         }
     }
@@ -279,9 +332,11 @@ void PathFilter::merge(glm::vec3 direction) {
         }
         g[j][j] = root;
     }
+    block_[0].limit = Float4{1, 1, 1, 1};
     for (std::size_t j = 0; j < kMerged; ++j) {
         const auto at = [&](std::size_t i) { return i < j ? 0.0f : g[i][j]; };
-        column_[j] = {at(0) * place.u + at(1) * place.v, at(2) * way.u + at(3) * way.v, 1};
+        block_[0].dP.set_lane(j, at(0) * place.u + at(1) * place.v);
+        block_[0].dD.set_lane(j, at(2) * way.u + at(3) * way.v);
     }
     count_ = kMerged;
 }

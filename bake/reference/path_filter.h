@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
 #include <span>
 
 #include "bake/reference/hit_scene.h"
+#include "bake/reference/vectors4.h"
 #include "bake/scene/texture_pyramid.h"
 
 namespace opaline::bake {
@@ -24,9 +26,9 @@ struct TextureFiltering {
 
 /// What is similar to a path: how its vertices move with its random numbers, up to the surface that
 /// it has reached. It follows the path and changes nothing of it. A fast form of PathDifferential
-/// (bake/path_differentials): single precision, steps multiplied into the columns, second moments
-/// alone, at most six columns. Each scattering adds a cell of the area step^2 / density around the
-/// direction that was drawn; older columns turn with the normal.
+/// (bake/path_differentials): single precision, four columns side by side, steps multiplied into
+/// them, second moments alone, at most six columns. Each scattering adds a cell of the area step^2
+/// / density around the direction that was drawn; older columns turn with the normal.
 class PathFilter {
   public:
     /// `dD_dx`, `dD_dy`: change of the unit direction over a pixel.
@@ -55,12 +57,20 @@ class PathFilter {
     }
 
   private:
-    /// How the vertex moves with one random number, over its step.
-    struct Column {
-        glm::vec3 dP{0}, dD{0};
-        float limit = 1;  ///< the limited step over the step, not yet applied
+    /// How the vertex moves with four random numbers, each over its step. Those that are not there
+    /// are 0.
+    struct Block {
+        Vectors4 dP, dD;
+        Float4 limit{1, 1, 1, 1};  ///< the limited step over the step, not yet applied
     };
     static constexpr std::size_t kMost = 6, kMerged = 4;
+
+    /// Of the two numbers that drew a direction.
+    struct Cell {
+        std::array<glm::vec3, 2> dD{};
+        std::array<float, 2> limit{1, 1};
+    };
+    struct Refracted;
 
     enum class Scattering { none, diffuse, facets };
     struct Pending {
@@ -70,22 +80,27 @@ class PathFilter {
         float ratio = 0;  ///< 0: reflection
     };
 
-    std::span<Column> columns() { return std::span(column_).first(count_); }
-    glm::vec3 normal_change(const Column& column, glm::vec3 normal) const;
+    std::span<Block> blocks() { return std::span(block_).first((count_ + 3) / 4); }
+    bool is_limited() const { return std::isfinite(filtering_->gradient_limit); }
+    Vectors4 normal_change(const Block& block, glm::vec3 normal) const;
     void apply_pending();
+    void move_columns(glm::vec3 direction, float distance);
+    void find_moments(glm::vec2 uv_v, glm::vec2 uv_w);
+    void turn_facet(const Pending& event, glm::vec3 facet);
     void add_diffuse_cell(const Pending& event);
     void add_facet_cell(const Pending& event);
-    void add_cell(glm::vec3 drawn, const std::array<Column, 2>& own);
+    void add_cell(glm::vec3 drawn, const Cell& cell);
     void merge(glm::vec3 direction);
 
     const TextureFiltering* filtering_;
-    std::array<Column, kMost> column_;
-    std::size_t count_ = 2;
+    std::array<Block, (kMost + 3) / 4> block_;
+    std::size_t count_ = 2;  ///< of numbers
     int scatterings_ = 0;
     Pending pending_;
     UvMoments moments_;
-    // The triangle of the last hit: gradients of its second and third weight, changes of normal
-    // along them, and the normal.
+    // The triangle of the last hit and its normal; where that is interpolated: gradients of its
+    // second and third weight, changes of normal along them.
+    bool is_curved_ = false;
     glm::vec3 flat_{0}, gradient_v_{0}, gradient_w_{0}, normal_v_{0}, normal_w_{0}, smooth_{0};
 };
 

@@ -7,10 +7,11 @@
 //   opaline_bench_texture_filter
 //
 // Prints, over 8 seeds, RMSE at 4 samples a pixel, of that its noise and bias; how often lower it
-// is than without a filter, on the mean and on the worst seed; and the same at equal time (error as
-// samples^(-1/2)). Time is the processor's, the least of 40 runs, all in turns; `columns`: of a
-// filter whose footprints are below a texel, the share that following them takes. `two mirrors`:
-// the board seen in one rough mirror in another, where the gradient limit acts.
+// is than without a filter, on the mean and on the worst seed; and the same at equal time: than
+// without a filter at so many samples as take at least as long. Time is the processor's, the least
+// of 30 runs, all in turns; `columns`: of a filter whose footprints are below a texel, the share
+// that following them takes. `two mirrors`: the board seen in one rough mirror in another; `glass`:
+// through a lens of rough glass over it, which refracts twice. There the gradient limit acts.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +20,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "bake/reference/path_filter.h"
@@ -28,6 +30,7 @@
 namespace opaline::bake {
 namespace {
 
+constexpr float kIndex = 1.5f;
 constexpr std::uint32_t kSide = 64, kTexels = 512, kSamples = 4, kSeeds = 8, kTruth = 2048;
 
 formats::Image8 board_image() {
@@ -45,16 +48,37 @@ formats::Image8 board_image() {
     return image;
 }
 
+float roughness_of(double exponent) {
+    return static_cast<float>(std::pow(2 / (4 * exponent + 2), 0.25));
+}
+
 formats::Material mirror_of(double exponent) {
     formats::Material mirror;
     mirror.gloss.metallic = mirror.gloss.specular = 1;
-    mirror.gloss.roughness = static_cast<float>(std::pow(2 / (4 * exponent + 2), 0.25));
+    mirror.gloss.roughness = roughness_of(exponent);
     return mirror;
+}
+
+formats::Material glass_of(double exponent) {
+    formats::Material glass;
+    formats::Medium& inside = glass.medium.emplace();
+    inside.sigma_s = {0, 0, 0};
+    inside.sigma_a = {1e-9f, 1e-9f, 1e-9f};
+    inside.eta = kIndex;
+    inside.roughness = roughness_of(exponent);
+    return glass;
+}
+
+/// What a pixel shows the board by.
+enum class View { ball, two_mirrors, glass };
+
+std::uint32_t events_of(View view) {
+    return view == View::ball ? 1 : 2;
 }
 
 struct Bench {
     formats::Scene input;
-    formats::Environment dark;
+    formats::Environment sky;
     std::unique_ptr<ReferenceScene> scene;
     LightSampler light;
     PathOptions paths;
@@ -73,13 +97,15 @@ struct Bench {
     }
 };
 
-// Whether the ray that `events` mirrors reflect from the middle of a pixel shows the board.
-bool shows_board(const Bench& bench, std::uint32_t pixel, std::uint32_t events) {
+// Whether the ray that smooth mirrors or smooth glass would make of the middle of a pixel shows the
+// board.
+bool shows_board(const Bench& bench, std::uint32_t pixel, View view) {
     const runtime::CameraFrame frame = runtime::camera_frame(bench.camera);
     const formats::Vec3 ray =
         runtime::view_ray(bench.camera, frame, pixel % kSide + 0.5, pixel / kSide + 0.5);
     RayOrigin from{{bench.camera.eye.x, bench.camera.eye.y, bench.camera.eye.z}};
     glm::vec3 d(ray.x, ray.y, ray.z);
+    const std::uint32_t events = events_of(view);
     for (std::uint32_t i = 0; i <= events; ++i) {
         const auto hit = bench.scene->surfaces.closest_hit(from, d, 1e9f);
         // Far enough down that the whole lobe meets the board.
@@ -87,13 +113,41 @@ bool shows_board(const Bench& bench, std::uint32_t pixel, std::uint32_t events) 
         if (!hit || (hit->primitive == 0) != (i == events) || (i == events && d.y > -kSteep)) {
             return false;
         }
-        d = glm::reflect(d, hit->smooth);
+        const float side = glm::dot(d, hit->smooth) < 0 ? 1.0f : -1.0f;
+        d = view == View::glass
+                ? glm::refract(d, side * hit->smooth, side > 0 ? 1 / kIndex : kIndex)
+                : glm::reflect(d, hit->smooth);
+        if (d == glm::vec3(0)) {
+            return false;
+        }
         from = leave_surface(*hit, d);
     }
     return true;
 }
 
-std::unique_ptr<Bench> make_bench(double exponent, std::uint32_t events) {
+// A ball of level 5, squashed.
+tests::Primitive squashed_ball(glm::vec3 radii, glm::vec3 centre) {
+    tests::Primitive ball = tests::make_sphere(5);
+    for (std::size_t i = 0; i < ball.position.size(); ++i) {
+        ball.normal[i] = glm::normalize(ball.position[i] / radii);
+        ball.position[i] = ball.position[i] * radii + centre;
+    }
+    return ball;
+}
+
+// The mean of the board's light from above, so that what glass mirrors adds little noise.
+formats::Environment even_sky() {
+    formats::Environment sky;
+    sky.width = 2;
+    sky.height = 512;
+    for (std::uint32_t row = 0; row < sky.height; ++row) {
+        const float value = row < sky.height / 2 ? 0.38f : 0;
+        sky.pixel.insert(sky.pixel.end(), 2, {value, value, value});
+    }
+    return sky;
+}
+
+std::unique_ptr<Bench> make_bench(double exponent, View view) {
     auto bench = std::make_unique<Bench>();
     tests::Scene scene =
         tests::make_scene({tests::make_quad({-100, 0, 100}, {200, 0, 0}, {0, 0, -200})});
@@ -104,19 +158,20 @@ std::unique_ptr<Bench> make_bench(double exponent, std::uint32_t events) {
     scene.materials[0].base_color_image = 0;
     scene.materials[0].double_sided = true;
     scene.materials[0].sheet = formats::Sheet{{0, 0, 0}, {1, 1, 1}};
-    scene.materials.push_back(mirror_of(exponent));
+    scene.materials.push_back(view == View::glass ? glass_of(exponent) : mirror_of(exponent));
     formats::Light& sun = scene.lights.emplace_back();
     sun.type = formats::Light::Type::directional;
     sun.direction = {0, 1, 0};
     const float pi = std::numbers::pi_v<float>;
     sun.intensity = {pi, pi, pi};
-    if (events == 1) {
-        tests::Primitive ball = tests::make_sphere(5);
-        for (std::size_t i = 0; i < ball.position.size(); ++i) {
-            ball.normal[i] = glm::normalize(ball.position[i] / glm::vec3(1, 0.7f, 1));
-            ball.position[i] = ball.position[i] * glm::vec3(1, 0.7f, 1) + glm::vec3(0, 1.2f, 0);
-        }
-        scene.primitives.push_back(std::move(ball));
+    if (view == View::glass) {
+        scene.primitives.push_back(squashed_ball({0.9f, 0.3f, 0.9f}, {0, 0.7f, 0}));
+        bench->sky = even_sky();
+        bench->camera.eye = {0, 2.6f, 0.5f};
+        bench->camera.target = {0, 0.7f, 0};
+        bench->camera.fov_y = 46;
+    } else if (view == View::ball) {
+        scene.primitives.push_back(squashed_ball({1, 0.7f, 1}, {0, 1.2f, 0}));
         bench->camera.eye = {0, 0.1f, 2};
         bench->camera.target = {0, 0.9f, 0};
         bench->camera.fov_y = 32;
@@ -136,10 +191,10 @@ std::unique_ptr<Bench> make_bench(double exponent, std::uint32_t events) {
     bench->camera.width = bench->camera.height = kSide;
     bench->input = std::move(scene);
     bench->scene = std::make_unique<ReferenceScene>(make_reference_scene(bench->input, 1).value());
-    bench->light = make_light_sampler(bench->dark, glm::mat3(1.0f));
-    bench->paths.max_depth = events + 1;
+    bench->light = make_light_sampler(bench->sky, glm::mat3(1.0f));
+    bench->paths.max_depth = events_of(view) + 1;
     for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
-        bench->counts.push_back(shows_board(*bench, i, events));
+        bench->counts.push_back(shows_board(*bench, i, view));
     }
     return bench;
 }
@@ -149,12 +204,13 @@ struct Errors {
     double rmse = 0, noise = 0, bias = 0;
     std::array<double, kSeeds> seed{};
 };
-Errors measure_errors(const Bench& bench, const Estimate& truth, const TextureFiltering* way) {
+Errors measure_errors(const Bench& bench, const Estimate& truth, std::uint32_t samples,
+                      const TextureFiltering* way) {
     Errors errors;
     std::vector<double> sum(kSide * kSide), squares(kSide * kSide);
     double pixels = 0;
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-        const Estimate image = bench.run(kSamples, seed, way);
+        const Estimate image = bench.run(samples, seed, way);
         double total = 0;
         pixels = 0;
         for (std::size_t i = 0; i < sum.size(); ++i) {
@@ -179,14 +235,39 @@ Errors measure_errors(const Bench& bench, const Estimate& truth, const TextureFi
     return errors;
 }
 
-double seconds_of(const Bench& bench, const TextureFiltering* way) {
-    const std::clock_t start = std::clock();
-    bench.run(2 * kSamples, 99, way);
-    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+/// One way to make a picture, and the least time of it.
+struct Way {
+    const char* name;
+    std::uint32_t samples;
+    const TextureFiltering* filtering;
+    double seconds = 1e9;
+};
+
+void measure_seconds(const Bench& bench, std::span<Way> ways) {
+    constexpr int kRepeats = 30;
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+        for (Way& way : ways) {
+            const std::clock_t start = std::clock();
+            bench.run(way.samples, 99, way.filtering);
+            const std::clock_t taken = std::clock() - start;
+            way.seconds = std::min(way.seconds, static_cast<double>(taken) / CLOCKS_PER_SEC);
+        }
+    }
 }
 
-void compare(const char* name, double exponent, std::uint32_t events) {
-    const auto bench = make_bench(exponent, events);
+struct Gain {
+    double mean = 0, worst = 1e9;
+};
+Gain gain_of(const Errors& own, const Errors& other) {
+    Gain gain{other.rmse / own.rmse};
+    for (std::size_t seed = 0; seed < kSeeds; ++seed) {
+        gain.worst = std::min(gain.worst, other.seed[seed] / own.seed[seed]);
+    }
+    return gain;
+}
+
+void compare(const char* name, double exponent, View view) {
+    const auto bench = make_bench(exponent, view);
     const Estimate truth = bench->run(kTruth, 1000, nullptr);
     const float extent = 2 * glm::length(bench->scene->surfaces.half_size());
     const TextureFiltering local{make_scene_pyramids(bench->input),
@@ -195,31 +276,35 @@ void compare(const char* name, double exponent, std::uint32_t events) {
     TextureFiltering limited = local, thin = local;
     limited.gradient_limit = 0.7f;
     thin.step = 1e-6f;
-    const std::array<const TextureFiltering*, 4> ways{nullptr, &local, &limited, &thin};
-    std::array<double, 4> seconds;
-    seconds.fill(1e9);
-    for (int repeat = 0; repeat < 40; ++repeat) {
-        for (std::size_t way = 0; way < ways.size(); ++way) {
-            seconds[way] = std::min(seconds[way], seconds_of(*bench, ways[way]));
-        }
+    std::vector<Way> ways{
+        {"local", kSamples, &local}, {"limited", kSamples, &limited}, {"columns", kSamples, &thin}};
+    for (std::uint32_t more = 0; more < 4; ++more) {
+        ways.push_back({"without", kSamples + more, nullptr});
     }
-    const Errors plain = measure_errors(*bench, truth, nullptr);
+    measure_seconds(*bench, ways);
+    const std::span<const Way> unfiltered = std::span(ways).subspan(3);
+    std::vector<Errors> plain;
+    for (const Way& way : unfiltered) {
+        plain.push_back(measure_errors(*bench, truth, way.samples, nullptr));
+    }
+    const auto overhead = [&](const Way& way) {
+        return 100 * (way.seconds / unfiltered[0].seconds - 1);
+    };
     std::printf("%s: %td pixels, without a filter RMSE %.4f (noise %.4f), columns %+.1f %%\n", name,
-                std::count(bench->counts.begin(), bench->counts.end(), true), plain.rmse,
-                plain.noise, 100 * (seconds[3] / seconds[0] - 1));
-    const std::array<const char*, 3> names{"", "local", "limited"};
-    for (std::size_t way = 1; way < 3; ++way) {
-        const Errors own = measure_errors(*bench, truth, ways[way]);
-        double worst = 1e9;
-        for (std::size_t seed = 0; seed < kSeeds; ++seed) {
-            worst = std::min(worst, plain.seed[seed] / own.seed[seed]);
+                std::count(bench->counts.begin(), bench->counts.end(), true), plain[0].rmse,
+                plain[0].noise, overhead(ways[2]));
+    for (const Way& way : std::span(ways).first(2)) {
+        const Errors own = measure_errors(*bench, truth, kSamples, way.filtering);
+        std::size_t equal = 0;
+        while (equal + 1 < unfiltered.size() && unfiltered[equal].seconds < way.seconds) {
+            ++equal;
         }
-        const double ratio = plain.rmse / own.rmse, time = seconds[way] / seconds[0];
+        const Gain samples = gain_of(own, plain[0]), time = gain_of(own, plain[equal]);
         std::printf(
-            "  %-8s RMSE %.4f (noise %.4f, bias %.4f)  %.2fx, worst seed %.2fx; time "
-            "%+.1f %%, at equal time %.2fx\n",
-            names[way], own.rmse, own.noise, own.bias, ratio, worst, 100 * (time - 1),
-            ratio / std::sqrt(time));
+            "  %-8s RMSE %.4f (noise %.4f, bias %.4f)  %.2fx, worst seed %.2fx; time %+.1f %%, at "
+            "equal time (%u samples, %+.1f %%) %.2fx, worst seed %.2fx\n",
+            way.name, own.rmse, own.noise, own.bias, samples.mean, samples.worst, overhead(way),
+            unfiltered[equal].samples, overhead(unfiltered[equal]), time.mean, time.worst);
     }
 }
 
@@ -227,8 +312,11 @@ void compare(const char* name, double exponent, std::uint32_t events) {
 }  // namespace opaline::bake
 
 int main() {
-    opaline::bake::compare("S = 40", 40, 1);
-    opaline::bake::compare("S = 400", 400, 1);
-    opaline::bake::compare("S = 40, two mirrors", 40, 2);
-    opaline::bake::compare("S = 400, two mirrors", 400, 2);
+    using opaline::bake::View;
+    opaline::bake::compare("S = 40", 40, View::ball);
+    opaline::bake::compare("S = 400", 400, View::ball);
+    opaline::bake::compare("S = 40, two mirrors", 40, View::two_mirrors);
+    opaline::bake::compare("S = 400, two mirrors", 400, View::two_mirrors);
+    opaline::bake::compare("S = 40, glass", 40, View::glass);
+    opaline::bake::compare("S = 400, glass", 400, View::glass);
 }
