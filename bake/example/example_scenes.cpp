@@ -170,6 +170,18 @@ GltfObject piece_object(const char* name, std::array<double, 3> base_color, Tria
     return {name, name, base_color, in_metres(std::move(mesh)), reflection};
 }
 
+constexpr const char* kGlassOfPiece = R"({
+  "materials": {
+    "Glass": {
+      "sigma_s": [0, 0, 0],
+      "sigma_a": [0.008, 0.004, 0.003],
+      "unit": "1/mm",
+      "eta": 1.5,
+      "roughness": 0.2
+    }
+  }
+})";
+
 std::vector<GltfObject> make_playing_pieces() {
     GltfObject board =
         piece_object("Board", {1, 1, 1}, make_board(), {.roughness = 0.35, .strength = 1});
@@ -190,6 +202,8 @@ std::vector<GltfObject> make_playing_pieces() {
         piece_object("Copper", {0.93, 0.62, 0.52}, make_draughtsman(square(2), square(1)), kSatin),
         piece_object("Ivory", {0.80, 0.75, 0.62}, make_draughtsman(square(-2), square(2)),
                      kLacquer),
+        piece_object("Stand", {0.80, 0.75, 0.62}, make_stand(square(-1), square(2)), kLacquer),
+        piece_object("Glass", {1, 1, 1}, make_squashed_ball(square(-1), square(2)), {}),
         std::move(board),
         floor_object(std::move(table))};
 }
@@ -237,10 +251,11 @@ constexpr Example kExamples[] = {
      .make = make_wax_lamp,
      .make_lights = make_lamp_lights,
      .media = kShadeOfWax},
-    {.info =
-         {"playing-pieces",
-          "metal and lacquered pieces on a glossy chequered board: a texture in blurred mirrors"},
+    {.info = {"playing-pieces",
+              "metal and lacquered pieces and one of rough glass on a glossy chequered board: a "
+              "texture in blurred mirrors"},
      .make = make_playing_pieces,
+     .media = kGlassOfPiece,
      .make_image = paint_board},
     {{"smoke", "a plume that rises from a ball and widens as it curls: a volume beside meshes"},
      make_smouldering_ball,

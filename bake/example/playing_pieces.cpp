@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "bake/example/sphere.h"
 #include "bake/example/turned.h"
 #include "formats/image/srgb.h"
 
@@ -15,7 +16,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kSole = 0.4, kRim = 12;  // [mm] below the board, below its upper side
+// [mm] below the board, below its upper side, above it
+constexpr double kSole = 0.4, kRim = 12, kStandTop = 17.9;
 
 // Smooth through all points (Catmull-Rom), the normal on the outside of the way up.
 void append_smooth(std::span<const glm::dvec2> points, unsigned steps,
@@ -117,6 +119,28 @@ TriangleMesh make_draughtsman(double x, double z) {
             {radius, 8 - 1.2 * (1 - radius * radius / 100), {-2.4 * radius / 100, 1}});
     }
     return moved(turn_about_axis(profile, 48), x, z);
+}
+
+TriangleMesh make_stand(double x, double z) {
+    std::vector<ProfilePoint> profile;
+    append_sole(9, profile);
+    const std::vector<glm::dvec2> points{{9, -kSole}, {9.8, 0.6}, {9.4, 2.2}, {5.4, 4.6},
+                                         {2.8, 8.6},  {2.2, 13},  {2.9, 16},  {4.6, kStandTop}};
+    append_smooth(points, 3, profile);
+    profile.push_back({4.6, kStandTop, {0, 1}});
+    profile.push_back({0, kStandTop, {0, 1}});
+    return moved(turn_about_axis(profile, 48), x, z);
+}
+
+TriangleMesh make_squashed_ball(double x, double z) {
+    constexpr double kGap = 0.1;  // so that no light has to pass where they touch
+    const glm::dvec3 radii(13, 9, 13);
+    TriangleMesh ball = make_sphere(glm::dvec3(0), 1, 4);
+    for (std::size_t i = 0; i < ball.position.size(); ++i) {
+        ball.normal[i] = glm::normalize(ball.position[i] / radii);
+        ball.position[i] = ball.position[i] * radii + glm::dvec3(x, kStandTop + radii.y + kGap, z);
+    }
+    return ball;
 }
 
 TriangleMesh make_board() {

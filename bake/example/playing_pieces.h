@@ -16,6 +16,11 @@ TriangleMesh make_pawn(double x, double z);
 /// A flat draughtsman with a rounded rim on y = 0, 8 mm tall.
 TriangleMesh make_draughtsman(double x, double z);
 
+/// A foot on y = 0 with a cup on top, and the squashed ball just above it: 13 mm across each way
+/// from its axis, 9 mm up and down.
+TriangleMesh make_stand(double x, double z);
+TriangleMesh make_squashed_ball(double x, double z);
+
 /// The board's upper side, y = 0, and its rim down to y = -12.
 TriangleMesh make_board();
 

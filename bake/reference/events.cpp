@@ -211,7 +211,7 @@ bool cross_facets(const PathSpace& space, Path& path, const Crossing& crossing,
         path.origin = crossing.near;
         path.state = here.state;
     }
-    return path.beta != glm::vec3(0) && survives(path, kInBodies, random);
+    return path.beta != glm::vec3(0) && survives(path, kAtSurfaces, random);
 }
 
 }  // namespace
