@@ -77,7 +77,6 @@ struct PathFilter::Refracted {
 
 PathFilter::PathFilter(const TextureFiltering& filtering, glm::vec3 dD_dx, glm::vec3 dD_dy)
     : filtering_(&filtering) {
-    block_[0] = {};
     block_[0].dD.set_lane(0, filtering.step * dD_dx);
     block_[0].dD.set_lane(1, filtering.step * dD_dy);
 }
@@ -96,14 +95,15 @@ bool PathFilter::arrive(const formats::Scene& scene, glm::vec3 direction, const 
     flat_ = hit.flat;
     move_columns(direction, hit.distance);
     const formats::Primitive& p = scene.primitives[hit.primitive];
-    smooth_ = hit.smooth;
-    is_curved_ = hit.smooth != hit.flat;
+    const std::uint32_t* corner = &p.index[3 * std::size_t{hit.triangle}];
+    const glm::vec3 normal_a = p.normal[corner[0]];
+    const glm::vec3 to_v = p.normal[corner[1]] - normal_a, to_w = p.normal[corner[2]] - normal_a;
+    is_curved_ = to_v != glm::vec3(0) || to_w != glm::vec3(0);
     const bool has_texture =
         has_pyramid(filtering_->pyramids, scene.materials[p.material]) && !p.texcoord.empty();
     if (!is_curved_ && !has_texture) {
         return false;
     }
-    const std::uint32_t* corner = &p.index[3 * std::size_t{hit.triangle}];
     const glm::vec3 a = p.position[corner[0]];
     const glm::vec3 v = p.position[corner[1]] - a, w = p.position[corner[2]] - a;
     const glm::vec3 n = glm::cross(v, w);
@@ -116,11 +116,10 @@ bool PathFilter::arrive(const formats::Scene& scene, glm::vec3 direction, const 
     gradient_v_ = inverse * glm::cross(w, n);
     gradient_w_ = inverse * glm::cross(n, v);
     if (is_curved_) {
-        const glm::vec3 at_a = p.normal[corner[0]];
-        const glm::vec3 at_v = p.normal[corner[1]] - at_a, at_w = p.normal[corner[2]] - at_a;
-        const float scale = 1 / glm::length(at_a + hit.u * at_v + hit.v * at_w);
-        normal_v_ = scale * at_v;
-        normal_w_ = scale * at_w;
+        smooth_ = hit.smooth;
+        const float scale = 1 / glm::length(normal_a + hit.u * to_v + hit.v * to_w);
+        normal_v_ = scale * to_v;
+        normal_w_ = scale * to_w;
     }
     if (has_texture) {
         const glm::vec2 uv = p.texcoord[corner[0]];
@@ -219,6 +218,12 @@ void PathFilter::turn_facet(const Pending& event, glm::vec3 facet) {
         const Refracted refracted(direction, facet, event.ratio);
         for (Block& block : blocks()) {
             block.dD = refracted.change(block.dD, change_of_facet(block));
+        }
+        return;
+    }
+    if (!is_curved_) {
+        for (Block& block : blocks()) {
+            block.dD = block.dD - 2.0f * dot(facet, block.dD) * facet;
         }
         return;
     }
