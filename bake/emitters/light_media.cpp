@@ -6,6 +6,7 @@
 #include "bake/emitters/media_patches.h"
 #include "bake/emitters/series_sum.h"
 #include "bake/emitters/trace_particles.h"
+#include "bake/receivers/receiver_key.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/emitters.h"
 
@@ -140,7 +141,7 @@ OtherLight make_lamp_columns(const LampLight& light) {
         if (point.is_averaged) own.samples = std::min(own.samples, kRaysOfAveraged);
         std::uint64_t rays = 0;
         const std::vector<glm::dvec3> irradiance =
-            receive_light(own, point.receiver, key_of_point(point.receiver), rays);
+            receive_light(own, point.receiver, key_of(point.receiver), rays);
         const std::size_t texels = formats::cubemap_texels(n);
         for (std::size_t e = 0; e < irradiance.size(); ++e) {
             for (int b = 0; b < 3; ++b) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/receivers/receiver_key.h"
 #include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 
@@ -197,7 +198,7 @@ std::vector<glm::vec3> light_patches(const MediumPatches& patches, const LampLig
             for (std::size_t j = range.begin; j < range.end; ++j) {
                 for (const std::uint32_t i : patches.probes[j]) {
                     const std::vector<glm::dvec3> own = receive_light(
-                        coarse, medium.outside[i], key_of_point(medium.outside[i]), part.rays);
+                        coarse, medium.outside[i], key_of(medium.outside[i]), part.rays);
                     for (std::size_t e = 0; e < lamps; ++e) {
                         part.irradiance[(j - range.begin) * lamps + e] +=
                             own[e] / static_cast<double>(patches.probes[j].size());

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -235,17 +234,6 @@ void add_caustics(const LampLight& light, const Receiver& receiver, std::span<gl
                            static_cast<double>(count);
         }
     }
-}
-
-std::uint64_t key_of_point(const Receiver& at) {
-    std::uint64_t key = 0x9e3779b97f4a7c15u;
-    for (const glm::vec3& v : {at.origin, at.normal}) {
-        for (int axis = 0; axis < 3; ++axis) {
-            key = (key ^ std::bit_cast<std::uint32_t>(v[axis])) * 0xff51afd7ed558ccdu;
-            key ^= key >> 32;
-        }
-    }
-    return key;
 }
 
 std::vector<std::vector<formats::Rgb>> make_lamp_rows(const LampLight& light,

@@ -52,9 +52,6 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
 void add_caustics(const LampLight& light, const Receiver& receiver, std::span<glm::dvec3> total,
                   std::uint64_t& rays);
 
-/// Key of a point's random numbers, where it has no number: a hash of its place and normal.
-std::uint64_t key_of_point(const Receiver& at);
-
 /// The rows of a set of opaque or thin-walled receivers: [lamp][row], outgoing radiance [nit]
 /// without base colour, `terms` a receiver. Two terms: of the side of the normal, then of the other
 /// one, as Shading::sheet has them.

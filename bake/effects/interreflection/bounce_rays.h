@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -11,7 +10,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
-#include "bake/receivers/receiver.h"
+#include "bake/receivers/receiver_key.h"
 #include "bake/transport/ray_scene.h"
 
 namespace opaline::bake {
@@ -20,18 +19,6 @@ namespace opaline::bake {
 inline std::uint32_t count_bounce_rays(double wanted) {
     const double side = 4 * std::max(1.0, std::round(0.25 * std::sqrt(wanted)));
     return static_cast<std::uint32_t>(side * side);
-}
-
-/// Key of a point's random numbers: a hash of its place and normal, so that copies of a vertex
-/// gather the same.
-inline std::uint64_t key_of(const Receiver& at) {
-    std::uint64_t key = 0x9e3779b97f4a7c15u;
-    for (const float value :
-         {at.origin.x, at.origin.y, at.origin.z, at.normal.x, at.normal.y, at.normal.z}) {
-        key = (key ^ std::bit_cast<std::uint32_t>(value)) * 0xff51afd7ed558ccdu;
-        key ^= key >> 32;
-    }
-    return key;
 }
 
 /// The point of the unit disk of two numbers in [0, 1]: concentric squares become circles.
