@@ -5,6 +5,7 @@
 //   ... cost SCENE: seconds and rays of stages without and with interreflection.
 // SCENE: box (a room open to the front, with a block in it), detailed (the same, of checkers),
 // ball (dented, over a floor), statue.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +18,7 @@
 #include <memory>
 #include "bake/accuracy/check_model.h"
 #include "bake/effects/effects.h"
+#include "bake/effects/interreflection/add_bounced.h"
 #include "bake/effects/interreflection/bounce_gather.h"
 #include "bake/effects/interreflection/bounce_light.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
@@ -245,6 +247,29 @@ void compare(const World& w, std::uint32_t n) {
     report("nearest scatterer", with(light->tree, LookUp::nearest));
     report("node", with(light->tree, LookUp::node));
     report("kernel", with(light->tree, LookUp::kernel));
+    std::vector<std::uint64_t> traced(wanted);
+    report("as baked", [&](std::size_t i) {
+        Row r(kTexels * light->bands);
+        traced[i] = add_bounced(*light, {at[i]}, kMap, r);
+        r.resize(kTexels);
+        return r;
+    });
+    {
+        double part[2]{};
+        for (std::size_t i = 0; i < wanted; ++i) {
+            Row r(kTexels * light->bands);
+            add_bounced(*light, {at[i]}, kMap, r);
+            for (std::size_t k = 0; k < kTexels; ++k)
+                part[traced[i] > 0] += std::pow(double(r[k]) - truth[i][k], 2);
+        }
+        std::printf("of rows: fitted %.4f, own rays %.4f\n", std::sqrt(part[0] / all_norm),
+                    std::sqrt(part[1] / all_norm));
+    }
+    std::printf("%.1f %% of receivers trace rays of their own\n",
+                100.0 *
+                    static_cast<double>(
+                        std::ranges::count_if(traced, [](std::uint64_t r) { return r > 0; })) /
+                    static_cast<double>(wanted));
     report("exact vectors, same rays", with(*exact.tree, LookUp::nearest));
     report("kernel, dense scatterers", with(*exact.tree, LookUp::kernel));
 }

@@ -70,7 +70,8 @@ void calibrate_bounces(const CalibrationBench& bench, Rates& rates) {
     std::uint64_t rays = 0;
     Stopwatch watch;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-        rays += weigh_bounces(bench.scene, bench.rays, tree, receivers[i], grid, 0, weights[i]);
+        rays +=
+            weigh_bounces(bench.scene, bench.rays, tree, receivers[i], grid, 0, weights[i]).rays;
     }
     bench.side_of(rates.bounce_ray) = watch.seconds() / static_cast<double>(rays);
     if (!bench.is_many) {

@@ -96,15 +96,19 @@ FootprintKernel footprint_of(const BounceHit& hit, const Frame& frame, const See
     return kernel;
 }
 
-std::uint64_t weigh_bounces(const formats::Scene& scene, const RayScene& rays,
-                            const BounceTree& tree, const Receiver& at, const BounceGrid& grid,
-                            std::uint64_t seed, std::vector<NodeWeight>& weights, LookUp look_up) {
+BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
+                           const BounceTree& tree, const Receiver& at, const BounceGrid& grid,
+                           std::uint64_t seed, std::vector<NodeWeight>& weights, LookUp look_up) {
     weights.clear();
+    constexpr float kNoDistance = 1e-15f;
     const float share = 1 / static_cast<float>(grid.count());
     KernelAverage average;
-    const std::uint64_t traced =
+    BounceGather gathered;
+    gathered.rays =
         trace_bounces(rays, at, grid, seed, [&](const BounceHit& hit, const Frame& frame) {
             const SeenSide side = side_of_hit(scene, hit.hits, hit.lane);
+            const float near = 1 / std::max(hit.hits.distance[hit.lane], kNoDistance);
+            gathered.nearness += share * near * near;
             if (!side.is_seen) {
                 return;
             }
@@ -130,7 +134,7 @@ std::uint64_t weigh_bounces(const formats::Scene& scene, const RayScene& rays,
         }
     }
     weights.resize(kept);
-    return traced;
+    return gathered;
 }
 
 void add_node_rows(const BounceTree& tree, std::span<const NodeWeight> weights,

@@ -16,6 +16,12 @@ struct NodeWeight {
     float weight = 0;
 };
 
+/// What rays of a point tell besides.
+struct BounceGather {
+    std::uint64_t rays = 0;
+    float nearness = 0;  ///< [1/m], mean of 1 / length; 0 of rays that meet nothing
+};
+
 /// Which rows answer a ray, for measurements of what each gains.
 enum class LookUp : std::uint8_t {
     kernel,   ///< nodes under a Gaussian over the footprint of the ray's cell
@@ -33,11 +39,11 @@ FootprintKernel footprint_of(const BounceHit& hit, const Frame& frame, const See
 /// node,
 ///     E = 1/N sum over N cells of cosine-distributed rays of B over the footprint of each.
 /// The ray decides whether a surface is seen and which; the mean of B over its cell has no noise of
-/// where in the cell it went. Overwrites `weights`; returns the rays.
-std::uint64_t weigh_bounces(const formats::Scene& scene, const RayScene& rays,
-                            const BounceTree& tree, const Receiver& at, const BounceGrid& grid,
-                            std::uint64_t seed, std::vector<NodeWeight>& weights,
-                            LookUp look_up = LookUp::kernel);
+/// where in the cell it went. Overwrites `weights`.
+BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
+                           const BounceTree& tree, const Receiver& at, const BounceGrid& grid,
+                           std::uint64_t seed, std::vector<NodeWeight>& weights,
+                           LookUp look_up = LookUp::kernel);
 
 /// Adds sum of weight * row of the node to `rows`, one as long as those of the tree.
 void add_node_rows(const BounceTree& tree, std::span<const NodeWeight> weights,

@@ -9,6 +9,7 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/effects/interreflection/bounce_gather.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/site_light.h"
 #include "bake/plan/medium_exitance.h"
 #include "bake/transport/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
@@ -19,6 +20,8 @@ namespace {
 
 constexpr std::uint32_t kCubemap = kBounceCubemap;
 constexpr std::size_t kTexels = 6 * kCubemap * kCubemap;
+// Rays of a site, as a share of those of a receiver that sites say too little of.
+constexpr double kSiteShare = 0.25;
 constexpr std::uint32_t kMostBounces = 64;
 // A bounce of less of the light than this is the last one.
 constexpr double kLeastShare = 1e-3;
@@ -199,7 +202,8 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
     constexpr std::size_t kBlock = 16;
     const auto weigh = [&](const Receiver& at, std::vector<NodeWeight>& weights) {
         return weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
-                             field.inputs.knobs.seed, weights);
+                             field.inputs.knobs.seed, weights)
+            .rays;
     };
     for_each_block_in_order(
         arrivals.size(), kBlock, field.inputs.context,
@@ -291,25 +295,15 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
                     .seed = inputs.knobs.seed,
                     .layouts = {inputs.layouts.begin(), inputs.layouts.end()},
                     .tree = BounceTree(scatterers, inputs.layouts.size(), field.row_size()),
+                    .of_site = make_bounce_grid(count_bounce_rays(kSiteShare * count)),
                     .of_receiver = make_bounce_grid(count),
-                    .of_averaged = make_bounce_grid(kRaysOfAveraged)});
+                    .of_averaged = make_bounce_grid(kRaysOfAveraged),
+                    .sites = {},
+                    .site_rows = {}});
     const std::vector<Arrivals> arrivals = weigh_scatterers(field, light->tree, rays);
     light->bounces = add_bounces(field, arrivals, light->tree);
+    light_sites(inputs, *light, rays);
     return light;
-}
-
-std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
-                          std::uint32_t cubemap_size, std::span<float> rows) {
-    std::vector<NodeWeight> weights;
-    const std::uint64_t rays = weigh_bounces(
-        light.scene, light.rays, light.tree, point.receiver,
-        point.is_averaged ? light.of_averaged : light.of_receiver, light.seed, weights);
-    if (!weights.empty()) {
-        std::vector<float> own(light.tree.row_size());
-        add_node_rows(light.tree, weights, own);
-        add_to_finer(own, light.cubemap_size, rows, cubemap_size, light.bands);
-    }
-    return rays;
 }
 
 }  // namespace opaline::bake

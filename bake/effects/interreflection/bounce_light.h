@@ -5,6 +5,7 @@
 
 #include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/effects/interreflection/bounce_tree.h"
+#include "bake/effects/interreflection/gather_sites.h"
 #include "bake/effects/interreflection/scatterers.h"
 #include "bake/plan/effect.h"
 
@@ -24,18 +25,16 @@ struct BounceLight {
     std::uint32_t cubemap_size = kBounceCubemap;  ///< of its rows
     std::uint32_t bands = 3;                      ///< or 1
     std::uint64_t seed = 0;
-    std::vector<RowLayout> layouts;       ///< by material
-    BounceTree tree;                      ///< rows: B, band by band
-    BounceGrid of_receiver, of_averaged;  ///< rays; of a point whose light is averaged
-    std::uint32_t bounces = 0;            ///< that were added before the next was too dark
+    std::vector<RowLayout> layouts;                ///< by material
+    BounceTree tree;                               ///< rows: B, band by band
+    BounceGrid of_site, of_receiver, of_averaged;  ///< rays; of a point whose light is averaged
+    std::uint32_t bounces = 0;                     ///< that were added before the next was too dark
+    GatherSites sites;                             ///< among receivers
+    std::vector<float> site_rows;                  ///< E, as long as the tree's
 };
 
 /// Places scatterers and finds their light; null where receivers see no surface. `rays` counts up.
 std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
                                                      std::uint64_t& rays);
-
-/// Adds irradiance at a point by final gathering: Haar rows as of OtherLight::add.
-std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
-                          std::uint32_t cubemap_size, std::span<float> rows);
 
 }  // namespace opaline::bake

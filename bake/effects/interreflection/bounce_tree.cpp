@@ -81,6 +81,9 @@ float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::ui
         nodes_[self].brightest = std::max(nodes_[self].brightest, scatterers[i].openness);
         nodes_[self].centre += (1 / static_cast<float>(members.size())) * scatterers[i].position;
     }
+    nodes_[self].of_darkest = brightness_of(nodes_[self].darkest);
+    nodes_[self].of_brightest = brightness_of(nodes_[self].brightest);
+    nodes_[self].of_middle = brightness_of(0.5f * (nodes_[self].darkest + nodes_[self].brightest));
     for (const std::uint32_t i : members) {
         nodes_[self].radius = std::max(nodes_[self].radius,
                                        glm::distance(scatterers[i].position, nodes_[self].centre));

@@ -24,6 +24,19 @@ struct FootprintKernel {
     float area = 0;                           ///< [m^2], > 0
 };
 
+/// Of an openness in [0, 1]: a logarithm to base 2.
+struct Brightness {
+    float octaves = 0;
+};
+inline Brightness brightness_of(float openness) {
+    constexpr float kDark = 0.05f;
+    return {std::log2(openness + kDark)};
+}
+/// 1 of equal ones, 0 where one is twice the other.
+inline float similarity(Brightness a, Brightness b) {
+    return std::max(0.0f, 1 - std::abs(a.octaves - b.octaves));
+}
+
 /// kd-trees over scatterers, one for each material, side and nearest axis of the normal, so that
 /// the two sides of a thin part never mix. Every node has a row: the mean of its scatterers'.
 class BounceTree {
@@ -64,6 +77,7 @@ class BounceTree {
         glm::vec3 centre{0};               // [m], mean of its scatterers'
         float radius = 0;                  // [m], of the farthest
         float darkest = 0, brightest = 0;  // Scatterer::openness
+        Brightness of_darkest{}, of_brightest{}, of_middle{};
     };
     struct Box {
         glm::vec3 low, high;
@@ -78,11 +92,6 @@ class BounceTree {
     std::size_t row_size_;
 };
 
-inline float similarity(float a, float b) {
-    constexpr float kDark = 0.05f;
-    return std::max(0.0f, 1 - std::abs(std::log2((a + kDark) / (b + kDark))));
-}
-
 template <class Visit>
 void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& side, float openness,
                            Visit&& visit) const {
@@ -90,6 +99,7 @@ void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& sid
     if (root == formats::kNone) {
         return;
     }
+    const Brightness looked_for = brightness_of(openness);
     constexpr float kReach = 0.8660254f;  // 3 / sqrt(12)
     constexpr float kLargest = 1;
     // At most as many as the tree is deep: twenty halvings, between which a few parts of an axis
@@ -108,11 +118,11 @@ void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& sid
             continue;
         }
         if (node.right != 0 &&
-            (radius > kLargest || similarity(node.darkest, node.brightest) < 0.5f)) {
+            (radius > kLargest || similarity(node.of_darkest, node.of_brightest) < 0.5f)) {
             waiting[count++] = node.right;
             waiting[count++] = v + 1;
         } else if (square < kReach * kReach) {
-            const float like = similarity(openness, 0.5f * (node.darkest + node.brightest));
+            const float like = similarity(looked_for, node.of_middle);
             if (like > 0) {
                 visit(v, like * node.cell * std::exp(-6 * square), glm::vec2(d));
             }

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "bake/effects/interreflection/add_bounced.h"
 #include "bake/effects/interreflection/bounce_costs.h"
 #include "bake/effects/interreflection/bounce_light.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"

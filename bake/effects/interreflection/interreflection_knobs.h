@@ -16,20 +16,20 @@ inline bool bounces(const RowLayout&, std::span<const PlanEntry> decisions) {
     }
     return false;
 }
-inline constexpr std::array<double, 5> kRayLadder{16, 64, 144, 256, 1024};
+inline constexpr std::array<double, 6> kRayLadder{16, 64, 144, 256, 576, 1024};
 }  // namespace bounce_knobs
 
-/// Rays from a receiver to the surfaces that send light to it.
+/// Rays from a receiver to the surfaces that send light to it, where it is not known from sites.
 inline constexpr KnobSpec kBounceRays{
     .name = "bounce_rays",
     .option = "--bounce-rays",
     .placeholder = "N",
     .help =
-        "rays from a receiver to other surfaces that reflect light to it; default as the "
-        "quality says",
+        "rays from a receiver to other surfaces that reflect light to it, where points around say "
+        "too little; default as the quality says",
     .lowest = 16,
     .highest = 65536,
-    .preset = {64, 144, 256, 1024},
+    .preset = {64, 144, 576, 1024},
     .label = "%g rays to other surfaces",
     .ladder = bounce_knobs::kRayLadder,
     .theory = {.label = "rays to other surfaces",

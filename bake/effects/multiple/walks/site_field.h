@@ -5,16 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "bake/receivers/local_regression.h"
 #include "bake/receivers/point_grid.h"
 #include "bake/receivers/receiver.h"
 
 namespace opaline::bake {
-
-/// A site's share of the row of a receiver.
-struct SiteWeight {
-    std::uint32_t site = 0;
-    float weight = 0;
-};
 
 /// Rows between sites by local regression (README.md, [Loader1999]): the row of a receiver is the
 /// constant of the linear function of position and normal that fits the sites around it best; in a
@@ -37,16 +32,8 @@ class SiteField {
     float radius() const { return radius_; }
 
   private:
-    struct Neighbour {
-        std::uint32_t site;
-        double kernel;
-        glm::vec3 offset;  // in radii
-    };
-    std::vector<Neighbour> collect(glm::vec3 position, glm::vec3 normal,
-                                   std::vector<std::uint32_t>& around) const;
-    template <int kCoefficients>
-    void fit(std::span<const Neighbour> neighbours, glm::vec3 normal, float tint,
-             std::vector<SiteWeight>& weights) const;
+    std::vector<NearSite> collect(glm::vec3 position, glm::vec3 normal, float tint,
+                                  std::vector<std::uint32_t>& around) const;
 
     std::vector<glm::vec3> position_, normal_;
     std::vector<float> tint_;

@@ -1,0 +1,36 @@
+#include "bake/effects/interreflection/add_bounced.h"
+
+#include <vector>
+
+#include "bake/effects/interreflection/bounce_gather.h"
+
+namespace opaline::bake {
+
+std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
+                          std::uint32_t cubemap_size, std::span<float> rows) {
+    const BounceGrid& own = point.is_averaged ? light.of_averaged : light.of_receiver;
+    const std::size_t size = light.tree.row_size();
+    std::vector<float> sum(size);
+    // Noise as of rays of its own.
+    const float most = static_cast<float>(light.of_site.count()) / static_cast<float>(own.count());
+    std::vector<SiteWeight> around;
+    std::uint64_t rays = 0;
+    if (light.sites.weigh(point.receiver, most, around)) {
+        for (const SiteWeight& w : around) {
+            const float* const row = &light.site_rows[w.site * size];
+            for (std::size_t k = 0; k < size; ++k) {
+                sum[k] += w.weight * row[k];
+            }
+        }
+    } else {
+        std::vector<NodeWeight> weights;
+        rays = weigh_bounces(light.scene, light.rays, light.tree, point.receiver, own, light.seed,
+                             weights)
+                   .rays;
+        add_node_rows(light.tree, weights, sum);
+    }
+    add_to_finer(sum, light.cubemap_size, rows, cubemap_size, light.bands);
+    return rays;
+}
+
+}  // namespace opaline::bake

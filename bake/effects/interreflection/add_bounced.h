@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "bake/effects/interreflection/bounce_light.h"
+#include "bake/transport/other_light.h"
+
+namespace opaline::bake {
+
+/// Adds irradiance at a point, Haar rows as of OtherLight::add: that of the sites around, or by
+/// final gathering where these say too little. Returns the rays traced, 0 of the former.
+std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
+                          std::uint32_t cubemap_size, std::span<float> rows);
+
+}  // namespace opaline::bake
