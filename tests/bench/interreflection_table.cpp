@@ -4,7 +4,7 @@
 //   ... truth SCENE: a file of production against path tracing of all light.
 //   ... cost SCENE: seconds and rays of stages without and with interreflection.
 // SCENE: box (a room open to the front, with a block in it), detailed (the same, of checkers),
-// ball (dented, over a floor), statue.
+// ball (dented, over a floor), statue; dense (the box of a mesh so fine that receivers read sites).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -44,9 +44,8 @@ namespace {
 constexpr std::uint32_t kMap = kBounceCubemap;
 constexpr std::size_t kTexels = 6 * kMap * kMap;
 
-formats::Scene make_open_box(bool detailed) {
+formats::Scene make_open_box(bool detailed, std::uint32_t n) {
     using tests::make_quad;
-    const std::uint32_t n = 24;
     formats::Scene scene = tests::make_scene({
         make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, n),  // floor, up
         make_quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, n),  // ceiling, down
@@ -311,8 +310,9 @@ int main(int argc, char** argv) {
     using namespace opaline;
     using namespace opaline::bake;
     const std::string what = argc > 1 ? argv[1] : "", name = argc > 2 ? argv[2] : "";
-    const formats::Scene scene = name == "box"        ? make_open_box(false)
-                                 : name == "detailed" ? make_open_box(true)
+    const formats::Scene scene = name == "box"        ? make_open_box(false, 24)
+                                 : name == "detailed" ? make_open_box(true, 24)
+                                 : name == "dense"    ? make_open_box(false, 64)
                                  : name == "ball"     ? tests::make_dented_ball()
                                                       : example("statue");
     if (what == "gather" && argc > 3) {

@@ -18,6 +18,9 @@ namespace {
 // fewer.
 constexpr double kHitShare = 0.25, kClustersPerHit = 0.8;
 constexpr double kBounces = 6;
+// Receivers that trace rays of their own where there are sites, and sites that the others read: of
+// the statue on its floor.
+constexpr double kOwnShare = 0.35, kSitesRead = 20;
 
 double row_cells(std::uint32_t bands) {
     return static_cast<double>(bands * formats::cubemap_texels(kBounceCubemap));
@@ -37,7 +40,15 @@ Work bounce_rows_work(const SubjectCost& cost) {
     const double rays = cost.layout.translucent && !cost.layout.at_entry
                             ? kRaysOfAveraged
                             : count_bounce_rays(cost.input.knobs[kBounceRays]);
-    return {0, ray_work(cost.input, sides * cost.receivers * rays, cost.layout.coloured ? 3 : 1)};
+    const std::uint32_t bands = cost.layout.coloured ? 3 : 1;
+    // Sites lie among receivers: the backs of sheets have none.
+    double own = sides * cost.receivers, read = 0;
+    if (cost.input.receivers >= static_cast<double>(kFewestWithSites)) {
+        read = (1 - kOwnShare) * cost.receivers;
+        own -= read;
+    }
+    return {0, ray_work(cost.input, own * rays, bands) +
+                   read * kSitesRead * row_cells(bands) * cost.input.rates.bounce_cell};
 }
 
 LightWork bounce_light_work(const CostInput& input) {
@@ -48,6 +59,11 @@ LightWork bounce_light_work(const CostInput& input) {
     const double texel_rays = count_rays(kBounceCubemap);
     work.work.shared += scatterers * texel_rays * input.rates.coherent_ray.at(input.triangles);
     work.work.shared += ray_work(input, scatterers * kRaysOfScatterer, 3);
+    if (input.receivers >= static_cast<double>(kFewestWithSites)) {
+        const double sites = std::min(input.receivers, static_cast<double>(kMostSites));
+        work.work.shared += ray_work(
+            input, sites * count_rays_of_site(count_bounce_rays(input.knobs[kBounceRays])), 3);
+    }
     work.work.shared += (kBounces - 1) * scatterers * kRaysOfScatterer * kHitShare *
                         kClustersPerHit * row_cells(3) * input.rates.bounce_cell;
     return work;

@@ -20,8 +20,6 @@ namespace {
 
 constexpr std::uint32_t kCubemap = kBounceCubemap;
 constexpr std::size_t kTexels = 6 * kCubemap * kCubemap;
-// Rays of a site, as a share of those of a receiver that sites say too little of.
-constexpr double kSiteShare = 0.25;
 constexpr std::uint32_t kMostBounces = 64;
 // A bounce of less of the light than this is the last one.
 constexpr double kLeastShare = 1e-3;
@@ -270,6 +268,11 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
 
 }  // namespace
 
+std::uint32_t count_rays_of_site(std::uint32_t of_receiver) {
+    constexpr double kShare = 0.25;
+    return count_bounce_rays(kShare * of_receiver);
+}
+
 std::size_t count_scatterers(const Knobs& knobs) {
     constexpr double kPerRay = 36, kFewest = 1024, kMost = 16384;
     const double rays = count_bounce_rays(knobs[kBounceRays]);
@@ -295,7 +298,7 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
                     .seed = inputs.knobs.seed,
                     .layouts = {inputs.layouts.begin(), inputs.layouts.end()},
                     .tree = BounceTree(scatterers, inputs.layouts.size(), field.row_size()),
-                    .of_site = make_bounce_grid(count_bounce_rays(kSiteShare * count)),
+                    .of_site = make_bounce_grid(count_rays_of_site(count)),
                     .of_receiver = make_bounce_grid(count),
                     .of_averaged = make_bounce_grid(kRaysOfAveraged),
                     .sites = {},

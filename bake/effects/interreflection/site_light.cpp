@@ -9,8 +9,6 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/effects/interreflection/bounce_gather.h"
 #include "bake/effects/interreflection/even_choice.h"
-#include "bake/receivers/surface_points.h"
-#include "bake/receivers/surface_samples.h"
 
 namespace opaline::bake {
 namespace {
@@ -50,50 +48,23 @@ void drop_copies(Candidates& all) {
     all.points.resize(kept);
 }
 
-// `each` random points of every triangle of a set.
-void add_between(const LightInputs& inputs, const ReceiverSet& set, std::size_t each,
-                 Candidates& all) {
-    const formats::Scene& scene = inputs.bake.scene;
-    const auto corners = static_cast<std::uint32_t>(scene.primitives[set.primitive].index.size());
-    for (std::uint32_t first = 0; first + 2 < corners; first += 3) {
-        for (std::uint32_t j = 0; j < each; ++j) {
-            const auto u = random_uniform(inputs.knobs.seed, RandomStage::bounce_sites,
-                                          std::uint64_t{set.primitive} << 32 | first, j);
-            const float root = std::sqrt(u[0]);
-            const SurfacePoint point = make_surface_point(
-                scene, {set.primitive, first}, {1 - root, root * (1 - u[1]), root * u[1]});
-            all.add(make_surface_sample(scene, point, 0).receiver, set.material);
-        }
-    }
-}
-
-// Evenly spaced ones of the receivers, as dense as these; where they are few, with points of the
-// triangles between them.
+// Evenly spaced ones of the receivers, as dense as these. None where they are so few that rays of
+// their own cost less.
 std::vector<GatherSite> choose_sites(const LightInputs& inputs) {
-    constexpr std::size_t kMost = 16384;
     Candidates all;
-    std::size_t triangles = 0;
-    std::vector<const ReceiverSet*> sets;
     for (const ReceiverSet& set : inputs.bake.receivers) {
-        if (set.kind == ReceiverSet::Kind::vertex &&
-            (inputs.acts.empty() || inputs.acts[set.material] != 0)) {
-            sets.push_back(&set);
-            triangles += inputs.bake.scene.primitives[set.primitive].index.size() / 3;
+        if (inputs.acts.empty() || inputs.acts[set.material] != 0) {
             for (const Receiver& at : set.outside) {
                 all.add(at, set.material);
             }
         }
     }
     drop_copies(all);
-    if (all.at.size() < kMost && triangles > 0) {
-        const std::size_t each = (kMost - all.at.size() + triangles - 1) / triangles;
-        for (const ReceiverSet* set : sets) {
-            add_between(inputs, *set, each, all);
-        }
-    }
     std::vector<GatherSite> sites;
-    for (const std::uint32_t i : choose_evenly(all.points, kMost)) {
-        sites.push_back({all.at[i], 0});
+    if (all.at.size() >= kFewestWithSites) {
+        for (const std::uint32_t i : choose_evenly(all.points, kMostSites)) {
+            sites.push_back({all.at[i], 0});
+        }
     }
     return sites;
 }

@@ -37,9 +37,19 @@ TEST(BounceGather, SumOfWeightsIsTheFormFactor) {
     const double expected = 4 / std::numbers::pi * x / root * std::atan(x / root);
     double sum = 0;
     std::vector<NodeWeight> weights;
-    EXPECT_EQ(weigh_bounces(scene, rays, tree, {{0.5f, 1e-5f, 0.5f}, {0, 1, 0}},
-                            make_bounce_grid(4096), 1, weights),
-              4096u);
+    const BounceGather gathered =
+        weigh_bounces(scene, rays, tree, {{0.5f, 1e-5f, 0.5f}, {0, 1, 0}}, make_bounce_grid(4096),
+                      1, weights);
+    EXPECT_EQ(gathered.rays, 4096u);
+    // Of 1 / r^2, the integral of 1 / (pi r^6) over the plate.
+    double nearness = 0;
+    constexpr int kParts = 200;
+    for (int i = 0; i < kParts * kParts; ++i) {
+        const double u = (i % kParts + 0.5) / kParts - 0.5;
+        const double v = (std::floor(static_cast<double>(i) / kParts) + 0.5) / kParts - 0.5;
+        nearness += std::pow(1 + u * u + v * v, -3) / (kParts * kParts * std::numbers::pi);
+    }
+    EXPECT_NEAR(gathered.nearness, nearness, 0.003);
     for (const NodeWeight& w : weights) {
         sum += w.weight;
     }

@@ -16,7 +16,7 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 std::vector<GatherSite> make_sites(std::uint32_t count, float clearance, float lean = 0) {
     std::vector<GatherSite> sites;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const auto u = random_uniform(5, RandomStage::bounce_sites, i);
+        const auto u = random_uniform(5, RandomStage::surface_probes, i);
         const float angle = lean * u[1];
         sites.push_back({{{u[0], 0, u[1]}, {0, std::cos(angle), std::sin(angle)}}, clearance});
     }
@@ -36,7 +36,7 @@ TEST(GatherSites, LightThatIsLinearInPlaceIsExactBetweenSites) {
     const GatherSites sites(make_sites(400, kFar));
     std::vector<SiteWeight> weights;
     for (std::uint32_t i = 0; i < 50; ++i) {
-        const auto u = random_uniform(6, RandomStage::bounce_sites, i);
+        const auto u = random_uniform(6, RandomStage::surface_probes, i);
         const Receiver at{{0.1f + 0.8f * u[0], 0, 0.1f + 0.8f * u[1]}, {0, 1, 0}};
         ASSERT_TRUE(sites.weigh(at, 1, weights));
         EXPECT_NEAR(answer(sites, weights, [](const Receiver&) { return 1.0; }), 1, 1e-5);
@@ -87,7 +87,7 @@ TEST(GatherSites, AnAnswerIsNoNoisierThanAskedFor) {
     std::vector<SiteWeight> weights;
     int refused = 0;
     for (std::uint32_t i = 0; i < 100; ++i) {
-        const auto u = random_uniform(8, RandomStage::bounce_sites, i);
+        const auto u = random_uniform(8, RandomStage::surface_probes, i);
         const Receiver at{{u[0], 0, u[1]}, {0, 1, 0}};
         if (!sites.weigh(at, 0.15f, weights)) {
             ++refused;

@@ -20,11 +20,11 @@ namespace {
 formats::Scene make_open_room() {
     using tests::make_quad;
     formats::Scene room = tests::make_scene({
-        make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 12),  // floor
-        make_quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, 12),  // ceiling
-        make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 12),  // back
-        make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 12),  // left
-        make_quad({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, 12),  // right
+        make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 32),  // floor
+        make_quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, 32),  // ceiling
+        make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 32),  // back
+        make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 32),  // left
+        make_quad({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, 32),  // right
     });
     room.materials[0].base_color = {0.7f, 0.7f, 0.7f};
     return room;
@@ -43,7 +43,7 @@ TEST(SiteLight, PointsBetweenSitesHaveTheLightOfManyRays) {
     layouts[0].constant = true;
     const BakeInputs bake{all_effects(), scene, facts, rays, sky, sets};
     BakeOptions options;
-    options.set(kBounceRays, 256);
+    options.set(kBounceRays, 64);
     options.effects = {"direct", "interreflection"};
     std::uint64_t traced = 0;
     const auto light =
@@ -53,7 +53,7 @@ TEST(SiteLight, PointsBetweenSitesHaveTheLightOfManyRays) {
     const BounceGrid many = make_bounce_grid(4096);
     double squares = 0, norm = 0;
     std::size_t without = 0, all = 0;
-    for (std::size_t i = 3; i < receivers.size(); i += 13, ++all) {
+    for (std::size_t i = 3; i < receivers.size(); i += 53, ++all) {
         std::vector<float> own(size), truth(size);
         if (add_bounced(*light, {receivers[i]}, light->cubemap_size, own) > 0) {
             continue;
@@ -68,8 +68,8 @@ TEST(SiteLight, PointsBetweenSitesHaveTheLightOfManyRays) {
         }
     }
     EXPECT_GT(2 * without, all);
-    // A single site has 64 rays, whose noise is 6 %.
-    EXPECT_LT(std::sqrt(squares / norm), 0.03);
+    // 64 rays of their own have a noise of 8 %, the 16 of a site twice as much.
+    EXPECT_LT(std::sqrt(squares / norm), 0.05);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bake/effects/interreflection/add_bounced.h"
 #include "bake/effects/interreflection/bounce_light.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
