@@ -90,6 +90,9 @@ class ClusterMaker {
             normal_.push_back(twice > 0 ? across / twice : glm::dvec3(0));
             centre_.push_back((a + b + c) / 3.0);
         }
+    }
+
+    void make() {
         grow_charts();
         for (TriangleCluster& chart : clusters_.charts) {
             chart.base = clusters_.is_patch.size();
@@ -193,7 +196,7 @@ class ClusterMaker {
 
 TriangleClusters cluster_triangles(const formats::Primitive& primitive) {
     TriangleClusters clusters;
-    ClusterMaker(primitive, clusters);
+    ClusterMaker(primitive, clusters).make();
     return clusters;
 }
 
