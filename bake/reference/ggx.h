@@ -13,7 +13,7 @@ namespace opaline::bake {
 /// Vectors are unit, in a frame whose third axis is the surface's normal, in double precision:
 /// at alpha 1e-3 single precision cannot tell normals apart.
 
-inline glm::dvec3 to_local(const Frame& frame, glm::vec3 d) {
+inline glm::dvec3 into_frame(const Frame& frame, glm::vec3 d) {
     const glm::dvec3 world(d);
     return {glm::dot(glm::dvec3(frame.u), world), glm::dot(glm::dvec3(frame.v), world),
             glm::dot(glm::dvec3(frame.normal), world)};

@@ -18,7 +18,7 @@ glm::dvec3 facet_reflectance(const GlossyBrdf& brdf, double o_h) {
 GlossyBrdf make_glossy_brdf(const OpaqueSurface& surface, glm::vec3 normal, glm::vec3 to_eye) {
     GlossyBrdf brdf;
     brdf.frame = make_frame(normal);
-    brdf.to_eye = to_local(brdf.frame, to_eye);
+    brdf.to_eye = into_frame(brdf.frame, to_eye);
     brdf.to_eye.z = std::max(brdf.to_eye.z, kGrazingCosine);
     brdf.to_eye = glm::normalize(brdf.to_eye);
     const double roughness{surface.roughness}, metallic{surface.metallic};
@@ -53,7 +53,7 @@ std::optional<LobeSample> sample_mirrored(const GlossyBrdf& brdf, float u, float
 }
 
 LobeValue eval_mirrored(const GlossyBrdf& brdf, glm::vec3 to_light) {
-    const glm::dvec3 l = to_local(brdf.frame, to_light), &o = brdf.to_eye;
+    const glm::dvec3 l = into_frame(brdf.frame, to_light), &o = brdf.to_eye;
     if (!(l.z > 0)) {
         return {};
     }

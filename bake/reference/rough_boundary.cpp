@@ -52,7 +52,7 @@ BoundaryValue eval_reflection(const RoughBoundary& b, const glm::dvec3& l) {
             static_cast<float>(chance * pdf_visible_reflection(o.z, h, b.alpha))};
 }
 
-BoundaryValue eval_transmission(const RoughBoundary& b, const glm::dvec3& l) {
+BoundaryValue eval_refraction(const RoughBoundary& b, const glm::dvec3& l) {
     const glm::dvec3& o = b.to_eye;
     glm::dvec3 h = o + b.ratio * l;
     h = glm::normalize(h.z < 0 ? -h : h);
@@ -70,7 +70,7 @@ BoundaryValue eval_transmission(const RoughBoundary& b, const glm::dvec3& l) {
 
 RoughBoundary make_rough_boundary(glm::vec3 normal, glm::vec3 to_eye, float alpha, float ratio) {
     RoughBoundary boundary{make_frame(normal), glm::dvec3(0), double{alpha}, double{ratio}};
-    boundary.to_eye = to_local(boundary.frame, to_eye);
+    boundary.to_eye = into_frame(boundary.frame, to_eye);
     boundary.to_eye.z = std::max(boundary.to_eye.z, kGrazingCosine);
     boundary.to_eye = glm::normalize(boundary.to_eye);
     return boundary;
@@ -121,11 +121,11 @@ std::optional<BoundarySample> sample_rough_boundary(const RoughBoundary& b, floa
 }
 
 BoundaryValue eval_rough_boundary(const RoughBoundary& b, glm::vec3 to_light) {
-    const glm::dvec3 l = to_local(b.frame, to_light);
+    const glm::dvec3 l = into_frame(b.frame, to_light);
     if (l.z > 0) {
         return b.reflects ? eval_reflection(b, l) : BoundaryValue{};
     }
-    return b.transmits && l.z < 0 ? eval_transmission(b, l) : BoundaryValue{};
+    return b.transmits && l.z < 0 ? eval_refraction(b, l) : BoundaryValue{};
 }
 
 }  // namespace opaline::bake

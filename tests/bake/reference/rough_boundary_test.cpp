@@ -214,7 +214,7 @@ TEST(RoughBoundary, DirectionsAreDistributedAsTheirDensitySays) {
                         ++lost;
                         continue;
                     }
-                    const glm::dvec3 d = bake::to_local(cells_frame, sample->direction);
+                    const glm::dvec3 d = bake::into_frame(cells_frame, sample->direction);
                     const double turn = std::atan2(d.y, d.x) / (2 * std::numbers::pi);
                     const int row =
                                   std::clamp(static_cast<int>((d.z + 1) / 2 * kRows), 0, kRows - 1),
