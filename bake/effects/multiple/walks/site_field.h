@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/receivers/local_regression.h"
+#include "bake/receivers/linear_fit.h"
 #include "bake/receivers/point_grid.h"
 #include "bake/receivers/receiver.h"
 

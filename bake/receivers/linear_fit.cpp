@@ -1,4 +1,4 @@
-#include "bake/receivers/local_regression.h"
+#include "bake/receivers/linear_fit.h"
 
 #include <Eigen/Dense>
 
