@@ -21,7 +21,8 @@ EFFECTS = Path("bake/effects")
 TABLE = EFFECTS / "effects.h", EFFECTS / "effects.cpp"
 SHARED = {"formats", "runtime"}  # their words are theirs, whoever uses them
 COMMENT_OR_STRING = re.compile(r"""//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\\n])'|R"(\w*)\((.*?)\)\1"|"((?:\\.|[^"\\\n])*)\"""", re.DOTALL)
-FOREIGN = re.compile(r"\bthread_local\b|\.local\(\)")  # words of C++ and of oneTBB (enumerable_thread_specific)
+# Words of C++, of oneTBB (enumerable_thread_specific) and of nanoflann.
+FOREIGN = re.compile(r"\bthread_local\b|\.local\(\)|\bnanoflann::\w+")
 IDENTIFIER = re.compile(r"(?:\bEffect\s*::\s*)?\b[A-Za-z_]\w*")
 WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
