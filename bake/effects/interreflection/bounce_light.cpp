@@ -11,6 +11,7 @@
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "bake/effects/interreflection/site_light.h"
 #include "bake/plan/medium_exitance.h"
+#include "bake/scattering/fresnel.h"
 #include "bake/transport/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
@@ -125,6 +126,8 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
         field.inputs.rows_of_medium(material, outside, inside, kCubemap);
     const RowLayout& layout = field.inputs.layouts[material];
     const float eta = field.inputs.bake.scene.materials[material].medium->eta;
+    // What the boundary mirrors goes on as if it were diffuse: where is wrong, how much is right.
+    const auto mirrored = static_cast<float>(fresnel_moments(static_cast<double>(eta)).external);
     const std::uint32_t own_bands = layout.bands();
     std::uint64_t rays = 0;
     std::vector<float> around(kTexels);
@@ -144,6 +147,7 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
             }
         }
         rays += gather_row(field, directions, s.outside, around);
+        add_scaled(around, {mirrored, mirrored, mirrored}, field.bands, field.row(i));
         const float light = even_light(around);
         s.openness = openness_of(field, around);
         for (std::uint32_t b = 0; b < field.bands; ++b) {

@@ -16,8 +16,7 @@ PlanEntry decide_interreflection(const PlanInput& input) {
     entry.has_bands = !others.is_grey;
     const bool has_rows = std::any_of(input.earlier.begin(), input.earlier.end(),
                                       [](const PlanEntry& e) { return e.on && e.rule == 0; });
-    const bool is_one_of_all = input.knobs.simulate_all && input.knobs.effects.empty();
-    if (!is_named(input.knobs, "interreflection") && !is_one_of_all) {
+    if (!is_wanted(input.knobs, "interreflection")) {
         entry.reason = "not asked for by --effects";
     } else if (!has_rows) {
         entry.reason = "nothing else is simulated";

@@ -20,8 +20,7 @@ bool is_unseen(const PlanInput& input) {
 
 bool has_textures(const PlanInput& input) {
     return input.subject.textures.texels_per_metre > 0 &&
-           (is_named(input.knobs, "interreflection") ||
-            (input.knobs.simulate_all && input.knobs.effects.empty()));
+           is_wanted(input.knobs, "interreflection");
 }
 
 PlanEntry decide_textures(const PlanInput& input) {

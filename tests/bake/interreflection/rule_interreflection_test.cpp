@@ -21,7 +21,7 @@ TEST(RuleInterreflection, ALoneConvexBodyHasNoneAndABodyOnAFloorHas) {
     EXPECT_TRUE(is_on(tests::make_dented_ball()));
 }
 
-TEST(RuleInterreflection, ActsOnlyWhereItIsAskedForAndAListLimitsWhatAllForces) {
+TEST(RuleInterreflection, ActsUnlessAListLeavesItOut) {
     const formats::Scene scene = tests::make_dented_ball();
     const auto decided = [&](std::vector<std::string> effects, bool all) {
         BakeOptions options = tests::bounce_options(std::move(effects));
@@ -29,9 +29,10 @@ TEST(RuleInterreflection, ActsOnlyWhereItIsAskedForAndAListLimitsWhatAllForces) 
         const auto plan = plan_bake(scene, inspect_scene(scene), resolve_knobs(options).value());
         return find_entry(plan, "interreflection", 0)->on;
     };
-    EXPECT_FALSE(decided({}, false)) << "auto";
+    EXPECT_TRUE(decided({}, false)) << "auto";
     EXPECT_TRUE(decided({}, true)) << "all";
     EXPECT_FALSE(decided({"direct"}, true));
+    EXPECT_FALSE(decided({"direct"}, false));
     EXPECT_TRUE(decided(kRuleEffects, false));
 }
 
