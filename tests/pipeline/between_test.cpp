@@ -24,6 +24,7 @@ formats::Scene ball_over_floor(std::uint32_t cells) {
 BakeResult bake_preview(const formats::Scene& scene) {
     BakeOptions options;
     options.threads = 2;
+    options.effects = {"direct"};
     return tests::bake_scene(scene, options);
 }
 

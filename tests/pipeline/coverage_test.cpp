@@ -68,6 +68,7 @@ TEST(Coverage, IntervalOfAStatedErrorContainsItAsOftenAsItSays) {
     BakeOptions options = tests::small_bake();
     options.cubemap_size = 16;
     options.coefficients = 64;
+    options.effects = {"direct"};
     const auto lights = make_test_lights(options.cubemap_size, 2);
     ASSERT_TRUE(lights);
     for (const formats::Scene& scene :

@@ -47,7 +47,7 @@ BakeResult bake_grey(const formats::Scene& scene, bool forced, std::uint32_t pha
     BakeOptions options = tests::small_bake();
     options.set(kPhaseTerms, phase_terms);
     options.separate_terms = separate;
-    if (forced) simulate_all_but_bounces(options);
+    forced ? simulate_all_but_bounces(options) : leave_bounces_out(options);
     return tests::bake_scene(scene, options);
 }
 

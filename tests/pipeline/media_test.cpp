@@ -135,6 +135,7 @@ TEST(TranslucentPipeline, MultipleAndSingleBakedApartAddUpToBoth) {
         BakeOptions options = small_bake();
         options.quality = Quality::reference;
         options.set(kMultipleModel, static_cast<double>(MultipleModel::dipole));
+        leave_bounces_out(options);
         const std::uint32_t terms = g > 0 ? 4 : 1;
         options.set(kPhaseTerms, terms);
         const BakeResult merged = bake_scene(scene, options);
@@ -203,7 +204,9 @@ TEST(TranslucentPipeline, PlanFollowsTheMedium) {
         for (const PlanEntry& entry : plan) {
             EXPECT_FALSE(entry.reason.empty());
         }
-        return effects_of_ball(plan);
+        Names names = effects_of_ball(plan);
+        std::erase(names, "interreflection");  // what the floor sends does not follow the medium
+        return names;
     };
     const Names all{"multiple", "single", "specular"};
     const Medium ketchup = *formats::media_preset("ketchup");
@@ -229,6 +232,7 @@ TEST(TranslucentPipeline, ScalingSceneAndMediumTogetherChangesNothing) {
     const auto scene = make_ball_on_floor(forward(0.3f));
     BakeOptions options = small_bake();
     options.set(kPhaseTerms, 4);
+    leave_bounces_out(options);
     const BakeResult metres = bake_scene(scene, options);
     // A power of two is exact in floats but for where rays start; a thousandth rounds everywhere.
     for (const float scale : {1024.0f, 0.001f}) {
@@ -303,7 +307,7 @@ TEST(TranslucentPipeline, SelfCheckNamesEffectsAndLights) {
         return list;
     };
     EXPECT_EQ(names(error.at_receivers.by_effect),
-              (Names{"multiple+single+transmission", "direct"}));
+              (Names{"multiple+single+transmission+interreflection", "direct+interreflection"}));
     EXPECT_EQ(names(error.at_receivers.by_light),
               (Names{"white", "sun:30,60", "sun:150,35", "sun:270,15", "studio", "sky:3,35"}));
     EXPECT_GT(error.rms_relative, 0);

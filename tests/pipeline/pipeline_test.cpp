@@ -83,6 +83,7 @@ TEST(Pipeline, AConvexBodyAloneUnderWhiteIsWithinATenthOfAPercent) {
 TEST(Pipeline, VertexOfAFloorLiesInTheShadowOfWhatStandsOnIt) {
     BakeOptions options = small_options();
     options.coefficients = kAllCoefficients;
+    options.effects = {"direct"};
     const BakeResult result = tests::bake_scene(tests::make_dented_ball(), options);
     const auto radiance = tests::relight(result.asset.view(), "sun:0,89");
     const formats::PrimitiveRecord& floor = result.asset.primitives[1];
@@ -152,9 +153,10 @@ TEST(Pipeline, MeasuredErrorFallsWithTheKnobs) {
     }
 }
 
-TEST(Pipeline, TheSeedChoosesTheCheckedReceiversOnly) {
+TEST(Pipeline, WithoutRandomRaysTheSeedChoosesTheCheckedReceiversOnly) {
     const auto scene = tests::make_dented_ball();
     BakeOptions options = small_options();
+    options.effects = {"direct"};
     const BakeResult a = tests::bake_scene(scene, options);
     options.seed = 1;
     const BakeResult b = tests::bake_scene(scene, options);

@@ -90,6 +90,7 @@ TEST(Sheet, IsAsBrightAsPathTracedFromAboveAndFromBelow) {
         BakeOptions options = tests::small_bake();
         options.cubemap_size = 32;
         options.separate_terms = turned;
+        options.effects = {"direct", "sheet"};
         const BakeResult baked = tests::bake_scene(scene, options);
         ModelCheckOptions check;
         check.max_events = 2000000;

@@ -83,6 +83,7 @@ TEST(TargetError, OpaqueSurfacesTakeTheCoarsestCubeMapThatIsGoodEnough) {
 TEST(TargetError, OutOfReachIsSaidAndBytesThatLowerNothingAreNotSpent) {
     BakeOptions options = asking_for(1e-3);
     options.cubemap_size = 8;
+    options.effects = {"direct"};
     const BakeResult result = tests::bake_scene(tests::make_dented_ball(), options);
     EXPECT_FALSE(result.accuracy->met);
     EXPECT_EQ(result.knobs.cubemap_size, 8u);

@@ -43,15 +43,22 @@ inline void predict_savings(const formats::Scene& scene, const SceneFacts& facts
     predict_savings({all_effects(), scene, facts, knobs, rates, threads}, plan);
 }
 
-/// Every shortcut forced off: what a bake with shortcuts is compared with. Without a list of
-/// effects all light but that of other surfaces, which no bake simulates unasked.
-inline void simulate_all_but_bounces(BakeOptions& options) {
-    options.simulate_all = true;
-    if (!options.effects.empty()) return;
+/// All light but that of other surfaces, whose rays are random: keyed by seed and place, and
+/// coloured by others.
+inline void leave_bounces_out(BakeOptions& options) {
     for (const EffectDescriptor& effect : all_effects().effects) {
         if (!effect.help.empty() && effect.name != "interreflection") {
             options.effects.emplace_back(effect.name);
         }
+    }
+}
+
+/// Every shortcut forced off: what a bake with shortcuts is compared with. Without a list of
+/// effects all light but that of other surfaces.
+inline void simulate_all_but_bounces(BakeOptions& options) {
+    options.simulate_all = true;
+    if (options.effects.empty()) {
+        leave_bounces_out(options);
     }
 }
 
