@@ -45,7 +45,7 @@ TEST(Bake, ReportHasTheKeysOfTheContract) {
             EXPECT_EQ(entry.at("effect"), "light.visibility");
         }
     }
-    EXPECT_EQ(lit_by_others, 1) << "the lower square sees the upper one, which looks up";
+    EXPECT_EQ(lit_by_others, 1) << "nothing rises above the upper square";
     ASSERT_FALSE(report.at("stages").empty());
     double seconds = 0, traced = 0;
     for (const Json& stage : report.at("stages")) {
