@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "bake/effects/interreflection/interreflection_knobs.h"
 #include "formats/opal/write_opal.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
@@ -78,6 +79,15 @@ TEST(TargetError, OpaqueSurfacesTakeTheCoarsestCubeMapThatIsGoodEnough) {
     EXPECT_TRUE(result.accuracy->met);
     EXPECT_LE(result.knobs.cubemap_size, 32u);
     EXPECT_LE(result.error.rms_relative, 0.05);
+}
+
+// Rays follow the target, before any is traced: that light is found before knobs are tried.
+TEST(TargetError, IsMetWithTheLightOfOtherSurfaces) {
+    const BakeResult result = tests::bake_scene(tests::make_dented_ball(), asking_for(0.05));
+    ASSERT_TRUE(find_entry(result.plan, "interreflection", 0)->on);
+    EXPECT_LT(result.knobs[kBounceRays], 144);
+    EXPECT_LE(result.error.at_receivers.rms_relative, 0.05);
+    EXPECT_GT(resolve_knobs(asking_for(0.01)).value()[kBounceRays], 576);
 }
 
 TEST(TargetError, OutOfReachIsSaidAndBytesThatLowerNothingAreNotSpent) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/knob.h"
@@ -16,6 +18,11 @@ inline bool bounces(const RowLayout&, std::span<const PlanEntry> decisions) {
     }
     return false;
 }
+/// Half of the error may come from bounced light: 1.25 % at 256 rays in a box, and less by the
+/// power 0.8 of more (RESULTS.md, "Interreflection").
+inline double rays_for_error(double error) {
+    return std::clamp(256 * std::pow(0.025 / error, 1.25), 16.0, 4096.0);
+}
 inline constexpr std::array<double, 6> kRayLadder{16, 64, 144, 256, 576, 1024};
 }  // namespace bounce_knobs
 
@@ -30,6 +37,7 @@ inline constexpr KnobSpec kBounceRays{
     .lowest = 16,
     .highest = 65536,
     .preset = {64, 144, 576, 1024},
+    .for_target = bounce_knobs::rays_for_error,
     .label = "%g rays to other surfaces",
     .ladder = bounce_knobs::kRayLadder,
     .theory = {.label = "rays to other surfaces",
