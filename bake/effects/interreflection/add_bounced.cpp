@@ -11,7 +11,7 @@ std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
     const BounceGrid& own = point.is_averaged ? light.of_averaged : light.of_receiver;
     const std::size_t size = light.tree.row_size();
     std::vector<float> sum(size);
-    // Noise as of rays of its own.
+    // Noise as of rays of its own, were these independent.
     const float most = static_cast<float>(light.of_site.count()) / static_cast<float>(own.count());
     std::vector<SiteWeight> around;
     std::uint64_t rays = 0;

@@ -20,7 +20,7 @@ constexpr double kHitShare = 0.25, kClustersPerHit = 0.8;
 constexpr double kBounces = 6;
 // Receivers that trace rays of their own where there are sites, and sites that the others read: of
 // the statue on its floor.
-constexpr double kOwnShare = 0.35, kSitesRead = 20;
+constexpr double kOwnShare = 0.4, kSitesRead = 20;
 
 double row_cells(std::uint32_t bands) {
     return static_cast<double>(bands * formats::cubemap_texels(kBounceCubemap));

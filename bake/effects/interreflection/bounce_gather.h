@@ -19,7 +19,7 @@ struct NodeWeight {
 /// What rays of a point tell besides.
 struct BounceGather {
     std::uint64_t rays = 0;
-    float nearness = 0;  ///< [1/m], mean of 1 / length; 0 of rays that meet nothing
+    float nearness = 0;  ///< [1/m^2], mean of 1 / length^2; 0 of rays that meet nothing
 };
 
 /// Which rows answer a ray, for measurements of what each gains.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <nanoflann.hpp>
+#include <span>
 #include <utility>
 
 namespace opaline::bake {

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "bake/receivers/linear_fit.h"
@@ -36,9 +34,6 @@ class GatherSites {
     /// or the fit would have more than `most_noise` of the variance of a site. Overwrites
     /// `weights`.
     bool weigh(const Receiver& at, float most_noise, std::vector<SiteWeight>& weights) const;
-
-    std::size_t size() const { return sites_.size(); }
-    std::span<const GatherSite> sites() const { return sites_; }
 
   private:
     struct Tree;

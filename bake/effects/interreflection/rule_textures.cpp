@@ -19,8 +19,7 @@ bool is_unseen(const PlanInput& input) {
 }  // namespace
 
 bool has_textures(const PlanInput& input) {
-    return input.subject.textures.texels_per_metre > 0 &&
-           is_wanted(input.knobs, "interreflection");
+    return input.subject.textures.texels_per_metre > 0 && is_wanted(input.knobs, "interreflection");
 }
 
 PlanEntry decide_textures(const PlanInput& input) {

@@ -37,9 +37,8 @@ TEST(BounceGather, SumOfWeightsIsTheFormFactor) {
     const double expected = 4 / std::numbers::pi * x / root * std::atan(x / root);
     double sum = 0;
     std::vector<NodeWeight> weights;
-    const BounceGather gathered =
-        weigh_bounces(scene, rays, tree, {{0.5f, 1e-5f, 0.5f}, {0, 1, 0}}, make_bounce_grid(4096),
-                      1, weights);
+    const BounceGather gathered = weigh_bounces(scene, rays, tree, {{0.5f, 1e-5f, 0.5f}, {0, 1, 0}},
+                                                make_bounce_grid(4096), 1, weights);
     EXPECT_EQ(gathered.rays, 4096u);
     // Of 1 / r^2, the integral of 1 / (pi r^6) over the plate.
     double nearness = 0;
