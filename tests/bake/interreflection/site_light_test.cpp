@@ -131,5 +131,22 @@ TEST(SiteLight, PointsBetweenSitesHaveTheLightOfManyRays) {
     EXPECT_LT(of_sites, 2 * of_rays) << "a fit to sites is worth nearly as much as 64 rays";
 }
 
+// Vertices that seams double trace the same rays: a second site there would pass for another one.
+TEST(SiteLight, CopiesOfAVertexAreOneSite) {
+    RowLayout opaque;
+    opaque.constant = true;
+    formats::Scene doubled = make_open_room();
+    const std::size_t walls = doubled.primitives.size();
+    for (std::size_t i = 0; i < walls; ++i) {
+        doubled.primitives.push_back(doubled.primitives[i]);
+    }
+    const auto sites_of = [&](formats::Scene scene) {
+        const LitWorld world(std::move(scene), {opaque}, 16);
+        return world.light->site_rows.size() / world.light->tree.row_size();
+    };
+    EXPECT_EQ(sites_of(make_open_room()), 5u * 33 * 33);
+    EXPECT_EQ(sites_of(doubled), 5u * 33 * 33);
+}
+
 }  // namespace
 }  // namespace opaline::bake
