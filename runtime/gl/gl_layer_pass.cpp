@@ -43,14 +43,14 @@ void set_origin(GLint location, const GlLayers::Grid& grid, formats::Vec3 eye) {
 
 void bind_layer(const DrawScene& scene) {
     const GlLayers& layers = scene.layers;
-    const std::array<const GlTexture*, 4> textures{&layers.thickness, &layers.albedo,
-                                                   &layers.ground_light, &layers.base_light};
+    const std::array<const GlTexture*, 3> textures{&layers.albedo, &layers.ground_light,
+                                                   &layers.base_light};
     for (GLuint i = 0; i < textures.size(); ++i) {
-        glBindTextureUnit(4 + i, textures[i]->name());
+        glBindTextureUnit(5 + i, textures[i]->name());
     }
-    const std::array<const GlBuffer*, 6> buffers{&layers.block,      &layers.phase,
-                                                 &layers.flux,       &layers.glow,
-                                                 &layers.sun_tables, &layers.sun_flux};
+    const std::array<const GlBuffer*, 7> buffers{
+        &layers.block,      &layers.phase,    &layers.flux,     &layers.glow,
+        &layers.sun_tables, &layers.sun_flux, &layers.thickness};
     for (GLuint i = 0; i < buffers.size(); ++i) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1 + i, buffers[i]->name());
     }

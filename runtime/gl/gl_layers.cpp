@@ -23,14 +23,17 @@ using Int4 = std::array<std::int32_t, 4>;
 struct ShaderSun {
     Vec4 direction_cosine{}, irradiance_radius{}, shadow{};
 };
+constexpr std::size_t kMaxLevels = 16;
+
 struct ShaderLayer {
     Vec4 rest_kappa_peak{}, kappa_haze{}, peak_weight{}, peak_square{}, field{},
         ground_cell_light{};
     Vec4 sky_irradiance{}, horizon_luminance{}, map_peak{};
     Int4 sun_discs{-1, -1, -1, -1}, field_albedo{}, levels_counts{}, counts{}, radiance_counts{};
+    std::array<std::int32_t, kMaxLevels> level_first{};
     std::array<ShaderSun, kMaxLayerSuns> suns;
 };
-static_assert(sizeof(ShaderLayer) == 14 * 16 + kMaxLayerSuns * 48);
+static_assert(sizeof(ShaderLayer) == 14 * 16 + kMaxLevels * 4 + kMaxLayerSuns * 48);
 
 Vec4 vec4_of(Rgb color, float last = 0) {
     return {color.r, color.g, color.b, last};
@@ -40,61 +43,60 @@ std::int32_t int_of(std::size_t value) {
     return static_cast<std::int32_t>(value);
 }
 
-template <class T>
-void fill_pyramid(const GlTexture& texture, std::span<const MipLevel<T>> levels) {
-    constexpr bool kIsColor = std::is_same_v<T, Rgb>;
+void fill_pyramid(const GlTexture& texture, std::span<const MipLevel<Rgb>> levels) {
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     for (std::size_t i = 0; i < levels.size(); ++i) {
-        glTextureSubImage2D(texture.name(), static_cast<GLint>(i), 0, 0,
-                            static_cast<GLsizei>(levels[i].columns),
-                            static_cast<GLsizei>(levels[i].rows), kIsColor ? GL_RGB : GL_RED,
-                            GL_FLOAT, levels[i].value.data());
+        glTextureSubImage2D(
+            texture.name(), static_cast<GLint>(i), 0, 0, static_cast<GLsizei>(levels[i].columns),
+            static_cast<GLsizei>(levels[i].rows), GL_RGB, GL_FLOAT, levels[i].value.data());
     }
 }
 
 // Shaders interpolate by themselves.
-template <class T>
-GlTexture upload_pyramid(std::span<const MipLevel<T>> levels, std::size_t& resident) {
-    constexpr bool kIsColor = std::is_same_v<T, Rgb>;
+GlTexture upload_pyramid(std::span<const MipLevel<Rgb>> levels, std::size_t& resident) {
     GLuint name = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &name);
     GlTexture texture(name);
-    glTextureStorage2D(name, static_cast<GLsizei>(levels.size()), kIsColor ? GL_RGBA32F : GL_R32F,
+    glTextureStorage2D(name, static_cast<GLsizei>(levels.size()), GL_RGBA32F,
                        static_cast<GLsizei>(levels[0].columns),
                        static_cast<GLsizei>(levels[0].rows));
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     fill_pyramid(texture, levels);
-    for (const MipLevel<T>& level : levels) {
-        resident += level.value.size() * (kIsColor ? 16 : 4);
+    for (const MipLevel<Rgb>& level : levels) {
+        resident += level.value.size() * 16;
     }
     return texture;
 }
 
-// Trilinear; 0 beyond the edges of what does not repeat.
-void filter_thickness(const GlTexture& texture, bool repeats) {
-    const GLuint name = texture.name();
-    const GLint wrap = repeats ? GL_REPEAT : GL_CLAMP_TO_BORDER;
-    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTextureParameteri(name, GL_TEXTURE_WRAP_S, wrap);
-    glTextureParameteri(name, GL_TEXTURE_WRAP_T, wrap);
-    const std::array<float, 4> nothing{0, 0, 0, 0};
-    glTextureParameterfv(name, GL_TEXTURE_BORDER_COLOR, nothing.data());
-}
-
 formats::Status check_sizes(const LayerLight& light) {
-    GLint limit = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+    const auto refuse = [](std::string found) -> formats::Status {
+        return make_error(ErrorKind::resource, {}, "cloud layer", "found " + std::move(found),
+                          "render on the CPU");
+    };
+    GLint side = 0;
+    GLint64 block = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
     const LayerRecord& record = light.record;
-    const std::uint32_t largest = std::max(std::max(record.columns, record.rows),
-                                           std::max(record.ground_columns, record.ground_rows));
-    if (largest <= static_cast<std::uint32_t>(limit)) return formats::ok_status();
-    return make_error(ErrorKind::resource, {}, "cloud layer",
-                      "found a picture of " + std::to_string(largest) +
-                          " pixels a side, the OpenGL driver takes at most " +
-                          std::to_string(limit),
-                      "render on the CPU");
+    const std::uint32_t ground = std::max(record.ground_columns, record.ground_rows);
+    if (ground > static_cast<std::uint32_t>(side)) {
+        return refuse("a picture of " + std::to_string(ground) +
+                      " pixels a side, the OpenGL driver takes at most " + std::to_string(side));
+    }
+    std::size_t texels = 0;
+    for (const MipLevel<float>& level : light.field.thickness.level)
+        texels += level.value.size();
+    const std::size_t most =
+        std::min<std::size_t>(static_cast<std::size_t>(std::max<GLint64>(block, 0)) / sizeof(float),
+                              std::numeric_limits<std::int32_t>::max());
+    if (texels > most || light.field.thickness.level.size() > kMaxLevels) {
+        return refuse(std::to_string(texels) + " texels of thickness with their means, " +
+                      std::to_string(record.columns) + " x " + std::to_string(record.rows) +
+                      "; the OpenGL driver takes at most " + std::to_string(most) +
+                      ", the shader 65535 a side");
+    }
+    return formats::ok_status();
 }
 
 // A damaged file may hold what not all drivers handle.
@@ -123,11 +125,17 @@ GlBuffer upload_table(const LayerLight& light, std::span<const float> formats::L
     return make_buffer_of(std::span<const float>(values), resident);
 }
 
+GlBuffer upload_thickness(const LayerLight& light, std::size_t& resident) {
+    std::vector<float> texels;
+    for (const MipLevel<float>& level : light.field.thickness.level) {
+        texels.insert(texels.end(), level.value.begin(), level.value.end());
+    }
+    return make_buffer_of(std::span<const float>(texels), resident);
+}
+
 formats::Status upload_layer(GlLayers& layers, const LayerLight& light) {
     if (auto status = check_sizes(light); !status) return status;
-    layers.thickness = upload_pyramid(std::span<const MipLevel<float>>(light.field.thickness.level),
-                                      layers.layer_bytes);
-    filter_thickness(layers.thickness, light.field.repeats());
+    layers.thickness = upload_thickness(light, layers.layer_bytes);
     layers.frames = light.field.frames;
     layers.albedo =
         upload_pyramid(std::span<const MipLevel<Rgb>>(light.albedo.level), layers.layer_bytes);
@@ -196,6 +204,11 @@ ShaderLayer shader_layer(const LayerLight& light) {
                            int_of(r.glow_angles)};
     block.counts = {int_of(r.glow_events), int_of(r.flux_depths), int_of(r.flux_cosines), 0};
     block.radiance_counts = {int_of(r.radiance_depths), int_of(r.radiance_cosines), 0, 0};
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < light.field.thickness.level.size(); ++i) {
+        block.level_first[i] = int_of(first);
+        first += light.field.thickness.level[i].value.size();
+    }
     for (std::size_t i = 0; i < light.sun.size(); ++i) {
         const LitSun& sun = light.sun[i];
         block.suns[i].direction_cosine = {sun.direction.x, sun.direction.y, sun.direction.z,
@@ -222,8 +235,8 @@ formats::Status relight_gl_layers(GlLayers& layers, const LayerLight& light) {
         layers.layer_bytes = 0;
         if (auto status = upload_layer(layers, light); !status) return status;
     } else if (layers.frames != light.field.frames) {
-        fill_pyramid(layers.thickness,
-                     std::span<const MipLevel<float>>(light.field.thickness.level));
+        std::size_t resident = 0;  // as much as before
+        layers.thickness = upload_thickness(light, resident);
         layers.frames = light.field.frames;
     }
     layers.light_bytes = 0;

@@ -18,9 +18,9 @@ struct GlLayers {
     bool shown = false;  ///< false: there is none, or no light yet
 
     // Of the layer.
-    GlTexture thickness;  ///< all levels of LayerField::thickness [m]
-    FrameBlend frames;    ///< that it is of
-    GlTexture albedo;     ///< all levels of LayerLight::albedo
+    GlBuffer thickness;  ///< all levels of LayerField::thickness [m]
+    FrameBlend frames;   ///< that it is of
+    GlTexture albedo;    ///< all levels of LayerLight::albedo
     GlBuffer phase, flux, glow;
 
     // Of a light and a time.

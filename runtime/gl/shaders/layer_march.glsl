@@ -1,7 +1,8 @@
 // The thickness of a layer and the way of a ray through it, as clouds/layer_field.cpp and
 // clouds/layer_march.cpp have it. layer_tables.glsl comes before it. Places are offsets from the
 // eye along x and z [m].
-layout(binding = 4) uniform sampler2D thickness_map;
+// Its levels one after the other, x fastest [m].
+layout(std430, binding = 7) readonly buffer Thickness { float thickness_texels[]; };
 layout(location = 10) uniform vec2 field_origin;    // the eye's place in the thickness, [0, 1]
 layout(location = 11) uniform float eye_above_base;  // [m]
 layout(location = 12) uniform float spread;          // of a pixel [rad]
@@ -18,9 +19,38 @@ struct LayerMarch {
     float length, distance, thickness, level;
 };
 
-// By the driver's filters: written out, a step would fetch eight texels.
+float thickness_texel(ivec2 at, ivec2 size, int first) {
+#if REPEAT
+    at += size * (ivec2(lessThan(at, ivec2(0))) - ivec2(greaterThanEqual(at, size)));
+    return thickness_texels[first + at.y * size.x + at.x];
+#else
+    bool is_within = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, size));
+    return is_within ? thickness_texels[first + at.y * size.x + at.x] : 0.0;
+#endif
+}
+
+float thickness_of_level(vec2 uv, int level) {
+    ivec2 size = max(field_albedo.xy >> level, ivec2(1));
+    int texels = level_first[level];
+    vec2 place = clamp(uv * vec2(size) - 0.5, vec2(-2.0), vec2(size + 2));
+    vec2 first = floor(place), t = place - first;
+    ivec2 i = ivec2(first);
+    float a = thickness_texel(i, size, texels), b = thickness_texel(i + ivec2(1, 0), size, texels);
+    float c = thickness_texel(i + ivec2(0, 1), size, texels), d = thickness_texel(i + 1, size, texels);
+    return mix(mix(a, b, t.x), mix(c, d, t.x), t.y);
+}
+
+// Trilinear, written out: filters of GPUs round their weights to 1/256 of a step between texels, and
+// Mesa's renderer in software fetches all four pixels of a quad from the level of one.
 float thickness_at(vec2 place, float level) {
-    return textureLod(thickness_map, field_origin + place / field.xy, level).r;
+    vec2 uv = field_origin + place / field.xy;
+#if REPEAT
+    uv -= floor(uv);
+#endif
+    float at = clamp(level, 0.0, float(levels_counts.x));
+    int first = int(at);
+    float share = at - float(first), thickness = thickness_of_level(uv, first);
+    return share > 0.0 ? mix(thickness, thickness_of_level(uv, first + 1), share) : thickness;
 }
 
 float field_level(float size) {

@@ -20,6 +20,7 @@ layout(std430, binding = 1) readonly buffer Layer {
     ivec4 levels_counts;     // last levels of both, phase angles, glow angles
     ivec4 counts;            // glow events, flux depths, flux cosines
     ivec4 radiance_counts;   // depths, cosines
+    int level_first[16];     // first texel of a level of the thickness
     LayerSun suns[];
 };
 layout(std430, binding = 2) readonly buffer Phase { float log_phase[]; };  // [angle][band]
