@@ -79,6 +79,8 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
         ->option_text("M");
     command.add_option("--target", options.target, "point looked at [m]; default: the middle")
         ->option_text("X,Y,Z");
+    command.add_option("--up", options.up, "direction that is up in the picture")
+        ->option_text("X,Y,Z [0,1,0]");
     command.add_option("--fov", options.fov, "vertical angle of view [degrees]")
         ->check(number_above(0, 179.9))
         ->option_text("DEG [32]");
@@ -107,6 +109,17 @@ Result<runtime::Camera> make_camera(const CameraOptions& options, const formats:
             return eye.error();
         }
         camera.eye = *eye;
+    }
+    if (!options.up.empty()) {
+        const auto up = parse_vec3("--up", options.up);
+        if (!up) {
+            return up.error();
+        }
+        if (formats::length(*up) == 0) {
+            return make_error(ErrorKind::usage, "", "--up", "is no direction",
+                              "give for example 0,1,0");
+        }
+        camera.up = *up;
     }
     if (formats::length(camera.target - camera.eye) == 0) {
         return make_error(ErrorKind::usage, "", "--eye", "lies in the target",

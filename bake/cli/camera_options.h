@@ -12,7 +12,7 @@ namespace opaline::cli {
 
 /// Options common to `render` and `reference`.
 struct CameraOptions {
-    std::string size = "960x720", eye, target;
+    std::string size = "960x720", eye, target, up;
     std::optional<double> azimuth, elevation, distance;  ///< [degrees], [degrees], [m]
     float fov = 32;
 };

@@ -43,8 +43,8 @@ int write_frames(const FrameOptions& options, const runtime::Camera& camera, std
         if (!picture) {
             return report_error(picture.error());
         }
-        if (auto status =
-                write_picture(frame_path(options, drawing.frames), *picture, options.exposure);
+        if (auto status = write_picture(frame_path(options, drawing.frames), *picture,
+                                        options.exposure, options.tone_map);
             !status) {
             return report_error(status.error());
         }

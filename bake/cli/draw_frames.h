@@ -10,6 +10,7 @@
 #include "formats/opal/terms.h"
 #include "runtime/emitter_light.h"
 #include "runtime/picture/camera.h"
+#include "runtime/picture/tone_map.h"
 #ifdef OPALINE_HAS_GL
 #include "runtime/gl/gl_renderer.h"
 #endif
@@ -23,7 +24,8 @@ enum class Backend { automatic, gl, cpu };
 struct FrameOptions {
     std::string output;
     Backend backend = Backend::automatic;
-    float exposure = 0;        ///< [EV]
+    float exposure = 0;  ///< [EV]
+    runtime::ToneMap tone_map = runtime::ToneMap::neutral;
     std::uint32_t frames = 1;  ///< 1 or more
     double turn = 360;         ///< that the camera goes around the target in all frames [degrees]
     unsigned threads = 0;

@@ -13,6 +13,7 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
+#include "bake/encode/shorten_rows.h"
 #include "formats/opal/terms.h"
 #include "runtime/shade.h"
 
@@ -28,6 +29,7 @@ struct RenderCommand {
     double time = 0;                  ///< [s]
     std::optional<double> time_step;  ///< from frame to frame [s]
     std::optional<double> turn;       ///< [degrees]
+    std::optional<std::uint32_t> coefficients;
 };
 
 // The background, cloud layers and what glows too, belongs to the whole light: to all components
@@ -99,7 +101,16 @@ int run(const RenderCommand& options) {
     if (!asset) {
         return report_error(asset.error());
     }
-    const formats::AssetView& view = asset->loaded.view;
+    formats::AssetView view = asset->loaded.view;
+    bake::ShortRows short_rows;
+    if (options.coefficients) {
+        auto made = bake::shorten_rows(view, *options.coefficients);
+        if (!made) {
+            return report_error(made.error());
+        }
+        short_rows = std::move(*made);
+        view = short_rows.view_of(view);
+    }
     if (auto status = runtime::check_terms(view, *terms, options.path); !status) {
         return report_error(status.error());
     }
@@ -147,7 +158,7 @@ void add_render_command(CLI::App& app, Job& job) {
     command->add_option("--light", options->light, light_help())->required()->option_text("ENV");
     command
         ->add_option("-o,--output", options->frame.output,
-                     ".png: tone-mapped (Khronos PBR Neutral), sRGB; .exr: linear radiance")
+                     ".png: tone-mapped, sRGB; .exr: linear radiance")
         ->required()
         ->check(file_name())
         ->option_text("OUT.png|.exr");
@@ -192,6 +203,18 @@ void add_render_command(CLI::App& app, Job& job) {
     command->add_option("--exposure", options->frame.exposure, "brighter by a factor of 2^EV")
         ->check(real_number(-64, 64))
         ->option_text("EV [0]");
+    command
+        ->add_option("--tone-map", options->frame.tone_map,
+                     "for .png. neutral: Khronos PBR Neutral; none: cut off at 1")
+        ->transform(one_of<runtime::ToneMap>(
+            {{"neutral", runtime::ToneMap::neutral}, {"none", runtime::ToneMap::none}}))
+        ->option_text("neutral|none [neutral]");
+    command
+        ->add_option("--coefficients", options->coefficients,
+                     "use at most M coefficients of a row of a mesh, the largest: what a bake with "
+                     "fewer looks like")
+        ->transform(whole_number(6, 1U << 20U))
+        ->option_text("M [all]");
     command->add_option("--threads", options->frame.threads, "0: one per core")
         ->transform(whole_number(0, 1024))
         ->option_text("T [0]");

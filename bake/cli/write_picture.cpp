@@ -6,12 +6,11 @@
 #include "bake/cli/outputs.h"
 #include "formats/image/exr.h"
 #include "formats/image/png.h"
-#include "runtime/picture/tone_map.h"
 
 namespace opaline::cli {
 
 formats::Status write_picture(const std::string& path, const runtime::Picture& picture,
-                              float exposure) {
+                              float exposure, runtime::ToneMap map) {
     if (ending_of(path) == ".exr") {
         const float gain = std::exp2(exposure);
         formats::Image image{picture.width, picture.height, picture.pixel};
@@ -20,7 +19,7 @@ formats::Status write_picture(const std::string& path, const runtime::Picture& p
         }
         return formats::write_exr(path, image);
     }
-    runtime::DisplayPicture display = runtime::tone_map(picture, exposure);
+    runtime::DisplayPicture display = runtime::tone_map(picture, exposure, map);
     return formats::write_png(path, {display.width, display.height, std::move(display.rgba)});
 }
 

@@ -15,6 +15,11 @@ float tame(float value) {
     return value > 0.0f ? std::min(value, kLargest) : 0.0f;
 }
 
+formats::Rgb cut_off(formats::Rgb radiance) {
+    return {std::min(tame(radiance.r), 1.0f), std::min(tame(radiance.g), 1.0f),
+            std::min(tame(radiance.b), 1.0f)};
+}
+
 std::uint8_t encode_byte(float linear) {
     return static_cast<std::uint8_t>(std::lround(255.0f * encode_srgb(linear)));
 }
@@ -48,12 +53,13 @@ float encode_srgb(float linear) {
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
-DisplayPicture tone_map(const Picture& picture, float exposure_ev) {
+DisplayPicture tone_map(const Picture& picture, float exposure_ev, ToneMap map) {
     const float scale = std::exp2(std::clamp(exposure_ev, -100.0f, 100.0f));
     DisplayPicture display{picture.width, picture.height, {}};
     display.rgba.reserve(picture.pixel.size() * 4);
     for (const formats::Rgb pixel : picture.pixel) {
-        const formats::Rgb c = tone_map_neutral(scale * pixel);
+        const formats::Rgb c =
+            map == ToneMap::neutral ? tone_map_neutral(scale * pixel) : cut_off(scale * pixel);
         display.rgba.insert(display.rgba.end(),
                             {encode_byte(c.r), encode_byte(c.g), encode_byte(c.b), 255});
     }

@@ -24,7 +24,11 @@ formats::Rgb tone_map_neutral(formats::Rgb radiance);
 /// sRGB transfer function (IEC 61966-2-1), linear [0, 1] to encoded [0, 1].
 float encode_srgb(float linear);
 
+/// How radiance becomes display colour: tone_map_neutral, or cut off at 1, which shows radiance
+/// below 1 as it is.
+enum class ToneMap { neutral, none };
+
 /// Radiance times 2^exposure_ev, tone-mapped, encoded, rounded to nearest.
-DisplayPicture tone_map(const Picture& picture, float exposure_ev);
+DisplayPicture tone_map(const Picture& picture, float exposure_ev, ToneMap map = ToneMap::neutral);
 
 }  // namespace opaline::runtime

@@ -76,5 +76,15 @@ TEST(ToneMap, ExposureDoublesPerStopAndThePictureKeepsItsLayout) {
     EXPECT_LT(a.rgba[0], a.rgba[2]);
 }
 
+TEST(ToneMap, NoneKeepsRadianceBelowOneAndCutsTheRest) {
+    const Picture picture{2, 1, {{0.25f, 1.0f, 7.0f}, {-1.0f, 0.5f, 0.0f}}};
+    const DisplayPicture display = tone_map(picture, 0.0f, ToneMap::none);
+    const auto byte = [](float linear) {
+        return static_cast<std::uint8_t>(std::lround(255 * encode_srgb(linear)));
+    };
+    EXPECT_EQ(display.rgba,
+              (std::vector<std::uint8_t>{byte(0.25f), 255, 255, 255, 0, byte(0.5f), 0, 255}));
+}
+
 }  // namespace
 }  // namespace opaline::runtime
