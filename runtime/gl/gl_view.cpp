@@ -45,7 +45,8 @@ const ViewPrograms::Sum* find_sum(const ViewPrograms& programs,
 
 formats::Result<ViewPrograms> make_view_programs(const GlAsset& asset) {
     ViewPrograms programs;
-    const StageSource stage{GL_COMPUTE_SHADER, view_comp_text};
+    const std::string text = std::string(view_terms_text) + view_comp_text;
+    const StageSource stage{GL_COMPUTE_SHADER, text.c_str()};
     for (const formats::PrimitiveRecord& primitive : asset.primitives) {
         if (!needs_view(primitive) || find_sum(programs, primitive) != nullptr) continue;
         ViewPrograms::Sum sum{primitive.terms, primitive.is_separate(), is_sheet(primitive), {}};

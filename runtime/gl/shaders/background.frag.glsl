@@ -12,7 +12,7 @@ void main() {
     vec3 d = light_from_world * normalize(plane.x * right + plane.y * down + forward);
     vec3 radiance = sample_map(d);
     for (int i = 0; i < discs; ++i) {
-        if (is_in_disc(i, d)) radiance += disc[i].radiance.rgb;
+        if (is_in_disc(i, d)) radiance += disc_at(i).radiance.rgb;
     }
     color = vec4(tame(radiance.r), tame(radiance.g), tame(radiance.b), 1.0);
 }

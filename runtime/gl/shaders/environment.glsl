@@ -10,7 +10,15 @@ struct Disc {
     vec4 direction_chord;
     vec4 radiance;
 };
+#ifdef DATA_IN_TEXTURES
+uniform sampler2D disc_table;
+Disc disc_at(int i) {
+    return Disc(texelFetch(disc_table, ivec2(0, i), 0), texelFetch(disc_table, ivec2(1, i), 0));
+}
+#else
 layout(std430, binding = 0) readonly buffer Discs { Disc disc[]; };
+Disc disc_at(int i) { return disc[i]; }
+#endif
 
 const float kPi = 3.14159265358979;
 
@@ -59,5 +67,6 @@ vec3 sample_map(vec3 d) {
 }
 
 bool is_in_disc(int i, vec3 d) {
-    return length(d - disc[i].direction_chord.xyz) <= disc[i].direction_chord.w;
+    Disc disc = disc_at(i);
+    return length(d - disc.direction_chord.xyz) <= disc.direction_chord.w;
 }

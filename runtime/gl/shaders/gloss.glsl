@@ -7,13 +7,29 @@ struct Cell {
     vec4 direction_solid_angle;
     vec4 flux_widening;
 };
-layout(std430, binding = 1) readonly buffer Cells { Cell cell[]; };
 struct Sun {
     vec4 direction_radius;
     vec4 radiance_solid_angle;
 };
+#ifdef DATA_IN_TEXTURES  // a row for each cell and sun, the table as it is
+uniform sampler2D cells, sun_table, albedo;
+int cell_count() { return textureSize(cells, 0).y; }
+Cell cell_at(int i) {
+    return Cell(texelFetch(cells, ivec2(0, i), 0), texelFetch(cells, ivec2(1, i), 0));
+}
+Sun sun_at(int i) {
+    return Sun(texelFetch(sun_table, ivec2(0, i), 0), texelFetch(sun_table, ivec2(1, i), 0));
+}
+vec2 albedo_entry(int column, int row) { return texelFetch(albedo, ivec2(column, row), 0).rg; }
+#else
+layout(std430, binding = 1) readonly buffer Cells { Cell cell[]; };
 layout(std430, binding = 2) readonly buffer Suns { Sun sun[]; };
 layout(std430, binding = 3) readonly buffer Albedo { vec2 albedo[]; };
+int cell_count() { return cell.length(); }
+Cell cell_at(int i) { return cell[i]; }
+Sun sun_at(int i) { return sun[i]; }
+vec2 albedo_entry(int column, int row) { return albedo[row * ALBEDO_COLUMNS + column]; }
+#endif
 
 layout(location = 18) uniform int suns;
 
@@ -30,10 +46,9 @@ vec2 ggx_albedo(float cosine, float roughness) {
     float x = sqrt(clamp(cosine, 0.0, 1.0)) * float(ALBEDO_COLUMNS - 1);
     float y = clamp(roughness, 0.0, 1.0) * float(ALBEDO_ROWS - 1);
     int column = min(int(x), ALBEDO_COLUMNS - 2), row = min(int(y), ALBEDO_ROWS - 2);
-    int at = row * ALBEDO_COLUMNS + column;
     float s = x - float(column), t = y - float(row);
-    return mix(mix(albedo[at], albedo[at + 1], s),
-               mix(albedo[at + ALBEDO_COLUMNS], albedo[at + ALBEDO_COLUMNS + 1], s), t);
+    return mix(mix(albedo_entry(column, row), albedo_entry(column + 1, row), s),
+               mix(albedo_entry(column, row + 1), albedo_entry(column + 1, row + 1), s), t);
 }
 
 vec3 gloss_compensation(Gloss g, vec2 table) {
@@ -105,7 +120,7 @@ LobeIntegral sum_taps(vec2 table, float alpha, Frame f) {
     float vx = alpha * s / stretch, vz = c / stretch;
     float root_v = smith_root(c, a2) / c;
     float n = float(textureSize(light_maps, 0).x);
-    float last = float(textureQueryLevels(light_maps) - 1);
+    float last = floor(log2(n) + 0.5);  // down to one texel
     LobeSum sum = LobeSum(vec3(0.0), vec3(0.0), vec2(0.0));
     vec2 phi = vec2(1.0, 0.0);
     for (int i = 0; i < LOBE_TAPS; ++i) {
@@ -139,31 +154,33 @@ LobeIntegral sum_taps(vec2 table, float alpha, Frame f) {
 LobeIntegral sum_cells(vec2 table, float alpha, Frame f) {
     float a2 = alpha * alpha, c = f.cosine, root_v = smith_root(c, a2);
     LobeSum sum = LobeSum(vec3(0.0), vec3(0.0), vec2(0.0));
-    for (int i = 0; i < cell.length(); ++i) {
-        vec3 direction = cell[i].direction_solid_angle.xyz;
+    for (int i = 0; i < cell_count(); ++i) {
+        Cell cell = cell_at(i);
+        vec3 direction = cell.direction_solid_angle.xyz;
         float n_l = dot(f.normal, direction);
         if (!(n_l > 0.0)) {
             continue;
         }
         float h_h = max(2.0 + 2.0 * dot(f.eye, direction), 1e-12);
         float n_h = c + n_l, n_h_squared = n_h * n_h / h_h;
-        float wide = a2 + cell[i].flux_widening.w;
+        float wide = a2 + cell.flux_widening.w;
         float d = max(1.0 - n_h_squared, 0.0) + wide * n_h_squared;
         float lobe = wide * n_l /
                      (2.0 * 3.14159265 * d * d * (n_l * root_v + c * smith_root(n_l, a2)));
         float missing = max(1.0 - 0.5 * sqrt(h_h), 0.0), squared = missing * missing;
         float grazing = lobe * squared * squared * missing, rest = lobe - grazing;
-        sum.weight += vec2(rest, grazing) * cell[i].direction_solid_angle.w;
-        sum.light_f0 += rest * cell[i].flux_widening.rgb;
-        sum.light_f90 += grazing * cell[i].flux_widening.rgb;
+        sum.weight += vec2(rest, grazing) * cell.direction_solid_angle.w;
+        sum.light_f0 += rest * cell.flux_widening.rgb;
+        sum.light_f90 += grazing * cell.flux_widening.rgb;
     }
     return scale_sum(sum, table);
 }
 
 void add_suns(float alpha, Frame f, inout LobeIntegral result) {
     for (int i = 0; i < suns; ++i) {
-        vec3 direction = sun[i].direction_radius.xyz;
-        float radius = sun[i].direction_radius.w;
+        Sun sun = sun_at(i);
+        vec3 direction = sun.direction_radius.xyz;
+        float radius = sun.direction_radius.w;
         float n_l = dot(f.normal, direction);
         if (!(n_l > 0.0)) {
             continue;
@@ -173,10 +190,10 @@ void add_suns(float alpha, Frame f, inout LobeIntegral result) {
         float visibility =
             0.5 / (n_l * smith_root(f.cosine, a2) + f.cosine * smith_root(n_l, a2));
         float lobe = ggx_distribution(dot(f.normal, h), wide) * visibility * n_l *
-                     sun[i].radiance_solid_angle.w;
+                     sun.radiance_solid_angle.w;
         float schlick = schlick_weight(dot(f.eye, h));
-        result.of_f0 += lobe * (1.0 - schlick) * sun[i].radiance_solid_angle.rgb;
-        result.of_f90 += lobe * schlick * sun[i].radiance_solid_angle.rgb;
+        result.of_f0 += lobe * (1.0 - schlick) * sun.radiance_solid_angle.rgb;
+        result.of_f90 += lobe * schlick * sun.radiance_solid_angle.rgb;
     }
 }
 

@@ -1,7 +1,14 @@
 // Bilinear samples of 8-bit images, as runtime/texture.cpp has them. Codes and a table instead of an
 // sRGB format: hardware may filter before or after decoding and at its own precision; the CPU decodes
-// exactly and filters afterwards.
-layout(std430, binding = 0) readonly buffer Decode { float linear_from_srgb[256]; };
+// exactly and filters afterwards. DATA_IN_TEXTURES, here and elsewhere: contexts without storage
+// buffers in this stage keep arrays in textures.
+#ifdef DATA_IN_TEXTURES
+uniform sampler2D srgb_table;
+float linear_from_srgb(uint code) { return texelFetch(srgb_table, ivec2(code, 0), 0).r; }
+#else
+layout(std430, binding = 0) readonly buffer Decode { float srgb_table[256]; };
+float linear_from_srgb(uint code) { return srgb_table[code]; }
+#endif
 
 int wrap_texel(int i, int size, int mode) {
     if (mode == WRAP_CLAMP) {
@@ -16,8 +23,8 @@ vec3 image_texel(usampler2D image, ivec2 at, ivec2 wrap, bool is_srgb) {
     ivec2 size = textureSize(image, 0);
     uvec4 code = texelFetch(
         image, ivec2(wrap_texel(at.x, size.x, wrap.x), wrap_texel(at.y, size.y, wrap.y)), 0);
-    return is_srgb ? vec3(linear_from_srgb[code.r], linear_from_srgb[code.g],
-                          linear_from_srgb[code.b])
+    return is_srgb ? vec3(linear_from_srgb(code.r), linear_from_srgb(code.g),
+                          linear_from_srgb(code.b))
                    : vec3(code.rgb) / 255.0;
 }
 

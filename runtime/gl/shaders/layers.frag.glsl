@@ -89,8 +89,8 @@ void see_sky(vec3 world, out vec3 rest, out vec3 sun) {
     for (int i = 0; i < discs; ++i) {
         if (!is_in_disc(i, d)) continue;
         bool is_sun = i == sun_discs.x || i == sun_discs.y;
-        rest += is_sun ? vec3(0.0) : disc[i].radiance.rgb;
-        sun += is_sun ? disc[i].radiance.rgb : vec3(0.0);
+        rest += is_sun ? vec3(0.0) : disc_at(i).radiance.rgb;
+        sun += is_sun ? disc_at(i).radiance.rgb : vec3(0.0);
     }
 }
 

@@ -1,14 +1,20 @@
 // Homogeneous position without a projection matrix: w is the distance along the view axis, depth is
 // near / w (reversed, no far plane). y points down, so that row 0 is the top of the picture.
+// FORWARD_DEPTH: 1 - near / w instead, where depth cannot be reversed without losing its digits.
+// RADIANCE_OF_ROWS: what comes before this looks up what the vertex sends to the eye.
 layout(location = 0) in vec3 position;
+#ifndef RADIANCE_OF_ROWS
 layout(location = 1) in vec3 radiance;
+#endif
 layout(location = 2) in vec3 base_color;
 #ifdef HAS_TEXCOORD
 layout(location = 3) in vec2 texcoord;
 layout(location = 2) out vec2 v_texcoord;
 #endif
-#ifdef HAS_VIEW
+#if defined(HAS_VIEW) || defined(RADIANCE_OF_ROWS)
 layout(location = 4) in vec3 normal;
+#endif
+#ifdef HAS_VIEW
 layout(location = 3) out vec3 v_normal;
 layout(location = 4) out vec3 v_to_eye;
 #endif
@@ -49,8 +55,16 @@ void main() {
     vec3 p = (position - eye) * unit;
     float w = dot(forward, p);
     gl_Position = vec4(dot(right, p) * tile.x + w * tile.z, dot(down, p) * tile.y + w * tile.w,
+#ifdef FORWARD_DEPTH
+                       w - 2.0 * near_plane, w);
+#else
                        near_plane, w);
+#endif
+#ifdef RADIANCE_OF_ROWS
+    v_radiance = radiance_of_rows(normal, -p);
+#else
     v_radiance = radiance;
+#endif
     v_base_color = base_color;
 #ifdef HOLES
     v_last_vertex = uint(gl_VertexID);  // flat: of the last vertex
