@@ -48,16 +48,16 @@ void place_by_angles(const CameraOptions& options, formats::Vec3 from, runtime::
     camera.eye = camera.target + distance * runtime::view_direction(azimuth, elevation);
 }
 
-bool is_default(const CameraOptions& options) {
-    return options.eye.empty() && options.target.empty() && !options.azimuth &&
-           !options.elevation && !options.distance;
-}
-
 }  // namespace
+
+bool frames_object(const CameraOptions& options) {
+    return options.eye.empty() && options.target.empty() && options.up.empty() &&
+           !options.azimuth && !options.elevation && !options.distance;
+}
 
 void add_camera_options(CLI::App& command, CameraOptions& options) {
     command.add_option("--size", options.size, "of the picture, in pixels")
-        ->option_text("WxH [960x720]");
+        ->option_text("WxH [" + options.size + "]");
     CLI::Option* const eye =
         command.add_option("--eye", options.eye, "camera position [m]; default: frames everything")
             ->option_text("X,Y,Z");
@@ -125,7 +125,7 @@ Result<runtime::Camera> make_camera(const CameraOptions& options, const formats:
         return make_error(ErrorKind::usage, "", "--eye", "lies in the target",
                           "move one of them: the camera has no direction");
     }
-    if (!is_default(options)) {
+    if (!frames_object(options)) {
         camera.near_plane = runtime::near_plane_for(view, camera.eye);
     }
     if (auto status = runtime::check_camera(camera, runtime::SoftwareOptions{}.supersampling);

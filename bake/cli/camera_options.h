@@ -19,6 +19,9 @@ struct CameraOptions {
 
 void add_camera_options(CLI::App& command, CameraOptions& options);
 
+/// Whether no option places the camera, so that it frames the object.
+bool frames_object(const CameraOptions& options);
+
 /// The requested camera; missing parts are chosen to frame the object. Errors: usage.
 formats::Result<runtime::Camera> make_camera(const CameraOptions& options,
                                              const formats::AssetView& view);

@@ -17,6 +17,7 @@ void add_info_command(CLI::App& app, Job& job);
 void add_verify_command(CLI::App& app, Job& job);
 void add_relight_command(CLI::App& app, Job& job);
 void add_render_command(CLI::App& app, Job& job);
+void add_view_command(CLI::App& app, Job& job);  // in view/
 void add_reference_command(CLI::App& app, Job& job);
 void add_compare_command(CLI::App& app, Job& job);
 void add_mie_command(CLI::App& app, Job& job);

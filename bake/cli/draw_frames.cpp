@@ -174,6 +174,16 @@ std::string frame_path(const FrameOptions& options, std::uint32_t frame) {
         .string();
 }
 
+Shown show_terms(formats::TermSet terms, const formats::AssetView& view,
+                 std::span<const formats::Rgb> emitters) {
+    constexpr formats::TermSet kOfVolumes =
+        formats::TermSet::volume_single | formats::TermSet::volume_multiple;
+    const formats::TermSet possible =
+        view.volumes.empty() ? formats::TermSet::baked & ~kOfVolumes : formats::TermSet::baked;
+    const bool shows_all = has_all(terms, possible);
+    return {terms, shows_all, {emitters, shows_all}};
+}
+
 void print_seconds(const FrameOptions& options, const char* name, double seconds) {
     if (options.stats) {
         fmt::print("{:<16} {}\n", name, format_seconds(seconds));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "bake/cli/inputs.h"
@@ -42,6 +43,11 @@ struct Shown {
     /// Of the file's emitters; what glows by itself belongs to the whole light, as the background.
     runtime::EmitterLight emitters = {};
 };
+
+/// The background, cloud layers and what glows too, belongs to the whole light: to all components
+/// that the file may have.
+Shown show_terms(formats::TermSet terms, const formats::AssetView& view,
+                 std::span<const formats::Rgb> emitters);
 
 /// The light of the sky, and what of it reaches meshes and volumes.
 struct PictureLight {

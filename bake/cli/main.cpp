@@ -55,6 +55,9 @@ int run_program(int argc, char** argv) {
     add_verify_command(app, job);
     add_relight_command(app, job);
     add_render_command(app, job);
+#ifdef OPALINE_HAS_GL
+    add_view_command(app, job);
+#endif
     add_reference_command(app, job);
     add_compare_command(app, job);
     add_mie_command(app, job);

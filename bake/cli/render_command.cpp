@@ -10,6 +10,7 @@
 #include "bake/cli/emitter_options.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/light_with_layers.h"
+#include "bake/cli/look_options.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
@@ -31,18 +32,6 @@ struct RenderCommand {
     std::optional<double> turn;       ///< [degrees]
     std::optional<std::uint32_t> coefficients;
 };
-
-// The background, cloud layers and what glows too, belongs to the whole light: to all components
-// that the file may have.
-Shown show(formats::TermSet terms, const formats::AssetView& view,
-           std::span<const formats::Rgb> emitters) {
-    constexpr formats::TermSet kOfVolumes =
-        formats::TermSet::volume_single | formats::TermSet::volume_multiple;
-    const formats::TermSet possible =
-        view.volumes.empty() ? formats::TermSet::baked & ~kOfVolumes : formats::TermSet::baked;
-    const bool shows_all = has_all(terms, possible);
-    return {terms, shows_all, {emitters, shows_all}};
-}
 
 // Of options that set frames apart.
 formats::Status check_motion(const RenderCommand& options, const formats::AssetView& view) {
@@ -134,8 +123,9 @@ int run(const RenderCommand& options) {
     Drawing drawing;
     while (drawing.frames < frames) {
         const double time = options.time + options.time_step.value_or(0) * drawing.frames;
-        const int code = draw_at(options, view, *light, *camera, show(*terms, view, *emitters),
-                                 time, drawing.frames + step, drawing);
+        const int code =
+            draw_at(options, view, *light, *camera, show_terms(*terms, view, *emitters), time,
+                    drawing.frames + step, drawing);
         if (code != kExitSuccess) {
             return code;
         }
@@ -169,11 +159,6 @@ void add_render_command(CLI::App& app, Job& job) {
                      "gl: OpenGL 4.5 through EGL; cpu: software")
         ->transform(one_of<Backend>({{"gl", Backend::gl}, {"cpu", Backend::cpu}}))
         ->option_text("gl|cpu [gl, else cpu]");
-    command
-        ->add_option("--rotate-light", options->rotate_light,
-                     "turn the light about +Y, from +Z toward +X [degrees]")
-        ->check(real_number(-1e6, 1e6))
-        ->option_text("DEG [0]");
     add_time_option(*command, options->time);
     command
         ->add_option("--frames", options->frame.frames,
@@ -192,29 +177,8 @@ void add_render_command(CLI::App& app, Job& job) {
                      "what all frames together turn the camera around the target by [degrees]")
         ->check(real_number(-1e6, 1e6))
         ->option_text("DEG [360, with --time-step 0]");
-    command
-        ->add_option("--terms", options->terms,
-                     "components to show: all, or some of " +
-                         formats::term_names(formats::TermSet::baked) +
-                         "; the background is black, without a cloud layer, unless all are. " +
-                         formats::term_names(formats::TermSet::separable, " and ") +
-                         " apart need a bake with --separate-terms")
-        ->option_text("all|LIST [all]");
-    command->add_option("--exposure", options->frame.exposure, "brighter by a factor of 2^EV")
-        ->check(real_number(-64, 64))
-        ->option_text("EV [0]");
-    command
-        ->add_option("--tone-map", options->frame.tone_map,
-                     "for .png. neutral: Khronos PBR Neutral; none: cut off at 1")
-        ->transform(one_of<runtime::ToneMap>(
-            {{"neutral", runtime::ToneMap::neutral}, {"none", runtime::ToneMap::none}}))
-        ->option_text("neutral|none [neutral]");
-    command
-        ->add_option("--coefficients", options->coefficients,
-                     "use at most M coefficients of a row of a mesh, the largest: what a bake with "
-                     "fewer looks like")
-        ->transform(whole_number(6, 1U << 20U))
-        ->option_text("M [all]");
+    add_look_options(*command, {options->rotate_light, options->terms, options->frame.exposure,
+                                options->frame.tone_map, options->coefficients});
     command->add_option("--threads", options->frame.threads, "0: one per core")
         ->transform(whole_number(0, 1024))
         ->option_text("T [0]");

@@ -1,0 +1,39 @@
+#include "bake/cli/look_options.h"
+
+#include "bake/cli/option_values.h"
+#include "formats/opal/terms.h"
+
+namespace opaline::cli {
+
+void add_look_options(CLI::App& command, const LookOptions& options) {
+    command
+        .add_option("--rotate-light", options.rotate_light,
+                    "turn the light about +Y, from +Z toward +X [degrees]")
+        ->check(real_number(-1e6, 1e6))
+        ->option_text("DEG [0]");
+    command
+        .add_option("--terms", options.terms,
+                    "components to show: all, or some of " +
+                        formats::term_names(formats::TermSet::baked) +
+                        "; the background is black, without a cloud layer, unless all are. " +
+                        formats::term_names(formats::TermSet::separable, " and ") +
+                        " apart need a bake with --separate-terms")
+        ->option_text("all|LIST [all]");
+    command.add_option("--exposure", options.exposure, "brighter by a factor of 2^EV")
+        ->check(real_number(-64, 64))
+        ->option_text("EV [0]");
+    command
+        .add_option("--tone-map", options.tone_map,
+                    "of screens and .png. neutral: Khronos PBR Neutral; none: cut off at 1")
+        ->transform(one_of<runtime::ToneMap>(
+            {{"neutral", runtime::ToneMap::neutral}, {"none", runtime::ToneMap::none}}))
+        ->option_text("neutral|none [neutral]");
+    command
+        .add_option("--coefficients", options.coefficients,
+                    "use at most M coefficients of a row of a mesh, the largest: what a bake with "
+                    "fewer looks like")
+        ->transform(whole_number(6, 1U << 20U))
+        ->option_text("M [all]");
+}
+
+}  // namespace opaline::cli

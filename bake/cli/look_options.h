@@ -1,0 +1,23 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "runtime/picture/tone_map.h"
+
+namespace opaline::cli {
+
+/// What `render` and `view` share besides the camera: where their options are put.
+struct LookOptions {
+    double& rotate_light;  ///< [degrees]
+    std::string& terms;
+    float& exposure;  ///< [EV]
+    runtime::ToneMap& tone_map;
+    std::optional<std::uint32_t>& coefficients;  ///< of a row
+};
+
+void add_look_options(CLI::App& command, const LookOptions& options);
+
+}  // namespace opaline::cli

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "bake/cli/view/shown_file.h"
+#include "bake/cli/view/view_state.h"
+#include "formats/opal/result.h"
+#include "runtime/picture/picture.h"
+
+namespace opaline::cli {
+
+/// What to draw. `serial` grows with every request; a version with each reading of a file that is
+/// asked for, though its name stays.
+struct DrawRequest {
+    ViewState state;
+    std::uint64_t serial = 0;
+    std::uint64_t file_version = 0, other_version = 0, light_version = 0;
+};
+
+/// One side of a picture.
+struct DrawnSide {
+    runtime::Picture picture;  ///< empty: none
+    FileFacts facts;
+    ViewSeconds seconds;
+    double coefficient_error = 0;
+};
+
+/// What a request gave.
+struct DrawnView {
+    std::uint64_t serial = 0;
+    bool is_final = false;  ///< in full quality: the samples of `opaline render`
+    std::optional<Viewpoint> viewpoint;
+    DrawnSide file, other;
+    std::optional<formats::Error> error;  ///< then nothing was drawn
+};
+
+/// Draws on a thread of its own, so that the window answers while a picture takes its time, and so
+/// that the renderer's OpenGL context meets no other one on its thread. Of requests only the newest
+/// is drawn: first in a quality that takes some 40 ms, then, if no other request comes within
+/// 120 ms, in full quality.
+class DrawThread {
+  public:
+    DrawThread();
+    ~DrawThread();
+    DrawThread(const DrawThread&) = delete;
+    DrawThread& operator=(const DrawThread&) = delete;
+
+    void request(DrawRequest request);
+    /// What was drawn since the last call, the newest only; or null.
+    std::shared_ptr<const DrawnView> take();
+
+  private:
+    void run();
+    std::mutex mutex_;
+    std::condition_variable wake_;
+    std::optional<DrawRequest> request_;
+    std::shared_ptr<const DrawnView> drawn_;
+    bool ends_ = false;
+    std::thread thread_;
+};
+
+}  // namespace opaline::cli

@@ -1,0 +1,240 @@
+#include "bake/cli/view/shown_file.h"
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "bake/cli/draw_frames.h"
+#include "bake/cli/light_with_layers.h"
+#include "bake/cli/view/coefficient_error.h"
+#include "bake/encode/shorten_rows.h"
+#include "formats/opal/emitters.h"
+#include "runtime/gl/gl_renderer.h"
+#include "runtime/specular.h"
+#include "runtime/terms.h"
+
+namespace opaline::cli {
+namespace {
+
+using ViewClock = std::chrono::steady_clock;
+
+double seconds_since(ViewClock::time_point start) {
+    return std::chrono::duration<double>(ViewClock::now() - start).count();
+}
+
+double measured_error(const formats::AssetView& view) {
+    const auto json = nlohmann::json::parse(view.provenance, nullptr, false);
+    if (!json.is_object() || !json.contains("error") || !json["error"].is_object()) return -1;
+    const auto& error = json["error"];
+    return error.contains("rms_relative") && error["rms_relative"].is_number()
+               ? error["rms_relative"].get<double>()
+               : -1;
+}
+
+formats::TermSet terms_in(const formats::AssetView& view) {
+    using formats::TermSet;
+    TermSet terms = TermSet::none;
+    for (const formats::PrimitiveRecord& primitive : view.primitives) {
+        terms |= primitive.is_opaque() ? TermSet::diffuse : TermSet::separable;
+    }
+    if (runtime::specular_needs(view).any()) terms |= TermSet::specular;
+    if (!view.volumes.empty()) terms |= TermSet::volume_single | TermSet::volume_multiple;
+    return terms;
+}
+
+// Those of the file without which the rest can be shown.
+formats::TermSet separable_terms(const formats::AssetView& view) {
+    formats::TermSet found = formats::TermSet::none;
+    for (std::uint32_t bit = 1; bit < static_cast<std::uint32_t>(formats::TermSet::all);
+         bit <<= 1U) {
+        const auto term = static_cast<formats::TermSet>(bit);
+        if (has_any(terms_in(view), term) &&
+            runtime::check_terms(view, formats::TermSet::baked & ~term)) {
+            found |= term;
+        }
+    }
+    return found;
+}
+
+FileFacts facts_of(const formats::AssetView& view) {
+    FileFacts facts;
+    facts.receivers = view.receivers();
+    facts.coefficients = bake::longest_row(view);
+    for (std::uint32_t e = 0; e < view.emitters.size(); ++e) {
+        facts.emitters.emplace_back(view.emitters.name(e));
+    }
+    facts.terms = separable_terms(view);
+    facts.has_layer = !view.clouds.empty();
+    facts.error = measured_error(view);
+    return facts;
+}
+
+}  // namespace
+
+struct ShownFile::Parts {
+    explicit Parts(OpenedAsset opened, std::string from)
+        : asset(std::move(opened)),
+          path(std::move(from)),
+          facts(facts_of(asset.loaded.view)),
+          view(asset.loaded.view) {}
+
+    const formats::AssetView& whole() const { return asset.loaded.view; }
+    std::vector<formats::Rgb> emitter_colors(const ViewState& state) const;
+    formats::Status choose_coefficients(const ViewState& state);
+    formats::Status make_renderer(const formats::Environment& light, const LightWithLayers& layers);
+    formats::Status relight(const ViewState& state, const formats::Environment& light);
+
+    OpenedAsset asset;
+    std::string path;
+    FileFacts facts;
+    ViewSeconds seconds;
+    bake::ShortRows short_rows;
+    formats::AssetView view;  ///< with the coefficients that are shown
+    std::optional<std::uint32_t> coefficients;
+    std::optional<runtime::GlRenderer> renderer;
+    std::uint64_t light_version = 0;
+    std::optional<ViewState> lit_for;
+    runtime::GlRenderOptions drawing;
+    double error = 0;
+};
+
+std::vector<formats::Rgb> ShownFile::Parts::emitter_colors(const ViewState& state) const {
+    std::vector<formats::Rgb> colors;
+    colors.reserve(facts.emitters.size());
+    for (const std::string& name : facts.emitters) {
+        colors.push_back(emitter_color(state, name));
+    }
+    return colors;
+}
+
+formats::Status ShownFile::Parts::choose_coefficients(const ViewState& state) {
+    if (state.coefficients == coefficients) return formats::ok_status();
+    const auto start = ViewClock::now();
+    renderer.reset();
+    lit_for.reset();
+    view = whole();
+    short_rows = {};
+    if (state.coefficients && *state.coefficients < facts.coefficients) {
+        auto made = bake::shorten_rows(whole(), *state.coefficients);
+        if (!made) return made.error();
+        short_rows = std::move(*made);
+        view = short_rows.view_of(whole());
+    }
+    coefficients = state.coefficients;
+    seconds.load = seconds_since(start);
+    return formats::ok_status();
+}
+
+formats::Status ShownFile::Parts::make_renderer(const formats::Environment& light,
+                                                const LightWithLayers& layers) {
+    const bool mirrors_layer = layers.parts && runtime::specular_needs(view).any();
+    if (renderer && !mirrors_layer) return formats::ok_status();
+    runtime::GlOptions upload;
+    if (layers.parts) upload.mirrored = &layers.parts->mirrored();
+    renderer.reset();  // its memory first
+    auto made = runtime::GlRenderer::create(view, light, upload);
+    if (!made) return made.error();
+    renderer.emplace(std::move(*made));
+    const runtime::GlStats& stats = renderer->stats();
+    seconds.upload = stats.upload_seconds + stats.specular_seconds;
+    facts.device = stats.device;
+    return formats::ok_status();
+}
+
+formats::Status ShownFile::Parts::relight(const ViewState& state,
+                                          const formats::Environment& light) {
+    const auto start = ViewClock::now();
+    const OpenedLight sky{
+        light,
+        runtime::rotation_about_y(static_cast<float>(state.rotate_light * std::numbers::pi / 180))};
+    const LightWithLayers layers = light_layers_of(view, sky, state.time, 0);
+    const bool has_rows = !view.primitives.empty() || !view.volumes.empty();
+    const PartVectors vectors =
+        project_parts(layers, has_rows ? sky : OpenedLight{}, view.cubemap_size, 0);
+    seconds.light = seconds_since(start);
+    const std::vector<formats::Rgb> colors = emitter_colors(state);
+    const Shown shown = show_terms(state.terms, view, colors);
+    // A renderer that has shown a layer goes on to do so.
+    if (!view.clouds.empty() && shown.background != drawing.background) renderer.reset();
+    if (auto status = make_renderer(light, layers); !status) return status;
+    if (auto status = renderer->set_light(vectors.lights(), sky.rotation, shown.emitters);
+        !status) {
+        return status;
+    }
+    if (shown.background && layers.layers) {
+        if (auto status = renderer->set_layers(*layers.layers); !status) return status;
+    }
+    seconds.dots = renderer->stats().dot_seconds;
+    facts.gpu_bytes = renderer->stats().gpu_bytes;
+    drawing.terms = shown.terms;
+    drawing.background = shown.background;
+    error = short_rows.primitives.empty()
+                ? 0
+                : coefficient_error_of(whole(), view, vectors.lights(), state.terms);
+    return formats::ok_status();
+}
+
+formats::Result<ShownFile> ShownFile::open(const std::string& path) {
+    const auto start = ViewClock::now();
+    auto asset = open_asset(path);
+    if (!asset) return asset.error();
+    auto parts = std::make_unique<Parts>(std::move(*asset), path);
+    parts->seconds.load = seconds_since(start);
+    return ShownFile(std::move(parts));
+}
+
+ShownFile::ShownFile(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+ShownFile::ShownFile(ShownFile&&) noexcept = default;
+ShownFile& ShownFile::operator=(ShownFile&&) noexcept = default;
+ShownFile::~ShownFile() = default;
+
+Viewpoint ShownFile::framing(const ViewState& state) const {
+    const runtime::Camera camera =
+        runtime::frame_asset(parts_->whole(), state.fov, state.width, state.height);
+    return {camera.eye, camera.target, camera.up};
+}
+
+formats::Status ShownFile::follow(const ViewState& state, const formats::Environment& light,
+                                  std::uint64_t light_version) {
+    Parts& parts = *parts_;
+    if (auto status = runtime::check_terms(parts.whole(), state.terms, parts.path); !status) {
+        return status;
+    }
+    if (auto status = parts.choose_coefficients(state); !status) return status;
+    if (light_version != parts.light_version) parts.renderer.reset();
+    const auto is_lit = [&](const ViewState& lit) {
+        return lit.rotate_light == state.rotate_light && lit.time == state.time &&
+               lit.emitters == state.emitters && lit.terms == state.terms;
+    };
+    if (parts.renderer && parts.lit_for && is_lit(*parts.lit_for)) return formats::ok_status();
+    parts.lit_for.reset();
+    if (auto status = parts.relight(state, light); !status) return status;
+    parts.light_version = light_version;
+    parts.lit_for = state;
+    return formats::ok_status();
+}
+
+formats::Result<runtime::Picture> ShownFile::draw(runtime::Camera camera,
+                                                  std::uint32_t supersampling) {
+    camera.near_plane = runtime::near_plane_for(parts_->whole(), camera.eye);
+    parts_->drawing.supersampling = supersampling;
+    auto picture = parts_->renderer->render(camera, parts_->drawing);
+    parts_->seconds.draw = parts_->renderer->stats().draw_seconds;
+    parts_->seconds.readback = parts_->renderer->stats().readback_seconds;
+    return picture;
+}
+
+const FileFacts& ShownFile::facts() const {
+    return parts_->facts;
+}
+const ViewSeconds& ShownFile::seconds() const {
+    return parts_->seconds;
+}
+double ShownFile::coefficient_error() const {
+    return parts_->error;
+}
+
+}  // namespace opaline::cli

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bake/cli/inputs.h"
+#include "bake/cli/view/view_state.h"
+#include "formats/opal/result.h"
+#include "runtime/picture/picture.h"
+
+namespace opaline::cli {
+
+/// What a window says of a file.
+struct FileFacts {
+    std::uint32_t receivers = 0;
+    std::uint32_t coefficients = 0;  ///< of the longest row of meshes
+    std::vector<std::string> emitters;
+    formats::TermSet terms = formats::TermSet::none;  ///< that can be left out by themselves
+    bool has_layer = false;
+    double error = -1;  ///< RMS relative, as the bake measured it; below 0: it did not
+    std::string device;
+    std::size_t gpu_bytes = 0;
+};
+
+/// Wall-clock seconds of what was done last.
+struct ViewSeconds {
+    double load = 0;  ///< the file from disk, the choice of coefficients
+    double upload = 0;
+    double light = 0;  ///< light vector, cloud layer
+    double dots = 0;   ///< dot products of all receivers
+    double draw = 0, readback = 0;
+};
+
+/// A file as a window shows it: its bytes, and a renderer that follows the state of the view. It
+/// does again only what a change asks for. One thread at a time, any thread.
+class ShownFile {
+  public:
+    /// Errors: as open_asset.
+    static formats::Result<ShownFile> open(const std::string& path);
+    ShownFile(ShownFile&&) noexcept;
+    ShownFile& operator=(ShownFile&&) noexcept;
+    ~ShownFile();
+
+    /// The viewpoint that frames the file.
+    Viewpoint framing(const ViewState& state) const;
+
+    /// Follows light, time, emitters, coefficients and terms. `light_version` grows with every
+    /// light that is opened. Errors: bad_input (terms that the file does not hold apart), resource
+    /// (no OpenGL).
+    formats::Status follow(const ViewState& state, const formats::Environment& light,
+                           std::uint64_t light_version);
+
+    /// What follow() prepared, from a camera, which gets the near plane of the file.
+    formats::Result<runtime::Picture> draw(runtime::Camera camera, std::uint32_t supersampling);
+
+    const FileFacts& facts() const;
+    const ViewSeconds& seconds() const;
+    /// Of the coefficients that the state leaves, against all: root mean square of the difference
+    /// of the radiance of 4096 receivers at most, relative, under the light shown. 0 with all.
+    double coefficient_error() const;
+
+  private:
+    struct Parts;
+    explicit ShownFile(std::unique_ptr<Parts> parts);
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace opaline::cli

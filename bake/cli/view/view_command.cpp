@@ -1,0 +1,110 @@
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/cli/camera_options.h"
+#include "bake/cli/command.h"
+#include "bake/cli/emitter_options.h"
+#include "bake/cli/inputs.h"
+#include "bake/cli/light_with_layers.h"
+#include "bake/cli/look_options.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
+#include "bake/cli/view/view_script.h"
+#include "bake/cli/view/view_session.h"
+#include "runtime/terms.h"
+
+namespace opaline::cli {
+namespace {
+
+struct ViewCommand {
+    ViewState begin;
+    std::string terms, script;
+    std::vector<std::string> emitters;
+    CameraOptions camera;
+    double rotate_light = 0;
+};
+
+formats::Result<std::vector<ScriptStep>> read_steps(const std::string& path) {
+    if (path.empty()) return std::vector<ScriptStep>();
+    const auto file = formats::FileBytes::open(path);
+    if (!file) return file.error();
+    const auto bytes = file->bytes();
+    return parse_script({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+}
+
+// What the options say of the file; the window reads it again, on its own thread.
+formats::Status apply_to_file(const ViewCommand& options, ViewState& state) {
+    const auto asset = open_asset(state.file);
+    if (!asset) return asset.error();
+    const formats::AssetView& view = asset->loaded.view;
+    if (auto status = runtime::check_terms(view, state.terms, state.file); !status) return status;
+    const auto emitters = parse_emitters(view.emitters, options.emitters);
+    if (!emitters) return emitters.error();
+    for (std::uint32_t e = 0; e < view.emitters.size(); ++e) {
+        set_emitter(state, std::string(view.emitters.name(e)), (*emitters)[e]);
+    }
+    const auto camera = make_camera(options.camera, view);
+    if (!camera) return camera.error();
+    state.width = camera->width;
+    state.height = camera->height;
+    state.fov = camera->fov_y;
+    if (!frames_object(options.camera)) {
+        state.viewpoint = Viewpoint{camera->eye, camera->target, camera->up};
+    }
+    return formats::ok_status();
+}
+
+int run(const ViewCommand& options) {
+    const auto steps = read_steps(options.script);
+    if (!steps) return report_error(steps.error());
+    ViewState state = options.begin;
+    const auto terms = formats::parse_terms(options.terms, formats::TermSet::baked, "--terms");
+    if (!terms) return report_error(terms.error());
+    state.terms = *terms;
+    rotate_light_to(state, options.rotate_light);
+    if (auto status = apply_to_file(options, state); !status) return report_error(status.error());
+    return run_view(state, *steps, options.script);
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app, Job& job) {
+    auto options = std::make_shared<ViewCommand>();
+    options->camera.size = "1280x800";
+    ViewState& begin = options->begin;
+    CLI::App* command = app.add_subcommand("view", "Show an .opal file in a window");
+    command->add_option("file", begin.file, "the .opal file")->required()->option_text("FILE.opal");
+    command->add_option("other", begin.other, "a second one, shown right of a split")
+        ->option_text("OTHER.opal");
+    command->add_option("--light", begin.light, light_help())->option_text("ENV [studio]");
+    command
+        ->add_option("--script", options->script,
+                     "carry out the commands of a file, one a line; then the window stays open")
+        ->check(file_name())
+        ->option_text("FILE");
+    add_camera_options(*command, options->camera);
+    add_emitter_option(*command, options->emitters);
+    add_time_option(*command, begin.time);
+    add_look_options(*command, {options->rotate_light, options->terms, begin.exposure,
+                                begin.tone_map, begin.coefficients});
+    command->footer(
+        "Drag to orbit, with the right button to pan; the wheel zooms. R frames the object, L "
+        "levels\n"
+        "the horizon, Tab hides the controls. Drop an .opal file, or an .exr or .hdr light. Files "
+        "that\n"
+        "change on disk are read again. Each screenshot prints the `opaline render` that makes the "
+        "same\n"
+        "picture. In motion pictures have fewer samples. Nothing is remembered from one time to "
+        "the next.\n\n"
+        "Commands of a script:\n" +
+        script_help() +
+        "What follows a # is left out. Words with blanks stand \"in quotes\". An error ends the "
+        "program.\n\n"
+        "Example:\n  opaline view scene.opal --light sky:3,35");
+    command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace opaline::cli

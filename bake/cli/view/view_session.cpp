@@ -1,0 +1,312 @@
+#include "bake/cli/view/view_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "bake/cli/exit_codes.h"
+#include "bake/cli/interrupt.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/view/draw_thread.h"
+#include "bake/cli/view/file_watch.h"
+#include "bake/cli/view/picture_painter.h"
+#include "bake/cli/view/render_line.h"
+#include "bake/cli/view/view_panels.h"
+#include "bake/cli/view/view_window.h"
+#include "bake/environment/builtin_environment.h"
+#include "formats/image/png.h"
+
+namespace opaline::cli {
+namespace {
+
+using SessionClock = std::chrono::steady_clock;
+
+// A file that is shown, read again when it changes.
+struct WatchedFile {
+    std::optional<FileWatch> watch;
+    std::uint64_t version = 0;
+
+    // Whether it changed; `path` empty: there is none.
+    bool look(const std::string& path) {
+        if (path.empty()) {
+            watch.reset();
+            return false;
+        }
+        if (!watch || watch->path() != path) watch.emplace(path);
+        if (!watch->look()) return false;
+        ++version;
+        return true;
+    }
+};
+
+// With the emitters that the file has: `render` refuses others.
+std::string line_of(ViewState state, const std::string& file, const DrawnSide& side,
+                    const std::string& output) {
+    std::erase_if(state.emitters, [&](const EmitterColor& emitter) {
+        return std::ranges::find(side.facts.emitters, emitter.name) == side.facts.emitters.end();
+    });
+    return render_line(state, file, *state.viewpoint, output);
+}
+
+class Session {
+  public:
+    Session(ViewWindow window, PicturePainter painter, ViewState begin)
+        : window_(std::move(window)), painter_(std::move(painter)), state_(std::move(begin)) {}
+
+    int run(const std::vector<ScriptStep>& steps, const std::string& script);
+
+  private:
+    struct Shot {
+        std::string path;
+        bool with_panels = false;
+    };
+    // The end of the session, or nothing yet.
+    std::optional<int> take_drawn(bool has_script);
+    std::optional<int> step(const std::vector<ScriptStep>& steps);
+    bool do_step(const ScriptStep& step);
+    void take_input();
+    void look_for_changes();
+    void send_request();
+    bool is_sent() const;
+    bool is_settled() const;
+    void paint_frame();
+    formats::Status save(const Shot& shot);
+    int end_with(const formats::Error& error) const;
+    std::string next_name() const;
+    double patience() const;
+
+    ViewWindow window_;
+    PicturePainter painter_;
+    ViewState state_;
+    PanelMemory memory_;
+    DrawThread thread_;
+    DrawRequest sent_;
+    std::optional<ViewState> good_;  // the last that could be drawn
+    std::shared_ptr<const DrawnView> drawn_;
+    std::uint64_t final_serial_ = 0;  // of the last request that was drawn in full quality
+    WatchedFile file_, other_, light_;
+    SessionClock::time_point last_look_ = SessionClock::now(), second_ = SessionClock::now();
+    std::size_t frames_ = 0, frames_of_second_ = 0, settled_frames_ = 0;
+    std::size_t reloads_ = 0;  // since the last screenshot
+    std::size_t next_step_ = 0, waited_ = 0;
+    std::size_t line_ = 0;  // of the script, carried out last
+    std::string script_;
+    std::optional<Shot> shot_;
+    bool quits_ = false;
+};
+
+int Session::end_with(const formats::Error& error) const {
+    formats::Error located = error;
+    if (line_ != 0) {
+        std::string& where = located.diagnostics.front().where;
+        where = fmt::format("{} line {}{}{}", script_, line_, where.empty() ? "" : ": ", where);
+    }
+    return report_error(located);
+}
+
+// Whether the state, with the files as they are now, was sent.
+bool Session::is_sent() const {
+    return sent_.serial > 0 && same_radiance(state_, sent_.state) &&
+           sent_.file_version == file_.version && sent_.other_version == other_.version &&
+           sent_.light_version == light_.version;
+}
+
+bool Session::is_settled() const {
+    return drawn_ && final_serial_ == sent_.serial && is_sent();
+}
+
+void Session::send_request() {
+    if (is_sent()) return;
+    if (good_ && (state_.file != good_->file || state_.other != good_->other ||
+                  state_.light != good_->light)) {
+        memory_.message.clear();
+    }
+    sent_ = {state_, sent_.serial + 1, file_.version, other_.version, light_.version};
+    settled_frames_ = 0;
+    thread_.request(sent_);
+}
+
+std::optional<int> Session::take_drawn(bool has_script) {
+    const auto drawn = thread_.take();
+    if (!drawn) return {};
+    if (drawn->error) {
+        if (has_script || !good_) return end_with(*drawn->error);
+        memory_.message = format_diagnostic(drawn->error->diagnostics.front());
+        if (drawn->serial == sent_.serial) {
+            const bool shows_panels = state_.panels;
+            state_ = *good_;
+            state_.panels = shows_panels;
+        }
+        return {};
+    }
+    drawn_ = drawn;
+    const auto start = SessionClock::now();
+    painter_.upload(0, drawn->file.picture);
+    painter_.upload(1, drawn->other.picture);
+    memory_.to_window = std::chrono::duration<double>(SessionClock::now() - start).count();
+    if (drawn->serial != sent_.serial) return {};
+    if (!state_.viewpoint && !sent_.state.viewpoint) {
+        state_.viewpoint = sent_.state.viewpoint = drawn->viewpoint;
+    }
+    good_ = sent_.state;
+    if (drawn->is_final) final_serial_ = drawn->serial;
+    return {};
+}
+
+void Session::look_for_changes() {
+    constexpr std::chrono::milliseconds kPause{200};
+    if (SessionClock::now() - last_look_ < kPause) return;
+    last_look_ = SessionClock::now();
+    const bool is_file = !bake::is_builtin(state_.light);
+    const bool changed[] = {file_.look(state_.file), other_.look(state_.other),
+                            light_.look(is_file ? state_.light : "")};
+    for (const bool is_changed : changed) {
+        reloads_ += is_changed ? 1 : 0;
+    }
+}
+
+void Session::take_input() {
+    for (const ViewWindow::Drop& drop : window_.take_drops()) {
+        if (auto status = drop_file(state_, drop.path, drop.share); !status) {
+            memory_.message = format_diagnostic(status.error().diagnostics.front());
+        }
+    }
+    const ViewWindow::Size size = window_.size();
+    if (size.width > 0 && size.height > 0) {
+        state_.width = size.width;
+        state_.height = size.height;
+    }
+}
+
+// Whether the step is done.
+bool Session::do_step(const ScriptStep& step) {
+    if (const auto* change = std::get_if<StateChange>(&step.what)) {
+        if (!state_.viewpoint) return false;
+        (*change)(state_);
+        return true;
+    }
+    if (const auto* wait = std::get_if<WaitFrames>(&step.what)) {
+        return waited_++ >= wait->frames;
+    }
+    if (std::holds_alternative<WaitReload>(step.what)) {
+        return reloads_ > 0 && is_settled();
+    }
+    if (const auto* screenshot = std::get_if<Screenshot>(&step.what)) {
+        // Controls take a few frames to find their sizes.
+        constexpr std::size_t kFrames = 4;
+        if (!is_settled() || settled_frames_ < kFrames) return false;
+        shot_ = Shot{screenshot->path, screenshot->with_panels};
+        return true;
+    }
+    quits_ = true;
+    return true;
+}
+
+std::optional<int> Session::step(const std::vector<ScriptStep>& steps) {
+    while (next_step_ < steps.size() && !shot_ && !quits_) {
+        line_ = steps[next_step_].line;
+        if (!do_step(steps[next_step_])) return {};
+        ++next_step_;
+        waited_ = 0;
+    }
+    if (next_step_ == steps.size()) line_ = 0;  // from now on the window is the user's
+    return quits_ ? std::optional<int>(kExitSuccess) : std::nullopt;
+}
+
+std::string Session::next_name() const {
+    const std::string stem = std::filesystem::path(state_.file).stem().string();
+    std::string name;
+    for (int number = 1; name.empty() || std::filesystem::exists(name); ++number) {
+        name = fmt::format("{}-{:04}.png", stem, number);
+    }
+    return name;
+}
+
+formats::Status Session::save(const Shot& shot) {
+    runtime::DisplayPicture image = painter_.read();
+    if (auto status =
+            formats::write_png(shot.path, {image.width, image.height, std::move(image.rgba)});
+        !status) {
+        return status;
+    }
+    reloads_ = 0;
+    if (shot.with_panels) return formats::ok_status();
+    std::string lines = line_of(state_, state_.file, drawn_->file, shot.path);
+    if (!state_.other.empty()) {
+        lines += "\n" + line_of(state_, state_.other, drawn_->other, shot.path);
+    }
+    fmt::print("{}\n", lines);
+    std::fflush(stdout);
+    memory_.command_line = lines;
+    return formats::ok_status();
+}
+
+// How long to wait for input.
+double Session::patience() const {
+    return is_settled() && settled_frames_ > 8 ? 0.05 : 0.005;
+}
+
+void Session::paint_frame() {
+    ++frames_;
+    ++settled_frames_;
+    const std::chrono::duration<double> passed = SessionClock::now() - second_;
+    if (passed.count() >= 1) {
+        memory_.frames_per_second =
+            static_cast<double>(frames_ - frames_of_second_) / passed.count();
+        frames_of_second_ = frames_;
+        second_ = SessionClock::now();
+    }
+    painter_.paint(state_.width, state_.height,
+                   {state_.exposure, state_.tone_map, state_.split, state_.difference_gain});
+}
+
+int Session::run(const std::vector<ScriptStep>& steps, const std::string& script) {
+    script_ = script;
+    const std::atomic<bool>& interrupted = catch_interrupts();
+    while (!window_.wants_to_close()) {
+        if (interrupted.load()) return kExitInterrupted;
+        window_.poll(patience());
+        look_for_changes();
+        take_input();
+        if (const auto code = take_drawn(next_step_ < steps.size())) return *code;
+        if (const auto code = step(steps)) return *code;
+        send_request();
+        paint_frame();
+        if (shot_ && !shot_->with_panels) {
+            if (auto status = save(*shot_); !status) return end_with(status.error());
+            shot_.reset();
+        }
+        window_.begin_controls();
+        apply_input(state_, memory_);
+        const PanelWishes wishes = draw_panels(state_, memory_, drawn_.get());
+        window_.end_controls();
+        if (shot_) {
+            if (auto status = save(*shot_); !status) return end_with(status.error());
+            shot_.reset();
+        }
+        if (wishes.screenshot && is_settled()) shot_ = Shot{next_name(), false};
+        painter_.show();
+        window_.swap();
+    }
+    return kExitSuccess;
+}
+
+}  // namespace
+
+int run_view(const ViewState& begin, const std::vector<ScriptStep>& steps,
+             const std::string& script) {
+    auto window = ViewWindow::open(begin.width, begin.height);
+    if (!window) return report_error(window.error());
+    window->set_title("Opaline: " + begin.file);
+    auto painter = PicturePainter::create();
+    if (!painter) return report_error(painter.error());
+    return Session(std::move(*window), std::move(*painter), begin).run(steps, script);
+}
+
+}  // namespace opaline::cli
