@@ -97,6 +97,16 @@ const char* opaline_status_string(opaline_status status) {
             return "buffer too small";
         case OPALINE_OUT_OF_MEMORY:
             return "out of memory";
+        case OPALINE_GL_NO_CONTEXT:
+            return "no OpenGL context";
+        case OPALINE_GL_TOO_OLD:
+            return "OpenGL too old";
+        case OPALINE_GL_WRONG_CONTEXT:
+            return "wrong OpenGL context";
+        case OPALINE_GL_CONTEXT_LOST:
+            return "OpenGL context lost";
+        case OPALINE_GL_REFUSED:
+            return "refused by OpenGL";
     }
     return "unknown status";
 }

@@ -34,7 +34,14 @@ typedef enum opaline_status {
     OPALINE_BAD_FILE = 2,   /* damaged, truncated, or not an Opaline asset */
     OPALINE_NEWER_FILE = 3, /* written by a later version: update the library */
     OPALINE_BUFFER_TOO_SMALL = 4,
-    OPALINE_OUT_OF_MEMORY = 5
+    OPALINE_OUT_OF_MEMORY = 5,
+
+    /* Of functions in opaline_gl.h. */
+    OPALINE_GL_NO_CONTEXT = 16,    /* no OpenGL context is current on the calling thread */
+    OPALINE_GL_TOO_OLD = 17,       /* the context lacks functions that are needed */
+    OPALINE_GL_WRONG_CONTEXT = 18, /* another context is current than that of the handle */
+    OPALINE_GL_CONTEXT_LOST = 19,  /* the driver was reset: release the handle, make another */
+    OPALINE_GL_REFUSED = 20        /* the driver refuses a shader or a size */
 } opaline_status;
 
 /* Version of the library that is linked, as in OPALINE_VERSION. Any thread. */

@@ -116,14 +116,12 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& l
     }
 
     const formats::SparseRowsView& rows = asset.transport;
-    gl.row_offset = make_buffer_of(rows.row_offset, gl.resident);
-    gl.index = gl.index_bytes == 2 ? make_buffer_of(rows.index16, gl.resident)
-                                   : make_buffer_of(rows.index32, gl.resident);
-    gl.code = gl.code_bits == 8 ? make_buffer_of(rows.code8, gl.resident)
-                                : make_buffer_of(rows.code16, gl.resident);
-    gl.average_scale = make_buffer_of(rows.average_scale, gl.resident);
-    gl.detail_scale = make_buffer_of(rows.detail_scale, gl.resident);
-    gl.average_code = make_buffer_of(rows.average_code, gl.resident);
+    gl.transport = make_zero_buffer(transport_bytes(gl.batches), gl.resident);
+    for (const DotBatch& batch : gl.batches) {
+        for (const PackedArray& array : packed_arrays(asset, batch)) {
+            fill_buffer(gl.transport, array.offset, array.bytes);
+        }
+    }
     gl.radiance = make_zero_buffer(gl.vertices * kRadianceBytes, gl.resident);
     gl.has_translucent = std::ranges::any_of(gl.primitives, [](const auto& primitive) {
         return primitive.shading == formats::Shading::translucent;

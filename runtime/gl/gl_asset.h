@@ -6,7 +6,7 @@
 
 #include "formats/opal/asset.h"
 #include "formats/opal/result.h"
-#include "runtime/gl/dot_batches.h"
+#include "runtime/embed_gl/dot_batches.h"
 #include "runtime/gl/gl_objects.h"
 
 namespace opaline::runtime {
@@ -18,7 +18,7 @@ struct GlAsset {
     std::vector<DotBatch> batches;
     formats::Emitters emitters;  ///< a copy, which is added up on the CPU
 
-    GlBuffer row_offset, index, code, average_scale, detail_scale, average_code;
+    GlBuffer transport;  ///< of all batches (dot_batches.h)
     /// <T_0, L> of every vertex, four floats each; zeros at first. Of translucent and thin-walled
     /// ones what they show the eye, without Fresnel's factor.
     GlBuffer radiance;

@@ -14,10 +14,10 @@ enum Uniform : GLint {
     kResults,
     kFaceTexels,
     kFirstDetail,
-    kRowOrigin,
     kIndexOrigin,
     kCodeOrigin,
-    kScaleOrigin,
+    kAverageScaleOrigin,
+    kDetailScaleOrigin,
     kAverageOrigin,
     kResultOrigin
 };
@@ -120,7 +120,7 @@ formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
     for (const DotBatch& batch : asset.batches) {
         const std::size_t light =
             lights.of_primitive.empty() ? 0 : lights.of_primitive[batch.primitive];
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, lights.light[light].name());
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lights.light[light].name());
         glUseProgram(programs.program[dot_kind(asset, batch).number()].name());
         // A result for each row: that of a vertex, or one of those to be added up toward an eye.
         const bool is_added = needs_view(asset.primitives[batch.primitive]);
@@ -130,22 +130,17 @@ formats::Status dispatch_dots(const GlAsset& asset, const DotPrograms& programs,
             {{kResults, results},
              {kFaceTexels, asset.cubemap_size * asset.cubemap_size},
              {kFirstDetail, batch.first_detail},
-             {kRowOrigin, batch.row_offset.origin},
-             {kIndexOrigin, batch.index.origin},
-             {kCodeOrigin, batch.code.origin},
-             {kScaleOrigin, batch.average_scale.origin},
-             {kAverageOrigin, batch.average_code.origin},
+             {kIndexOrigin, batch.index},
+             {kCodeOrigin, batch.code},
+             {kAverageScaleOrigin, batch.average_scale},
+             {kDetailScaleOrigin, batch.detail_scale},
+             {kAverageOrigin, batch.average_code},
              {kResultOrigin, result.origin}}};
         for (const auto& [location, value] : uniforms) {
             glUniform1ui(location, value);
         }
-        bind_storage(0, asset.row_offset, batch.row_offset);
-        bind_storage(1, asset.index, batch.index);
-        bind_storage(2, asset.code, batch.code);
-        bind_storage(3, asset.average_scale, batch.average_scale);
-        bind_storage(4, asset.detail_scale, batch.detail_scale);
-        bind_storage(5, asset.average_code, batch.average_code);
-        bind_storage(7, is_added ? asset.product : asset.radiance, result);
+        bind_storage(0, asset.transport, batch.transport);
+        bind_storage(2, is_added ? asset.product : asset.radiance, result);
         glDispatchCompute(1, (results + programs.rows_per_group - 1) / programs.rows_per_group, 1);
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |

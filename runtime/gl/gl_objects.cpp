@@ -90,19 +90,23 @@ GlBuffer make_zero_buffer(std::size_t size, std::size_t& resident) {
     return buffer;
 }
 
+void fill_buffer(const GlBuffer& buffer, std::size_t offset, std::span<const std::byte> bytes) {
+    // In pieces: drivers stage an upload, and a copy of the whole may not fit beside it.
+    constexpr std::size_t kPiece = std::size_t{64} << 20;
+    for (std::size_t at = 0; at < bytes.size(); at += kPiece) {
+        const std::size_t size = std::min(kPiece, bytes.size() - at);
+        glNamedBufferSubData(buffer.name(), static_cast<GLintptr>(offset + at),
+                             static_cast<GLsizeiptr>(size), bytes.data() + at);
+    }
+}
+
 GlBuffer make_buffer(std::span<const std::byte> bytes, std::size_t& resident) {
     GLuint name = 0;
     glCreateBuffers(1, &name);
     GlBuffer buffer(name);
     glNamedBufferStorage(name, static_cast<GLsizeiptr>(padded(bytes.size())), nullptr,
                          GL_DYNAMIC_STORAGE_BIT);
-    // In pieces: drivers stage an upload, and a copy of the whole may not fit beside it.
-    constexpr std::size_t kPiece = std::size_t{64} << 20;
-    for (std::size_t at = 0; at < bytes.size(); at += kPiece) {
-        const std::size_t size = std::min(kPiece, bytes.size() - at);
-        glNamedBufferSubData(name, static_cast<GLintptr>(at), static_cast<GLsizeiptr>(size),
-                             bytes.data() + at);
-    }
+    fill_buffer(buffer, 0, bytes);
     resident += padded(bytes.size());
     return buffer;
 }

@@ -1,4 +1,4 @@
-#include "runtime/gl/dot_batches.h"
+#include "runtime/embed_gl/dot_batches.h"
 
 #include <gtest/gtest.h>
 
@@ -27,9 +27,7 @@ TEST(DotBatches, CoverEveryVertexOnceWithinTheLimits) {
                 EXPECT_GT(batch.vertices, 0u);
                 EXPECT_LE(batch.vertices, limits.max_vertices);
                 next += batch.vertices;
-                for (const BoundRange& range :
-                     {batch.row_offset, batch.index, batch.code, batch.average_scale,
-                      batch.detail_scale, batch.average_code, batch.radiance}) {
+                for (const BoundRange& range : {batch.transport, batch.radiance}) {
                     EXPECT_EQ(range.offset % limits.alignment, 0u);
                     EXPECT_EQ(range.size % 4, 0u);
                     EXPECT_LE(range.size, limits.max_block_bytes);
@@ -74,6 +72,35 @@ TEST(DotBatches, OfTranslucentPrimitivesBindEveryRowsResult) {
     }
 }
 
+TEST(DotBatches, ArraysOfABatchFillItsRangeWithoutOverlapping) {
+    for (const std::uint32_t code_bits : {8u, 16u}) {
+        const formats::Asset asset = two_primitives(code_bits);
+        const formats::AssetView view = asset.view();
+        const auto batches = plan_dot_batches(view, {1500, 256, 3});
+        ASSERT_TRUE(batches.has_value());
+        std::size_t details = 0, end = 0;
+        for (const DotBatch& batch : *batches) {
+            EXPECT_GE(batch.transport.offset, end);
+            end = batch.transport.offset;
+            std::size_t bytes = 0;
+            for (const PackedArray& array : packed_arrays(view, batch)) {
+                EXPECT_EQ(array.offset % 4, 0u);
+                EXPECT_GE(array.offset, end);
+                EXPECT_LT(array.offset - end, 4u);  // whole words
+                end = array.offset + array.bytes.size();
+                bytes += array.bytes.size();
+            }
+            EXPECT_LE(end, batch.transport.offset + batch.transport.size);
+            EXPECT_LT(batch.transport.size - bytes, 12u);
+            const std::size_t band_rows = std::size_t{batch.vertices} * batch.terms * batch.bands;
+            details += (bytes - 4 * (batch.vertices * batch.terms + 1) - 20 * band_rows) /
+                       (2 + batch.bands * code_bits / 8);
+        }
+        EXPECT_LE(end, transport_bytes(*batches));
+        EXPECT_EQ(details, view.transport.index16.size());
+    }
+}
+
 TEST(DotBatches, OneDispatchPerPrimitiveWhereAllFits) {
     const formats::Asset asset = two_primitives(8);
     const auto batches = plan_dot_batches(asset.view(), {1 << 20, 256, 1 << 20});
@@ -83,7 +110,7 @@ TEST(DotBatches, OneDispatchPerPrimitiveWhereAllFits) {
 
 TEST(DotBatches, RowLargerThanTheLimitIsAnErrorThatNamesIt) {
     const formats::Asset asset = two_primitives(16);
-    const auto batches = plan_dot_batches(asset.view(), {128, 4, 1000});
+    const auto batches = plan_dot_batches(asset.view(), {256, 4, 1000});
     ASSERT_FALSE(batches.has_value());
     EXPECT_EQ(batches.error().kind, formats::ErrorKind::resource);
     EXPECT_EQ(batches.error().diagnostics[0].where, "primitive 1, vertex 0");

@@ -1,0 +1,252 @@
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "runtime/api_support.h"
+#include "runtime/embed_gl/relight.h"
+#include "runtime/embed_gl/saved_state.h"
+
+namespace formats = opaline::formats;
+namespace runtime = opaline::runtime;
+using namespace opaline::runtime::api;
+
+struct opaline_gl {
+    runtime::GlFunctions gl;
+    runtime::GlNames names{gl};
+    runtime::Relight relight{gl};
+    GLuint marker_program = 0;
+    std::uint32_t marker = 0;  // a uniform of it: no other context's program of that name has it
+    std::uint32_t cubemap_size = 0;
+    std::size_t emitters = 0;
+    std::optional<formats::Vec3> eye;
+    bool is_relit = false;
+    opaline_gl_objects objects{};
+
+    opaline_gl() = default;
+    opaline_gl(const opaline_gl&) = delete;  // members refer to each other
+    opaline_gl& operator=(const opaline_gl&) = delete;
+};
+
+namespace {
+
+using formats::Vec3;
+using runtime::GlFunctions;
+
+constexpr std::uint32_t kTextureWidth = 1024;
+
+std::atomic<std::uint32_t> last_marker{0x9a11e000};
+
+constexpr char kMarkerText[] = R"(
+layout(local_size_x = 1) in;
+layout(location = 0) uniform uint marker;
+layout(std430, binding = 0) writeonly buffer Result { uint result; };
+void main() { result = marker; }
+)";
+
+opaline_status lost() {
+    return fail(OPALINE_GL_CONTEXT_LOST,
+                "the driver lost the context: make another, and the handle once more in it");
+}
+
+// Whether the handle's context, or one that shares its objects, is current.
+opaline_status check_context(const opaline_gl& handle) {
+    const GlFunctions& gl = handle.gl;
+    if (gl.GetString(GL_VERSION) == nullptr) {
+        return fail(OPALINE_GL_NO_CONTEXT, "no OpenGL context is current on this thread");
+    }
+    if (gl.GetGraphicsResetStatus != nullptr && gl.GetGraphicsResetStatus() != GL_NO_ERROR) {
+        return lost();
+    }
+    std::array<GLuint, 16> value{};  // as large as another program's uniform may be
+    if (gl.IsProgram(handle.marker_program) == GL_TRUE) {
+        gl.GetUniformuiv(handle.marker_program, 0, value.data());
+    }
+    runtime::drop_errors(gl);
+    if (value[0] != handle.marker) {
+        return fail(OPALINE_GL_WRONG_CONTEXT,
+                    "another OpenGL context is current than the one of opaline_gl_create");
+    }
+    return OPALINE_OK;
+}
+
+opaline_status make_marker(opaline_gl& handle) {
+    handle.marker_program = handle.names.make_program("the context's mark", "", kMarkerText);
+    if (handle.marker_program == 0) return OPALINE_GL_REFUSED;
+    handle.marker = ++last_marker;
+    handle.gl.ProgramUniform1ui(handle.marker_program, 0, handle.marker);
+    return OPALINE_OK;
+}
+
+opaline_status make_texture(opaline_gl& handle, std::uint32_t receivers) {
+    GLint limit = 0;
+    handle.gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+    const std::uint32_t rows = std::max(1u, (receivers + kTextureWidth - 1) / kTextureWidth);
+    if (rows > static_cast<std::uint32_t>(limit)) {
+        return fail(OPALINE_GL_REFUSED, "more receivers than a texture of the driver has texels");
+    }
+    handle.objects.radiance_texture = handle.names.make_texture(kTextureWidth, rows);
+    handle.objects.radiance_texture_width = kTextureWidth;
+    return OPALINE_OK;
+}
+
+void upload_mesh(opaline_gl& handle, const formats::AssetView& asset) {
+    opaline_gl_objects& objects = handle.objects;
+    objects.position = handle.names.make_buffer_of(asset.position);
+    objects.normal = handle.names.make_buffer_of(asset.normal);
+    objects.base_color = handle.names.make_buffer_of(asset.base_color);
+    objects.triangle = handle.names.make_buffer_of(asset.index);
+    if (!asset.texcoord.empty()) objects.texcoord = handle.names.make_buffer_of(asset.texcoord);
+    if (!asset.openness.empty()) objects.openness = handle.names.make_buffer_of(asset.openness);
+}
+
+// The receivers [first, first + count) of one row of the texture, from the buffer that is bound.
+void copy_texels(const GlFunctions& gl, std::uint32_t first, std::uint32_t width,
+                 std::uint32_t height) {
+    // NOLINTBEGIN(performance-no-int-to-ptr): an offset into the buffer, which GL takes so.
+    gl.TexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(first / kTextureWidth),
+                     static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA, GL_FLOAT,
+                     reinterpret_cast<const void*>(first * runtime::kRadianceBytes));
+    // NOLINTEND(performance-no-int-to-ptr)
+}
+
+void refresh_texture(const opaline_gl& handle) {
+    if (handle.objects.radiance_texture == 0) return;
+    const GlFunctions& gl = handle.gl;
+    const std::uint32_t receivers = handle.relight.vertices();
+    const std::uint32_t rows = receivers / kTextureWidth, rest = receivers % kTextureWidth;
+    gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, handle.relight.radiance());
+    gl.BindTexture(GL_TEXTURE_2D, handle.objects.radiance_texture);
+    if (rows > 0) copy_texels(gl, 0, kTextureWidth, rows);
+    if (rest > 0) copy_texels(gl, rows * kTextureWidth, rest, 1);
+}
+
+void show(opaline_gl& handle) {
+    handle.relight.view(handle.eye, formats::TermSet::all);
+    refresh_texture(handle);
+}
+
+opaline_status upload(opaline_gl& handle, const formats::AssetView& asset, std::uint32_t flags) {
+    handle.cubemap_size = asset.cubemap_size;
+    handle.emitters = asset.emitters.size();
+    handle.objects.struct_size = sizeof(opaline_gl_objects);
+    opaline_status status = make_marker(handle);
+    if (status == OPALINE_OK) status = handle.relight.upload(asset, {}, handle.names);
+    handle.objects.radiance = handle.relight.radiance();
+    if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_MESH) != 0) upload_mesh(handle, asset);
+    if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_TEXTURE) != 0) {
+        status = make_texture(handle, asset.receivers());
+        if (status == OPALINE_OK) refresh_texture(handle);
+    }
+    return status != OPALINE_OK ? status
+                                : runtime::check_errors(handle.gl, "uploading the asset");
+}
+
+}  // namespace
+
+extern "C" {
+
+opaline_status opaline_gl_create(const opaline_asset* asset, opaline_gl_loader loader,
+                                 uint32_t flags, opaline_gl** out) {
+    if (asset == nullptr || out == nullptr) {
+        return null_argument();
+    }
+    if ((flags & ~std::uint32_t{OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_TEXTURE}) != 0) {
+        return fail(OPALINE_INVALID_ARGUMENT, "unknown flags");
+    }
+    return guarded([&] {
+        auto handle = std::make_unique<opaline_gl>();
+        const opaline_status loaded = runtime::load_gl_functions(loader, handle->gl);
+        if (loaded != OPALINE_OK) {
+            return loaded;
+        }
+        if (handle->gl.GetGraphicsResetStatus != nullptr &&
+            handle->gl.GetGraphicsResetStatus() != GL_NO_ERROR) {
+            return lost();
+        }
+        runtime::drop_errors(handle->gl);
+        const runtime::SavedState saved(handle->gl);
+        const opaline_status status = upload(*handle, asset->loaded.view, flags);
+        if (status != OPALINE_OK) {
+            handle->names.release();
+            runtime::drop_errors(handle->gl);
+            return status;
+        }
+        *out = handle.release();
+        return OPALINE_OK;
+    });
+}
+
+opaline_status opaline_gl_release(opaline_gl* gl) {
+    if (gl == nullptr) {
+        return OPALINE_OK;
+    }
+    const std::unique_ptr<opaline_gl> handle(gl);
+    const opaline_status status = check_context(*handle);
+    if (status == OPALINE_OK) {
+        handle->names.release();
+    }
+    return status;
+}
+
+opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
+    if (gl == nullptr || light == nullptr) {
+        return null_argument();
+    }
+    if (light->n != gl->cubemap_size) {
+        return fail(OPALINE_INVALID_ARGUMENT,
+                    "the light was made for an asset of another cube map size");
+    }
+    if (light->emitters.size() != gl->emitters) {
+        return fail(OPALINE_INVALID_ARGUMENT,
+                    "the light was made for an asset of another number of emitters");
+    }
+    const opaline_status status = check_context(*gl);
+    if (status != OPALINE_OK) {
+        return status;
+    }
+    return guarded([&] {
+        const runtime::SavedState saved(gl->gl);
+        gl->relight.dot(light->vector, {light->emitters, false}, gl->names);
+        gl->is_relit = true;
+        show(*gl);
+        return runtime::check_errors(gl->gl, "relighting");
+    });
+}
+
+opaline_status opaline_gl_look_from(opaline_gl* gl, const float eye[3]) {
+    if (gl == nullptr) {
+        return null_argument();
+    }
+    if (eye != nullptr &&
+        !(std::isfinite(eye[0]) && std::isfinite(eye[1]) && std::isfinite(eye[2]))) {
+        return fail(OPALINE_INVALID_ARGUMENT, "the eye's coordinates must be finite");
+    }
+    const opaline_status status = check_context(*gl);
+    if (status != OPALINE_OK) {
+        return status;
+    }
+    gl->eye = eye == nullptr ? std::nullopt : std::optional(Vec3{eye[0], eye[1], eye[2]});
+    if (!gl->is_relit || !gl->relight.needs_eye()) {
+        return OPALINE_OK;
+    }
+    const runtime::SavedState saved(gl->gl);
+    show(*gl);
+    return runtime::check_errors(gl->gl, "adding up view terms");
+}
+
+opaline_status opaline_gl_get_objects(const opaline_gl* gl, opaline_gl_objects* objects) {
+    if (gl == nullptr || objects == nullptr) {
+        return null_argument();
+    }
+    if (objects->struct_size != sizeof(opaline_gl_objects)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+    }
+    *objects = gl->objects;
+    return OPALINE_OK;
+}
+
+}  // extern "C"

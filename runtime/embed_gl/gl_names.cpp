@@ -1,0 +1,104 @@
+#include "runtime/embed_gl/gl_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "runtime/api_support.h"
+
+namespace opaline::runtime {
+namespace {
+
+// Drivers stage an upload, and a copy of the whole may not fit beside it.
+constexpr std::size_t kPiece = std::size_t{64} << 20;
+
+std::size_t padded(std::size_t size) {
+    return std::max<std::size_t>(16, (size + 15) / 16 * 16);
+}
+
+}  // namespace
+
+GLuint GlNames::make_buffer(std::size_t size, GLenum usage) {
+    GLuint name = 0;
+    gl_->GenBuffers(1, &name);
+    buffers_.push_back(name);
+    gl_->BindBuffer(GL_COPY_WRITE_BUFFER, name);
+    gl_->BufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(padded(size)), nullptr, usage);
+    return name;
+}
+
+GLuint GlNames::make_buffer(std::span<const std::byte> bytes) {
+    const GLuint name = make_buffer(bytes.size(), GL_STATIC_DRAW);
+    fill_buffer(*gl_, name, 0, bytes);
+    return name;
+}
+
+GLuint GlNames::make_program(const char* name, const std::string& defines, const char* text) {
+    std::array<char, 300> log{};
+    const GLuint program = gl_->CreateProgram(), shader = gl_->CreateShader(GL_COMPUTE_SHADER);
+    programs_.push_back(program);
+    const std::array<const char*, 3> parts{gl_->shader_head(), defines.c_str(), text};
+    gl_->ShaderSource(shader, static_cast<GLsizei>(parts.size()), parts.data(), nullptr);
+    gl_->CompileShader(shader);
+    GLint is_done = GL_FALSE;
+    gl_->GetShaderiv(shader, GL_COMPILE_STATUS, &is_done);
+    if (is_done == GL_TRUE) {
+        gl_->AttachShader(program, shader);
+        gl_->LinkProgram(program);
+        gl_->GetProgramiv(program, GL_LINK_STATUS, &is_done);
+        if (is_done != GL_TRUE) {
+            gl_->GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
+        }
+    } else {
+        gl_->GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    }
+    gl_->DeleteShader(shader);  // with the program, where it is attached
+    if (is_done == GL_TRUE) return program;
+    std::array<char, 400> message{};
+    std::snprintf(message.data(), message.size(), "the driver refuses the shader of %s: %s", name,
+                  log.data());
+    api::fail(OPALINE_GL_REFUSED, message.data());
+    return 0;
+}
+
+GLuint GlNames::make_texture(std::uint32_t width, std::uint32_t height) {
+    GLuint name = 0;
+    gl_->GenTextures(1, &name);
+    textures_.push_back(name);
+    gl_->BindTexture(GL_TEXTURE_2D, name);
+    gl_->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32F, static_cast<GLsizei>(width),
+                      static_cast<GLsizei>(height));
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+        gl_->TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+    }
+    return name;
+}
+
+void GlNames::release() {
+    for (const GLuint program : programs_) gl_->DeleteProgram(program);
+    gl_->DeleteBuffers(static_cast<GLsizei>(buffers_.size()), buffers_.data());
+    gl_->DeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());
+    programs_.clear();
+    buffers_.clear();
+    textures_.clear();
+}
+
+void fill_buffer(const GlFunctions& gl, GLuint buffer, std::size_t offset,
+                 std::span<const std::byte> bytes) {
+    gl.BindBuffer(GL_COPY_WRITE_BUFFER, buffer);
+    for (std::size_t at = 0; at < bytes.size(); at += kPiece) {
+        gl.BufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset + at),
+                         static_cast<GLsizeiptr>(std::min(kPiece, bytes.size() - at)),
+                         bytes.data() + at);
+    }
+}
+
+void clear_buffer(const GlFunctions& gl, GLuint buffer, std::size_t size) {
+    const std::vector<std::byte> zeros(std::min(kPiece, padded(size)));
+    for (std::size_t at = 0; at < padded(size); at += zeros.size()) {
+        fill_buffer(gl, buffer, at,
+                    std::span(zeros).first(std::min(zeros.size(), padded(size) - at)));
+    }
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/embed_gl/gl_functions.h"
+
+namespace opaline::runtime {
+
+/// Owner of GL objects of one context. They are deleted by `release`, which needs that context;
+/// without it they stay until the context goes. Everything here wants a SavedState around it.
+class GlNames {
+  public:
+    explicit GlNames(const GlFunctions& gl) : gl_(&gl) {}
+
+    /// A buffer of undefined content, padded to a multiple of 16 and never empty, so that a shader
+    /// may read whole words and bind it in any case.
+    GLuint make_buffer(std::size_t size, GLenum usage);
+    GLuint make_buffer(std::span<const std::byte> bytes);
+    template <class T>
+    GLuint make_buffer_of(std::span<const T> values) {
+        return make_buffer(std::as_bytes(values));
+    }
+
+    /// One compute shader, after GlFunctions::shader_head and `defines`. 0: the driver refuses it,
+    /// opaline_last_error says why.
+    GLuint make_program(const char* name, const std::string& defines, const char* text);
+
+    /// RGBA32F, nearest filter.
+    GLuint make_texture(std::uint32_t width, std::uint32_t height);
+
+    void release();
+
+  private:
+    const GlFunctions* gl_;
+    std::vector<GLuint> buffers_, programs_, textures_;
+};
+
+/// Copies into a part of a buffer.
+void fill_buffer(const GlFunctions& gl, GLuint buffer, std::size_t offset,
+                 std::span<const std::byte> bytes);
+/// Zeros.
+void clear_buffer(const GlFunctions& gl, GLuint buffer, std::size_t size);
+
+}  // namespace opaline::runtime

@@ -1,0 +1,286 @@
+#include "runtime/embed_gl/relight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "runtime/api_support.h"
+#include "shader_text.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::PrimitiveRecord;
+using formats::Rgb;
+using formats::TermSet;
+
+constexpr std::uint32_t kGroupSize = 64;  // invocations: two warps, one wave
+
+std::string define(const char* name, std::uint32_t value) {
+    return std::string("#define ") + name + " " + std::to_string(value) + "\n";
+}
+
+bool is_software(const GlFunctions& gl) {
+    const auto* const renderer = reinterpret_cast<const char*>(gl.GetString(GL_RENDERER));
+    if (renderer == nullptr) return false;
+    return std::ranges::any_of(
+        std::array{"llvmpipe", "softpipe", "SwiftShader"},
+        [&](const char* name) { return std::strstr(renderer, name) != nullptr; });
+}
+
+DotLimits query_limits(const GlFunctions& gl, std::size_t max_block_bytes, std::uint32_t lanes) {
+    GLint64 block = 0;
+    GLint alignment = 4, groups = 1;
+    gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
+    gl.GetIntegerv(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT, &alignment);
+    gl.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 1, &groups);
+    // Shaders count elements in 32 bits; a gigabyte stays clear of signed arithmetic in drivers.
+    const auto stated = static_cast<std::size_t>(std::clamp<GLint64>(block, 0, GLint64{1} << 30));
+    DotLimits limits;
+    limits.max_block_bytes = max_block_bytes == 0 ? stated : std::min(max_block_bytes, stated);
+    limits.alignment = static_cast<std::size_t>(std::max(alignment, 4));
+    limits.max_vertices =
+        static_cast<std::uint32_t>(std::clamp(groups, 1, 65535)) * (kGroupSize / lanes);
+    return limits;
+}
+
+bool is_sheet(const PrimitiveRecord& primitive) {
+    return primitive.shading == formats::Shading::sheet;
+}
+
+// Whether one of its results may be negative: where several make a radiance.
+bool keeps_sign(const PrimitiveRecord& primitive) {
+    return primitive.shading == formats::Shading::translucent;
+}
+
+float farthest_coordinate(const formats::AssetView& asset) {
+    float farthest = 0;
+    for (const formats::Vec3 p : asset.position) {
+        farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    }
+    return farthest;
+}
+
+// About 1 / the distances in a scene of that size, within floats.
+float unit_of(float farthest) {
+    return 1 / std::clamp(farthest, 1e-30f, 1e30f);
+}
+
+}  // namespace
+
+opaline_status Relight::upload(const formats::AssetView& asset, const RelightOptions& options,
+                               GlNames& names) {
+    lanes_ = options.lanes_per_row != 0 ? options.lanes_per_row : is_software(gl_) ? 8 : 16;
+    const DotLimits limits = query_limits(gl_, options.max_block_bytes, lanes_);
+    auto batches = plan_dot_batches(asset, limits);
+    if (!batches) {
+        return api::fail(OPALINE_GL_REFUSED, batches.error().diagnostics.front().fault.c_str());
+    }
+    batches_ = std::move(batches).value();
+    alignment_ = limits.alignment;
+    cubemap_size_ = asset.cubemap_size;
+    vertices_ = asset.receivers();
+    code_bits_ = asset.transport.code_bits;
+    index_bytes_ = asset.transport.index_bytes;
+    primitives_.assign(asset.primitives.begin(), asset.primitives.end());
+    emitters_.name_end.assign(asset.emitters.name_end.begin(), asset.emitters.name_end.end());
+    emitters_.block.assign(asset.emitters.block.begin(), asset.emitters.block.end());
+    farthest_ = farthest_coordinate(asset);
+
+    transport_ = names.make_buffer(transport_bytes(batches_), GL_STATIC_DRAW);
+    for (const DotBatch& batch : batches_) {
+        for (const PackedArray& array : packed_arrays(asset, batch)) {
+            fill_buffer(gl_, transport_, array.offset, array.bytes);
+        }
+    }
+    const std::size_t radiance_bytes = vertices_ * kRadianceBytes;
+    radiance_ = names.make_buffer(radiance_bytes, GL_DYNAMIC_COPY);
+    clear_buffer(gl_, radiance_, radiance_bytes);
+    if (std::ranges::any_of(primitives_, needs_view)) {
+        product_ = names.make_buffer(asset.transport.rows() * kRadianceBytes, GL_DYNAMIC_COPY);
+        position_ = names.make_buffer_of(asset.position);
+        normal_ = names.make_buffer_of(asset.normal);
+    }
+    if (!emitters_.block.empty()) values_ = names.make_buffer_of(asset.emitters.value);
+    return make_programs(names);
+}
+
+opaline_status Relight::make_dot_program(std::uint32_t bands, bool keeps_sign, GlNames& names) {
+    GLuint& program = dot_program_[(bands == 3 ? 1u : 0u) + (keeps_sign ? 2u : 0u)];
+    if (program != 0) return OPALINE_OK;
+    program = names.make_program(
+        "dot products",
+        define("LANES", lanes_) + define("ROWS", kGroupSize / lanes_) + define("BANDS", bands) +
+            define("CODE_BITS", code_bits_) + define("INDEX_BYTES", index_bytes_) +
+            (keeps_sign ? "#define KEEPS_SIGN\n" : ""),
+        dot_comp_text);
+    return program != 0 ? OPALINE_OK : OPALINE_GL_REFUSED;
+}
+
+opaline_status Relight::make_programs(GlNames& names) {
+    const std::string view_text = std::string(view_terms_text) + view_comp_text;
+    for (std::uint32_t p = 0; p < primitives_.size(); ++p) {
+        const PrimitiveRecord& primitive = primitives_[p];
+        if (primitive.vertex_count == 0) continue;
+        const bool keeps = keeps_sign(primitive);
+        opaline_status status = make_dot_program(primitive.bands, keeps, names);
+        if (status == OPALINE_OK && !keeps && !emitters_.view().blocks_of(p).empty()) {
+            status = make_dot_program(primitive.bands, true, names);
+        }
+        if (status != OPALINE_OK) return status;
+        if (!needs_view(primitive) || sum_of(primitive) != nullptr) continue;
+        Sum sum{primitive.terms, primitive.is_separate(), is_sheet(primitive), 0};
+        const std::uint32_t harmonics =
+            sum.is_sheet ? 0 : sum.terms - (sum.is_separate ? 1 : 0);
+        sum.program = names.make_program("view terms",
+                                         define("HARMONICS", harmonics) +
+                                             (sum.is_separate ? "#define SEPARATE\n" : "") +
+                                             (sum.is_sheet ? "#define SHEET\n" : ""),
+                                         view_text.c_str());
+        if (sum.program == 0) return OPALINE_GL_REFUSED;
+        sums_.push_back(sum);
+    }
+    if (values_ != 0) {
+        emitter_program_ = names.make_program("emitters", "", emitters_comp_text);
+        if (emitter_program_ == 0) return OPALINE_GL_REFUSED;
+    }
+    return OPALINE_OK;
+}
+
+const Relight::Sum* Relight::sum_of(const PrimitiveRecord& primitive) const {
+    const auto sum = std::ranges::find_if(sums_, [&](const Sum& s) {
+        return s.terms == primitive.terms && s.is_separate == primitive.is_separate() &&
+               s.is_sheet == is_sheet(primitive);
+    });
+    return sum == sums_.end() ? nullptr : &*sum;
+}
+
+void Relight::bind(GLuint binding, GLuint buffer, const BoundRange& range) const {
+    gl_.BindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, buffer,
+                        static_cast<GLintptr>(range.offset), static_cast<GLsizeiptr>(range.size));
+}
+
+// Those of the locations 0, 1, ...
+void Relight::set(GLuint program, std::initializer_list<std::uint32_t> uniforms) const {
+    GLint location = 0;
+    for (const std::uint32_t value : uniforms) gl_.ProgramUniform1ui(program, location++, value);
+}
+
+bool Relight::is_lit_by(const EmitterLight& light, std::uint32_t primitive) const {
+    return std::ranges::any_of(emitters_.view().blocks_of(primitive), [&](const auto& block) {
+        return block.scale * light.color_of(block.emitter) != Rgb{};
+    });
+}
+
+void Relight::dispatch_dot(const DotBatch& batch, GLuint light, bool keeps_sign) const {
+    const GLuint program = dot_program_[(batch.bands == 3 ? 1u : 0u) + (keeps_sign ? 2u : 0u)];
+    const bool is_added = needs_view(primitives_[batch.primitive]);
+    const std::uint32_t results = batch.vertices * batch.terms;
+    const BoundRange& result = is_added ? batch.product : batch.radiance;
+    gl_.UseProgram(program);
+    set(program, {results, cubemap_size_ * cubemap_size_, batch.first_detail, batch.index,
+                  batch.code, batch.average_scale, batch.detail_scale, batch.average_code,
+                  result.origin});
+    bind(0, transport_, batch.transport);
+    gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, light);
+    bind(2, is_added ? product_ : radiance_, result);
+    const std::uint32_t rows = kGroupSize / lanes_;
+    gl_.DispatchCompute(1, (results + rows - 1) / rows, 1);
+}
+
+void Relight::dispatch_emitters(const DotBatch& batch, const EmitterLight& light) const {
+    const PrimitiveRecord& primitive = primitives_[batch.primitive];
+    const auto blocks = emitters_.view().blocks_of(batch.primitive);
+    const auto color_of = [&](const formats::EmitterBlock& block) {
+        return block.scale * light.color_of(block.emitter);
+    };
+    std::size_t last = 0;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        if (color_of(blocks[b]) != Rgb{}) last = b;
+    }
+    const bool is_added = needs_view(primitive);
+    const std::uint32_t results = batch.vertices * batch.terms;
+    const BoundRange& result = is_added ? batch.product : batch.radiance;
+    const std::uint64_t first_row =
+        std::uint64_t{batch.first_vertex - primitive.first_vertex} * batch.terms;
+    for (std::size_t b = 0; b <= last; ++b) {
+        const Rgb color = color_of(blocks[b]);
+        if (color == Rgb{}) continue;
+        gl_.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        const BoundRange value = bind_elements(blocks[b].first_value + 3 * first_row,
+                                               std::uint64_t{3} * results, 2, alignment_);
+        gl_.UseProgram(emitter_program_);
+        const bool is_last = b == last && !keeps_sign(primitive);
+        set(emitter_program_, {results, value.origin, result.origin});
+        gl_.ProgramUniform3f(emitter_program_, 3, color.r, color.g, color.b);
+        gl_.ProgramUniform1ui(emitter_program_, 4, is_last ? 1 : 0);
+        bind(0, values_, value);
+        bind(1, is_added ? product_ : radiance_, result);
+        gl_.DispatchCompute((results + kGroupSize - 1) / kGroupSize, 1, 1);
+    }
+}
+
+void Relight::dot(const PartLights& lights, const EmitterLight& emitters, GlNames& names) {
+    while (light_.size() < lights.light.size()) {
+        light_.push_back(names.make_buffer(0, GL_DYNAMIC_DRAW));
+    }
+    for (std::size_t i = 0; i < lights.light.size(); ++i) {
+        // New storage: work in flight keeps the old one.
+        const auto bytes = std::as_bytes(std::span(lights.light[i].rgba));
+        gl_.BindBuffer(GL_COPY_WRITE_BUFFER, light_[i]);
+        gl_.BufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
+                       GL_DYNAMIC_DRAW);
+    }
+    for (const DotBatch& batch : batches_) {
+        const bool is_lit = is_lit_by(emitters, batch.primitive);
+        dispatch_dot(batch, light_[lights.number(batch.primitive)],
+                     is_lit || keeps_sign(primitives_[batch.primitive]));
+        if (is_lit) dispatch_emitters(batch, emitters);
+    }
+    gl_.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
+                      GL_BUFFER_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+}
+
+void Relight::dispatch_view(const DotBatch& batch, const std::optional<formats::Vec3>& eye,
+                            TermSet terms) const {
+    const PrimitiveRecord& primitive = primitives_[batch.primitive];
+    const Sum& sum = *sum_of(primitive);
+    gl_.UseProgram(sum.program);
+    // Rows of single scattering alone need no multiple scattering beside them.
+    const bool single = has_any(terms, TermSet::single);
+    const bool multiple =
+        primitive.is_single_only() ? single : has_any(terms, TermSet::multiple);
+    set(sum.program, {batch.vertices, batch.product.origin, batch.radiance.origin});
+    gl_.ProgramUniform2ui(sum.program, 3, multiple ? 1 : 0, single ? 1 : 0);
+    bind(0, product_, batch.product);
+    bind(3, radiance_, batch.radiance);
+    const bool is_directed = !sum.is_sheet && sum.terms - (sum.is_separate ? 1 : 0) > 1;
+    if (is_directed || sum.is_sheet) {
+        const formats::Vec3 at = eye.value_or(formats::Vec3{});
+        const float farthest =
+            std::max({farthest_, std::abs(at.x), std::abs(at.y), std::abs(at.z)});
+        gl_.ProgramUniform3f(sum.program, 4, at.x, at.y, at.z);
+        // Of no length, the direction to the eye counts as the normal.
+        gl_.ProgramUniform1f(sum.program, 5, eye ? unit_of(farthest) : 0.0f);
+        gl_.ProgramUniform1ui(sum.program, 8, batch.point.origin);
+        bind(1, position_, batch.point);
+        bind(2, normal_, batch.point);
+    }
+    if (is_directed) {
+        gl_.ProgramUniform1f(sum.program, 6, primitive.eta);
+        gl_.ProgramUniform1ui(sum.program, 7, primitive.flags & PrimitiveRecord::kDoubleSided);
+    }
+    gl_.DispatchCompute((batch.vertices + kGroupSize - 1) / kGroupSize, 1, 1);
+}
+
+void Relight::view(const std::optional<formats::Vec3>& eye, TermSet terms) {
+    for (const DotBatch& batch : batches_) {
+        if (needs_view(primitives_[batch.primitive])) dispatch_view(batch, eye, terms);
+    }
+    gl_.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
+                      GL_BUFFER_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,89 @@
+/* Opaline in the host's OpenGL context: relights a baked asset in compute shaders and hands out
+   buffers that the host's own shaders read. C99. Needs desktop OpenGL 4.3 or OpenGL ES 3.1, core
+   parts alone, and links to no OpenGL library: functions come from the host's loader.
+
+   Every function here wants the context that the handle was made in, or one that shares objects
+   with it, to be current on the calling thread, and checks it: another one is refused. After each
+   call all GL state is as it was before, but for errors: those that the host left unasked are
+   dropped. Calls only enqueue work, nothing waits for the GPU; shaders and vertex arrays of the
+   same context see the results without a barrier of the host's. Call outside of conditional
+   rendering. The rules of opaline.h hold as well; statuses are listed there. */
+#ifndef OPALINE_GL_H
+#define OPALINE_GL_H
+
+#include "opaline.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct opaline_gl opaline_gl; /* an asset in an OpenGL context */
+
+/* Address of an OpenGL function by its name, or NULL; as eglGetProcAddress, SDL_GL_GetProcAddress
+   and the like. Called within opaline_gl_create alone. */
+typedef void* (*opaline_gl_loader)(const char* name);
+
+typedef enum opaline_gl_flags {
+    OPALINE_GL_DEFAULT = 0,
+    OPALINE_GL_WITH_MESH = 1,   /* uploads the mesh: for hosts that draw it from the asset */
+    OPALINE_GL_WITH_TEXTURE = 2 /* keeps a texture of the radiance beside the buffer */
+} opaline_gl_flags;
+
+/* Uploads transport and compiles the shaders; all radiance is 0 until the first relight. The asset
+   may be released afterwards. `loader` NULL: the context is looked for in the EGL or GLX library
+   that the program has loaded. `flags`: a sum of opaline_gl_flags.
+   OPALINE_GL_NO_CONTEXT: none is current, or no loader was found. OPALINE_GL_TOO_OLD: below OpenGL
+   4.3 or ES 3.1, or a function is missing. OPALINE_GL_REFUSED: a limit of the driver, or a shader
+   that it does not compile. */
+OPALINE_API opaline_status opaline_gl_create(const opaline_asset* asset, opaline_gl_loader loader,
+                                             uint32_t flags, opaline_gl** out);
+
+/* Deletes the objects in the context. Memory is freed in any case: without the right context the
+   status says so, and the objects stay until their context goes. NULL is fine. */
+OPALINE_API opaline_status opaline_gl_release(opaline_gl* gl);
+
+/* Computes <T_k, L> of all receivers under the light, that of emitters included, and what they show
+   the eye that was last set. The light must have been made for an asset of the same cube map size
+   and number of emitters; it is copied from. OPALINE_OUT_OF_MEMORY where the driver has none. */
+OPALINE_API opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light);
+
+/* Where translucent and thin-walled receivers are seen from, in the asset's world [m], three finite
+   floats; NULL, as at first: each along its own normal. Opaque receivers cost nothing. */
+OPALINE_API opaline_status opaline_gl_look_from(opaline_gl* gl, const float eye[3]);
+
+/* Names of GL objects; 0 where there is none. They stay the library's and keep their names until
+   the release. Read them only. Receivers are counted as in opaline.h: receiver i begins at byte
+   i * stride. */
+typedef struct opaline_gl_objects {
+    size_t struct_size; /* in: sizeof(opaline_gl_objects) */
+
+    /* Buffer, 4 floats a receiver, stride 16: what opaline_shade_from gives with
+       OPALINE_SHADE_WITHOUT_BASE_COLOR and _WITHOUT_FRESNEL, then 0. For vertex attributes, or for
+       buffer blocks of std430 as vec4[]. */
+    uint32_t radiance;
+
+    /* With OPALINE_GL_WITH_TEXTURE: the same as a 2D texture of RGBA32F, nearest filter: receiver i
+       is texel (i mod width, i / width). For vertex shaders, where OpenGL ES promises no buffer
+       blocks. */
+    uint32_t radiance_texture, radiance_texture_width;
+
+    /* With OPALINE_GL_WITH_MESH. Buffers of floats, by receiver: position [m], stride 12; normal,
+       unit, stride 12; base colour factor times vertex colour, stride 12; texture coordinate,
+       stride 8, 0 where the asset has none. Triangles: uint32 numbers, counted within their
+       primitive. */
+    uint32_t position, normal, base_color, texcoord, triangle;
+
+    /* With OPALINE_GL_WITH_MESH, for assets with glossy surfaces, stride 4: openness, two signed
+       normalised bytes (the axis, octahedral), then one unsigned normalised byte (the fraction). */
+    uint32_t openness;
+} opaline_gl_objects;
+
+/* Fills `objects`. */
+OPALINE_API opaline_status opaline_gl_get_objects(const opaline_gl* gl,
+                                                  opaline_gl_objects* objects);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
