@@ -1,4 +1,4 @@
-# Installed: the C and C++ headers, both libraries, find_package(Opaline) and pkg-config.
+# Installed: the C and C++ headers, the libraries with and without GL, find_package(Opaline) and pkg-config.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -8,6 +8,13 @@ target_include_directories(opaline_runtime INTERFACE
 set(OPALINE_INSTALLED opaline_runtime opaline_opal)
 if(OPALINE_BUILD_SHARED)
     list(APPEND OPALINE_INSTALLED opaline_shared)
+endif()
+if(OPALINE_BUILD_GL)
+    list(APPEND OPALINE_INSTALLED opaline_embed_gl)
+    if(OPALINE_BUILD_SHARED)
+        list(APPEND OPALINE_INSTALLED opaline_gl_shared)
+    endif()
+    install(FILES opaline_gl.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endif()
 install(TARGETS ${OPALINE_INSTALLED} EXPORT OpalineTargets
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
@@ -26,7 +33,13 @@ if(OPALINE_BUILD_SHARED)
     cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX
                BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
                OUTPUT_VARIABLE OPALINE_PC_TO_PREFIX)
-    configure_file(cmake/opaline.pc.in opaline.pc @ONLY)
-    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/opaline.pc
-            DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+    set(OPALINE_PC_LIBRARIES opaline)
+    if(OPALINE_BUILD_GL)
+        list(APPEND OPALINE_PC_LIBRARIES opaline-gl)
+    endif()
+    foreach(OPALINE_PC_NAME IN LISTS OPALINE_PC_LIBRARIES)
+        configure_file(cmake/opaline.pc.in ${OPALINE_PC_NAME}.pc @ONLY)
+        install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${OPALINE_PC_NAME}.pc
+                DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+    endforeach()
 endif()

@@ -141,8 +141,7 @@ opaline_status upload(opaline_gl& handle, const formats::AssetView& asset, std::
         status = make_texture(handle, asset.receivers());
         if (status == OPALINE_OK) refresh_texture(handle);
     }
-    return status != OPALINE_OK ? status
-                                : runtime::check_errors(handle.gl, "uploading the asset");
+    return status != OPALINE_OK ? status : runtime::check_errors(handle.gl, "uploading the asset");
 }
 
 }  // namespace

@@ -32,8 +32,7 @@ BatchRows rows_of(const formats::AssetView& asset, const PrimitiveRecord& primit
     const auto& row_offset = asset.transport.row_offset;
     batch.detail = row_offset[batch.row];
     batch.details = row_offset[batch.row + batch.rows] - batch.detail;
-    batch.code =
-        primitive.first_code + (batch.detail - row_offset[primitive.first_row]) * bands;
+    batch.code = primitive.first_code + (batch.detail - row_offset[primitive.first_row]) * bands;
     return batch;
 }
 
@@ -156,9 +155,8 @@ std::array<PackedArray, 6> packed_arrays(const formats::AssetView& asset, const 
               bytes_of(transport.average_code, rows.band_row * formats::kCubeFaces,
                        rows.band_rows * formats::kCubeFaces)},
              {at + std::size_t{batch.index} * transport.index_bytes,
-              transport.index_bytes == 2
-                  ? bytes_of(transport.index16, rows.detail, rows.details)
-                  : bytes_of(transport.index32, rows.detail, rows.details)},
+              transport.index_bytes == 2 ? bytes_of(transport.index16, rows.detail, rows.details)
+                                         : bytes_of(transport.index32, rows.detail, rows.details)},
              {at + std::size_t{batch.code} * (transport.code_bits / 8),
               transport.code_bits == 8 ? bytes_of(transport.code8, rows.code, codes)
                                        : bytes_of(transport.code16, rows.code, codes)}}};

@@ -85,7 +85,7 @@ opaline_status load_gl_functions(opaline_gl_loader loader, GlFunctions& gl) {
         return fail(OPALINE_GL_TOO_OLD, text);
     }
     const char* missing = nullptr;
-#define OPALINE_GL_LOAD(name, type)                                     \
+#define OPALINE_GL_LOAD(name, type)                                    \
     gl.name = reinterpret_cast<PFNGL##type##PROC>(loader("gl" #name)); \
     if (gl.name == nullptr) missing = "gl" #name;
     OPALINE_GL_CALLS(OPALINE_GL_LOAD)
@@ -96,8 +96,8 @@ opaline_status load_gl_functions(opaline_gl_loader loader, GlFunctions& gl) {
     }
     // Core in OpenGL 4.5 and ES 3.2; a loader may hand out one that an older context does not have.
     if (10 * major + minor >= (gl.is_es ? 32 : 45)) {
-        gl.GetGraphicsResetStatus = reinterpret_cast<PFNGLGETGRAPHICSRESETSTATUSPROC>(
-            loader("glGetGraphicsResetStatus"));
+        gl.GetGraphicsResetStatus =
+            reinterpret_cast<PFNGLGETGRAPHICSRESETSTATUSPROC>(loader("glGetGraphicsResetStatus"));
     }
     return OPALINE_OK;
 }

@@ -75,7 +75,8 @@ GLuint GlNames::make_texture(std::uint32_t width, std::uint32_t height) {
 }
 
 void GlNames::release() {
-    for (const GLuint program : programs_) gl_->DeleteProgram(program);
+    for (const GLuint program : programs_)
+        gl_->DeleteProgram(program);
     gl_->DeleteBuffers(static_cast<GLsizei>(buffers_.size()), buffers_.data());
     gl_->DeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());
     programs_.clear();

@@ -110,12 +110,12 @@ opaline_status Relight::upload(const formats::AssetView& asset, const RelightOpt
 opaline_status Relight::make_dot_program(std::uint32_t bands, bool keeps_sign, GlNames& names) {
     GLuint& program = dot_program_[(bands == 3 ? 1u : 0u) + (keeps_sign ? 2u : 0u)];
     if (program != 0) return OPALINE_OK;
-    program = names.make_program(
-        "dot products",
-        define("LANES", lanes_) + define("ROWS", kGroupSize / lanes_) + define("BANDS", bands) +
-            define("CODE_BITS", code_bits_) + define("INDEX_BYTES", index_bytes_) +
-            (keeps_sign ? "#define KEEPS_SIGN\n" : ""),
-        dot_comp_text);
+    program = names.make_program("dot products",
+                                 define("LANES", lanes_) + define("ROWS", kGroupSize / lanes_) +
+                                     define("BANDS", bands) + define("CODE_BITS", code_bits_) +
+                                     define("INDEX_BYTES", index_bytes_) +
+                                     (keeps_sign ? "#define KEEPS_SIGN\n" : ""),
+                                 dot_comp_text);
     return program != 0 ? OPALINE_OK : OPALINE_GL_REFUSED;
 }
 
@@ -132,8 +132,7 @@ opaline_status Relight::make_programs(GlNames& names) {
         if (status != OPALINE_OK) return status;
         if (!needs_view(primitive) || sum_of(primitive) != nullptr) continue;
         Sum sum{primitive.terms, primitive.is_separate(), is_sheet(primitive), 0};
-        const std::uint32_t harmonics =
-            sum.is_sheet ? 0 : sum.terms - (sum.is_separate ? 1 : 0);
+        const std::uint32_t harmonics = sum.is_sheet ? 0 : sum.terms - (sum.is_separate ? 1 : 0);
         sum.program = names.make_program("view terms",
                                          define("HARMONICS", harmonics) +
                                              (sum.is_separate ? "#define SEPARATE\n" : "") +
@@ -165,7 +164,8 @@ void Relight::bind(GLuint binding, GLuint buffer, const BoundRange& range) const
 // Those of the locations 0, 1, ...
 void Relight::set(GLuint program, std::initializer_list<std::uint32_t> uniforms) const {
     GLint location = 0;
-    for (const std::uint32_t value : uniforms) gl_.ProgramUniform1ui(program, location++, value);
+    for (const std::uint32_t value : uniforms)
+        gl_.ProgramUniform1ui(program, location++, value);
 }
 
 bool Relight::is_lit_by(const EmitterLight& light, std::uint32_t primitive) const {
@@ -180,9 +180,9 @@ void Relight::dispatch_dot(const DotBatch& batch, GLuint light, bool keeps_sign)
     const std::uint32_t results = batch.vertices * batch.terms;
     const BoundRange& result = is_added ? batch.product : batch.radiance;
     gl_.UseProgram(program);
-    set(program, {results, cubemap_size_ * cubemap_size_, batch.first_detail, batch.index,
-                  batch.code, batch.average_scale, batch.detail_scale, batch.average_code,
-                  result.origin});
+    set(program,
+        {results, cubemap_size_ * cubemap_size_, batch.first_detail, batch.index, batch.code,
+         batch.average_scale, batch.detail_scale, batch.average_code, result.origin});
     bind(0, transport_, batch.transport);
     gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, light);
     bind(2, is_added ? product_ : radiance_, result);
@@ -250,8 +250,7 @@ void Relight::dispatch_view(const DotBatch& batch, const std::optional<formats::
     gl_.UseProgram(sum.program);
     // Rows of single scattering alone need no multiple scattering beside them.
     const bool single = has_any(terms, TermSet::single);
-    const bool multiple =
-        primitive.is_single_only() ? single : has_any(terms, TermSet::multiple);
+    const bool multiple = primitive.is_single_only() ? single : has_any(terms, TermSet::multiple);
     set(sum.program, {batch.vertices, batch.product.origin, batch.radiance.origin});
     gl_.ProgramUniform2ui(sum.program, 3, multiple ? 1 : 0, single ? 1 : 0);
     bind(0, product_, batch.product);

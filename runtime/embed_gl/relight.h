@@ -71,7 +71,7 @@ class Relight {
     std::vector<DotBatch> batches_;
     formats::Emitters emitters_;  // without values, which are in a buffer
     GLuint transport_ = 0, radiance_ = 0, product_ = 0, position_ = 0, normal_ = 0, values_ = 0;
-    std::vector<GLuint> light_;           // each holds one light vector
+    std::vector<GLuint> light_;            // each holds one light vector
     std::array<GLuint, 4> dot_program_{};  // of one band and three, then those that keep signs
     GLuint emitter_program_ = 0;
     std::vector<Sum> sums_;

@@ -7,7 +7,7 @@ namespace {
 
 // Of images in memory; OpenGL ES has all but the last two, whose state is 0 there.
 constexpr std::array<GLenum, 8> kPixelStore{
-    GL_UNPACK_ALIGNMENT,   GL_UNPACK_ROW_LENGTH,  GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS,
+    GL_UNPACK_ALIGNMENT,   GL_UNPACK_ROW_LENGTH,   GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS,
     GL_UNPACK_SKIP_IMAGES, GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST};
 
 std::size_t pixel_store_count(const GlFunctions& gl) {

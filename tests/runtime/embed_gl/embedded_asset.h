@@ -18,9 +18,8 @@ namespace opaline::test {
 class EmbeddedAsset {
   public:
     explicit EmbeddedAsset(const formats::Asset& asset) {
-        const std::filesystem::path path =
-            std::filesystem::path(testing::TempDir()) /
-            ("embedded-" + std::to_string(getpid()) + ".opal");
+        const std::filesystem::path path = std::filesystem::path(testing::TempDir()) /
+                                           ("embedded-" + std::to_string(getpid()) + ".opal");
         auto file = formats::AtomicFile::create(path);
         EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
         std::ifstream in(path, std::ios::binary);
@@ -50,11 +49,11 @@ class EmbeddedAsset {
     /// What opaline_gl hands out, from the CPU: three floats a receiver.
     std::vector<float> expected(const float* eye) const {
         std::vector<float> rgb(3 * std::size_t{receivers()});
-        EXPECT_EQ(opaline_shade_from(
-                      asset_, light_,
-                      OPALINE_SHADE_WITHOUT_BASE_COLOR | OPALINE_SHADE_WITHOUT_FRESNEL, eye, 0,
-                      receivers(), rgb.data(), rgb.size()),
-                  OPALINE_OK)
+        EXPECT_EQ(
+            opaline_shade_from(asset_, light_,
+                               OPALINE_SHADE_WITHOUT_BASE_COLOR | OPALINE_SHADE_WITHOUT_FRESNEL,
+                               eye, 0, receivers(), rgb.data(), rgb.size()),
+            OPALINE_OK)
             << opaline_last_error();
         return rgb;
     }
@@ -97,8 +96,8 @@ inline formats::Asset make_every_kind(std::uint32_t n, std::uint32_t code_bits) 
         const formats::PrimitiveRecord& primitive = asset.primitives[p];
         std::vector<formats::Rgb> rows;
         for (std::uint32_t i = 0; i < primitive.vertex_count * primitive.terms; ++i) {
-            rows.push_back({0.3f * static_cast<float>(i % 5), 0.2f * static_cast<float>(i % 3),
-                            0.5f});
+            rows.push_back(
+                {0.3f * static_cast<float>(i % 5), 0.2f * static_cast<float>(i % 3), 0.5f});
         }
         append_block(asset.emitters, 0, p, rows);
         if (p % 2 == 0) append_block(asset.emitters, 1, p, rows);

@@ -42,9 +42,9 @@ std::optional<HostContext> HostContext::create(HostApi api, const HostContext* s
     eglBindAPI(is_es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
     const EGLint desktop[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3, EGL_NONE};
     const EGLint es[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 1, EGL_NONE};
-    made.context_ =
-        eglCreateContext(made.display_, nullptr,
-                         shared != nullptr ? shared->context_ : EGL_NO_CONTEXT, is_es ? es : desktop);
+    made.context_ = eglCreateContext(made.display_, nullptr,
+                                     shared != nullptr ? shared->context_ : EGL_NO_CONTEXT,
+                                     is_es ? es : desktop);
     if (made.context_ == EGL_NO_CONTEXT) return std::nullopt;
     made.make_current();
     return made;
@@ -95,7 +95,8 @@ std::vector<float> read_floats(unsigned buffer, std::size_t count) {
     glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &previous);
     glBindBuffer(GL_COPY_READ_BUFFER, buffer);
     const auto size = static_cast<GLsizeiptr>(count * sizeof(float));
-    if (const void* const mapped = glMapBufferRange(GL_COPY_READ_BUFFER, 0, size, GL_MAP_READ_BIT)) {
+    if (const void* const mapped =
+            glMapBufferRange(GL_COPY_READ_BUFFER, 0, size, GL_MAP_READ_BIT)) {
         std::memcpy(values.data(), mapped, count * sizeof(float));
         glUnmapBuffer(GL_COPY_READ_BUFFER);
     } else {

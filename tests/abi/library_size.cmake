@@ -1,0 +1,16 @@
+# The shared library as it is shipped: its size, and what it asks the system for.
+# Needs STRIP, READELF, LIBRARY, LARGEST [bytes], SCRATCH (a file to write).
+file(COPY_FILE ${LIBRARY} ${SCRATCH})
+execute_process(COMMAND ${STRIP} ${SCRATCH} COMMAND_ERROR_IS_FATAL ANY)
+file(SIZE ${SCRATCH} size)
+message("${size} bytes")
+if(size GREATER LARGEST)
+    message(FATAL_ERROR "stripped it has ${size} bytes, more than ${LARGEST}")
+endif()
+execute_process(COMMAND ${READELF} -d ${LIBRARY} OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "NEEDED[^\n]+" needed "${dynamic}")
+foreach(line IN LISTS needed)
+    if(NOT line MATCHES "\\[(libc|libm|libdl|libpthread|libstdc\\+\\+|libgcc_s|libzstd|libxxhash|ld-linux[^]]*)\\.so")
+        message(FATAL_ERROR "it needs ${line}")
+    endif()
+endforeach()
