@@ -18,6 +18,7 @@ void add_verify_command(CLI::App& app, Job& job);
 void add_relight_command(CLI::App& app, Job& job);
 void add_render_command(CLI::App& app, Job& job);
 void add_view_command(CLI::App& app, Job& job);  // in view/
+void add_export_web_command(CLI::App& app, Job& job);
 void add_reference_command(CLI::App& app, Job& job);
 void add_compare_command(CLI::App& app, Job& job);
 void add_mie_command(CLI::App& app, Job& job);

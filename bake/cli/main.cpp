@@ -58,6 +58,7 @@ int run_program(int argc, char** argv) {
 #ifdef OPALINE_HAS_GL
     add_view_command(app, job);
 #endif
+    add_export_web_command(app, job);
     add_reference_command(app, job);
     add_compare_command(app, job);
     add_mie_command(app, job);

@@ -75,8 +75,7 @@ TEST(Sweep, WhatCannotBeWrittenIsFoundOutBeforeTheWork) {
     EXPECT_FALSE(std::filesystem::exists(small.path("new")));
 }
 
-// Debian's chromium, or another of its family. It is no package of .ci/packages.txt: large, and for
-// this alone.
+// Debian's chromium, or another of its family.
 std::string find_browser() {
     const Outcome found = run_any({"sh", "-c",
                                    "command -v chromium || command -v chromium-browser || "

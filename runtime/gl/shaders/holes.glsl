@@ -3,8 +3,10 @@
 flat layout(location = 6) in uint v_last_vertex;
 layout(location = 21) uniform vec3 hole;  // alpha, cutoff, 1: a mask, 2: a blend
 layout(location = 22) uniform uvec2 first_sample;  // of the tile
-#ifndef SAMPLE_STEP
-#define SAMPLE_STEP 1u  // between the target's texels
+#ifdef SPREAD_SAMPLES
+uniform uint sample_step;  // between neighbouring texels of the target
+#else
+const uint sample_step = 1u;
 #endif
 #ifdef HOLE_VERTICES
 layout(location = 7) in float v_alpha;
@@ -25,7 +27,7 @@ bool sees_surface(vec2 texcoord) {
     if (hole.z == 1.0) {
         return alpha >= hole.y;
     }
-    uvec2 at = first_sample + SAMPLE_STEP * uvec2(gl_FragCoord.xy);
+    uvec2 at = first_sample + sample_step * uvec2(gl_FragCoord.xy);
     uint place = 0xc13fa9a9u * at.x + 0x91e10da6u * at.y + 0x9e3779b9u * v_last_vertex;
     return float(place >> 8) < alpha * 16777216.0;
 }

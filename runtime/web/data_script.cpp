@@ -1,0 +1,57 @@
+#include "runtime/web/data_script.h"
+
+#include <array>
+#include <cstdio>
+
+namespace opaline::runtime {
+namespace {
+
+constexpr std::string_view kDigits =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+std::uint32_t byte_at(std::span<const std::byte> bytes, std::size_t i) {
+    return i < bytes.size() ? std::to_integer<std::uint32_t>(bytes[i]) : 0;
+}
+
+}  // namespace
+
+std::string script_literal(std::string_view text) {
+    std::string literal = "\"";
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code < 0x20 || c == '"' || c == '\\' || c == '<' || c == '>' || c == '&') {
+            std::array<char, 8> escaped{};
+            std::snprintf(escaped.data(), escaped.size(), "\\u%04x", static_cast<unsigned>(code));
+            literal += escaped.data();
+        } else {
+            literal += c;
+        }
+    }
+    return literal + "\"";
+}
+
+std::string base64_of(std::span<const std::byte> bytes) {
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::uint32_t group =
+            byte_at(bytes, i) << 16 | byte_at(bytes, i + 1) << 8 | byte_at(bytes, i + 2);
+        text += kDigits[group >> 18];
+        text += kDigits[group >> 12 & 63];
+        text += i + 1 < bytes.size() ? kDigits[group >> 6 & 63] : '=';
+        text += i + 2 < bytes.size() ? kDigits[group & 63] : '=';
+    }
+    return text;
+}
+
+void DataScript::add(std::string_view name, const char* type, std::span<const std::byte> bytes) {
+    add_statement("opaline.put(" + script_literal(owner_) + "," + script_literal(name) + ",\"" +
+                  type + "\",\"" + base64_of(bytes) + "\")");
+}
+
+void DataScript::add_statement(std::string_view statement) {
+    text_ += statement;
+    text_ += ";\n";
+}
+
+}  // namespace opaline::runtime

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace opaline::runtime {
+
+/// A script that hands arrays to the page: browsers that open a page from a disk read scripts, but
+/// no other files.
+
+/// Text as a literal of JavaScript, which is safe inside HTML too.
+std::string script_literal(std::string_view text);
+
+/// As RFC 4648 has it, padded.
+std::string base64_of(std::span<const std::byte> bytes);
+
+/// One call `opaline.put(owner, name, type, base64)` after the other; `data.js` answers them.
+class DataScript {
+  public:
+    explicit DataScript(std::string owner) : owner_(std::move(owner)) {}
+
+    void put(std::string_view name, std::span<const std::uint8_t> values) {
+        add(name, "u8", values);
+    }
+    void put(std::string_view name, std::span<const std::int8_t> values) {
+        add(name, "i8", values);
+    }
+    void put(std::string_view name, std::span<const std::int16_t> values) {
+        add(name, "i16", values);
+    }
+    void put(std::string_view name, std::span<const std::uint16_t> values) {
+        add(name, "u16", values);
+    }
+    void put(std::string_view name, std::span<const std::uint32_t> values) {
+        add(name, "u32", values);
+    }
+    void put(std::string_view name, std::span<const float> values) { add(name, "f32", values); }
+    /// Records as they stand in the file (formats/README.md), as words of four bytes.
+    template <class Record>
+    void put_records(std::string_view name, std::span<const Record> records) {
+        add(name, "u32", std::as_bytes(records));
+    }
+    /// A statement of its own.
+    void add_statement(std::string_view statement);
+
+    const std::string& text() const { return text_; }
+
+  private:
+    template <class T>
+    void add(std::string_view name, const char* type, std::span<const T> values) {
+        add(name, type, std::as_bytes(values));
+    }
+    void add(std::string_view name, const char* type, std::span<const std::byte> bytes);
+
+    std::string owner_, text_;
+};
+
+}  // namespace opaline::runtime

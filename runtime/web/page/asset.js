@@ -1,0 +1,78 @@
+"use strict";
+// The asset's records, as formats/README.md has them.
+const Asset = (() => {
+  const kNoImage = 0xffffffff;
+  const floats = words => new Float32Array(words.buffer, words.byteOffset, words.length);
+  const image = number => number === kNoImage ? null : number;
+  const large = (words, at) => words[at] + words[at + 1] * 2 ** 32;
+
+  // Calls make(words, floats) for each record of `size` words.
+  function records(words, size, make) {
+    const list = [];
+    for (let at = 0; at < words.length; at += size) {
+      const record = words.subarray(at, at + size);
+      list.push(make(record, floats(record)));
+    }
+    return list;
+  }
+
+  function readPrimitives(words) {
+    return records(words, 20, (w, f) => ({
+      firstVertex: w[4], vertices: w[5], firstIndex: w[6], indices: w[7], terms: w[8], bands: w[9],
+      firstRow: w[10], firstBandRow: w[11], firstCode: large(w, 12),
+      shading: ["", "diffuse", "translucent", "sheet"][w[14]], image: image(w[15]),
+      wrap: [w[16], w[17]], isDoubleSided: (w[18] & 1) !== 0, isSeparate: (w[18] & 2) !== 0,
+      eta: f[19], roughness: -1, gloss: null, hole: null, own: null, blocks: [] }));
+  }
+
+  function readGloss(words) {
+    return records(words, 10, (w, f) => f[1] < 0 ? null : {
+      metallic: f[0], roughness: f[1], f0f90: Array.from(f.subarray(2, 6)), image: image(w[6]),
+      wrap: [w[7], w[8]] });
+  }
+
+  // Triangles count vertices of the whole asset.
+  function absoluteTriangles(triangles, primitives) {
+    const absolute = new Uint32Array(triangles.length);
+    for (const p of primitives) {
+      for (let i = p.firstIndex; i < p.firstIndex + p.indices; ++i) {
+        absolute[i] = triangles[i] + p.firstVertex;
+      }
+    }
+    return absolute;
+  }
+
+  function read(arrays) {
+    const primitives = readPrimitives(arrays.get("primitives"));
+    arrays.get("roughness").forEach((roughness, p) => { primitives[p].roughness = roughness; });
+    readGloss(arrays.get("gloss")).forEach((gloss, p) => { primitives[p].gloss = gloss; });
+    records(arrays.get("holes"), 8, (w, f) => {
+      primitives[w[0]].hole = { image: image(w[1]), wrap: [w[2], w[3]], alpha: f[4], cutoff: f[5],
+                                mode: w[6] };
+    });
+    records(arrays.get("own lights"), 8, (w, f) => {
+      primitives[w[0]].own = { emitter: w[1], radiance: Array.from(f.subarray(2, 5)),
+                               image: image(w[5]), wrap: [w[6], w[7]] };
+    });
+    records(arrays.get("emitter blocks"), 6, (w, f) => {
+      primitives[w[1]].blocks.push({ emitter: w[0], firstValue: large(w, 2), scale: f[4] });
+    });
+    const [cubemap, codeBits] = arrays.get("widths"), sizes = arrays.get("image sizes");
+    return {
+      primitives, camera: arrays.get("camera"),
+      position: arrays.get("position"), normal: arrays.get("normal"),
+      baseColor: arrays.get("base color"), texcoord: arrays.get("texcoord"),
+      openness: arrays.get("openness"), alpha: arrays.get("alpha"), albedo: arrays.get("albedo"),
+      triangles: absoluteTriangles(arrays.get("triangles"), primitives),
+      images: Array.from({ length: sizes.length / 2 }, (_, i) => ({
+        width: sizes[2 * i], height: sizes[2 * i + 1], pixels: arrays.get(`image ${i}`) })),
+      emitterValues: arrays.get("emitter values"),
+      rows: { cubemap, squares: codeBits === 8, offset: arrays.get("row offset"),
+              averageScale: arrays.get("average scale"), detailScale: arrays.get("detail scale"),
+              averageCode: arrays.get("average code"), index: arrays.get("index"),
+              code: arrays.get("code") },
+    };
+  }
+
+  return { read };
+})();

@@ -1,0 +1,412 @@
+"use strict";
+// WebGL 2: an asset before its light, a sample of every pixel at a time. Programs are specialised as
+// those of runtime/gl/gl_surfaces.cpp.
+const Draw = (() => {
+  const kColumns = 2048;  // of the texture of products
+  const kUnits = ["products", "base_color_image", "mirrored_light", "light_maps", "gloss_image",
+                  "own_image", "hole_image", "srgb_table", "cells", "sun_table", "albedo", "map",
+                  "disc_table", "sampled", "sum"];
+
+  // GLSL ES 3.00 has no explicit places of what passes between stages, nor of uniforms.
+  function translate(text, stage) {
+    const passed = stage === "vertex" ? "out" : "in";
+    return text.replace(/layout\((location|binding) = \d+\) uniform/g, "uniform")
+        .replace(new RegExp(`layout\\(location = \\d+\\) ${passed} `, "g"), `${passed} `);
+  }
+
+  const kHead = "#version 300 es\n#define DATA_IN_TEXTURES\n" +
+      ["float", "int", "sampler2D", "sampler2DArray", "usampler2D"]
+          .map(type => `precision highp ${type};\n`).join("");
+
+  function compile(gl, kind, stage, text) {
+    const shader = gl.createShader(kind);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) {
+      throw new Error(`the browser refuses a ${stage} shader: ${gl.getShaderInfoLog(shader)}`);
+    }
+    return shader;
+  }
+
+  // A program and its uniforms; samplers have the units of their names.
+  function makeProgram(gl, defines, vertexFiles, fragmentFiles) {
+    const name = gl.createProgram();
+    const stages = [[gl.VERTEX_SHADER, "vertex", vertexFiles],
+                    [gl.FRAGMENT_SHADER, "fragment", fragmentFiles]];
+    for (const [kind, stage, files] of stages) {
+      const text = files.map(file => translate(opaline.shaders[file], stage)).join("\n");
+      const head = defines.map(([word, value]) => `#define ${word} ${value}\n`).join("");
+      gl.attachShader(name, compile(gl, kind, stage, kHead + head + text));
+    }
+    gl.linkProgram(name);
+    if (!gl.getProgramParameter(name, gl.LINK_STATUS) && !gl.isContextLost()) {
+      throw new Error(`the browser refuses a program: ${gl.getProgramInfoLog(name)}`);
+    }
+    gl.useProgram(name);
+    const uniforms = new Map();
+    for (let i = 0; i < (gl.getProgramParameter(name, gl.ACTIVE_UNIFORMS) ?? 0); ++i) {
+      const { name: uniform, type } = gl.getActiveUniform(name, i);
+      const place = gl.getUniformLocation(name, uniform);
+      uniforms.set(uniform, { type, place });
+      if (kUnits.includes(uniform)) gl.uniform1i(place, kUnits.indexOf(uniform));
+    }
+    return { name, uniforms };
+  }
+
+  // Those that the program has; it is in use.
+  function setUniforms(gl, program, values) {
+    for (const [name, value] of Object.entries(values)) {
+      const uniform = program.uniforms.get(name);
+      if (uniform === undefined) continue;
+      const { type, place } = uniform;
+      switch (type) {
+        case gl.FLOAT: gl.uniform1f(place, value); break;
+        case gl.FLOAT_VEC2: gl.uniform2fv(place, value); break;
+        case gl.FLOAT_VEC3: gl.uniform3fv(place, value); break;
+        case gl.FLOAT_VEC4: gl.uniform4fv(place, value); break;
+        case gl.FLOAT_MAT3: gl.uniformMatrix3fv(place, false, value); break;
+        case gl.INT: gl.uniform1i(place, value); break;
+        case gl.INT_VEC2: gl.uniform2iv(place, value); break;
+        case gl.UNSIGNED_INT: gl.uniform1ui(place, value); break;
+        case gl.UNSIGNED_INT_VEC2: gl.uniform2uiv(place, value); break;
+        default: throw new Error(`no uniform has the type of ${name}`);
+      }
+    }
+  }
+
+  function bind(gl, unit, texture, target = gl.TEXTURE_2D) {
+    gl.activeTexture(gl.TEXTURE0 + kUnits.indexOf(unit));
+    gl.bindTexture(target, texture);
+  }
+
+  function makeTexture(gl, target, levels, format, width, height, layers) {
+    if (Math.max(width, height) > gl.getParameter(gl.MAX_TEXTURE_SIZE)) {
+      throw new Error(`this device's graphics take no picture of ${width} x ${height}`);
+    }
+    const texture = gl.createTexture();
+    gl.activeTexture(gl.TEXTURE0 + 15);
+    gl.bindTexture(target, texture);
+    if (target === gl.TEXTURE_2D) gl.texStorage2D(target, levels, format, width, height);
+    else gl.texStorage3D(target, levels, format, width, height, layers);
+    gl.texParameteri(target, gl.TEXTURE_MIN_FILTER,
+                     levels > 1 ? gl.NEAREST_MIPMAP_NEAREST : gl.NEAREST);
+    gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+    gl.texParameteri(target, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(target, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+    return texture;
+  }
+
+  // `format`: internal, of the values, of one of them.
+  function makeTable(gl, format, width, height, values) {
+    const texture = makeTexture(gl, gl.TEXTURE_2D, 1, format[0], width, Math.max(height, 1));
+    if (height > 0) {
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, format[1], format[2], values);
+    }
+    return texture;
+  }
+
+  // A cube's faces, or one map, as layers; cube maps with all of their levels, if wanted.
+  function makeLayers(gl, width, height, layers, pixels, levels = 1) {
+    const texture = makeTexture(gl, gl.TEXTURE_2D_ARRAY, levels, gl.RGB32F, width, height, layers);
+    for (let level = 0; level < levels; ++level) {
+      gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, level, 0, 0, 0, width >> level, height >> level, layers,
+                       gl.RGB, gl.FLOAT, pixels);
+      if (level + 1 < levels) pixels = Light.halveCube(pixels, width >> level);
+    }
+    return texture;
+  }
+
+  function makeVertexArray(gl, asset) {
+    const array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    const attribute = (place, values, size, type = gl.FLOAT, stride = 0, offset = 0) => {
+      if (values.length === 0) return;
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, size, type, type !== gl.FLOAT, stride, offset);
+    };
+    attribute(0, asset.position, 3);
+    attribute(2, asset.baseColor, 3);
+    attribute(3, asset.texcoord, 2);
+    attribute(4, asset.normal, 3);
+    attribute(5, asset.openness, 2, gl.BYTE, 4, 0);
+    attribute(6, asset.openness, 1, gl.UNSIGNED_BYTE, 4, 2);
+    attribute(7, asset.alpha, 1);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, asset.triangles, gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+    return array;
+  }
+
+  // [defines, files before the fragment shader] of a primitive.
+  function kindOf(primitive, hasAlpha) {
+    const { shading, terms, gloss, hole, own } = primitive, c = opaline.constants;
+    const isTranslucent = shading === "translucent", mirrors = primitive.roughness >= 0;
+    const harmonics = isTranslucent ? terms - (primitive.isSeparate ? 1 : 0) : 0;
+    const hasImage = primitive.image !== null || gloss?.image != null || own?.image != null ||
+                     hole?.image != null;
+    const words = {
+      TEXTURED: primitive.image !== null, TRANSLUCENT: isTranslucent, MIRRORING: mirrors,
+      GLOSS: gloss, GLOSS_TEXTURED: gloss?.image != null, GLOWS: own,
+      OWN_TEXTURED: own?.image != null, HOLES: hole, HOLE_IMAGE: hole?.image != null,
+      HOLE_VERTICES: hole && hasAlpha, HAS_TEXCOORD: hasImage, HAS_VIEW: isTranslucent || gloss,
+      HAS_OPENNESS: mirrors || gloss, SHEET: shading === "sheet", OPAQUE: shading === "diffuse",
+      SEPARATE: primitive.isSeparate };
+    const defines = Object.entries(words).filter(([, wanted]) => wanted).map(([word]) => [word, ""]);
+    defines.push(["RADIANCE_OF_ROWS", ""], ["FORWARD_DEPTH", ""], ["TERMS", terms],
+                 ["HARMONICS", harmonics], ["WRAP_CLAMP", 1], ["WRAP_MIRROR", 2],
+                 ["SPREAD_SAMPLES", ""]);
+    for (const word of ["LOBE_TAPS", "ALBEDO_ROWS", "ALBEDO_COLUMNS", "NARROW_ROUGHNESS",
+                        "WIDE_ROUGHNESS"]) {
+      defines.push([word, c[word]]);
+    }
+    const files = [];
+    if (hasImage) files.push("image.glsl");
+    if (mirrors || gloss) files.push("cube_map.glsl");
+    if (gloss) files.push("gloss.glsl");
+    if (hole) files.push("holes.glsl");
+    return [defines, files];
+  }
+
+  // Cosine and sine of the half angle of a lobe, as lobe_of_alpha of runtime/specular.cpp.
+  function lobeOf(level) {
+    const roughness = level / opaline.constants.roughnessSteps;
+    const a = Math.max(roughness * roughness, 0.05);
+    return [(1 - a * a) / (1 + a * a), 2 * a / (1 + a * a)];
+  }
+
+  const levelOf = roughness => Math.round(roughness * opaline.constants.roughnessSteps);
+
+  // What never changes: geometry, images, programs.
+  function makeAssetObjects(gl, asset) {
+    const rows = asset.rows.offset.length - 1, lines = Math.max(1, Math.ceil(rows / kColumns));
+    const programs = new Map();
+    const surfaces = asset.primitives.map(primitive => {
+      const [defines, files] = kindOf(primitive, asset.alpha.length > 0);
+      const key = JSON.stringify(defines);
+      if (!programs.has(key)) {
+        programs.set(key, makeProgram(
+            gl, defines, ["view_terms.glsl", "radiance_of_rows.glsl", "surface.vert.glsl"],
+            [...files, "surface.frag.glsl"]));
+      }
+      return { primitive, program: programs.get(key) };
+    });
+    const srgb = Float32Array.from({ length: 256 }, (_, code) => {
+      const x = code / 255;
+      return x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
+    });
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    return {
+      surfaces, array: makeVertexArray(gl, asset), lines,
+      values: new Float32Array(4 * kColumns * lines),
+      products: makeTexture(gl, gl.TEXTURE_2D, 1, gl.RGBA32F, kColumns, lines),
+      images: asset.images.map(image => makeTable(
+          gl, [gl.RGB8UI, gl.RGB_INTEGER, gl.UNSIGNED_BYTE], image.width, image.height, image.pixels)),
+      srgb: makeTable(gl, [gl.R32F, gl.RED, gl.FLOAT], 256, 1, srgb),
+      albedo: makeTable(gl, [gl.RG32F, gl.RG, gl.FLOAT], opaline.constants.ALBEDO_COLUMNS,
+                        asset.albedo.length > 0 ? opaline.constants.ALBEDO_ROWS : 0, asset.albedo),
+    };
+  }
+
+  // Of one light, for all of its turns.
+  function makeLightObjects(gl, light, asset) {
+    const discs = values => makeTable(gl, [gl.RGBA32F, gl.RGBA, gl.FLOAT], 2, values.length / 8, values);
+    const { background } = light, mirrored = new Map();
+    for (const { roughness } of asset.primitives.filter(p => p.roughness >= 0)) {
+      const level = levelOf(roughness), pixels = light.mirrored(level);
+      if (mirrored.has(level) || pixels === null) continue;
+      const side = Math.round(Math.sqrt(pixels.length / 18));
+      mirrored.set(level, makeLayers(gl, side, side, 6, pixels));
+    }
+    const hasGloss = asset.primitives.some(p => p.gloss !== null);
+    return {
+      mirrored, suns: light.suns.length / 8, discs: light.discs.length / 8,
+      sunTable: discs(light.suns), discTable: discs(light.discs), cells: discs(light.cells),
+      maps: hasGloss ? makeLayers(gl, Light.kSide, Light.kSide, 6, light.cube, 8) : null,
+      map: background.layout === 0 ? null
+          : makeLayers(gl, background.width, background.height, background.layout === 2 ? 6 : 1,
+                       background.pixels),
+    };
+  }
+
+  function freeLightObjects(gl, objects) {
+    [...objects.mirrored.values(), objects.sunTable, objects.discTable, objects.cells, objects.maps,
+     objects.map].forEach(texture => gl.deleteTexture(texture));
+  }
+
+  function makeTarget(gl, width, height, format, hasDepth) {
+    const target = { frame: gl.createFramebuffer(), depth: null,
+                     color: makeTexture(gl, gl.TEXTURE_2D, 1, format, width, height) };
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target.color, 0);
+    if (hasDepth) {
+      target.depth = gl.createRenderbuffer();
+      gl.bindRenderbuffer(gl.RENDERBUFFER, target.depth);
+      gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT32F, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, target.depth);
+    }
+    return target;
+  }
+
+  function freeTarget(gl, target) {
+    gl.deleteFramebuffer(target.frame);
+    gl.deleteTexture(target.color);
+    gl.deleteRenderbuffer(target.depth);
+  }
+
+  // Interface: setLight(light), setProducts(coefficients, colors), resize(width, height),
+  // drawSample(...), present(...), readPixels(...).
+  function make(canvas, asset) {
+    const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false });
+    if (gl === null) throw new Error("this browser has no WebGL 2: use a current one, or allow it " +
+                                     "to use the graphics of this device");
+    if (gl.getExtension("EXT_color_buffer_float") === null) {
+      throw new Error("the graphics of this device draw no numbers beyond 8 bits");
+    }
+    // Where floats cannot be added up, halves can.
+    const sumFormat = gl.getExtension("EXT_float_blend") === null ? gl.RGBA16F : gl.RGBA32F;
+    const objects = makeAssetObjects(gl, asset);
+    const background = makeProgram(gl, [], ["screen.vert.glsl"],
+                                   ["cube_map.glsl", "environment.glsl", "background.frag.glsl"]);
+    const adding = makeProgram(gl, [], ["screen.vert.glsl"], ["add_sample.frag.glsl"]);
+    const presenting = makeProgram(gl, [], ["screen.vert.glsl"], ["present.frag.glsl"]);
+    let size = [0, 0], sampled = null, sum = null, light = null, lightObjects = null;
+
+    function setLight(next) {
+      if (lightObjects !== null) freeLightObjects(gl, lightObjects);
+      light = next;
+      lightObjects = makeLightObjects(gl, light, asset);
+    }
+
+    function setProducts(coefficients, colors) {
+      Rows.multiply(asset, coefficients, colors, objects.values);
+      bind(gl, "products", objects.products);
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, kColumns, objects.lines, gl.RGBA, gl.FLOAT,
+                       objects.values);
+    }
+
+    function resize(width, height) {
+      if (size[0] === width && size[1] === height) return;
+      if (sum !== null) [sampled, sum].forEach(target => freeTarget(gl, target));
+      size = [width, height];
+      sampled = makeTarget(gl, width, height, gl.RGBA32F, true);
+      sum = makeTarget(gl, width, height, sumFormat, false);
+    }
+
+    // From the world to the light, which is turned about +Y; column by column.
+    function lightFromWorld(turn) {
+      const c = Math.cos(turn), s = Math.sin(turn);
+      return [c, 0, s, 0, 1, 0, -s, 0, c];
+    }
+
+    function drawBackground(frame, turn, place) {
+      gl.useProgram(background.name);
+      bind(gl, "map", lightObjects.map, gl.TEXTURE_2D_ARRAY);
+      bind(gl, "disc_table", lightObjects.discTable);
+      setUniforms(gl, background, {
+        tile_origin: place.map(offset => offset - 0.5), to_plane: [2 / size[0], 2 / size[1]],
+        right: Vector.times(frame.tangent[0], frame.right),
+        down: Vector.times(-frame.tangent[1], frame.up), forward: frame.forward,
+        light_from_world: lightFromWorld(turn), layout_kind: light.background.layout,
+        u_offset_sign: light.background.turn, rows_include_poles: light.background.includesPoles,
+        discs: lightObjects.discs });
+      gl.disable(gl.DEPTH_TEST);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
+    // Of the primitive alone.
+    function surfaceUniforms(primitive, colors) {
+      const { gloss, hole, own } = primitive, level = levelOf(Math.max(primitive.roughness, 0));
+      const bindImage = (unit, number) => {
+        if (number != null) bind(gl, unit, objects.images[number]);
+      };
+      bindImage("base_color_image", primitive.image);
+      bindImage("gloss_image", gloss?.image);
+      bindImage("own_image", own?.image);
+      bindImage("hole_image", hole?.image);
+      bind(gl, "mirrored_light", lightObjects.mirrored.get(level) ?? null, gl.TEXTURE_2D_ARRAY);
+      return {
+        first_row: (primitive.firstRow - primitive.firstVertex * primitive.terms) >>> 0,
+        shown: 1, wrap: primitive.wrap, eta: primitive.eta,
+        is_double_sided: primitive.isDoubleSided ? 1 : 0, has_specular: 1, lobe: lobeOf(level),
+        f0_f90: gloss?.f0f90 ?? [0, 0, 0, 0],
+        metallic_roughness: [gloss?.metallic ?? 0, gloss?.roughness ?? 0],
+        gloss_wrap: gloss?.wrap ?? [0, 0],
+        own_light: own ? own.radiance.map((x, k) => x * colors[own.emitter][k]) : [0, 0, 0],
+        own_wrap: own?.wrap ?? [0, 0],
+        hole: hole ? [hole.alpha, hole.cutoff, hole.mode] : [1, 0, 1],
+        hole_wrap: hole?.wrap ?? [0, 0] };
+    }
+
+    function drawSurfaces(frame, turn, colors, place, across, number) {
+      bind(gl, "products", objects.products);
+      bind(gl, "srgb_table", objects.srgb);
+      bind(gl, "albedo", objects.albedo);
+      bind(gl, "cells", lightObjects.cells);
+      bind(gl, "sun_table", lightObjects.sunTable);
+      bind(gl, "light_maps", lightObjects.maps, gl.TEXTURE_2D_ARRAY);
+      const shared = {
+        eye: frame.eye, right: Vector.times(1 / frame.tangent[0], frame.right),
+        down: Vector.times(-1 / frame.tangent[1], frame.up), forward: frame.forward,
+        unit: frame.unit, near_plane: frame.unit * frame.near,
+        tile: [1, 1, (1 - 2 * place[0]) / size[0], (1 - 2 * place[1]) / size[1]],
+        light_from_world: lightFromWorld(turn), suns: lightObjects.suns,
+        first_sample: number, sample_step: across };
+      gl.enable(gl.DEPTH_TEST);
+      gl.bindVertexArray(objects.array);
+      for (const { primitive, program } of objects.surfaces) {
+        gl.useProgram(program.name);
+        setUniforms(gl, program, { ...shared, ...surfaceUniforms(primitive, colors) });
+        gl.drawElements(gl.TRIANGLES, primitive.indices, gl.UNSIGNED_INT, 4 * primitive.firstIndex);
+      }
+      gl.bindVertexArray(null);
+    }
+
+    // Sample (i, j) of across x across in each pixel; `isFirst` begins a new sum.
+    function drawSample(frame, { turn, exposure, colors }, [i, j], across, isFirst) {
+      const place = [(i + 0.5) / across, (j + 0.5) / across];
+      gl.disable(gl.BLEND);
+      gl.viewport(0, 0, ...size);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, sampled.frame);
+      gl.clear(gl.DEPTH_BUFFER_BIT);
+      drawBackground(frame, turn, place);
+      drawSurfaces(frame, turn, colors, place, across, [i, j]);
+      gl.disable(gl.DEPTH_TEST);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, sum.frame);
+      gl.useProgram(adding.name);
+      bind(gl, "sampled", sampled.color);
+      setUniforms(gl, adding, { gain: 2 ** exposure });
+      if (!isFirst) gl.enable(gl.BLEND);
+      gl.blendFunc(gl.ONE, gl.ONE);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+      gl.disable(gl.BLEND);
+    }
+
+    // The mean of so many samples to the canvas, or to `target` of the sum's size.
+    function present(samples, target = null) {
+      const [width, height] = target === null ? [canvas.width, canvas.height] : size;
+      gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+      gl.viewport(0, 0, width, height);
+      gl.useProgram(presenting.name);
+      bind(gl, "sum", sum.color);
+      setUniforms(gl, presenting, { share: 1 / samples, scale: [size[0] / width, size[1] / height],
+                                    rows: target === null ? height : 0 });
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
+    // Bytes of the picture, four a pixel, the top row first.
+    function readPixels(samples) {
+      const target = makeTarget(gl, ...size, gl.RGBA8, false);
+      present(samples, target.frame);
+      const pixels = new Uint8ClampedArray(4 * size[0] * size[1]);
+      gl.readPixels(0, 0, ...size, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      freeTarget(gl, target);
+      return pixels;
+    }
+
+    return { setLight, setProducts, resize, drawSample, present, readPixels };
+  }
+
+  return { make };
+})();

@@ -1,0 +1,320 @@
+"use strict";
+// The page: what the viewer asks for, and drawing it: one sample of each pixel at once, the others
+// frame by frame while nothing changes.
+opaline.page = (() => {
+  const kAcross = 3;  // samples a side of a pixel, as `opaline render` has
+  const kOrder = [[1, 1], [0, 0], [2, 2], [2, 0], [0, 2], [1, 0], [1, 2], [0, 1], [2, 1]];
+  const kSlowFrame = 60, kRest = 250;  // [ms]
+  const at = id => document.getElementById(id);
+  const canvas = at("canvas");
+  const lights = new Map();  // by number, as read
+  let asset, draw, state, home;
+  let drawn = 0;             // samples of the current picture
+  let shown = { light: -1, turn: NaN, colors: null };
+  let requested = false, moved = 0, lastFrame = 0, coarseness = 1;
+
+  function say(text) { at("message").textContent = text; }
+
+  function fail(error) {
+    say(`This page cannot be shown: ${error.message ?? error}.`);
+    throw error;
+  }
+
+  const numbers = text => text.split(",").map(Number);
+  const areFinite = (values, count) => values.length === count && values.every(Number.isFinite);
+
+  // From the address, after '#': what `opaline render` calls --light, --eye and so on.
+  function readAddress() {
+    const given = new URLSearchParams(location.hash.slice(1));
+    const number = (name, otherwise, low, high) => {
+      const value = parseFloat(given.get(name));
+      return Number.isFinite(value) ? Math.min(high, Math.max(low, value)) : otherwise;
+    };
+    const point = name => {
+      const values = numbers(given.get(name) ?? "");
+      return areFinite(values, 3) ? values : null;
+    };
+    let view = { ...home, target: point("target") ?? home.target,
+                 fov: number("fov", home.fov, 1, 170) };
+    view.azimuth = number("azimuth", view.azimuth, -1e6, 1e6);
+    view.elevation = number("elevation", view.elevation, -89.9, 89.9);
+    view.distance = number("distance", view.distance, 1e-30, 1e30);
+    if (point("eye") !== null) view = Camera.withEye(view, point("eye"));
+    const colors = opaline.emitters.map(() => [1, 1, 1]);
+    for (const text of given.getAll("emitter")) {
+      const equals = text.lastIndexOf("="), emitter = opaline.emitters.indexOf(text.slice(0, equals));
+      const factors = numbers(text.slice(equals + 1));
+      if (emitter >= 0 && areFinite(factors, 3)) colors[emitter] = factors.map(f => Math.max(f, 0));
+    }
+    const light = Math.max(0, opaline.lights.indexOf(given.get("light")));
+    return { view, light, turn: number("rotate", 0, -1e6, 1e6),
+             exposure: number("exposure", 0, -64, 64), colors };
+  }
+
+  // So that the address can be kept or passed on.
+  let addressTimer = 0;
+  function writeAddress() {
+    clearTimeout(addressTimer);
+    addressTimer = setTimeout(() => {
+      const { view, light, turn, exposure, colors } = state, digits = x => String(+x.toPrecision(6));
+      const parts = new URLSearchParams({
+        light: opaline.lights[light], rotate: digits(turn), exposure: digits(exposure),
+        azimuth: digits(view.azimuth), elevation: digits(view.elevation),
+        distance: digits(view.distance), target: view.target.map(digits).join(",") });
+      if (view.fov !== home.fov) parts.set("fov", digits(view.fov));
+      colors.forEach((color, e) => {
+        if (color.some(c => c !== 1)) {
+          parts.append("emitter", `${opaline.emitters[e]}=${color.map(digits).join(",")}`);
+        }
+      });
+      try { history.replaceState(null, "", `#${parts}`); } catch { /* some browsers refuse files */ }
+    }, 300);
+  }
+
+  function request() {
+    if (!requested) requestAnimationFrame(tick);
+    requested = true;
+  }
+
+  function change(parts) {
+    Object.assign(state, parts);
+    drawn = 0;
+    moved = performance.now();
+    showValues();
+    writeAddress();
+    request();
+  }
+
+  async function lightOf(number) {
+    if (!lights.has(number)) {
+      const owner = `light-${number}`;
+      await opaline.load(`${owner}.js`);
+      lights.set(number, Light.read(opaline.arraysOf(owner)));
+    }
+    return lights.get(number);
+  }
+
+  // Brings the light of rows up to date; false while its script is being read.
+  function relight() {
+    const { light, turn, colors } = state;
+    if (!lights.has(light)) {
+      lightOf(light).then(() => { drawn = 0; request(); }).catch(fail);
+      return false;
+    }
+    if (shown.light !== light) draw.setLight(lights.get(light));
+    if (shown.light !== light || shown.turn !== turn || shown.colors !== colors) {
+      const n = asset.rows.cubemap;
+      draw.setProducts(Light.project(lights.get(light), n, turn * Math.PI / 180), colors);
+    }
+    shown = { light, turn, colors };
+    return true;
+  }
+
+  function drawNext(width, height) {
+    draw.resize(width, height);
+    const frame = Camera.frame(state.view, asset.camera, width / height);
+    const seen = { turn: state.turn * Math.PI / 180, exposure: state.exposure, colors: state.colors };
+    draw.drawSample(frame, seen, kOrder[drawn], kAcross, drawn === 0);
+    drawn += 1;
+  }
+
+  // Devices that are too slow draw fewer pixels while something moves.
+  function tick(now) {
+    requested = false;
+    if (!relight()) return;
+    const isMoving = now - moved < kRest;
+    if (isMoving && now - lastFrame > kSlowFrame && now - lastFrame < 1000) {
+      coarseness = Math.min(coarseness * 2, 4);
+    }
+    lastFrame = now;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
+    const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
+    if (canvas.width !== width || canvas.height !== height) {
+      canvas.width = width;
+      canvas.height = height;
+      drawn = 0;
+    }
+    const coarse = isMoving ? coarseness : 1;
+    if (!isMoving && coarseness > 1) {
+      coarseness = 1;
+      drawn = 0;
+    }
+    if (drawn < kOrder.length) drawNext(Math.ceil(width / coarse), Math.ceil(height / coarse));
+    draw.present(drawn);
+    say("");
+    if (drawn < kOrder.length || coarse > 1) request();
+  }
+
+  // All samples of a picture of that size, as the address or the viewer has it.
+  async function takePicture(width, height) {
+    await lightOf(state.light);
+    relight();
+    drawn = 0;
+    while (drawn < kOrder.length) drawNext(width, height);
+    const pixels = draw.readPixels(drawn);
+    drawn = 0;
+    request();
+    return { width, height, pixels };
+  }
+
+  async function savePicture() {
+    const { width, height, pixels } = await takePicture(canvas.width, canvas.height);
+    const flat = document.createElement("canvas");
+    flat.width = width;
+    flat.height = height;
+    flat.getContext("2d").putImageData(new ImageData(pixels, width, height), 0, 0);
+    flat.toBlob(blob => {
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(blob);
+      link.download = `${opaline.title}.png`;
+      link.click();
+      URL.revokeObjectURL(link.href);
+    });
+  }
+
+  function turnView(degreesX, degreesY) {
+    const { view } = state;
+    change({ view: { ...view, azimuth: view.azimuth + degreesX,
+                     elevation: Math.min(89.9, Math.max(-89.9, view.elevation + degreesY)) } });
+  }
+
+  function moveCloser(factor) {
+    change({ view: { ...state.view, distance: state.view.distance * factor } });
+  }
+
+  // The target follows the pointer: [CSS pixels].
+  function moveTarget(x, y) {
+    const { view } = state, frame = Camera.frame(view, asset.camera, 1);
+    const size = 2 * view.distance * frame.tangent[1] / canvas.clientHeight;
+    const move = Vector.add(Vector.times(-x * size, frame.right), Vector.times(y * size, frame.up));
+    change({ view: { ...view, target: Vector.add(view.target, move) } });
+  }
+
+  function listenToPointers() {
+    const pointers = new Map();
+    const spread = () => {
+      const [a, b] = [...pointers.values()];
+      return Math.max(1, Math.hypot(a.x - b.x, a.y - b.y));
+    };
+    canvas.addEventListener("pointerdown", event => {
+      canvas.setPointerCapture(event.pointerId);
+      pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    });
+    canvas.addEventListener("pointermove", event => {
+      const last = pointers.get(event.pointerId);
+      if (last === undefined) return;
+      const x = event.clientX - last.x, y = event.clientY - last.y;
+      const before = pointers.size === 2 ? spread() : 1;
+      pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+      if (pointers.size === 2) {
+        moveCloser(before / spread());
+        moveTarget(x / 2, y / 2);
+      } else if (event.buttons & 2 || event.shiftKey) {
+        moveTarget(x, y);
+      } else {
+        turnView(-0.3 * x, 0.3 * y);
+      }
+    });
+    for (const end of ["pointerup", "pointercancel"]) {
+      canvas.addEventListener(end, event => pointers.delete(event.pointerId));
+    }
+    canvas.addEventListener("contextmenu", event => event.preventDefault());
+    canvas.addEventListener("wheel", event => {
+      event.preventDefault();
+      const lines = event.deltaMode === 1 ? 30 : 1;
+      moveCloser(Math.exp(0.0015 * lines * Math.max(-300, Math.min(300, event.deltaY))));
+    }, { passive: false });
+    canvas.addEventListener("keydown", event => {
+      const keys = { ArrowLeft: () => turnView(-5, 0), ArrowRight: () => turnView(5, 0),
+                     ArrowUp: () => turnView(0, 5), ArrowDown: () => turnView(0, -5),
+                     "+": () => moveCloser(0.9), "-": () => moveCloser(1 / 0.9) };
+      if (keys[event.key] === undefined) return;
+      event.preventDefault();
+      keys[event.key]();
+    });
+  }
+
+  // Factors of an emitter on a slider: 0, then halvings and doublings of what was authored.
+  const factorOf = step => step <= -6 ? 0 : 2 ** step;
+  const stepOf = color => Math.max(...color) > 0 ? Math.log2(Math.max(...color)) : -6;
+
+  function makeEmitterSliders() {
+    opaline.emitters.forEach((name, e) => {
+      const label = document.createElement("label"), slider = document.createElement("input");
+      const output = document.createElement("output");
+      output.id = `emitter-${e}`;
+      Object.assign(slider, { type: "range", min: -6, max: 4, step: 0.1, id: `slider-${e}` });
+      label.append(`${name} `, output, slider);
+      at("emitters").append(label);
+      slider.addEventListener("input", () => {
+        const colors = state.colors.slice(), factor = factorOf(slider.valueAsNumber);
+        const most = Math.max(...colors[e]);  // its hue stays
+        colors[e] = most > 0 ? colors[e].map(c => c / most * factor) : [factor, factor, factor];
+        change({ colors });
+      });
+    });
+  }
+
+  // What a light that `--light` names is called here; files keep their names.
+  function labelOf(name) {
+    const words = { studio: "Studio", white: "White from everywhere", black: "Its own lamps alone" };
+    const [kind, first, second] = name.split(/[:,]/);
+    if (kind === "sky" && second) return `Sky, sun ${second}° high`;
+    if (kind === "sun" && second) return `Sun alone, ${second}° high`;
+    return first === undefined ? words[kind] ?? name : name;
+  }
+
+  function makeControls() {
+    document.title = at("title").textContent = opaline.title;
+    at("light").append(...opaline.lights.map((name, i) => new Option(labelOf(name), i)));
+    at("left-out").append(...opaline.leftOut.map(text => {
+      const item = document.createElement("li");
+      item.textContent = text;
+      return item;
+    }));
+    makeEmitterSliders();
+    at("light").addEventListener("change", () => change({ light: +at("light").value }));
+    at("turn").addEventListener("input", () => change({ turn: at("turn").valueAsNumber }));
+    at("exposure").addEventListener("input", () => change({ exposure: at("exposure").valueAsNumber }));
+    at("reset").addEventListener("click", () => {
+      change({ view: home, turn: 0, exposure: 0, colors: opaline.emitters.map(() => [1, 1, 1]) });
+    });
+    at("save").addEventListener("click", () => savePicture().catch(fail));
+    if (window.innerWidth < 640) at("panel").open = false;
+  }
+
+  function showValues() {
+    const turn = ((state.turn + 180) % 360 + 360) % 360 - 180;
+    at("light").value = state.light;
+    at("turn").value = turn;
+    at("turn-value").textContent = `${Math.round(turn)}°`;
+    at("exposure").value = state.exposure;
+    at("exposure-value").textContent = `${state.exposure > 0 ? "+" : ""}${state.exposure.toFixed(1)} EV`;
+    state.colors.forEach((color, e) => {
+      const step = stepOf(color);
+      at(`slider-${e}`).value = step;
+      at(`emitter-${e}`).textContent = `× ${+Math.max(...color).toPrecision(2)}`;
+    });
+  }
+
+  async function start() {
+    await opaline.load("asset-data.js");
+    asset = Asset.read(opaline.arraysOf("asset"));
+    home = Camera.framing(asset.camera, canvas.clientWidth / canvas.clientHeight);
+    state = readAddress();
+    makeControls();
+    draw = Draw.make(canvas, asset);
+    canvas.addEventListener("webglcontextlost", () => {
+      say("The graphics of this device have dropped the page: load it again.");
+    });
+    showValues();
+    listenToPointers();
+    new ResizeObserver(request).observe(canvas);
+    window.addEventListener("hashchange", () => change(readAddress()));
+    request();
+  }
+
+  const ready = start().catch(fail);
+  return { ready, takePicture };
+})();

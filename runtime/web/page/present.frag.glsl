@@ -1,0 +1,28 @@
+// From the sum of samples to the screen: mean, Khronos PBR Neutral, sRGB, as
+// runtime/picture/tone_map.cpp. Row 0 of the sum is the top of the picture.
+uniform sampler2D sum;
+uniform float share;  // 1 / number of samples
+uniform vec2 scale;   // texels of the sum a pixel
+uniform int rows;     // of the target; 0: it is not turned over
+layout(location = 0) out vec4 color;
+
+vec3 tone_map(vec3 c) {
+    float least = min(c.r, min(c.g, c.b));
+    c -= least < 0.08 ? least - least * least / 0.16 : 0.04;
+    float peak = max(c.r, max(c.g, c.b));
+    if (peak <= 0.76) return c;
+    float new_peak = 1.0 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
+    float keep = 1.0 / (0.15 * (peak - new_peak) + 1.0);
+    return clamp(new_peak + keep * (c / peak * new_peak - new_peak), 0.0, 1.0);
+}
+
+float encode(float linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+void main() {
+    vec2 at = gl_FragCoord.xy;
+    if (rows > 0) at.y = float(rows) - at.y;
+    vec3 c = tone_map(share * texelFetch(sum, ivec2(at * scale), 0).rgb);
+    color = vec4(encode(c.r), encode(c.g), encode(c.b), 1.0);
+}

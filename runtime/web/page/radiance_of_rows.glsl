@@ -1,0 +1,34 @@
+// What a vertex sends to the eye, from the products <T_k, L> in a texture of 2048 columns: the steps
+// of view.comp.glsl. Specialised by TERMS, the rows of a vertex; OPAQUE or SHEET or, of translucent
+// ones, HARMONICS and SEPARATE. view_terms.glsl comes before this.
+uniform sampler2D products;
+uniform uint first_row;  // of vertex 0, modulo 2^32
+#if HARMONICS > 1
+uniform float eta;
+uniform uint is_double_sided;
+#endif
+
+vec3 product_at(uint row) {
+    return texelFetch(products, ivec2(row & 2047u, row >> 11), 0).rgb;
+}
+
+vec3 radiance_of_rows(vec3 normal, vec3 to_eye) {
+    uint at = first_row + uint(gl_VertexID) * uint(TERMS);
+#if defined(SHEET)
+    return max(product_at(at + (dot(normal, to_eye) < 0.0 ? 1u : 0u)), 0.0);
+#elif defined(OPAQUE)
+    return max(product_at(at), 0.0);
+#else
+    vec3 sum = vec3(0.0);
+#ifdef SEPARATE
+    sum = product_at(at++);
+#endif
+#if HARMONICS > 1
+    return sum + sum_toward_eye(normal, to_eye, eta, is_double_sided != 0u, at);
+#elif HARMONICS == 1
+    return sum + product_at(at);
+#else
+    return sum;
+#endif
+#endif
+}

@@ -1,0 +1,104 @@
+#include "runtime/web/page_asset.h"
+
+#include <span>
+
+#include "formats/opal/ggx_albedo.h"
+#include "runtime/picture/camera.h"
+#include "runtime/web/data_script.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::AssetView;
+
+template <class T>
+std::span<const float> floats_of(std::span<const T> values) {
+    static_assert(sizeof(T) % sizeof(float) == 0);
+    return {reinterpret_cast<const float*>(values.data()),
+            values.size() * (sizeof(T) / sizeof(float))};
+}
+
+void put_rows(DataScript& script, const formats::SparseRowsView& rows) {
+    const std::uint32_t widths[] = {rows.cubemap_size, rows.code_bits, rows.index_bytes};
+    script.put("widths", std::span<const std::uint32_t>(widths));
+    script.put("row offset", rows.row_offset);
+    script.put("average scale", rows.average_scale);
+    script.put("detail scale", rows.detail_scale);
+    script.put("average code", rows.average_code);
+    rows.index_bytes == 2 ? script.put("index", rows.index16) : script.put("index", rows.index32);
+    rows.code_bits == 8 ? script.put("code", rows.code8) : script.put("code", rows.code16);
+}
+
+void put_images(DataScript& script, const AssetView& asset) {
+    std::vector<std::uint32_t> sizes;
+    for (std::size_t i = 0; i < asset.images.size(); ++i) {
+        sizes.push_back(asset.images[i].width);
+        sizes.push_back(asset.images[i].height);
+        script.put("image " + std::to_string(i), asset.images[i].rgb);
+    }
+    script.put("image sizes", std::span<const std::uint32_t>(sizes));
+}
+
+void put_emitters(DataScript& script, const formats::EmittersView& emitters) {
+    std::string names;
+    for (std::uint32_t i = 0; i < emitters.size(); ++i) {
+        names += (i == 0 ? "" : ",") + script_literal(emitters.name(i));
+    }
+    script.add_statement("opaline.emitters = [" + names + "]");
+    script.put_records("emitter blocks", emitters.block);
+    script.put_records("own lights", emitters.own);
+    script.put("emitter values", emitters.value);
+}
+
+// The default camera at a square picture, and the spheres that near planes depend on.
+void put_camera(DataScript& script, const AssetView& asset) {
+    const Camera camera = frame_asset(asset, 32, 1, 1);
+    const BoundingSphere all = bound_asset(asset);
+    const float values[] = {camera.eye.x,
+                            camera.eye.y,
+                            camera.eye.z,
+                            camera.target.x,
+                            camera.target.y,
+                            camera.target.z,
+                            static_cast<float>(all.x),
+                            static_cast<float>(all.y),
+                            static_cast<float>(all.z),
+                            static_cast<float>(all.radius)};
+    script.put("camera", std::span<const float>(values));
+}
+
+}  // namespace
+
+std::string make_asset_script(const AssetView& asset) {
+    DataScript script("asset");
+    put_camera(script, asset);
+    script.put_records("primitives", asset.primitives);
+    script.put("position", floats_of(asset.position));
+    script.put("normal", floats_of(asset.normal));
+    script.put("base color", floats_of(asset.base_color));
+    script.put("texcoord", floats_of(asset.texcoord));
+    script.put("triangles", asset.index);
+    script.put("roughness", asset.roughness);
+    script.put_records("openness", asset.openness);
+    script.put_records("gloss", asset.gloss);
+    script.put_records("holes", asset.holes.record);
+    script.put("alpha", asset.holes.vertex_alpha);
+    if (!asset.gloss.empty()) script.put("albedo", floats_of(formats::ggx_albedo_table()));
+    put_rows(script, asset.transport);
+    put_images(script, asset);
+    put_emitters(script, asset.emitters);
+    return script.text();
+}
+
+std::vector<std::string> left_out_of_page(const AssetView& asset) {
+    std::vector<std::string> left_out;
+    if (!asset.volumes.empty()) {
+        left_out.push_back("its volumes are not drawn; surfaces have their shadows");
+    }
+    if (!asset.clouds.empty()) {
+        left_out.push_back("its cloud layer is not drawn and does not dim the light");
+    }
+    return left_out;
+}
+
+}  // namespace opaline::runtime

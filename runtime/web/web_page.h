@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/opal/asset.h"
+#include "formats/opal/result.h"
+#include "runtime/web/page_light.h"
+
+namespace opaline::runtime {
+
+/// A file of a page's folder.
+struct PageFile {
+    std::string name, text;
+};
+
+/// Most bytes of an asset's arrays that a page holds: scripts are strings to a browser, of which
+/// some end at 512 MiB.
+inline constexpr std::uint64_t kMostPageBytes = 256u << 20;
+
+/// The files of a page that shows the surfaces of an asset under lights, one at least: it needs
+/// WebGL 2, no server, no network and no other file. `title` heads it. The page shows what
+/// `render_software` does, to rounding, but for left_out_of_page. `threads` 0: all cores; the files
+/// have the same bytes for any number.
+/// Errors: bad_input, for an asset without surfaces or beyond kMostPageBytes; `file` is for them.
+formats::Result<std::vector<PageFile>> make_web_page(const formats::AssetView& asset,
+                                                     std::span<const PageLight> lights,
+                                                     const std::string& title,
+                                                     const std::string& file, unsigned threads);
+
+/// Whether a file of that name may be one of a page.
+bool is_page_file(std::string_view name);
+
+}  // namespace opaline::runtime

@@ -1,0 +1,159 @@
+// What the page shows, in a headless browser.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "runtime/picture/software_renderer.h"
+#include "runtime/picture/tone_map.h"
+#include "runtime/shade.h"
+#include "tests/runtime/picture/synthetic_asset.h"
+#include "tests/runtime/web/browser.h"
+#include "tests/runtime/web/every_surface.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Rgb;
+
+// A view of the page, and what it is on the CPU.
+struct PageView {
+    std::string address;
+    float turn = 0;  // [degrees]
+    float exposure = 0;
+    std::vector<Rgb> emitters{{1, 1, 1}, {1, 1, 1}};
+};
+
+formats::Environment white() {
+    return test::make_lat_long(2, 1, [](formats::Vec3) { return Rgb{1, 1, 1}; });
+}
+
+formats::Environment sky_with_sun() {
+    formats::Environment sky = test::make_lat_long(128, 64, test::two_lights);
+    sky.discs = {{normalize(formats::Vec3{0.3f, 0.8f, 0.5f}), 0.0046f, {8000, 7000, 6000}}};
+    return sky;
+}
+
+DisplayPicture render_on_cpu(const formats::AssetView& view, const formats::Environment& sky,
+                             const Camera& camera, const PageView& wanted) {
+    const Rotation rotation = rotation_about_y(wanted.turn * std::numbers::pi_v<float> / 180);
+    const LightVector light = project_environment(sky, view.cubemap_size, rotation);
+    const SpecularLight specular = make_specular_light(sky, specular_needs(view), rotation, 0);
+    const EmitterLight emitters{wanted.emitters, true};
+    SoftwareOptions options;
+    options.specular = &specular;
+    options.emitters = emitters;
+    const auto picture = render_software(
+        view, shade_for_picture(view, light, camera.eye, formats::TermSet::all, 0, emitters), sky,
+        rotation, camera, options);
+    EXPECT_TRUE(picture);
+    return tone_map(*picture, wanted.exposure);
+}
+
+struct PixelRange {
+    int low = 255, high = 0;
+};
+
+// Of a pixel and its eight neighbours.
+PixelRange around(const DisplayPicture& picture, std::uint32_t x, std::uint32_t y,
+                  std::size_t band) {
+    PixelRange range;
+    for (std::uint32_t j = y == 0 ? 0 : y - 1; j <= std::min(y + 1, picture.height - 1); ++j) {
+        for (std::uint32_t i = x == 0 ? 0 : x - 1; i <= std::min(x + 1, picture.width - 1); ++i) {
+            const int value = picture.rgba[4 * (std::size_t{j} * picture.width + i) + band];
+            range = {std::min(range.low, value), std::max(range.high, value)};
+        }
+    }
+    return range;
+}
+
+// Within 2/255; where a sample lies beside an edge for one of the two, within its neighbours'
+// range.
+void expect_same_pixels(const DisplayPicture& cpu, const std::vector<std::uint8_t>& page) {
+    constexpr int kNear = 2;
+    ASSERT_EQ(cpu.rgba.size(), page.size());
+    const std::size_t pixels = page.size() / 4, allowed = pixels / 1000;
+    std::size_t at_edges = 0, wrong = 0;
+    for (std::uint32_t y = 0; y < cpu.height; ++y) {
+        for (std::uint32_t x = 0; x < cpu.width; ++x) {
+            const std::size_t at = 4 * (std::size_t{y} * cpu.width + x);
+            bool is_near = true, is_between = true;
+            for (std::size_t band = 0; band < 3; ++band) {
+                const int value = page[at + band];
+                const PixelRange range = around(cpu, x, y, band);
+                is_near = is_near && std::abs(value - cpu.rgba[at + band]) <= kNear;
+                is_between =
+                    is_between && value >= range.low - kNear && value <= range.high + kNear;
+            }
+            at_edges += is_near ? 0 : 1;
+            if (is_between) continue;
+            ++wrong;
+            EXPECT_LE(wrong, allowed)
+                << x << ", " << y << ": " << int{page[at]} << ' ' << int{page[at + 1]} << ' '
+                << int{page[at + 2]} << ", not " << int{cpu.rgba[at]} << ' '
+                << int{cpu.rgba[at + 1]} << ' ' << int{cpu.rgba[at + 2]};
+        }
+    }
+    EXPECT_LE(at_edges, pixels / 50);
+    EXPECT_LE(wrong, allowed);
+}
+
+TEST(PagePicture, EverySurfaceLooksAsOnTheCpuUnderTurnedLightAndDimmedEmitters) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    const formats::Asset asset = test::make_every_surface();
+    const formats::AssetView view = asset.view();
+    const PageLight lights[] = {{"white", white()}, {"my <sky>", sky_with_sun()}};
+    const auto page = make_web_page(view, lights, "a \"title\" </script>", "a.opal", 0);
+    ASSERT_TRUE(page);
+    Camera camera;
+    camera.fov_y = 32;
+    camera.width = 160;
+    camera.height = 120;
+    const PageView views[] = {{"light=my+%3Csky%3E&eye=0.5,2,7&target=0,0.7,0&rotate=40", 40},
+                              {"light=my+%3Csky%3E&eye=-3,3,-6&target=0,0.7,0&rotate=-130&exposure="
+                               "-0.7&emitter=b%3D0,0,0&"
+                               "emitter=a%3D2,1,0.5",
+                               -130,
+                               -0.7f,
+                               {{2, 1, 0.5f}, {0, 0, 0}}}};
+    for (const PageView& wanted : views) {
+        SCOPED_TRACE(wanted.address);
+        camera.eye = wanted.turn > 0 ? formats::Vec3{0.5f, 2, 7} : formats::Vec3{-3, 3, -6};
+        camera.target = {0, 0.7f, 0};
+        camera.near_plane = near_plane_for(view, camera.eye);
+        const auto shown = test::take_page_picture(*page, wanted.address, 160, 120);
+        EXPECT_EQ(shown.console, "");
+        EXPECT_EQ(shown.title, "a \"title\" &lt;/script&gt;");
+        expect_same_pixels(render_on_cpu(view, lights[1].environment, camera, wanted), shown.rgba);
+    }
+}
+
+// 5 degrees off the middle of the light's cube, in a picture that is higher than wide.
+TEST(PagePicture, DefaultViewIsTheOneOfPictures) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    formats::Asset asset = test::make_asset(8, 16);
+    test::add_primitive(asset, test::make_sphere({3, 1, -2}, 0.8f, 24, 16), {.bands = 3});
+    const PageLight lights[] = {{"sky", sky_with_sun()}};
+    const auto page = make_web_page(asset.view(), lights, "ball", "a.opal", 0);
+    ASSERT_TRUE(page);
+    // The window of a headless browser is 800 wide and 600 high, less its frame: of any height, the
+    // view is framed for it.
+    const auto shown = test::take_page_picture(*page, "", 160, 120);
+    EXPECT_EQ(shown.console, "");
+    const Camera camera = frame_asset(asset.view(), 32, 160, 120);
+    expect_same_pixels(render_on_cpu(asset.view(), lights[0].environment, camera, {}), shown.rgba);
+}
+
+TEST(PagePicture, WithoutWebGlThePageSaysSo) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    const formats::Asset asset = test::make_every_surface();
+    const PageLight lights[] = {{"white", white()}};
+    const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
+    ASSERT_TRUE(page);
+    const auto shown = test::open_page_without_webgl(*page);
+    EXPECT_NE(shown.message.find("has no WebGL 2"), std::string::npos) << shown.message;
+}
+
+}  // namespace
+}  // namespace opaline::runtime

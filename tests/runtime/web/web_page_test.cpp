@@ -1,0 +1,73 @@
+// The files of a page.
+#include "runtime/web/web_page.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "runtime/web/data_script.h"
+#include "runtime/web/page_asset.h"
+#include "tests/runtime/picture/synthetic_asset.h"
+
+namespace opaline::runtime {
+namespace {
+
+TEST(DataScript, Base64IsThatOfTheStandard) {
+    const std::string pairs[][2] = {{"", ""},
+                                    {"f", "Zg=="},
+                                    {"fo", "Zm8="},
+                                    {"foo", "Zm9v"},
+                                    {"foob", "Zm9vYg=="},
+                                    {"fooba", "Zm9vYmE="},
+                                    {"foobar", "Zm9vYmFy"},
+                                    {"\xff\xfe\xfb", "//77"}};
+    for (const auto& [bytes, text] : pairs) {
+        EXPECT_EQ(base64_of(std::as_bytes(std::span<const char>(bytes))), text);
+    }
+}
+
+TEST(DataScript, LiteralsEndNeitherTheirStringNorTheirScript) {
+    EXPECT_EQ(script_literal("a\"b\\c\n"), "\"a\\u0022b\\u005cc\\u000a\"");
+    EXPECT_EQ(script_literal("</script>&"), "\"\\u003c/script\\u003e\\u0026\"");
+    EXPECT_EQ(script_literal("Bäume"), "\"Bäume\"");
+}
+
+TEST(WebPage, AssetsWithoutSurfacesAreRefused) {
+    formats::Asset asset = test::make_asset(8, 8);
+    const PageLight lights[] = {{"white", {}}};
+    const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
+    ASSERT_FALSE(page);
+    EXPECT_EQ(page.error().kind, formats::ErrorKind::bad_input);
+    EXPECT_NE(page.error().diagnostics[0].fault.find("has no surfaces"), std::string::npos);
+}
+
+TEST(WebPage, FilesAreAlikeForAnyNumberOfThreadsAndKnownAsThoseOfAPage) {
+    formats::Asset asset = test::make_asset(8, 8);
+    test::add_primitive(asset, test::make_sphere({0, 0, 0}, 1, 8, 6), {.bands = 3});
+    const PageLight lights[] = {{"sky", test::make_lat_long(64, 32, test::two_lights)},
+                                {"none", {}}};
+    const auto one = make_web_page(asset.view(), lights, "a", "a.opal", 1);
+    const auto many = make_web_page(asset.view(), lights, "a", "a.opal", 7);
+    ASSERT_TRUE(one && many);
+    ASSERT_EQ(one->size(), many->size());
+    for (std::size_t i = 0; i < one->size(); ++i) {
+        EXPECT_EQ((*one)[i].name, (*many)[i].name);
+        EXPECT_EQ((*one)[i].text, (*many)[i].text) << (*one)[i].name;
+        EXPECT_TRUE(is_page_file((*one)[i].name)) << (*one)[i].name;
+    }
+    EXPECT_FALSE(is_page_file("notes.txt"));
+    EXPECT_FALSE(is_page_file("light-a.js"));
+}
+
+TEST(WebPage, VolumesThatThePageLeavesOutAreNamed) {
+    formats::Asset asset = test::make_asset(8, 8);
+    test::add_primitive(asset, test::make_sphere({0, 0, 0}, 1, 8, 6), {});
+    EXPECT_TRUE(left_out_of_page(asset.view()).empty());
+    asset.volumes.records.resize(1);
+    const auto left_out = left_out_of_page(asset.view());
+    ASSERT_EQ(left_out.size(), 1u);
+    EXPECT_NE(left_out[0].find("volumes are not drawn"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace opaline::runtime
