@@ -15,6 +15,8 @@ if(OPALINE_BUILD_GL)
         list(APPEND OPALINE_INSTALLED opaline_gl_shared)
     endif()
     install(FILES opaline_gl.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/embed_gl/shaders/generated/opaline_surface.glsl
+            DESTINATION ${CMAKE_INSTALL_DATADIR}/opaline/glsl)
 endif()
 install(TARGETS ${OPALINE_INSTALLED} EXPORT OpalineTargets
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}

@@ -7,7 +7,11 @@
    call all GL state is as it was before, but for errors: those that the host left unasked are
    dropped. Calls only enqueue work, nothing waits for the GPU; shaders and vertex arrays of the
    same context see the results without a barrier of the host's. Call outside of conditional
-   rendering. The rules of opaline.h hold as well; statuses are listed there. */
+   rendering. The rules of opaline.h hold as well; statuses are listed there.
+
+   share/opaline/glsl/opaline_surface.glsl holds functions that turn a receiver's radiance into that
+   of a surface seen by the eye: paste it into a shader of GLSL 3.30, ES 3.00 or later, after a
+   default precision of sampler2DArray where GLSL asks for one. */
 #ifndef OPALINE_GL_H
 #define OPALINE_GL_H
 
@@ -81,6 +85,27 @@ typedef struct opaline_gl_objects {
 /* Fills `objects`. */
 OPALINE_API opaline_status opaline_gl_get_objects(const opaline_gl* gl,
                                                   opaline_gl_objects* objects);
+
+/* What the functions of opaline_surface.glsl need to know of a primitive, beside
+   opaline_asset_primitive and opaline_asset_primitive_shading. */
+typedef struct opaline_gl_surface {
+    size_t struct_size; /* in: sizeof(opaline_gl_surface) */
+
+    /* Its part of the buffer of triangles: of the numbers' count, from the first on. */
+    uint32_t first_index, index_count;
+
+    /* Translucent and glossy: a 2D array texture of six layers for opaline_mirrored, filled by each
+       relight; else 0. */
+    uint32_t mirrored_light;
+    float lobe[2]; /* for opaline_mirrored */
+
+    /* Column by column, as glUniformMatrix3fv takes it: of the light that relit last. */
+    float light_from_world[9];
+} opaline_gl_surface;
+
+/* Fills `surface`. */
+OPALINE_API opaline_status opaline_gl_get_surface(const opaline_gl* gl, uint32_t primitive,
+                                                  opaline_gl_surface* surface);
 
 #ifdef __cplusplus
 }

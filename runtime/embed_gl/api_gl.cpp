@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runtime/api_support.h"
+#include "runtime/embed_gl/mirrored_light.h"
 #include "runtime/embed_gl/relight.h"
 #include "runtime/embed_gl/saved_state.h"
 
@@ -18,6 +19,8 @@ struct opaline_gl {
     runtime::GlFunctions gl;
     runtime::GlNames names{gl};
     runtime::Relight relight{gl};
+    runtime::MirroredLight mirrored{gl};
+    std::vector<formats::PrimitiveRecord> primitives;
     GLuint marker_program = 0;
     std::uint32_t marker = 0;  // a uniform of it: no other context's program of that name has it
     std::uint32_t cubemap_size = 0;
@@ -136,6 +139,8 @@ opaline_status upload(opaline_gl& handle, const formats::AssetView& asset, std::
     opaline_status status = make_marker(handle);
     if (status == OPALINE_OK) status = handle.relight.upload(asset, {}, handle.names);
     handle.objects.radiance = handle.relight.radiance();
+    handle.primitives.assign(asset.primitives.begin(), asset.primitives.end());
+    if (status == OPALINE_OK) handle.mirrored.make(asset, handle.names);
     if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_MESH) != 0) upload_mesh(handle, asset);
     if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_TEXTURE) != 0) {
         status = make_texture(handle, asset.receivers());
@@ -210,6 +215,7 @@ opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
     return guarded([&] {
         const runtime::SavedState saved(gl->gl);
         gl->relight.dot(light->vector, {light->emitters, false}, gl->names);
+        gl->mirrored.upload(light->specular);
         gl->is_relit = true;
         show(*gl);
         return runtime::check_errors(gl->gl, "relighting");
@@ -245,6 +251,29 @@ opaline_status opaline_gl_get_objects(const opaline_gl* gl, opaline_gl_objects* 
         return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
     }
     *objects = gl->objects;
+    return OPALINE_OK;
+}
+
+opaline_status opaline_gl_get_surface(const opaline_gl* gl, uint32_t primitive,
+                                      opaline_gl_surface* surface) {
+    if (gl == nullptr || surface == nullptr) {
+        return null_argument();
+    }
+    if (surface->struct_size != sizeof(opaline_gl_surface)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+    }
+    if (primitive >= gl->primitives.size()) {
+        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
+    }
+    const formats::PrimitiveRecord& record = gl->primitives[primitive];
+    const runtime::MirroredLight::Lobe lobe = gl->mirrored.lobe_of(primitive);
+    const runtime::Rotation& r = gl->mirrored.rotation();
+    *surface = {sizeof(opaline_gl_surface),
+                record.first_index,
+                record.index_count,
+                lobe.texture,
+                {lobe.cosine, lobe.sine},
+                {r.x.x, r.y.x, r.z.x, r.x.y, r.y.y, r.z.y, r.x.z, r.y.z, r.z.z}};
     return OPALINE_OK;
 }
 

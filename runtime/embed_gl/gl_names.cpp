@@ -74,6 +74,17 @@ GLuint GlNames::make_texture(std::uint32_t width, std::uint32_t height) {
     return name;
 }
 
+GLuint GlNames::make_array_texture() {
+    GLuint name = 0;
+    gl_->GenTextures(1, &name);
+    textures_.push_back(name);
+    gl_->BindTexture(GL_TEXTURE_2D_ARRAY, name);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+        gl_->TexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_NEAREST);
+    }
+    return name;
+}
+
 void GlNames::release() {
     for (const GLuint program : programs_)
         gl_->DeleteProgram(program);

@@ -32,6 +32,9 @@ class GlNames {
     /// RGBA32F, nearest filter.
     GLuint make_texture(std::uint32_t width, std::uint32_t height);
 
+    /// A 2D array without texels yet, nearest filter.
+    GLuint make_array_texture();
+
     void release();
 
   private:

@@ -22,6 +22,7 @@ SavedState::SavedState(const GlFunctions& gl) : gl_(gl) {
     gl.GetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &copy_);
     gl.GetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &unpack_);
     gl.GetIntegerv(GL_TEXTURE_BINDING_2D, &texture_);
+    gl.GetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &array_);
     for (GLuint i = 0; i < kStorageBindings; ++i) {
         gl.GetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, i, &binding_[i].buffer);
         gl.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, i, &binding_[i].offset);
@@ -51,6 +52,7 @@ SavedState::~SavedState() {
     gl_.BindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(copy_));
     gl_.BindBuffer(GL_PIXEL_UNPACK_BUFFER, static_cast<GLuint>(unpack_));
     gl_.BindTexture(GL_TEXTURE_2D, static_cast<GLuint>(texture_));
+    gl_.BindTexture(GL_TEXTURE_2D_ARRAY, static_cast<GLuint>(array_));
     for (std::size_t i = 0; i < pixel_store_count(gl_); ++i) {
         gl_.PixelStorei(kPixelStore[i], pixel_store_[i]);
     }

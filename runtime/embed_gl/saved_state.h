@@ -24,7 +24,7 @@ class SavedState {
         GLint64 offset = 0, size = 0;
     };
     const GlFunctions& gl_;
-    GLint program_ = 0, storage_ = 0, copy_ = 0, unpack_ = 0, texture_ = 0;
+    GLint program_ = 0, storage_ = 0, copy_ = 0, unpack_ = 0, texture_ = 0, array_ = 0;
     std::array<Binding, kStorageBindings> binding_;
     std::array<GLint, 8> pixel_store_{};
 };

@@ -112,7 +112,8 @@ std::string fragment_text(SurfaceKind kind) {
                 define("WRAP_MIRROR", std::to_string(static_cast<int>(formats::Wrap::mirror))) +
                 image_text;
     }
-    if (kind.is_mirroring || kind.is_glossy) text += cube_map_text;
+    text += cube_map_text;
+    text += surface_text;
     if (kind.is_glossy) {
         text += define("LOBE_TAPS", std::to_string(kLobeTaps)) +
                 define("ALBEDO_ROWS", std::to_string(formats::kAlbedoRows)) +
@@ -234,9 +235,11 @@ formats::Result<SurfacePrograms> make_surface_programs(const GlAsset& asset) {
         GlProgram& program = programs.program[kind.number()];
         if (program.name() != 0) continue;
         const std::string fragment = fragment_text(kind);
+        const std::string vertex = std::string(openness_text) + surface_vert_text;
         const std::array<StageSource, 2> stages{
-            {{GL_VERTEX_SHADER, surface_vert_text}, {GL_FRAGMENT_SHADER, fragment.c_str()}}};
-        auto made = make_program("surface", defines_of(kind, asset.vertex_alpha.name() != 0), stages);
+            {{GL_VERTEX_SHADER, vertex.c_str()}, {GL_FRAGMENT_SHADER, fragment.c_str()}}};
+        auto made =
+            make_program("surface", defines_of(kind, asset.vertex_alpha.name() != 0), stages);
         if (!made) return made.error();
         program = std::move(made).value();
     }

@@ -62,7 +62,7 @@ float tame(float value) {
 
 vec3 sample_map(vec3 d) {
     return layout_kind == 1 ? sample_lat_long(d)
-         : layout_kind == 2 ? sample_cube(map, d)
+         : layout_kind == 2 ? opaline_sample_cube(map, d)
                             : vec3(0.0);
 }
 

@@ -141,7 +141,7 @@ LobeIntegral sum_taps(vec2 table, float alpha, Frame f) {
         float texel = 4.0 * major * major * major / (n * n);
         float level = 0.5 * log2(1.0 / (float(LOBE_TAPS) * pdf * texel)) + kLevelBias;
         vec3 radiance =
-            sample_cube_level(light_maps, l, int(floor(clamp(level, 0.0, last) + 0.5)));
+            opaline_sample_cube_level(light_maps, l, int(floor(clamp(level, 0.0, last) + 0.5)));
         float weight = (1.0 + root_v) / (root_v + root_l);
         float grazing = weight * schlick_weight(v_h), rest = weight - grazing;
         sum.weight += vec2(rest, grazing);

@@ -1,6 +1,7 @@
 // Homogeneous position without a projection matrix: w is the distance along the view axis, depth is
 // near / w (reversed, no far plane). y points down, so that row 0 is the top of the picture.
 // FORWARD_DEPTH: 1 - near / w instead, where depth cannot be reversed without losing its digits.
+// HAS_OPENNESS: openness.glsl comes before this.
 // RADIANCE_OF_ROWS: what comes before this looks up what the vertex sends to the eye.
 layout(location = 0) in vec3 position;
 #ifndef RADIANCE_OF_ROWS
@@ -23,13 +24,6 @@ layout(location = 4) out vec3 v_to_eye;
 layout(location = 5) in vec2 open_axis;
 layout(location = 6) in float open_fraction;
 layout(location = 5) out vec4 v_open;  // mean open direction, open fraction
-
-// Octahedral, as formats/opal/openness.cpp.
-vec3 decode_axis(vec2 p) {
-    float z = 1.0 - abs(p.x) - abs(p.y);
-    vec2 folded = (1.0 - abs(p.yx)) * vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
-    return normalize(vec3(z < 0.0 ? folded : p, z));
-}
 #endif
 
 layout(location = 0) uniform vec3 eye;
@@ -80,6 +74,6 @@ void main() {
     v_to_eye = -p;
 #endif
 #ifdef HAS_OPENNESS
-    v_open = vec4(decode_axis(open_axis), open_fraction);
+    v_open = vec4(opaline_decode_axis(open_axis), open_fraction);
 #endif
 }

@@ -163,7 +163,7 @@ const Draw = (() => {
     }
     const files = [];
     if (hasImage) files.push("image.glsl");
-    if (mirrors || gloss) files.push("cube_map.glsl");
+    files.push("cube_map.glsl", "surface.glsl");
     if (gloss) files.push("gloss.glsl");
     if (hole) files.push("holes.glsl");
     return [defines, files];
@@ -187,7 +187,7 @@ const Draw = (() => {
       const key = JSON.stringify(defines);
       if (!programs.has(key)) {
         programs.set(key, makeProgram(
-            gl, defines, ["view_terms.glsl", "radiance_of_rows.glsl", "surface.vert.glsl"],
+            gl, defines, ["view_terms.glsl", "radiance_of_rows.glsl", "openness.glsl", "surface.vert.glsl"],
             [...files, "surface.frag.glsl"]));
       }
       return { primitive, program: programs.get(key) };

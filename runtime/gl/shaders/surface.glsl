@@ -1,0 +1,96 @@
+// What a surface sends to the eye from the radiance of its receivers, as runtime/surface.cpp,
+// view_terms.cpp and specular.cpp. No uniforms. cube_map.glsl comes before this.
+
+float opaline_displayable(float value) {
+    return value > 0.0 ? min(value, 1e35) : 0.0;
+}
+
+// Finite and not negative: truncated light rings below zero where there is none.
+vec3 opaline_displayable(vec3 v) {
+    return vec3(opaline_displayable(v.r), opaline_displayable(v.g), opaline_displayable(v.b));
+}
+
+vec3 opaline_unit_or_zero(vec3 v) {
+    float size = length(v);
+    return size > 0.0 ? v / size : vec3(0.0);
+}
+
+// How a point is seen: the normal it is shaded with, the direction to the eye, unit or zero both,
+// and their cosine, below 0 where a surface of one side faces away.
+struct OpalineView {
+    vec3 normal, to_eye;
+    float cosine;
+    bool is_turned;  // whether the normal was turned toward the eye
+};
+
+// From an interpolated normal and a vector toward the eye, of any lengths.
+OpalineView opaline_view(vec3 normal, vec3 to_eye, bool is_double_sided) {
+    OpalineView view = OpalineView(opaline_unit_or_zero(normal), opaline_unit_or_zero(to_eye), 0.0, false);
+    view.cosine = dot(view.normal, view.to_eye);
+    if (view.cosine < 0.0 && is_double_sided) {
+        view = OpalineView(-view.normal, view.to_eye, -view.cosine, true);
+    }
+    return view;
+}
+
+// The share of light that passes a smooth boundary: fresnel_transmittance. `eta`: index of
+// refraction behind it over that in front.
+float opaline_transmittance(float cosine, float eta) {
+    float c = min(cosine, 1.0);
+    float under_root = (eta - 1.0) * (eta + 1.0) + c * c;
+    if (!(c > 0.0) || !(under_root > 0.0)) {
+        return 0.0;
+    }
+    float behind = sqrt(under_root);
+    float s = c + behind, p = eta * eta * c + behind;
+    return min(2.0 * c * behind * (1.0 / (s * s) + eta * eta / (p * p)), 1.0);
+}
+
+// Diffuse and thin-walled surfaces: `radiance` as receivers have it, interpolated.
+vec3 opaline_diffuse(vec3 radiance, vec3 base_color) {
+    return opaline_displayable(radiance * base_color);
+}
+
+// What comes out of translucent surfaces; opaline_mirrored comes on top.
+vec3 opaline_translucent(vec3 radiance, vec3 base_color, OpalineView view, float eta) {
+    return opaline_displayable(opaline_transmittance(view.cosine, eta) * (radiance * base_color));
+}
+
+// `openness`: interpolated mean open direction (opaline_decode_axis) and open fraction; stored for
+// the front.
+vec3 opaline_open_axis(vec4 openness, OpalineView view) {
+    vec3 axis = opaline_unit_or_zero(openness.xyz);
+    return view.is_turned ? axis - 2.0 * dot(axis, view.normal) * view.normal : axis;
+}
+
+// The part of a lobe that nothing blocks: specular_visibility. `lobe`: cosine and sine of its half
+// angle.
+float opaline_specular_visibility(vec3 axis, float open, vec3 mirrored, vec2 lobe) {
+    float cosine = sqrt(1.0 - open), sine = sqrt(open);
+    float low = cosine * lobe.x - sine * lobe.y, high = cosine * lobe.x + sine * lobe.y;
+    float at = high > low ? clamp((dot(axis, mirrored) - low) / (high - low), 0.0, 1.0) : 0.0;
+    float fits = min(1.0, (1.0 - cosine) / (1.0 - lobe.x));
+    float inside = fits * at * at * (3.0 - 2.0 * at);
+    float squared = open * open, fourth = squared * squared;
+    return 1.0 - (1.0 - inside) * (1.0 - fourth * fourth);
+}
+
+// What the boundary of a glossy translucent surface mirrors: eval_specular. `light`: the
+// environment, convolved for its roughness, in the light's frame.
+vec3 opaline_mirrored(sampler2DArray light, mat3 light_from_world, OpalineView view, float eta,
+                      vec4 openness, vec2 lobe) {
+    vec3 n = view.normal;
+    if (!(dot(n, n) > 0.0) || !(view.cosine > -0.2)) {
+        return vec3(0.0);
+    }
+    float c = clamp(view.cosine, 1e-6, 1.0);
+    float fade = 1.0 + min(view.cosine, 0.0) / 0.2;
+    vec3 mirrored = opaline_unit_or_zero(2.0 * c * n - view.to_eye);
+    if (!(dot(mirrored, mirrored) > 0.0)) {
+        return vec3(0.0);
+    }
+    float share = fade * (1.0 - opaline_transmittance(c, eta)) *
+                  opaline_specular_visibility(opaline_open_axis(openness, view),
+                                              clamp(openness.w, 0.0, 1.0), mirrored, lobe);
+    return share * opaline_sample_cube(light, light_from_world * mirrored);
+}
