@@ -9,6 +9,7 @@
 #include "runtime/reduce_map.h"
 #include "runtime/specular.h"
 #include "runtime/web/data_script.h"
+#include "runtime/web/split_light.h"
 
 namespace opaline::runtime {
 namespace {
@@ -82,12 +83,13 @@ void put_background(DataScript& script, const Environment& environment, unsigned
 std::string make_light_script(const std::string& owner, const PageLight& light,
                               const PageLightNeeds& needs, unsigned threads) {
     DataScript script(owner);
-    const GlossLight gloss = make_gloss_light(light.environment, threads);
-    put_radiance(script, "cube", gloss.map.front().pixel);
-    put_discs(script, "suns", gloss.suns, false);
+    const SplitLight split = split_light(light.environment, threads);
+    put_radiance(script, "cube", split.cube);
+    script.put("points", std::span<const float>(split.points));
+    put_discs(script, "suns", split.suns, false);
     put_background(script, light.environment, threads);
     put_discs(script, "discs", light.environment.discs, true);
-    if (needs.gloss) put_cells(script, gloss.cells);
+    if (needs.gloss) put_cells(script, make_gloss_light(light.environment, threads).cells);
     for (const SpecularLight::Map& map :
          prefilter_specular(light.environment, needs.levels, {}, threads).maps) {
         put_radiance(script, "mirrored." + std::to_string(map.level), map.radiance.pixel);

@@ -223,7 +223,7 @@ const Draw = (() => {
     return {
       mirrored, suns: light.suns.length / 8, discs: light.discs.length / 8,
       sunTable: discs(light.suns), discTable: discs(light.discs), cells: discs(light.cells),
-      maps: hasGloss ? makeLayers(gl, Light.kSide, Light.kSide, 6, light.cube, 8) : null,
+      maps: hasGloss ? makeLayers(gl, Light.kSide, Light.kSide, 6, Light.wholeCube(light), 8) : null,
       map: background.layout === 0 ? null
           : makeLayers(gl, background.width, background.height, background.layout === 2 ? 6 : 1,
                        background.pixels),

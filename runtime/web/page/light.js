@@ -139,6 +139,22 @@ const Light = (() => {
     }
   }
 
+  // Adds the flux of points (split_light.h) to the texels that they lie in.
+  function addPoints(points, n, c, s, integral) {
+    for (let at = 0; at < points.length; at += 6) {
+      const x = points[at], z = points[at + 2];
+      const to = 3 * texelOf(n, c * x + s * z, points[at + 1], -s * x + c * z);
+      for (let band = 0; band < 3; ++band) integral[to + band] += points[at + 3 + band];
+    }
+  }
+
+  // Mean radiance of the cube map's texels, points among them: what mirrors see.
+  function wholeCube(light) {
+    const angles = solidAnglesOf(kSide), flux = new Float64Array(light.cube.length);
+    addPoints(light.points, kSide, 1, 0, flux);
+    return light.cube.map((radiance, i) => radiance + flux[i] / angles[Math.floor(i / 3) % (kSide * kSide)]);
+  }
+
   // The four texels whose centres are around a direction, with bilinear shares.
   function shareAmongTexels(n, x, y, z, weight, cover) {
     const [face, u, v] = cubePoint(x, y, z), half = 0.5 * n;
@@ -212,7 +228,7 @@ const Light = (() => {
     const cube = radiance("cube");
     const [layout, width, height, includesPoles] = arrays.get("background.shape");
     return {
-      cube, padded: padCube(cube), suns: arrays.get("suns"), discs: arrays.get("discs"),
+      cube, padded: padCube(cube), points: arrays.get("points"), suns: arrays.get("suns"), discs: arrays.get("discs"),
       cells: arrays.get("cells"),
       background: { layout, width, height, includesPoles, turn: arrays.get("background.turn"),
                     pixels: radiance("background") },
@@ -225,9 +241,10 @@ const Light = (() => {
   function project(light, n, turn) {
     const c = Math.cos(turn), s = Math.sin(turn), integral = new Float64Array(6 * n * n * 3);
     addMap(light.padded, n, c, s, integral);
+    addPoints(light.points, n, c, s, integral);
     addSuns(light.suns, n, c, s, integral);
     return Float32Array.from(transform(integral, n));
   }
 
-  return { read, project, halveCube, kFloats, kSide };
+  return { read, project, wholeCube, halveCube, kFloats, kSide };
 })();

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -11,6 +10,9 @@
 
 namespace opaline::test {
 namespace {
+
+// Graphics without a GPU.
+constexpr const char* kSoftware = "--use-angle=swiftshader --enable-unsafe-swiftshader";
 
 std::string read_whole(const std::filesystem::path& path) {
     std::ostringstream text;
@@ -103,7 +105,11 @@ opaline.page.ready.then(() => opaline.page.takePicture()js" +
   if (fetched.length > 0) console.error("asked the network for " + fetched[0].name);
 });
 )js";
-    return open(page, script, address, "--use-angle=swiftshader --enable-unsafe-swiftshader");
+    return open(page, script, address, kSoftware);
+}
+
+BrowserOutcome run_on_page(std::span<const runtime::PageFile> page, const std::string& script) {
+    return open(page, script, "", kSoftware);
 }
 
 BrowserOutcome open_page_without_webgl(std::span<const runtime::PageFile> page) {

@@ -26,6 +26,9 @@ BrowserOutcome take_page_picture(std::span<const runtime::PageFile> page,
                                  const std::string& address, std::uint32_t width,
                                  std::uint32_t height);
 
+/// The same, but runs a script on the page; rgba is empty.
+BrowserOutcome run_on_page(std::span<const runtime::PageFile> page, const std::string& script);
+
 /// The same, without graphics: rgba is empty.
 BrowserOutcome open_page_without_webgl(std::span<const runtime::PageFile> page);
 

@@ -129,20 +129,62 @@ TEST(PagePicture, EverySurfaceLooksAsOnTheCpuUnderTurnedLightAndDimmedEmitters) 
     }
 }
 
-// 5 degrees off the middle of the light's cube, in a picture that is higher than wide.
-TEST(PagePicture, DefaultViewIsTheOneOfPictures) {
+// A map of photographs: the sun stands in a few of its pixels.
+formats::Environment sky_with_sun_in_the_map() {
+    const formats::Vec3 sun = normalize(formats::Vec3{0.3f, 0.8f, 0.5f});
+    return test::make_lat_long(1024, 512, [sun](formats::Vec3 d) {
+        return test::two_lights(d) + (dot(d, sun) > 0.9999f ? 5000.0f : 0.0f) * Rgb{1, 0.9f, 0.8f};
+    });
+}
+
+TEST(PagePicture, DefaultViewUnderATurnedSunInTheMapIsTheOneOfPictures) {
     if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
     formats::Asset asset = test::make_asset(8, 16);
     test::add_primitive(asset, test::make_sphere({3, 1, -2}, 0.8f, 24, 16), {.bands = 3});
-    const PageLight lights[] = {{"sky", sky_with_sun()}};
+    const PageLight lights[] = {{"sky", sky_with_sun_in_the_map()}};
     const auto page = make_web_page(asset.view(), lights, "ball", "a.opal", 0);
     ASSERT_TRUE(page);
-    // The window of a headless browser is 800 wide and 600 high, less its frame: of any height, the
-    // view is framed for it.
-    const auto shown = test::take_page_picture(*page, "", 160, 120);
+    // The view is framed for the window, which is wider than high, as this picture is.
+    const auto shown = test::take_page_picture(*page, "rotate=63", 160, 120);
     EXPECT_EQ(shown.console, "");
     const Camera camera = frame_asset(asset.view(), 32, 160, 120);
-    expect_same_pixels(render_on_cpu(asset.view(), lights[0].environment, camera, {}), shown.rgba);
+    expect_same_pixels(render_on_cpu(asset.view(), lights[0].environment, camera, {{}, 63}),
+                       shown.rgba);
+}
+
+TEST(PagePicture, ControlsAndTheAddressFollowEachOther) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    const formats::Asset asset = test::make_every_surface();
+    const PageLight lights[] = {{"white", white()}, {"black", {}}};
+    const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
+    ASSERT_TRUE(page);
+    const auto shown = test::run_on_page(*page, R"js(
+const at = id => document.getElementById(id), canvas = at("canvas");
+const wait = () => new Promise(resolve => setTimeout(resolve, 500));
+const set = (id, value, type) => { at(id).value = value; at(id).dispatchEvent(new Event(type)); };
+const drag = (type, x, y) => canvas.dispatchEvent(
+    new PointerEvent(type, { pointerId: 1, clientX: x, clientY: y, buttons: 1 }));
+canvas.setPointerCapture = () => {};  // of pointers that a hand moves
+opaline.page.ready.then(async () => {
+  location.hash = "azimuth=10&elevation=20&distance=3&light=black&emitter=a%3D2,1,0.5";
+  await wait();
+  const heard = `${at("light").value} ${at("emitter-0").textContent}`;
+  drag("pointerdown", 100, 100);
+  drag("pointermove", 90, 110);
+  drag("pointerup", 90, 110);
+  set("turn", 45, "input");
+  set("light", 0, "change");
+  set("slider-1", -6, "input");
+  await wait();
+  document.title = `${heard} ${decodeURIComponent(location.hash)}`;
+});
+)js");
+    EXPECT_EQ(shown.console, "");
+    EXPECT_EQ(shown.title.substr(0, shown.title.find("&amp;target")),
+              "1 × 2 #light=white&amp;rotate=45&amp;exposure=0&amp;azimuth=13&amp;elevation=23&amp;"
+              "distance=3");
+    EXPECT_NE(shown.title.find("emitter=a=2,1,0.5&amp;emitter=b=0,0,0"), std::string::npos)
+        << shown.title;
 }
 
 TEST(PagePicture, WithoutWebGlThePageSaysSo) {

@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <numbers>
+#include <span>
 
+#include "formats/opal/cubemap.h"
+#include "runtime/map_geometry.h"
 #include "runtime/web/data_script.h"
 #include "runtime/web/page_asset.h"
+#include "runtime/web/split_light.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
 namespace opaline::runtime {
@@ -57,6 +61,36 @@ TEST(WebPage, FilesAreAlikeForAnyNumberOfThreadsAndKnownAsThoseOfAPage) {
     }
     EXPECT_FALSE(is_page_file("notes.txt"));
     EXPECT_FALSE(is_page_file("light-a.js"));
+}
+
+// The flux of a sun in a few pixels stands in points, all other in the cube map.
+TEST(SplitLight, FluxOfASunInTheMapIsKept) {
+    const formats::Vec3 sun = normalize(formats::Vec3{0.3f, 0.8f, 0.5f});
+    const double radiance = 5000;
+    const formats::Environment map = test::make_lat_long(1024, 512, [&](formats::Vec3 d) {
+        return dot(d, sun) > 0.9999f ? formats::Rgb{5000, 5000, 5000} : formats::Rgb{1, 1, 1};
+    });
+    const std::vector<double> edges = row_edges(map);
+    double of_sun = 0;
+    for (std::uint32_t i = 0; i < map.pixel.size(); ++i) {
+        const bool is_sun = map.pixel[i].r > 1;
+        of_sun += is_sun ? radiance * cell_solid_angle(map, edges, i % 1024, i / 1024) : 0;
+    }
+    const SplitLight light = split_light(map, 0);
+    double points = 0, cube = 0;
+    for (std::size_t i = 0; i < light.points.size(); i += 6) {
+        points += static_cast<double>(light.points[i + 3]);
+        EXPECT_GT(
+            light.points[i] * sun.x + light.points[i + 1] * sun.y + light.points[i + 2] * sun.z,
+            0.999f);
+    }
+    const std::vector<double> solid_angle = formats::texel_solid_angles(kPageTexels);
+    for (std::size_t j = 0; j < light.cube.size(); ++j) {
+        cube += static_cast<double>(light.cube[j].r) * solid_angle[j % solid_angle.size()];
+        EXPECT_LT(light.cube[j].r, 0.1 * radiance);
+    }
+    EXPECT_GT(points, 0.9 * of_sun);
+    EXPECT_NEAR(points + cube, of_sun + 4 * std::numbers::pi, 2e-3 * of_sun);
 }
 
 TEST(WebPage, VolumesThatThePageLeavesOutAreNamed) {
