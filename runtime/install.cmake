@@ -25,7 +25,8 @@ install(FILES opaline.h opaline.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 set(OPALINE_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Opaline)
 install(EXPORT OpalineTargets NAMESPACE Opaline:: DESTINATION ${OPALINE_CONFIG_DIR})
-configure_package_config_file(cmake/OpalineConfig.cmake.in OpalineConfig.cmake
+set(OPALINE_GLSL_DIR ${CMAKE_INSTALL_DATADIR}/opaline/glsl)
+configure_package_config_file(cmake/OpalineConfig.cmake.in OpalineConfig.cmake PATH_VARS OPALINE_GLSL_DIR
     INSTALL_DESTINATION ${OPALINE_CONFIG_DIR})
 write_basic_package_version_file(OpalineConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/OpalineConfig.cmake
