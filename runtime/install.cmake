@@ -16,6 +16,7 @@ if(OPALINE_BUILD_GL)
     endif()
     install(FILES opaline_gl.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
     install(FILES ${CMAKE_CURRENT_BINARY_DIR}/embed_gl/shaders/generated/opaline_surface.glsl
+                  ${CMAKE_CURRENT_BINARY_DIR}/embed_gl/shaders/generated/opaline_gloss.glsl
             DESTINATION ${CMAKE_INSTALL_DATADIR}/opaline/glsl)
 endif()
 install(TARGETS ${OPALINE_INSTALLED} EXPORT OpalineTargets
