@@ -199,17 +199,17 @@ Fault find_structure_fault(const AssetView& asset) {
 
 Fault find_value_fault(const AssetView& asset) {
     for (std::size_t v = 0; v < asset.position.size(); ++v) {
-        const std::string where = "section MESH, vertex " + std::to_string(v);
+        const auto where = [v] { return "section MESH, vertex " + std::to_string(v); };
         if (!finite(asset.position[v])) {
-            return {where, "its position is not finite"};
+            return {where(), "its position is not finite"};
         }
         const float norm = length(asset.normal[v]);
         if (norm != 0.0f && !(std::abs(norm - 1.0f) < 1e-3f)) {
-            return {where, "its normal is neither of unit length nor zero"};
+            return {where(), "its normal is neither of unit length nor zero"};
         }
         const Rgb c = asset.base_color[v];
         if (!(c.r >= 0 && c.g >= 0 && c.b >= 0 && std::isfinite(c.r + c.g + c.b))) {
-            return {where, "its base colour is below zero or not finite"};
+            return {where(), "its base colour is below zero or not finite"};
         }
     }
     for (const Float2 uv : asset.texcoord) {

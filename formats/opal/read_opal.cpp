@@ -3,9 +3,11 @@
 #include <zstd.h>
 
 #include <new>
+#include <utility>
 
 #include "formats/opal/check_opal.h"
 #include "formats/opal/cloud_arrays.h"
+#include "formats/opal/cubemap.h"
 #include "formats/opal/emitter_arrays.h"
 #include "formats/opal/layout.h"
 #include "formats/opal/row_arrays.h"
@@ -95,8 +97,27 @@ bool read_emitters(SectionCursor cursor, AssetView& view) {
 
 }  // namespace
 
+DecodedBytes::DecodedBytes(const Memory& memory, std::size_t size) : memory_(memory), size_(size) {
+    data_ = static_cast<std::byte*>(
+        memory.allocate != nullptr
+            ? memory.allocate(memory.user, size, kSectionAlignment)
+            : ::operator new (size, std::align_val_t{kSectionAlignment}, std::nothrow));
+}
+
+DecodedBytes::DecodedBytes(DecodedBytes&& other) noexcept
+    : memory_(other.memory_), data_(std::exchange(other.data_, nullptr)), size_(other.size_) {}
+
+DecodedBytes::~DecodedBytes() {
+    if (data_ == nullptr) return;
+    if (memory_.allocate != nullptr) {
+        memory_.release(memory_.user, data_, size_, kSectionAlignment);
+    } else {
+        ::operator delete (data_, std::align_val_t{kSectionAlignment});
+    }
+}
+
 Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::string& file,
-                              Checks checks) {
+                              Checks checks, const Memory& memory) {
     Result<std::vector<SectionEntry>> table = read_section_table(bytes, file);
     if (!table) {
         return std::move(table).error();
@@ -173,21 +194,19 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 ZSTD_getFrameContentSize(content.data(), content.size()) != entry.size) {
                 return damaged(where, "its decoded size is not the one in the section table");
             }
-            // operator new aligns to 16 bytes, as the arrays inside a section are.
-            std::unique_ptr<std::byte[]> decoded(
-                new (std::nothrow) std::byte[static_cast<std::size_t>(entry.size)]);
-            if (decoded == nullptr) {
+            DecodedBytes decoded(memory, static_cast<std::size_t>(entry.size));
+            if (decoded.empty()) {
                 return make_error(ErrorKind::resource, file, where,
                                   "no memory for " + std::to_string(entry.size) + " bytes",
                                   "free some memory");
             }
             const std::size_t size =
-                ZSTD_decompress(decoded.get(), static_cast<std::size_t>(entry.size), content.data(),
-                                content.size());
+                ZSTD_decompress(decoded.data(), static_cast<std::size_t>(entry.size),
+                                content.data(), content.size());
             if (size != entry.size) {
                 return damaged(where, "its compressed data cannot be decoded");
             }
-            content = {decoded.get(), static_cast<std::size_t>(entry.size)};
+            content = {decoded.data(), static_cast<std::size_t>(entry.size)};
             loaded.decoded.push_back(std::move(decoded));
         } else if (entry.codec != 0 || entry.size != entry.stored_size) {
             return damaged(where, "unknown codec, or sizes that disagree");
@@ -205,7 +224,11 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
     }
     loaded.view.transport.cubemap_size = loaded.view.cubemap_size;
     loaded.view.volumes.rows.cubemap_size = loaded.view.cubemap_size;
-    if (const Fault fault = find_structure_fault(loaded.view); !fault.what.empty()) {
+    if (checks == Checks::sizes) {
+        if (!is_valid_cubemap_size(loaded.view.cubemap_size)) {
+            return damaged("section BASI", "its cube map size is not a power of two in 8 ... 128");
+        }
+    } else if (const Fault fault = find_structure_fault(loaded.view); !fault.what.empty()) {
         return damaged(fault.where, fault.what);
     }
     if (checks == Checks::full) {
