@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <new>
+#include <utility>
 
 #include "runtime/api_support.h"
 #include "runtime/shade.h"
@@ -31,10 +33,10 @@ formats::TermSet terms_of(std::uint32_t flags) {
 // Without allocating: shading is called per frame.
 bool is_prefiltered_for(const opaline_light& light, const formats::AssetView& asset) {
     const bool has_levels = std::ranges::all_of(asset.roughness, [&](float roughness) {
-        return roughness < 0 ||
-               std::ranges::binary_search(light.needs.levels, runtime::roughness_level(roughness));
+        return roughness < 0 || std::ranges::binary_search(light.distant.needs().levels,
+                                                           runtime::roughness_level(roughness));
     });
-    return has_levels && (light.needs.gloss ||
+    return has_levels && (light.distant.needs().gloss ||
                           std::ranges::none_of(asset.gloss, &formats::GlossRecord::is_glossy));
 }
 
@@ -97,6 +99,8 @@ const char* opaline_status_string(opaline_status status) {
             return "buffer too small";
         case OPALINE_OUT_OF_MEMORY:
             return "out of memory";
+        case OPALINE_BUSY:
+            return "busy";
         case OPALINE_GL_NO_CONTEXT:
             return "no OpenGL context";
         case OPALINE_GL_TOO_OLD:
@@ -116,25 +120,60 @@ const char* opaline_last_error(void) {
 }
 
 opaline_status opaline_asset_load(const void* bytes, size_t size, opaline_asset** out) {
+    return opaline_asset_load_with(bytes, size, nullptr, out);
+}
+
+opaline_status opaline_asset_load_with(const void* bytes, size_t size,
+                                       const opaline_load_options* options, opaline_asset** out) {
     if (bytes == nullptr || out == nullptr) {
         return null_argument();
     }
     if (reinterpret_cast<std::uintptr_t>(bytes) % formats::kSectionAlignment != 0) {
         return fail(OPALINE_INVALID_ARGUMENT, "the asset's bytes must be aligned to 64 bytes");
     }
+    formats::Checks checks = formats::Checks::full;
+    formats::Memory memory;
+    if (options != nullptr) {
+        if (options->struct_size != sizeof(opaline_load_options)) {
+            return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+        }
+        if ((options->flags & ~std::uint32_t{OPALINE_LOAD_TRUSTED}) != 0) {
+            return fail(OPALINE_INVALID_ARGUMENT, "unknown flags");
+        }
+        if ((options->allocate == nullptr) != (options->release == nullptr)) {
+            return fail(OPALINE_INVALID_ARGUMENT,
+                        "an allocator needs both of its functions, or none");
+        }
+        if ((options->flags & OPALINE_LOAD_TRUSTED) != 0) checks = formats::Checks::sizes;
+        memory = {options->allocate, options->release, options->user};
+    }
     return guarded([&] {
-        formats::Result<formats::LoadedAsset> loaded = formats::read_opal(
-            {static_cast<const std::byte*>(bytes), size}, {}, formats::Checks::full);
+        formats::Result<formats::LoadedAsset> loaded =
+            formats::read_opal({static_cast<const std::byte*>(bytes), size}, {}, checks, memory);
         if (!loaded) {
             return fail(loaded.error());
         }
-        *out = new opaline_asset{std::move(*loaded), ++last_asset_id};
+        void* const place =
+            memory.allocate != nullptr
+                ? memory.allocate(memory.user, sizeof(opaline_asset), alignof(opaline_asset))
+                : ::operator new(sizeof(opaline_asset), std::nothrow);
+        if (place == nullptr) {
+            return fail(OPALINE_OUT_OF_MEMORY, "not enough memory");
+        }
+        *out = new (place) opaline_asset{std::move(*loaded), ++last_asset_id, memory};
         return OPALINE_OK;
     });
 }
 
 void opaline_asset_release(opaline_asset* asset) {
-    delete asset;
+    if (asset == nullptr) return;
+    const formats::Memory memory = asset->memory;
+    asset->~opaline_asset();
+    if (memory.allocate != nullptr) {
+        memory.release(memory.user, asset, sizeof(opaline_asset), alignof(opaline_asset));
+    } else {
+        ::operator delete(asset);
+    }
 }
 
 uint32_t opaline_asset_receiver_count(const opaline_asset* asset) {
@@ -208,6 +247,8 @@ opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_ligh
     if (asset == nullptr || light == nullptr || out_rgb == nullptr) {
         return null_argument();
     }
+    const runtime::Reading reading(light->users);
+    if (!reading) return busy();
     const formats::AssetView& view = asset->loaded.view;
     if (light->n != view.cubemap_size) {
         return fail(OPALINE_INVALID_ARGUMENT,
@@ -246,7 +287,7 @@ opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_ligh
                         "the light was made for an asset of other roughnesses: make one for this "
                         "asset, or leave out specular reflection");
         }
-        options.specular = &light->specular;
+        options.specular = &light->specular();
     }
     if (runtime::find_merged(view, options.terms) != view.primitives.size()) {
         return fail(OPALINE_INVALID_ARGUMENT,
@@ -257,7 +298,7 @@ opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_ligh
         options.eye = formats::Vec3{eye[0], eye[1], eye[2]};
     }
     static_assert(sizeof(formats::Rgb) == 3 * sizeof(float));
-    runtime::shade_range(view, light->vector, first,
+    runtime::shade_range(view, light->vector(), first,
                          {reinterpret_cast<formats::Rgb*>(out_rgb), count}, options);
     return OPALINE_OK;
 }

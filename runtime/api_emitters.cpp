@@ -61,6 +61,8 @@ opaline_status opaline_light_set_emitter(opaline_light* light, uint32_t index,
             return fail(OPALINE_INVALID_ARGUMENT, "a colour must be finite and not negative");
         }
     }
+    const opaline::runtime::Writing writing(light->users);
+    if (!writing) return busy();
     light->emitters[index] = {color[0], color[1], color[2]};
     return OPALINE_OK;
 }

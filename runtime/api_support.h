@@ -3,15 +3,16 @@
 #include <cstdint>
 #include <exception>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "formats/opal/environment.h"
 #include "formats/opal/read_opal.h"
 #include "formats/opal/result.h"
 #include "formats/opal/vec3.h"
+#include "runtime/distant_light.h"
 #include "runtime/light_vector.h"
 #include "runtime/opaline.h"
-#include "runtime/specular.h"
+#include "runtime/users.h"
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/volume_march.h"
 
@@ -19,19 +20,23 @@
 
 struct opaline_asset {
     opaline::formats::LoadedAsset loaded;
-    std::uint64_t id = 0;  // unlike its address, never that of another one
+    std::uint64_t id = 0;             // unlike its address, never that of another one
+    opaline::formats::Memory memory;  // that the handle itself comes from too
 };
 
 struct opaline_light {
+    opaline_light(std::uint32_t size, opaline::runtime::SpecularNeeds needs)
+        : n(size), distant(size, std::move(needs)) {}
+
     std::uint32_t n = 0;
     unsigned threads = 1;
     opaline::runtime::Rotation rotation;
-    opaline::formats::Environment environment;
-    std::vector<double> map_integral;  // kept, so that a sun does not cost a map
-    opaline::runtime::LightVector vector;
-    opaline::runtime::SpecularNeeds needs;  // of its asset
-    opaline::runtime::SpecularLight specular;
+    opaline::runtime::DistantLight distant;
     std::vector<opaline::formats::Rgb> emitters;  // a colour for each of its asset's
+    mutable opaline::runtime::Users users;
+
+    const opaline::runtime::LightVector& vector() const { return distant.vector(); }
+    const opaline::runtime::SpecularLight& specular() const { return distant.specular(); }
 };
 
 struct opaline_volume_light {
@@ -39,6 +44,7 @@ struct opaline_volume_light {
     opaline::runtime::VolumeLight light;
     // Refers to `light` and to the asset's arrays: to be used with an asset of that id alone.
     opaline::runtime::LitVolumes lit;
+    mutable opaline::runtime::Users users;
 };
 
 namespace opaline::runtime::api {
@@ -63,6 +69,12 @@ opaline_status guarded(const Work& work) noexcept {
 
 inline opaline_status null_argument() {
     return fail(OPALINE_INVALID_ARGUMENT, "an argument is NULL");
+}
+
+inline opaline_status busy() {
+    return fail(OPALINE_BUSY,
+                "another thread is using the light: one may change it, or any "
+                "number read it");
 }
 
 }  // namespace opaline::runtime::api

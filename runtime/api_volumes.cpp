@@ -158,6 +158,9 @@ opaline_status opaline_volume_light_update(opaline_volume_light* volume_light,
     if (volume_light == nullptr || asset == nullptr || light == nullptr) {
         return null_argument();
     }
+    const runtime::Writing writing(volume_light->users);
+    const runtime::Reading reading(light->users);
+    if (!writing || !reading) return busy();
     if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) {
         return status;
     }
@@ -175,7 +178,7 @@ opaline_status opaline_volume_light_update(opaline_volume_light* volume_light,
     return guarded([&] {
         // In place, so that volume_light->lit goes on referring to it.
         volume_light->light =
-            runtime::relight_volumes(asset->loaded.view.volumes, light->vector,
+            runtime::relight_volumes(asset->loaded.view.volumes, light->vector(),
                                      {.terms = volume_terms_of(flags), .threads = threads});
         return OPALINE_OK;
     });
@@ -190,6 +193,8 @@ opaline_status opaline_volumes_march(const opaline_asset* asset,
         (count > 0 && (rays == nullptr || results == nullptr))) {
         return null_argument();
     }
+    const runtime::Reading reading(volume_light->users);
+    if (!reading) return busy();
     if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) {
         return status;
     }
@@ -238,6 +243,8 @@ opaline_status opaline_volumes_sample(const opaline_asset* asset,
         (count > 0 && (points == nullptr || results == nullptr))) {
         return null_argument();
     }
+    const runtime::Reading reading(volume_light->users);
+    if (!reading) return busy();
     if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) {
         return status;
     }

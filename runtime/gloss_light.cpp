@@ -15,8 +15,6 @@ namespace {
 
 using formats::Environment;
 
-constexpr std::uint32_t kFinest = 128;  // texels a side
-
 float storable(double value) {
     return static_cast<float>(std::clamp(value, 0.0, 1e35));
 }
@@ -108,21 +106,27 @@ GlossLight::Cells divide_sphere(const LightQuadtree& tree) {
 
 }  // namespace
 
-GlossLight make_gloss_light(const Environment& environment, unsigned threads) {
+GlossLight make_gloss_light(std::span<const double> integral,
+                            std::span<const formats::DistantDisc> discs, unsigned threads) {
     GlossLight light;
     std::vector<formats::DistantDisc> large;
-    for (const formats::DistantDisc& disc : environment.discs) {
+    for (const formats::DistantDisc& disc : discs) {
         (disc.angular_radius <= kLargestSun ? light.suns : large).push_back(disc);
     }
-    std::vector<double> integral(std::size_t{3} * formats::cubemap_texels(kFinest));
-    integrate_map(environment, kFinest, {}, threads, integral);
-    integrate_discs(large, kFinest, {}, integral);
-    const LightQuadtree tree = make_light_quadtree(integral, kFinest);
+    std::vector<double> sums(integral.begin(), integral.end());
+    integrate_discs(large, kGlossTexels, {}, sums);
+    const LightQuadtree tree = make_light_quadtree(sums, kGlossTexels, threads);
     for (std::size_t level = tree.level.size(); level-- > 0;) {
         light.map.push_back(mean_radiance(tree.level[level], 1u << level));
     }
     light.cells = divide_sphere(tree);
     return light;
+}
+
+GlossLight make_gloss_light(const Environment& environment, unsigned threads) {
+    std::vector<double> integral(std::size_t{3} * formats::cubemap_texels(kGlossTexels));
+    integrate_map(environment, kGlossTexels, {}, threads, integral);
+    return make_gloss_light(integral, environment.discs, threads);
 }
 
 }  // namespace opaline::runtime

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "formats/opal/environment.h"
@@ -36,8 +38,16 @@ inline constexpr std::size_t kLightCells = 2048, kCellBlock = 8;
 /// approximation of the lobe's integral over the disc. Larger discs go into maps and cells.
 inline constexpr float kLargestSun = 0.02f;
 
-/// Values are finite whatever finite light there is. Same bits for any number of threads (0: all
-/// cores).
+/// Texels a side of the finest map.
+inline constexpr std::uint32_t kGlossTexels = 128;
+
+/// `integral`: of a map over 6 * 128 * 128 texels [W m^-2], integral[3 j + band], in the light's
+/// frame, without discs. Values are finite whatever finite light there is. Same bits for any number
+/// of threads (0: all cores).
+GlossLight make_gloss_light(std::span<const double> integral,
+                            std::span<const formats::DistantDisc> discs, unsigned threads);
+
+/// The same, of a map and its discs.
 GlossLight make_gloss_light(const formats::Environment& environment, unsigned threads);
 
 }  // namespace opaline::runtime

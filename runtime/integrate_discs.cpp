@@ -16,10 +16,10 @@ using formats::Vec3;
 using std::numbers::pi;
 
 // A frame whose third axis is the disc's direction.
-struct Frame {
+struct DiscFrame {
     Vec3 across, along, axis;
 };
-Frame frame_around(Vec3 axis) {
+DiscFrame frame_around(Vec3 axis) {
     const Vec3 helper = std::abs(axis.y) < 0.9f ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
     const Vec3 across = normalize(cross(helper, axis));
     return {across, cross(axis, across), axis};
@@ -29,7 +29,7 @@ Frame frame_around(Vec3 axis) {
 void cover_small_disc(Vec3 axis, double radius, std::uint32_t n, std::span<double> cover) {
     constexpr std::uint32_t kPoints = 1024;
     const double golden_angle = pi * (3.0 - std::sqrt(5.0));
-    const Frame frame = frame_around(axis);
+    const DiscFrame frame = frame_around(axis);
     const double half = std::sin(0.5 * radius);
     for (std::uint32_t i = 0; i < kPoints; ++i) {
         // 1 - cos theta grows evenly; with s = sin(theta / 2) nothing cancels.
@@ -60,24 +60,27 @@ double covered_share(Vec3 axis, float chord, std::uint32_t n, std::uint32_t face
 }
 
 void cover_large_disc(Vec3 axis, double radius, std::uint32_t n, std::span<double> cover) {
-    const std::vector<double> solid_angle = formats::texel_solid_angles(n);
     // No point of a texel is further from its centre than this.
-    const double reach = std::sqrt(2.0) / n;
+    const double reach = std::sqrt(2.0) / n, step = 2.0 / n;
     const auto chord = [](double angle) {
         return static_cast<float>(2.0 * std::sin(0.5 * std::clamp(angle, 0.0, pi)));
     };
     const float surely_inside = chord(radius - reach), surely_outside = chord(radius + reach);
-    std::size_t texel = 0;
-    for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
-        for (std::uint32_t row = 0; row < n; ++row) {
-            for (std::uint32_t column = 0; column < n; ++column, ++texel) {
+    for (std::uint32_t row = 0; row < n; ++row) {
+        for (std::uint32_t column = 0; column < n; ++column) {
+            const double u = column * step - 1.0, v = row * step - 1.0;
+            double solid_angle = 0;  // the same on all faces; most texels need none
+            for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
                 const float distance =
                     length(formats::texel_direction(n, face, row, column) - axis);
-                double share = distance < surely_inside ? 1.0 : 0.0;
-                if (distance >= surely_inside && distance <= surely_outside) {
-                    share = covered_share(axis, chord(radius), n, face, row, column);
+                if (distance > surely_outside) continue;
+                const double share = distance < surely_inside
+                                         ? 1.0
+                                         : covered_share(axis, chord(radius), n, face, row, column);
+                if (solid_angle == 0) {
+                    solid_angle = formats::rectangle_solid_angle(u, v, u + step, v + step);
                 }
-                cover[texel] = share * solid_angle[std::size_t{row} * n + column];
+                cover[(std::size_t{face} * n + row) * n + column] = share * solid_angle;
             }
         }
     }
@@ -87,7 +90,13 @@ void cover_large_disc(Vec3 axis, double radius, std::uint32_t n, std::span<doubl
 
 void integrate_discs(std::span<const DistantDisc> discs, std::uint32_t n, const Rotation& rotation,
                      std::span<double> integral) {
-    std::vector<double> cover(formats::cubemap_texels(n));
+    std::vector<double> scratch(formats::cubemap_texels(n));
+    integrate_discs(discs, n, rotation, scratch, integral);
+}
+
+void integrate_discs(std::span<const DistantDisc> discs, std::uint32_t n, const Rotation& rotation,
+                     std::span<double> scratch, std::span<double> integral) {
+    const std::span<double> cover = scratch.first(formats::cubemap_texels(n));
     for (const DistantDisc& disc : discs) {
         const Vec3 axis = normalize(rotation.world_from_light(disc.direction));
         const auto radius = static_cast<double>(disc.angular_radius);

@@ -16,4 +16,9 @@ namespace opaline::runtime {
 void integrate_discs(std::span<const formats::DistantDisc> discs, std::uint32_t n,
                      const Rotation& rotation, std::span<double> integral);
 
+/// The same without allocating: `scratch` holds at least 6 n n values.
+void integrate_discs(std::span<const formats::DistantDisc> discs, std::uint32_t n,
+                     const Rotation& rotation, std::span<double> scratch,
+                     std::span<double> integral);
+
 }  // namespace opaline::runtime

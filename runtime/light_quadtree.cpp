@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "formats/opal/cubemap.h"
+#include "runtime/parallel.h"
 
 namespace opaline::runtime {
 namespace {
@@ -77,12 +77,18 @@ std::vector<CellSum> sum_quarters(const std::vector<CellSum>& fine, std::uint32_
 
 }  // namespace
 
-LightQuadtree make_light_quadtree(std::span<const double> integral, std::uint32_t n) {
+LightQuadtree make_light_quadtree(std::span<const double> integral, std::uint32_t n,
+                                  unsigned threads) {
     LightQuadtree tree;
     std::vector<CellSum> sums = sum_texels(integral, n);
     for (std::uint32_t size = n; size > 0; size /= 2) {
-        std::vector<LightCell>& cells = tree.level.emplace_back();
-        std::transform(sums.begin(), sums.end(), std::back_inserter(cells), finish);
+        std::vector<LightCell>& cells = tree.level.emplace_back(sums.size());
+        for_ranges(static_cast<std::uint32_t>(sums.size()), 4096, threads,
+                   [&](std::uint32_t begin, std::uint32_t end) {
+                       for (std::uint32_t j = begin; j < end; ++j) {
+                           cells[j] = finish(sums[j]);
+                       }
+                   });
         sums = size > 1 ? sum_quarters(sums, size) : std::vector<CellSum>();
     }
     std::reverse(tree.level.begin(), tree.level.end());

@@ -35,7 +35,8 @@ struct LightQuadtree {
 };
 
 /// From the integrals of radiance over the texels of a cube map, integral[3 j + band], 6 n n
-/// texels.
-LightQuadtree make_light_quadtree(std::span<const double> integral, std::uint32_t n);
+/// texels. Same bits for any number of threads (0: all cores).
+LightQuadtree make_light_quadtree(std::span<const double> integral, std::uint32_t n,
+                                  unsigned threads);
 
 }  // namespace opaline::runtime

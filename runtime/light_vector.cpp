@@ -53,21 +53,32 @@ LightVector project_cubemap(std::span<const Rgb> radiance, std::uint32_t n) {
 }
 
 LightVector make_light_vector(std::span<const double> integral, std::uint32_t n) {
-    const std::uint32_t texels = formats::cubemap_texels(n);
-    LightVector light{n, std::vector<float>(std::size_t{4} * texels)};
-    std::vector<double> band(texels);
-    for (std::size_t b = 0; b < 3; ++b) {
-        for (std::size_t j = 0; j < texels; ++j) {
-            band[j] = integral[3 * j + b];
-        }
-        formats::haar_forward_cube(std::span<double>(band), n);
-        for (std::size_t k = 0; k < texels; ++k) {
-            // Light beyond the range of float stays finite, so that no sum of it becomes NaN here.
-            constexpr double kLargest = std::numeric_limits<float>::max();
-            light.rgba[4 * k + b] = static_cast<float>(std::clamp(band[k], -kLargest, kLargest));
+    LightVector light{n, std::vector<float>(std::size_t{4} * formats::cubemap_texels(n))};
+    std::vector<double> scratch(std::size_t{2} * n * n);
+    fill_light_vector(integral, scratch, light);
+    return light;
+}
+
+void fill_light_vector(std::span<const double> integral, std::span<double> scratch,
+                       LightVector& light) {
+    const std::uint32_t n = light.n;
+    const std::size_t face_size = std::size_t{n} * n;
+    const std::span<double> face = scratch.first(face_size), rest = scratch.subspan(face_size);
+    for (std::size_t f = 0; f < formats::kCubeFaces; ++f) {
+        for (std::size_t b = 0; b < 3; ++b) {
+            for (std::size_t j = 0; j < face_size; ++j) {
+                face[j] = integral[3 * (f * face_size + j) + b];
+            }
+            formats::haar_forward(face, n, rest);
+            for (std::size_t k = 0; k < face_size; ++k) {
+                // Light beyond the range of float stays finite, so that no sum of it becomes NaN
+                // here.
+                constexpr double kLargest = std::numeric_limits<float>::max();
+                light.rgba[4 * (f * face_size + k) + b] =
+                    static_cast<float>(std::clamp(face[k], -kLargest, kLargest));
+            }
         }
     }
-    return light;
 }
 
 LightVector combine(float a, const LightVector& first, float b, const LightVector& second) {

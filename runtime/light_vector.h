@@ -50,6 +50,10 @@ LightVector project_cubemap(std::span<const formats::Rgb> radiance, std::uint32_
 /// Haar transform of texel integrals: integral[3 j + band] over texel j [W m^-2], 6 n n texels.
 LightVector make_light_vector(std::span<const double> integral, std::uint32_t n);
 
+/// The same into a vector of that n; `scratch` holds at least 2 n n values. Never allocates.
+void fill_light_vector(std::span<const double> integral, std::span<double> scratch,
+                       LightVector& light);
+
 /// Light that is the sum a * first + b * second; both of the same n.
 LightVector combine(float a, const LightVector& first, float b, const LightVector& second);
 

@@ -35,6 +35,7 @@ typedef enum opaline_status {
     OPALINE_NEWER_FILE = 3, /* written by a later version: update the library */
     OPALINE_BUFFER_TOO_SMALL = 4,
     OPALINE_OUT_OF_MEMORY = 5,
+    OPALINE_BUSY = 6, /* another thread changes the light, or reads the one to be changed */
 
     /* Of functions in opaline_gl.h. */
     OPALINE_GL_NO_CONTEXT = 16,    /* no OpenGL context is current on the calling thread */
@@ -60,6 +61,33 @@ OPALINE_API const char* opaline_last_error(void);
    the asset is released; only compressed sections are copied. The whole file is checked once,
    checksums included, so untrusted input is safe. Any thread. */
 OPALINE_API opaline_status opaline_asset_load(const void* bytes, size_t size, opaline_asset** out);
+
+typedef enum opaline_load_flags {
+    OPALINE_LOAD_DEFAULT = 0,
+    /* The file is as the baker wrote it, and nobody else could write to it: neither checksums nor
+       values are checked, and of offsets and indices only that sections lie inside the file and
+       arrays inside their sections. A file that is damaged or hostile may then make any function
+       read outside of its memory. Takes time for compressed sections alone. */
+    OPALINE_LOAD_TRUSTED = 1
+} opaline_load_flags;
+
+typedef struct opaline_load_options {
+    size_t struct_size; /* in: sizeof(opaline_load_options) */
+    uint32_t flags;     /* of opaline_load_flags */
+    /* Memory of the asset: the handle and decoded sections, which is all that grows with the file.
+       Both NULL: the C++ heap, as for what lights hold and for what functions need while they run.
+       `allocate` may return NULL: then loading fails with OPALINE_OUT_OF_MEMORY. `alignment` is a
+       power of two, at most 64. Called by opaline_asset_load_with and opaline_asset_release on
+       their thread, with `user`; must not throw. */
+    void* (*allocate)(void* user, size_t size, size_t alignment);
+    void (*release)(void* user, void* memory, size_t size, size_t alignment);
+    void* user;
+} opaline_load_options;
+
+/* opaline_asset_load with options; NULL for none. Any thread. */
+OPALINE_API opaline_status opaline_asset_load_with(const void* bytes, size_t size,
+                                                   const opaline_load_options* options,
+                                                   opaline_asset** out);
 
 /* NULL is fine. No other thread may be using the asset; lights made for it stay valid. */
 OPALINE_API void opaline_asset_release(opaline_asset* asset);
@@ -136,11 +164,14 @@ OPALINE_API opaline_status opaline_asset_primitive_emission(const opaline_asset*
 /* --- Lights ------------------------------------------------------------------------------- */
 
 /* A light starts black: no map, no suns, no rotation. Functions that change a light project it on
-   the basis at once, which takes time in proportion to map and basis: set the rotation before the
-   map to pay once. For assets with glossy surfaces it is also blurred to their roughnesses, which
-   takes some tenths of a second more (seconds for mirrors), whenever map or suns change. One thread
-   at a time may change a light, and none may read it meanwhile; different lights are independent.
- */
+   the basis at once. What a change costs on two cores, basis of 6 x 32 x 32 (tests/bench/RESULTS.md):
+   a turn 2 ms (opaline_light_turn) or 20 ms (opaline_light_set_rotation), a map of 1024 x 512 20 ms,
+   a sun less than one. For assets with glossy surfaces another map or sun is also blurred to their
+   roughnesses: 20 ms for opaque and rough ones, 70 ms for mirrors.
+   One thread at a time may change a light ("one writer"), and none may read it meanwhile. Nothing
+   waits or races: a call that comes while another thread changes the light, or that would change it
+   while others read it, returns OPALINE_BUSY and does nothing. Different lights are independent:
+   each can be changed while others are read. A light outlives its asset. */
 OPALINE_API opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** out);
 
 /* NULL is fine. No other thread may be using the light. */
@@ -156,9 +187,16 @@ OPALINE_API opaline_status opaline_light_set_threads(opaline_light* light, uint3
 OPALINE_API opaline_status opaline_light_set_rotation(opaline_light* light,
                                                       const float world_from_light[9]);
 
+/* The same for a light that turns from frame to frame: its map is sampled at a tenth of the points,
+   which errs by some percent of the light next to sharp edges (tests/bench/RESULTS.md; suns,
+   harmonics and quarter turns of cube maps are exact). Call opaline_light_set_rotation once the
+   light rests. On one thread it never allocates. One writer. */
+OPALINE_API opaline_status opaline_light_turn(opaline_light* light,
+                                              const float world_from_light[9]);
+
 /* Linear Rec. 709 radiance [W m^-2 sr^-1], 3 * 6 * size * size floats: faces +X -X +Y -Y +Z -Z,
    rows and columns oriented as OpenGL cube maps. Finite, not negative; size 1 ... 8192. Replaces
-   the map; the values are copied. One writer. */
+   the map or what stands for it; the values are copied. One writer. */
 OPALINE_API opaline_status opaline_light_set_cubemap(opaline_light* light, const float* rgb,
                                                      uint32_t size);
 
@@ -167,11 +205,40 @@ OPALINE_API opaline_status opaline_light_set_cubemap(opaline_light* light, const
 OPALINE_API opaline_status opaline_light_set_lat_long(opaline_light* light, const float* rgb,
                                                       uint32_t width, uint32_t height);
 
+/* Replaces the map by spherical harmonics: radiance sum_k c_k Y_k(w) [W m^-2 sr^-1] from direction
+   w = (x, y, z) of the light's axes, c_k = rgb[3 k .. 3 k + 2], any finite values. Real, orthonormal,
+   no Condon-Shortley sign, in the order of degree and order that engines use:
+       Y_0 = 0.282095                                Y_1, Y_2, Y_3 = 0.488603 * (y, z, x)
+       Y_4, Y_5, Y_7 = 1.092548 * (x y, y z, x z)    Y_6 = 0.315392 * (3 z z - 1)
+       Y_8 = 0.546274 * (x x - y y)
+   These are of radiance. Where an engine stores irradiance, divide its coefficients of degrees 0, 1
+   and 2 by pi, 2 pi / 3 and pi / 4. Negative radiance counts, but is not mirrored. One writer. */
+OPALINE_API opaline_status opaline_light_set_harmonics(opaline_light* light, const float rgb[27]);
+
+/* Replaces the map by coefficients of the asset's own basis, as opaline_light_get_coefficients
+   gives them and in the order of formats/README.md ("Haar"): three floats each, any finite values,
+   `count` floats, 18 * size * size for a cube map of that size. They describe the light unturned:
+   with a rotation they are resampled as a cube map of mean radiance. Negative radiance counts, but
+   is not mirrored. One writer. */
+OPALINE_API opaline_status opaline_light_set_coefficients(opaline_light* light, const float* rgb,
+                                                          size_t count);
+
+/* The light vector: coefficients of the turned map and of suns [W m^-2], 18 * size * size floats.
+   Emitters are not part of it. Any thread, concurrently. */
+OPALINE_API opaline_status opaline_light_get_coefficients(const opaline_light* light,
+                                                          float* out_rgb, size_t out_count);
+
 /* Adds a disc at infinity: direction toward it (any length but 0), radius [rad] from
    1e-6 to below pi/2,
    radiance [W m^-2 sr^-1]. Irradiance facing it is about pi * radius^2 * radiance. One writer. */
 OPALINE_API opaline_status opaline_light_add_sun(opaline_light* light, const float direction[3],
                                                  float angular_radius, const float radiance[3]);
+
+/* Changes the sun that the call of opaline_light_add_sun number `index` added, counted from 0 since
+   the light was created or cleared. Costs as much as adding one. One writer. */
+OPALINE_API opaline_status opaline_light_set_sun(opaline_light* light, uint32_t index,
+                                                 const float direction[3], float angular_radius,
+                                                 const float radiance[3]);
 
 /* Multiplies the light of an emitter, as authored, by three factors, finite and not negative: 0, 0,
    0 switches it off. Each is 1, 1, 1 in a new light. Costs nothing. One writer. */

@@ -28,14 +28,6 @@ SpecularNeeds specular_needs(const formats::AssetView& asset) {
                         [](const formats::GlossRecord& gloss) { return gloss.is_glossy(); })};
 }
 
-SpecularLight make_specular_light(const formats::Environment& environment,
-                                  const SpecularNeeds& needs, const Rotation& rotation,
-                                  unsigned threads) {
-    SpecularLight light = prefilter_specular(environment, needs.levels, rotation, threads);
-    if (needs.gloss) light.gloss = make_gloss_light(environment, threads);
-    return light;
-}
-
 SpecularLobe lobe_of_alpha(float alpha) {
     alpha = std::max(alpha, 0.05f);
     SpecularLobe lobe;

@@ -50,7 +50,23 @@ struct SpecularNeeds {
 };
 SpecularNeeds specular_needs(const formats::AssetView& asset);
 
-/// Prepares that much. Same bits for any number of threads (0: all cores).
+/// The integrals of a map over texels that its specular light is made from, in the light's frame:
+/// with these kept, another sun costs no map.
+struct SpecularSource {
+    std::uint32_t n = 0;           ///< texels a side; 0: nothing is needed
+    std::vector<double> integral;  ///< integral[3 j + band] [W m^-2], discs left out
+};
+SpecularSource integrate_for_specular(const formats::Environment& map, const SpecularNeeds& needs,
+                                      unsigned threads);
+
+/// Prepares what is needed, from a source made for the same needs. Same bits for any number of
+/// threads (0: all cores).
+SpecularLight make_specular_light(const SpecularSource& source,
+                                  std::span<const formats::DistantDisc> discs,
+                                  const SpecularNeeds& needs, const Rotation& rotation,
+                                  unsigned threads);
+
+/// Both.
 SpecularLight make_specular_light(const formats::Environment& environment,
                                   const SpecularNeeds& needs, const Rotation& rotation,
                                   unsigned threads);

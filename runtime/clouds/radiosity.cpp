@@ -19,8 +19,8 @@ struct Plane {
 
 // f(cell, values of planes ...) for each cell and for the outside.
 template <class Function, class... Planes>
-void for_cells(const std::vector<RadiosityCell>& cells, const RadiosityCell& outside,
-               const Function& f, Planes&... planes) {
+void visit_cells(const std::vector<RadiosityCell>& cells, const RadiosityCell& outside,
+                 const Function& f, Planes&... planes) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
         f(cells[i], planes.cell[i]...);
     }
@@ -88,7 +88,7 @@ Radiosity solve_radiosity(const PlaneGrid& grid, const std::vector<RadiosityCell
                           const RadiosityCell& outside, const RadiosityOptions& options) {
     const GatherPlan plan = make_gather_plan(grid);
     const auto each = [&](const auto& f, auto&... planes) {
-        for_cells(cells, outside, f, planes...);
+        visit_cells(cells, outside, f, planes...);
     };
     Plane next{std::vector<Rgb>(cells.size()), {}};  // radiosity of the plane that shines next
     each([](const RadiosityCell& c, Rgb& to) { to = c.emission; }, next);

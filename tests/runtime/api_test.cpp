@@ -2,15 +2,12 @@
 
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <thread>
 
-#include "formats/opal/write_opal.h"
 #include "runtime/opaline.hpp"
 #include "runtime/shade.h"
+#include "tests/runtime/api_test_support.h"
 #include "tests/runtime/light_test_support.h"
-#include "tests/runtime/row_test_support.h"
 
 namespace opaline::runtime {
 namespace {
@@ -18,46 +15,9 @@ namespace {
 using formats::Rgb;
 using formats::TermSet;
 using testing::HasSubstr;
-
-/// The bytes of a small file, aligned as a memory map is.
-struct FileBytes {
-    std::vector<char> storage;
-    std::size_t size = 0;
-
-    char* data() {
-        void* p = storage.data();
-        std::size_t room = storage.size();
-        return static_cast<char*>(std::align(64, size, p, room));
-    }
-};
-
-formats::Asset make_asset(std::uint32_t n) {
-    formats::Asset asset;
-    asset.provenance = "{}";
-    asset.transport = tests::random_rows(n, 8, 3, 21);
-    formats::PrimitiveRecord p;
-    p.node = 4;
-    p.vertex_count = asset.transport.view().rows();
-    p.bands = 3;
-    p.flags = formats::PrimitiveRecord::kDoubleSided;
-    asset.primitives = {p};
-    asset.position.resize(p.vertex_count);
-    asset.normal.resize(p.vertex_count, {0, 1, 0});
-    asset.base_color.resize(p.vertex_count, {0.5f, 0.5f, 0.5f});
-    return asset;
-}
-
-FileBytes write(const formats::Asset& asset, const std::string& name) {
-    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
-    auto file = formats::AtomicFile::create(path);
-    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
-    std::ifstream in(path, std::ios::binary);
-    const std::string content{std::istreambuf_iterator<char>(in), {}};
-    std::filesystem::remove(path);
-    FileBytes bytes{std::vector<char>(content.size() + 64), content.size()};
-    std::memcpy(bytes.data(), content.data(), content.size());
-    return bytes;
-}
+using tests::FileBytes;
+using tests::make_asset;
+using tests::write;
 
 class Api : public testing::Test {
   protected:
@@ -346,7 +306,7 @@ TEST_F(Api, ComponentsAndGlossAreThoseOfTheLibrary) {
 }
 
 TEST_F(Api, StatusesHaveNames) {
-    for (int status = 0; status <= 5; ++status) {
+    for (int status = 0; status <= 6; ++status) {
         EXPECT_STRNE(opaline_status_string(static_cast<opaline_status>(status)), "unknown status");
     }
     EXPECT_EQ(opaline_version(), OPALINE_VERSION);

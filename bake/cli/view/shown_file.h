@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -53,11 +52,8 @@ class ShownFile {
     formats::Status follow(const ViewState& state, const formats::Environment& light,
                            std::uint64_t light_version);
 
-    /// What follow() prepared, from a camera, which gets the near plane of the file. Not exact: in
-    /// small tiles, so that samples at edges may differ from what `render` sees, but `stop` is
-    /// looked at more often. Errors: resource; interrupted, once `stop` is true.
-    formats::Result<runtime::Picture> draw(runtime::Camera camera, std::uint32_t supersampling,
-                                           bool is_exact, const std::atomic<bool>& stop);
+    /// What follow() prepared, from a camera, which gets the near plane of the file.
+    formats::Result<runtime::Picture> draw(runtime::Camera camera, std::uint32_t supersampling);
 
     const FileFacts& facts() const;
     const ViewSeconds& seconds() const;

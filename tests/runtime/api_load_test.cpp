@@ -1,0 +1,144 @@
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "formats/opal/asset.h"
+#include "formats/opal/section.h"
+#include "runtime/opaline.hpp"
+#include "tests/runtime/api_test_support.h"
+
+namespace opaline::runtime {
+namespace {
+
+// A host's allocator that knows what it gave out.
+struct HostMemory {
+    std::map<void*, std::size_t> given;
+    std::size_t calls = 0, fails_at = ~std::size_t{0};
+    bool wrong = false;
+
+    static void* allocate(void* user, std::size_t size, std::size_t alignment) {
+        auto& host = *static_cast<HostMemory*>(user);
+        if (host.calls++ >= host.fails_at) return nullptr;
+        void* const p = std::aligned_alloc(64, (size + 63) / 64 * 64);
+        host.wrong = host.wrong || alignment > 64 || p == nullptr;
+        host.given[p] = size;
+        return p;
+    }
+    static void release(void* user, void* memory, std::size_t size, std::size_t) {
+        auto& host = *static_cast<HostMemory*>(user);
+        host.wrong = host.wrong || host.given.count(memory) == 0 || host.given[memory] != size;
+        host.given.erase(memory);
+        std::free(memory);
+    }
+    opaline_load_options options() {
+        return {sizeof(opaline_load_options), OPALINE_LOAD_DEFAULT, allocate, release, this};
+    }
+};
+
+class ApiLoad : public testing::Test {
+  protected:
+    void SetUp() override {
+        file = tests::write(tests::make_asset(8),
+                            std::string("api-load-") +
+                                testing::UnitTest::GetInstance()->current_test_info()->name());
+    }
+    opaline_status load(const opaline_load_options* options) {
+        opaline_asset* loaded = nullptr;
+        const opaline_status status =
+            opaline_asset_load_with(file.data(), file.size, options, &loaded);
+        asset.reset(loaded);
+        return status;
+    }
+    std::vector<float> shaded() {
+        const auto light = create_light(asset);
+        const float white[3] = {1, 1, 1};
+        EXPECT_EQ(opaline_light_set_lat_long(light.handle.get(), white, 1, 1), OPALINE_OK);
+        std::vector<float> out(std::size_t{3} * opaline_asset_receiver_count(asset.get()));
+        EXPECT_EQ(opaline_shade(asset.get(), light.handle.get(), 0, out.data(), out.size()),
+                  OPALINE_OK);
+        return out;
+    }
+    tests::FileBytes file;
+    AssetHandle asset;
+};
+
+TEST_F(ApiLoad, MemoryOfTheAssetIsTheHostsAndGoesBack) {
+    ASSERT_EQ(load(nullptr), OPALINE_OK);
+    const std::vector<float> expected = shaded();
+    HostMemory host;
+    const opaline_load_options options = host.options();
+    ASSERT_EQ(load(&options), OPALINE_OK) << opaline_last_error();
+    EXPECT_GE(host.given.size(), 2u);  // the handle, and the preview mesh, which is compressed
+    EXPECT_EQ(shaded(), expected);
+    asset.reset();
+    EXPECT_TRUE(host.given.empty());
+    EXPECT_FALSE(host.wrong);
+}
+
+TEST_F(ApiLoad, AHostWithoutMemoryIsToldSoAndKeepsNothing) {
+    std::size_t failures = 0;
+    for (HostMemory host;; host.fails_at = ++failures) {
+        host.fails_at = failures;
+        host.calls = 0;
+        const opaline_load_options options = host.options();
+        const opaline_status status = load(&options);
+        asset.reset();
+        EXPECT_TRUE(host.given.empty());
+        EXPECT_FALSE(host.wrong);
+        if (status == OPALINE_OK) break;
+        ASSERT_EQ(status, OPALINE_OUT_OF_MEMORY) << failures;
+        ASSERT_LT(failures, 20u);
+    }
+    EXPECT_GE(failures, 2u);
+}
+
+TEST_F(ApiLoad, TrustedFilesAreTheSameAssetWithoutChecksOfContent) {
+    ASSERT_EQ(load(nullptr), OPALINE_OK);
+    const std::vector<float> expected = shaded();
+    const opaline_load_options trusted{sizeof(opaline_load_options), OPALINE_LOAD_TRUSTED, nullptr,
+                                       nullptr, nullptr};
+    ASSERT_EQ(load(&trusted), OPALINE_OK);
+    EXPECT_EQ(shaded(), expected);
+    // Another byte of provenance, which no function reads.
+    const auto table = formats::read_section_table(
+        {reinterpret_cast<const std::byte*>(file.data()), file.size}, {});
+    ASSERT_TRUE(table);
+    for (const formats::SectionEntry& entry : *table) {
+        if (entry.id == formats::kProvSection) file.data()[entry.offset] = '[';
+    }
+    EXPECT_EQ(load(nullptr), OPALINE_BAD_FILE);
+    EXPECT_EQ(load(&trusted), OPALINE_OK);
+    EXPECT_EQ(shaded(), expected);
+    // What is outside of the file is refused all the same.
+    file.size /= 2;
+    EXPECT_EQ(load(&trusted), OPALINE_BAD_FILE);
+}
+
+TEST_F(ApiLoad, WrongUseIsRefused) {
+    opaline_asset* out = nullptr;
+    opaline_load_options options{};
+    EXPECT_EQ(load(&options), OPALINE_INVALID_ARGUMENT);  // struct_size
+    options.struct_size = sizeof options;
+    EXPECT_EQ(load(&options), OPALINE_OK);
+    options.flags = 2;
+    EXPECT_EQ(load(&options), OPALINE_INVALID_ARGUMENT);
+    options.flags = 0;
+    options.allocate = HostMemory::allocate;  // without release
+    EXPECT_EQ(load(&options), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_asset_load_with(nullptr, 1, nullptr, &out), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_asset_load_with(file.data(), file.size, nullptr, nullptr),
+              OPALINE_INVALID_ARGUMENT);
+    // A file of a later version says so, whether trusted or not.
+    formats::FileHeader header;
+    std::memcpy(&header, file.data(), sizeof header);
+    ++header.version;
+    std::memcpy(file.data(), &header, sizeof header);
+    EXPECT_EQ(load(nullptr), OPALINE_NEWER_FILE);
+    const opaline_load_options trusted{sizeof(opaline_load_options), OPALINE_LOAD_TRUSTED, nullptr,
+                                       nullptr, nullptr};
+    EXPECT_EQ(load(&trusted), OPALINE_NEWER_FILE);
+}
+
+}  // namespace
+}  // namespace opaline::runtime
