@@ -16,6 +16,7 @@ if(OPALINE_BUILD_GL)
     endif()
     install(FILES opaline_gl.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
     install(FILES ${CMAKE_CURRENT_BINARY_DIR}/embed_gl/shaders/generated/opaline_surface.glsl
+                  ${CMAKE_CURRENT_BINARY_DIR}/embed_gl/shaders/generated/opaline_gloss.glsl
             DESTINATION ${CMAKE_INSTALL_DATADIR}/opaline/glsl)
 endif()
 install(TARGETS ${OPALINE_INSTALLED} EXPORT OpalineTargets
@@ -25,7 +26,8 @@ install(FILES opaline.h opaline.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 set(OPALINE_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Opaline)
 install(EXPORT OpalineTargets NAMESPACE Opaline:: DESTINATION ${OPALINE_CONFIG_DIR})
-configure_package_config_file(cmake/OpalineConfig.cmake.in OpalineConfig.cmake
+set(OPALINE_GLSL_DIR ${CMAKE_INSTALL_DATADIR}/opaline/glsl)
+configure_package_config_file(cmake/OpalineConfig.cmake.in OpalineConfig.cmake PATH_VARS OPALINE_GLSL_DIR
     INSTALL_DESTINATION ${OPALINE_CONFIG_DIR})
 write_basic_package_version_file(OpalineConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/OpalineConfig.cmake

@@ -10,8 +10,9 @@
    rendering. The rules of opaline.h hold as well; statuses are listed there.
 
    share/opaline/glsl/opaline_surface.glsl holds functions that turn a receiver's radiance into that
-   of a surface seen by the eye: paste it into a shader of GLSL 3.30, ES 3.00 or later, after a
-   default precision of sampler2DArray where GLSL asks for one. */
+   of a surface seen by the eye, opaline_gloss.glsl those of glossy opaque ones (after the former).
+   Paste them into shaders of GLSL 3.30, ES 3.00 or later, behind the version; default precisions
+   are high from there on. */
 #ifndef OPALINE_GL_H
 #define OPALINE_GL_H
 
@@ -80,14 +81,19 @@ typedef struct opaline_gl_objects {
     /* With OPALINE_GL_WITH_MESH, for assets with glossy surfaces, stride 4: openness, two signed
        normalised bytes (the axis, octahedral), then one unsigned normalised byte (the fraction). */
     uint32_t openness;
+
+    /* For assets with glossy opaque or thin-walled surfaces: textures of the uniforms
+       opaline_light_maps (a 2D array), opaline_cells, opaline_sun_table and opaline_albedo (2D) of
+       opaline_gloss.glsl; the first three are filled by each relight. */
+    uint32_t light_maps, cells, sun_table, albedo;
 } opaline_gl_objects;
 
 /* Fills `objects`. */
 OPALINE_API opaline_status opaline_gl_get_objects(const opaline_gl* gl,
                                                   opaline_gl_objects* objects);
 
-/* What the functions of opaline_surface.glsl need to know of a primitive, beside
-   opaline_asset_primitive and opaline_asset_primitive_shading. */
+/* What the functions of opaline_surface.glsl and opaline_gloss.glsl need to know of a primitive,
+   beside opaline_asset_primitive and opaline_asset_primitive_shading. */
 typedef struct opaline_gl_surface {
     size_t struct_size; /* in: sizeof(opaline_gl_surface) */
 
@@ -101,6 +107,9 @@ typedef struct opaline_gl_surface {
 
     /* Column by column, as glUniformMatrix3fv takes it: of the light that relit last. */
     float light_from_world[9];
+
+    uint32_t is_glossy;          /* 1: glossy and not translucent, for opaline_gloss.glsl; else 0 */
+    float f0_f90[4], factors[2]; /* for opaline_make_gloss, before the asset's image of factors */
 } opaline_gl_surface;
 
 /* Fills `surface`. */

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runtime/api_support.h"
+#include "runtime/embed_gl/glossy_light.h"
 #include "runtime/embed_gl/mirrored_light.h"
 #include "runtime/embed_gl/relight.h"
 #include "runtime/embed_gl/saved_state.h"
@@ -20,6 +21,8 @@ struct opaline_gl {
     runtime::GlNames names{gl};
     runtime::Relight relight{gl};
     runtime::MirroredLight mirrored{gl};
+    runtime::GlossyLight glossy{gl};
+    std::vector<formats::GlossRecord> gloss;  // of each primitive, or none
     std::vector<formats::PrimitiveRecord> primitives;
     GLuint marker_program = 0;
     std::uint32_t marker = 0;  // a uniform of it: no other context's program of that name has it
@@ -141,6 +144,14 @@ opaline_status upload(opaline_gl& handle, const formats::AssetView& asset, std::
     handle.objects.radiance = handle.relight.radiance();
     handle.primitives.assign(asset.primitives.begin(), asset.primitives.end());
     if (status == OPALINE_OK) handle.mirrored.make(asset, handle.names);
+    if (status == OPALINE_OK && runtime::specular_needs(asset).gloss) {
+        handle.gloss.assign(asset.gloss.begin(), asset.gloss.end());
+        handle.glossy.make(handle.names);
+        handle.objects.light_maps = handle.glossy.maps();
+        handle.objects.cells = handle.glossy.cells();
+        handle.objects.sun_table = handle.glossy.suns();
+        handle.objects.albedo = handle.glossy.albedo();
+    }
     if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_MESH) != 0) upload_mesh(handle, asset);
     if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_TEXTURE) != 0) {
         status = make_texture(handle, asset.receivers());
@@ -218,6 +229,7 @@ opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
         const runtime::SavedState saved(gl->gl);
         gl->relight.dot(light->vector(), {light->emitters, false}, gl->names);
         gl->mirrored.upload(light->specular());
+        if (!gl->gloss.empty()) gl->glossy.upload(light->specular().gloss);
         gl->is_relit = true;
         show(*gl);
         return runtime::check_errors(gl->gl, "relighting");
@@ -275,7 +287,18 @@ opaline_status opaline_gl_get_surface(const opaline_gl* gl, uint32_t primitive,
                 record.index_count,
                 lobe.texture,
                 {lobe.cosine, lobe.sine},
-                {r.x.x, r.y.x, r.z.x, r.x.y, r.y.y, r.z.y, r.x.z, r.y.z, r.z.z}};
+                {r.x.x, r.y.x, r.z.x, r.x.y, r.y.y, r.z.y, r.x.z, r.y.z, r.z.z},
+                0,
+                {},
+                {}};
+    if (!gl->gloss.empty() && gl->gloss[primitive].is_glossy()) {
+        const formats::GlossRecord& gloss = gl->gloss[primitive];
+        surface->is_glossy = 1;
+        const float f[4] = {gloss.f0.r, gloss.f0.g, gloss.f0.b, gloss.f90};
+        std::copy(f, f + 4, surface->f0_f90);
+        surface->factors[0] = gloss.metallic;
+        surface->factors[1] = gloss.roughness;
+    }
     return OPALINE_OK;
 }
 

@@ -46,6 +46,7 @@ namespace opaline::runtime {
     X(ProgramUniform2ui, PROGRAMUNIFORM2UI) \
     X(ProgramUniform3f, PROGRAMUNIFORM3F)   \
     X(ShaderSource, SHADERSOURCE)           \
+    X(TexImage2D, TEXIMAGE2D)               \
     X(TexImage3D, TEXIMAGE3D)               \
     X(TexParameteri, TEXPARAMETERI)         \
     X(TexStorage2D, TEXSTORAGE2D)           \

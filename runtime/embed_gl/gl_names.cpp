@@ -61,27 +61,21 @@ GLuint GlNames::make_program(const char* name, const std::string& defines, const
     return 0;
 }
 
-GLuint GlNames::make_texture(std::uint32_t width, std::uint32_t height) {
+GLuint GlNames::make_texture_of(GLenum target) {
     GLuint name = 0;
     gl_->GenTextures(1, &name);
     textures_.push_back(name);
-    gl_->BindTexture(GL_TEXTURE_2D, name);
-    gl_->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32F, static_cast<GLsizei>(width),
-                      static_cast<GLsizei>(height));
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
-        gl_->TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+    gl_->BindTexture(target, name);
+    for (const GLenum filter : {GLenum{GL_TEXTURE_MIN_FILTER}, GLenum{GL_TEXTURE_MAG_FILTER}}) {
+        gl_->TexParameteri(target, filter, GL_NEAREST);
     }
     return name;
 }
 
-GLuint GlNames::make_array_texture() {
-    GLuint name = 0;
-    gl_->GenTextures(1, &name);
-    textures_.push_back(name);
-    gl_->BindTexture(GL_TEXTURE_2D_ARRAY, name);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
-        gl_->TexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_NEAREST);
-    }
+GLuint GlNames::make_texture(std::uint32_t width, std::uint32_t height) {
+    const GLuint name = make_texture_of(GL_TEXTURE_2D);
+    gl_->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32F, static_cast<GLsizei>(width),
+                      static_cast<GLsizei>(height));
     return name;
 }
 

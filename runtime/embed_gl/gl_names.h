@@ -32,12 +32,15 @@ class GlNames {
     /// RGBA32F, nearest filter.
     GLuint make_texture(std::uint32_t width, std::uint32_t height);
 
-    /// A 2D array without texels yet, nearest filter.
-    GLuint make_array_texture();
+    /// Without texels yet, nearest filter; bound afterwards.
+    GLuint make_array_texture() { return make_texture_of(GL_TEXTURE_2D_ARRAY); }
+    GLuint make_table_texture() { return make_texture_of(GL_TEXTURE_2D); }
 
     void release();
 
   private:
+    GLuint make_texture_of(GLenum target);
+
     const GlFunctions* gl_;
     std::vector<GLuint> buffers_, programs_, textures_;
 };

@@ -247,6 +247,9 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
                           state_->own};
     for (std::uint32_t y = 0; y < camera.height; y += side) {
         for (std::uint32_t x = 0; x < camera.width; x += side) {
+            if (options.stop != nullptr && options.stop->load()) {
+                return make_error(ErrorKind::interrupted, {}, "picture", "given up");
+            }
             const Tile tile{x, y, std::min(side, camera.width - x),
                             std::min(side, camera.height - y)};
             draw_tile(scene, resources.draw_programs, *target, tile);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -35,6 +36,8 @@ struct GlRenderOptions {
     std::uint32_t max_tile_samples = 2048;  ///< side of the tiles drawn at once, >= S
     formats::TermSet terms = formats::TermSet::all;  ///< components to add up; see check_terms
     bool background = true;                          ///< false: black behind the asset
+    /// Looked at between tiles: once true, the picture is given up (interrupted).
+    const std::atomic<bool>* stop = nullptr;
 };
 
 /// Wall-clock seconds of the last upload, set_light and render; each ends with glFinish.
@@ -85,7 +88,7 @@ class GlRenderer {
     formats::Status set_layers(const LayerLight& light);
 
     /// Draws and reads back; before the first set_light surfaces and volumes are black. Errors: as
-    /// check_camera; resource.
+    /// check_camera; resource; interrupted.
     formats::Result<Picture> render(const Camera& camera, const GlRenderOptions& options = {});
 
     /// Reads back <T_0, L> of every vertex, as the last set_light left it; of vertices with several

@@ -1,7 +1,9 @@
 #include "bake/cli/view/draw_thread.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <string>
 #include <utility>
@@ -14,6 +16,7 @@ namespace {
 
 constexpr std::uint32_t kFinalSamples = 3;  // along a pixel's side, as `render`
 constexpr double kQuick = 0.04;             // seconds of a picture in motion
+constexpr double kSoon = 0.5;               // seconds that one waits for the last picture
 constexpr std::chrono::milliseconds kRest{120};
 
 // A file that is open, and which reading of which path it is.
@@ -38,7 +41,7 @@ formats::Status keep_open(OpenFile& file, const std::string& path, std::uint64_t
     return formats::ok_status();
 }
 
-// Smaller and with fewer samples, so that it takes about kQuick.
+// A picture's size is divided by `divisor`.
 struct Quality {
     std::uint32_t divisor = 1, supersampling = kFinalSamples;
 
@@ -47,12 +50,22 @@ struct Quality {
         return pixels * supersampling * supersampling / (divisor * divisor);
     }
 };
+constexpr std::array<Quality, 4> kQualities{{{4, 1}, {2, 1}, {1, 1}, {1, kFinalSamples}}};
 
-Quality quick_quality(const ViewState& state, double seconds_per_sample) {
-    for (const Quality quality : {Quality{1, kFinalSamples}, Quality{1, 1}, Quality{2, 1}}) {
-        if (quality.samples(state) * seconds_per_sample <= kQuick) return quality;
+// The best that takes kQuick; the coarsest before any picture was timed.
+std::size_t quick_quality(const ViewState& state, double seconds_per_sample) {
+    std::size_t best = 0;
+    while (best + 1 < kQualities.size() &&
+           kQualities[best + 1].samples(state) * seconds_per_sample <= kQuick) {
+        ++best;
     }
-    return {4, 1};
+    return best;
+}
+
+// The one after another; the last where that takes kSoon.
+std::size_t next_quality(std::size_t quality, const ViewState& state, double seconds_per_sample) {
+    const bool is_soon = kQualities.back().samples(state) * seconds_per_sample <= kSoon;
+    return is_soon ? kQualities.size() - 1 : quality + 1;
 }
 
 struct DrawWork {
@@ -60,12 +73,14 @@ struct DrawWork {
     std::string light;
     std::uint64_t light_request = 0, light_version = 0;
     std::optional<formats::Environment> environment;
-    double seconds_per_sample = 1e-7;  // of the last picture
+    double seconds_per_sample = HUGE_VAL;  // of the last picture
 
     formats::Status open_all(const DrawRequest& request);
-    formats::Result<DrawnView> draw(const DrawRequest& request, const Quality& quality);
-    formats::Result<DrawnSide> draw_side(OpenFile& from, const ViewState& state,
-                                         const runtime::Camera& camera, std::uint32_t samples);
+    formats::Result<DrawnView> draw(const DrawRequest& request, const Quality& quality,
+                                    const std::atomic<bool>& stop);
+    formats::Result<DrawnSide> draw_side(OpenFile& from, const DrawRequest& request,
+                                         const runtime::Camera& camera, std::uint32_t samples,
+                                         const std::atomic<bool>& stop);
 };
 
 formats::Status DrawWork::open_all(const DrawRequest& request) {
@@ -88,16 +103,16 @@ formats::Status DrawWork::open_all(const DrawRequest& request) {
     return formats::ok_status();
 }
 
-formats::Result<DrawnSide> DrawWork::draw_side(OpenFile& from, const ViewState& state,
-                                               const runtime::Camera& camera,
-                                               std::uint32_t samples) {
+formats::Result<DrawnSide> DrawWork::draw_side(OpenFile& from, const DrawRequest& request,
+                                               const runtime::Camera& camera, std::uint32_t samples,
+                                               const std::atomic<bool>& stop) {
     DrawnSide side;
     if (!from.shown) return side;
     ShownFile& shown = *from.shown;
-    if (auto status = shown.follow(state, *environment, light_version); !status) {
+    if (auto status = shown.follow(request.state, *environment, light_version); !status) {
         return status.error();
     }
-    auto picture = shown.draw(camera, samples);
+    auto picture = shown.draw(camera, samples, request.is_exact && samples == kFinalSamples, stop);
     if (!picture) return picture.error();
     side.picture = std::move(*picture);
     side.facts = shown.facts();
@@ -106,7 +121,9 @@ formats::Result<DrawnSide> DrawWork::draw_side(OpenFile& from, const ViewState& 
     return side;
 }
 
-formats::Result<DrawnView> DrawWork::draw(const DrawRequest& request, const Quality& quality) {
+formats::Result<DrawnView> DrawWork::draw(const DrawRequest& request, const Quality& quality,
+                                          const std::atomic<bool>& stop) {
+    if (auto status = open_all(request); !status) return status.error();
     const ViewState& state = request.state;
     const Viewpoint from = state.viewpoint ? *state.viewpoint : file.shown->framing(state);
     runtime::Camera camera = camera_of(state, from);
@@ -115,10 +132,10 @@ formats::Result<DrawnView> DrawWork::draw(const DrawRequest& request, const Qual
     DrawnView view;
     view.viewpoint = from;
     view.is_final = quality.divisor == 1 && quality.supersampling == kFinalSamples;
-    auto first = draw_side(file, state, camera, quality.supersampling);
+    auto first = draw_side(file, request, camera, quality.supersampling, stop);
     if (!first) return first.error();
     view.file = std::move(*first);
-    auto second = draw_side(other, state, camera, quality.supersampling);
+    auto second = draw_side(other, request, camera, quality.supersampling, stop);
     if (!second) return second.error();
     view.other = std::move(*second);
     const double seconds = view.file.seconds.draw + view.file.seconds.readback +
@@ -135,6 +152,7 @@ DrawThread::~DrawThread() {
     {
         const std::lock_guard lock(mutex_);
         ends_ = true;
+        stop_ = true;
     }
     wake_.notify_all();
     thread_.join();
@@ -144,6 +162,7 @@ void DrawThread::request(DrawRequest request) {
     {
         const std::lock_guard lock(mutex_);
         request_ = std::move(request);
+        stop_ = true;
     }
     wake_.notify_all();
 }
@@ -155,15 +174,11 @@ std::shared_ptr<const DrawnView> DrawThread::take() {
 
 void DrawThread::run() {
     DrawWork work;
-    const auto draw = [&](const DrawRequest& request, bool is_quick) {
+    // Whether it was given up for another request.
+    const auto draw = [&](const DrawRequest& request, std::size_t quality) {
         auto drawn = std::make_shared<DrawnView>();
         try {
-            formats::Status opened = work.open_all(request);
-            auto view =
-                opened ? work.draw(request,
-                                   is_quick ? quick_quality(request.state, work.seconds_per_sample)
-                                            : Quality{})
-                       : formats::Result<DrawnView>(opened.error());
+            auto view = work.draw(request, kQualities[quality], stop_);
             if (view) {
                 *drawn = std::move(*view);
             } else {
@@ -173,24 +188,27 @@ void DrawThread::run() {
             drawn->error = formats::make_error(formats::ErrorKind::resource, "", "drawing",
                                                fault.what(), "close other programs");
         }
+        if (drawn->error && drawn->error->kind == formats::ErrorKind::interrupted) return false;
         drawn->serial = request.serial;
-        drawn->is_final |= drawn->error.has_value();
-        const bool is_final = drawn->is_final;
+        const bool goes_on = !drawn->error && !drawn->is_final;
         const std::lock_guard lock(mutex_);
         drawn_ = std::move(drawn);
-        return is_final;
+        return goes_on;
     };
     for (;;) {
         std::unique_lock lock(mutex_);
         wake_.wait(lock, [this] { return ends_ || request_; });
         if (ends_) return;
         const DrawRequest request = *std::exchange(request_, std::nullopt);
+        stop_ = false;
         lock.unlock();
-        if (draw(request, true)) continue;
-        lock.lock();
-        if (wake_.wait_for(lock, kRest, [this] { return ends_ || request_; })) continue;
-        lock.unlock();
-        draw(request, false);
+        std::size_t quality = quick_quality(request.state, work.seconds_per_sample);
+        while (draw(request, quality)) {
+            lock.lock();
+            if (wake_.wait_for(lock, kRest, [this] { return ends_ || request_; })) break;
+            lock.unlock();
+            quality = next_quality(quality, request.state, work.seconds_per_sample);
+        }
     }
 }
 

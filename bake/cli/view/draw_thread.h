@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -20,6 +21,7 @@ struct DrawRequest {
     ViewState state;
     std::uint64_t serial = 0;
     std::uint64_t file_version = 0, other_version = 0, light_version = 0;
+    bool is_exact = false;  ///< the last picture has the very samples of `render`
 };
 
 /// One side of a picture.
@@ -41,8 +43,8 @@ struct DrawnView {
 
 /// Draws on a thread of its own, so that the window answers while a picture takes its time, and so
 /// that the renderer's OpenGL context meets no other one on its thread. Of requests only the newest
-/// is drawn: first in a quality that takes some 40 ms, then, if no other request comes within
-/// 120 ms, in full quality.
+/// is drawn: first in a quality that takes some 40 ms, then, while no other request comes, in
+/// better ones, 120 ms after each other, up to the full one.
 class DrawThread {
   public:
     DrawThread();
@@ -61,6 +63,7 @@ class DrawThread {
     std::optional<DrawRequest> request_;
     std::shared_ptr<const DrawnView> drawn_;
     bool ends_ = false;
+    std::atomic<bool> stop_ = false;  ///< another request came, or the end
     std::thread thread_;
 };
 

@@ -117,6 +117,14 @@ void set_filter(GLenum filter) {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
+void copy_frame(GLuint from, GLuint to, std::uint32_t width, std::uint32_t height) {
+    const auto columns = static_cast<GLint>(width), rows = static_cast<GLint>(height);
+    glDisable(GL_SCISSOR_TEST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
+    glBlitFramebuffer(0, 0, columns, rows, 0, 0, columns, rows, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
 }  // namespace
 
 formats::Result<PicturePainter> PicturePainter::create() {
@@ -125,8 +133,8 @@ formats::Result<PicturePainter> PicturePainter::create() {
     PicturePainter painter;
     painter.program_ = *program;
     glGenVertexArrays(1, &painter.vertex_array_);
-    glGenFramebuffers(1, &painter.frame_);
-    glGenTextures(1, &painter.image_);
+    glGenFramebuffers(2, painter.frame_);
+    glGenTextures(2, painter.image_);
     glGenTextures(2, painter.picture_);
     return painter;
 }
@@ -134,11 +142,12 @@ formats::Result<PicturePainter> PicturePainter::create() {
 PicturePainter::PicturePainter(PicturePainter&& other) noexcept
     : program_(std::exchange(other.program_, 0)),
       vertex_array_(std::exchange(other.vertex_array_, 0)),
-      frame_(std::exchange(other.frame_, 0)),
-      image_(std::exchange(other.image_, 0)),
       width_(other.width_),
-      height_(other.height_) {
+      height_(other.height_),
+      mapped_(other.mapped_) {
     for (int which = 0; which < 2; ++which) {
+        frame_[which] = std::exchange(other.frame_[which], 0);
+        image_[which] = std::exchange(other.image_[which], 0);
         picture_[which] = std::exchange(other.picture_[which], 0);
         is_there_[which] = other.is_there_[which];
         picture_width_[which] = other.picture_width_[which];
@@ -150,13 +159,14 @@ PicturePainter::~PicturePainter() {
     if (program_ == 0) return;
     glDeleteProgram(program_);
     glDeleteVertexArrays(1, &vertex_array_);
-    glDeleteFramebuffers(1, &frame_);
-    glDeleteTextures(1, &image_);
+    glDeleteFramebuffers(2, frame_);
+    glDeleteTextures(2, image_);
     glDeleteTextures(2, picture_);
 }
 
 void PicturePainter::upload(int which, const runtime::Picture& picture) {
     is_there_[which] = !picture.pixel.empty();
+    mapped_.reset();
     if (!is_there_[which]) return;
     picture_width_[which] = picture.width;
     picture_height_[which] = picture.height;
@@ -168,19 +178,33 @@ void PicturePainter::upload(int which, const runtime::Picture& picture) {
 }
 
 void PicturePainter::resize(std::uint32_t width, std::uint32_t height) {
-    glBindFramebuffer(GL_FRAMEBUFFER, frame_);
     if (width == width_ && height == height_) return;
     width_ = width;
     height_ = height;
-    glBindTexture(GL_TEXTURE_2D, image_);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, static_cast<GLsizei>(width),
-                 static_cast<GLsizei>(height), 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    set_filter(GL_NEAREST);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, image_, 0);
+    mapped_.reset();
+    for (const int which : {kMapped, kImage}) {
+        glBindTexture(GL_TEXTURE_2D, image_[which]);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, static_cast<GLsizei>(width),
+                     static_cast<GLsizei>(height), 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        set_filter(GL_NEAREST);
+        glBindFramebuffer(GL_FRAMEBUFFER, frame_[which]);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, image_[which],
+                               0);
+    }
 }
 
 void PicturePainter::paint(std::uint32_t width, std::uint32_t height, const PaintLook& look) {
     resize(width, height);
+    if (mapped_ != look) map_tones(look);
+    mapped_ = look;
+    copy_frame(frame_[kMapped], frame_[kImage], width_, height_);
+    glBindFramebuffer(GL_FRAMEBUFFER, frame_[kImage]);
+    glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(height));
+}
+
+void PicturePainter::map_tones(const PaintLook& look) const {
+    const std::uint32_t width = width_, height = height_;
+    glBindFramebuffer(GL_FRAMEBUFFER, frame_[kMapped]);
     glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(height));
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);
@@ -213,7 +237,7 @@ void PicturePainter::paint(std::uint32_t width, std::uint32_t height, const Pain
 runtime::DisplayPicture PicturePainter::read() const {
     runtime::DisplayPicture picture{width_, height_, {}};
     picture.rgba.resize(std::size_t{4} * width_ * height_);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_[kImage]);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     glPixelStorei(GL_PACK_ROW_LENGTH, 0);
     glReadPixels(0, 0, static_cast<GLsizei>(width_), static_cast<GLsizei>(height_), GL_RGBA,
@@ -230,11 +254,7 @@ runtime::DisplayPicture PicturePainter::read() const {
 }
 
 void PicturePainter::show() const {
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    glBlitFramebuffer(0, 0, static_cast<GLint>(width_), static_cast<GLint>(height_), 0, 0,
-                      static_cast<GLint>(width_), static_cast<GLint>(height_), GL_COLOR_BUFFER_BIT,
-                      GL_NEAREST);
+    copy_frame(frame_[kImage], 0, width_, height_);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 

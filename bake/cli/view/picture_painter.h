@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <optional>
 
 #include "formats/opal/result.h"
 #include "runtime/picture/picture.h"
@@ -17,6 +17,8 @@ struct PaintLook {
     /// Instead of the second picture: how far both are apart, at each pixel the largest difference
     /// of a display colour's bands, times this gain, from black over red and yellow to white.
     float difference_gain = 0;  ///< 0: no
+
+    bool operator==(const PaintLook&) const = default;
 };
 
 /// Tone-maps pictures into an image of the size of the window, by the window's OpenGL 3.3 context,
@@ -32,7 +34,8 @@ class PicturePainter {
 
     /// Picture 0, or 1 beside it; an empty one is none.
     void upload(int which, const runtime::Picture& picture);
-    /// Pictures of another size are stretched. The image stays bound, to draw on.
+    /// Pictures of another size are stretched. They are tone-mapped again only where they or the
+    /// look have changed. The image is bound then, to draw on.
     void paint(std::uint32_t width, std::uint32_t height, const PaintLook& look);
     /// The image so far.
     runtime::DisplayPicture read() const;
@@ -42,11 +45,15 @@ class PicturePainter {
   private:
     PicturePainter() = default;
     void resize(std::uint32_t width, std::uint32_t height);
-    std::uint32_t program_ = 0, vertex_array_ = 0, frame_ = 0, image_ = 0;
+    void map_tones(const PaintLook& look) const;
+    static constexpr int kMapped = 0, kImage = 1;  ///< pictures alone; with what is drawn on them
+    std::uint32_t program_ = 0, vertex_array_ = 0;
+    std::uint32_t frame_[2] = {0, 0}, image_[2] = {0, 0};
     std::uint32_t picture_[2] = {0, 0};
     bool is_there_[2] = {false, false};
     std::uint32_t picture_width_[2] = {0, 0}, picture_height_[2] = {0, 0};
     std::uint32_t width_ = 0, height_ = 0;
+    std::optional<PaintLook> mapped_;  ///< the look of what was tone-mapped last
 };
 
 }  // namespace opaline::cli

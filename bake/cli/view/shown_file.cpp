@@ -218,9 +218,14 @@ formats::Status ShownFile::follow(const ViewState& state, const formats::Environ
 }
 
 formats::Result<runtime::Picture> ShownFile::draw(runtime::Camera camera,
-                                                  std::uint32_t supersampling) {
+                                                  std::uint32_t supersampling, bool is_exact,
+                                                  const std::atomic<bool>& stop) {
     camera.near_plane = runtime::near_plane_for(parts_->whole(), camera.eye);
+    constexpr std::uint32_t kTile = 192;  // pixels: some dozen looks at `stop` a picture
+    const runtime::GlRenderOptions usual;
     parts_->drawing.supersampling = supersampling;
+    parts_->drawing.max_tile_samples = is_exact ? usual.max_tile_samples : kTile * supersampling;
+    parts_->drawing.stop = &stop;
     auto picture = parts_->renderer->render(camera, parts_->drawing);
     parts_->seconds.draw = parts_->renderer->stats().draw_seconds;
     parts_->seconds.readback = parts_->renderer->stats().readback_seconds;

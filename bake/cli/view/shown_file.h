@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -52,8 +53,11 @@ class ShownFile {
     formats::Status follow(const ViewState& state, const formats::Environment& light,
                            std::uint64_t light_version);
 
-    /// What follow() prepared, from a camera, which gets the near plane of the file.
-    formats::Result<runtime::Picture> draw(runtime::Camera camera, std::uint32_t supersampling);
+    /// What follow() prepared, from a camera, which gets the near plane of the file. Not exact: in
+    /// small tiles, so that samples at edges may differ from what `render` sees, but `stop` is
+    /// looked at more often. Errors: resource; interrupted, once `stop` is true.
+    formats::Result<runtime::Picture> draw(runtime::Camera camera, std::uint32_t supersampling,
+                                           bool is_exact, const std::atomic<bool>& stop);
 
     const FileFacts& facts() const;
     const ViewSeconds& seconds() const;

@@ -273,7 +273,12 @@ void drag_camera(ViewState& state, const PanelMemory& memory, const ImGuiIO& io)
     const double x = static_cast<double>(io.MousePos.x), y = static_cast<double>(io.MousePos.y);
     const double dx = static_cast<double>(io.MouseDelta.x),
                  dy = static_cast<double>(io.MouseDelta.y);
-    if (dx == 0 && dy == 0) return;
+    // How the mouse came to where a button went down is no drag.
+    if (dx * dx + dy * dy == 0 || ImGui::IsMouseClicked(ImGuiMouseButton_Left) ||
+        ImGui::IsMouseClicked(ImGuiMouseButton_Right) ||
+        ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) {
+        return;
+    }
     if (ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle)) {
         state.viewpoint = pan(*state.viewpoint, state.fov, dx / height, -dy / height);
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && memory.free_orbit) {

@@ -74,12 +74,13 @@ class Session {
     void look_for_changes();
     void send_request();
     bool is_sent() const;
+    bool wants_exact() const;
     bool is_settled() const;
     void paint_frame();
     formats::Status save(const Shot& shot);
     int end_with(const formats::Error& error) const;
     std::string next_name() const;
-    double patience() const;
+    bool is_idle() const;
 
     ViewWindow window_;
     PicturePainter painter_;
@@ -92,12 +93,14 @@ class Session {
     std::uint64_t final_serial_ = 0;  // of the last request that was drawn in full quality
     WatchedFile file_, other_, light_;
     SessionClock::time_point last_look_ = SessionClock::now(), second_ = SessionClock::now();
+    SessionClock::time_point last_input_ = SessionClock::now();
     std::size_t frames_ = 0, frames_of_second_ = 0, settled_frames_ = 0;
     std::size_t reloads_ = 0;  // since the last screenshot
-    std::size_t next_step_ = 0, waited_ = 0;
+    std::size_t steps_ = 0, next_step_ = 0, waited_ = 0;
     std::size_t line_ = 0;  // of the script, carried out last
     std::string script_;
     std::optional<Shot> shot_;
+    bool wants_shot_ = false;  // as soon as it is drawn
     bool quits_ = false;
 };
 
@@ -114,7 +117,12 @@ int Session::end_with(const formats::Error& error) const {
 bool Session::is_sent() const {
     return sent_.serial > 0 && same_radiance(state_, sent_.state) &&
            sent_.file_version == file_.version && sent_.other_version == other_.version &&
-           sent_.light_version == light_.version;
+           sent_.light_version == light_.version && (sent_.is_exact || !wants_exact());
+}
+
+// Scripts and screenshots.
+bool Session::wants_exact() const {
+    return next_step_ < steps_ || wants_shot_;
 }
 
 bool Session::is_settled() const {
@@ -127,7 +135,8 @@ void Session::send_request() {
                   state_.light != good_->light)) {
         memory_.message.clear();
     }
-    sent_ = {state_, sent_.serial + 1, file_.version, other_.version, light_.version};
+    sent_ = {state_,         sent_.serial + 1, file_.version,
+             other_.version, light_.version,   wants_exact()};
     settled_frames_ = 0;
     thread_.request(sent_);
 }
@@ -247,9 +256,11 @@ formats::Status Session::save(const Shot& shot) {
     return formats::ok_status();
 }
 
-// How long to wait for input.
-double Session::patience() const {
-    return is_settled() && settled_frames_ > 8 ? 0.05 : 0.005;
+// Nothing moves: no script, no picture that is drawn, no input of late.
+bool Session::is_idle() const {
+    constexpr std::chrono::milliseconds kStill{400};
+    return next_step_ == steps_ && is_settled() && !wants_shot_ &&
+           SessionClock::now() - last_input_ > kStill;
 }
 
 void Session::paint_frame() {
@@ -268,13 +279,17 @@ void Session::paint_frame() {
 
 int Session::run(const std::vector<ScriptStep>& steps, const std::string& script) {
     script_ = script;
+    steps_ = steps.size();
     const std::atomic<bool>& interrupted = catch_interrupts();
     while (!window_.wants_to_close()) {
         if (interrupted.load()) return kExitInterrupted;
-        window_.poll(patience());
+        const bool is_still = is_idle();
+        const bool has_input = window_.wait(is_still ? 0.1 : 0.01);
+        if (has_input) last_input_ = SessionClock::now();
         look_for_changes();
+        if (is_still && !has_input && is_sent()) continue;  // the window shows it already
         take_input();
-        if (const auto code = take_drawn(next_step_ < steps.size())) return *code;
+        if (const auto code = take_drawn(next_step_ < steps_)) return *code;
         if (const auto code = step(steps)) return *code;
         send_request();
         paint_frame();
@@ -290,7 +305,11 @@ int Session::run(const std::vector<ScriptStep>& steps, const std::string& script
             if (auto status = save(*shot_); !status) return end_with(status.error());
             shot_.reset();
         }
-        if (wishes.screenshot && is_settled()) shot_ = Shot{next_name(), false};
+        wants_shot_ |= wishes.screenshot;
+        if (wants_shot_ && is_settled()) {
+            shot_ = Shot{next_name(), false};
+            wants_shot_ = false;
+        }
         painter_.show();
         window_.swap();
     }

@@ -29,6 +29,7 @@ struct ViewWindow::Parts {
     GLFWwindow* window = nullptr;
     std::vector<Drop> drops;
     bool has_controls = false;
+    bool has_input = false;  // since the last wait; drivers send events of their own
 
     Parts() = default;
     Parts(const Parts&) = delete;
@@ -43,8 +44,26 @@ struct ViewWindow::Parts {
         ::glfwTerminate();
     }
 
+    template <class... More>
+    static void on_input(GLFWwindow* window, More...) {
+        static_cast<Parts*>(::glfwGetWindowUserPointer(window))->has_input = true;
+    }
+
+    // Before those of Dear ImGui, which calls them on.
+    void watch_input() const {
+        ::glfwSetCursorPosCallback(window, on_input<double, double>);
+        ::glfwSetMouseButtonCallback(window, on_input<int, int, int>);
+        ::glfwSetScrollCallback(window, on_input<double, double>);
+        ::glfwSetKeyCallback(window, on_input<int, int, int, int>);
+        ::glfwSetCharCallback(window, on_input<unsigned>);
+        ::glfwSetFramebufferSizeCallback(window, on_input<int, int>);
+        ::glfwSetWindowRefreshCallback(window, on_input<>);
+        ::glfwSetDropCallback(window, on_drop);
+    }
+
     static void on_drop(GLFWwindow* window, int count, const char** paths) {
         auto& parts = *static_cast<Parts*>(::glfwGetWindowUserPointer(window));
+        parts.has_input = true;
         double x = 0, y = 0;
         int width = 1, height = 1;
         ::glfwGetCursorPos(window, &x, &y);
@@ -95,7 +114,7 @@ formats::Result<ViewWindow> ViewWindow::open(std::uint32_t width, std::uint32_t 
     ::glfwMakeContextCurrent(window);
     ::glfwSwapInterval(1);
     ::glfwSetWindowUserPointer(window, parts.get());
-    ::glfwSetDropCallback(window, Parts::on_drop);
+    parts->watch_input();
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
     ImGui::GetIO().LogFilename = nullptr;
@@ -121,12 +140,10 @@ bool ViewWindow::wants_to_close() const {
     return ::glfwWindowShouldClose(parts_->window) == GLFW_TRUE;
 }
 
-void ViewWindow::poll(double seconds) {
-    if (seconds > 0) {
-        ::glfwWaitEventsTimeout(seconds);
-    } else {
-        ::glfwPollEvents();
-    }
+bool ViewWindow::wait(double seconds) {
+    parts_->has_input = false;
+    ::glfwWaitEventsTimeout(seconds);
+    return parts_->has_input;
 }
 
 std::vector<ViewWindow::Drop> ViewWindow::take_drops() {

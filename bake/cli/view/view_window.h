@@ -29,8 +29,8 @@ class ViewWindow {
     Size size() const;
 
     bool wants_to_close() const;
-    /// Looks for input, for so many seconds at most.
-    void poll(double seconds);
+    /// Waits for input, for so many seconds at most. Whether there was any.
+    bool wait(double seconds);
     /// Files dropped since the last call, and where: share of the width.
     struct Drop {
         std::string path;

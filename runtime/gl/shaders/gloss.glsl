@@ -1,6 +1,6 @@
 // The BRDF of glossy opaque surfaces and its sum over distant light: the steps of
 // formats/opal/gloss_model.cpp and runtime/gloss.cpp. Specialised by LOBE_TAPS, ALBEDO_ROWS,
-// ALBEDO_COLUMNS, NARROW_ROUGHNESS and WIDE_ROUGHNESS. cube_map.glsl comes before it.
+// ALBEDO_COLUMNS, NARROW_ROUGHNESS and WIDE_ROUGHNESS. cube_map.glsl and surface.glsl come before it.
 layout(binding = 2) uniform sampler2DArray light_maps;  // half as wide at each level
 
 struct Cell {
@@ -40,6 +40,18 @@ struct Gloss {
     vec3 f0;
     float f90, diffuse;
 };
+
+// As make_gloss_surface. `factors`: metallic and roughness, times their image.
+Gloss make_gloss(vec4 f0_f90, vec2 factors, vec3 base_color) {
+    factors = clamp(factors, 0.0, 1.0);
+    Gloss g;
+    g.roughness = factors.y;
+    g.alpha = max(factors.y * factors.y, kLeastAlpha);
+    g.f0 = mix(f0_f90.rgb, clamp(base_color, 0.0, 1.0), factors.x);
+    g.f90 = mix(f0_f90.a, 1.0, factors.x);
+    g.diffuse = 1.0 - factors.x;
+    return g;
+}
 
 // Both parts of the albedo of F0 and F90, from the table.
 vec2 ggx_albedo(float cosine, float roughness) {
@@ -218,4 +230,31 @@ vec3 eval_gloss(Gloss g, vec3 n, vec3 w, float cosine) {
     }
     add_suns(g.alpha, f, result);
     return fade * gloss_compensation(g, table) * (g.f0 * result.of_f0 + g.f90 * result.of_f90);
+}
+
+// As gloss_visibility.
+float gloss_visibility(Gloss g, OpalineView view, vec4 openness) {
+    vec3 mirrored = opaline_unit_or_zero(2.0 * clamp(view.cosine, kLeastCosine, 1.0) * view.normal -
+                                         view.to_eye);
+    if (!(dot(mirrored, mirrored) > 0.0)) {
+        return 0.0;
+    }
+    float a2 = max(g.alpha, 0.05) * max(g.alpha, 0.05);
+    vec2 half_angle = vec2(1.0 - a2, 2.0 * max(g.alpha, 0.05)) / (1.0 + a2);
+    return opaline_specular_visibility(opaline_open_axis(openness, view), clamp(openness.w, 0.0, 1.0),
+                                       mirrored, half_angle);
+}
+
+// What a glossy opaque or thin-walled surface reflects diffusely, from its receivers' radiance;
+// glossy_mirrored comes on top.
+vec3 glossy_diffuse(Gloss g, vec3 radiance, vec3 base_color, OpalineView view) {
+    float seen = clamp(abs(view.cosine), kLeastCosine, 1.0);
+    return opaline_diffuse(gloss_diffuse(g, ggx_albedo(seen, g.roughness)) * radiance, base_color);
+}
+
+// What it mirrors. `openness`: as for opaline_mirrored.
+vec3 glossy_mirrored(Gloss g, mat3 light_from_world, OpalineView view, vec4 openness) {
+    return gloss_visibility(g, view, openness) *
+           opaline_displayable(eval_gloss(g, light_from_world * view.normal,
+                                          light_from_world * view.to_eye, view.cosine));
 }

@@ -56,33 +56,12 @@ layout(binding = 3) uniform usampler2D gloss_image;
 layout(location = 17) uniform ivec2 gloss_wrap;
 #endif
 
-// As make_gloss_surface.
-Gloss make_gloss(vec3 base_color) {
-    vec2 factors = metallic_roughness;
+vec2 gloss_factors() {
 #ifdef GLOSS_TEXTURED
-    factors *= sample_image(gloss_image, v_texcoord, gloss_wrap, false).bg;
+    return metallic_roughness * sample_image(gloss_image, v_texcoord, gloss_wrap, false).bg;
+#else
+    return metallic_roughness;
 #endif
-    factors = clamp(factors, 0.0, 1.0);
-    Gloss g;
-    g.roughness = factors.y;
-    g.alpha = max(factors.y * factors.y, kLeastAlpha);
-    g.f0 = mix(f0_f90.rgb, clamp(base_color, 0.0, 1.0), factors.x);
-    g.f90 = mix(f0_f90.a, 1.0, factors.x);
-    g.diffuse = 1.0 - factors.x;
-    return g;
-}
-
-// As gloss_visibility.
-float gloss_visibility(Gloss g, OpalineView view) {
-    vec3 mirrored = opaline_unit_or_zero(2.0 * clamp(view.cosine, kLeastCosine, 1.0) * view.normal -
-                                         view.to_eye);
-    if (!(dot(mirrored, mirrored) > 0.0)) {
-        return 0.0;
-    }
-    float a2 = max(g.alpha, 0.05) * max(g.alpha, 0.05);
-    vec2 half_angle = vec2(1.0 - a2, 2.0 * max(g.alpha, 0.05)) / (1.0 + a2);
-    return opaline_specular_visibility(opaline_open_axis(v_open, view), clamp(v_open.w, 0.0, 1.0),
-                                       mirrored, half_angle);
 }
 #endif
 
@@ -106,13 +85,10 @@ void main() {
 #ifdef TRANSLUCENT
     radiance = opaline_translucent(radiance, base_color, view, eta);
 #elif defined(GLOSS)
-    Gloss g = make_gloss(base_color);
-    float seen = clamp(abs(view.cosine), kLeastCosine, 1.0);
-    radiance = opaline_diffuse(gloss_diffuse(g, ggx_albedo(seen, g.roughness)) * radiance, base_color);
+    Gloss g = make_gloss(f0_f90, gloss_factors(), base_color);
+    radiance = glossy_diffuse(g, radiance, base_color, view);
     if (has_specular != 0u) {
-        radiance += gloss_visibility(g, view) *
-                    opaline_displayable(eval_gloss(g, light_from_world * view.normal,
-                                                   light_from_world * view.to_eye, view.cosine));
+        radiance += glossy_mirrored(g, light_from_world, view, v_open);
     }
 #else
     radiance = opaline_diffuse(radiance, base_color);

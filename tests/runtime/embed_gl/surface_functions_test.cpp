@@ -20,9 +20,16 @@ namespace {
 
 constexpr GLsizei kWidth = 64;
 
-std::string installed_functions() {
-    std::ifstream file(OPALINE_SURFACE_GLSL);
-    return {std::istreambuf_iterator<char>(file), {}};
+// Both files, where the stage has use for both.
+std::string installed_functions(GLenum stage) {
+    std::string text;
+    for (const char* name : {"opaline_surface.glsl", "opaline_gloss.glsl"}) {
+        std::ifstream file(std::string(OPALINE_GLSL_DIR "/") + name);
+        EXPECT_TRUE(file) << name;
+        if (!text.empty() && stage == GL_VERTEX_SHADER) break;
+        text.append(std::istreambuf_iterator<char>(file), {});
+    }
+    return text;
 }
 
 const char* const kHostVertex = R"(
@@ -58,6 +65,9 @@ uniform float eta;
 uniform vec2 lobe;
 uniform mat3 light_from_world;
 uniform sampler2DArray mirrored_light;
+uniform bool is_glossy;
+uniform vec4 f0_f90;
+uniform vec2 factors;
 layout(location = 0) out vec4 color;
 void main() {
     OpalineView view = opaline_view(v_normal, v_to_eye, is_double_sided);
@@ -66,16 +76,20 @@ void main() {
     if (is_mirroring) {
         sent += opaline_mirrored(mirrored_light, light_from_world, view, eta, v_openness, lobe);
     }
+    if (is_glossy) {
+        OpalineGloss gloss = opaline_make_gloss(f0_f90, factors, v_base_color);
+        sent = opaline_glossy_diffuse(gloss, v_radiance, v_base_color, view) +
+               opaline_glossy_mirrored(gloss, light_from_world, view, v_openness);
+    }
     color = vec4(sent, 1.0);
 }
 )";
 
 GLuint compile_host(GLuint program, GLenum stage, bool is_es, const char* text) {
-    const std::string functions = installed_functions();
+    const std::string functions = installed_functions(stage);
     EXPECT_FALSE(functions.empty());
     const std::array<const char*, 3> parts{
-        is_es ? "#version 310 es\nprecision highp float;\nprecision highp int;\n"
-                "precision highp sampler2DArray;\n"
+        is_es ? "#version 310 es\n"
               : "#version 330 core\n#extension GL_ARB_explicit_attrib_location : enable\n",
         functions.c_str(), text};
     const GLuint shader = glCreateShader(stage);
@@ -130,6 +144,17 @@ std::vector<float> draw_receivers(const EmbeddedAsset& host, const opaline_gl* g
     glUseProgram(program);
     const auto uniform = [&](const char* name) { return glGetUniformLocation(program, name); };
     glUniform3fv(uniform("eye"), 1, eye);
+    GLint unit = 1;
+    for (const auto& [name, texture] : {std::pair{"opaline_light_maps", objects.light_maps},
+                                        {"opaline_cells", objects.cells},
+                                        {"opaline_sun_table", objects.sun_table},
+                                        {"opaline_albedo", objects.albedo}}) {
+        EXPECT_GE(uniform(name), 0) << name;
+        glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+        glBindTexture(unit == 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, texture);
+        glUniform1i(uniform(name), unit++);
+    }
+    glActiveTexture(GL_TEXTURE0);
     glUniform2f(uniform("target"), kWidth, static_cast<float>(rows));
     for (std::uint32_t p = 0; p < opaline_asset_primitive_count(host.asset()); ++p) {
         opaline_primitive_info info{};
@@ -147,6 +172,9 @@ std::vector<float> draw_receivers(const EmbeddedAsset& host, const opaline_gl* g
         glUniform1f(uniform("eta"), shading.eta);
         glUniform2fv(uniform("lobe"), 1, surface.lobe);
         glUniformMatrix3fv(uniform("light_from_world"), 1, GL_FALSE, surface.light_from_world);
+        glUniform1i(uniform("is_glossy"), static_cast<GLint>(surface.is_glossy));
+        glUniform4fv(uniform("f0_f90"), 1, surface.f0_f90);
+        glUniform2fv(uniform("factors"), 1, surface.factors);
         glBindTexture(GL_TEXTURE_2D_ARRAY, surface.mirrored_light);
         glDrawArrays(GL_POINTS, static_cast<GLint>(info.first_receiver),
                      static_cast<GLsizei>(info.receiver_count));
@@ -167,7 +195,19 @@ formats::Asset make_glossy_ones() {
     add_primitive(asset, make_sphere({0, 0, 3}, 1, 9, 8), {.eta = 1.4f, .is_double_sided = true});
     add_primitive(asset, make_sheet({2, 3, 0}, {1, 0, 0}, {0, 0.7f, 0.4f}, 5, 1),
                   {.bands = 3, .is_sheet = true});
-    asset.roughness = {formats::kNotGlossy, 0.1f, 0.45f, 0.45f, formats::kNotGlossy};
+    // A metal, a dielectric, and a thin-walled one whose lobe is summed up both ways.
+    add_primitive(asset, make_sphere({6, 0, 0}, 1, 9, 7), {.bands = 3, .details = 37});
+    add_primitive(asset, make_sphere({6, 3, 0}, 1, 9, 7), {.bands = 3, .details = 37});
+    add_primitive(asset, make_sheet({6, 0, 3}, {1, 0, 0}, {0, 0.7f, 0.4f}, 5, 1),
+                  {.bands = 3, .is_double_sided = true, .is_sheet = true});
+    asset.gloss.resize(asset.primitives.size());
+    const std::array<formats::GlossRecord, 3> kinds{{{1, 0.2f, {0.04f, 0.04f, 0.04f}, 1},
+                                                     {0, 0.8f, {0.04f, 0.05f, 0.06f}, 0.9f},
+                                                     {0.3f, 0.45f, {0.04f, 0.04f, 0.04f}, 1}}};
+    std::copy(kinds.begin(), kinds.end(), asset.gloss.end() - 3);
+    asset.roughness.assign(asset.primitives.size(), formats::kNotGlossy);
+    asset.roughness[1] = 0.1f;
+    asset.roughness[2] = asset.roughness[3] = 0.45f;
     for (std::size_t v = 0; v < asset.normal.size(); ++v) {
         const float a = static_cast<float>(v);
         asset.openness.push_back(formats::encode_openness(
@@ -213,7 +253,7 @@ TEST_P(EmbedGlSurface, FunctionsForHostsMakeWhatTheCpuDoes) {
     }
     opaline_gl_surface surface{};
     surface.struct_size = sizeof surface;
-    EXPECT_EQ(opaline_gl_get_surface(gl, 5, &surface), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_gl_get_surface(gl, 8, &surface), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_gl_get_surface(nullptr, 0, &surface), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_gl_get_surface(gl, 0, nullptr), OPALINE_INVALID_ARGUMENT);
     surface.struct_size = 3;

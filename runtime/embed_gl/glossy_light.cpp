@@ -1,0 +1,67 @@
+#include "runtime/embed_gl/glossy_light.h"
+
+#include <vector>
+
+#include "formats/opal/ggx_albedo.h"
+
+namespace opaline::runtime {
+
+void GlossyLight::make(GlNames& names) {
+    maps_ = names.make_array_texture();
+    gl_.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+    const std::vector<float> black(std::size_t{4} * 6);
+    gl_.TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, 1, 1, 6, 0, GL_RGBA, GL_FLOAT, black.data());
+    cells_ = names.make_table_texture();
+    suns_ = names.make_table_texture();
+    albedo_ = names.make_table_texture();
+    upload_table(cells_, 2, std::span(black).first(8));
+    upload_table(suns_, 2, std::span(black).first(8));
+    std::vector<float> albedo;
+    albedo.reserve(4 * formats::ggx_albedo_table().size());
+    for (const formats::GgxAlbedo& entry : formats::ggx_albedo_table()) {
+        albedo.insert(albedo.end(), {entry.of_f0, entry.of_f90, 0, 0});
+    }
+    upload_table(albedo_, formats::kAlbedoColumns, albedo);
+}
+
+void GlossyLight::upload(const GlossLight& light) {
+    if (light.map.empty()) return;
+    gl_.BindTexture(GL_TEXTURE_2D_ARRAY, maps_);
+    std::vector<float> rgba;
+    for (std::size_t level = 0; level < light.map.size(); ++level) {
+        const formats::Environment& map = light.map[level];
+        rgba.clear();
+        for (const formats::Rgb pixel : map.pixel) {
+            rgba.insert(rgba.end(), {pixel.r, pixel.g, pixel.b, 0});
+        }
+        const auto n = static_cast<GLsizei>(map.width);
+        gl_.TexImage3D(GL_TEXTURE_2D_ARRAY, static_cast<GLint>(level), GL_RGBA32F, n, n, 6, 0,
+                       GL_RGBA, GL_FLOAT, rgba.data());
+    }
+    const GlossLight::Cells& c = light.cells;
+    std::vector<float> cells, suns;
+    cells.reserve(8 * c.size());
+    for (std::size_t i = 0; i < c.size(); ++i) {
+        cells.insert(cells.end(), {c.x[i], c.y[i], c.z[i], c.solid_angle[i], c.r[i], c.g[i], c.b[i],
+                                   c.widening[i]});
+    }
+    for (const formats::DistantDisc& sun : light.suns) {
+        suns.insert(suns.end(),
+                    {sun.direction.x, sun.direction.y, sun.direction.z, sun.angular_radius,
+                     sun.radiance.r, sun.radiance.g, sun.radiance.b,
+                     static_cast<float>(formats::disc_solid_angle(sun.angular_radius))});
+    }
+    if (suns.empty()) suns.resize(8);  // one that lights nothing
+    upload_table(cells_, 2, cells);
+    upload_table(suns_, 2, suns);
+}
+
+void GlossyLight::upload_table(GLuint texture, std::uint32_t width,
+                               std::span<const float> rgba) const {
+    gl_.BindTexture(GL_TEXTURE_2D, texture);
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, static_cast<GLsizei>(width),
+                   static_cast<GLsizei>(rgba.size() / 4 / width), 0, GL_RGBA, GL_FLOAT,
+                   rgba.data());
+}
+
+}  // namespace opaline::runtime

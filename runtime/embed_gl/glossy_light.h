@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "runtime/embed_gl/gl_names.h"
+#include "runtime/gloss_light.h"
+
+namespace opaline::runtime {
+
+/// Distant light as opaline_gloss.glsl looks it up; GlossLight in textures. Every call wants a
+/// SavedState around it.
+class GlossyLight {
+  public:
+    explicit GlossyLight(const GlFunctions& gl) : gl_(gl) {}
+
+    /// Black, with the table of albedos.
+    void make(GlNames& names);
+
+    /// Copies the light; one that was prepared for no glossy surface leaves things as they are.
+    void upload(const GlossLight& light);
+
+    /// A 2D array of six layers, half as wide at each level.
+    GLuint maps() const { return maps_; }
+    /// Of two texels a cell, and a sun: as Cell and Sun of gloss.glsl, a row each.
+    GLuint cells() const { return cells_; }
+    GLuint suns() const { return suns_; }
+    /// formats::ggx_albedo_table, in the first two bands.
+    GLuint albedo() const { return albedo_; }
+
+  private:
+    void upload_table(GLuint texture, std::uint32_t width, std::span<const float> rgba) const;
+
+    const GlFunctions& gl_;
+    GLuint maps_ = 0, cells_ = 0, suns_ = 0, albedo_ = 0;
+};
+
+}  // namespace opaline::runtime
