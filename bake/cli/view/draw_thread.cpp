@@ -109,7 +109,9 @@ formats::Result<DrawnSide> DrawWork::draw_side(OpenFile& from, const DrawRequest
     DrawnSide side;
     if (!from.shown) return side;
     ShownFile& shown = *from.shown;
-    if (auto status = shown.follow(request.state, *environment, light_version); !status) {
+    const auto sampling =
+        samples == kFinalSamples ? runtime::MapSampling::full : runtime::MapSampling::moving;
+    if (auto status = shown.follow(request.state, *environment, light_version, sampling); !status) {
         return status.error();
     }
     auto picture = shown.draw(camera, samples, request.is_exact && samples == kFinalSamples, stop);

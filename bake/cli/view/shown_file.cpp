@@ -12,6 +12,7 @@
 #include "bake/cli/view/coefficient_error.h"
 #include "bake/encode/shorten_rows.h"
 #include "formats/opal/emitters.h"
+#include "runtime/distant_light.h"
 #include "runtime/gl/gl_renderer.h"
 #include "runtime/specular.h"
 #include "runtime/terms.h"
@@ -84,8 +85,11 @@ struct ShownFile::Parts {
     const formats::AssetView& whole() const { return asset.loaded.view; }
     std::vector<formats::Rgb> emitter_colors(const ViewState& state) const;
     formats::Status choose_coefficients(const ViewState& state);
-    formats::Status make_renderer(const formats::Environment& light, const LightWithLayers& layers);
-    formats::Status relight(const ViewState& state, const formats::Environment& light);
+    formats::Status make_renderer(const formats::Environment& map, const LightWithLayers& layers);
+    PartVectors project(const LightWithLayers& layers, const OpenedLight& sky,
+                        runtime::MapSampling sampling);
+    formats::Status relight(const ViewState& state, const formats::Environment& map,
+                            runtime::MapSampling sampling);
 
     OpenedAsset asset;
     std::string path;
@@ -96,7 +100,9 @@ struct ShownFile::Parts {
     std::optional<std::uint32_t> coefficients;
     std::optional<runtime::GlRenderer> renderer;
     std::uint64_t light_version = 0;
+    std::optional<runtime::DistantLight> light;  ///< of that version, where there is no layer
     std::optional<ViewState> lit_for;
+    runtime::MapSampling lit_by = runtime::MapSampling::full;
     runtime::GlRenderOptions drawing;
     double error = 0;
 };
@@ -128,14 +134,14 @@ formats::Status ShownFile::Parts::choose_coefficients(const ViewState& state) {
     return formats::ok_status();
 }
 
-formats::Status ShownFile::Parts::make_renderer(const formats::Environment& light,
+formats::Status ShownFile::Parts::make_renderer(const formats::Environment& map,
                                                 const LightWithLayers& layers) {
     const bool mirrors_layer = layers.parts && runtime::specular_needs(view).any();
     if (renderer && !mirrors_layer) return formats::ok_status();
     runtime::GlOptions upload;
     if (layers.parts) upload.mirrored = &layers.parts->mirrored();
     renderer.reset();  // its memory first
-    auto made = runtime::GlRenderer::create(view, light, upload);
+    auto made = runtime::GlRenderer::create(view, map, upload);
     if (!made) return made.error();
     renderer.emplace(std::move(*made));
     const runtime::GlStats& stats = renderer->stats();
@@ -144,22 +150,38 @@ formats::Status ShownFile::Parts::make_renderer(const formats::Environment& ligh
     return formats::ok_status();
 }
 
-formats::Status ShownFile::Parts::relight(const ViewState& state,
-                                          const formats::Environment& light) {
+// As project_parts, but turns a light that stays instead of preparing its map anew.
+PartVectors ShownFile::Parts::project(const LightWithLayers& layers, const OpenedLight& sky,
+                                      runtime::MapSampling sampling) {
+    const bool has_rows = !view.primitives.empty() || !view.volumes.empty();
+    if (layers.parts || !has_rows) {
+        return project_parts(layers, has_rows ? sky : OpenedLight{}, view.cubemap_size, 0);
+    }
+    if (!light) {
+        light.emplace(view.cubemap_size, runtime::SpecularNeeds{});
+        light->set_map(sky.environment, 0);
+        for (const formats::DistantDisc& disc : sky.environment.discs) {
+            light->add_sun(disc, 0);
+        }
+    }
+    light->turn(sky.rotation, sampling, 0);
+    return {{}, {light->vector()}};
+}
+
+formats::Status ShownFile::Parts::relight(const ViewState& state, const formats::Environment& map,
+                                          runtime::MapSampling sampling) {
     const auto start = ViewClock::now();
     const OpenedLight sky{
-        light,
+        map,
         runtime::rotation_about_y(static_cast<float>(state.rotate_light * std::numbers::pi / 180))};
     const LightWithLayers layers = light_layers_of(view, sky, state.time, 0);
-    const bool has_rows = !view.primitives.empty() || !view.volumes.empty();
-    const PartVectors vectors =
-        project_parts(layers, has_rows ? sky : OpenedLight{}, view.cubemap_size, 0);
+    const PartVectors vectors = project(layers, sky, sampling);
     seconds.light = seconds_since(start);
     const std::vector<formats::Rgb> colors = emitter_colors(state);
     const Shown shown = show_terms(state.terms, view, colors);
     // A renderer that has shown a layer goes on to do so.
     if (!view.clouds.empty() && shown.background != drawing.background) renderer.reset();
-    if (auto status = make_renderer(light, layers); !status) return status;
+    if (auto status = make_renderer(map, layers); !status) return status;
     if (auto status = renderer->set_light(vectors.lights(), sky.rotation, shown.emitters);
         !status) {
         return status;
@@ -198,22 +220,27 @@ Viewpoint ShownFile::framing(const ViewState& state) const {
 }
 
 formats::Status ShownFile::follow(const ViewState& state, const formats::Environment& light,
-                                  std::uint64_t light_version) {
+                                  std::uint64_t light_version, runtime::MapSampling sampling) {
     Parts& parts = *parts_;
     if (auto status = runtime::check_terms(parts.whole(), state.terms, parts.path); !status) {
         return status;
     }
     if (auto status = parts.choose_coefficients(state); !status) return status;
-    if (light_version != parts.light_version) parts.renderer.reset();
+    if (light_version != parts.light_version) {
+        parts.renderer.reset();
+        parts.light.reset();
+    }
     const auto is_lit = [&](const ViewState& lit) {
         return lit.rotate_light == state.rotate_light && lit.time == state.time &&
-               lit.emitters == state.emitters && lit.terms == state.terms;
+               lit.emitters == state.emitters && lit.terms == state.terms &&
+               (parts.lit_by == sampling || parts.lit_by == runtime::MapSampling::full);
     };
     if (parts.renderer && parts.lit_for && is_lit(*parts.lit_for)) return formats::ok_status();
     parts.lit_for.reset();
-    if (auto status = parts.relight(state, light); !status) return status;
+    if (auto status = parts.relight(state, light, sampling); !status) return status;
     parts.light_version = light_version;
     parts.lit_for = state;
+    parts.lit_by = sampling;
     return formats::ok_status();
 }
 

@@ -9,6 +9,7 @@
 #include "bake/cli/inputs.h"
 #include "bake/cli/view/view_state.h"
 #include "formats/opal/result.h"
+#include "runtime/integrate_map.h"
 #include "runtime/picture/picture.h"
 
 namespace opaline::cli {
@@ -48,10 +49,10 @@ class ShownFile {
     Viewpoint framing(const ViewState& state) const;
 
     /// Follows light, time, emitters, coefficients and terms. `light_version` grows with every
-    /// light that is opened. Errors: bad_input (terms that the file does not hold apart), resource
-    /// (no OpenGL).
+    /// light that is opened. `sampling`: of a map that turns; a finer one than last time counts as
+    /// a change. Errors: bad_input (terms that the file does not hold apart), resource (no OpenGL).
     formats::Status follow(const ViewState& state, const formats::Environment& light,
-                           std::uint64_t light_version);
+                           std::uint64_t light_version, runtime::MapSampling sampling);
 
     /// What follow() prepared, from a camera, which gets the near plane of the file. Not exact: in
     /// small tiles, so that samples at edges may differ from what `render` sees, but `stop` is

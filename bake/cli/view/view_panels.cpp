@@ -186,7 +186,8 @@ void draw_files(ViewState& state, const DrawnView* drawn) {
         }
         if (is_difference) {
             ImGui::SameLine();
-            ImGui::SliderFloat("gain", &state.difference_gain, 0.25f, 64, "%.2f",
+            ImGui::SetNextItemWidth(-1);
+            ImGui::SliderFloat("##gain", &state.difference_gain, 0.25f, 64, "times %.2f",
                                ImGuiSliderFlags_Logarithmic);
         }
         if (ImGui::Button("one file")) state.other.clear();
