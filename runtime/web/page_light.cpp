@@ -9,7 +9,7 @@
 #include "runtime/reduce_map.h"
 #include "runtime/specular.h"
 #include "runtime/web/data_script.h"
-#include "runtime/web/split_light.h"
+#include "runtime/web/divide_light.h"
 
 namespace opaline::runtime {
 namespace {
@@ -83,10 +83,10 @@ void put_background(DataScript& script, const Environment& environment, unsigned
 std::string make_light_script(const std::string& owner, const PageLight& light,
                               const PageLightNeeds& needs, unsigned threads) {
     DataScript script(owner);
-    const SplitLight split = split_light(light.environment, threads);
-    put_radiance(script, "cube", split.cube);
-    script.put("points", std::span<const float>(split.points));
-    put_discs(script, "suns", split.suns, false);
+    const DividedLight divided = divide_light(light.environment, threads);
+    put_radiance(script, "cube", divided.cube);
+    script.put("points", std::span<const float>(divided.points));
+    put_discs(script, "suns", divided.suns, false);
     put_background(script, light.environment, threads);
     put_discs(script, "discs", light.environment.discs, true);
     if (needs.gloss) put_cells(script, make_gloss_light(light.environment, threads).cells);

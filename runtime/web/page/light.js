@@ -139,7 +139,7 @@ const Light = (() => {
     }
   }
 
-  // Adds the flux of points (split_light.h) to the texels that they lie in.
+  // Adds the flux of points (divide_light.h) to the texels that they lie in.
   function addPoints(points, n, c, s, integral) {
     for (let at = 0; at < points.length; at += 6) {
       const x = points[at], z = points[at + 2];

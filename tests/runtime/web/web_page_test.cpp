@@ -9,8 +9,8 @@
 #include "formats/opal/cubemap.h"
 #include "runtime/map_geometry.h"
 #include "runtime/web/data_script.h"
+#include "runtime/web/divide_light.h"
 #include "runtime/web/page_asset.h"
-#include "runtime/web/split_light.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
 namespace opaline::runtime {
@@ -64,7 +64,7 @@ TEST(WebPage, FilesAreAlikeForAnyNumberOfThreadsAndKnownAsThoseOfAPage) {
 }
 
 // The flux of a sun in a few pixels stands in points, all other in the cube map.
-TEST(SplitLight, FluxOfASunInTheMapIsKept) {
+TEST(DividedLight, FluxOfASunInTheMapIsKept) {
     const formats::Vec3 sun = normalize(formats::Vec3{0.3f, 0.8f, 0.5f});
     const double radiance = 5000;
     const formats::Environment map = test::make_lat_long(1024, 512, [&](formats::Vec3 d) {
@@ -76,7 +76,7 @@ TEST(SplitLight, FluxOfASunInTheMapIsKept) {
         const bool is_sun = map.pixel[i].r > 1;
         of_sun += is_sun ? radiance * cell_solid_angle(map, edges, i % 1024, i / 1024) : 0;
     }
-    const SplitLight light = split_light(map, 0);
+    const DividedLight light = divide_light(map, 0);
     double points = 0, cube = 0;
     for (std::size_t i = 0; i < light.points.size(); i += 6) {
         points += static_cast<double>(light.points[i + 3]);

@@ -1,4 +1,4 @@
-#include "runtime/web/split_light.h"
+#include "runtime/web/divide_light.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,8 +77,8 @@ float storable(double radiance) {
 
 }  // namespace
 
-SplitLight split_light(const Environment& environment, unsigned threads) {
-    SplitLight light;
+DividedLight divide_light(const Environment& environment, unsigned threads) {
+    DividedLight light;
     Environment map = environment;
     std::vector<formats::DistantDisc> large;
     for (const formats::DistantDisc& disc : environment.discs) {

@@ -11,7 +11,7 @@ namespace opaline::runtime {
 inline constexpr std::uint32_t kPageTexels = 128;
 
 /// Distant light as a page projects it.
-struct SplitLight {
+struct DividedLight {
     /// Mean radiance over the texels of a cube map of kPageTexels a side, without what follows.
     std::vector<formats::Rgb> cube;
     /// Of pixels much brighter than their surroundings, a sun in a photograph: a direction and the
@@ -21,6 +21,6 @@ struct SplitLight {
 };
 
 /// Same bits for any number of threads (0: all cores).
-SplitLight split_light(const formats::Environment& environment, unsigned threads);
+DividedLight divide_light(const formats::Environment& environment, unsigned threads);
 
 }  // namespace opaline::runtime
