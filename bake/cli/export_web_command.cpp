@@ -102,8 +102,8 @@ int run(const ExportWebCommand& options) {
 
 void add_export_web_command(CLI::App& app, Job& job) {
     auto options = std::make_shared<ExportWebCommand>();
-    CLI::App* command = app.add_subcommand(
-        "export-web", "Write a folder that shows the surfaces of an .opal file in any browser");
+    CLI::App* command =
+        app.add_subcommand("export-web", "Write a folder that shows an .opal file in any browser");
     command->add_option("file", options->path, "the .opal file")
         ->required()
         ->option_text("FILE.opal");
@@ -127,7 +127,7 @@ void add_export_web_command(CLI::App& app, Job& job) {
         ->option_text("T [0]");
     command->footer(
         "The page needs WebGL 2, but no server and no network: open DIR/index.html from the disk.\n"
-        "It shows what `render` does, except volumes and cloud layers.\n"
+        "It shows what `render` does, except cloud layers.\n"
         "After a '#', its address takes what `render` takes: light, rotate, exposure, eye, "
         "target,\n"
         "azimuth, elevation, distance, fov, emitter; the page keeps it up to date.\n\n"

@@ -111,7 +111,7 @@ Status write_folder(const std::filesystem::path& folder, std::span<const FolderF
     TemporaryOutput fresh(target.parent_path());
     if (fresh.path().empty()) return refuse_write(folder, "make it");
     for (const FolderFile& file : files) {
-        const auto written = formats::write_file_atomically(
+        auto written = formats::write_file_atomically(
             std::filesystem::path(fresh.path()) / file.name, file.text);
         if (!written) return written;
     }

@@ -18,15 +18,28 @@ std::span<const float> floats_of(std::span<const T> values) {
             values.size() * (sizeof(T) / sizeof(float))};
 }
 
-void put_rows(DataScript& script, const formats::SparseRowsView& rows) {
-    const std::uint32_t widths[] = {rows.cubemap_size, rows.code_bits, rows.index_bytes};
-    script.put("widths", std::span<const std::uint32_t>(widths));
-    script.put("row offset", rows.row_offset);
-    script.put("average scale", rows.average_scale);
-    script.put("detail scale", rows.detail_scale);
-    script.put("average code", rows.average_code);
-    rows.index_bytes == 2 ? script.put("index", rows.index16) : script.put("index", rows.index32);
-    rows.code_bits == 8 ? script.put("code", rows.code8) : script.put("code", rows.code16);
+// `of`: what begins the names.
+void put_rows(DataScript& script, const std::string& of, const formats::SparseRowsView& rows) {
+    script.put(of + "code bits", std::span<const std::uint32_t>(&rows.code_bits, 1));
+    script.put(of + "row offset", rows.row_offset);
+    script.put(of + "average scale", rows.average_scale);
+    script.put(of + "detail scale", rows.detail_scale);
+    script.put(of + "average code", rows.average_code);
+    rows.index_bytes == 2 ? script.put(of + "index", rows.index16)
+                          : script.put(of + "index", rows.index32);
+    rows.code_bits == 8 ? script.put(of + "code", rows.code8)
+                        : script.put(of + "code", rows.code16);
+}
+
+void put_volumes(DataScript& script, const formats::VolumesView& volumes) {
+    script.put_records("volumes", volumes.records);
+    if (volumes.empty()) return;
+    script.put("brick table", volumes.table);
+    script.put("density scale", volumes.density_scale);
+    script.put("density", volumes.density);
+    script.put("corners", volumes.corner);
+    script.put("phase", volumes.phase);
+    put_rows(script, "volume ", volumes.rows);
 }
 
 void put_images(DataScript& script, const AssetView& asset) {
@@ -84,7 +97,9 @@ std::string make_asset_script(const AssetView& asset) {
     script.put_records("holes", asset.holes.record);
     script.put("alpha", asset.holes.vertex_alpha);
     if (!asset.gloss.empty()) script.put("albedo", floats_of(formats::ggx_albedo_table()));
-    put_rows(script, asset.transport);
+    script.put("cubemap", std::span<const std::uint32_t>(&asset.cubemap_size, 1));
+    put_rows(script, "", asset.transport);
+    put_volumes(script, asset.volumes);
     put_images(script, asset);
     put_emitters(script, asset.emitters);
     return script.text();
@@ -92,9 +107,6 @@ std::string make_asset_script(const AssetView& asset) {
 
 std::vector<std::string> left_out_of_page(const AssetView& asset) {
     std::vector<std::string> left_out;
-    if (!asset.volumes.empty()) {
-        left_out.push_back("its volumes are not drawn; surfaces have their shadows");
-    }
     if (!asset.clouds.empty()) {
         left_out.push_back("its cloud layer is not drawn and does not dim the light");
     }

@@ -27,6 +27,9 @@ std::uint64_t bytes_of(const AssetView& asset) {
                           asset.position.size_bytes() + asset.normal.size_bytes() +
                           asset.base_color.size_bytes() + asset.texcoord.size_bytes() +
                           asset.index.size_bytes() + asset.emitters.value.size_bytes();
+    bytes += asset.volumes.density.size_bytes() + asset.volumes.corner.size_bytes() +
+             asset.volumes.rows.code8.size_bytes() + asset.volumes.rows.code16.size_bytes() +
+             asset.volumes.rows.index16.size_bytes() + asset.volumes.rows.index32.size_bytes();
     for (const formats::PreviewImage& image : asset.images) {
         bytes += image.rgb.size_bytes();
     }
@@ -90,10 +93,16 @@ formats::Result<std::vector<PageFile>> make_web_page(const AssetView& asset,
                                                      std::span<const PageLight> lights,
                                                      const std::string& title,
                                                      const std::string& file, unsigned threads) {
-    if (asset.primitives.empty()) {
+    if (asset.primitives.empty() && asset.volumes.empty()) {
         return formats::make_error(formats::ErrorKind::bad_input, file, "",
-                                   "it has no surfaces, and pages show surfaces alone",
-                                   "use `opaline render` for volumes and cloud layers");
+                                   "it has neither surfaces nor volumes, and pages show no more",
+                                   "use `opaline render` for cloud layers");
+    }
+    if (asset.volumes.records.size() > kMostPageVolumes) {
+        return formats::make_error(formats::ErrorKind::bad_input, file, "volumes",
+                                   "found " + std::to_string(asset.volumes.records.size()) +
+                                       ", a page draws at most " + std::to_string(kMostPageVolumes),
+                                   "use `opaline render`, or join them before the bake");
     }
     if (bytes_of(asset) > kMostPageBytes) {
         return formats::make_error(

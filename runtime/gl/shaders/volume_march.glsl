@@ -10,13 +10,37 @@ struct Volume {
     vec4 albedo;
     uvec4 coefficient;  // the first; suns; the first entry of its phase function
 };
+// Density: of each brick the scale, then 8 x 9 x 9 pairs of codes: of a voxel and of the next along x.
+// Coefficients: R, G, B. Phases: phase_table.h.
+#ifdef DATA_IN_TEXTURES  // of 2048 columns
+uniform Volume volumes[VOLUMES];
+uniform usampler2D brick_numbers, density_codes, corner_numbers;
+uniform sampler2D node_light, phase_entries;
+ivec2 place_of(uint i) { return ivec2(i & 2047u, i >> 11); }
+uint brick_at(uint cell) { return texelFetch(brick_numbers, place_of(cell), 0).r; }
+uint density_word(uint i) { return texelFetch(density_codes, place_of(i), 0).r; }
+uint node_at(uint corner) { return texelFetch(corner_numbers, place_of(corner), 0).r; }
+vec3 coefficient_at(uint i) { return texelFetch(node_light, place_of(i / 3u), 0).rgb; }
+float phase_at(uint i) { return texelFetch(phase_entries, place_of(i), 0).r; }
+int lowest_bit(uint bits) {
+    int bit = 0;
+    while (bit < VOLUMES && (bits >> bit & 1u) == 0u) ++bit;
+    return bit;
+}
+#else
 layout(std430, binding = 0) readonly buffer Volumes { Volume volumes[]; };
 layout(std430, binding = 1) readonly buffer Table { uint brick_table[]; };
-// Of each brick the scale, then 8 x 9 x 9 pairs of codes: of a voxel and of the next along x.
 layout(std430, binding = 2) readonly buffer Density { uint density_words[]; };
 layout(std430, binding = 3) readonly buffer Corners { uint corner_nodes[]; };
-layout(std430, binding = 4) readonly buffer Coefficients { float coefficients[]; };  // R, G, B
-layout(std430, binding = 5) readonly buffer Phases { float phase[]; };  // phase_table.h
+layout(std430, binding = 4) readonly buffer Coefficients { float coefficients[]; };
+layout(std430, binding = 5) readonly buffer Phases { float phase[]; };
+uint brick_at(uint cell) { return brick_table[cell]; }
+uint density_word(uint i) { return density_words[i]; }
+uint node_at(uint corner) { return corner_nodes[corner]; }
+vec3 coefficient_at(uint i) { return vec3(coefficients[i], coefficients[i + 1u], coefficients[i + 2u]); }
+float phase_at(uint i) { return phase[i]; }
+int lowest_bit(uint bits) { return findLSB(bits); }
+#endif
 layout(location = 7) uniform vec3 suns[SUNS];                           // directions toward them
 
 const uint kNone = 0xffffffffu;  // no brick, no node
@@ -98,8 +122,8 @@ void advance(Volume volume, inout Traveller traveller) {
         if (traveller.span_begin < traveller.span_end) {
             ivec3 c = traveller.cell;
             traveller.corner = vec3(c);
-            traveller.brick = brick_table[volume.extent_first.w +
-                                          uint((c.z * extent.y + c.y) * extent.x + c.x)];
+            traveller.brick = brick_at(volume.extent_first.w +
+                                       uint((c.z * extent.y + c.y) * extent.x + c.x));
         }
         traveller.cell += turn * (leaves == faces.x   ? ivec3(1, 0, 0)
                                   : leaves == faces.y ? ivec3(0, 1, 0)
@@ -114,7 +138,7 @@ void advance(Volume volume, inout Traveller traveller) {
 
 // Codes of a voxel and the next along x, mixed; in 1 / 65535.
 float mix_pair(uint word, float weight) {
-    vec2 pair = unpackUnorm2x16(density_words[word]);
+    vec2 pair = unpackUnorm2x16(density_word(word));
     return mix(pair.x, pair.y, weight);
 }
 
@@ -126,7 +150,7 @@ float density_at(Volume volume, Traveller traveller, vec3 at) {
     uint word = first + 1u + (b.z * 9u + b.y) * 8u + b.x;
     float low = mix(mix_pair(word, w.x), mix_pair(word + 8u, w.x), w.y);
     float high = mix(mix_pair(word + 72u, w.x), mix_pair(word + 80u, w.x), w.y);
-    return uintBitsToFloat(density_words[first]) * mix(low, high, w.z);
+    return uintBitsToFloat(density_word(first)) * mix(low, high, w.z);
 }
 
 // p' between the light of a sun and the eye, formats/opal/phase_table.h.
@@ -135,7 +159,7 @@ float eval_phase(Volume volume, uint sun, vec3 to_eye) {
     float end = 128.0 * sqrt(max(1.0 - abs(cosine), 0.0));
     float at = cosine < 0.0 ? end : 256.0 - end, base = min(floor(at), 255.0);
     uint i = volume.coefficient.z + uint(base);
-    return mix(phase[i], phase[i + 1u], at - base);
+    return mix(phase_at(i), phase_at(i + 1u), at - base);
 }
 
 // Source radiance at the eight nodes of a box of the brick, in the order x + 2 y + 4 z.
@@ -146,7 +170,7 @@ void light_box(Volume volume, inout Traveller traveller, uvec3 box, vec3 to_eye,
                  (box.z * side + box.y) * side + box.x;
     uint terms = volume.numbers.w, stride = terms + volume.coefficient.y, at[8];
     for (uint i = 0u; i < 8u; ++i) {
-        uint node = corner_nodes[first + ((i >> 2) * side + (i >> 1 & 1u)) * side + (i & 1u)];
+        uint node = node_at(first + ((i >> 2) * side + (i >> 1 & 1u)) * side + (i & 1u));
         at[i] = node == kNone ? kNone : volume.coefficient.x + node * stride * 3u;
         traveller.source[i] = vec3(0.0);
     }
@@ -154,9 +178,7 @@ void light_box(Volume volume, inout Traveller traveller, uvec3 box, vec3 to_eye,
         float weight = k < terms ? harmonic[k] : eval_phase(volume, k - terms, to_eye);
         for (uint i = 0u; i < 8u; ++i) {
             if (at[i] == kNone) continue;
-            uint c = at[i] + 3u * k;
-            traveller.source[i] +=
-                weight * vec3(coefficients[c], coefficients[c + 1u], coefficients[c + 2u]);
+            traveller.source[i] += weight * coefficient_at(at[i] + 3u * k);
         }
     }
 }
@@ -206,7 +228,7 @@ void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin
         float t = begin + (i + 0.5) * h;
         vec3 extinction = vec3(0.0), scattered = vec3(0.0);
         for (uint left = inside; left != 0u; left &= left - 1u) {
-            int v = findLSB(left);
+            int v = lowest_bit(left);
             vec3 place = travellers[v].origin + t * travellers[v].direction;
             vec3 at = clamp((place - travellers[v].corner) * 8.0, 0.0, 8.0);
             float density = density_at(volumes[v], travellers[v], at);
@@ -226,7 +248,7 @@ Seen march(Ray ray, float harmonic[HARMONICS]) {
     Traveller travellers[VOLUMES];
     uint ahead = 0u;  // those with a brick at t or further on
     for (uint left = kAllVolumes; left != 0u; left &= left - 1u) {
-        int v = findLSB(left);
+        int v = lowest_bit(left);
         travellers[v] = enter_table(volumes[v], ray);
         advance(volumes[v], travellers[v]);
         ahead |= travellers[v].brick != kNone ? 1u << v : 0u;
@@ -235,11 +257,11 @@ Seen march(Ray ray, float harmonic[HARMONICS]) {
         // The next stretch with at least one brick, up to where one of them ends or another begins.
         float begin = kNever, end = kNever, voxel = kNever;
         for (uint left = ahead; left != 0u; left &= left - 1u) {
-            begin = min(begin, max(t, travellers[findLSB(left)].span_begin));
+            begin = min(begin, max(t, travellers[lowest_bit(left)].span_begin));
         }
         uint inside = 0u;
         for (uint left = ahead; left != 0u; left &= left - 1u) {
-            int v = findLSB(left);
+            int v = lowest_bit(left);
             bool is_inside = travellers[v].span_begin <= begin;
             inside |= is_inside ? 1u << v : 0u;
             end = min(end, is_inside ? travellers[v].span_end : travellers[v].span_begin);
@@ -249,7 +271,7 @@ Seen march(Ray ray, float harmonic[HARMONICS]) {
         if (is_opaque(seen)) return Seen(seen.radiance, vec3(0.0));
         t = end;
         for (uint left = inside; left != 0u; left &= left - 1u) {
-            int v = findLSB(left);
+            int v = lowest_bit(left);
             if (travellers[v].span_end > t) continue;
             advance(volumes[v], travellers[v]);
             ahead &= travellers[v].brick == kNone ? ~(1u << v) : kAllVolumes;
@@ -263,7 +285,7 @@ Seen march(Ray ray, float harmonic[HARMONICS]) {
 vec2 volumes_span(Ray ray) {
     vec2 span = vec2(ray.end, ray.begin);
     for (uint left = kAllVolumes; left != 0u; left &= left - 1u) {
-        Traveller traveller = enter_table(volumes[findLSB(left)], ray);
+        Traveller traveller = enter_table(volumes[lowest_bit(left)], ray);
         if (traveller.t < traveller.end) {
             span = vec2(min(span.x, traveller.t), max(span.y, traveller.end));
         }

@@ -59,7 +59,11 @@ Ray ray_through(vec2 at, out float cosine) {
 }
 
 float distance_along(ivec2 at, float cosine) {
+#ifdef FORWARD_DEPTH
+    float inverse = 1.0 - texelFetch(depth, at, 0).r;
+#else
     float inverse = texelFetch(depth, at, 0).r;
+#endif
     return inverse > 0.0 ? near_plane / (inverse * cosine) : kNever;
 }
 

@@ -42,6 +42,31 @@ const Asset = (() => {
     return absolute;
   }
 
+  // `of`: what begins the names.
+  function readRows(arrays, of, cubemap) {
+    return { cubemap, squares: arrays.get(`${of}code bits`)[0] === 8,
+             offset: arrays.get(`${of}row offset`),
+             averageScale: arrays.get(`${of}average scale`),
+             detailScale: arrays.get(`${of}detail scale`),
+             averageCode: arrays.get(`${of}average code`), index: arrays.get(`${of}index`),
+             code: arrays.get(`${of}code`) };
+  }
+
+  function readVolumes(arrays, cubemap) {
+    const list = records(arrays.get("volumes"), 48, (w, f) => ({
+      toWorld: Array.from(f.subarray(0, 12)), extinction: Array.from(f.subarray(12, 15)),
+      albedo: Array.from(f.subarray(15, 18)),
+      firstBrick: Array.from(new Int32Array(w.buffer, w.byteOffset + 72, 3)),
+      extent: Array.from(w.subarray(21, 24)), firstBrickNumber: w[24], bricks: w[25],
+      firstCell: large(w, 26), firstCorner: large(w, 28), spacing: w[30], nodes: w[32],
+      single: w[33], multiple: w[34], bands: w[35], firstRow: w[36], firstBandRow: w[37],
+      firstCode: large(w, 38), moments: Array.from(f.subarray(40, 45)) }));
+    if (list.length === 0) return null;
+    return { list, table: arrays.get("brick table"), scale: arrays.get("density scale"),
+             density: arrays.get("density"), corners: arrays.get("corners"),
+             phase: arrays.get("phase"), rows: readRows(arrays, "volume ", cubemap) };
+  }
+
   function read(arrays) {
     const primitives = readPrimitives(arrays.get("primitives"));
     arrays.get("roughness").forEach((roughness, p) => { primitives[p].roughness = roughness; });
@@ -57,7 +82,7 @@ const Asset = (() => {
     records(arrays.get("emitter blocks"), 6, (w, f) => {
       primitives[w[1]].blocks.push({ emitter: w[0], firstValue: large(w, 2), scale: f[4] });
     });
-    const [cubemap, codeBits] = arrays.get("widths"), sizes = arrays.get("image sizes");
+    const sizes = arrays.get("image sizes"), [cubemap] = arrays.get("cubemap");
     return {
       primitives, camera: arrays.get("camera"),
       position: arrays.get("position"), normal: arrays.get("normal"),
@@ -67,10 +92,7 @@ const Asset = (() => {
       images: Array.from({ length: sizes.length / 2 }, (_, i) => ({
         width: sizes[2 * i], height: sizes[2 * i + 1], pixels: arrays.get(`image ${i}`) })),
       emitterValues: arrays.get("emitter values"),
-      rows: { cubemap, squares: codeBits === 8, offset: arrays.get("row offset"),
-              averageScale: arrays.get("average scale"), detailScale: arrays.get("detail scale"),
-              averageCode: arrays.get("average code"), index: arrays.get("index"),
-              code: arrays.get("code") },
+      cubemap, rows: readRows(arrays, "", cubemap), volumes: readVolumes(arrays, cubemap),
     };
   }
 

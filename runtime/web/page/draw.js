@@ -3,9 +3,12 @@
 // those of runtime/gl/gl_surfaces.cpp.
 const Draw = (() => {
   const kColumns = 2048;  // of the texture of products
-  const kUnits = ["products", "base_color_image", "mirrored_light", "light_maps", "gloss_image",
-                  "own_image", "hole_image", "srgb_table", "cells", "sun_table", "albedo", "map",
-                  "disc_table", "sampled", "sum"];
+  // Texture units; those of volumes are shared with surfaces, which bind theirs anew.
+  const kUnits = { products: 0, base_color_image: 1, mirrored_light: 2, light_maps: 3, gloss_image: 4,
+                   own_image: 5, hole_image: 6, srgb_table: 7, cells: 8, sun_table: 9, albedo: 10,
+                   map: 11, disc_table: 12, sampled: 13, sum: 14, samples: 0, depth: 1,
+                   brick_numbers: 2, density_codes: 3, corner_numbers: 4, node_light: 5,
+                   phase_entries: 6 };
 
   // GLSL ES 3.00 has no explicit places of what passes between stages, nor of uniforms.
   function translate(text, stage) {
@@ -48,7 +51,7 @@ const Draw = (() => {
       const { name: uniform, type } = gl.getActiveUniform(name, i);
       const place = gl.getUniformLocation(name, uniform);
       uniforms.set(uniform, { type, place });
-      if (kUnits.includes(uniform)) gl.uniform1i(place, kUnits.indexOf(uniform));
+      if (uniform in kUnits) gl.uniform1i(place, kUnits[uniform]);
     }
     return { name, uniforms };
   }
@@ -69,13 +72,14 @@ const Draw = (() => {
         case gl.INT_VEC2: gl.uniform2iv(place, value); break;
         case gl.UNSIGNED_INT: gl.uniform1ui(place, value); break;
         case gl.UNSIGNED_INT_VEC2: gl.uniform2uiv(place, value); break;
+        case gl.UNSIGNED_INT_VEC4: gl.uniform4uiv(place, value); break;
         default: throw new Error(`no uniform has the type of ${name}`);
       }
     }
   }
 
   function bind(gl, unit, texture, target = gl.TEXTURE_2D) {
-    gl.activeTexture(gl.TEXTURE0 + kUnits.indexOf(unit));
+    gl.activeTexture(gl.TEXTURE0 + kUnits[unit]);
     gl.bindTexture(target, texture);
   }
 
@@ -103,6 +107,14 @@ const Draw = (() => {
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, format[1], format[2], values);
     }
     return texture;
+  }
+
+  // Rows of kColumns values, `per` numbers each.
+  function makeLines(gl, format, values, per = 1) {
+    const lines = Math.max(1, Math.ceil(values.length / per / kColumns));
+    const padded = new values.constructor(per * kColumns * lines);
+    padded.set(values);
+    return makeTable(gl, format, kColumns, lines, padded);
   }
 
   // A cube's faces, or one map, as layers; cube maps with all of their levels, if wanted.
@@ -209,6 +221,22 @@ const Draw = (() => {
     };
   }
 
+  // What never changes of volumes.
+  function makeVolumeObjects(gl, volumes) {
+    const numbers = [gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT];
+    const most = Math.max(...volumes.list.map(volume => Math.max(volume.single, volume.multiple, 1)));
+    const defines = [["VOLUMES", volumes.list.length], ["HARMONICS", most], ["SUNS", Volumes.kMostSuns],
+                     ["BRICK_WORDS", Volumes.kBrickWords], ["LAYER", 0], ["FORWARD_DEPTH", ""]];
+    return {
+      program: makeProgram(gl, defines, ["screen.vert.glsl"], ["volume_march.glsl", "volumes.frag.glsl"]),
+      inverses: volumes.list.map(volume => Volumes.inverseOf(volume.toWorld)),
+      table: makeLines(gl, numbers, volumes.table),
+      density: makeLines(gl, numbers, Volumes.packDensity(volumes)),
+      corners: makeLines(gl, numbers, volumes.corners),
+      phase: makeLines(gl, [gl.R32F, gl.RED, gl.FLOAT], volumes.phase), light: null, lit: null,
+    };
+  }
+
   // Of one light, for all of its turns.
   function makeLightObjects(gl, light, asset) {
     const discs = values => makeTable(gl, [gl.RGBA32F, gl.RGBA, gl.FLOAT], 2, values.length / 8, values);
@@ -241,10 +269,8 @@ const Draw = (() => {
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target.color, 0);
     if (hasDepth) {
-      target.depth = gl.createRenderbuffer();
-      gl.bindRenderbuffer(gl.RENDERBUFFER, target.depth);
-      gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT32F, width, height);
-      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, target.depth);
+      target.depth = makeTexture(gl, gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT32F, width, height);
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, target.depth, 0);
     }
     return target;
   }
@@ -252,10 +278,10 @@ const Draw = (() => {
   function freeTarget(gl, target) {
     gl.deleteFramebuffer(target.frame);
     gl.deleteTexture(target.color);
-    gl.deleteRenderbuffer(target.depth);
+    gl.deleteTexture(target.depth);
   }
 
-  // Interface: setLight(light), setProducts(coefficients, colors), resize(width, height),
+  // Interface: setLight(light), relight(projected, colors), resize(width, height),
   // drawSample(...), present(...), readPixels(...).
   function make(canvas, asset) {
     const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false });
@@ -271,7 +297,8 @@ const Draw = (() => {
                                    ["cube_map.glsl", "environment.glsl", "background.frag.glsl"]);
     const adding = makeProgram(gl, [], ["screen.vert.glsl"], ["add_sample.frag.glsl"]);
     const presenting = makeProgram(gl, [], ["screen.vert.glsl"], ["present.frag.glsl"]);
-    let size = [0, 0], sampled = null, sum = null, light = null, lightObjects = null;
+    const volumes = asset.volumes === null ? null : makeVolumeObjects(gl, asset.volumes);
+    let size = [0, 0], sampled = null, marched = null, sum = null, light = null, lightObjects = null;
 
     function setLight(next) {
       if (lightObjects !== null) freeLightObjects(gl, lightObjects);
@@ -279,18 +306,24 @@ const Draw = (() => {
       lightObjects = makeLightObjects(gl, light, asset);
     }
 
-    function setProducts(coefficients, colors) {
-      Rows.multiply(asset, coefficients, colors, objects.values);
+    // `projected`: of Light.project.
+    function relight(projected, colors) {
+      Rows.multiply(asset, projected.coefficients, colors, objects.values);
       bind(gl, "products", objects.products);
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, kColumns, objects.lines, gl.RGBA, gl.FLOAT,
                        objects.values);
+      if (volumes === null) return;
+      volumes.lit = Volumes.relight(asset.volumes, projected, asset.cubemap);
+      gl.deleteTexture(volumes.light);
+      volumes.light = makeLines(gl, [gl.RGBA32F, gl.RGBA, gl.FLOAT], volumes.lit.values, 4);
     }
 
     function resize(width, height) {
       if (size[0] === width && size[1] === height) return;
-      if (sum !== null) [sampled, sum].forEach(target => freeTarget(gl, target));
+      if (sum !== null) [sampled, marched, sum].forEach(target => target && freeTarget(gl, target));
       size = [width, height];
       sampled = makeTarget(gl, width, height, gl.RGBA32F, true);
+      if (volumes !== null) marched = makeTarget(gl, width, height, gl.RGBA32F, false);
       sum = makeTarget(gl, width, height, sumFormat, false);
     }
 
@@ -300,15 +333,19 @@ const Draw = (() => {
       return [c, 0, s, 0, 1, 0, -s, 0, c];
     }
 
+    // Of rays through the samples at `place` in each pixel.
+    function rayUniforms(frame, place) {
+      return { tile_origin: place.map(offset => offset - 0.5), to_plane: [2 / size[0], 2 / size[1]],
+               right: Vector.times(frame.tangent[0], frame.right),
+               down: Vector.times(-frame.tangent[1], frame.up), forward: frame.forward };
+    }
+
     function drawBackground(frame, turn, place) {
       gl.useProgram(background.name);
       bind(gl, "map", lightObjects.map, gl.TEXTURE_2D_ARRAY);
       bind(gl, "disc_table", lightObjects.discTable);
       setUniforms(gl, background, {
-        tile_origin: place.map(offset => offset - 0.5), to_plane: [2 / size[0], 2 / size[1]],
-        right: Vector.times(frame.tangent[0], frame.right),
-        down: Vector.times(-frame.tangent[1], frame.up), forward: frame.forward,
-        light_from_world: lightFromWorld(turn), layout_kind: light.background.layout,
+        ...rayUniforms(frame, place), light_from_world: lightFromWorld(turn), layout_kind: light.background.layout,
         u_offset_sign: light.background.turn, rows_include_poles: light.background.includesPoles,
         discs: lightObjects.discs });
       gl.disable(gl.DEPTH_TEST);
@@ -363,6 +400,25 @@ const Draw = (() => {
       gl.bindVertexArray(null);
     }
 
+    // What is seen through volumes, of one sample a pixel, from `sampled` to `marched`.
+    function drawVolumes(frame, place) {
+      const { program, lit } = volumes;
+      gl.bindFramebuffer(gl.FRAMEBUFFER, marched.frame);
+      gl.useProgram(program.name);
+      bind(gl, "samples", sampled.color);
+      bind(gl, "depth", sampled.depth);
+      bind(gl, "brick_numbers", volumes.table);
+      bind(gl, "density_codes", volumes.density);
+      bind(gl, "corner_numbers", volumes.corners);
+      bind(gl, "node_light", volumes.light);
+      bind(gl, "phase_entries", volumes.phase);
+      setUniforms(gl, program, {
+        ...rayUniforms(frame, place), ...Volumes.uniforms(asset.volumes, volumes.inverses, lit.parts, frame),
+        supersampling: 1, near_plane: frame.unit * frame.near });
+      if (lit.suns.length > 0) setUniforms(gl, program, { "suns[0]": lit.suns.flat() });
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
     // Sample (i, j) of across x across in each pixel; `isFirst` begins a new sum.
     function drawSample(frame, { turn, exposure, colors }, [i, j], across, isFirst) {
       const place = [(i + 0.5) / across, (j + 0.5) / across];
@@ -373,9 +429,10 @@ const Draw = (() => {
       drawBackground(frame, turn, place);
       drawSurfaces(frame, turn, colors, place, across, [i, j]);
       gl.disable(gl.DEPTH_TEST);
+      if (volumes !== null) drawVolumes(frame, place);
       gl.bindFramebuffer(gl.FRAMEBUFFER, sum.frame);
       gl.useProgram(adding.name);
-      bind(gl, "sampled", sampled.color);
+      bind(gl, "sampled", (marched ?? sampled).color);
       setUniforms(gl, adding, { gain: 2 ** exposure });
       if (!isFirst) gl.enable(gl.BLEND);
       gl.blendFunc(gl.ONE, gl.ONE);
@@ -405,7 +462,7 @@ const Draw = (() => {
       return pixels;
     }
 
-    return { setLight, setProducts, resize, drawSample, present, readPixels };
+    return { setLight, relight, resize, drawSample, present, readPixels };
   }
 
   return { make };

@@ -237,14 +237,27 @@ const Light = (() => {
     };
   }
 
-  // Coefficients, three bands each, of the light turned by `turn` [radians] from +Z toward +X.
+  // The light turned by `turn` [radians] from +Z toward +X: its flux over each texel, three bands
+  // each, and coefficients.
   function project(light, n, turn) {
     const c = Math.cos(turn), s = Math.sin(turn), integral = new Float64Array(6 * n * n * 3);
     addMap(light.padded, n, c, s, integral);
     addPoints(light.points, n, c, s, integral);
     addSuns(light.suns, n, c, s, integral);
-    return Float32Array.from(transform(integral, n));
+    return { integral, coefficients: coefficientsOf(integral, n) };
   }
 
-  return { read, project, wholeCube, halveCube, kFloats, kSide };
+  function coefficientsOf(integral, n) {
+    return Float32Array.from(transform(integral.slice(), n));
+  }
+
+  // Unit direction of a texel's centre.
+  function texelDirection(n, texel) {
+    const row = Math.floor(texel / n) % n, column = texel % n;
+    const d = cubePosition(Math.floor(texel / (n * n)), 2 * (column + 0.5) / n - 1,
+                           2 * (row + 0.5) / n - 1);
+    return Vector.times(1 / Vector.norm(d), d);
+  }
+
+  return { read, project, coefficientsOf, texelDirection, wholeCube, halveCube, kFloats, kSide };
 })();

@@ -103,8 +103,7 @@ opaline.page = (() => {
     }
     if (shown.light !== light) draw.setLight(lights.get(light));
     if (shown.light !== light || shown.turn !== turn || shown.colors !== colors) {
-      const n = asset.rows.cubemap;
-      draw.setProducts(Light.project(lights.get(light), n, turn * Math.PI / 180), colors);
+      draw.relight(Light.project(lights.get(light), asset.cubemap, turn * Math.PI / 180), colors);
     }
     shown = { light, turn, colors };
     return true;

@@ -53,6 +53,27 @@ const Rows = (() => {
     }
   }
 
+  // Row `r` of a part times several lights, coefficients of which stand after each other: adds
+  // factor[k] <T, L_k> to out[to + 4 k ...].
+  function addRow(rows, part, r, lights, factors, out, to) {
+    const { offset, index, code, squares, averageCode, averageScale, detailScale } = rows;
+    const size = 18 * rows.cubemap * rows.cubemap, face = size / 6, bands = part.bands;
+    const row = part.firstRow + r, first = part.firstCode - bands * offset[part.firstRow];
+    for (let k = 0; k < factors.length; ++k) {
+      const light = k * size;
+      for (let b = 0; b < 3; ++b) {
+        const own = Math.min(b, bands - 1), band = part.firstBandRow + bands * r + own;
+        let sum = 0, average = 0;
+        for (let i = offset[row], end = offset[row + 1]; i < end; ++i) {
+          const value = code[first + bands * i + own];
+          sum += (squares ? value * Math.abs(value) : value) * lights[light + 3 * index[i] + b];
+        }
+        for (let f = 0; f < 6; ++f) average += averageCode[6 * band + f] * lights[light + f * face + b];
+        out[to + 4 * k + b] += factors[k] * (sum * detailScale[band] + average * averageScale[band]);
+      }
+    }
+  }
+
   function addEmitters(asset, primitive, colors, out) {
     const halves = asset.emitterValues;
     for (const block of primitive.blocks) {
@@ -73,5 +94,5 @@ const Rows = (() => {
     }
   }
 
-  return { multiply };
+  return { multiply, addRow };
 })();

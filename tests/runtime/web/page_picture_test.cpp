@@ -8,7 +8,9 @@
 #include "runtime/picture/software_renderer.h"
 #include "runtime/picture/tone_map.h"
 #include "runtime/shade.h"
+#include "runtime/volumes/relight_volumes.h"
 #include "tests/runtime/picture/synthetic_asset.h"
+#include "tests/runtime/volumes/synthetic_volume.h"
 #include "tests/runtime/web/browser.h"
 #include "tests/runtime/web/every_surface.h"
 
@@ -44,6 +46,8 @@ DisplayPicture render_on_cpu(const formats::AssetView& view, const formats::Envi
     SoftwareOptions options;
     options.specular = &specular;
     options.emitters = emitters;
+    const VolumeLight volumes = relight_volumes(view.volumes, light);
+    options.volumes = &volumes;
     const auto picture = render_software(
         view, shade_for_picture(view, light, camera.eye, formats::TermSet::all, 0, emitters), sky,
         rotation, camera, options);
@@ -108,8 +112,8 @@ TEST(PagePicture, EverySurfaceLooksAsOnTheCpuUnderTurnedLightAndDimmedEmitters) 
     ASSERT_TRUE(page);
     Camera camera;
     camera.fov_y = 32;
-    camera.width = 160;
-    camera.height = 120;
+    camera.width = 120;
+    camera.height = 90;
     const PageView views[] = {{"light=my+%3Csky%3E&eye=0.5,2,7&target=0,0.7,0&rotate=40", 40},
                               {"light=my+%3Csky%3E&eye=-3,3,-6&target=0,0.7,0&rotate=-130&exposure="
                                "-0.7&emitter=b%3D0,0,0&"
@@ -122,7 +126,7 @@ TEST(PagePicture, EverySurfaceLooksAsOnTheCpuUnderTurnedLightAndDimmedEmitters) 
         camera.eye = wanted.turn > 0 ? formats::Vec3{0.5f, 2, 7} : formats::Vec3{-3, 3, -6};
         camera.target = {0, 0.7f, 0};
         camera.near_plane = near_plane_for(view, camera.eye);
-        const auto shown = test::take_page_picture(*page, wanted.address, 160, 120);
+        const auto shown = test::take_page_picture(*page, wanted.address, 120, 90);
         EXPECT_EQ(shown.console, "");
         EXPECT_EQ(shown.title, "a \"title\" &lt;/script&gt;");
         expect_same_pixels(render_on_cpu(view, lights[1].environment, camera, wanted), shown.rgba);
@@ -150,6 +154,66 @@ TEST(PagePicture, DefaultViewUnderATurnedSunInTheMapIsTheOneOfPictures) {
     const Camera camera = frame_asset(asset.view(), 32, 160, 120);
     expect_same_pixels(render_on_cpu(asset.view(), lights[0].environment, camera, {{}, 63}),
                        shown.rgba);
+}
+
+// Smoke of that many terms, 1.6 m wide, denser on one side; each node has rows of its own.
+test::TestVolume make_smoke(std::uint32_t single, std::uint32_t multiple, std::uint32_t bands) {
+    test::TestVolume smoke;
+    smoke.first_brick = {-2, -2, -2};
+    smoke.extent = {4, 4, 4};
+    smoke.to_world = {0.05f, 0.01f, 0, 0.2f, 0, 0.05f, 0, 0.8f, 0.01f, 0, -0.05f, 0};
+    smoke.sigma_t = {1, 2, 4};
+    smoke.albedo = {0.9f, 0.8f, 0.7f};
+    smoke.spacing = 4;
+    smoke.single_terms = single;
+    smoke.multiple_terms = multiple;
+    smoke.bands = bands;
+    smoke.moment = {1, 0.7f, 0.49f, 0.343f, 0.24f};
+    smoke.phase = [](double c) { return 0.51 / std::pow(1.49 - 1.4 * c, 1.5); };
+    smoke.density = [](float x, float y, float z) {
+        return std::max(0.0f, 1 + 0.03f * x - (x * x + y * y + z * z) / 220);
+    };
+    smoke.rows = [multiple, bands](formats::NodeVoxel node) {
+        std::vector<formats::SparseRow> rows;
+        for (std::uint32_t k = 0; k <= multiple; ++k) {
+            const auto at = static_cast<float>(node[0] + 2 * node[1] - node[2]) * 0.1f;
+            const float size = k < 2 ? 0.5f : 0.1f;
+            rows.push_back(test::constant_row(8, size * (1 + 0.3f * std::sin(at)), bands));
+            rows.back().index = {9, 200, 331};
+            rows.back().value.assign(std::size_t{3} * bands, size * std::cos(at));
+        }
+        return rows;
+    };
+    return smoke;
+}
+
+// Two volumes that overlap, one that scatters a sun forward; a sheet cuts them.
+TEST(PagePicture, VolumesLookAsOnTheCpuUnderASunBehindThem) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    formats::Asset asset = test::make_asset(8, 16);
+    asset.volumes = test::make_volumes(8);
+    test::add_volume(asset.volumes, make_smoke(25, 4, 1));
+    test::TestVolume other = make_smoke(0, 1, 3);
+    other.to_world[3] = -0.8f;
+    test::add_volume(asset.volumes, other);
+    test::add_primitive(
+        asset, test::make_sheet({0, 0.6f, 0.1f}, {0.5f, 0, 0.4f}, {0, 0.4f, 0.2f}, 2, 1), {});
+    formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    sky.discs.push_back({normalize(formats::Vec3{-0.4f, 0.2f, -1}), 0.01f, {4e4f, 3e4f, 1e4f}});
+    const PageLight lights[] = {{"sky", sky}};
+    const auto page = make_web_page(asset.view(), lights, "smoke", "a.opal", 0);
+    ASSERT_TRUE(page);
+    Camera camera;
+    camera.eye = {0.7f, 1, 4};
+    camera.target = {0, 0.7f, 0};
+    camera.fov_y = 32;
+    camera.width = 80;
+    camera.height = 60;
+    camera.near_plane = near_plane_for(asset.view(), camera.eye);
+    const auto shown =
+        test::take_page_picture(*page, "eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2", 80, 60);
+    EXPECT_EQ(shown.console, "");
+    expect_same_pixels(render_on_cpu(asset.view(), sky, camera, {{}, 20, -2}), shown.rgba);
 }
 
 TEST(PagePicture, ControlsAndTheAddressFollowEachOther) {

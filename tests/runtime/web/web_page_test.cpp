@@ -36,13 +36,14 @@ TEST(DataScript, LiteralsEndNeitherTheirStringNorTheirScript) {
     EXPECT_EQ(script_literal("Bäume"), "\"Bäume\"");
 }
 
-TEST(WebPage, AssetsWithoutSurfacesAreRefused) {
+TEST(WebPage, AssetsWithoutSurfacesAndVolumesAreRefused) {
     formats::Asset asset = test::make_asset(8, 8);
     const PageLight lights[] = {{"white", {}}};
     const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
     ASSERT_FALSE(page);
     EXPECT_EQ(page.error().kind, formats::ErrorKind::bad_input);
-    EXPECT_NE(page.error().diagnostics[0].fault.find("has no surfaces"), std::string::npos);
+    EXPECT_NE(page.error().diagnostics[0].fault.find("neither surfaces nor volumes"),
+              std::string::npos);
 }
 
 TEST(WebPage, FilesAreAlikeForAnyNumberOfThreadsAndKnownAsThoseOfAPage) {
@@ -93,14 +94,24 @@ TEST(DividedLight, FluxOfASunInTheMapIsKept) {
     EXPECT_NEAR(points + cube, of_sun + 4 * std::numbers::pi, 2e-3 * of_sun);
 }
 
-TEST(WebPage, VolumesThatThePageLeavesOutAreNamed) {
+TEST(WebPage, CloudLayersThatThePageLeavesOutAreNamed) {
     formats::Asset asset = test::make_asset(8, 8);
     test::add_primitive(asset, test::make_sphere({0, 0, 0}, 1, 8, 6), {});
-    EXPECT_TRUE(left_out_of_page(asset.view()).empty());
     asset.volumes.records.resize(1);
+    EXPECT_TRUE(left_out_of_page(asset.view()).empty());
+    asset.clouds.records.resize(1);
     const auto left_out = left_out_of_page(asset.view());
     ASSERT_EQ(left_out.size(), 1u);
-    EXPECT_NE(left_out[0].find("volumes are not drawn"), std::string::npos);
+    EXPECT_NE(left_out[0].find("cloud layer is not drawn"), std::string::npos);
+}
+
+TEST(WebPage, MoreVolumesThanAPageDrawsAreRefused) {
+    formats::Asset asset = test::make_asset(8, 8);
+    asset.volumes.records.resize(kMostPageVolumes + 1);
+    const PageLight lights[] = {{"none", {}}};
+    const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
+    ASSERT_FALSE(page);
+    EXPECT_NE(page.error().diagnostics[0].fault.find("a page draws at most 4"), std::string::npos);
 }
 
 }  // namespace

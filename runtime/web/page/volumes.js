@@ -1,0 +1,199 @@
+"use strict";
+// Volumes: their density as shaders read it, and the light of their nodes: the steps of
+// runtime/volumes and runtime/gl/gl_volumes.cpp.
+const Volumes = (() => {
+  const kNone = 0xffffffff, kPhaseEntries = 257, kMostSuns = 8, kBrickWords = 1 + 81 * 8;
+
+  // Of 9 x 9 x 9 voxels, those of neighbours among them, pairs along x.
+  function packBrick(volumes, volume, cell, number, words) {
+    const [nx, ny, nz] = volume.extent, values = new Float64Array(729);
+    const [x0, y0, z0] = cell, base = volume.firstBrickNumber;
+    for (let i = 0; i < 729; ++i) {
+      const x = i % 9, y = Math.floor(i / 9) % 9, z = Math.floor(i / 81);
+      const at = [x0 + (x >> 3), y0 + (y >> 3), z0 + (z >> 3)];
+      if (at[0] >= nx || at[1] >= ny || at[2] >= nz) continue;
+      const brick = volumes.table[volume.firstCell + (at[2] * ny + at[1]) * nx + at[0]];
+      if (brick === kNone) continue;
+      values[i] = volumes.scale[base + brick] *
+          volumes.density[512 * (base + brick) + ((z & 7) * 8 + (y & 7)) * 8 + (x & 7)];
+    }
+    const full = values.reduce((a, b) => Math.max(a, b), volumes.scale[base + number] * 65535);
+    const codes = values.map(value => full > 0 ? Math.round(value / full * 65535) : 0);
+    const first = kBrickWords * (base + number);
+    new Float32Array(words.buffer)[first] = full;
+    for (let row = 0; row < 81; ++row) {
+      for (let x = 0; x < 8; ++x) {
+        words[first + 1 + 8 * row + x] = codes[9 * row + x] | codes[9 * row + x + 1] << 16;
+      }
+    }
+  }
+
+  function packDensity(volumes) {
+    const words = new Uint32Array(kBrickWords * volumes.scale.length);
+    for (const volume of volumes.list) {
+      const [nx, ny, nz] = volume.extent;
+      for (let at = 0; at < nx * ny * nz; ++at) {
+        const number = volumes.table[volume.firstCell + at];
+        if (number === kNone) continue;
+        packBrick(volumes, volume, [at % nx, Math.floor(at / nx) % ny, Math.floor(at / nx / ny)],
+                  number, words);
+      }
+    }
+    return words;
+  }
+
+  // Rows of a 3 x 4 matrix, world to index coordinates; null where there is no inverse.
+  function inverseOf(m) {
+    const column = c => [m[c], m[4 + c], m[8 + c]];
+    const [a, b, c, origin] = [0, 1, 2, 3].map(column);
+    const rows = [Vector.cross(b, c), Vector.cross(c, a), Vector.cross(a, b)];
+    const determinant = Vector.dot(a, rows[0]);
+    if (!(Math.abs(determinant) > 0)) return null;
+    return rows.map(row => {
+      const unit = Vector.times(1 / determinant, row);
+      return [...unit, -Vector.dot(unit, origin)];
+    });
+  }
+
+  // Real spherical harmonics up to degree 4 (formats/README.md, `PRIM`).
+  function harmonics([x, y, z]) {
+    const xx = x * x, yy = y * y, zz = z * z;
+    return [0.2820947918, 0.4886025119 * y, 0.4886025119 * z, 0.4886025119 * x,
+            1.0925484306 * x * y, 1.0925484306 * y * z, 0.3153915653 * (3 * zz - 1),
+            1.0925484306 * x * z, 0.5462742153 * (xx - yy), 0.5900435899 * y * (3 * xx - yy),
+            2.8906114426 * x * y * z, 0.4570457995 * y * (5 * zz - 1),
+            0.3731763326 * z * (5 * zz - 3), 0.4570457995 * x * (5 * zz - 1),
+            1.4453057213 * z * (xx - yy), 0.5900435899 * x * (xx - 3 * yy),
+            2.5033429418 * x * y * (xx - yy), 1.7701307698 * y * z * (3 * xx - yy),
+            0.9461746958 * x * y * (7 * zz - 1), 0.6690465436 * y * z * (7 * zz - 3),
+            0.1057855469 * (zz * (35 * zz - 30) + 3), 0.6690465436 * x * z * (7 * zz - 3),
+            0.4730873479 * (xx - yy) * (7 * zz - 1), 1.7701307698 * x * z * (xx - 3 * yy),
+            0.6258357354 * (xx * (xx - 3 * yy) - yy * (3 * xx - yy))];
+  }
+
+  const luminance = (values, j) =>
+      0.2126 * values[3 * j] + 0.7152 * values[3 * j + 1] + 0.0722 * values[3 * j + 2];
+
+  // Whether moments miss the phase function somewhere (needs_suns of runtime/volumes/suns.h).
+  function needsSuns(volume, phase) {
+    const moment = c => {
+      let sum = 0, before = 0, legendre = 1;
+      for (let l = 0; l < 5 && l * l < volume.single; ++l) {
+        sum += (2 * l + 1) * volume.moments[l] * legendre;
+        [before, legendre] = [legendre, ((2 * l + 1) * c * legendre - l * before) / (l + 1)];
+      }
+      return sum;
+    };
+    return volume.single > 0 && phase.some((p, i) => {
+      const end = (i < 128 ? i : 256 - i) / 128, cosine = i < 128 ? end * end - 1 : 1 - end * end;
+      return Math.abs(4 * Math.PI * p - moment(cosine)) > 0.01;
+    });
+  }
+
+  // Small bright lights and the rest (split_suns of runtime/volumes/suns.h).
+  function splitSuns(integral, n) {
+    const rest = integral.slice(), bright = new Float64Array(integral.length / 3);
+    for (let j = 0; j < bright.length; ++j) bright[j] = Math.max(0, luminance(integral, j));
+    const whole = bright.reduce((a, b) => a + b, 0);
+    const threshold = Math.max(whole / 128, bright.slice().sort()[bright.length - 1 - kMostSuns]);
+    const suns = [];
+    bright.forEach((y, texel) => {
+      if (!(y > threshold)) return;
+      const share = Math.min(1, y / threshold - 1), light = [0, 1, 2].map(b => share * integral[3 * texel + b]);
+      light.forEach((x, b) => { rest[3 * texel + b] -= x; });
+      suns.push({ texel, light, centre: Light.texelDirection(n, texel) });
+    });
+    const reach = Math.cos(3 / n);
+    for (const sun of suns) {
+      let sum = [0, 0, 0];
+      for (const other of suns) {
+        if (Vector.dot(sun.centre, other.centre) <= reach) continue;
+        sum = Vector.add(sum, Vector.times(luminance(other.light, 0), other.centre));
+      }
+      sun.direction = Vector.norm(sum) > 0 ? Vector.times(1 / Vector.norm(sum), sum) : sun.centre;
+    }
+    return { suns, rest };
+  }
+
+  // Light vectors after each other in one array.
+  function joined(lights) {
+    const size = lights.length > 0 ? lights[0].length : 0, all = new Float32Array(size * lights.length);
+    lights.forEach((light, k) => all.set(light, k * size));
+    return all;
+  }
+
+  function momentLights(integral, n, count) {
+    const harmonic = Array.from({ length: integral.length / 3 },
+                                (_, j) => harmonics(Light.texelDirection(n, j)));
+    return Array.from({ length: count }, (_, k) =>
+        Light.coefficientsOf(integral.map((x, i) => x * harmonic[Math.floor(i / 3)][k]), n));
+  }
+
+  function lightVolume(volumes, volume, lights, part, values) {
+    const { rows } = volumes, stride = part.terms + part.suns;
+    const degree = k => Math.floor(Math.sqrt(k));
+    const factors = Array.from({ length: volume.single }, (_, k) =>
+        (degree(k) % 2 === 0 ? 1 : -1) * volume.moments[degree(k)]);
+    const moments = part.suns > 0 ? lights.momentsOfRest : lights.moments;
+    const ones = new Array(part.suns).fill(1);
+    const scale = [volume.multiple === 1 ? Math.sqrt(4 * Math.PI) : 1];
+    for (let node = 0; node < volume.nodes; ++node) {
+      const row = node * (1 + volume.multiple), to = 4 * (part.first + node * stride);
+      Rows.addRow(rows, volume, row, moments, factors, values, to);
+      Rows.addRow(rows, volume, row, lights.suns, ones, values, to + 4 * part.terms);
+      for (let k = 0; k < volume.multiple; ++k) {
+        Rows.addRow(rows, volume, row + 1 + k, lights.whole, scale, values, to + 4 * k);
+      }
+    }
+  }
+
+  // Light of all nodes: four values a coefficient, stride of them a node; suns: their directions.
+  function relight(volumes, { integral, coefficients }, n) {
+    const wants = volumes.list.map((volume, v) =>
+        needsSuns(volume, volumes.phase.subarray(kPhaseEntries * v, kPhaseEntries * (v + 1))));
+    const { suns, rest } = wants.some(x => x) ? splitSuns(integral, n) : { suns: [], rest: integral };
+    const most = wanted => volumes.list.reduce(
+        (a, volume, v) => wants[v] === wanted || suns.length === 0 ? Math.max(a, volume.single) : a, 0);
+    const sunLights = suns.map(sun => {
+      const alone = new Float64Array(integral.length);
+      alone.set(sun.light, 3 * sun.texel);
+      return Light.coefficientsOf(alone, n);
+    });
+    const lights = { whole: coefficients, suns: joined(sunLights),
+                     moments: joined(momentLights(integral, n, most(false))),
+                     momentsOfRest: suns.length > 0 ? joined(momentLights(rest, n, most(true))) : null };
+    let first = 0;
+    const parts = volumes.list.map((volume, v) => {
+      const part = { terms: Math.max(volume.single, volume.multiple), suns: wants[v] ? suns.length : 0,
+                     first };
+      first += volume.nodes * (part.terms + part.suns);
+      return part;
+    });
+    const values = new Float32Array(4 * first);
+    volumes.list.forEach((volume, v) => lightVolume(volumes, volume, lights, parts[v], values));
+    return { parts, values, suns: suns.map(sun => sun.direction) };
+  }
+
+  // What the shader knows of each volume, seen from there.
+  function uniforms(volumes, inverses, parts, frame) {
+    const values = {};
+    volumes.list.forEach((volume, v) => {
+      const inverse = inverses[v], set = (name, value) => { values[`volumes[${v}].${name}`] = value; };
+      if (inverse === null) {
+        set("extent_first", [0, 0, 0, 0]);
+        return;
+      }
+      set("to_bricks[0]", inverse.flatMap((row, a) => [
+        ...row.slice(0, 3).map(x => x / 8 / frame.unit),
+        (Vector.dot(row, frame.eye) + row[3]) / 8 - volume.firstBrick[a]]));
+      set("extent_first", [...volume.extent, volume.firstCell]);
+      set("numbers", [volume.firstBrickNumber, volume.firstCorner, 8 / volume.spacing, parts[v].terms]);
+      set("extinction", [...volume.extinction.map(s => Math.min(s / frame.unit, 1e30)), 0]);
+      set("albedo", [...volume.albedo, 0]);
+      set("coefficient", [3 * parts[v].first, parts[v].suns, kPhaseEntries * v, 0]);
+    });
+    return values;
+  }
+
+  return { packDensity, inverseOf, relight, uniforms, kBrickWords, kMostSuns };
+})();
