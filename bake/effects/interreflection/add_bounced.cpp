@@ -9,18 +9,14 @@ namespace opaline::bake {
 std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
                           std::uint32_t cubemap_size, std::span<float> rows) {
     const BounceGrid& own = point.is_averaged ? light.of_averaged : light.of_receiver;
-    const std::size_t size = light.tree.row_size();
-    std::vector<float> sum(size);
+    std::vector<float> sum(light.tree.row_size());
     // Noise as of rays of its own, were these independent.
     const float most = static_cast<float>(light.of_site.count()) / static_cast<float>(own.count());
     std::vector<SiteWeight> around;
     std::uint64_t rays = 0;
     if (light.sites.weigh(point.receiver, most, around)) {
         for (const SiteWeight& w : around) {
-            const float* const row = &light.site_rows[w.site * size];
-            for (std::size_t k = 0; k < size; ++k) {
-                sum[k] += w.weight * row[k];
-            }
+            light.site_rows.add(w.site, w.weight, sum);
         }
     } else {
         std::vector<NodeWeight> weights;

@@ -9,12 +9,12 @@ class KernelAverage {
   public:
     // Appends weights that add up to `share`. False: there is no node.
     bool add(const BounceTree& tree, const FootprintKernel& kernel, const SurfaceSide& side,
-             float openness, float share, std::vector<NodeWeight>& weights) {
+             Brightness looked_for, float share, std::vector<NodeWeight>& weights) {
         offsets_.clear();
         const std::size_t first = weights.size();
         float sum = 0;
         glm::vec2 mean(0);
-        tree.find_near(kernel, side, openness,
+        tree.find_near(kernel, side, looked_for,
                        [&](std::uint32_t node, float weight, glm::vec2 offset) {
                            weights.push_back({node, weight});
                            offsets_.push_back(offset);
@@ -119,7 +119,7 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
                 tree.find(y, wanted, look_up == LookUp::node ? kernel.area : 0);
             if (node == formats::kNone ||
                 (look_up == LookUp::kernel &&
-                 average.add(tree, kernel, wanted, tree.openness(node), share, weights))) {
+                 average.add(tree, kernel, wanted, tree.brightness(node), share, weights))) {
                 return;
             }
             weights.push_back({node, share});
@@ -140,10 +140,7 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
 void add_node_rows(const BounceTree& tree, std::span<const NodeWeight> weights,
                    std::span<float> rows) {
     for (const NodeWeight& w : weights) {
-        const std::span<const float> row = tree.row(w.node);
-        for (std::size_t k = 0; k < rows.size(); ++k) {
-            rows[k] += w.weight * row[k];
-        }
+        tree.rows().add(w.node, w.weight, rows);
     }
 }
 

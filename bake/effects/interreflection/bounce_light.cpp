@@ -236,6 +236,8 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
                           BounceTree& tree) {
     const std::size_t size = field.row_size();
     std::vector<float> bounced = field.emitted, sum = field.emitted;
+    // What neighbours see is mostly the same and still in the cache.
+    const std::vector<std::uint32_t> order = tree.neighbours();
     const double all = sum_of_even(sum);
     std::uint32_t bounces = 0;
     while (bounces < kMostBounces && sum_of_even(bounced) > kLeastShare * all &&
@@ -246,7 +248,8 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
             arrivals.size(), kBlock, field.inputs.context,
             [&](Range range) {
                 std::vector<float> row(size);
-                for (std::size_t i = range.begin; i < range.end; ++i) {
+                for (const std::uint32_t i :
+                     std::span(order).subspan(range.begin, range.end - range.begin)) {
                     const std::span<float> to = std::span(bounced).subspan(i * size, size);
                     std::ranges::fill(to, 0.0f);
                     for (const bool front : {true, false}) {

@@ -35,7 +35,7 @@ struct BounceLight {
     BounceGrid of_site, of_receiver, of_averaged;  ///< rays; of a point whose light is averaged
     std::uint32_t bounces = 0;                     ///< that were added before the next was too dark
     GatherSites sites;                             ///< among receivers
-    std::vector<float> site_rows;                  ///< E, as long as the tree's
+    PackedRows site_rows;                          ///< E, as long as the tree's
 };
 
 /// Places scatterers and finds their light; null where receivers see no surface. `rays` counts up.

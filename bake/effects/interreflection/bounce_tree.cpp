@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "bake/effects/interreflection/scatterers.h"
 
 namespace opaline::bake {
 namespace {
+
+constexpr std::uint32_t kMostNodes = (1u << 29) - 1;
 
 // Area of a facet's part in a box: that of its shadow along the nearest axis over the cosine.
 float area_of(glm::vec3 extent, glm::vec3 normal) {
@@ -68,22 +71,23 @@ BounceTree::BounceTree(std::span<const Scatterer> scatterers, std::size_t materi
             build(scatterers, members[group], all);
         }
     }
-    rows_.resize(nodes_.size() * row_size_);
+    rows_ = PackedRows(nodes_.size(), row_size_);
 }
 
 float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
                         const Box& cell) {
     const std::size_t self = nodes_.size();
-    nodes_.push_back({.axis = members[0]});
-    nodes_[self].darkest = nodes_[self].brightest = scatterers[members[0]].openness;
+    nodes_.push_back({});
+    extents_.push_back({.scatterer = members[0]});
+    float darkest = 1, brightest = 0;
     for (const std::uint32_t i : members) {
-        nodes_[self].darkest = std::min(nodes_[self].darkest, scatterers[i].openness);
-        nodes_[self].brightest = std::max(nodes_[self].brightest, scatterers[i].openness);
+        darkest = std::min(darkest, scatterers[i].openness);
+        brightest = std::max(brightest, scatterers[i].openness);
         nodes_[self].centre += (1 / static_cast<float>(members.size())) * scatterers[i].position;
     }
-    nodes_[self].of_darkest = brightness_of(nodes_[self].darkest);
-    nodes_[self].of_brightest = brightness_of(nodes_[self].brightest);
-    nodes_[self].of_middle = brightness_of(0.5f * (nodes_[self].darkest + nodes_[self].brightest));
+    nodes_[self].middle = brightness_of(0.5f * (darkest + brightest));
+    nodes_[self].is_mixed =
+        similarity(brightness_of(darkest), brightness_of(brightest)) < 0.5f ? 1 : 0;
     for (const std::uint32_t i : members) {
         nodes_[self].radius = std::max(nodes_[self].radius,
                                        glm::distance(scatterers[i].position, nodes_[self].centre));
@@ -105,13 +109,13 @@ float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::ui
         members.first(half), {}, [&](std::uint32_t i) { return scatterers[i].position[axis]; });
     const auto first_above = std::ranges::min(
         members.subspan(half), {}, [&](std::uint32_t i) { return scatterers[i].position[axis]; });
-    nodes_[self].axis = static_cast<std::uint32_t>(axis);
+    nodes_[self].axis = static_cast<std::uint32_t>(axis) & 3u;
     nodes_[self].split =
         0.5f * (scatterers[last_below].position[axis] + scatterers[first_above].position[axis]);
     // Cells of scatterers reach beyond their own places: as far as n + 1 of them over n gaps.
     const float wider = std::sqrt(static_cast<float>(members.size())) /
                         std::max(1.0f, std::sqrt(static_cast<float>(members.size())) - 1);
-    nodes_[self].area = wider * wider * largest_side(extent);
+    extents_[self].area = wider * wider * largest_side(extent);
     // Surfaces of a side lie apart: a cell ends a gap beyond its scatterers.
     Box left = cell;
     if (members.size() > 4) {
@@ -121,7 +125,7 @@ float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::ui
     Box right = left;
     left.high[axis] = right.low[axis] = nodes_[self].split;
     float area = build(scatterers, members.first(half), left);
-    nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[self].right = static_cast<std::uint32_t>(nodes_.size()) & kMostNodes;
     area += build(scatterers, members.subspan(half), right);
     return nodes_[self].cell = area;
 }
@@ -129,28 +133,48 @@ float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::ui
 std::vector<float> BounceTree::cells() const {
     const auto is_leaf = [](const Node& node) { return node.right == 0; };
     std::vector<float> cells(static_cast<std::size_t>(std::ranges::count_if(nodes_, is_leaf)));
-    for (const Node& node : nodes_) {
-        if (is_leaf(node)) {
-            cells[node.axis] = node.cell;
+    for (std::size_t v = 0; v < nodes_.size(); ++v) {
+        if (is_leaf(nodes_[v])) {
+            cells[extents_[v].scatterer] = nodes_[v].cell;
         }
     }
     return cells;
 }
 
+std::vector<std::uint32_t> BounceTree::neighbours() const {
+    std::vector<std::uint32_t> order;
+    for (std::size_t v = 0; v < nodes_.size(); ++v) {
+        if (nodes_[v].right == 0) {
+            order.push_back(extents_[v].scatterer);
+        }
+    }
+    return order;
+}
+
 void BounceTree::set_rows(std::span<const float> rows) {
+    // Backwards, children come before their parents, and the first child last.
+    std::vector<std::vector<float>> waiting, spare;
     for (std::size_t v = nodes_.size(); v-- > 0;) {
         const Node& node = nodes_[v];
-        float* const to = &rows_[v * row_size_];
         if (node.right == 0) {
-            std::copy_n(&rows[node.axis * row_size_], row_size_, to);
-            continue;
+            if (spare.empty()) {
+                spare.emplace_back(row_size_);
+            }
+            waiting.push_back(std::move(spare.back()));
+            spare.pop_back();
+            std::ranges::copy(rows.subspan(extents_[v].scatterer * row_size_, row_size_),
+                              waiting.back().begin());
+        } else {
+            const float left = nodes_[v + 1].cell / node.cell, right = 1 - left;
+            spare.push_back(std::move(waiting.back()));
+            waiting.pop_back();
+            const std::vector<float>& first = spare.back();
+            std::vector<float>& second = waiting.back();
+            for (std::size_t k = 0; k < row_size_; ++k) {
+                second[k] = left * first[k] + right * second[k];
+            }
         }
-        const float left = nodes_[v + 1].cell / node.cell, right = 1 - left;
-        const float* const a = &rows_[(v + 1) * row_size_];
-        const float* const b = &rows_[node.right * row_size_];
-        for (std::size_t k = 0; k < row_size_; ++k) {
-            to[k] = left * a[k] + right * b[k];
-        }
+        rows_.set(v, waiting.back());
     }
 }
 
@@ -175,7 +199,7 @@ std::uint32_t BounceTree::root_of(const SurfaceSide& side) const {
 std::uint32_t BounceTree::find(glm::vec3 y, const SurfaceSide& side, float footprint) const {
     std::uint32_t v = root_of(side);
     while (v != formats::kNone && nodes_[v].right != 0 &&
-           (footprint == 0 || nodes_[v].area > footprint)) {
+           (footprint == 0 || extents_[v].area > footprint)) {
         v = y[static_cast<glm::length_t>(nodes_[v].axis)] < nodes_[v].split ? v + 1
                                                                             : nodes_[v].right;
     }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/effects/interreflection/packed_rows.h"
 #include "bake/effects/interreflection/surface_side.h"
 #include "formats/scene.h"
 
@@ -26,11 +27,13 @@ struct FootprintKernel {
 
 /// Of an openness in [0, 1]: a logarithm to base 2.
 struct Brightness {
+    static constexpr float kDark = 0.05f;
     float octaves = 0;
+
+    float openness() const { return std::exp2(octaves) - kDark; }
 };
 inline Brightness brightness_of(float openness) {
-    constexpr float kDark = 0.05f;
-    return {std::log2(openness + kDark)};
+    return {std::log2(openness + Brightness::kDark)};
 }
 /// 1 of equal ones, 0 where one is twice the other.
 inline float similarity(Brightness a, Brightness b) {
@@ -56,28 +59,36 @@ class BounceTree {
     /// deviations. Nodes have radii of at most the narrow width of the footprint, or
     /// scatterers. `weight`: scatterers times the Gaussian; may call nothing.
     template <class Visit>
-    void find_near(const FootprintKernel& kernel, const SurfaceSide& side, float openness,
+    void find_near(const FootprintKernel& kernel, const SurfaceSide& side, Brightness looked_for,
                    Visit&& visit) const;
     /// Of each scatterer, the area of its part of the surface [m^2].
     std::vector<float> cells() const;
-    float openness(std::uint32_t node) const { return nodes_[node].darkest; }
+    /// All scatterers, such that neighbours in space are mostly neighbours in the list.
+    std::vector<std::uint32_t> neighbours() const;
+    /// Of a scatterer's node, of its openness; of others between those of the ends.
+    Brightness brightness(std::uint32_t node) const { return nodes_[node].middle; }
 
-    std::span<const float> row(std::uint32_t node) const {
-        return std::span(rows_).subspan(node * row_size_, row_size_);
-    }
+    /// Rows of nodes.
+    const PackedRows& rows() const { return rows_; }
     std::size_t size() const { return nodes_.size(); }
     std::size_t row_size() const { return row_size_; }
 
   private:
+    // What every look-up reads of a node, half a line of the cache.
     struct Node {
-        float split = 0, area = 0;         // [m], [m^2] of the bounding box's largest side
-        std::uint32_t right = 0;           // second child; the first follows the node; 0: a leaf
-        float cell = 0;                    // [m^2], of its scatterers
-        std::uint32_t axis = 0;            // 0 ... 2; of a leaf: its scatterer
-        glm::vec3 centre{0};               // [m], mean of its scatterers'
-        float radius = 0;                  // [m], of the farthest
-        float darkest = 0, brightest = 0;  // Scatterer::openness
-        Brightness of_darkest{}, of_brightest{}, of_middle{};
+        glm::vec3 centre{0};  // [m], mean of its scatterers'
+        float radius = 0;     // [m], of the farthest
+        float split = 0;      // [m]
+        float cell = 0;       // [m^2], of its scatterers
+        Brightness middle{};  // of the mean of its darkest and brightest scatterer
+        // Second child, the first follows the node; 0: a leaf. Its axis of the split; whether its
+        // scatterers differ too much in openness for a mean of them.
+        std::uint32_t right : 29 = 0, axis : 2 = 0, is_mixed : 1 = 0;
+    };
+    static_assert(sizeof(Node) == 32);
+    struct Extent {
+        float area = 0;               // [m^2], of the bounding box's largest side
+        std::uint32_t scatterer = 0;  // of a leaf
     };
     struct Box {
         glm::vec3 low, high;
@@ -87,19 +98,19 @@ class BounceTree {
     std::uint32_t root_of(const SurfaceSide& side) const;
 
     std::vector<Node> nodes_;
+    std::vector<Extent> extents_;       // of nodes
     std::vector<std::uint32_t> roots_;  // by material, side and axis
-    std::vector<float> rows_;
+    PackedRows rows_;
     std::size_t row_size_;
 };
 
 template <class Visit>
-void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& side, float openness,
-                           Visit&& visit) const {
+void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& side,
+                           Brightness looked_for, Visit&& visit) const {
     const std::uint32_t root = root_of(side);
     if (root == formats::kNone) {
         return;
     }
-    const Brightness looked_for = brightness_of(openness);
     constexpr float kReach = 0.8660254f;  // 3 / sqrt(12)
     constexpr float kLargest = 1;
     // At most as many as the tree is deep: twenty halvings, between which a few parts of an axis
@@ -118,11 +129,11 @@ void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& sid
             continue;
         }
         if (node.right != 0 &&
-            (radius > kLargest || similarity(node.of_darkest, node.of_brightest) < 0.5f)) {
+            (radius > kLargest || node.is_mixed != 0)) {
             waiting[count++] = node.right;
             waiting[count++] = v + 1;
         } else if (square < kReach * kReach) {
-            const float like = similarity(looked_for, node.of_middle);
+            const float like = similarity(looked_for, node.middle);
             if (like > 0) {
                 visit(v, like * node.cell * std::exp(-6 * square), glm::vec2(d));
             }

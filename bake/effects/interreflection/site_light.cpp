@@ -74,13 +74,14 @@ std::vector<GatherSite> choose_sites(const LightInputs& inputs) {
 void light_sites(const LightInputs& inputs, BounceLight& light, std::uint64_t& rays) {
     std::vector<GatherSite> sites = choose_sites(inputs);
     const std::size_t size = light.tree.row_size();
-    light.site_rows.resize(sites.size() * size);
+    light.site_rows = PackedRows(sites.size(), size);
     constexpr std::size_t kBlock = 16;
     for_each_block_in_order(
         sites.size(), kBlock, inputs.context,
         [&](Range range) {
             std::uint64_t traced = 0;
             std::vector<NodeWeight> weights;
+            std::vector<float> row(size);
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const BounceGather gathered =
                     weigh_bounces(light.scene, light.rays, light.tree, sites[i].at, light.of_site,
@@ -88,8 +89,9 @@ void light_sites(const LightInputs& inputs, BounceLight& light, std::uint64_t& r
                 traced += gathered.rays;
                 sites[i].clearance = gathered.nearness > 0 ? 1 / std::sqrt(gathered.nearness)
                                                            : std::numeric_limits<float>::infinity();
-                add_node_rows(light.tree, weights,
-                              std::span(light.site_rows).subspan(i * size, size));
+                std::ranges::fill(row, 0.0f);
+                add_node_rows(light.tree, weights, row);
+                light.site_rows.set(i, row);
             }
             return traced;
         },

@@ -126,14 +126,14 @@ class TruePath {
         if (node == formats::kNone) {
             return;
         }
-        const std::span<const float> row = truth_.light->tree.row(node);
+        const std::vector<float> row = truth_.light->tree.rows().row(node);
         const std::uint32_t bands = truth_.light->bands;
         const std::size_t texels = row.size() / bands;
         for (std::size_t l = 0; l < from_sky_.size(); ++l) {
             std::array<double, 3> band{};
             for (std::uint32_t b = 0; b < 3; ++b) {
                 band[b] =
-                    b < bands ? relit(row.subspan(b * texels, texels), truth_.coarse[l]) : band[0];
+                    b < bands ? relit(std::span(row).subspan(b * texels, texels), truth_.coarse[l]) : band[0];
             }
             irradiance_[l] +=
                 luminance_of(weight * Rgb{static_cast<float>(band[0]), static_cast<float>(band[1]),

@@ -40,7 +40,7 @@ TEST(BounceTree, SidesOfAThinPlateDoNotMix) {
         for (const bool behind : {false, true}) {
             const glm::vec3 normal{0, behind ? -1 : 1, 0};
             const auto node = tree.find({u[0], 0, u[1]}, {0, behind, normal}, u[2]);
-            EXPECT_EQ(tree.row(node)[2], behind ? 1 : 0);
+            EXPECT_EQ(tree.rows().row(node)[2], behind ? 1 : 0);
         }
     }
 }
@@ -50,11 +50,11 @@ TEST(BounceTree, TheFootprintOfNothingFindsANeighbourAndThatOfAllTheMean) {
     BounceTree tree(all, 1, 3);
     tree.set_rows(rows_of(all));
     const auto root = tree.find({0.2f, 0, 0.7f}, {0, false, {0, 1, 0}}, 4);
-    EXPECT_NEAR(tree.row(root)[0], 0.5, 0.005) << "of the square, not of its points";
-    EXPECT_NEAR(tree.row(root)[1], 0.5, 0.005);
+    EXPECT_NEAR(tree.rows().row(root)[0], 0.5, 0.005) << "of the square, not of its points";
+    EXPECT_NEAR(tree.rows().row(root)[1], 0.5, 0.005);
     const auto leaf = tree.find({0.2f, 0, 0.7f}, {0, false, {0, 1, 0}}, 0);
-    EXPECT_NEAR(tree.row(leaf)[0], 0.2, 0.1);
-    EXPECT_NEAR(tree.row(leaf)[1], 0.7, 0.1);
+    EXPECT_NEAR(tree.rows().row(leaf)[0], 0.2, 0.1);
+    EXPECT_NEAR(tree.rows().row(leaf)[1], 0.7, 0.1);
 }
 
 // Means over a footprint lie closer to its middle the smaller it is.
@@ -67,7 +67,7 @@ TEST(BounceTree, NodesAreAsLargeAsTheFootprint) {
         for (std::uint32_t i = 0; i < 256; ++i) {
             const auto u = random_uniform(5, RandomStage::bounce_rays, i);
             const auto node = tree.find({u[0], 0, u[1]}, {0, false, {0, 1, 0}}, footprint);
-            const double dx = tree.row(node)[0] - u[0], dz = tree.row(node)[1] - u[1];
+            const double dx = tree.rows().row(node)[0] - u[0], dz = tree.rows().row(node)[1] - u[1];
             squares += (dx * dx + dz * dz) / 256;
         }
         // A square of area a has a mean squared distance of a / 6; nodes have a / 4 to a.
@@ -98,7 +98,7 @@ TEST(BounceTree, ParallelWallsDoNotMix) {
     for (std::uint32_t i = 0; i < 256; ++i) {
         const auto u = random_uniform(4, RandomStage::bounce_rays, i);
         const glm::vec3 y{u[0], u[1], 1e-8f * (u[2] - 0.5f)};
-        const auto row = tree.row(tree.find(y, {0, false, {0, 0, 1}}, 0));
+        const auto row = tree.rows().row(tree.find(y, {0, false, {0, 0, 1}}, 0));
         EXPECT_NEAR(row[0], y.x, 0.1);
         EXPECT_NEAR(row[1], y.y, 0.1);
         EXPECT_NEAR(row[2], 0, 1e-6);
@@ -121,7 +121,7 @@ TEST(BounceTree, MeansAreOverTheSurface) {
     }
     BounceTree tree(all, 1, 1);
     tree.set_rows(rows);
-    EXPECT_NEAR(tree.row(tree.find({0.5f, 0, 0.5f}, {0, false, {0, 1, 0}}, 4))[0], 0.5, 0.02);
+    EXPECT_NEAR(tree.rows().row(tree.find({0.5f, 0, 0.5f}, {0, false, {0, 1, 0}}, 4))[0], 0.5, 0.02);
 }
 
 TEST(BounceTree, SurfacesWithoutScatterersAnswerNothing) {

@@ -89,9 +89,9 @@ TEST(SiteLight, WhatTheBoundaryOfABlackMediumMirrorsGoesOn) {
         ASSERT_NE(node, formats::kNone);
         double radiosity = 0;
         for (std::size_t t = 0; t < sky.size(); ++t) {
-            radiosity += static_cast<double>(tree.row(node)[t]) * static_cast<double>(sky[t]);
+            radiosity += static_cast<double>(tree.rows().row(node)[t]) * static_cast<double>(sky[t]);
         }
-        EXPECT_NEAR(radiosity / (std::numbers::pi * static_cast<double>(tree.openness(node))),
+        EXPECT_NEAR(radiosity / (std::numbers::pi * static_cast<double>(tree.brightness(node).openness())),
                     0.0918, 0.0005);
     }
 }
@@ -142,7 +142,7 @@ TEST(SiteLight, CopiesOfAVertexAreOneSite) {
     }
     const auto sites_of = [&](formats::Scene scene) {
         const LitWorld world(std::move(scene), {opaque}, 16);
-        return world.light->site_rows.size() / world.light->tree.row_size();
+        return world.light->site_rows.count();
     };
     EXPECT_EQ(sites_of(make_open_room()), 5u * 33 * 33);
     EXPECT_EQ(sites_of(doubled), 5u * 33 * 33);

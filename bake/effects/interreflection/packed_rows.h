@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace opaline::bake {
+
+/// Rows of floats, each in 16 bits times a scale of its row: off by at most 2^-16 of the row's
+/// largest value. Sums of many rows wait for memory, so half of the bytes are half of the time.
+class PackedRows {
+  public:
+    PackedRows() = default;
+    /// `count` rows of `size` zeros.
+    PackedRows(std::size_t count, std::size_t size)
+        : code_(count * size), scale_(count), size_(size) {}
+
+    /// `row`: of size() finite values. Different rows may be set at the same time.
+    void set(std::size_t i, std::span<const float> row);
+    /// to += weight * row i.
+    void add(std::size_t i, float weight, std::span<float> to) const;
+    std::vector<float> row(std::size_t i) const;
+
+    std::size_t size() const { return size_; }
+    std::size_t count() const { return scale_.size(); }
+
+  private:
+    std::vector<std::int16_t> code_;
+    std::vector<float> scale_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace opaline::bake
