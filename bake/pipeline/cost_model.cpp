@@ -112,6 +112,27 @@ void bill_shared_light(const CostedBake& bake, Bill& bill) {
     }
 }
 
+// What the plan makes of the scene.
+MemoryCounts count_planned_memory(const CostedBake& bake) {
+    const CostRequest& request = bake.request;
+    MemoryCounts counts = count_memory(request.effects, request.scene, request.knobs);
+    const auto& effects = request.effects.effects;
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+        if (effects[e].light_work != nullptr &&
+            std::ranges::any_of(bake.subjects,
+                                [e](const CostedSubject& s) -> bool { return s.acts[e]; })) {
+            counts.light_bytes += effects[e].light_work(bake.input).bytes;
+        }
+    }
+    for (const CostedSubject& subject : bake.subjects) {
+        if (!subject.layout.translucent) {
+            counts.opaque_bands =
+                std::max(counts.opaque_bands, static_cast<double>(subject.layout.bands()));
+        }
+    }
+    return counts;
+}
+
 void bill_row_stages(const CostedBake& bake, Bill& bill) {
     for (const formats::Primitive& p : bake.request.scene.primitives) {
         bill.open("rows of '" + p.name + "'");
@@ -198,8 +219,7 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bill_lamps(bake, volume_plan, bill);
     bill.add_bytes(mesh_bytes(request.scene, request.facts));
     bill.cost.memory_bytes = static_cast<std::uint64_t>(
-        predict_memory(request.effects, count_memory(request.effects, request.scene, request.knobs),
-                       request.knobs, request.threads)
+        predict_memory(request.effects, count_planned_memory(bake), request.knobs, request.threads)
             .bytes());
     bill.cost.receivers = static_cast<std::uint64_t>(request.facts.receivers);
     return std::move(bill.cost);

@@ -90,7 +90,8 @@ MemoryPrediction predict_memory(const EffectTable& effects, const MemoryCounts& 
                indices = static_cast<double>(counts.scene.indices),
                primitives = static_cast<double>(counts.scene.primitives), triangles = indices / 3;
     constexpr std::uint32_t kBands = 3;
-    const auto opaque_row = static_cast<double>(row_bytes(knobs, false, 1));
+    const auto opaque_row = static_cast<double>(
+        row_bytes(knobs, false, static_cast<std::uint64_t>(counts.opaque_bands)));
     const auto translucent_row = static_cast<double>(row_bytes(knobs, true, kBands));
     double samples = 0;  // of one medium
     for (const EffectDescriptor& effect : effects.effects) {
@@ -104,6 +105,7 @@ MemoryPrediction predict_memory(const EffectTable& effects, const MemoryCounts& 
              {"surface samples", counts.media * samples},
              {"volumes", counts.volume_bytes},
              {"cloud layers", counts.layer_bytes},
+             {"light from surface to surface", counts.light_bytes},
              {"transport rows", kGrowth * (counts.opaque_rows * opaque_row +
                                            counts.translucent_rows * translucent_row)}}};
 }

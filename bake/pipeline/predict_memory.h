@@ -15,15 +15,17 @@ struct MemoryCounts {
     double image_bytes = 0;       ///< of decoded textures
     double translucent_rows = 0;  ///< of all vertices of media together
     double opaque_rows = 0;       ///< of all others
+    double opaque_bands = 1;      ///< 3: some of these are coloured
     double media = 0;             ///< materials that are translucent
     double volume_bytes = 0;      ///< of volumes, baked with the knobs at hand
     double layer_bytes = 0;       ///< of cloud layers, likewise
+    double light_bytes = 0;       ///< of light that goes from surface to surface
 };
 
 /// Of a scene of which only the size is known: everything counts as opaque, so that the prediction
 /// is a lower bound.
 MemoryCounts count_memory(const formats::SceneCounts& scene);
-/// Of a scene that is there.
+/// Of a scene that is there; what depends on the plan counts as left out.
 MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scene,
                           const Knobs& knobs);
 

@@ -122,6 +122,7 @@ struct LightWork {
     Work work;                       ///< but for rows of media
     double points = 0;               ///< of all media, at most, whose rows it asks for
     std::uint32_t cubemap_size = 8;  ///< of these rows
+    double bytes = 0;                ///< memory that its light keeps until all rows are made
 };
 
 /// What an effect works on that lights all surfaces at once.

@@ -1,6 +1,6 @@
 // Bounced light of the bake against an exact final gather, against path tracing, and its cost.
 //   opaline_interreflection_table gather SCENE RAYS: errors of 160 receivers against 16384 rays
-//     that read the nearest of 16384 scatterers, whose light is found with 256 rays each.
+//     that read the nearest of as many scatterers as there are, whose light is found with 256 rays each.
 //   ... truth SCENE: a file of production against path tracing of all light.
 //   ... cost SCENE: seconds and rays of stages without and with interreflection.
 // SCENE: box (a room open to the front, with a block in it), detailed (the same, of checkers),
@@ -147,7 +147,7 @@ Exact exact_light(const World& w, std::size_t count) {
     sum = emitted;
     std::vector<float> last = emitted;
     for (int b = 0; b < 24; ++b) {
-        e.tree->set_rows(last);
+        e.tree->set_rows({last, kTexels});
         tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
             Row r(kTexels);
             add_node_rows(*e.tree, arrive[i], r);
@@ -158,12 +158,12 @@ Exact exact_light(const World& w, std::size_t count) {
             }
         });
     }
-    e.tree->set_rows(sum);
+    e.tree->set_rows({sum, kTexels});
     return e;
 }
 
 void compare(const World& w, std::uint32_t n) {
-    constexpr std::size_t kDense = 16384;
+    constexpr std::size_t kDense = 65536;
     const Exact exact = exact_light(w, kDense);
     const DirectionSet d = make_direction_set(kMap);
     std::vector<std::vector<float>> lights;

@@ -16,7 +16,7 @@ namespace {
 
 // Rays that meet something, and clusters that they meet: statues on floors. An open scene has
 // fewer.
-constexpr double kHitShare = 0.25, kClustersPerHit = 0.8;
+constexpr double kHitShare = 0.44, kClustersPerHit = 4;
 constexpr double kBounces = 6;
 // Receivers that trace rays of their own where there are sites, and sites that the others read: of
 // the statue on its floor.
@@ -59,8 +59,15 @@ LightWork bounce_light_work(const CostInput& input) {
     const double texel_rays = count_rays(kBounceCubemap);
     work.work.shared += scatterers * texel_rays * input.rates.coherent_ray.at(input.triangles);
     work.work.shared += ray_work(input, scatterers * kRaysOfScatterer, 3);
+    // Rows of nodes; of scatterers without bounces and with them, which the system keeps though
+    // they go; nodes that rays of scatterers meet.
+    constexpr double kCodeBytes = 2;
+    const double row = kCodeBytes * row_cells(3);
+    work.bytes = scatterers *
+                 (4 * row + kRaysOfScatterer * kHitShare * kClustersPerHit * sizeof(NodeWeight));
     if (input.receivers >= static_cast<double>(kFewestWithSites)) {
         const double sites = std::min(input.receivers, static_cast<double>(kMostSites));
+        work.bytes += sites * row;
         work.work.shared += ray_work(
             input, sites * count_rays_of_site(count_bounce_rays(input.knobs[kBounceRays])), 3);
     }

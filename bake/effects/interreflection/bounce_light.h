@@ -6,13 +6,12 @@
 #include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/effects/interreflection/bounce_tree.h"
 #include "bake/effects/interreflection/gather_sites.h"
-#include "bake/effects/interreflection/scatterers.h"
+#include "bake/effects/interreflection/packed_rows.h"
+#include "bake/effects/interreflection/scatterer_light.h"
 #include "bake/plan/effect.h"
 
 namespace opaline::bake {
 
-/// Cube map of bounced light, which is smooth: RESULTS.md, "Interreflection".
-inline constexpr std::uint32_t kBounceCubemap = 8;
 /// Rays of a scatterer to others, and of a point whose light is averaged.
 inline constexpr std::uint32_t kRaysOfScatterer = 64, kRaysOfAveraged = 16;
 /// Sites among receivers, at most; where there are fewer receivers than that, rays of their own

@@ -151,7 +151,7 @@ std::vector<std::uint32_t> BounceTree::neighbours() const {
     return order;
 }
 
-void BounceTree::set_rows(std::span<const float> rows) {
+void BounceTree::set_rows(const PackedRows& rows) {
     // Backwards, children come before their parents, and the first child last.
     std::vector<std::vector<float>> waiting, spare;
     for (std::size_t v = nodes_.size(); v-- > 0;) {
@@ -162,8 +162,8 @@ void BounceTree::set_rows(std::span<const float> rows) {
             }
             waiting.push_back(std::move(spare.back()));
             spare.pop_back();
-            std::ranges::copy(rows.subspan(extents_[v].scatterer * row_size_, row_size_),
-                              waiting.back().begin());
+            std::ranges::fill(waiting.back(), 0.0f);
+            rows.add(extents_[v].scatterer, 1, waiting.back());
         } else {
             const float left = nodes_[v + 1].cell / node.cell, right = 1 - left;
             spare.push_back(std::move(waiting.back()));

@@ -47,8 +47,8 @@ class BounceTree {
     /// `materials`: of the scene. Rows of `row_size` floats are 0 until set_rows.
     BounceTree(std::span<const Scatterer> scatterers, std::size_t materials, std::size_t row_size);
 
-    /// `rows`: of all scatterers, one after the other.
-    void set_rows(std::span<const float> rows);
+    /// `rows`: of all scatterers.
+    void set_rows(const PackedRows& rows);
 
     /// Toward y, the first node of an area of at most `footprint` [m^2]; 0: the scatterer in whose
     /// cell y is. formats::kNone where that side of the material has no scatterer.
@@ -128,8 +128,7 @@ void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& sid
         if (square > (kReach + radius) * (kReach + radius)) {
             continue;
         }
-        if (node.right != 0 &&
-            (radius > kLargest || node.is_mixed != 0)) {
+        if (node.right != 0 && (radius > kLargest || node.is_mixed != 0)) {
             waiting[count++] = node.right;
             waiting[count++] = v + 1;
         } else if (square < kReach * kReach) {

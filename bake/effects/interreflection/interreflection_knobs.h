@@ -23,7 +23,7 @@ inline bool bounces(const RowLayout&, std::span<const PlanEntry> decisions) {
 inline double rays_for_error(double error) {
     return std::clamp(256 * std::pow(0.025 / error, 1.25), 16.0, 4096.0);
 }
-inline constexpr std::array<double, 6> kRayLadder{16, 64, 144, 256, 576, 1024};
+inline constexpr std::array<double, 6> kRayLadder{16, 64, 144, 256, 400, 1024};
 }  // namespace bounce_knobs
 
 /// Rays from a receiver to the surfaces that send light to it, where it is not known from sites.
@@ -36,7 +36,7 @@ inline constexpr KnobSpec kBounceRays{
         "too little; default as the quality says",
     .lowest = 16,
     .highest = 65536,
-    .preset = {64, 144, 576, 1024},
+    .preset = {64, 144, 400, 1024},
     .for_target = bounce_knobs::rays_for_error,
     .label = "%g rays to other surfaces",
     .ladder = bounce_knobs::kRayLadder,

@@ -16,6 +16,14 @@ class PackedRows {
     PackedRows(std::size_t count, std::size_t size)
         : code_(count * size), scale_(count), size_(size) {}
 
+    /// `values`: rows of `size`, one after the other.
+    PackedRows(std::span<const float> values, std::size_t size)
+        : PackedRows(values.size() / size, size) {
+        for (std::size_t i = 0; i < count(); ++i) {
+            set(i, values.subspan(i * size, size));
+        }
+    }
+
     /// `row`: of size() finite values. Different rows may be set at the same time.
     void set(std::size_t i, std::span<const float> row);
     /// to += weight * row i.

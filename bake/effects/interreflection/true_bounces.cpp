@@ -132,8 +132,9 @@ class TruePath {
         for (std::size_t l = 0; l < from_sky_.size(); ++l) {
             std::array<double, 3> band{};
             for (std::uint32_t b = 0; b < 3; ++b) {
-                band[b] =
-                    b < bands ? relit(std::span(row).subspan(b * texels, texels), truth_.coarse[l]) : band[0];
+                band[b] = b < bands
+                              ? relit(std::span(row).subspan(b * texels, texels), truth_.coarse[l])
+                              : band[0];
             }
             irradiance_[l] +=
                 luminance_of(weight * Rgb{static_cast<float>(band[0]), static_cast<float>(band[1]),

@@ -34,7 +34,7 @@ std::vector<float> rows_of(const std::vector<Scatterer>& all) {
 TEST(BounceTree, SidesOfAThinPlateDoNotMix) {
     const auto all = both_sides(256);
     BounceTree tree(all, 1, 3);
-    tree.set_rows(rows_of(all));
+    tree.set_rows({rows_of(all), 3});
     for (std::uint32_t i = 0; i < 64; ++i) {
         const auto u = random_uniform(4, RandomStage::bounce_rays, i);
         for (const bool behind : {false, true}) {
@@ -48,7 +48,7 @@ TEST(BounceTree, SidesOfAThinPlateDoNotMix) {
 TEST(BounceTree, TheFootprintOfNothingFindsANeighbourAndThatOfAllTheMean) {
     const auto all = both_sides(2048);
     BounceTree tree(all, 1, 3);
-    tree.set_rows(rows_of(all));
+    tree.set_rows({rows_of(all), 3});
     const auto root = tree.find({0.2f, 0, 0.7f}, {0, false, {0, 1, 0}}, 4);
     EXPECT_NEAR(tree.rows().row(root)[0], 0.5, 0.005) << "of the square, not of its points";
     EXPECT_NEAR(tree.rows().row(root)[1], 0.5, 0.005);
@@ -61,7 +61,7 @@ TEST(BounceTree, TheFootprintOfNothingFindsANeighbourAndThatOfAllTheMean) {
 TEST(BounceTree, NodesAreAsLargeAsTheFootprint) {
     const auto all = both_sides(4096);
     BounceTree tree(all, 1, 3);
-    tree.set_rows(rows_of(all));
+    tree.set_rows({rows_of(all), 3});
     for (const float footprint : {0.25f, 0.0625f, 0.015625f}) {
         double squares = 0;
         for (std::uint32_t i = 0; i < 256; ++i) {
@@ -94,7 +94,7 @@ TEST(BounceTree, ParallelWallsDoNotMix) {
     for (const Scatterer& s : all) {
         rows.insert(rows.end(), {s.position.x, s.position.y, s.position.z});
     }
-    tree.set_rows(rows);
+    tree.set_rows({rows, 3});
     for (std::uint32_t i = 0; i < 256; ++i) {
         const auto u = random_uniform(4, RandomStage::bounce_rays, i);
         const glm::vec3 y{u[0], u[1], 1e-8f * (u[2] - 0.5f)};
@@ -120,8 +120,9 @@ TEST(BounceTree, MeansAreOverTheSurface) {
         rows.push_back(s.position.x);
     }
     BounceTree tree(all, 1, 1);
-    tree.set_rows(rows);
-    EXPECT_NEAR(tree.rows().row(tree.find({0.5f, 0, 0.5f}, {0, false, {0, 1, 0}}, 4))[0], 0.5, 0.02);
+    tree.set_rows({rows, 1});
+    EXPECT_NEAR(tree.rows().row(tree.find({0.5f, 0, 0.5f}, {0, false, {0, 1, 0}}, 4))[0], 0.5,
+                0.02);
 }
 
 TEST(BounceTree, SurfacesWithoutScatterersAnswerNothing) {

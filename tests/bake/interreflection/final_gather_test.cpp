@@ -71,7 +71,7 @@ Errors compare(const Room& room, const Waves& waves, std::uint32_t count) {
             rows.push_back(static_cast<float>(part));
         }
     }
-    tree.set_rows(rows);
+    tree.set_rows({rows, kParts});
     const auto exact = [&](const Receiver& at, const BounceGrid& grid) {
         Parts sum{};
         trace_bounces(room.rays, at, grid, 1, [&](const BounceHit& hit, const Frame&) {

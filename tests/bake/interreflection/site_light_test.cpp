@@ -89,10 +89,12 @@ TEST(SiteLight, WhatTheBoundaryOfABlackMediumMirrorsGoesOn) {
         ASSERT_NE(node, formats::kNone);
         double radiosity = 0;
         for (std::size_t t = 0; t < sky.size(); ++t) {
-            radiosity += static_cast<double>(tree.rows().row(node)[t]) * static_cast<double>(sky[t]);
+            radiosity +=
+                static_cast<double>(tree.rows().row(node)[t]) * static_cast<double>(sky[t]);
         }
-        EXPECT_NEAR(radiosity / (std::numbers::pi * static_cast<double>(tree.brightness(node).openness())),
-                    0.0918, 0.0005);
+        EXPECT_NEAR(
+            radiosity / (std::numbers::pi * static_cast<double>(tree.brightness(node).openness())),
+            0.0918, 0.0005);
     }
 }
 

@@ -67,5 +67,15 @@ TEST(PredictMemory, MediaTakeSamplesAndWiderRows) {
     EXPECT_EQ(wax.largest().name, "surface samples");
 }
 
+TEST(PredictMemory, LightOfOtherSurfacesIsKeptAndItsColourWidensRows) {
+    const Knobs knobs = knobs_of(Quality::preview);
+    MemoryCounts counts = count_memory(formats::SceneCounts{1, 1000, 6000});
+    const double alone = predict_memory(all_effects(), counts, knobs, 1).bytes();
+    counts.light_bytes = 1e6;
+    EXPECT_DOUBLE_EQ(predict_memory(all_effects(), counts, knobs, 1).bytes(), alone + 1e6);
+    counts.opaque_bands = 3;
+    EXPECT_GT(predict_memory(all_effects(), counts, knobs, 1).bytes(), alone + 1e6);
+}
+
 }  // namespace
 }  // namespace opaline::bake

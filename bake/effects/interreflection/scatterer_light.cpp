@@ -1,0 +1,193 @@
+#include "bake/effects/interreflection/scatterer_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/plan/medium_exitance.h"
+#include "bake/scattering/fresnel.h"
+#include "bake/transport/irradiance_transport.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::uint32_t kCubemap = kBounceCubemap;
+constexpr std::size_t kTexels = 6 * kCubemap * kCubemap;
+
+BandColour to_bands(formats::Rgb c, std::uint32_t bands) {
+    return bands == 1 ? BandColour{formats::luminance(c), 0, 0} : BandColour{c.r, c.g, c.b};
+}
+
+std::vector<float> make_even_sky() {
+    const std::vector<double> face = formats::texel_solid_angles(kCubemap);
+    std::vector<float> light(kTexels);
+    for (std::size_t t = 0; t < kTexels; ++t) {
+        light[t] = static_cast<float>(face[t % face.size()]);
+    }
+    formats::haar_forward_cube(std::span<float>(light), kCubemap);
+    return light;
+}
+
+struct Field {
+    const LightInputs& inputs;
+    std::span<Scatterer> scatterers;
+    std::vector<float> even_sky;  // a light of radiance 1, in the basis of rows
+    ScattererLight light;
+
+    const formats::Material& material(std::size_t i) const {
+        return inputs.bake.scene.materials[scatterers[i].material];
+    }
+};
+
+// Light of the environment at a point, E.
+std::uint64_t gather_row(const Field& field, const DirectionSet& directions, const Receiver& at,
+                         std::span<float> row) {
+    const std::uint64_t rays = gather_irradiance(field.inputs.bake.rays, directions, at, row);
+    formats::haar_forward_cube(row, kCubemap);
+    return rays;
+}
+
+void add_scaled(std::span<const float> from, const BandColour& factor, std::uint32_t bands,
+                std::span<float> to) {
+    for (std::size_t b = 0; b < bands; ++b) {
+        for (std::size_t k = 0; k < kTexels; ++k) {
+            to[b * kTexels + k] += factor[b] * from[k];
+        }
+    }
+}
+
+// Sum of the six face averages.
+float even_light(std::span<const float> plane) {
+    float sum = 0;
+    for (std::size_t f = 0; f < plane.size(); f += plane.size() / 6) {
+        sum += plane[f];
+    }
+    return sum;
+}
+
+// Of E.
+float openness_of(const Field& field, std::span<const float> row) {
+    return std::clamp(static_cast<float>(relit(row, field.even_sky)) / std::numbers::pi_v<float>,
+                      0.0f, 1.0f);
+}
+
+// B of an opaque or thin-walled surface: rho E.
+std::uint64_t light_surface(Field& field, const DirectionSet& directions, std::size_t i) {
+    Scatterer& s = field.scatterers[i];
+    std::vector<float> row(kTexels), emitted(field.light.row_size());
+    formats::Rgb reflect = s.albedo, transmit{0, 0, 0};
+    if (const auto& sheet = field.material(i).sheet) {
+        reflect = s.albedo * sheet->reflect;
+        transmit = s.albedo * sheet->transmit;
+    }
+    field.light.reflect[i] = to_bands(reflect, field.light.bands);
+    field.light.transmit[i] = to_bands(transmit, field.light.bands);
+    std::uint64_t rays = gather_row(field, directions, s.outside, row);
+    s.openness = openness_of(field, row);
+    add_scaled(row, field.light.reflect[i], field.light.bands, emitted);
+    if (field.material(i).sheet) {
+        rays += gather_row(field, directions, s.beyond, row);
+        add_scaled(row, field.light.transmit[i], field.light.bands, emitted);
+    }
+    field.light.emitted.set(i, emitted);
+    return rays;
+}
+
+// B of points of one medium, from the rows that its effects give; and what they make of light
+// that is even around them, which bounced light is taken for.
+std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::uint32_t material,
+                           std::span<const std::size_t> members) {
+    std::vector<Receiver> outside;
+    std::vector<BodyPoint> inside;
+    for (const std::size_t i : members) {
+        outside.push_back(field.scatterers[i].outside);
+        inside.push_back(field.scatterers[i].inside);
+    }
+    const std::vector<std::vector<float>> rows =
+        field.inputs.rows_of_medium(material, outside, inside, kCubemap);
+    const RowLayout& layout = field.inputs.layouts[material];
+    const float eta = field.inputs.bake.scene.materials[material].medium->eta;
+    // What the boundary mirrors goes on as if it were diffuse: where is wrong, how much is right.
+    const auto mirrored = static_cast<float>(fresnel_moments(static_cast<double>(eta)).external);
+    const std::uint32_t own_bands = layout.bands();
+    std::uint64_t rays = 0;
+    std::vector<float> around(kTexels), emitted(field.light.row_size());
+    for (std::size_t m = 0; m < members.size() && m < rows.size(); ++m) {
+        const std::size_t i = members[m];
+        Scatterer& s = field.scatterers[i];
+        std::ranges::fill(emitted, 0.0f);
+        const BandColour albedo = to_bands(s.albedo, field.light.bands);
+        const std::vector<float> weight = weigh_rows_of_medium(layout, eta, s.inside.normal);
+        for (std::size_t k = 0; k < weight.size(); ++k) {
+            for (std::uint32_t b = 0; b < field.light.bands; ++b) {
+                const std::size_t from = k * own_bands + std::min(b, own_bands - 1);
+                const float* const plane = &rows[m][from * kTexels];
+                float* const to = &emitted[b * kTexels];
+                for (std::size_t t = 0; t < kTexels; ++t) {
+                    to[t] += albedo[b] * weight[k] * plane[t];
+                }
+            }
+        }
+        rays += gather_row(field, directions, s.outside, around);
+        add_scaled(around, {mirrored, mirrored, mirrored}, field.light.bands, emitted);
+        const float light = even_light(around);
+        s.openness = openness_of(field, around);
+        for (std::uint32_t b = 0; b < field.light.bands; ++b) {
+            const float out = even_light(std::span(emitted).subspan(b * kTexels, kTexels));
+            field.light.reflect[i][b] = light > 0 ? std::clamp(out / light, 0.0f, 1.0f) : 0;
+        }
+        field.light.emitted.set(i, emitted);
+    }
+    return rays;
+}
+
+std::uint64_t light_all(Field& field) {
+    const DirectionSet directions = make_direction_set(kCubemap);
+    std::uint64_t rays = 0;
+    constexpr std::size_t kBlock = 16;
+    const auto is_inside = [&](std::size_t i) {
+        return field.inputs.layouts[field.scatterers[i].material].translucent;
+    };
+    for_each_block_in_order(
+        field.scatterers.size(), kBlock, field.inputs.context,
+        [&](Range range) {
+            std::uint64_t traced = 0;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                traced += is_inside(i) ? 0 : light_surface(field, directions, i);
+            }
+            return traced;
+        },
+        [&](Range, std::uint64_t traced) { rays += traced; });
+    for (std::uint32_t m = 0; m < field.inputs.layouts.size(); ++m) {
+        std::vector<std::size_t> members;
+        for (std::size_t i = 0; i < field.scatterers.size(); ++i) {
+            if (field.scatterers[i].material == m && is_inside(i)) {
+                members.push_back(i);
+            }
+        }
+        if (!members.empty() && !field.inputs.context.cancelled()) {
+            rays += light_medium(field, directions, m, members);
+        }
+    }
+    return rays;
+}
+
+}  // namespace
+
+ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> scatterers,
+                                std::uint32_t bands, std::uint64_t& rays) {
+    const std::size_t count = scatterers.size();
+    Field field{inputs,
+                scatterers,
+                make_even_sky(),
+                {bands, PackedRows(count, bands * kTexels), std::vector<BandColour>(count),
+                 std::vector<BandColour>(count)}};
+    rays += light_all(field);
+    return std::move(field.light);
+}
+
+}  // namespace opaline::bake
