@@ -227,7 +227,8 @@ opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
     }
     return guarded([&] {
         const runtime::SavedState saved(gl->gl);
-        gl->relight.dot(light->vector(), {light->emitters, false}, gl->names);
+        gl->relight.light(light->vector(), gl->names);
+        gl->relight.dot({light->emitters, false});
         gl->mirrored.upload(light->specular());
         if (!gl->gloss.empty()) gl->glossy.upload(light->specular().gloss);
         gl->is_relit = true;

@@ -24,6 +24,7 @@ GLuint GlNames::make_buffer(std::size_t size, GLenum usage) {
     buffers_.push_back(name);
     gl_->BindBuffer(GL_COPY_WRITE_BUFFER, name);
     gl_->BufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(padded(size)), nullptr, usage);
+    resident_ += padded(size);
     return name;
 }
 

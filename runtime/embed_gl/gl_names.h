@@ -38,10 +38,13 @@ class GlNames {
 
     void release();
 
+    std::size_t resident() const { return resident_; }  ///< in buffers [bytes]
+
   private:
     GLuint make_texture_of(GLenum target);
 
     const GlFunctions* gl_;
+    std::size_t resident_ = 0;
     std::vector<GLuint> buffers_, programs_, textures_;
 };
 

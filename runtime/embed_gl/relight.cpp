@@ -76,10 +76,12 @@ opaline_status Relight::upload(const formats::AssetView& asset, const RelightOpt
     const DotLimits limits = query_limits(gl_, options.max_block_bytes, lanes_);
     auto batches = plan_dot_batches(asset, limits);
     if (!batches) {
-        return api::fail(OPALINE_GL_REFUSED, batches.error().diagnostics.front().fault.c_str());
+        const formats::Diagnostic& main = batches.error().diagnostics.front();
+        return api::fail(OPALINE_GL_REFUSED, (main.where + ": " + main.fault).c_str());
     }
     batches_ = std::move(batches).value();
     alignment_ = limits.alignment;
+    max_block_bytes_ = limits.max_block_bytes;
     cubemap_size_ = asset.cubemap_size;
     vertices_ = asset.receivers();
     code_bits_ = asset.transport.code_bits;
@@ -222,7 +224,8 @@ void Relight::dispatch_emitters(const DotBatch& batch, const EmitterLight& light
     }
 }
 
-void Relight::dot(const PartLights& lights, const EmitterLight& emitters, GlNames& names) {
+void Relight::light(const PartLights& lights, GlNames& names) {
+    light_of_primitive_.assign(lights.of_primitive.begin(), lights.of_primitive.end());
     while (light_.size() < lights.light.size()) {
         light_.push_back(names.make_buffer(0, GL_DYNAMIC_DRAW));
     }
@@ -233,10 +236,14 @@ void Relight::dot(const PartLights& lights, const EmitterLight& emitters, GlName
         gl_.BufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
                        GL_DYNAMIC_DRAW);
     }
+}
+
+void Relight::dot(const EmitterLight& emitters) {
     for (const DotBatch& batch : batches_) {
         const bool is_lit = is_lit_by(emitters, batch.primitive);
-        dispatch_dot(batch, light_[lights.number(batch.primitive)],
-                     is_lit || keeps_sign(primitives_[batch.primitive]));
+        const std::size_t light =
+            light_of_primitive_.empty() ? 0 : light_of_primitive_[batch.primitive];
+        dispatch_dot(batch, light_[light], is_lit || keeps_sign(primitives_[batch.primitive]));
         if (is_lit) dispatch_emitters(batch, emitters);
     }
     gl_.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "formats/opal/asset.h"
@@ -26,16 +28,25 @@ struct RelightOptions {
 /// leaves GL errors to the caller.
 class Relight {
   public:
+    /// The program that adds up the rows of a vertex.
+    struct Sum {
+        std::uint32_t terms = 0;
+        bool is_separate = false, is_sheet = false;
+        GLuint program = 0;
+    };
+
     explicit Relight(const GlFunctions& gl) : gl_(gl) {}
 
     /// Errors: OPALINE_GL_REFUSED (a row larger than the driver's limits, a shader).
     opaline_status upload(const formats::AssetView& asset, const RelightOptions& options,
                           GlNames& names);
 
+    /// Copies the lights. Precondition: of the asset's cube map size, one for each primitive.
+    void light(const PartLights& lights, GlNames& names);
+
     /// <T_0, L> of every vertex; <T_k, L> of every row where a vertex has several, which `view`
-    /// adds up. Precondition: the lights are of the asset's cube map size, one for each primitive,
-    /// and emitters have a colour each, or none.
-    void dot(const PartLights& lights, const EmitterLight& emitters, GlNames& names);
+    /// adds up. Precondition: emitters have a colour each, or none.
+    void dot(const EmitterLight& emitters);
 
     /// What vertices of several rows show `eye` of the components `terms`, without their Fresnel
     /// factor; nothing: each along its own normal.
@@ -44,14 +55,16 @@ class Relight {
     std::uint32_t vertices() const { return vertices_; }
     GLuint radiance() const { return radiance_; }
     bool needs_eye() const { return product_ != 0; }
+    std::uint32_t cubemap_size() const { return cubemap_size_; }
+    std::size_t primitives() const { return primitives_.size(); }
+    std::size_t dispatches() const { return batches_.size(); }  ///< of dot products
+    std::uint32_t lanes_per_row() const { return lanes_; }
+    std::size_t max_block_bytes() const { return max_block_bytes_; }  ///< of one buffer, as used
+    /// Of dot products: of one band and three, then those that keep signs; 0 where none is needed.
+    const std::array<GLuint, 4>& dot_programs() const { return dot_program_; }
+    std::span<const Sum> sums() const { return sums_; }
 
   private:
-    // The program that adds up the rows of a vertex.
-    struct Sum {
-        std::uint32_t terms = 0;
-        bool is_separate = false, is_sheet = false;
-        GLuint program = 0;
-    };
     const Sum* sum_of(const formats::PrimitiveRecord& primitive) const;
     opaline_status make_dot_program(std::uint32_t bands, bool keeps_sign, GlNames& names);
     opaline_status make_programs(GlNames& names);
@@ -65,14 +78,15 @@ class Relight {
 
     const GlFunctions& gl_;
     std::uint32_t cubemap_size_ = 0, vertices_ = 0, code_bits_ = 8, index_bytes_ = 2, lanes_ = 1;
-    std::size_t alignment_ = 4;
+    std::size_t alignment_ = 4, max_block_bytes_ = 0;
     float farthest_ = 0;  // largest coordinate of the mesh [m]
     std::vector<formats::PrimitiveRecord> primitives_;
     std::vector<DotBatch> batches_;
     formats::Emitters emitters_;  // without values, which are in a buffer
     GLuint transport_ = 0, radiance_ = 0, product_ = 0, position_ = 0, normal_ = 0, values_ = 0;
-    std::vector<GLuint> light_;            // each holds one light vector
-    std::array<GLuint, 4> dot_program_{};  // of one band and three, then those that keep signs
+    std::vector<GLuint> light_;                      // each holds one light vector
+    std::vector<std::uint32_t> light_of_primitive_;  // as PartLights::of_primitive
+    std::array<GLuint, 4> dot_program_{};
     GLuint emitter_program_ = 0;
     std::vector<Sum> sums_;
 };

@@ -141,6 +141,10 @@ formats::Result<EglContext> EglContext::create() {
                       "libgl1-mesa-dri, or render on the CPU");
 }
 
+void* EglContext::load_function(const char* name) {
+    return load<void*>(name);
+}
+
 EglContext::EglContext(EglContext&& other) noexcept
     : display_(other.display_),
       context_(std::exchange(other.context_, nullptr)),

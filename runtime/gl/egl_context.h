@@ -19,6 +19,9 @@ class EglContext {
     EglContext& operator=(const EglContext&) = delete;
     ~EglContext();
 
+    /// A function of OpenGL, or nullptr.
+    static void* load_function(const char* name);
+
     /// GL renderer and version, for messages and statistics.
     const std::string& description() const { return description_; }
     /// True where the driver runs on the CPU.

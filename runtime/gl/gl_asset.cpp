@@ -48,26 +48,25 @@ formats::Status upload_images(const AssetView& asset, GlAsset& gl) {
     return formats::ok_status();
 }
 
-void bind_attribute(GLuint array, GLuint attribute, const GlBuffer& buffer, GLint floats,
-                    GLsizei stride) {
-    glVertexArrayVertexBuffer(array, attribute, buffer.name(), 0, stride);
+void bind_attribute(GLuint array, GLuint attribute, GLuint buffer, GLint floats, GLsizei stride) {
+    glVertexArrayVertexBuffer(array, attribute, buffer, 0, stride);
     glVertexArrayAttribFormat(array, attribute, floats, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(array, attribute, attribute);
     glEnableVertexArrayAttrib(array, attribute);
 }
 
-void make_vertex_array(const AssetView& asset, GlAsset& gl) {
+void make_vertex_array(const AssetView& asset, GLuint radiance, GlAsset& gl) {
     GLuint name = 0;
     glCreateVertexArrays(1, &name);
     gl.vertex_array = GlVertexArray(name);
-    bind_attribute(name, 0, gl.position, 3, sizeof(formats::Vec3));
-    bind_attribute(name, 1, gl.radiance, 3, kRadianceBytes);
-    bind_attribute(name, 2, gl.base_color, 3, sizeof(formats::Rgb));
+    bind_attribute(name, 0, gl.position.name(), 3, sizeof(formats::Vec3));
+    bind_attribute(name, 1, radiance, 3, kRadianceBytes);
+    bind_attribute(name, 2, gl.base_color.name(), 3, sizeof(formats::Rgb));
     if (!asset.texcoord.empty()) {
-        bind_attribute(name, 3, gl.texcoord, 2, sizeof(formats::Float2));
+        bind_attribute(name, 3, gl.texcoord.name(), 2, sizeof(formats::Float2));
     }
     if (gl.has_translucent || !gl.gloss.empty()) {
-        bind_attribute(name, 4, gl.normal, 3, sizeof(formats::Vec3));
+        bind_attribute(name, 4, gl.normal.name(), 3, sizeof(formats::Vec3));
     }
     if (!gl.roughness.empty() || !gl.gloss.empty()) {
         // Openness: the octahedral axis and the fraction, scaled to [-1, 1] and [0, 1] on the way.
@@ -82,55 +81,31 @@ void make_vertex_array(const AssetView& asset, GlAsset& gl) {
                                   offsetof(formats::Openness, fraction));
     }
     if (!asset.holes.vertex_alpha.empty()) {
-        bind_attribute(name, 7, gl.vertex_alpha, 1, sizeof(float));
+        bind_attribute(name, 7, gl.vertex_alpha.name(), 1, sizeof(float));
     }
     glVertexArrayElementBuffer(name, gl.triangle.name());
 }
 
 }  // namespace
 
-void bind_storage(GLuint binding, const GlBuffer& buffer, const BoundRange& range) {
-    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, buffer.name(),
-                      static_cast<GLintptr>(range.offset), static_cast<GLsizeiptr>(range.size));
-}
-
-formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& limits) {
-    auto batches = plan_dot_batches(asset, limits);
-    if (!batches) return batches.error();
-
+formats::Result<GlAsset> upload_asset(const AssetView& asset, GLuint radiance) {
     GlAsset gl;
-    gl.batches = std::move(batches).value();
-    gl.cubemap_size = asset.cubemap_size;
     gl.vertices = asset.receivers();
-    gl.code_bits = asset.transport.code_bits;
-    gl.index_bytes = asset.transport.index_bytes;
     gl.primitives.assign(asset.primitives.begin(), asset.primitives.end());
     gl.emitters.name_end.assign(asset.emitters.name_end.begin(), asset.emitters.name_end.end());
     gl.emitters.block.assign(asset.emitters.block.begin(), asset.emitters.block.end());
     gl.emitters.own.assign(asset.emitters.own.begin(), asset.emitters.own.end());
-    gl.emitters.value.assign(asset.emitters.value.begin(), asset.emitters.value.end());
     if (asset.texcoord.empty()) {  // nowhere to look up images: the CPU leaves them out too
         for (formats::PrimitiveRecord& primitive : gl.primitives) {
             primitive.base_color_image = formats::kNoImage;
         }
     }
 
-    const formats::SparseRowsView& rows = asset.transport;
-    gl.transport = make_zero_buffer(transport_bytes(gl.batches), gl.resident);
-    for (const DotBatch& batch : gl.batches) {
-        for (const PackedArray& array : packed_arrays(asset, batch)) {
-            fill_buffer(gl.transport, array.offset, array.bytes);
-        }
-    }
-    gl.radiance = make_zero_buffer(gl.vertices * kRadianceBytes, gl.resident);
     gl.has_translucent = std::ranges::any_of(gl.primitives, [](const auto& primitive) {
         return primitive.shading == formats::Shading::translucent;
     });
-    if (std::ranges::any_of(gl.primitives, needs_view)) {
-        gl.product = make_zero_buffer(rows.rows() * kRadianceBytes, gl.resident);
-    }
     const SpecularNeeds needs = specular_needs(asset);
-    if (gl.has_translucent || needs.gloss || gl.product.name() != 0) {
+    if (gl.has_translucent || needs.gloss) {
         gl.normal = make_buffer_of(asset.normal, gl.resident);
     }
     if (!needs.levels.empty()) {
@@ -156,7 +131,7 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, const DotLimits& l
         linear[code] = linear_from_srgb(static_cast<std::uint8_t>(code));
     }
     gl.srgb_table = make_buffer_of(std::span<const float>(linear), gl.resident);
-    make_vertex_array(asset, gl);
+    make_vertex_array(asset, radiance, gl);
     if (const auto status = upload_images(asset, gl); !status) return status.error();
     if (const auto status = check_gl("uploading the asset"); !status) return status.error();
     return gl;

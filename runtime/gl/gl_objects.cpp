@@ -78,35 +78,19 @@ formats::Status check_gl(const std::string& doing) {
                       errors + " while " + doing, "render on the CPU");
 }
 
-GlBuffer make_zero_buffer(std::size_t size, std::size_t& resident) {
-    GLuint name = 0;
-    glCreateBuffers(1, &name);
-    GlBuffer buffer(name);
-    glNamedBufferStorage(name, static_cast<GLsizeiptr>(padded(size)), nullptr,
-                         GL_DYNAMIC_STORAGE_BIT);
-    const GLuint zero = 0;
-    glClearNamedBufferData(name, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
-    resident += padded(size);
-    return buffer;
-}
-
-void fill_buffer(const GlBuffer& buffer, std::size_t offset, std::span<const std::byte> bytes) {
-    // In pieces: drivers stage an upload, and a copy of the whole may not fit beside it.
-    constexpr std::size_t kPiece = std::size_t{64} << 20;
-    for (std::size_t at = 0; at < bytes.size(); at += kPiece) {
-        const std::size_t size = std::min(kPiece, bytes.size() - at);
-        glNamedBufferSubData(buffer.name(), static_cast<GLintptr>(offset + at),
-                             static_cast<GLsizeiptr>(size), bytes.data() + at);
-    }
-}
-
 GlBuffer make_buffer(std::span<const std::byte> bytes, std::size_t& resident) {
     GLuint name = 0;
     glCreateBuffers(1, &name);
     GlBuffer buffer(name);
     glNamedBufferStorage(name, static_cast<GLsizeiptr>(padded(bytes.size())), nullptr,
                          GL_DYNAMIC_STORAGE_BIT);
-    fill_buffer(buffer, 0, bytes);
+    // In pieces: drivers stage an upload, and a copy of the whole may not fit beside it.
+    constexpr std::size_t kPiece = std::size_t{64} << 20;
+    for (std::size_t at = 0; at < bytes.size(); at += kPiece) {
+        const std::size_t size = std::min(kPiece, bytes.size() - at);
+        glNamedBufferSubData(name, static_cast<GLintptr>(at), static_cast<GLsizeiptr>(size),
+                             bytes.data() + at);
+    }
     resident += padded(bytes.size());
     return buffer;
 }

@@ -19,12 +19,6 @@ formats::Status check_gl(const std::string& doing);
 /// read whole words and bind it in any case. `resident` is increased by its size.
 GlBuffer make_buffer(std::span<const std::byte> bytes, std::size_t& resident);
 
-/// A buffer of zeros.
-GlBuffer make_zero_buffer(std::size_t size, std::size_t& resident);
-
-/// Copies into a part of it.
-void fill_buffer(const GlBuffer& buffer, std::size_t offset, std::span<const std::byte> bytes);
-
 template <class T>
 GlBuffer make_buffer_of(std::span<const T> values, std::size_t& resident) {
     return make_buffer(std::as_bytes(values), resident);

@@ -7,13 +7,12 @@
 
 #include "runtime/gl/egl_context.h"
 #include "runtime/gl/gl_asset.h"
-#include "runtime/gl/gl_dot.h"
 #include "runtime/gl/gl_draw.h"
 #include "runtime/gl/gl_emitters.h"
 #include "runtime/gl/gl_environment.h"
 #include "runtime/gl/gl_layer_pass.h"
 #include "runtime/gl/gl_layers.h"
-#include "runtime/gl/gl_view.h"
+#include "runtime/gl/gl_relight.h"
 #include "runtime/gl/gl_volume_pass.h"
 #include "runtime/gl/gl_volumes.h"
 #include "runtime/picture/software_renderer.h"
@@ -40,13 +39,12 @@ class GlClock {
 
 // What lives on the GPU, to be destroyed while the context is current.
 struct Resources {
+    GlRelight relight;
     GlAsset asset;
     GlEnvironment environment;
     GlSpecular specular;
     GlVolumes volumes;
     GlLayers layers;
-    DotPrograms dot_programs;
-    ViewPrograms view_programs;
     DrawPrograms draw_programs;
 };
 
@@ -113,13 +111,11 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     if (auto status = current.status(); !status) return status.error();
 
     GlClock clock;
-    const std::uint32_t lanes = options.lanes_per_row != 0     ? options.lanes_per_row
-                                : state->context.is_software() ? 8
-                                                               : 16;
-    const DotLimits limits = query_dot_limits(options.max_block_bytes, lanes);
-    auto gl_asset = upload_asset(asset, limits);
+    auto relight = GlRelight::create(asset, {options.lanes_per_row, options.max_block_bytes});
+    if (!relight) return relight.error();
+    auto gl_asset = upload_asset(asset, relight->relight().radiance());
     if (!gl_asset) return gl_asset.error();
-    auto gl_volumes = upload_volumes(asset.volumes, limits.max_block_bytes);
+    auto gl_volumes = upload_volumes(asset.volumes, relight->relight().max_block_bytes());
     if (!gl_volumes) return gl_volumes.error();
     auto gl_environment = upload_environment(environment);
     if (!gl_environment) return gl_environment.error();
@@ -130,25 +126,20 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     if (!gl_specular) return gl_specular.error();
     state->stats.specular_seconds = clock.lap();
 
-    auto dot_programs = make_dot_programs(*gl_asset, lanes);
-    if (!dot_programs) return dot_programs.error();
-    auto view_programs = make_view_programs(*gl_asset);
-    if (!view_programs) return view_programs.error();
     auto draw_programs = make_draw_programs(*gl_asset, *gl_volumes);
     if (!draw_programs) return draw_programs.error();
-    state->stats.gpu_bytes = gl_asset->resident + gl_environment->resident + gl_specular->resident +
-                             gl_volumes->resident;
-    state->stats.dispatches = static_cast<std::uint32_t>(gl_asset->batches.size());
-    state->stats.lanes_per_row = lanes;
+    state->stats.gpu_bytes = relight->resident() + gl_asset->resident + gl_environment->resident +
+                             gl_specular->resident + gl_volumes->resident;
+    state->stats.dispatches = static_cast<std::uint32_t>(relight->relight().dispatches());
+    state->stats.lanes_per_row = relight->relight().lanes_per_row();
     state->mirrors_world = options.mirrored != nullptr;
     state->stats.device = state->context.description();
-    state->resources.emplace(Resources{std::move(*gl_asset),
+    state->resources.emplace(Resources{std::move(*relight),
+                                       std::move(*gl_asset),
                                        std::move(*gl_environment),
                                        std::move(*gl_specular),
                                        std::move(*gl_volumes),
                                        {},
-                                       std::move(*dot_programs),
-                                       std::move(*view_programs),
                                        std::move(*draw_programs)});
     return GlRenderer(std::move(state));
 }
@@ -156,24 +147,13 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
 formats::Status GlRenderer::set_light(const PartLights& lights, const Rotation& rotation,
                                       const EmitterLight& emitters) {
     Resources& resources = *state_->resources;
-    if (auto status = check_lights(lights, resources.asset); !status) return status;
     const CurrentContext current(state_->context);
     if (auto status = current.status(); !status) return status;
 
     GlClock clock;
-    std::size_t resident = 0;
-    std::vector<GlBuffer> buffers;
-    for (const LightVector& light : lights.light) {
-        buffers.push_back(make_buffer_of(std::span<const float>(light.rgba), resident));
-    }
-    if (auto status = check_gl("uploading the light"); !status) return status;
+    if (auto status = resources.relight.light(lights); !status) return status;
     state_->stats.light_seconds = clock.lap();
-    if (auto status =
-            dispatch_dots(resources.asset, resources.dot_programs, {buffers, lights.of_primitive});
-        !status) {
-        return status;
-    }
-    add_gl_emitters(resources.asset, emitters);
+    if (auto status = resources.relight.dot(emitters); !status) return status;
     state_->own = own_radiances(resources.asset, emitters);
     if (auto status = relight_gl_volumes(resources.volumes, lights.light[lights.of_volumes],
                                          formats::TermSet::all);
@@ -225,9 +205,7 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
 
     auto picture = make_picture(camera.width, camera.height);
     if (!picture) return picture;
-    if (auto status = dispatch_views(resources.asset, resources.view_programs, camera.eye,
-                                     static_cast<float>(view_unit(camera)), options.terms);
-        !status) {
+    if (auto status = resources.relight.view(camera.eye, options.terms); !status) {
         return status.error();
     }
     if (auto status = show_volume_terms(resources.volumes, options.terms); !status) {
@@ -268,7 +246,7 @@ formats::Result<std::vector<formats::Rgb>> GlRenderer::read_radiance() {
     const GlAsset& asset = state_->resources->asset;
     std::vector<float> padded(std::size_t{asset.vertices} * 4);
     if (!padded.empty()) {
-        glGetNamedBufferSubData(asset.radiance.name(), 0,
+        glGetNamedBufferSubData(state_->resources->relight.relight().radiance(), 0,
                                 static_cast<GLsizeiptr>(padded.size() * sizeof(float)),
                                 padded.data());
     }

@@ -7,9 +7,8 @@
 #include <string>
 
 #include "runtime/gl/egl_context.h"
-#include "runtime/gl/gl_dot.h"
 #include "runtime/gl/gl_draw.h"
-#include "runtime/gl/gl_view.h"
+#include "runtime/gl/gl_relight.h"
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
@@ -32,20 +31,30 @@ class GlPrograms : public test::Gl {
         }
     }
 
+    static GlRelight relight(const formats::Asset& asset) {
+        auto made = GlRelight::create(asset.view(), {.lanes_per_row = 8});
+        EXPECT_TRUE(made) << text_of(made.error());
+        return std::move(*made);
+    }
+
     static GlAsset upload(const formats::Asset& asset) {
-        auto uploaded = upload_asset(asset.view(), query_dot_limits(0, 8));
+        auto uploaded = upload_asset(asset.view(), relight(asset).relight().radiance());
         EXPECT_TRUE(uploaded) << text_of(uploaded.error());
         return std::move(*uploaded);
     }
 
     static Names active(const GlProgram& program, GLenum kind) {
+        return active(program.name(), kind);
+    }
+
+    static Names active(GLuint program, GLenum kind) {
         Names names;
         GLint count = 0;
-        glGetProgramInterfaceiv(program.name(), kind, GL_ACTIVE_RESOURCES, &count);
+        glGetProgramInterfaceiv(program, kind, GL_ACTIVE_RESOURCES, &count);
         for (GLint i = 0; i < count; ++i) {
             char name[64] = {};
-            glGetProgramResourceName(program.name(), kind, static_cast<GLuint>(i), sizeof name,
-                                     nullptr, name);
+            glGetProgramResourceName(program, kind, static_cast<GLuint>(i), sizeof name, nullptr,
+                                     name);
             if (std::string(name).rfind("gl_", 0) != 0) {
                 names.insert(name);
             }
@@ -56,6 +65,12 @@ class GlPrograms : public test::Gl {
     static std::size_t made(const auto& programs) {
         return static_cast<std::size_t>(
             std::ranges::count_if(programs, [](const GlProgram& p) { return p.name() != 0; }));
+    }
+
+    static std::size_t dots(const GlRelight& relight) {
+        const auto& programs = relight.relight().dot_programs();
+        return static_cast<std::size_t>(
+            std::ranges::count_if(programs, [](GLuint program) { return program != 0; }));
     }
 
   private:
@@ -74,12 +89,12 @@ const Names kPlainUniforms{"eye",  "right",      "down", "forward",
 
 TEST_F(GlPrograms, OpaqueSurfacesHaveNoCodeForMedia) {
     const GlAsset asset = upload(make_sheet_of({}));
-    EXPECT_EQ(asset.product.name(), 0u);
+    const GlRelight relit = relight(make_sheet_of({}));
+    EXPECT_FALSE(relit.relight().needs_eye());
     EXPECT_EQ(asset.normal.name(), 0u);
     EXPECT_EQ(asset.openness.name(), 0u);
-    EXPECT_TRUE(make_view_programs(asset)->sums.empty());
-    const auto dots = make_dot_programs(asset, 8);
-    EXPECT_EQ(made(dots->program), 1u);
+    EXPECT_TRUE(relit.relight().sums().empty());
+    EXPECT_EQ(dots(relit), 1u);
     const auto draws = make_draw_programs(asset, {});
     ASSERT_EQ(made(draws->surfaces.program), 1u);
     EXPECT_EQ(active(draws->surfaces.program[0], GL_UNIFORM), kPlainUniforms);
@@ -89,8 +104,9 @@ TEST_F(GlPrograms, OpaqueSurfacesHaveNoCodeForMedia) {
 
 TEST_F(GlPrograms, MediaWithOneTermHaveNoViewMaps) {
     const GlAsset asset = upload(make_sheet_of({.bands = 3, .eta = 1.3f}));
-    EXPECT_EQ(asset.product.name(), 0u);
-    EXPECT_TRUE(make_view_programs(asset)->sums.empty());
+    const GlRelight relit = relight(make_sheet_of({.bands = 3, .eta = 1.3f}));
+    EXPECT_FALSE(relit.relight().needs_eye());
+    EXPECT_TRUE(relit.relight().sums().empty());
     const auto draws = make_draw_programs(asset, {});
     ASSERT_EQ(made(draws->surfaces.program), 1u);
     Names uniforms = kPlainUniforms;
@@ -100,13 +116,12 @@ TEST_F(GlPrograms, MediaWithOneTermHaveNoViewMaps) {
 
 TEST_F(GlPrograms, GreyMediaHaveNoCodeForThreeBands) {
     for (const std::uint32_t terms : {1u, 4u}) {
-        const GlAsset grey = upload(make_sheet_of({.bands = 1, .eta = 1.3f, .terms = terms}));
-        const GlAsset colour = upload(make_sheet_of({.bands = 3, .eta = 1.3f, .terms = terms}));
-        const auto one = make_dot_programs(grey, 8), three = make_dot_programs(colour, 8);
-        EXPECT_EQ(made(one->program), 1u);
-        EXPECT_NE(one->program[1].name(), 0u);
-        EXPECT_EQ(made(three->program), 1u);
-        EXPECT_NE(three->program[3].name(), 0u);
+        const GlRelight grey = relight(make_sheet_of({.bands = 1, .eta = 1.3f, .terms = terms}));
+        const GlRelight colour = relight(make_sheet_of({.bands = 3, .eta = 1.3f, .terms = terms}));
+        EXPECT_EQ(dots(grey), 1u);
+        EXPECT_NE(grey.relight().dot_programs()[2], 0u);
+        EXPECT_EQ(dots(colour), 1u);
+        EXPECT_NE(colour.relight().dot_programs()[3], 0u);
     }
 }
 
@@ -116,14 +131,14 @@ TEST_F(GlPrograms, EachNumberOfTermsHasItsOwnSum) {
     test::add_primitive(scene, sheet, {.bands = 3, .eta = 1.3f, .terms = 4});
     test::add_primitive(scene, sheet, {.bands = 3, .eta = 1.4f, .terms = 4});
     test::add_primitive(scene, sheet, {.bands = 3, .eta = 1.3f, .terms = 2, .is_separate = true});
-    const GlAsset asset = upload(scene);
-    const auto views = make_view_programs(asset);
-    ASSERT_EQ(views->sums.size(), 2u);
-    EXPECT_EQ(active(views->sums[0].program, GL_UNIFORM).count("eye"), 1u);
+    const GlRelight relit = relight(scene);
+    const auto sums = relit.relight().sums();
+    ASSERT_EQ(sums.size(), 2u);
+    EXPECT_EQ(active(sums[0].program, GL_UNIFORM).count("eye"), 1u);
     // Two rows that look alike from everywhere.
-    EXPECT_EQ(active(views->sums[1].program, GL_UNIFORM),
+    EXPECT_EQ(active(sums[1].program, GL_UNIFORM),
               (Names{"vertices", "product_origin", "radiance_origin", "shows"}));
-    EXPECT_EQ(made(make_dot_programs(asset, 8)->program), 2u);
+    EXPECT_EQ(dots(relit), 2u);
 }
 
 TEST_F(GlPrograms, GlossHasAProgramOfItsOwnAndMattSurfacesNothingOfIt) {
