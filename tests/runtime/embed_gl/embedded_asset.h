@@ -1,5 +1,9 @@
 #pragma once
 
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
