@@ -45,6 +45,13 @@ struct WatchedFile {
     }
 };
 
+// What it says on a terminal, where it does not stand among other programs' lines.
+std::string message_of(const formats::Error& error) {
+    const std::string line = format_diagnostic(error.diagnostics.front());
+    const std::string prefix = "opaline: error: ";
+    return line.rfind(prefix, 0) == 0 ? line.substr(prefix.size()) : line;
+}
+
 // With the emitters that the file has: `render` refuses others.
 std::string line_of(ViewState state, const std::string& file, const DrawnSide& side,
                     const std::string& output) {
@@ -131,10 +138,12 @@ bool Session::is_settled() const {
 
 void Session::send_request() {
     if (is_sent()) return;
-    if (good_ && (state_.file != good_->file || state_.other != good_->other ||
-                  state_.light != good_->light)) {
-        memory_.message.clear();
-    }
+    const bool is_renamed = good_ && (state_.file != good_->file || state_.other != good_->other ||
+                                      state_.light != good_->light);
+    const bool is_read_again = sent_.file_version != file_.version ||
+                               sent_.other_version != other_.version ||
+                               sent_.light_version != light_.version;
+    if (is_renamed || is_read_again) memory_.message.clear();
     sent_ = {state_,         sent_.serial + 1, file_.version,
              other_.version, light_.version,   wants_exact()};
     settled_frames_ = 0;
@@ -146,7 +155,7 @@ std::optional<int> Session::take_drawn(bool has_script) {
     if (!drawn) return {};
     if (drawn->error) {
         if (has_script || !good_) return end_with(*drawn->error);
-        memory_.message = format_diagnostic(drawn->error->diagnostics.front());
+        memory_.message = message_of(*drawn->error);
         if (drawn->serial == sent_.serial) {
             const bool shows_panels = state_.panels;
             state_ = *good_;
@@ -183,7 +192,7 @@ void Session::look_for_changes() {
 void Session::take_input() {
     for (const ViewWindow::Drop& drop : window_.take_drops()) {
         if (auto status = drop_file(state_, drop.path, drop.share); !status) {
-            memory_.message = format_diagnostic(status.error().diagnostics.front());
+            memory_.message = message_of(status.error());
         }
     }
     const ViewWindow::Size size = window_.size();
