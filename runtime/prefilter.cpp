@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -15,6 +16,8 @@
 
 namespace opaline::runtime {
 namespace {
+
+std::atomic<std::uint64_t> last_light_id{0};
 
 using formats::Environment;
 using formats::Rgb;
@@ -325,6 +328,7 @@ SpecularLight make_specular_light(const SpecularSource& source,
                                   unsigned threads) {
     SpecularLight light;
     light.rotation = rotation;
+    light.id = ++last_light_id;
     if (!needs.levels.empty()) {
         const std::uint32_t n = texels_for(needs.levels);
         std::vector<double> integral = sum_to(source.integral, source.n, n);

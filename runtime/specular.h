@@ -39,6 +39,7 @@ struct SpecularLight {
     std::vector<Map> maps;  ///< for glossy translucent surfaces
     GlossLight gloss;       ///< for glossy opaque ones
     Rotation rotation;
+    std::uint64_t id = 0;  ///< of all but the rotation: no two that were made have the same
 };
 
 /// What of a SpecularLight an asset's glossy primitives use.

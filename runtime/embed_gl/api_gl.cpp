@@ -30,6 +30,7 @@ struct opaline_gl {
     std::size_t emitters = 0;
     std::optional<formats::Vec3> eye;
     bool is_relit = false;
+    std::uint64_t specular_id = 0;  // of the SpecularLight that is uploaded
     opaline_gl_objects objects{};
 
     opaline_gl() = default;
@@ -128,6 +129,15 @@ void refresh_texture(const opaline_gl& handle) {
     gl.BindTexture(GL_TEXTURE_2D, handle.objects.radiance_texture);
     if (rows > 0) copy_texels(gl, 0, kTextureWidth, rows);
     if (rest > 0) copy_texels(gl, rows * kTextureWidth, rest, 1);
+}
+
+// Turning a light leaves its maps as they are.
+void upload_specular(opaline_gl& handle, const runtime::SpecularLight& light) {
+    handle.mirrored.turn(light.rotation);
+    if (light.id == handle.specular_id) return;
+    handle.mirrored.upload(light);
+    if (!handle.gloss.empty()) handle.glossy.upload(light.gloss);
+    handle.specular_id = light.id;
 }
 
 void show(opaline_gl& handle) {
@@ -229,8 +239,7 @@ opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
         const runtime::SavedState saved(gl->gl);
         gl->relight.light(light->vector(), gl->names);
         gl->relight.dot({light->emitters, false});
-        gl->mirrored.upload(light->specular());
-        if (!gl->gloss.empty()) gl->glossy.upload(light->specular().gloss);
+        upload_specular(*gl, light->specular());
         gl->is_relit = true;
         show(*gl);
         return runtime::check_errors(gl->gl, "relighting");

@@ -15,7 +15,6 @@ void MirroredLight::make(const formats::AssetView& asset, GlNames& names) {
 }
 
 void MirroredLight::upload(const SpecularLight& light) {
-    rotation_ = light.rotation;
     for (const SpecularLight::Map& map : light.maps) {
         const auto level = std::ranges::lower_bound(levels_, map.level);
         if (level == levels_.end() || *level != map.level) continue;

@@ -19,6 +19,7 @@ class MirroredLight {
 
     /// Copies the light's maps; where it lacks one, that texture stays as it is.
     void upload(const SpecularLight& light);
+    void turn(const Rotation& rotation) { rotation_ = rotation; }
 
     /// Of a primitive: the texture, 0 where it is not glossy, and the cone of its lobe.
     struct Lobe {

@@ -35,6 +35,14 @@ void expect_relit(const EmbeddedAsset& host, const std::vector<float>& gl, const
     std::cout << "[ agreement] " << largest / brightest << "\n";
 }
 
+// What the other cases mean by these names.
+TEST_P(EmbedGl, ContextsOfMesaAreTheOldestThatAreTaken) {
+    const std::string version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+    if (version.find("Mesa") == std::string::npos) GTEST_SKIP() << version;
+    EXPECT_EQ(version.rfind(GetParam() == HostApi::es_31 ? "OpenGL ES 3.1" : "4.3", 0), 0u)
+        << version;
+}
+
 TEST_P(EmbedGl, RadianceIsThatOfTheCpuForEveryKindOfReceiver) {
     for (const std::uint32_t code_bits : {8u, 16u}) {
         const EmbeddedAsset host(make_every_kind(8, code_bits));

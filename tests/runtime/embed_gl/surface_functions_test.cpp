@@ -217,25 +217,25 @@ formats::Asset make_glossy_ones() {
     return asset;
 }
 
-// Loaded once: blurring the light to its roughnesses takes seconds.
-const EmbeddedAsset& glossy_host() {
-    static const EmbeddedAsset host(make_glossy_ones());
-    static const float turned[9] = {0, 0, -1, 0.6f, 0.8f, 0, 0.8f, -0.6f, 0};
-    static const opaline_status status = opaline_light_set_rotation(host.light(), turned);
-    EXPECT_EQ(status, OPALINE_OK);
-    return host;
-}
-
 class EmbedGlSurface : public EmbedGl {};
 
 TEST_P(EmbedGlSurface, FunctionsForHostsMakeWhatTheCpuDoes) {
-    const EmbeddedAsset& host = glossy_host();
+    const EmbeddedAsset host(make_glossy_ones());
     opaline_gl* gl = nullptr;
     ASSERT_EQ(opaline_gl_create(host.asset(), load_gl, OPALINE_GL_WITH_MESH, &gl), OPALINE_OK)
         << opaline_last_error();
-    ASSERT_EQ(opaline_gl_relight(gl, host.light()), OPALINE_OK) << opaline_last_error();
-    for (const std::array<float, 3> eye : {std::array<float, 3>{2, 1, 7}, {-3, 4, -5}}) {
+    // The light as it is; turned, which leaves maps of what is mirrored as they are; another one.
+    for (int step = 0; step < 3; ++step) {
+        const float turned[9] = {0, 0, -1, 0.6f, 0.8f, 0, 0.8f, -0.6f, 0}, sky[3] = {2, 3, 4};
+        if (step == 1) {
+            ASSERT_EQ(opaline_light_set_rotation(host.light(), turned), OPALINE_OK);
+        } else if (step == 2) {
+            ASSERT_EQ(opaline_light_set_lat_long(host.light(), sky, 1, 1), OPALINE_OK);
+        }
+        const std::array<float, 3> eye =
+            step == 1 ? std::array<float, 3>{2, 1, 7} : std::array<float, 3>{-3, 4, -5};
         ASSERT_EQ(opaline_gl_look_from(gl, eye.data()), OPALINE_OK);
+        ASSERT_EQ(opaline_gl_relight(gl, host.light()), OPALINE_OK) << opaline_last_error();
         const std::vector<float> drawn =
             draw_receivers(host, gl, GetParam() == HostApi::es_31, eye.data());
         std::vector<float> cpu(3 * std::size_t{host.receivers()});
