@@ -46,6 +46,10 @@ void dot_scalar(const TypedRows<Index, Code>& rows, const LightVector& light, st
 
 DotPath best_dot_path() {
 #if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma")) {
+        return DotPath::avx512;
+    }
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
         return DotPath::avx2;
     }
@@ -56,6 +60,10 @@ DotPath best_dot_path() {
 void dot_rows(const formats::SparseRowsView& rows, const formats::RowRange& range,
               const LightVector& light, std::uint32_t first, std::span<Rgb> out, DotPath path) {
 #if defined(__x86_64__)
+    if (path == DotPath::avx512) {
+        dot_rows_avx512(rows, range, light, first, out);
+        return;
+    }
     if (path == DotPath::avx2) {
         dot_rows_avx2(rows, range, light, first, out);
         return;

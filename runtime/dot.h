@@ -14,7 +14,8 @@ namespace opaline::runtime {
 /// by at most (details + 16) * 2^-23 * sum_i |T_i L_i| for a row.
 enum class DotPath {
     scalar,  ///< the reference
-    avx2     ///< x86-64 with AVX2 and FMA
+    avx2,    ///< x86-64 with AVX2 and FMA
+    avx512   ///< x86-64 with AVX-512 F, BW and VL
 };
 
 /// The fastest path that this processor can run.

@@ -143,9 +143,7 @@ void integrate_points(const PreparedMap& map, std::uint32_t samples, const Rotat
             }
         }
         for (std::uint32_t column = 0; column < n; ++column) {
-            const double width = 2.0 / n, u = column * width - 1.0, top = row * width - 1.0;
-            const double solid_angle =
-                formats::rectangle_solid_angle(u, top, u + width, top + width);
+            const double solid_angle = map.solid_angle[std::size_t{row} * n + column];
             for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
                 const Double4& sum = sums[face * n + column];
                 const double scale = solid_angle / sum[3];
@@ -192,6 +190,7 @@ PreparedMap prepare_map(const Environment& map, std::uint32_t n, unsigned thread
     const double texel = 2.0 / n, most = most_samples(n), finest = 2.0 * texel / most;
     Environment fine = reduced(map, finest, threads);
     prepared.shape = shape_of(fine);
+    prepared.solid_angle = formats::texel_solid_angles(n);
     const PixelSize pixel = pixel_size(fine);
     const auto samples = [texel, most, &pixel](double per_pixel) {
         return static_cast<std::uint32_t>(

@@ -26,6 +26,7 @@ struct PreparedMap {
     formats::Environment shape;        ///< of the map in `lookup`, without pixels
     std::vector<BrightPixel> bright;   ///< to be added one by one
     std::vector<SmallSource> sources;  ///< the same as points
+    std::vector<double> solid_angle;   ///< of the texels of a face
     std::vector<double> boxes;  ///< exact integrals of an unturned cube map; empty for other maps
 };
 

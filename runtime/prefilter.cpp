@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "formats/opal/cubemap.h"
@@ -65,7 +66,7 @@ struct Cone {
 // Eight of them: a tile of 4 x 2 texels. Eight tiles are a block of 8 x 8.
 constexpr std::uint32_t kTileWidth = 4, kTileHeight = 2, kTileBlock = 8;
 struct Tile {
-    Float8 x, y, z;
+    alignas(32) std::array<float, 8> x, y, z;
     Cone cone;
 };
 
@@ -102,23 +103,33 @@ Cone cone_around(const std::array<Tile, 8>& tiles) {
     return cone;
 }
 
-// D(theta / 2) max(0, cos theta) up to a factor, at most 1, at the directions of a tile.
-OPALINE_ALWAYS_INLINE Float8 lobe(float alpha_squared, const Tile& tile, Vec3 w) {
-    const Float8 x = tile.x - w.x, y = tile.y - w.y, z = tile.z - w.z, zero = {};
+template <class L>
+struct Directions {
+    typename L::Float x, y, z;
+};
+
+// D(theta / 2) max(0, cos theta) up to a factor, at most 1.
+template <class L>
+OPALINE_ALWAYS_INLINE void eval_lobe(L, float alpha_squared, const Directions<L>& at, Vec3 w,
+                                     typename L::Float& out) {
+    using Float = typename L::Float;
+    const Float x = at.x - w.x, y = at.y - w.y, z = at.z - w.z, zero = {};
     // sin^2(theta / 2) = chord^2 / 4, without the cancellation in 1 - cos theta.
-    const Float8 sine_squared = 0.25f * (x * x + y * y + z * z);
-    const Float8 cosine = 1 - 2 * sine_squared;
-    const Float8 ratio = alpha_squared / (alpha_squared * (1 - sine_squared) + sine_squared);
-    return cosine > 0 ? cosine * ratio * ratio : zero;
+    const Float sine_squared = 0.25f * (x * x + y * y + z * z);
+    const Float cosine = 1 - 2 * sine_squared;
+    const Float ratio = alpha_squared / (alpha_squared * (1 - sine_squared) + sine_squared);
+    out = cosine > 0 ? cosine * ratio * ratio : zero;
 }
 
 // Sums of r, g, b and weight, in single precision over a few cells, then in double.
 struct TileSums {
     std::array<std::array<double, 8>, 4> value{};
 
-    OPALINE_ALWAYS_INLINE void add(std::size_t band, const Float8& part) {
-        for (std::size_t k = 0; k < 8; ++k) {
-            value[band][k] += static_cast<double>(part[k]);
+    template <class L>
+    OPALINE_ALWAYS_INLINE void add(L, std::size_t band, std::size_t first,
+                                   const typename L::Float& part) {
+        for (std::size_t k = 0; k < L::kCount; ++k) {
+            value[band][first + k] += static_cast<double>(part[k]);
         }
     }
 };
@@ -217,21 +228,32 @@ class BlockCells {
 void add_cells(std::span<const LobeCell* const> cells, float alpha_squared, const Tile& tile,
                TileSums& sums) {
     constexpr std::size_t kAtOnce = 16;
-    run_wide([&](auto) __attribute__((always_inline)) {
-        for (std::size_t first = 0; first < cells.size(); first += kAtOnce) {
-            Float8 r = {}, g = {}, b = {}, weight = {};
-            for (const LobeCell* cell :
-                 cells.subspan(first).first(std::min(kAtOnce, cells.size() - first))) {
-                const Float8 lit = lobe(alpha_squared, tile, cell->flux_centre);
-                r += lit * cell->flux.r;
-                g += lit * cell->flux.g;
-                b += lit * cell->flux.b;
-                weight += lobe(alpha_squared, tile, cell->centre) * cell->solid_angle;
+    run_wide([&](auto lanes) __attribute__((always_inline)) {
+        using L = decltype(lanes);
+        using Float = typename L::Float;
+        for (std::size_t k = 0; k < 8; k += L::kCount) {
+            Directions<L> at;
+            std::memcpy(&at.x, &tile.x[k], sizeof at.x);
+            std::memcpy(&at.y, &tile.y[k], sizeof at.y);
+            std::memcpy(&at.z, &tile.z[k], sizeof at.z);
+            for (std::size_t first = 0; first < cells.size(); first += kAtOnce) {
+                const std::size_t last = std::min(first + kAtOnce, cells.size());
+                Float r = {}, g = {}, b = {}, weight = {};
+                for (std::size_t i = first; i < last; ++i) {
+                    const LobeCell& cell = *cells[i];
+                    Float lit, open;
+                    eval_lobe(lanes, alpha_squared, at, cell.flux_centre, lit);
+                    eval_lobe(lanes, alpha_squared, at, cell.centre, open);
+                    r += lit * cell.flux.r;
+                    g += lit * cell.flux.g;
+                    b += lit * cell.flux.b;
+                    weight += open * cell.solid_angle;
+                }
+                sums.add(lanes, 0, k, r);
+                sums.add(lanes, 1, k, g);
+                sums.add(lanes, 2, k, b);
+                sums.add(lanes, 3, k, weight);
             }
-            sums.add(0, r);
-            sums.add(1, g);
-            sums.add(2, b);
-            sums.add(3, weight);
         }
     });
 }

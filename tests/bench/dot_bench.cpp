@@ -134,7 +134,7 @@ void dot_against_stream(benchmark::State& state) {
 
 BENCHMARK(dot_against_stream)
     ->ArgNames({"bands", "bits", "threads", "uniform", "path", "rows"})
-    ->ArgsProduct({{1, 3}, {8, 16}, {1, 0}, {0, 1}, {1}, {100000, 400000}})
+    ->ArgsProduct({{1, 3}, {8, 16}, {1, 0}, {0, 1}, {1, 2}, {100000, 400000}})
     ->Args({1, 8, 1, 0, 0, 100000})
     ->Args({3, 8, 1, 0, 0, 100000})
     ->UseRealTime()

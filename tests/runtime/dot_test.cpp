@@ -23,8 +23,8 @@ struct Widths {
 
 std::vector<DotPath> paths() {
     std::vector<DotPath> all{DotPath::scalar};
-    if (best_dot_path() != DotPath::scalar) {
-        all.push_back(best_dot_path());
+    for (const DotPath path : {DotPath::avx2, DotPath::avx512}) {
+        if (path <= best_dot_path()) all.push_back(path);
     }
     return all;
 }
