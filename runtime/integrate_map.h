@@ -14,7 +14,7 @@ namespace opaline::runtime {
 /// How finely a map is sampled.
 enum class MapSampling {
     full,   ///< what photographic maps can tell apart
-    moving  ///< for lights that turn from frame to frame: a seventh of the samples
+    moving  ///< for lights that turn from frame to frame: a tenth of the samples
 };
 
 /// What integrate_map needs of a map, whatever the rotation, so that turning a light costs neither
@@ -46,9 +46,8 @@ PreparedMap prepare_map(const formats::Environment& map, std::uint32_t n, unsign
 /// - A grid of points misjudges pixels that are smaller than a texel and much brighter than their
 ///   surroundings (a sun in the map). Such pixels are subtracted from the map first and added one
 ///   by one with their exact flux (project_small_sources.h).
-/// - MapSampling::moving: n s <= 384 (320 for n <= 64), and bright pixels are added as points. The
-/// integrals differ
-///   by a few percent where light has sharp edges (tested: 3 % of their norm at n = 32).
+/// - MapSampling::moving: n s <= 320 (384 for n = 128), and bright pixels are added as points. The
+///   integrals differ by up to a percent of their norm where light has sharp edges (tested).
 void integrate_map(const PreparedMap& map, MapSampling sampling, const Rotation& rotation,
                    unsigned threads, std::span<double> integral);
 

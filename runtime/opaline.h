@@ -164,10 +164,11 @@ OPALINE_API opaline_status opaline_asset_primitive_emission(const opaline_asset*
 /* --- Lights ------------------------------------------------------------------------------- */
 
 /* A light starts black: no map, no suns, no rotation. Functions that change a light project it on
-   the basis at once. What a change costs on two cores, basis of 6 x 32 x 32 (tests/bench/RESULTS.md):
-   a turn 2 ms (opaline_light_turn) or 20 ms (opaline_light_set_rotation), a map of 1024 x 512 20 ms,
-   a sun less than one. For assets with glossy surfaces another map or sun is also blurred to their
-   roughnesses: 20 ms for opaque and rough ones, 70 ms for mirrors.
+   the basis at once. What a change costs on two cores, basis of 6 x 32 x 32 (measured on one:
+   tests/bench/RESULTS.md): a turn 2 ms (opaline_light_turn) or 14 ms (opaline_light_set_rotation),
+   a map of 1024 x 512 20 ms, a sun less than one. For assets with glossy surfaces another map or
+   sun is also blurred to their roughnesses: 5 to 25 ms for opaque and rough ones, 50 to 70 ms for
+   mirrors.
    One thread at a time may change a light ("one writer"), and none may read it meanwhile. Nothing
    waits or races: a call that comes while another thread changes the light, or that would change it
    while others read it, returns OPALINE_BUSY and does nothing. Different lights are independent:
@@ -188,9 +189,10 @@ OPALINE_API opaline_status opaline_light_set_rotation(opaline_light* light,
                                                       const float world_from_light[9]);
 
 /* The same for a light that turns from frame to frame: its map is sampled at a tenth of the points,
-   which errs by some percent of the light next to sharp edges (tests/bench/RESULTS.md; suns,
-   harmonics and quarter turns of cube maps are exact). Call opaline_light_set_rotation once the
-   light rests. On one thread it never allocates. One writer. */
+   which errs by about a percent of the light at most (root mean square over coefficients, where it
+   has sharp edges: tests/bench/RESULTS.md; suns, harmonics and quarter turns of cube maps are
+   exact). Call opaline_light_set_rotation once the light rests. On one thread it never allocates.
+   One writer. */
 OPALINE_API opaline_status opaline_light_turn(opaline_light* light,
                                               const float world_from_light[9]);
 
@@ -206,8 +208,8 @@ OPALINE_API opaline_status opaline_light_set_lat_long(opaline_light* light, cons
                                                       uint32_t width, uint32_t height);
 
 /* Replaces the map by spherical harmonics: radiance sum_k c_k Y_k(w) [W m^-2 sr^-1] from direction
-   w = (x, y, z) of the light's axes, c_k = rgb[3 k .. 3 k + 2], any finite values. Real, orthonormal,
-   no Condon-Shortley sign, in the order of degree and order that engines use:
+   w = (x, y, z) of the light's axes, c_k = rgb[3 k .. 3 k + 2], any finite values. Real,
+   orthonormal, no Condon-Shortley sign, sorted by degree and order as engines have them:
        Y_0 = 0.282095                                Y_1, Y_2, Y_3 = 0.488603 * (y, z, x)
        Y_4, Y_5, Y_7 = 1.092548 * (x y, y z, x z)    Y_6 = 0.315392 * (3 z z - 1)
        Y_8 = 0.546274 * (x x - y y)

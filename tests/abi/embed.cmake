@@ -38,6 +38,19 @@ foreach(program host/minimal minimal_pc)
     endif()
 endforeach()
 
+# A host like a game, in C++11, which relights an asset frame by frame on two threads.
+set(game ${SOURCE}/tests/abi/game)
+run(${CMAKE_COMMAND} -S ${game} -B ${BINARY}/game -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${BINARY}/prefix)
+run(${CMAKE_COMMAND} --build ${BINARY}/game)
+execute_process(COMMAND pkg-config --cflags --libs opaline OUTPUT_VARIABLE flags
+                OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+run(c++ -std=c++11 -Wall -Wextra -pedantic -Werror -pthread ${game}/game.cpp ${flags} -o ${BINARY}/game_pc)
+foreach(program game/game game_pc)
+    run(${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=${pc_folder}/..
+        ${BINARY}/${program} ${SOURCE}/tests/data/golden/prim1-tran2.opal)
+endforeach()
+
 # examples/embed-gl, built by CMake from the installed tree, and by pkg-config.
 set(example ${SOURCE}/examples/embed-gl)
 run(${CMAKE_COMMAND} -S ${example} -B ${BINARY}/embed-gl -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${BINARY}/prefix)

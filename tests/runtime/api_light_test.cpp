@@ -87,8 +87,8 @@ TEST_F(ApiLight, TurnedWhileItMovesItErrsLittleAndAtRestNotAtAll) {
         ASSERT_EQ(opaline_light_set_lat_long(exact.get(), &map.pixel[0].r, 512, 256), OPALINE_OK);
         ASSERT_EQ(opaline_light_set_lat_long(light.get(), &map.pixel[0].r, 512, 256), OPALINE_OK);
         ASSERT_EQ(opaline_light_turn(light.get(), turn.data()), OPALINE_OK);
-        // Flux within half a sample of the border of a texel of 10 samples a side, at n = 32.
-        EXPECT_LT(distance(coefficients(), coefficients(exact)), 0.03) << n;
+        // Light within half a sample of the border of a texel of 10 samples a side, at n = 32.
+        EXPECT_LT(distance(coefficients(), coefficients(exact)), 0.01) << n;
         ASSERT_EQ(opaline_light_set_rotation(light.get(), turn.data()), OPALINE_OK);
         EXPECT_EQ(coefficients(), coefficients(exact)) << n;
     }
