@@ -3,7 +3,7 @@
 
 Bakes all examples that a page can show at draft quality into FOLDER (those that are there already are kept), exports a
 page of each, takes a picture of it in a headless Chromium and prints how many pixels lie more than 2/255 from those of
-`render`, under two lights, one of them turned. About five minutes on two cores.
+`render`, under two lights, one of them turned. About eight minutes on two cores.
 """
 
 import base64
