@@ -21,6 +21,8 @@ using formats::Rgb;
 template <class T>
 OPALINE_AVX512 inline void prefetch_ahead(const T* p) {
     constexpr std::uintptr_t kAhead = 2048;
+    // Past the end of the array perhaps, where no pointer may be formed by addition.
+    // NOLINTNEXTLINE(performance-no-int-to-ptr)
     _mm_prefetch(reinterpret_cast<const char*>(reinterpret_cast<std::uintptr_t>(p) + kAhead),
                  _MM_HINT_T0);
 }

@@ -31,7 +31,8 @@ void integrate_harmonics(const Harmonics& harmonics, std::uint32_t n, const Rota
     const std::uint32_t parts = std::max(32 / n, 1u), points = 2 * parts;
     const double width = 2.0 / n, part = width / parts, offset = 0.5 / std::sqrt(3.0);
     const auto point_at = [&](std::uint32_t texel, std::uint32_t i) {
-        return texel * width - 1 + (i / 2 + 0.5 + (i % 2 == 0 ? -offset : offset)) * part;
+        const std::uint32_t number = i / 2;
+        return texel * width - 1 + (number + 0.5 + (i % 2 == 0 ? -offset : offset)) * part;
     };
     for_ranges(n, 1, threads, [&](std::uint32_t row, std::uint32_t) {
         for (std::uint32_t column = 0; column < n; ++column) {

@@ -306,8 +306,8 @@ std::vector<SmallSource> divide_sources(const Environment& shape,
         double total = 0;
         std::array<double, 256> weight{};
         for (std::uint32_t i = 0; i < side * side; ++i) {
-            const double x = (2.0 * (i % side) + 1) / side - 1;
-            const double y = (2.0 * (i / side) + 1) / side - 1;
+            const std::uint32_t across = i % side, down = i / side;
+            const double x = (2.0 * across + 1) / side - 1, y = (2.0 * down + 1) / side - 1;
             const Look look = cube ? look_cube(shape, face, pixel.column + x, row + y)
                                    : look_lat_long(shape, pixel.column + x, row + y);
             weight[i] = (1 - std::abs(x)) * (1 - std::abs(y)) * look.density;
