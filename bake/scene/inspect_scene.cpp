@@ -1,4 +1,5 @@
 #include "bake/scene/inspect_scene.h"
+#include "bake/scene/lobe_record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -164,6 +165,23 @@ bool shows_grey(const Scene& scene, std::uint32_t material) {
     return grey;
 }
 
+// Bound on what the lobe of an opaque material mirrors of even light, whatever its textures say: at
+// the ends of its roughness and colour.
+float most_mirrored(const formats::Material& material) {
+    const formats::GlossRecord record = make_lobe_record(material.gloss);
+    float most = 0;
+    for (const float rough : {0.0f, 0.5f, 1.0f}) {
+        for (const float metallic : {0.0f, material.gloss.metallic}) {
+            const formats::Rgb mirrored =
+                mean_reflectance(formats::make_gloss_surface(record, {1, 1, 1}, metallic,
+                                                             rough * material.gloss.roughness))
+                    .mirrored;
+            most = std::max({most, mirrored.r, mirrored.g, mirrored.b});
+        }
+    }
+    return most;
+}
+
 void inspect_surroundings(const Scene& scene, SceneFacts& facts) {
     Surroundings all{0, true};
     for (std::uint32_t m = 0; m < facts.material.size(); ++m) {
@@ -179,9 +197,13 @@ void inspect_surroundings(const Scene& scene, SceneFacts& facts) {
         const float largest = std::max({c.r, c.g, c.b}) * own.brightest_vertex *
                               (material.medium ? 1.0f : formats::diffuse_share(material));
         own.brightest = std::min(1.0, static_cast<double>(largest));
-        own.textures = find_texture_facts(scene, m, own.brightest);
+        const double sent =
+            material.medium || material.sheet
+                ? own.brightest
+                : std::min(1.0, own.brightest + static_cast<double>(most_mirrored(material)));
+        own.textures = find_texture_facts(scene, m, sent);
         all.area += own.area;
-        all.brightest = std::max(all.brightest, own.brightest);
+        all.brightest = std::max(all.brightest, sent);
         all.is_grey = all.is_grey && shows_grey(scene, m) &&
                       (own.is_grey || (!material.medium && !material.sheet));
     }

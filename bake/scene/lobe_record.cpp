@@ -1,5 +1,7 @@
 #include "bake/scene/lobe_record.h"
 
+#include <cmath>
+
 #include <algorithm>
 
 namespace opaline::bake {
@@ -31,6 +33,19 @@ formats::GlossRecord make_lobe_record(const formats::Gloss& gloss) {
         record.wrap_v = to_wrap(gloss.wrap_v);
     }
     return record;
+}
+
+MeanReflectance mean_reflectance(const formats::GlossSurface& surface) {
+    // The midpoint rule in c^2.
+    constexpr int kViews = 32;
+    MeanReflectance mean{0, {0, 0, 0}};
+    for (int i = 0; i < kViews; ++i) {
+        const float cosine = std::sqrt((static_cast<float>(i) + 0.5f) / kViews);
+        const formats::GlossAlbedo at = formats::eval_gloss_albedo(surface, cosine);
+        mean.diffuse += at.diffuse / kViews;
+        mean.mirrored = mean.mirrored + 1.0f / kViews * at.specular;
+    }
+    return mean;
 }
 
 }  // namespace opaline::bake

@@ -29,7 +29,7 @@ struct InnerMedium {
 
 /// What the surfaces of a scene may send to each other.
 struct Surroundings {
-    double brightest = 1;  ///< largest MaterialFacts::brightest of all
+    double brightest = 1;  ///< bound on the share of even light that leaves any of them again
     bool is_grey = false;  ///< they reflect all three bands alike
     double area = 0;       ///< [m^2] of all
 };
@@ -65,7 +65,8 @@ struct MaterialFacts {
 
     TextureFacts textures;
 
-    /// Bound on the share of diffuse light that leaves its surface again, in any band.
+    /// Bound on the share of diffuse light that leaves its surface again, in any band, but for what
+    /// an opaque one mirrors.
     double brightest = 1;
     Surroundings surroundings;  ///< the same of all materials
 

@@ -123,7 +123,7 @@ std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t co
                         const PacketHits& hits = hit.hits;
                         const std::size_t lane = hit.lane;
                         const SeenSide side = side_of_hit(inputs.bake.scene, hits, lane);
-                        if (side.is_seen && inputs.layouts[hits.material[lane]].has_rows()) {
+                        if (side.is_seen && sends_light(inputs.layouts[hits.material[lane]])) {
                             const float u = hits.u[lane], v = hits.v[lane];
                             part.seen.push_back(
                                 {{hits.primitive[lane], hits.first_index[lane]},

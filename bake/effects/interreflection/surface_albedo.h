@@ -7,10 +7,15 @@
 
 namespace opaline::bake {
 
-/// What the light of a row is multiplied by where it is shown, at a point of a surface: base colour
-/// with vertex colours, veins and image, and the share that gloss leaves to the diffuse lobe, as a
-/// mean over diffuse views. `layout`: of its material; `view`: what images are looked up over;
-/// null: at the point.
+/// Whether light leaves an opaque surface, or rows of its material hold what leaves.
+inline bool sends_light(const RowLayout& layout) {
+    return layout.has_rows() || (layout.mirrors && !layout.translucent);
+}
+
+/// The share of light that leaves a point of a surface again: base colour with vertex colours,
+/// veins and image; of a glossy one what its lobe leaves to that, and what the lobe mirrors, both
+/// as means over diffuse views. Where mirrored light goes is not kept: it goes on as if diffuse.
+/// `layout`: of its material; `view`: what images are looked up over; null: at the point.
 formats::Rgb eval_surface_albedo(const formats::Scene& scene, const RowLayout& layout,
                                  const SurfacePoint& point, const TextureView* view = nullptr);
 

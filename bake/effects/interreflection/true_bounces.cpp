@@ -69,7 +69,7 @@ class TruePath {
         const PacketHits hits = light.rays.closest(lanes, packet);
         ++rays_;
         const SeenSide side = hits.hit[0] != 0 ? side_of_hit(light.scene, hits, 0) : SeenSide{};
-        if (!side.is_seen || !light.layouts[hits.material[0]].has_rows()) {
+        if (!side.is_seen || !sends_light(light.layouts[hits.material[0]])) {
             return false;
         }
         const RowLayout& layout = light.layouts[hits.material[0]];

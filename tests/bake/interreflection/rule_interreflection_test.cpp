@@ -74,5 +74,28 @@ TEST(RuleInterreflection, AddsLessThanItsBound) {
     EXPECT_LT(most, bound);
 }
 
+// The floor is too dark to light itself; the metal above it sends what it mirrors.
+TEST(RuleInterreflection, AMetalLightsADarkFloorAndStaysBelowItsBound) {
+    formats::Scene scene = tests::make_plates(0.5f, 0.04f, 4);
+    scene.materials[1].base_color = {0.95f, 0.95f, 0.95f};
+    scene.materials[1].gloss.metallic = 1;
+    scene.materials[1].gloss.roughness = 0.5f;
+    std::vector<std::string> effects = kRuleEffects;
+    effects.emplace_back("gloss");
+    const auto with = tests::bake_scene(scene, tests::bounce_options(effects));
+    effects.erase(effects.begin() + 1);
+    const auto without = tests::bake_scene(scene, tests::bounce_options(effects));
+    const PlanEntry& entry = *find_entry(with.plan, "interreflection", 0);
+    ASSERT_TRUE(entry.on);
+    const auto a = tests::relight(without.asset.view(), "white");
+    const auto b = tests::relight(with.asset.view(), "white");
+    double most = 0;
+    for (std::size_t v = 0; v < scene.primitives[0].position.size(); ++v) {
+        most = std::max(most, static_cast<double>(b[v].g - a[v].g));
+    }
+    EXPECT_GT(most, 0.1 * entry.bound);
+    EXPECT_LT(most, entry.bound);
+}
+
 }  // namespace
 }  // namespace opaline::bake

@@ -25,16 +25,44 @@ TEST(SurfaceAlbedo, ColoursOfMaterialVerticesAndImageMultiply) {
     EXPECT_NEAR(c.b, 0, 1e-4);
 }
 
-TEST(SurfaceAlbedo, GlossAndMetalTakeFromTheDiffuseLobe) {
+// Schlick's Fresnel term over cosine-weighted directions: F0 + (1 - F0) / 21.
+TEST(SurfaceAlbedo, ASmoothMetalSendsTheMeanOfItsFresnelTerm) {
     formats::Scene scene = tests::make_plates(1, 0.5f, 1);
     RowLayout layout;
     layout.mirrors = true;
     scene.materials[0].gloss.metallic = 1;
-    EXPECT_NEAR(eval_surface_albedo(scene, layout, middle_of(scene)).g, 0, 1e-6);
+    scene.materials[0].gloss.roughness = 0;
+    const formats::Rgb color = scene.materials[0].base_color;
+    const formats::Rgb sent = eval_surface_albedo(scene, layout, middle_of(scene));
+    EXPECT_NEAR(sent.g, color.g + (1 - color.g) / 21, 0.005);
+    EXPECT_NEAR(sent.r, color.r + (1 - color.r) / 21, 0.005);
+}
+
+TEST(SurfaceAlbedo, AWhiteMetalOfAnyRoughnessSendsAllLight) {
+    formats::Scene scene = tests::make_plates(1, 0.5f, 1);
+    RowLayout layout;
+    layout.mirrors = true;
+    scene.materials[0].base_color = {1, 1, 1};
+    scene.materials[0].gloss.metallic = 1;
+    for (const float roughness : {0.1f, 0.5f, 1.0f}) {
+        scene.materials[0].gloss.roughness = roughness;
+        EXPECT_NEAR(eval_surface_albedo(scene, layout, middle_of(scene)).g, 1, 0.01) << roughness;
+    }
+}
+
+TEST(SurfaceAlbedo, ADielectricSendsItsDiffuseLobeAndWhatItMirrors) {
+    formats::Scene scene = tests::make_plates(1, 0.5f, 1);
+    RowLayout layout;
+    layout.mirrors = true;
+    scene.materials[0].base_color = {0, 0, 0};
     scene.materials[0].gloss = {.specular = 1};
-    const float dielectric = eval_surface_albedo(scene, layout, middle_of(scene)).g;
-    EXPECT_LT(dielectric, 0.5f);
-    EXPECT_GT(dielectric, 0.4f);
+    scene.materials[0].gloss.roughness = 0;
+    const float mirrored = eval_surface_albedo(scene, layout, middle_of(scene)).g;
+    EXPECT_NEAR(mirrored, 0.04 + 0.96 / 21, 0.005);
+    scene.materials[0].base_color = {0.5f, 0.5f, 0.5f};
+    const float all = eval_surface_albedo(scene, layout, middle_of(scene)).g;
+    EXPECT_GT(all, mirrored + 0.4f);
+    EXPECT_LT(all, mirrored + 0.5f);
 }
 
 }  // namespace
