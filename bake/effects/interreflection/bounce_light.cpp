@@ -23,7 +23,7 @@ struct Field {
     std::span<const Scatterer> scatterers;
     const ScattererLight& light;
 
-    bool is_sheet(std::size_t i) const {
+    bool passes_light(std::size_t i) const {
         return inputs.bake.scene.materials[scatterers[i].material].sheet.has_value();
     }
 };
@@ -56,7 +56,7 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
             std::uint64_t traced = 0;
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 traced += weigh(field.scatterers[i].outside, arrivals[i].front);
-                if (field.is_sheet(i)) {
+                if (field.passes_light(i)) {
                     traced += weigh(field.scatterers[i].beyond, arrivals[i].back);
                 }
             }
@@ -67,7 +67,7 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
 }
 
 // Of all rows under an even sky.
-double sum_of_even(const PackedRows& rows) {
+double sum_of_even(const CodedRows& rows) {
     double sum = 0;
     for (std::size_t i = 0; i < rows.count(); ++i) {
         const std::vector<float> row = rows.row(i);
@@ -82,7 +82,7 @@ double sum_of_even(const PackedRows& rows) {
 std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals,
                           BounceTree& tree) {
     const std::size_t size = field.light.row_size();
-    PackedRows leaving = field.light.emitted;
+    CodedRows leaving = field.light.emitted;
     // What neighbours see is mostly the same and still in the cache.
     const std::vector<std::uint32_t> order = tree.neighbours();
     const double emitted = sum_of_even(leaving);

@@ -5,8 +5,8 @@
 
 #include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/effects/interreflection/bounce_tree.h"
+#include "bake/effects/interreflection/coded_rows.h"
 #include "bake/effects/interreflection/gather_sites.h"
-#include "bake/effects/interreflection/packed_rows.h"
 #include "bake/effects/interreflection/scatterer_light.h"
 #include "bake/plan/effect.h"
 
@@ -34,7 +34,7 @@ struct BounceLight {
     BounceGrid of_site, of_receiver, of_averaged;  ///< rays; of a point whose light is averaged
     std::uint32_t bounces = 0;                     ///< that were added before the next was too dark
     GatherSites sites;                             ///< among receivers
-    PackedRows site_rows;                          ///< E, as long as the tree's
+    CodedRows site_rows;                           ///< E, as long as the tree's
 };
 
 /// Places scatterers and finds their light; null where receivers see no surface. `rays` counts up.

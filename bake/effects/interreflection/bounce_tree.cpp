@@ -71,7 +71,7 @@ BounceTree::BounceTree(std::span<const Scatterer> scatterers, std::size_t materi
             build(scatterers, members[group], all);
         }
     }
-    rows_ = PackedRows(nodes_.size(), row_size_);
+    rows_ = CodedRows(nodes_.size(), row_size_);
 }
 
 float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
@@ -151,7 +151,7 @@ std::vector<std::uint32_t> BounceTree::neighbours() const {
     return order;
 }
 
-void BounceTree::set_rows(const PackedRows& rows) {
+void BounceTree::set_rows(const CodedRows& rows) {
     // Backwards, children come before their parents, and the first child last.
     std::vector<std::vector<float>> waiting, spare;
     for (std::size_t v = nodes_.size(); v-- > 0;) {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/effects/interreflection/packed_rows.h"
+#include "bake/effects/interreflection/coded_rows.h"
 #include "bake/effects/interreflection/surface_side.h"
 #include "formats/scene.h"
 
@@ -48,7 +48,7 @@ class BounceTree {
     BounceTree(std::span<const Scatterer> scatterers, std::size_t materials, std::size_t row_size);
 
     /// `rows`: of all scatterers.
-    void set_rows(const PackedRows& rows);
+    void set_rows(const CodedRows& rows);
 
     /// Toward y, the first node of an area of at most `footprint` [m^2]; 0: the scatterer in whose
     /// cell y is. formats::kNone where that side of the material has no scatterer.
@@ -69,7 +69,7 @@ class BounceTree {
     Brightness brightness(std::uint32_t node) const { return nodes_[node].middle; }
 
     /// Rows of nodes.
-    const PackedRows& rows() const { return rows_; }
+    const CodedRows& rows() const { return rows_; }
     std::size_t size() const { return nodes_.size(); }
     std::size_t row_size() const { return row_size_; }
 
@@ -100,7 +100,7 @@ class BounceTree {
     std::vector<Node> nodes_;
     std::vector<Extent> extents_;       // of nodes
     std::vector<std::uint32_t> roots_;  // by material, side and axis
-    PackedRows rows_;
+    CodedRows rows_;
     std::size_t row_size_;
 };
 

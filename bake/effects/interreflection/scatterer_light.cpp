@@ -184,7 +184,7 @@ ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> 
     Field field{inputs,
                 scatterers,
                 make_even_sky(),
-                {bands, PackedRows(count, bands * kTexels), std::vector<BandColour>(count),
+                {bands, CodedRows(count, bands * kTexels), std::vector<BandColour>(count),
                  std::vector<BandColour>(count)}};
     rays += light_all(field);
     return std::move(field.light);

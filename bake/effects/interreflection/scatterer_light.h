@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/effects/interreflection/packed_rows.h"
+#include "bake/effects/interreflection/coded_rows.h"
 #include "bake/effects/interreflection/scatterers.h"
 #include "bake/plan/effect.h"
 
@@ -20,7 +20,7 @@ using BandColour = std::array<float, 3>;
 /// What scatterers make of the environment's light and of each other's.
 struct ScattererLight {
     std::uint32_t bands = 3;                    ///< or 1
-    PackedRows emitted;                         ///< B without bounces, band by band, Haar
+    CodedRows emitted;                          ///< B without bounces, band by band, Haar
     std::vector<BandColour> reflect, transmit;  ///< of bounced light, on its side and through it
 
     std::size_t row_size() const { return emitted.size(); }

@@ -74,7 +74,7 @@ std::vector<GatherSite> choose_sites(const LightInputs& inputs) {
 void light_sites(const LightInputs& inputs, BounceLight& light, std::uint64_t& rays) {
     std::vector<GatherSite> sites = choose_sites(inputs);
     const std::size_t size = light.tree.row_size();
-    light.site_rows = PackedRows(sites.size(), size);
+    light.site_rows = CodedRows(sites.size(), size);
     constexpr std::size_t kBlock = 16;
     for_each_block_in_order(
         sites.size(), kBlock, inputs.context,

@@ -9,16 +9,16 @@ namespace opaline::bake {
 
 /// Rows of floats, each in 16 bits times a scale of its row: off by at most 2^-16 of the row's
 /// largest value. Sums of many rows wait for memory, so half of the bytes are half of the time.
-class PackedRows {
+class CodedRows {
   public:
-    PackedRows() = default;
+    CodedRows() = default;
     /// `count` rows of `size` zeros.
-    PackedRows(std::size_t count, std::size_t size)
+    CodedRows(std::size_t count, std::size_t size)
         : code_(count * size), scale_(count), size_(size) {}
 
     /// `values`: rows of `size`, one after the other.
-    PackedRows(std::span<const float> values, std::size_t size)
-        : PackedRows(values.size() / size, size) {
+    CodedRows(std::span<const float> values, std::size_t size)
+        : CodedRows(values.size() / size, size) {
         for (std::size_t i = 0; i < count(); ++i) {
             set(i, values.subspan(i * size, size));
         }

@@ -1,4 +1,4 @@
-#include "bake/effects/interreflection/packed_rows.h"
+#include "bake/effects/interreflection/coded_rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ void add_codes(const std::int16_t* code, std::size_t count, float factor, float*
 
 }  // namespace
 
-void PackedRows::set(std::size_t i, std::span<const float> row) {
+void CodedRows::set(std::size_t i, std::span<const float> row) {
     float largest = 0;
     for (const float value : row) {
         largest = std::max(largest, std::abs(value));
@@ -34,11 +34,11 @@ void PackedRows::set(std::size_t i, std::span<const float> row) {
     }
 }
 
-void PackedRows::add(std::size_t i, float weight, std::span<float> to) const {
+void CodedRows::add(std::size_t i, float weight, std::span<float> to) const {
     add_codes(&code_[i * size_], size_, weight * scale_[i], to.data());
 }
 
-std::vector<float> PackedRows::row(std::size_t i) const {
+std::vector<float> CodedRows::row(std::size_t i) const {
     std::vector<float> values(size_);
     add(i, 1, values);
     return values;
