@@ -63,16 +63,15 @@ LightWork bounce_light_work(const CostInput& input) {
     // they go; nodes that rays of scatterers meet.
     constexpr double kCodeBytes = 2;
     const double row = kCodeBytes * row_cells(3);
-    work.bytes = scatterers *
-                 (4 * row + kRaysOfScatterer * kHitShare * kClustersPerHit * sizeof(NodeWeight));
+    work.bytes = scatterers * (4 * row + kRaysOfScatterer * kHitShare * sizeof(NodeWeight));
     if (input.receivers >= static_cast<double>(kFewestWithSites)) {
         const double sites = std::min(input.receivers, static_cast<double>(kMostSites));
         work.bytes += sites * row;
         work.work.shared += ray_work(
             input, sites * count_rays_of_site(count_bounce_rays(input.knobs[kBounceRays])), 3);
     }
-    work.work.shared += (kBounces - 1) * scatterers * kRaysOfScatterer * kHitShare *
-                        kClustersPerHit * row_cells(3) * input.rates.bounce_cell;
+    work.work.shared += (kBounces - 1) * scatterers * kRaysOfScatterer * kHitShare * row_cells(3) *
+                        input.rates.bounce_cell;
     return work;
 }
 

@@ -47,7 +47,7 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
     constexpr std::size_t kBlock = 16;
     const auto weigh = [&](const Receiver& at, std::vector<NodeWeight>& weights) {
         return weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
-                             field.inputs.knobs.seed, weights)
+                             field.inputs.knobs.seed, weights, LookUp::nearest)
             .rays;
     };
     for_each_block_in_order(
@@ -70,9 +70,8 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
 double sum_of_even(const CodedRows& rows) {
     double sum = 0;
     for (std::size_t i = 0; i < rows.count(); ++i) {
-        const std::vector<float> row = rows.row(i);
-        for (std::size_t k = 0; k < row.size(); k += kTexels / 6) {
-            sum += static_cast<double>(std::abs(row[k]));
+        for (std::size_t k = 0; k < rows.size(); k += kTexels / 6) {
+            sum += static_cast<double>(std::abs(rows.value(i, k)));
         }
     }
     return sum;
@@ -90,7 +89,7 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
     std::uint32_t bounces = 0;
     while (bounces < kMostBounces && last_bounce > kLeastShare * emitted &&
            !field.inputs.context.cancelled()) {
-        tree.set_rows(leaving);
+        tree.set_rows(leaving, field.inputs.context);
         constexpr std::size_t kBlock = 64;
         for_each_block_in_order(
             arrivals.size(), kBlock, field.inputs.context,
@@ -115,7 +114,7 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
         all = sum;
         ++bounces;
     }
-    tree.set_rows(leaving);
+    tree.set_rows(leaving, field.inputs.context);
     return bounces;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
 #include <utility>
 
 #include "bake/effects/interreflection/scatterers.h"
@@ -151,12 +152,11 @@ std::vector<std::uint32_t> BounceTree::neighbours() const {
     return order;
 }
 
-void BounceTree::set_rows(const CodedRows& rows) {
-    // Backwards, children come before their parents, and the first child last.
+// Backwards, children come before their parents, and the first child last.
+std::vector<float> BounceTree::set_branch(const CodedRows& rows, Range nodes) {
     std::vector<std::vector<float>> waiting, spare;
-    for (std::size_t v = nodes_.size(); v-- > 0;) {
-        const Node& node = nodes_[v];
-        if (node.right == 0) {
+    for (std::size_t v = nodes.end; v-- > nodes.begin;) {
+        if (nodes_[v].right == 0) {
             if (spare.empty()) {
                 spare.emplace_back(row_size_);
             }
@@ -165,16 +165,53 @@ void BounceTree::set_rows(const CodedRows& rows) {
             std::ranges::fill(waiting.back(), 0.0f);
             rows.add(extents_[v].scatterer, 1, waiting.back());
         } else {
-            const float left = nodes_[v + 1].cell / node.cell, right = 1 - left;
             spare.push_back(std::move(waiting.back()));
             waiting.pop_back();
-            const std::vector<float>& first = spare.back();
-            std::vector<float>& second = waiting.back();
-            for (std::size_t k = 0; k < row_size_; ++k) {
-                second[k] = left * first[k] + right * second[k];
-            }
+            average(v, spare.back(), waiting.back());
         }
         rows_.set(v, waiting.back());
+    }
+    return std::move(waiting.back());
+}
+
+void BounceTree::average(std::size_t node, std::span<const float> first,
+                         std::span<float> second) const {
+    const float left = nodes_[node + 1].cell / nodes_[node].cell, right = 1 - left;
+    for (std::size_t k = 0; k < row_size_; ++k) {
+        second[k] = left * first[k] + right * second[k];
+    }
+}
+
+void BounceTree::set_rows(const CodedRows& rows, const Context& context) {
+    constexpr std::size_t kBranch = 512;  // nodes, at most
+    std::vector<std::size_t> size(nodes_.size(), 1), branches, trunk;
+    for (std::size_t v = nodes_.size(); v-- > 0;) {
+        if (nodes_[v].right != 0) {
+            size[v] += size[v + 1] + size[nodes_[v].right];
+        }
+    }
+    for (std::size_t v = 0; v < nodes_.size();) {
+        const bool is_branch = size[v] <= kBranch;
+        (is_branch ? branches : trunk).push_back(v);
+        v += is_branch ? size[v] : 1;
+    }
+    std::vector<std::vector<float>> mean(nodes_.size());  // of branches and what holds them
+    for_each_block_in_order(
+        branches.size(), 1, context,
+        [&](Range range) {
+            const std::size_t v = branches[range.begin];
+            mean[v] = set_branch(rows, {v, v + size[v]});
+            return 0;
+        },
+        [](Range, int) {});
+    if (context.cancelled()) {
+        return;
+    }
+    for (const std::size_t v : std::views::reverse(trunk)) {
+        mean[v] = std::move(mean[nodes_[v].right]);
+        average(v, mean[v + 1], mean[v]);
+        mean[v + 1].clear();
+        rows_.set(v, mean[v]);
     }
 }
 

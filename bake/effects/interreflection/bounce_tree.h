@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/base/ordered_parallel.h"
 #include "bake/effects/interreflection/coded_rows.h"
 #include "bake/effects/interreflection/surface_side.h"
 #include "formats/scene.h"
@@ -47,8 +48,8 @@ class BounceTree {
     /// `materials`: of the scene. Rows of `row_size` floats are 0 until set_rows.
     BounceTree(std::span<const Scatterer> scatterers, std::size_t materials, std::size_t row_size);
 
-    /// `rows`: of all scatterers.
-    void set_rows(const CodedRows& rows);
+    /// `rows`: of all scatterers. Where the context is cancelled, some are not set.
+    void set_rows(const CodedRows& rows, const Context& context = {});
 
     /// Toward y, the first node of an area of at most `footprint` [m^2]; 0: the scatterer in whose
     /// cell y is. formats::kNone where that side of the material has no scatterer.
@@ -96,6 +97,10 @@ class BounceTree {
     float build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
                 const Box& cell);
     std::uint32_t root_of(const SurfaceSide& side) const;
+    // Rows of a node and all below it, one after the other; returns its own.
+    std::vector<float> set_branch(const CodedRows& rows, Range nodes);
+    // second becomes the node's mean of both its children.
+    void average(std::size_t node, std::span<const float> first, std::span<float> second) const;
 
     std::vector<Node> nodes_;
     std::vector<Extent> extents_;       // of nodes

@@ -29,6 +29,9 @@ class CodedRows {
     /// to += weight * row i.
     void add(std::size_t i, float weight, std::span<float> to) const;
     std::vector<float> row(std::size_t i) const;
+    float value(std::size_t i, std::size_t k) const {
+        return scale_[i] * static_cast<float>(code_[i * size_ + k]);
+    }
 
     std::size_t size() const { return size_; }
     std::size_t count() const { return scale_.size(); }
