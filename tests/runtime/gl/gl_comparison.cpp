@@ -54,7 +54,8 @@ void expect_same_picture(const Picture& cpu, const Picture& gl) {
     std::cout << "[ agreement] mean " << difference / sum << ", off " << off << " of "
               << cpu.pixel.size() << "\n";
     EXPECT_LT(difference / sum, 1e-3);
-    EXPECT_LE(off, cpu.pixel.size() / 1000);
+    // GPUs snap vertices to 1/256 of a pixel: a pixel on an edge may show what is behind it.
+    EXPECT_LE(off, cpu.pixel.size() / 500);
 }
 
 }  // namespace opaline::test
