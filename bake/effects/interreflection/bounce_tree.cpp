@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
 #include <utility>
 
 #include "bake/effects/interreflection/scatterers.h"
@@ -207,7 +206,8 @@ void BounceTree::set_rows(const CodedRows& rows, const Context& context) {
     if (context.cancelled()) {
         return;
     }
-    for (const std::size_t v : std::views::reverse(trunk)) {
+    for (std::size_t i = trunk.size(); i-- > 0;) {
+        const std::size_t v = trunk[i];
         mean[v] = std::move(mean[nodes_[v].right]);
         average(v, mean[v + 1], mean[v]);
         mean[v + 1].clear();
