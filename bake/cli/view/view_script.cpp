@@ -329,7 +329,9 @@ formats::Result<std::vector<ScriptStep>> parse_script(std::string_view text,
                           : make_error(ErrorKind::bad_input, "", "", "a quote is not closed",
                                        "close it on its line");
         if (what) {
-            steps.push_back({number, std::move(*what)});
+            ScriptStep& step = steps.emplace_back();
+            step.line = number;
+            step.what = std::move(*what);
             continue;
         }
         formats::Diagnostic fault = what.error().diagnostics.front();
