@@ -7,7 +7,7 @@
 
 namespace opaline::bake {
 
-/// Rows of floats, each in 16 bits times a scale of its row: off by at most 2^-16 of the row's
+/// Rows of floats, each in 16 bits times a scale of its row: off by at most 1.6e-5 of the row's
 /// largest value. Sums of many rows wait for memory, so half of the bytes are half of the time.
 class CodedRows {
   public:
