@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "formats/opal/ggx_albedo.h"
+#include "runtime/embed_gl/gloss_tables.h"
 
 namespace opaline::runtime {
 
@@ -38,21 +39,9 @@ void GlossyLight::upload(const GlossLight& light) {
         gl_.TexImage3D(GL_TEXTURE_2D_ARRAY, static_cast<GLint>(level), GL_RGBA32F, n, n, 6, 0,
                        GL_RGBA, GL_FLOAT, rgba.data());
     }
-    const GlossLight::Cells& c = light.cells;
-    std::vector<float> cells, suns;
-    cells.reserve(8 * c.size());
-    for (std::size_t i = 0; i < c.size(); ++i) {
-        cells.insert(cells.end(), {c.x[i], c.y[i], c.z[i], c.solid_angle[i], c.r[i], c.g[i], c.b[i],
-                                   c.widening[i]});
-    }
-    for (const formats::DistantDisc& sun : light.suns) {
-        suns.insert(suns.end(),
-                    {sun.direction.x, sun.direction.y, sun.direction.z, sun.angular_radius,
-                     sun.radiance.r, sun.radiance.g, sun.radiance.b,
-                     static_cast<float>(formats::disc_solid_angle(sun.angular_radius))});
-    }
+    std::vector<float> suns = make_sun_table(light);
     if (suns.empty()) suns.resize(8);  // one that lights nothing
-    upload_table(cells_, 2, cells);
+    upload_table(cells_, 2, make_cell_table(light));
     upload_table(suns_, 2, suns);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/opal/ggx_albedo.h"
+#include "runtime/embed_gl/gloss_tables.h"
 
 namespace opaline::runtime {
 namespace {
@@ -70,18 +71,7 @@ void upload_gloss_light(const GlossLight& light, GlSpecular& gl) {
                             GL_FLOAT, map.pixel.data());
         gl.resident += 16 * map.pixel.size();
     }
-    const GlossLight::Cells& c = light.cells;
-    std::vector<float> cells, suns;
-    for (std::size_t i = 0; i < c.size(); ++i) {
-        cells.insert(cells.end(), {c.x[i], c.y[i], c.z[i], c.solid_angle[i], c.r[i], c.g[i], c.b[i],
-                                   c.widening[i]});
-    }
-    for (const formats::DistantDisc& sun : light.suns) {
-        suns.insert(suns.end(),
-                    {sun.direction.x, sun.direction.y, sun.direction.z, sun.angular_radius,
-                     sun.radiance.r, sun.radiance.g, sun.radiance.b,
-                     static_cast<float>(formats::disc_solid_angle(sun.angular_radius))});
-    }
+    const std::vector<float> cells = make_cell_table(light), suns = make_sun_table(light);
     gl.cells = make_buffer_of(std::span<const float>(cells), gl.resident);
     gl.suns = make_buffer_of(std::span<const float>(suns), gl.resident);
     gl.suns_count = static_cast<std::int32_t>(light.suns.size());
