@@ -15,9 +15,10 @@ if(OPALINE_BUILD_GL)
         list(APPEND OPALINE_INSTALLED opaline_gl_shared)
     endif()
     install(FILES opaline_gl.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/embed_gl/shaders/generated/opaline_surface.glsl
-                  ${CMAKE_CURRENT_BINARY_DIR}/embed_gl/shaders/generated/opaline_gloss.glsl
-            DESTINATION ${CMAKE_INSTALL_DATADIR}/opaline/glsl)
+    foreach(OPALINE_GLSL_FILE surface gloss volumes)
+        list(APPEND OPALINE_GLSL_FILES ${CMAKE_CURRENT_BINARY_DIR}/embed_gl/shaders/generated/opaline_${OPALINE_GLSL_FILE}.glsl)
+    endforeach()
+    install(FILES ${OPALINE_GLSL_FILES} DESTINATION ${CMAKE_INSTALL_DATADIR}/opaline/glsl)
 endif()
 install(TARGETS ${OPALINE_INSTALLED} EXPORT OpalineTargets
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}

@@ -12,7 +12,8 @@
    share/opaline/glsl/opaline_surface.glsl holds functions that turn a receiver's radiance into that
    of a surface seen by the eye, opaline_gloss.glsl those of glossy opaque ones (after the former).
    Paste them into shaders of GLSL 3.30, ES 3.00 or later, behind the version; default precisions
-   are high from there on. */
+   are high from there on. opaline_volumes.glsl holds those of volumes, below; each file may be used
+   without the others but for opaline_gloss.glsl. */
 #ifndef OPALINE_GL_H
 #define OPALINE_GL_H
 
@@ -30,8 +31,9 @@ typedef void* (*opaline_gl_loader)(const char* name);
 
 typedef enum opaline_gl_flags {
     OPALINE_GL_DEFAULT = 0,
-    OPALINE_GL_WITH_MESH = 1,   /* uploads the mesh: for hosts that draw it from the asset */
-    OPALINE_GL_WITH_TEXTURE = 2 /* keeps a texture of the radiance beside the buffer */
+    OPALINE_GL_WITH_MESH = 1,    /* uploads the mesh: for hosts that draw it from the asset */
+    OPALINE_GL_WITH_TEXTURE = 2, /* keeps a texture of the radiance beside the buffer */
+    OPALINE_GL_WITH_VOLUMES = 4  /* uploads volumes, four at most */
 } opaline_gl_flags;
 
 /* Uploads transport and compiles the shaders; all radiance is 0 until the first relight. The asset
@@ -52,8 +54,9 @@ OPALINE_API opaline_status opaline_gl_release(opaline_gl* gl);
    and number of emitters; it is copied from. OPALINE_OUT_OF_MEMORY where the driver has none. */
 OPALINE_API opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light);
 
-/* Where translucent and thin-walled receivers are seen from, in the asset's world [m], three finite
-   floats; NULL, as at first: each along its own normal. Opaque receivers cost nothing. */
+/* Where translucent and thin-walled receivers and volumes are seen from, in the asset's world [m],
+   three finite floats; NULL, as at first: each receiver along its own normal, volumes from the
+   world's origin. Opaque receivers cost nothing. */
 OPALINE_API opaline_status opaline_gl_look_from(opaline_gl* gl, const float eye[3]);
 
 /* Names of GL objects; 0 where there is none. They stay the library's and keep their names until
@@ -115,6 +118,41 @@ typedef struct opaline_gl_surface {
 /* Fills `surface`. */
 OPALINE_API opaline_status opaline_gl_get_surface(const opaline_gl* gl, uint32_t primitive,
                                                   opaline_gl_surface* surface);
+
+/* --- Volumes ------------------------------------------------------------------------------ */
+
+/* Uploads what the volumes scatter, updated by opaline_volume_light_update, which relights their
+   nodes on the CPU: 12 bytes a node and term. Until the first call they only absorb. The volume
+   light must have been made for the handle of the asset that opaline_gl_create had; it is copied
+   from. Nothing happens without volumes, or without OPALINE_GL_WITH_VOLUMES. */
+OPALINE_API opaline_status opaline_gl_light_volumes(opaline_gl* gl,
+                                                    const opaline_volume_light* volume_light);
+
+/* What share/opaline/glsl/opaline_volumes.glsl reads, in GLSL 4.00 or ES 3.00 and later. Before it
+   the host defines OPALINE_VOLUMES and OPALINE_VOLUME_TERMS, the `count` and `terms` below; a
+   program costs registers and time to compile for each volume. Its functions take places as
+   offsets from the eye of opaline_gl_look_from, in world directions [m], so that floats keep
+   digits; `direction` and `to_eye` are unit vectors:
+
+       OpalineSeen opaline_march_volumes(vec3 from, vec3 direction, float begin, float end)
+           .radiance that volumes scatter toward `from` and .transmittance of what lies behind, of
+           the ray from begin >= 0 to end: as opaline_volumes_march with its usual options. An end
+           of 1e30: a ray without end. A pixel shows radiance + transmittance * its color.
+       OpalineVolumeSample opaline_sample_volumes(vec3 place, vec3 to_eye)
+           .extinction [1/m] and .scattered radiance per metre: as opaline_volumes_sample. */
+typedef struct opaline_gl_volumes {
+    size_t struct_size; /* in: sizeof(opaline_gl_volumes) */
+    uint32_t count;     /* 0: there are none, or without the flag; then all names are 0 */
+    uint32_t terms;
+    uint32_t block; /* buffer of the uniform block OpalineVolumeRecords; the eye changes it, too */
+    /* 2D textures of the usampler2D opaline_brick_numbers, opaline_density_codes and
+       opaline_corner_numbers, and of the sampler2D opaline_node_light and opaline_phase_entries. */
+    uint32_t brick_numbers, density_codes, corner_numbers, node_light, phase_entries;
+} opaline_gl_volumes;
+
+/* Fills `volumes`. The names stay the library's and the same until the release. */
+OPALINE_API opaline_status opaline_gl_get_volumes(const opaline_gl* gl,
+                                                  opaline_gl_volumes* volumes);
 
 #ifdef __cplusplus
 }

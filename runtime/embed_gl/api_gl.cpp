@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <memory>
@@ -7,36 +6,12 @@
 #include <utility>
 
 #include "runtime/api_support.h"
-#include "runtime/embed_gl/glossy_light.h"
-#include "runtime/embed_gl/mirrored_light.h"
-#include "runtime/embed_gl/relight.h"
+#include "runtime/embed_gl/api_gl_support.h"
 #include "runtime/embed_gl/saved_state.h"
 
 namespace formats = opaline::formats;
 namespace runtime = opaline::runtime;
 using namespace opaline::runtime::api;
-
-struct opaline_gl {
-    runtime::GlFunctions gl;
-    runtime::GlNames names{gl};
-    runtime::Relight relight{gl};
-    runtime::MirroredLight mirrored{gl};
-    runtime::GlossyLight glossy{gl};
-    std::vector<formats::GlossRecord> gloss;  // of each primitive, or none
-    std::vector<formats::PrimitiveRecord> primitives;
-    GLuint marker_program = 0;
-    std::uint32_t marker = 0;  // a uniform of it: no other context's program of that name has it
-    std::uint32_t cubemap_size = 0;
-    std::size_t emitters = 0;
-    std::optional<formats::Vec3> eye;
-    bool is_relit = false;
-    std::uint64_t specular_id = 0;  // of the SpecularLight that is uploaded
-    opaline_gl_objects objects{};
-
-    opaline_gl() = default;
-    opaline_gl(const opaline_gl&) = delete;  // members refer to each other
-    opaline_gl& operator=(const opaline_gl&) = delete;
-};
 
 namespace {
 
@@ -53,32 +28,6 @@ layout(location = 0) uniform uint marker;
 layout(std430, binding = 0) writeonly buffer Result { uint result; };
 void main() { result = marker; }
 )";
-
-opaline_status lost() {
-    return fail(OPALINE_GL_CONTEXT_LOST,
-                "the driver lost the context: make another, and the handle once more in it");
-}
-
-// Whether the handle's context, or one that shares its objects, is current.
-opaline_status check_context(const opaline_gl& handle) {
-    const GlFunctions& gl = handle.gl;
-    if (gl.GetString(GL_VERSION) == nullptr) {
-        return fail(OPALINE_GL_NO_CONTEXT, "no OpenGL context is current on this thread");
-    }
-    if (gl.GetGraphicsResetStatus != nullptr && gl.GetGraphicsResetStatus() != GL_NO_ERROR) {
-        return lost();
-    }
-    std::array<GLuint, 16> value{};  // as large as another program's uniform may be
-    if (gl.IsProgram(handle.marker_program) == GL_TRUE) {
-        gl.GetUniformuiv(handle.marker_program, 0, value.data());
-    }
-    runtime::drop_errors(gl);
-    if (value[0] != handle.marker) {
-        return fail(OPALINE_GL_WRONG_CONTEXT,
-                    "another OpenGL context is current than the one of opaline_gl_create");
-    }
-    return OPALINE_OK;
-}
 
 opaline_status make_marker(opaline_gl& handle) {
     handle.marker_program = handle.names.make_program("the context's mark", "", kMarkerText);
@@ -163,6 +112,9 @@ opaline_status upload(opaline_gl& handle, const formats::AssetView& asset, std::
         handle.objects.albedo = handle.glossy.albedo();
     }
     if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_MESH) != 0) upload_mesh(handle, asset);
+    if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_VOLUMES) != 0) {
+        status = handle.volumes.make(asset.volumes, handle.names);
+    }
     if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_TEXTURE) != 0) {
         status = make_texture(handle, asset.receivers());
         if (status == OPALINE_OK) refresh_texture(handle);
@@ -179,18 +131,21 @@ opaline_status opaline_gl_create(const opaline_asset* asset, opaline_gl_loader l
     if (asset == nullptr || out == nullptr) {
         return null_argument();
     }
-    if ((flags & ~std::uint32_t{OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_TEXTURE}) != 0) {
+    constexpr std::uint32_t kKnown =
+        OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_TEXTURE | OPALINE_GL_WITH_VOLUMES;
+    if ((flags & ~kKnown) != 0) {
         return fail(OPALINE_INVALID_ARGUMENT, "unknown flags");
     }
     return guarded([&] {
         auto handle = std::make_unique<opaline_gl>();
+        handle->asset_id = asset->id;
         const opaline_status loaded = runtime::load_gl_functions(loader, handle->gl);
         if (loaded != OPALINE_OK) {
             return loaded;
         }
         if (handle->gl.GetGraphicsResetStatus != nullptr &&
             handle->gl.GetGraphicsResetStatus() != GL_NO_ERROR) {
-            return lost();
+            return lost_context();
         }
         runtime::drop_errors(handle->gl);
         const runtime::SavedState saved(handle->gl);
@@ -259,11 +214,13 @@ opaline_status opaline_gl_look_from(opaline_gl* gl, const float eye[3]) {
         return status;
     }
     gl->eye = eye == nullptr ? std::nullopt : std::optional(Vec3{eye[0], eye[1], eye[2]});
-    if (!gl->is_relit || !gl->relight.needs_eye()) {
+    const bool are_receivers_seen = gl->is_relit && gl->relight.needs_eye();
+    if (!are_receivers_seen && gl->volumes.size() == 0) {
         return OPALINE_OK;
     }
     const runtime::SavedState saved(gl->gl);
-    show(*gl);
+    gl->volumes.look_from(gl->eye.value_or(Vec3{}));
+    if (are_receivers_seen) show(*gl);
     return runtime::check_errors(gl->gl, "adding up view terms");
 }
 

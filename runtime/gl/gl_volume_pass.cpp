@@ -1,8 +1,6 @@
 #include "runtime/gl/gl_volume_pass.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -28,59 +26,10 @@ enum Uniform : GLint {
 };
 static_assert(kEyeAboveGround == 15);
 
-// Volume of volume_march.glsl.
-struct ShaderVolume {
-    std::array<std::array<float, 4>, 3> to_bricks{};
-    std::array<std::uint32_t, 4> extent_first{}, numbers{};
-    std::array<float, 4> extinction{}, albedo{};
-    std::array<std::uint32_t, 4> coefficient{};
-};
-static_assert(sizeof(ShaderVolume) == 128);
-
-// The way from the camera into the table, in shader units. False where floats cannot hold it.
-bool set_way(const VolumeLattice& lattice, const Camera& camera, ShaderVolume& volume) {
-    const double unit = view_unit(camera);
-    const auto eye = index_of_point(lattice, camera.eye);
-    bool is_finite = true;
-    for (std::size_t a = 0; a < 3; ++a) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            volume.to_bricks[a][c] =
-                static_cast<float>(lattice.to_index[4 * a + c] / formats::kBrickSide / unit);
-        }
-        volume.to_bricks[a][3] =
-            static_cast<float>(eye[a] / formats::kBrickSide - lattice.record->first_brick[a]);
-        is_finite = is_finite && std::ranges::all_of(volume.to_bricks[a],
-                                                     [](float x) { return std::isfinite(x); });
-    }
-    return is_finite;
-}
-
-ShaderVolume shader_volume(const GlVolumes& volumes, const GlVolumes::Entry& entry,
-                           const Camera& camera) {
-    const formats::VolumeRecord& record = *entry.lattice.record;
-    const VolumeLight::Part& part = volumes.light.part[entry.volume];
-    ShaderVolume volume;
-    // Without cells it is nowhere.
-    if (!set_way(entry.lattice, camera, volume)) return {};
-    volume.extent_first = {record.extent[0], record.extent[1], record.extent[2],
-                           static_cast<std::uint32_t>(record.first_cell)};
-    volume.numbers = {record.first_brick_number, static_cast<std::uint32_t>(record.first_corner),
-                      record.corners_along_edge() - 1, part.terms};
-    const auto per_unit = [&](float sigma) {
-        return static_cast<float>(std::min(static_cast<double>(sigma) / view_unit(camera), 1e30));
-    };
-    volume.extinction = {per_unit(record.sigma_t.r), per_unit(record.sigma_t.g),
-                         per_unit(record.sigma_t.b), 0};
-    volume.albedo = {record.albedo.r, record.albedo.g, record.albedo.b, 0};
-    volume.coefficient = {static_cast<std::uint32_t>(3 * part.first), part.suns,
-                          static_cast<std::uint32_t>(formats::kPhaseEntries * entry.volume), 0};
-    return volume;
-}
-
 }  // namespace
 
 formats::Result<GlProgram> make_volume_program(const GlVolumes& volumes, bool layer) {
-    const std::string text = std::string(volume_march_text) + volumes_frag_text;
+    const std::string text = std::string(volume_march_text) + harmonics_text + volumes_frag_text;
     const std::array<StageSource, 2> stages{
         {{GL_VERTEX_SHADER, screen_vert_text}, {GL_FRAGMENT_SHADER, text.c_str()}}};
     return make_program("volumes",
@@ -98,7 +47,9 @@ void draw_volumes_filtered(const DrawScene& scene, const GlProgram& program, con
     const TileGrid& grid = view.grid;
     std::vector<ShaderVolume> records;
     for (const GlVolumes::Entry& entry : scene.volumes.entry) {
-        records.push_back(shader_volume(scene.volumes, entry, scene.camera));
+        records.push_back(make_shader_volume(entry.lattice, entry.volume,
+                                             scene.volumes.light.part[entry.volume],
+                                             scene.camera.eye, view_unit(scene.camera)));
     }
     std::size_t size = 0;
     const GlBuffer buffer = make_buffer_of(std::span<const ShaderVolume>(records), size);

@@ -1,90 +1,16 @@
 #include "runtime/gl/gl_volumes.h"
 
-#include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
-#include <iterator>
-#include <limits>
 #include <string>
-
-#include "runtime/parallel.h"
-#include "runtime/volumes/suns.h"
-#include "runtime/volumes/volume_source.h"
 
 namespace opaline::runtime {
 namespace {
 
 using formats::ErrorKind;
-using formats::kBrickSide;
-using formats::kBrickVoxels;
-using formats::kNoBrick;
 using formats::make_error;
 using formats::SparseRows;
 using formats::TermSet;
 using formats::VolumesView;
-
-constexpr std::size_t kSide = kBrickSide + 1;
-
-// The density at a brick's 9 x 9 x 9 voxels, x fastest.
-using PaddedBrick = std::array<float, kSide * kSide * kSide>;
-
-PaddedBrick pad_brick(const VolumeLattice& lattice, std::array<std::int32_t, 3> cell) {
-    const BrickBlock block = brick_block(lattice, cell);
-    PaddedBrick value{};
-    for (std::size_t i = 0; i < value.size(); ++i) {
-        const std::array<std::size_t, 3> at{i % kSide, i / kSide % kSide, i / kSide / kSide};
-        std::size_t neighbour = 0, offset = 0;
-        for (std::size_t a = 3; a-- > 0;) {
-            neighbour |= (at[a] / kBrickSide) << a;
-            offset = offset * kBrickSide + at[a] % kBrickSide;
-        }
-        const std::uint32_t brick = block.number[neighbour];
-        if (brick == kNoBrick) continue;
-        value[i] = lattice.density_scale[brick] *
-                   static_cast<float>(lattice.density[brick * kBrickVoxels + offset]);
-    }
-    return value;
-}
-
-// Keeps the brick's own codes unless a neighbour's density needs a larger scale.
-void pack_brick(const PaddedBrick& value, float own_scale, std::span<std::uint32_t> words) {
-    constexpr float kLargestCode = 65535;
-    const float full =
-        std::min(std::max(own_scale * kLargestCode, *std::ranges::max_element(value)),
-                 std::numeric_limits<float>::max());
-    const auto code = [&](std::size_t i) {
-        const float share = value[i] / full;  // NaN of damaged values becomes 0
-        return static_cast<std::uint32_t>(
-            std::lround(share > 0 ? std::min(share, 1.0f) * kLargestCode : 0.0f));
-    };
-    words[0] = std::bit_cast<std::uint32_t>(full);
-    for (std::size_t row = 0; row < kSide * kSide; ++row) {
-        for (std::size_t x = 0; x < kBrickSide; ++x) {
-            const std::size_t i = row * kSide + x;
-            words[1 + row * kBrickSide + x] = code(i) | code(i + 1) << 16;
-        }
-    }
-}
-
-// Writes the bricks of one volume to their places among those of all.
-void pack_bricks(const VolumeLattice& lattice, std::span<std::uint32_t> words) {
-    const auto& extent = lattice.record->extent;
-    const auto cells = static_cast<std::uint32_t>(lattice.table.size());
-    for_ranges(cells, 64, 0, [&](std::uint32_t first, std::uint32_t end) {
-        for (std::uint32_t at = first; at < end; ++at) {
-            const std::uint32_t brick = lattice.table[at];
-            if (brick == kNoBrick) continue;
-            const std::array<std::int32_t, 3> cell{
-                static_cast<std::int32_t>(at % extent[0]),
-                static_cast<std::int32_t>(at / extent[0] % extent[1]),
-                static_cast<std::int32_t>(at / extent[0] / extent[1])};
-            const std::size_t number = std::size_t{lattice.record->first_brick_number} + brick;
-            pack_brick(pad_brick(lattice, cell), lattice.density_scale[brick],
-                       words.subspan(number * kGlBrickWords, kGlBrickWords));
-        }
-    });
-}
 
 SparseRows copy_rows(const formats::SparseRowsView& view) {
     const auto copy = [](const auto& span, auto& vector) {
@@ -105,18 +31,8 @@ SparseRows copy_rows(const formats::SparseRowsView& view) {
     return rows;
 }
 
-std::uint32_t most_terms(const formats::VolumeRecord& record) {
-    return std::max(record.single_terms, record.multiple_terms);
-}
-
 std::size_t coefficient_bytes(const VolumesView& volumes) {
-    std::size_t size = 0;
-    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
-        const formats::VolumeRecord& record = volumes.records[v];
-        const std::size_t suns = needs_suns(record, volumes.phase_of(v)) ? kMaxSuns : 0;
-        size += record.node_count * (most_terms(record) + suns) * sizeof(formats::Rgb);
-    }
-    return size;
+    return most_coefficients(volumes) * sizeof(formats::Rgb);
 }
 
 formats::Status check_limits(const VolumesView& volumes, std::size_t max_block_bytes) {
@@ -174,22 +90,17 @@ formats::Result<GlVolumes> upload_volumes(const VolumesView& volumes, std::size_
     gl.kept.records.assign(volumes.records.begin(), volumes.records.end());
     gl.kept.phase.assign(volumes.phase.begin(), volumes.phase.end());
     gl.kept.rows = copy_rows(volumes.rows);
-    std::vector<std::uint32_t> words(volumes.density_scale.size() * kGlBrickWords);
+    gl.harmonics = most_node_terms(gl.kept.records);
     for (std::size_t v = 0; v < gl.kept.records.size(); ++v) {
         const formats::VolumeRecord& record = gl.kept.records[v];
-        gl.harmonics = std::max(gl.harmonics, most_terms(record));
-        auto lattice = make_lattice(volumes, record);
-        if (!lattice) continue;
-        pack_bricks(*lattice, words);
-        gl.entry.push_back({{&record, lattice->to_index, {}, {}, {}, {}}, v});
+        const auto lattice = make_lattice(volumes, record);
+        if (lattice) gl.entry.push_back({{&record, lattice->to_index, {}, {}, {}, {}}, v});
     }
     gl.table = make_buffer_of(volumes.table, gl.resident);
     gl.corner = make_buffer_of(volumes.corner, gl.resident);
+    const std::vector<std::uint32_t> words = pack_density(volumes);
     gl.density = make_buffer_of(std::span<const std::uint32_t>(words), gl.resident);
-    // A damaged file may hold NaN, which not all drivers handle.
-    std::vector<float> phase;
-    std::ranges::transform(volumes.phase, std::back_inserter(phase),
-                           [](float p) { return tame(p, kLargestSource); });
+    const std::vector<float> phase = tame_phases(volumes);
     gl.phase = make_buffer_of(std::span<const float>(phase), gl.resident);
     gl.resident += coefficient_bytes(volumes);
     if (const auto status = check_gl("uploading volumes"); !status) return status.error();

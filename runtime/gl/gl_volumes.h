@@ -7,16 +7,13 @@
 #include "formats/opal/result.h"
 #include "formats/opal/terms.h"
 #include "formats/opal/volumes.h"
+#include "runtime/embed_gl/volume_tables.h"
 #include "runtime/gl/gl_objects.h"
 #include "runtime/light_vector.h"
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/volume_lattice.h"
 
 namespace opaline::runtime {
-
-/// Every pixel keeps the registers of all of them, and the first picture waits for the driver to
-/// compile: on llvmpipe some seconds for one, 5 to 12 s for four, 50 s for sixteen.
-inline constexpr std::size_t kMaxGlVolumes = 4;
 
 /// An asset's volumes on the GPU. Their dot products stay on the CPU, which keeps the rows.
 struct GlVolumes {
@@ -28,7 +25,7 @@ struct GlVolumes {
     formats::Volumes kept;     ///< records, phase functions and rows
 
     GlBuffer table, corner;
-    GlBuffer density;  ///< kGlBrickWords a brick
+    GlBuffer density;  ///< pack_density
     GlBuffer phase;    ///< kPhaseEntries a volume
     GlBuffer coefficient;
     VolumeLight light;            ///< its coefficients are on the GPU
@@ -40,11 +37,6 @@ struct GlVolumes {
 
     bool empty() const { return entry.empty(); }
 };
-
-/// Of a brick: the scale of its codes as the bits of a float (density = scale * code / 65535), then
-/// 8 x 9 x 9 words, x fastest: the code of a voxel in the lower half, of the next along x in the
-/// upper. The ninth layers are those of the neighbours, so that a lookup stays in its brick.
-inline constexpr std::size_t kGlBrickWords = 1 + std::size_t{8} * 9 * 9;
 
 /// Uploads; nothing where there are none. Errors: resource (memory; more than kMaxGlVolumes; a
 /// buffer beyond `max_block_bytes`). Precondition: the asset passed read_opal's checks.

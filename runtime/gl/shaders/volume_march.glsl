@@ -13,7 +13,14 @@ struct Volume {
 // Density: of each brick the scale, then 8 x 9 x 9 pairs of codes: of a voxel and of the next along x.
 // Coefficients: R, G, B. Phases: phase_table.h.
 #ifdef DATA_IN_TEXTURES  // of 2048 columns
+#ifdef RECORDS_IN_BLOCK
+layout(std140) uniform VolumeRecords {
+    Volume volumes[VOLUMES];
+    vec3 suns[SUNS];  // directions toward them
+};
+#else
 uniform Volume volumes[VOLUMES];
+#endif
 uniform usampler2D brick_numbers, density_codes, corner_numbers;
 uniform sampler2D node_light, phase_entries;
 ivec2 place_of(uint i) { return ivec2(i & 2047u, i >> 11); }
@@ -41,7 +48,9 @@ vec3 coefficient_at(uint i) { return vec3(coefficients[i], coefficients[i + 1u],
 float phase_at(uint i) { return phase[i]; }
 int lowest_bit(uint bits) { return findLSB(bits); }
 #endif
-layout(location = 7) uniform vec3 suns[SUNS];                           // directions toward them
+#ifndef RECORDS_IN_BLOCK
+layout(location = 7) uniform vec3 suns[SUNS];  // directions toward them
+#endif
 
 const uint kNone = 0xffffffffu;  // no brick, no node
 const float kNever = 1e30;       // a distance
@@ -53,7 +62,8 @@ const float kLeastTransmittance = 1e-3;
 const uint kAllVolumes = (2u << (VOLUMES - 1)) - 1u;
 
 struct Ray {
-    vec3 direction;  // unit; from the eye
+    vec3 from;       // from the eye
+    vec3 direction;  // unit
     float begin, end;
 };
 
@@ -90,7 +100,7 @@ vec3 meet(Traveller traveller, vec3 planes, vec3 else_at) {
 Traveller enter_table(Volume volume, Ray ray) {
     Traveller traveller;
     for (int a = 0; a < 3; ++a) {
-        traveller.origin[a] = volume.to_bricks[a].w;
+        traveller.origin[a] = volume.to_bricks[a].w + dot(volume.to_bricks[a].xyz, ray.from);
         traveller.direction[a] = dot(volume.to_bricks[a].xyz, ray.direction);
     }
     vec3 extent = vec3(volume.extent_first.xyz), o = traveller.origin;

@@ -228,7 +228,8 @@ const Draw = (() => {
     const defines = [["VOLUMES", volumes.list.length], ["HARMONICS", most], ["SUNS", Volumes.kMostSuns],
                      ["BRICK_WORDS", Volumes.kBrickWords], ["LAYER", 0], ["FORWARD_DEPTH", ""]];
     return {
-      program: makeProgram(gl, defines, ["screen.vert.glsl"], ["volume_march.glsl", "volumes.frag.glsl"]),
+      program: makeProgram(gl, defines, ["screen.vert.glsl"],
+                           ["volume_march.glsl", "harmonics.glsl", "volumes.frag.glsl"]),
       inverses: volumes.list.map(volume => Volumes.inverseOf(volume.toWorld)),
       table: makeLines(gl, numbers, volumes.table),
       density: makeLines(gl, numbers, Volumes.packDensity(volumes)),

@@ -7,6 +7,7 @@
 
 #include "tests/runtime/embed_gl/embedded_asset.h"
 #include "tests/runtime/embed_gl/host_context.h"
+#include "tests/runtime/volumes/synthetic_volume.h"
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
@@ -191,17 +192,26 @@ TEST_P(EmbedGlState, IsAsBeforeAfterEveryCall) {
     const bool is_es = GetParam() == HostApi::es_31;
     formats::Asset asset = make_every_kind(8, 8);
     add_primitive(asset, make_sphere({-4, 0, 0}, 1, 50, 40), {.details = 5});  // a row of texels
+    asset.volumes = make_volumes(8);
+    TestVolume fog;
+    fog.extent = {3, 3, 3};
+    fog.spacing = 1;  // more nodes than a row of texels holds
+    fog.single_terms = 1;
+    fog.density = [](float, float, float) { return 1.0f; };
+    add_volume(asset.volumes, fog);
     const EmbeddedAsset host(asset);
     set_host_state(is_es);
     const State before = query_state(is_es);
     opaline_gl* gl = nullptr;
-    ASSERT_EQ(opaline_gl_create(host.asset(), load_gl,
-                                OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_TEXTURE, &gl),
-              OPALINE_OK)
+    constexpr std::uint32_t kAll =
+        OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_TEXTURE | OPALINE_GL_WITH_VOLUMES;
+    ASSERT_EQ(opaline_gl_create(host.asset(), load_gl, kAll, &gl), OPALINE_OK)
         << opaline_last_error();
     EXPECT_EQ(query_state(is_es), before) << "create";
     opaline_gl_objects objects{};
     objects.struct_size = sizeof objects;
+    opaline_volume_light* volume_light = nullptr;
+    ASSERT_EQ(opaline_volume_light_create(host.asset(), &volume_light), OPALINE_OK);
     EXPECT_EQ(opaline_gl_get_objects(gl, &objects), OPALINE_OK);
     for (int i = 0; i < 2; ++i) {
         EXPECT_EQ(opaline_gl_relight(gl, host.light()), OPALINE_OK) << opaline_last_error();
@@ -209,6 +219,10 @@ TEST_P(EmbedGlState, IsAsBeforeAfterEveryCall) {
         const float eye[3] = {1, 2, 9};
         EXPECT_EQ(opaline_gl_look_from(gl, eye), OPALINE_OK) << opaline_last_error();
         EXPECT_EQ(query_state(is_es), before) << "look_from";
+        ASSERT_EQ(opaline_volume_light_update(volume_light, host.asset(), host.light(), 0, 1),
+                  OPALINE_OK);
+        EXPECT_EQ(opaline_gl_light_volumes(gl, volume_light), OPALINE_OK) << opaline_last_error();
+        EXPECT_EQ(query_state(is_es), before) << "light_volumes";
     }
     // What the host had in its hands did not change what was computed.
     const std::vector<float> cpu = host.expected(std::array<float, 3>{1, 2, 9}.data());
@@ -217,6 +231,7 @@ TEST_P(EmbedGlState, IsAsBeforeAfterEveryCall) {
     for (std::size_t i = 0; i < cpu.size(); ++i) {
         ASSERT_NEAR(relit[i / 3 * 4 + i % 3], cpu[i], 1e-4f);
     }
+    opaline_volume_light_release(volume_light);
     EXPECT_EQ(opaline_gl_release(gl), OPALINE_OK);
     EXPECT_EQ(query_state(is_es), before) << "release";
 }

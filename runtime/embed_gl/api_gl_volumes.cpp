@@ -1,0 +1,50 @@
+#include "runtime/api_support.h"
+#include "runtime/embed_gl/api_gl_support.h"
+#include "runtime/embed_gl/saved_state.h"
+
+namespace runtime = opaline::runtime;
+using namespace opaline::runtime::api;
+
+extern "C" {
+
+opaline_status opaline_gl_light_volumes(opaline_gl* gl, const opaline_volume_light* volume_light) {
+    if (gl == nullptr || volume_light == nullptr) {
+        return null_argument();
+    }
+    const runtime::Reading reading(volume_light->users);
+    if (!reading) return busy();
+    if (volume_light->asset_id != gl->asset_id) {
+        return fail(OPALINE_INVALID_ARGUMENT,
+                    "the volume light was made for another asset: make one for that handle");
+    }
+    if (const opaline_status status = check_context(*gl); status != OPALINE_OK) {
+        return status;
+    }
+    return guarded([&] {
+        const runtime::SavedState saved(gl->gl);
+        gl->volumes.upload(volume_light->light);
+        return runtime::check_errors(gl->gl, "uploading the light of volumes");
+    });
+}
+
+opaline_status opaline_gl_get_volumes(const opaline_gl* gl, opaline_gl_volumes* volumes) {
+    if (gl == nullptr || volumes == nullptr) {
+        return null_argument();
+    }
+    if (volumes->struct_size != sizeof(opaline_gl_volumes)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+    }
+    const runtime::VolumeTextures& made = gl->volumes;
+    *volumes = {sizeof(opaline_gl_volumes),
+                static_cast<std::uint32_t>(made.size()),
+                made.terms(),
+                made.block(),
+                made.brick_numbers(),
+                made.density_codes(),
+                made.corner_numbers(),
+                made.node_light(),
+                made.phase_entries()};
+    return OPALINE_OK;
+}
+
+}  // extern "C"

@@ -1,0 +1,160 @@
+#include "runtime/embed_gl/volume_tables.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "runtime/parallel.h"
+#include "runtime/volumes/suns.h"
+#include "runtime/volumes/volume_source.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::kBrickSide;
+using formats::kBrickVoxels;
+using formats::kNoBrick;
+
+constexpr std::size_t kSide = kBrickSide + 1;
+
+// The density at a brick's 9 x 9 x 9 voxels, x fastest.
+using PaddedBrick = std::array<float, kSide * kSide * kSide>;
+
+PaddedBrick pad_brick(const VolumeLattice& lattice, std::array<std::int32_t, 3> cell) {
+    const BrickBlock block = brick_block(lattice, cell);
+    PaddedBrick value{};
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        const std::array<std::size_t, 3> at{i % kSide, i / kSide % kSide, i / kSide / kSide};
+        std::size_t neighbour = 0, offset = 0;
+        for (std::size_t a = 3; a-- > 0;) {
+            neighbour |= (at[a] / kBrickSide) << a;
+            offset = offset * kBrickSide + at[a] % kBrickSide;
+        }
+        const std::uint32_t brick = block.number[neighbour];
+        if (brick == kNoBrick) continue;
+        value[i] = lattice.density_scale[brick] *
+                   static_cast<float>(lattice.density[brick * kBrickVoxels + offset]);
+    }
+    return value;
+}
+
+// Keeps the brick's own codes unless a neighbour's density needs a larger scale.
+void pack_brick(const PaddedBrick& value, float own_scale, std::span<std::uint32_t> words) {
+    constexpr float kLargestCode = 65535;
+    const float full =
+        std::min(std::max(own_scale * kLargestCode, *std::ranges::max_element(value)),
+                 std::numeric_limits<float>::max());
+    const auto code = [&](std::size_t i) {
+        const float share = value[i] / full;  // NaN of damaged values becomes 0
+        return static_cast<std::uint32_t>(
+            std::lround(share > 0 ? std::min(share, 1.0f) * kLargestCode : 0.0f));
+    };
+    words[0] = std::bit_cast<std::uint32_t>(full);
+    for (std::size_t row = 0; row < kSide * kSide; ++row) {
+        for (std::size_t x = 0; x < kBrickSide; ++x) {
+            const std::size_t i = row * kSide + x;
+            words[1 + row * kBrickSide + x] = code(i) | code(i + 1) << 16;
+        }
+    }
+}
+
+// Writes the bricks of one volume to their places among those of all.
+void pack_bricks(const VolumeLattice& lattice, std::span<std::uint32_t> words) {
+    const auto& extent = lattice.record->extent;
+    const auto cells = static_cast<std::uint32_t>(lattice.table.size());
+    for_ranges(cells, 64, 0, [&](std::uint32_t first, std::uint32_t end) {
+        for (std::uint32_t at = first; at < end; ++at) {
+            const std::uint32_t brick = lattice.table[at];
+            if (brick == kNoBrick) continue;
+            const std::array<std::int32_t, 3> cell{
+                static_cast<std::int32_t>(at % extent[0]),
+                static_cast<std::int32_t>(at / extent[0] % extent[1]),
+                static_cast<std::int32_t>(at / extent[0] / extent[1])};
+            const std::size_t number = std::size_t{lattice.record->first_brick_number} + brick;
+            pack_brick(pad_brick(lattice, cell), lattice.density_scale[brick],
+                       words.subspan(number * kGlBrickWords, kGlBrickWords));
+        }
+    });
+}
+
+std::uint32_t terms_of(const formats::VolumeRecord& record) {
+    return std::max(record.single_terms, record.multiple_terms);
+}
+
+// The way from the eye into the table, in shader units. False where floats cannot hold it.
+bool set_way(const VolumeLattice& lattice, formats::Vec3 from, double unit, ShaderVolume& volume) {
+    const auto eye = index_of_point(lattice, from);
+    bool is_finite = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            volume.to_bricks[a][c] =
+                static_cast<float>(lattice.to_index[4 * a + c] / kBrickSide / unit);
+        }
+        volume.to_bricks[a][3] =
+            static_cast<float>(eye[a] / kBrickSide - lattice.record->first_brick[a]);
+        is_finite = is_finite && std::ranges::all_of(volume.to_bricks[a],
+                                                     [](float x) { return std::isfinite(x); });
+    }
+    return is_finite;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> pack_density(const formats::VolumesView& volumes) {
+    std::vector<std::uint32_t> words(volumes.density_scale.size() * kGlBrickWords);
+    for (const formats::VolumeRecord& record : volumes.records) {
+        if (const auto lattice = make_lattice(volumes, record)) pack_bricks(*lattice, words);
+    }
+    return words;
+}
+
+std::vector<float> tame_phases(const formats::VolumesView& volumes) {
+    std::vector<float> phase;
+    phase.reserve(volumes.phase.size());
+    std::ranges::transform(volumes.phase, std::back_inserter(phase),
+                           [](float p) { return tame(p, kLargestSource); });
+    return phase;
+}
+
+std::uint32_t most_node_terms(std::span<const formats::VolumeRecord> records) {
+    std::uint32_t most = 1;
+    for (const formats::VolumeRecord& record : records) {
+        most = std::max(most, terms_of(record));
+    }
+    return most;
+}
+
+std::size_t most_coefficients(const formats::VolumesView& volumes) {
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        const formats::VolumeRecord& record = volumes.records[v];
+        const std::size_t suns = needs_suns(record, volumes.phase_of(v)) ? kMaxSuns : 0;
+        count += record.node_count * (terms_of(record) + suns);
+    }
+    return count;
+}
+
+ShaderVolume make_shader_volume(const VolumeLattice& lattice, std::size_t volume,
+                                const VolumeLight::Part& part, formats::Vec3 eye,
+                                double units_per_metre) {
+    const formats::VolumeRecord& record = *lattice.record;
+    ShaderVolume made;
+    if (!set_way(lattice, eye, units_per_metre, made)) return {};
+    made.extent_first = {record.extent[0], record.extent[1], record.extent[2],
+                         static_cast<std::uint32_t>(record.first_cell)};
+    made.numbers = {record.first_brick_number, static_cast<std::uint32_t>(record.first_corner),
+                    record.corners_along_edge() - 1, part.terms};
+    const auto per_unit = [&](float sigma) {
+        return static_cast<float>(std::min(static_cast<double>(sigma) / units_per_metre, 1e30));
+    };
+    made.extinction = {per_unit(record.sigma_t.r), per_unit(record.sigma_t.g),
+                       per_unit(record.sigma_t.b), 0};
+    made.albedo = {record.albedo.r, record.albedo.g, record.albedo.b, 0};
+    made.coefficient = {static_cast<std::uint32_t>(3 * part.first), part.suns,
+                        static_cast<std::uint32_t>(formats::kPhaseEntries * volume), 0};
+    return made;
+}
+
+}  // namespace opaline::runtime

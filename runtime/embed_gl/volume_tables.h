@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/opal/vec3.h"
+#include "formats/opal/volumes.h"
+#include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/volume_lattice.h"
+
+namespace opaline::runtime {
+
+// Volumes as volume_march.glsl reads them; for the renderer too.
+
+/// Every pixel keeps the registers of all of them, and the first picture waits for the driver to
+/// compile: on llvmpipe some seconds for one, 5 to 12 s for four, 50 s for sixteen.
+inline constexpr std::size_t kMaxGlVolumes = 4;
+
+/// Of a brick: the scale of its codes as the bits of a float (density = scale * code / 65535), then
+/// 8 x 9 x 9 words, x fastest: the code of a voxel in the lower half, of the next along x in the
+/// upper. The ninth layers are those of the neighbours, so that a lookup stays in its brick.
+inline constexpr std::size_t kGlBrickWords = 1 + std::size_t{8} * 9 * 9;
+
+/// All bricks of all volumes, kGlBrickWords each; those of volumes without a lattice are 0.
+/// Precondition: the asset passed read_opal's checks.
+std::vector<std::uint32_t> pack_density(const formats::VolumesView& volumes);
+
+/// Phase functions, kPhaseEntries a volume: finite and not negative, which a damaged file may not
+/// be and not all drivers handle.
+std::vector<float> tame_phases(const formats::VolumesView& volumes);
+
+/// The most terms of a node of any volume, suns left out; at least 1.
+std::uint32_t most_node_terms(std::span<const formats::VolumeRecord> records);
+/// Coefficients of all nodes, kMaxSuns included where a volume may have suns.
+std::size_t most_coefficients(const formats::VolumesView& volumes);
+
+/// Volume of volume_march.glsl, in std140 as in std430.
+struct ShaderVolume {
+    std::array<std::array<float, 4>, 3> to_bricks{};
+    std::array<std::uint32_t, 4> extent_first{}, numbers{};
+    std::array<float, 4> extinction{}, albedo{};
+    std::array<std::uint32_t, 4> coefficient{};
+};
+static_assert(sizeof(ShaderVolume) == 128);
+
+/// A volume seen from `eye` [m, world]; `units_per_metre`: of the shader's distances. Without
+/// cells, so that no ray meets it, where floats cannot hold the way into it. `volume`: its number.
+ShaderVolume make_shader_volume(const VolumeLattice& lattice, std::size_t volume,
+                                const VolumeLight::Part& part, formats::Vec3 eye,
+                                double units_per_metre);
+
+}  // namespace opaline::runtime

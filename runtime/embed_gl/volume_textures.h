@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/opal/vec3.h"
+#include "formats/opal/volumes.h"
+#include "runtime/embed_gl/gl_names.h"
+#include "runtime/embed_gl/volume_tables.h"
+
+namespace opaline::runtime {
+
+/// An asset's volumes as opaline_volumes.glsl reads them: arrays in textures of 2048 columns, and a
+/// uniform block. Every call wants a SavedState around it.
+class VolumeTextures {
+  public:
+    explicit VolumeTextures(const GlFunctions& gl) : gl_(gl) {}
+
+    /// Uploads what no light changes; nothing where there are no volumes. They only absorb, seen
+    /// from the world's origin. OPALINE_GL_REFUSED: more than kMaxGlVolumes, or more texels than
+    /// the driver takes.
+    opaline_status make(const formats::VolumesView& volumes, GlNames& names);
+
+    /// Precondition: `light` is of these volumes.
+    void upload(const VolumeLight& light);
+    /// [m, world]
+    void look_from(formats::Vec3 eye);
+
+    std::size_t size() const { return records_.size(); }
+    std::uint32_t terms() const { return most_node_terms(records_); }
+
+    GLuint block() const { return block_; }
+    GLuint brick_numbers() const { return brick_numbers_; }
+    GLuint density_codes() const { return density_codes_; }
+    GLuint corner_numbers() const { return corner_numbers_; }
+    GLuint node_light() const { return node_light_; }
+    GLuint phase_entries() const { return phase_entries_; }
+
+  private:
+    struct Entry {
+        VolumeLattice lattice;  // without its arrays: those are on the GPU
+        std::size_t volume = 0;
+    };
+    opaline_status check_sizes(const formats::VolumesView& volumes) const;
+    void fill_records();
+
+    const GlFunctions& gl_;
+    std::vector<formats::VolumeRecord> records_;
+    std::vector<Entry> entry_;
+    std::vector<VolumeLight::Part> part_;
+    formats::Vec3 eye_;
+    std::uint32_t light_rows_ = 0;  // of node_light_
+    GLuint block_ = 0, brick_numbers_ = 0, density_codes_ = 0, corner_numbers_ = 0;
+    GLuint node_light_ = 0, phase_entries_ = 0;
+};
+
+}  // namespace opaline::runtime

@@ -1,0 +1,150 @@
+#include "tests/runtime/embed_gl/host_picture.h"
+
+#include <array>
+#include <fstream>
+#include <iterator>
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
+namespace opaline::test {
+namespace {
+
+constexpr GLsizei kRaysAcross = 64;
+
+const char* const kWholeTarget = R"(
+void main() {
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+
+const char* const kSeeRays = R"(
+uniform sampler2D rays;
+layout(location = 0) out vec4 first_half;
+layout(location = 1) out vec4 second_half;
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    vec4 from = texelFetch(rays, ivec2(2 * at.x, at.y), 0);
+    vec4 direction = texelFetch(rays, ivec2(2 * at.x + 1, at.y), 0);
+    see(from.xyz, from.w, direction.xyz, direction.w, first_half, second_half);
+}
+)";
+
+void attach(GLuint program, GLenum stage, HostApi api, const std::string& text) {
+    const std::array<const char*, 2> parts{
+        api == HostApi::es_31 ? "#version 310 es\nprecision highp float;\n" : "#version 430 core\n",
+        text.c_str()};
+    const GLuint shader = glCreateShader(stage);
+    glShaderSource(shader, 2, parts.data(), nullptr);
+    glCompileShader(shader);
+    std::array<char, 2000> log{};
+    glGetShaderInfoLog(shader, log.size(), nullptr, log.data());
+    EXPECT_STREQ(log.data(), "");
+    glAttachShader(program, shader);
+    glDeleteShader(shader);
+}
+
+GLuint make_float_target(GLsizei width, GLsizei height) {
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32F, width, height);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return texture;
+}
+
+}  // namespace
+
+HostPicture::HostPicture(HostApi api, const std::vector<std::string>& files,
+                         const std::string& defines, const std::string& see) {
+    std::string functions;
+    for (const std::string& name : files) {
+        std::ifstream file(std::string(OPALINE_GLSL_DIR "/") + name);
+        EXPECT_TRUE(file) << name;
+        functions.append(std::istreambuf_iterator<char>(file), {});
+    }
+    program_ = glCreateProgram();
+    attach(program_, GL_VERTEX_SHADER, api, kWholeTarget);
+    attach(program_, GL_FRAGMENT_SHADER, api, defines + functions + see + kSeeRays);
+    glLinkProgram(program_);
+    GLint is_linked = GL_FALSE;
+    glGetProgramiv(program_, GL_LINK_STATUS, &is_linked);
+    EXPECT_EQ(is_linked, GL_TRUE);
+    glUseProgram(program_);
+    glGenVertexArrays(1, &array_);
+    glGenFramebuffers(1, &framebuffer_);
+}
+
+HostPicture::~HostPicture() {
+    glDeleteProgram(program_);
+    glDeleteVertexArrays(1, &array_);
+    glDeleteFramebuffers(1, &framebuffer_);
+}
+
+void HostPicture::bind_texture(const char* uniform, unsigned texture) {
+    const GLint location = glGetUniformLocation(program_, uniform);
+    EXPECT_GE(location, 0) << uniform;
+    textures_.emplace_back(location, texture);
+}
+
+void HostPicture::bind_block(const char* name, unsigned buffer) {
+    const GLuint index = glGetUniformBlockIndex(program_, name);
+    ASSERT_NE(index, GL_INVALID_INDEX) << name;
+    glUniformBlockBinding(program_, index, blocks_);
+    glBindBufferBase(GL_UNIFORM_BUFFER, blocks_++, buffer);
+}
+
+void HostPicture::set_flag(const char* uniform, bool value) {
+    const GLint location = glGetUniformLocation(program_, uniform);
+    EXPECT_GE(location, 0) << uniform;
+    glUseProgram(program_);
+    glUniform1i(location, value ? 1 : 0);
+}
+
+std::vector<float> HostPicture::draw(const std::vector<HostRay>& rays) {
+    const auto rows = static_cast<GLsizei>((rays.size() + kRaysAcross - 1) / kRaysAcross);
+    std::vector<HostRay> padded = rays;
+    padded.resize(std::size_t{kRaysAcross} * static_cast<std::size_t>(rows), rays.front());
+    glActiveTexture(GL_TEXTURE0);
+    const std::array<GLuint, 3> textures{make_float_target(2 * kRaysAcross, rows),
+                                         make_float_target(kRaysAcross, rows),
+                                         make_float_target(kRaysAcross, rows)};
+    glBindTexture(GL_TEXTURE_2D, textures[0]);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 2 * kRaysAcross, rows, GL_RGBA, GL_FLOAT,
+                    padded.data());
+    glUseProgram(program_);
+    glUniform1i(glGetUniformLocation(program_, "rays"), 0);
+    for (std::size_t i = 0; i < textures_.size(); ++i) {
+        const auto unit = static_cast<GLint>(i + 1);
+        glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+        glBindTexture(GL_TEXTURE_2D, textures_[i].second);
+        glUniform1i(textures_[i].first, unit);
+    }
+    glActiveTexture(GL_TEXTURE0);
+    glBindVertexArray(array_);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    const std::array<GLenum, 2> targets{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    for (std::size_t i = 0; i < 2; ++i) {
+        glFramebufferTexture2D(GL_FRAMEBUFFER, targets[i], GL_TEXTURE_2D, textures[i + 1], 0);
+    }
+    glDrawBuffers(2, targets.data());
+    EXPECT_EQ(glCheckFramebufferStatus(GL_FRAMEBUFFER), GLenum{GL_FRAMEBUFFER_COMPLETE});
+    glViewport(0, 0, kRaysAcross, rows);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    std::vector<float> drawn(8 * rays.size()), half(4 * padded.size());
+    for (std::size_t i = 0; i < 2; ++i) {
+        glReadBuffer(targets[i]);
+        glReadPixels(0, 0, kRaysAcross, rows, GL_RGBA, GL_FLOAT, half.data());
+        for (std::size_t ray = 0; ray < rays.size(); ++ray) {
+            for (std::size_t c = 0; c < 4; ++c) {
+                drawn[8 * ray + 4 * i + c] = half[4 * ray + c];
+            }
+        }
+    }
+    EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+    glDeleteTextures(3, textures.data());
+    return drawn;
+}
+
+}  // namespace opaline::test

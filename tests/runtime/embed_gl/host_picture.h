@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/runtime/embed_gl/host_context.h"
+
+namespace opaline::test {
+
+/// A ray for a host's fragment shader, four floats a texel: from, begin; direction, end.
+struct HostRay {
+    float from[3], begin, direction[3], end;
+};
+
+/// A host that draws one texel a ray with its own fragment shader, from installed functions.
+class HostPicture {
+  public:
+    /// `files`: of the installed functions; `defines` stand before them. The shader's text ends
+    /// with `void see(vec3 from, float begin, vec3 direction, float end, out vec4 a, out vec4 b)`.
+    HostPicture(HostApi api, const std::vector<std::string>& files, const std::string& defines,
+                const std::string& see);
+    ~HostPicture();
+    HostPicture(const HostPicture&) = delete;
+    HostPicture& operator=(const HostPicture&) = delete;
+
+    void bind_texture(const char* uniform, unsigned texture);
+    void bind_block(const char* name, unsigned buffer);
+    void set_flag(const char* uniform, bool value);
+
+    /// `a` and `b` of each ray, eight floats.
+    std::vector<float> draw(const std::vector<HostRay>& rays);
+
+  private:
+    unsigned program_ = 0, array_ = 0, framebuffer_ = 0;
+    std::vector<std::pair<int, unsigned>> textures_;  // by unit from 1 on
+    unsigned blocks_ = 0;
+};
+
+}  // namespace opaline::test
