@@ -12,12 +12,39 @@ namespace formats = opaline::formats;
 namespace runtime = opaline::runtime;
 using namespace opaline::runtime::api;
 
-namespace {
+namespace opaline::runtime::api {
 
 bool is_radiance(const float* values, std::size_t count) {
     return std::all_of(values, values + count,
                        [](float x) { return x >= 0.0f && std::isfinite(x); });
 }
+
+const char* fault_of_sun(const float direction[3], float angular_radius, const float radiance[3]) {
+    if (!unit_vector(direction)) return "the sun's direction must be finite and not zero";
+    // Below 1e-6 rad the squared radius would leave the range in which its solid angle is exact.
+    if (!(angular_radius >= 1e-6f && angular_radius < 0.5f * std::numbers::pi_v<float>)) {
+        return "the sun's radius must be in 1e-6 ... pi/2 radians";
+    }
+    return is_radiance(radiance, 3) ? nullptr : "radiance must be finite and not negative";
+}
+
+formats::DistantDisc sun_of(const float direction[3], float angular_radius,
+                            const float radiance[3]) {
+    return {*unit_vector(direction), angular_radius, {radiance[0], radiance[1], radiance[2]}};
+}
+
+std::optional<Rotation> rotation_of(const float m[9]) {
+    const Rotation rotation{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
+    if (is_rotation(rotation, 1e-3f)) return rotation;
+    fail(OPALINE_INVALID_ARGUMENT,
+         "the matrix is not a rotation: its columns must be orthonormal to 1e-3, its "
+         "determinant +1");
+    return std::nullopt;
+}
+
+}  // namespace opaline::runtime::api
+
+namespace {
 
 // The work on a light of a thread that is the only one to use it.
 template <class Work>
@@ -48,32 +75,13 @@ opaline_status set_map(opaline_light& light, const float* rgb, formats::Environm
     });
 }
 
-// Says what is wrong, or nothing.
-const char* fault_of_sun(const float direction[3], float angular_radius, const float radiance[3]) {
-    if (!unit_vector(direction)) return "the sun's direction must be finite and not zero";
-    // Below 1e-6 rad the squared radius would leave the range in which its solid angle is exact.
-    if (!(angular_radius >= 1e-6f && angular_radius < 0.5f * std::numbers::pi_v<float>)) {
-        return "the sun's radius must be in 1e-6 ... pi/2 radians";
-    }
-    return is_radiance(radiance, 3) ? nullptr : "radiance must be finite and not negative";
-}
-
-formats::DistantDisc sun_of(const float direction[3], float angular_radius,
-                            const float radiance[3]) {
-    return {*unit_vector(direction), angular_radius, {radiance[0], radiance[1], radiance[2]}};
-}
-
 opaline_status rotate(opaline_light* light, const float* m, runtime::MapSampling sampling) {
     if (light == nullptr || m == nullptr) {
         return null_argument();
     }
-    const runtime::Rotation rotation{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
-    if (!runtime::is_rotation(rotation, 1e-3f)) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the matrix is not a rotation: its columns must be orthonormal to 1e-3, its "
-                    "determinant +1");
-    }
-    return change(*light, [&] { light->distant.turn(rotation, sampling, light->threads); });
+    const auto rotation = rotation_of(m);
+    if (!rotation) return OPALINE_INVALID_ARGUMENT;
+    return change(*light, [&] { light->distant.turn(*rotation, sampling, light->threads); });
 }
 
 bool is_finite(const float* values, std::size_t count) {

@@ -56,6 +56,16 @@ opaline_status fail(const formats::Error& error);
 /// The direction of three floats of any length; nothing where they are not finite or all zero.
 std::optional<formats::Vec3> unit_vector(const float v[3]);
 
+/// Finite and not negative.
+bool is_radiance(const float* values, std::size_t count);
+/// What is wrong with a sun, or nothing; and the sun where nothing is.
+const char* fault_of_sun(const float direction[3], float angular_radius, const float radiance[3]);
+formats::DistantDisc sun_of(const float direction[3], float angular_radius,
+                            const float radiance[3]);
+/// The rotation of nine floats, by columns; nothing, and a note for opaline_last_error, if they are
+/// none.
+std::optional<Rotation> rotation_of(const float m[9]);
+
 /// Nothing is thrown across the boundary. All work is done on copies that `work` moves into place
 /// at its end, so a failure leaves things as they were.
 template <class Work>

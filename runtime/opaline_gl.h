@@ -12,8 +12,8 @@
    share/opaline/glsl/opaline_surface.glsl holds functions that turn a receiver's radiance into that
    of a surface seen by the eye, opaline_gloss.glsl those of glossy opaque ones (after the former).
    Paste them into shaders of GLSL 3.30, ES 3.00 or later, behind the version; default precisions
-   are high from there on. opaline_volumes.glsl holds those of volumes, below; each file may be used
-   without the others but for opaline_gloss.glsl. */
+   are high from there on. opaline_volumes.glsl and opaline_layer.glsl hold those of volumes and
+   cloud layers, below; each file may be used without the others but for opaline_gloss.glsl. */
 #ifndef OPALINE_GL_H
 #define OPALINE_GL_H
 
@@ -153,6 +153,84 @@ typedef struct opaline_gl_volumes {
 /* Fills `volumes`. The names stay the library's and the same until the release. */
 OPALINE_API opaline_status opaline_gl_get_volumes(const opaline_gl* gl,
                                                   opaline_gl_volumes* volumes);
+
+/* --- Cloud layers ------------------------------------------------------------------------- */
+
+/* Stratiform clouds above a ground, of what `opaline bake` makes from a layer; of several the first
+   is shown. Functions of opaline_layer_light need no context, and run where those of lights do:
+   one thread may update one while others use others. */
+OPALINE_API uint32_t opaline_asset_layer_count(const opaline_asset* asset);
+
+/* The layer at one time under one sky: at time 0 and black until the first update. It belongs to
+   this handle of the asset, whose bytes it refers to. OPALINE_INVALID_ARGUMENT: there is no layer.
+ */
+typedef struct opaline_layer_light opaline_layer_light;
+OPALINE_API opaline_status opaline_layer_light_create(const opaline_asset* asset,
+                                                      opaline_layer_light** out);
+/* NULL is fine. */
+OPALINE_API void opaline_layer_light_release(opaline_layer_light* layer_light);
+
+typedef struct opaline_layer_sun {
+    float direction[3];   /* toward it, in the light's frame; any length */
+    float angular_radius; /* [rad], 1e-6 ... pi/2 */
+    float radiance[3];
+} opaline_layer_sun;
+
+typedef struct opaline_layer_sky {
+    size_t struct_size; /* in: sizeof(opaline_layer_sky) */
+    double time;        /* [s]: of the wind, and of layers with frames */
+    /* Radiance of the sky, 3 * width * height floats as in opaline_light_set_lat_long, or with
+       is_cubemap 1 and height 6 * width as in opaline_light_set_cubemap; NULL: black. Its two
+       brightest small lights count as suns. */
+    const float* map;
+    uint32_t width, height, is_cubemap;
+    uint32_t sun_count;
+    const opaline_layer_sun* suns;
+    const float* world_from_light; /* 9 floats as in opaline_light_set_rotation; NULL: unturned */
+} opaline_layer_sky;
+
+/* Lights layer and ground, on the CPU: tens to hundreds of ms. threads: 0 for all cores, 256 at
+   most; the result has the same bits for any number. */
+OPALINE_API opaline_status opaline_layer_light_update(opaline_layer_light* layer_light,
+                                                      const opaline_asset* asset,
+                                                      const opaline_layer_sky* sky,
+                                                      uint32_t threads);
+
+/* Uploads what the layer light holds, which is copied from: the layer itself the first time, its
+   thickness where other frames are seen, else some hundred kB. */
+OPALINE_API opaline_status opaline_gl_show_layer(opaline_gl* gl, const opaline_asset* asset,
+                                                 const opaline_layer_light* layer_light);
+
+/* What share/opaline/glsl/opaline_layer.glsl reads, in GLSL 3.30 or ES 3.00 and later. Before it
+   the host defines OPALINE_LAYER_REPEAT, OPALINE_LAYER_MODES and OPALINE_LAYER_GLOW, `repeats`,
+   `modes` and `glows` below. Places are offsets from the eye of opaline_gl_look_from in world
+   directions [m], directions are unit vectors; `spread` is the angle of a pixel [rad], within which
+   clouds and ground are averaged:
+
+       OpalineSeenLayer opaline_layer_see(vec3 from, vec3 direction, float begin, float end,
+                                          float spread)
+           the layer along a ray to what ends it, or to 1e30: .radiance of its own, in its haze;
+           .transmittance of what lies behind, .sun_transmittance of the discs of suns, .glow that
+           is to be added to the sky, and its mean .distance.
+       float opaline_layer_ground_distance(vec3 from, vec3 direction)
+           to the layer's ground, 1e38 where it is not met.
+       vec3 opaline_layer_ground_radiance(vec3 from, vec3 direction, float distance, float spread)
+           of the ground there, under its clouds and in its haze.
+
+   A pixel shows radiance + transmittance * (surface, ground, or sky without suns); rays that end in
+   the sky also glow + sun_transmittance * suns. */
+typedef struct opaline_gl_layer {
+    size_t struct_size; /* in: sizeof(opaline_gl_layer) */
+    uint32_t repeats, modes, glows;
+    uint32_t block; /* buffer of the uniform block OpalineLayer; the eye changes it, too */
+    /* 2D textures of the sampler2D opaline_layer_table_values, opaline_layer_sun_values,
+       opaline_layer_thickness_values, opaline_layer_albedo_map, opaline_layer_ground_light and
+       opaline_layer_base_light. */
+    uint32_t table_values, sun_values, thickness_values, albedo_map, ground_light, base_light;
+} opaline_gl_layer;
+
+/* Fills `layer`; all 0 before the first opaline_gl_show_layer, then the same until the release. */
+OPALINE_API opaline_status opaline_gl_get_layer(const opaline_gl* gl, opaline_gl_layer* layer);
 
 #ifdef __cplusplus
 }

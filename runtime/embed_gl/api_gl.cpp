@@ -215,11 +215,12 @@ opaline_status opaline_gl_look_from(opaline_gl* gl, const float eye[3]) {
     }
     gl->eye = eye == nullptr ? std::nullopt : std::optional(Vec3{eye[0], eye[1], eye[2]});
     const bool are_receivers_seen = gl->is_relit && gl->relight.needs_eye();
-    if (!are_receivers_seen && gl->volumes.size() == 0) {
+    if (!are_receivers_seen && gl->volumes.size() == 0 && !gl->layer.is_shown()) {
         return OPALINE_OK;
     }
     const runtime::SavedState saved(gl->gl);
     gl->volumes.look_from(gl->eye.value_or(Vec3{}));
+    gl->layer.look_from(gl->eye.value_or(Vec3{}));
     if (are_receivers_seen) show(*gl);
     return runtime::check_errors(gl->gl, "adding up view terms");
 }

@@ -8,11 +8,19 @@
 #include "formats/opal/vec3.h"
 #include "runtime/embed_gl/gl_names.h"
 #include "runtime/embed_gl/glossy_light.h"
+#include "runtime/embed_gl/layer_textures.h"
 #include "runtime/embed_gl/mirrored_light.h"
 #include "runtime/embed_gl/relight.h"
 #include "runtime/embed_gl/volume_textures.h"
+#include "runtime/users.h"
 
 // What the files of the interface in opaline_gl.h share.
+
+struct opaline_layer_light {
+    std::uint64_t asset_id = 0;
+    opaline::runtime::LayerLight light;  // refers to the asset's bytes: for that id alone
+    mutable opaline::runtime::Users users;
+};
 
 struct opaline_gl {
     opaline::runtime::GlFunctions gl;
@@ -21,7 +29,8 @@ struct opaline_gl {
     opaline::runtime::MirroredLight mirrored{gl};
     opaline::runtime::GlossyLight glossy{gl};
     opaline::runtime::VolumeTextures volumes{gl};
-    std::uint64_t asset_id = 0;                        // lights of volumes are of one asset
+    opaline::runtime::LayerTextures layer{gl};
+    std::uint64_t asset_id = 0;  // lights of volumes and layers are of one asset
     std::vector<opaline::formats::GlossRecord> gloss;  // of each primitive, or none
     std::vector<opaline::formats::PrimitiveRecord> primitives;
     GLuint marker_program = 0;

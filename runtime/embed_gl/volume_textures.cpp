@@ -1,60 +1,11 @@
 #include "runtime/embed_gl/volume_textures.h"
 
-#include <algorithm>
 #include <cstdio>
-#include <cstring>
 
 #include "runtime/api_support.h"
 #include "runtime/volumes/suns.h"
 
 namespace opaline::runtime {
-namespace {
-
-constexpr std::uint32_t kColumns = 2048;
-
-struct TexelFormat {
-    GLint internal = 0;
-    GLenum format = 0, type = 0;
-    std::size_t bytes = 0;
-};
-constexpr TexelFormat kWord{GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
-constexpr TexelFormat kFloat{GL_R32F, GL_RED, GL_FLOAT, 4};
-constexpr TexelFormat kColor{GL_RGB32F, GL_RGB, GL_FLOAT, 12};
-
-std::uint32_t rows_of(std::size_t texels) {
-    return static_cast<std::uint32_t>(std::max<std::size_t>(1, (texels + kColumns - 1) / kColumns));
-}
-
-void set_size(const GlFunctions& gl, const TexelFormat& texel, std::uint32_t rows) {
-    gl.TexImage2D(GL_TEXTURE_2D, 0, texel.internal, kColumns, static_cast<GLsizei>(rows), 0,
-                  texel.format, texel.type, nullptr);
-}
-
-// The first texels of the texture that is bound, row by row.
-void fill_texels(const GlFunctions& gl, const TexelFormat& texel,
-                 std::span<const std::byte> bytes) {
-    const std::size_t texels = bytes.size() / texel.bytes, rows = texels / kColumns;
-    const auto fill = [&](std::size_t first, std::size_t width, std::size_t height) {
-        if (width * height == 0) return;
-        gl.TexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(first),
-                         static_cast<GLsizei>(width), static_cast<GLsizei>(height), texel.format,
-                         texel.type, bytes.data() + first * kColumns * texel.bytes);
-    };
-    fill(0, kColumns, rows);
-    fill(rows, texels % kColumns, 1);
-}
-
-template <class T>
-GLuint make_lines(const GlFunctions& gl, GlNames& names, const TexelFormat& texel,
-                  std::span<const T> values) {
-    const GLuint name = names.make_table_texture();
-    set_size(gl, texel, rows_of(values.size_bytes() / texel.bytes));
-    fill_texels(gl, texel, std::as_bytes(values));
-    return name;
-}
-
-}  // namespace
-
 opaline_status VolumeTextures::check_sizes(const formats::VolumesView& volumes) const {
     char text[160];
     if (volumes.records.size() > kMaxGlVolumes) {
@@ -63,21 +14,16 @@ opaline_status VolumeTextures::check_sizes(const formats::VolumesView& volumes) 
                       static_cast<unsigned long>(kMaxGlVolumes));
         return api::fail(OPALINE_GL_REFUSED, text);
     }
-    GLint limit = 0;
-    gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
     struct Lines {
         const char* name;
         std::size_t texels;
     };
     for (const Lines& lines : {Lines{"tables of bricks", volumes.table.size()},
                                {"density", volumes.density_scale.size() * kGlBrickWords},
-                               {"corners", volumes.corner.size()},
+                               {"corners of volumes", volumes.corner.size()},
                                {"light of nodes", most_coefficients(volumes)}}) {
-        if (rows_of(lines.texels) <= static_cast<std::uint32_t>(std::max(limit, 0))) continue;
-        std::snprintf(text, sizeof text,
-                      "volumes, %s: %lu texels, more than a texture of the driver has", lines.name,
-                      static_cast<unsigned long>(lines.texels));
-        return api::fail(OPALINE_GL_REFUSED, text);
+        const opaline_status status = check_lines(gl_, lines.name, lines.texels);
+        if (status != OPALINE_OK) return status;
     }
     return OPALINE_OK;
 }
@@ -90,15 +36,14 @@ opaline_status VolumeTextures::make(const formats::VolumesView& volumes, GlNames
         const auto lattice = make_lattice(volumes, records_[v]);
         if (lattice) entry_.push_back({{&records_[v], lattice->to_index, {}, {}, {}, {}}, v});
     }
-    const std::vector<std::uint32_t> density = pack_density(volumes);
-    const std::vector<float> phase = tame_phases(volumes);
-    brick_numbers_ = make_lines(gl_, names, kWord, volumes.table);
-    density_codes_ = make_lines(gl_, names, kWord, std::span<const std::uint32_t>(density));
-    corner_numbers_ = make_lines(gl_, names, kWord, volumes.corner);
-    phase_entries_ = make_lines(gl_, names, kFloat, std::span<const float>(phase));
-    node_light_ = names.make_table_texture();
-    set_size(gl_, kColor, 1);
-    light_rows_ = 1;
+    for (TexelLines* lines :
+         {&brick_numbers_, &density_codes_, &corner_numbers_, &node_light_, &phase_entries_}) {
+        lines->make(names);
+    }
+    brick_numbers_.fill_of(volumes.table);
+    density_codes_.fill_of(std::span<const std::uint32_t>(pack_density(volumes)));
+    corner_numbers_.fill_of(volumes.corner);
+    phase_entries_.fill_of(std::span<const float>(tame_phases(volumes)));
     block_ =
         names.make_buffer(records_.size() * sizeof(ShaderVolume) + kMaxSuns * 16, GL_DYNAMIC_DRAW);
     upload(relight_volumes(volumes, {}, {.terms = formats::TermSet::none, .threads = 1}));
@@ -108,11 +53,7 @@ opaline_status VolumeTextures::make(const formats::VolumesView& volumes, GlNames
 void VolumeTextures::upload(const VolumeLight& light) {
     if (records_.empty()) return;
     part_ = light.part;
-    const std::uint32_t rows = rows_of(light.coefficient.size());
-    gl_.BindTexture(GL_TEXTURE_2D, node_light_);
-    if (rows != light_rows_) set_size(gl_, kColor, rows);
-    light_rows_ = rows;
-    fill_texels(gl_, kColor, std::as_bytes(std::span(light.coefficient)));
+    node_light_.fill_of(std::span(light.coefficient));
     std::array<std::array<float, 4>, kMaxSuns> suns{};
     for (std::size_t i = 0; i < light.sun.size(); ++i) {
         suns[i] = {light.sun[i].x, light.sun[i].y, light.sun[i].z, 0};

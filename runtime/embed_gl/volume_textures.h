@@ -7,6 +7,7 @@
 #include "formats/opal/vec3.h"
 #include "formats/opal/volumes.h"
 #include "runtime/embed_gl/gl_names.h"
+#include "runtime/embed_gl/texel_lines.h"
 #include "runtime/embed_gl/volume_tables.h"
 
 namespace opaline::runtime {
@@ -31,11 +32,11 @@ class VolumeTextures {
     std::uint32_t terms() const { return most_node_terms(records_); }
 
     GLuint block() const { return block_; }
-    GLuint brick_numbers() const { return brick_numbers_; }
-    GLuint density_codes() const { return density_codes_; }
-    GLuint corner_numbers() const { return corner_numbers_; }
-    GLuint node_light() const { return node_light_; }
-    GLuint phase_entries() const { return phase_entries_; }
+    GLuint brick_numbers() const { return brick_numbers_.name(); }
+    GLuint density_codes() const { return density_codes_.name(); }
+    GLuint corner_numbers() const { return corner_numbers_.name(); }
+    GLuint node_light() const { return node_light_.name(); }
+    GLuint phase_entries() const { return phase_entries_.name(); }
 
   private:
     struct Entry {
@@ -50,9 +51,10 @@ class VolumeTextures {
     std::vector<Entry> entry_;
     std::vector<VolumeLight::Part> part_;
     formats::Vec3 eye_;
-    std::uint32_t light_rows_ = 0;  // of node_light_
-    GLuint block_ = 0, brick_numbers_ = 0, density_codes_ = 0, corner_numbers_ = 0;
-    GLuint node_light_ = 0, phase_entries_ = 0;
+    GLuint block_ = 0;
+    TexelLines brick_numbers_{gl_, kWordTexel}, density_codes_{gl_, kWordTexel};
+    TexelLines corner_numbers_{gl_, kWordTexel}, phase_entries_{gl_, kFloatTexel};
+    TexelLines node_light_{gl_, kColorTexel};
 };
 
 }  // namespace opaline::runtime

@@ -98,8 +98,8 @@ formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlV
         const char* fragment;
     };
     const std::array<Job, 2> jobs{
-        {{programs.background, "background", std::string(cube_map_text) + environment_text,
-          background_frag_text},
+        {{programs.background, "background",
+          std::string(cube_map_text) + arc_tangent_text + environment_text, background_frag_text},
          {programs.resolve, "box filter", "", resolve_frag_text}}};
     for (const Job& job : jobs) {
         const std::array<StageSource, 2> stages{

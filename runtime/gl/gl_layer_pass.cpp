@@ -31,14 +31,10 @@ enum Uniform : GLint {
     kShowsSky
 };
 
-// Where the eye is, as shares of a grid; in doubles, and within one period where it repeats.
-void set_origin(GLint location, const GlLayers::Grid& grid, formats::Vec3 eye) {
-    const auto place = [&](float at, double low, double size) {
-        const double share = (static_cast<double>(at) - low) / size;
-        return static_cast<float>(grid.repeats ? share - std::floor(share) : share);
-    };
-    glUniform2f(location, place(eye.x, grid.low_x, grid.size_x),
-                place(eye.z, grid.low_z, grid.size_z));
+// Where the eye is.
+void set_origin(GLint location, const LayerGrid& grid, formats::Vec3 eye) {
+    const std::array<float, 2> place = grid.place_of(eye);
+    glUniform2f(location, place[0], place[1]);
 }
 
 void bind_layer(const DrawScene& scene) {
@@ -80,12 +76,12 @@ void use_see(const DrawScene& scene, const GlProgram& program, const TileView& v
     set_rays(program, view);
     bind_environment(scene.environment, scene.rotation, program.name(), kEnvironment);
     bind_layer(scene);
-    set_origin(kFieldOrigin, layers.field, camera.eye);
-    set_origin(kAlbedoOrigin, layers.ground, camera.eye);
-    set_origin(kLightOrigin, layers.light, camera.eye);
+    set_origin(kFieldOrigin, layers.places.field, camera.eye);
+    set_origin(kAlbedoOrigin, layers.places.ground, camera.eye);
+    set_origin(kLightOrigin, layers.places.light, camera.eye);
     const double height = static_cast<double>(camera.eye.y);
-    glUniform1f(kEyeAboveBase, static_cast<float>(height - layers.base));
-    glUniform1f(kEyeAboveGround, static_cast<float>(height - layers.ground_height));
+    glUniform1f(kEyeAboveBase, static_cast<float>(height - layers.places.base));
+    glUniform1f(kEyeAboveGround, static_cast<float>(height - layers.places.ground_height));
     glUniform1f(kSpread, pixel_spread(scene, view));
     glUniform1f(kNearPlane, camera.near_plane);
     glUniform1i(kSupersampling, static_cast<GLint>(scene.supersampling));
@@ -117,8 +113,9 @@ void bind_sheet(const SheetTextures& sheet) {
 }  // namespace
 
 formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers, bool sheet) {
-    const std::string see = std::string(cube_map_text) + environment_text + layer_tables_text +
-                            layer_march_text + layers_frag_text;
+    const std::string see = std::string(cube_map_text) + arc_tangent_text + environment_text +
+                            layer_tables_text + layer_march_text + layer_see_text +
+                            layers_frag_text;
     const std::string defines = layers.defines + "#define SHEET " + (sheet ? "1\n" : "0\n");
     LayerPrograms programs;
     struct Job {

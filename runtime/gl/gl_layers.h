@@ -8,6 +8,7 @@
 #include "formats/opal/clouds.h"
 #include "formats/opal/result.h"
 #include "runtime/clouds/layer_light.h"
+#include "runtime/embed_gl/shader_layer.h"
 #include "runtime/gl/gl_objects.h"
 
 namespace opaline::runtime {
@@ -28,13 +29,8 @@ struct GlLayers {
     GlBuffer sun_tables, sun_flux;
     GlBuffer block;       ///< Layer of layer_tables.glsl
     std::string defines;  ///< what the shader is compiled for
-    struct Grid {
-        double low_x = 0, low_z = 0, size_x = 1, size_z = 1;
-        bool repeats = false;
-    };
     std::vector<LayerSun> suns;
-    Grid field, ground, light;  ///< of thickness, albedo, and light [m]
-    double base = 0, ground_height = 0;
+    LayerPlaces places;
 
     std::size_t layer_bytes = 0, light_bytes = 0;  ///< in textures and buffers
 };

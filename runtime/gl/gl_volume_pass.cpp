@@ -75,7 +75,8 @@ void draw_volumes_filtered(const DrawScene& scene, const GlProgram& program, con
     glUniform1f(kNearPlane, static_cast<float>(view_unit(scene.camera) *
                                                static_cast<double>(scene.camera.near_plane)));
     if (scene.layers.shown) {
-        const double height = static_cast<double>(scene.camera.eye.y) - scene.layers.ground_height;
+        const double height =
+            static_cast<double>(scene.camera.eye.y) - scene.layers.places.ground_height;
         const double unit = view_unit(scene.camera);
         glUniform1f(kEyeAboveGround, static_cast<float>(unit * height));
         glUniform1f(kUnitsOfMetre, static_cast<float>(unit));

@@ -2,17 +2,24 @@
 // clouds/layer_march.cpp have it. layer_tables.glsl comes before it. Places are offsets from the
 // eye along x and z [m].
 // Its levels one after the other, x fastest [m].
+#ifdef DATA_IN_TEXTURES
+uniform sampler2D thickness_values;
+float thickness_value(int i) { return value_of(thickness_values, i); }
+#else
 layout(std430, binding = 7) readonly buffer Thickness { float thickness_texels[]; };
-layout(location = 10) uniform vec2 field_origin;    // the eye's place in the thickness, [0, 1]
+float thickness_value(int i) { return thickness_texels[i]; }
+layout(location = 10) uniform vec2 field_origin;     // the eye's place in the thickness, [0, 1]
 layout(location = 11) uniform float eye_above_base;  // [m]
-layout(location = 12) uniform float spread;          // of a pixel [rad]
+#endif
 
 const float kFarthest = 1e8, kNever = 1e38;
 const int kSteps = 48;
 
 struct LayerRay {
-    vec3 direction;  // unit; from the eye
+    vec3 from;       // from the eye
+    vec3 direction;  // unit
     float begin, end;
+    float spread;  // of the pixel that it stands for [rad]
 };
 
 struct LayerMarch {
@@ -22,16 +29,16 @@ struct LayerMarch {
 float thickness_texel(ivec2 at, ivec2 size, int first) {
 #if REPEAT
     at += size * (ivec2(lessThan(at, ivec2(0))) - ivec2(greaterThanEqual(at, size)));
-    return thickness_texels[first + at.y * size.x + at.x];
+    return thickness_value(first + at.y * size.x + at.x);
 #else
     bool is_within = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, size));
-    return is_within ? thickness_texels[first + at.y * size.x + at.x] : 0.0;
+    return is_within ? thickness_value(first + at.y * size.x + at.x) : 0.0;
 #endif
 }
 
 float thickness_of_level(vec2 uv, int level) {
     ivec2 size = max(field_albedo.xy >> level, ivec2(1));
-    int texels = level_first[level];
+    int texels = level_first[level >> 2][level & 3];
     vec2 place = clamp(uv * vec2(size) - 0.5, vec2(-2.0), vec2(size + 2));
     vec2 first = floor(place), t = place - first;
     ivec2 i = ivec2(first);
@@ -88,27 +95,29 @@ LayerMarch march_layer(LayerRay ray, float kappa) {
     vec3 d = ray.direction;
     float highest = field.w;
     vec2 part = vec2(ray.begin, min(ray.end, kFarthest));
-    cut_to(part, eye_above_base, d.y, 0.0, highest);
+    float above_base = eye_above_base + ray.from.y;
+    cut_to(part, above_base, d.y, 0.0, highest);
 #if !REPEAT
-    cut_to(part, field_origin.x, d.x / field.x, -0.125, 1.125);
-    cut_to(part, field_origin.y, d.z / field.y, -0.125, 1.125);
+    vec2 origin = field_origin + ray.from.xz / field.xy;
+    cut_to(part, origin.x, d.x / field.x, -0.125, 1.125);
+    cut_to(part, origin.y, d.z / field.y, -0.125, 1.125);
 #endif
     if (!(part.y > part.x) || !(highest > 0.0)) return none;
     // Distances from part.x: (part.x + offset) growth, growth + 1 a power of the ratio.
     float offset = 0.5 * highest, start = part.x + offset, whole = part.y - part.x;
     float step_growth = exp_minus_one(log_of_one_more(whole / start) / float(kSteps));
     float level_scale = length(d.xz) * step_growth;
-    float first_height = eye_above_base + d.y * part.x;
+    float first_height = above_base + d.y * part.x;
     float s = 0.0, growth = 0.0;
-    float level = field_level(max(level_scale * start, spread * part.x));
-    float thickness = thickness_at(part.x * d.xz, level), below_top = thickness - first_height;
+    float level = field_level(max(level_scale * start, ray.spread * part.x));
+    float thickness = thickness_at(ray.from.xz + part.x * d.xz, level), below_top = thickness - first_height;
     float weights = 0.0;
     LayerMarch march = none;
     for (int i = 0; i < kSteps && kappa * march.length < 20.0; ++i) {
         growth += step_growth * (1.0 + growth);
         float next = i + 1 < kSteps ? start * growth : whole, t = part.x + next;
-        float next_level = field_level(max(level_scale * (t + offset), spread * t));
-        float next_thickness = thickness_at(t * d.xz, next_level);
+        float next_level = field_level(max(level_scale * (t + offset), ray.spread * t));
+        float next_thickness = thickness_at(ray.from.xz + t * d.xz, next_level);
         float next_below = next_thickness - (first_height + d.y * next);
         if (below_top > 0.0 || next_below > 0.0) {
             float crossing = below_top / (below_top - next_below);

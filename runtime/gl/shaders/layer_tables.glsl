@@ -1,11 +1,15 @@
 // What a layer's droplets do to light, as clouds/layer_tables.cpp and clouds/single_scattering.cpp
-// have it. environment.glsl comes before it.
+// have it. arc_tangent.glsl comes before it.
 struct LayerSun {
     vec4 direction_cosine;   // toward it; mu_l
     vec4 irradiance_radius;
     vec4 shadow;             // from the ground to the base along x and z, blur [m]
 };
+#ifdef DATA_IN_TEXTURES
+layout(std140) uniform Layer {
+#else
 layout(std430, binding = 1) readonly buffer Layer {
+#endif
     vec4 rest_kappa_peak;    // kappa_S by band [1/m], theta_f [rad]
     vec4 kappa_haze;         // kappa by band, haze [1/m]
     vec4 peak_weight;        // P_f by band
@@ -19,16 +23,41 @@ layout(std430, binding = 1) readonly buffer Layer {
     ivec4 field_albedo;      // texels of thickness, of albedo
     ivec4 levels_counts;     // last levels of both, phase angles, glow angles
     ivec4 counts;            // glow events, flux depths, flux cosines
-    ivec4 radiance_counts;   // depths, cosines
-    int level_first[16];     // first texel of a level of the thickness
-    LayerSun suns[];
+    ivec4 radiance_counts;   // depths, cosines, suns
+    ivec4 level_first[4];    // first texel of a level of the thickness
+    LayerSun suns[2];
+#ifdef DATA_IN_TEXTURES
+    ivec4 value_first;       // of t_ms, glow; of the flux of suns
+    vec2 field_origin, albedo_origin, light_origin;  // the eye's places, in [0, 1]
+    float eye_above_base, eye_above_ground;          // [m]
+#endif
 };
+#ifdef DATA_IN_TEXTURES  // of 2048 columns
+uniform sampler2D table_values, sun_values;
+float value_of(sampler2D values, int i) {
+    return texelFetch(values, ivec2(i & 2047, i >> 11), 0).r;
+}
+float log_phase_at(int i) { return value_of(table_values, i); }
+float t_ms_at(int i) { return value_of(table_values, value_first.x + i); }
+float glow_at(int i) { return value_of(table_values, value_first.y + i); }
+float sun_table_at(int i) { return value_of(sun_values, i); }
+vec2 sun_flux_at(int i) {
+    int at = value_first.z + 2 * i;
+    return vec2(value_of(sun_values, at), value_of(sun_values, at + 1));
+}
+#else
 layout(std430, binding = 2) readonly buffer Phase { float log_phase[]; };  // [angle][band]
 layout(std430, binding = 3) readonly buffer Flux { float t_ms[]; };  // [band][depth][cosine]
 layout(std430, binding = 4) readonly buffer Glow { float glow[]; };  // [band][event][angle]
 // [sun][side][mode][depth][view][band]; and of each sun's flux T_ms, T_1: [sun][depth][band][2]
 layout(std430, binding = 5) readonly buffer SunTables { float sun_table[]; };
 layout(std430, binding = 6) readonly buffer SunFlux { vec2 sun_flux[]; };
+float log_phase_at(int i) { return log_phase[i]; }
+float t_ms_at(int i) { return t_ms[i]; }
+float glow_at(int i) { return glow[i]; }
+float sun_table_at(int i) { return sun_table[i]; }
+vec2 sun_flux_at(int i) { return sun_flux[i]; }
+#endif
 
 const float kLeastCosine = 1e-3;
 
@@ -104,8 +133,8 @@ vec3 rest_phase(vec3 to_sun, vec3 from_eye, vec3 events) {
     float place = inverse_smoothstep(max(angle, rest_kappa_peak.a) / kPi, left / kPi);
     Place at = place_on_axis(place, levels_counts.z);
     int i = 3 * at.first;
-    vec3 low = vec3(log_phase[i], log_phase[i + 1], log_phase[i + 2]);
-    vec3 high = vec3(log_phase[i + 3], log_phase[i + 4], log_phase[i + 5]);
+    vec3 low = vec3(log_phase_at(i), log_phase_at(i + 1), log_phase_at(i + 2));
+    vec3 high = vec3(log_phase_at(i + 3), log_phase_at(i + 4), log_phase_at(i + 5));
     vec3 straight = exp(-events), sigma = sqrt(max(events, 1.0) * peak_square.rgb / 2.0), share;
     for (int b = 0; b < 3; ++b) {
         float within = beyond >= 0.0 ? 1.0 : 0.0;
@@ -124,8 +153,8 @@ float forward_glow(int band, float angle, float events) {
     Place column = place_on_axis(sqrt(angle / reach), angles);
     Place row = place_on_axis(sqrt(events / 12.0), counts.x);
     int i = (band * counts.x + row.first) * angles + column.first;
-    return max(0.0, mix(mix(glow[i], glow[i + 1], column.share),
-                        mix(glow[i + angles], glow[i + angles + 1], column.share), row.share));
+    return max(0.0, mix(mix(glow_at(i), glow_at(i + 1), column.share),
+                        mix(glow_at(i + angles), glow_at(i + angles + 1), column.share), row.share));
 }
 #endif
 
@@ -136,8 +165,8 @@ vec3 crossing_share(vec3 depth, float cosine) {
     for (int b = 0; b < 3; ++b) {
         Place row = place_depth(depth[b], counts.y);
         int i = (b * counts.y + row.first) * counts.z + column.first;
-        float all = clamp(mix(mix(t_ms[i], t_ms[i + 1], column.share),
-                              mix(t_ms[i + counts.z], t_ms[i + counts.z + 1], column.share),
+        float all = clamp(mix(mix(t_ms_at(i), t_ms_at(i + 1), column.share),
+                              mix(t_ms_at(i + counts.z), t_ms_at(i + counts.z + 1), column.share),
                               row.share), 0.0, 1.0);
         float taken = taken_share(depth[b] / cosine);
         share[b] = taken > 0.0 ? clamp(all - (1.0 - taken), 0.0, taken) / taken : 1.0;
@@ -151,7 +180,7 @@ vec3 kept_share(int sun, vec3 depth) {
     for (int b = 0; b < 3; ++b) {
         Place row = place_depth(depth[b], counts.y);
         int i = (sun * counts.y + row.first) * 3 + b;
-        vec2 flux = clamp(mix(sun_flux[i], sun_flux[i + 3], row.share), 0.0, 1.0);
+        vec2 flux = clamp(mix(sun_flux_at(i), sun_flux_at(i + 3), row.share), 0.0, 1.0);
         float x = depth[b] / suns[sun].direction_cosine.w;
         float straight = exp(-x), across = clamp(flux.x - straight, 0.0, taken_share(x));
         share[b] = straight + min(flux.y, across);
@@ -173,8 +202,8 @@ vec3 multiple_source(int sun, vec3 depth, float view, float cos_azimuth, bool tr
         for (int m = 0; m < MODES; ++m) {
             int i = ((layer + m * depths + row.first) * cosines + column.first) * 3 + b;
             int next_row = i + 3 * cosines;
-            sum += now * mix(mix(sun_table[i], sun_table[i + 3], column.share),
-                             mix(sun_table[next_row], sun_table[next_row + 3], column.share),
+            sum += now * mix(mix(sun_table_at(i), sun_table_at(i + 3), column.share),
+                             mix(sun_table_at(next_row), sun_table_at(next_row + 3), column.share),
                              row.share);
             float next = 2.0 * x * now - before;
             before = now;

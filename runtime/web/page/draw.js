@@ -295,7 +295,7 @@ const Draw = (() => {
     const sumFormat = gl.getExtension("EXT_float_blend") === null ? gl.RGBA16F : gl.RGBA32F;
     const objects = makeAssetObjects(gl, asset);
     const background = makeProgram(gl, [], ["screen.vert.glsl"],
-                                   ["cube_map.glsl", "environment.glsl", "background.frag.glsl"]);
+                                   ["cube_map.glsl", "arc_tangent.glsl", "environment.glsl", "background.frag.glsl"]);
     const adding = makeProgram(gl, [], ["screen.vert.glsl"], ["add_sample.frag.glsl"]);
     const presenting = makeProgram(gl, [], ["screen.vert.glsl"], ["present.frag.glsl"]);
     const volumes = asset.volumes === null ? null : makeVolumeObjects(gl, asset.volumes);

@@ -8,6 +8,7 @@
 #include "tests/runtime/embed_gl/embedded_asset.h"
 #include "tests/runtime/embed_gl/host_context.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
+#include "tests/support/cloud_layers.h"
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
@@ -199,6 +200,7 @@ TEST_P(EmbedGlState, IsAsBeforeAfterEveryCall) {
     fog.single_terms = 1;
     fog.density = [](float, float, float) { return 1.0f; };
     add_volume(asset.volumes, fog);
+    asset.clouds = make_test_clouds(even_test_layer());
     const EmbeddedAsset host(asset);
     set_host_state(is_es);
     const State before = query_state(is_es);
@@ -212,6 +214,8 @@ TEST_P(EmbedGlState, IsAsBeforeAfterEveryCall) {
     objects.struct_size = sizeof objects;
     opaline_volume_light* volume_light = nullptr;
     ASSERT_EQ(opaline_volume_light_create(host.asset(), &volume_light), OPALINE_OK);
+    opaline_layer_light* layer_light = nullptr;
+    ASSERT_EQ(opaline_layer_light_create(host.asset(), &layer_light), OPALINE_OK);
     EXPECT_EQ(opaline_gl_get_objects(gl, &objects), OPALINE_OK);
     for (int i = 0; i < 2; ++i) {
         EXPECT_EQ(opaline_gl_relight(gl, host.light()), OPALINE_OK) << opaline_last_error();
@@ -223,6 +227,9 @@ TEST_P(EmbedGlState, IsAsBeforeAfterEveryCall) {
                   OPALINE_OK);
         EXPECT_EQ(opaline_gl_light_volumes(gl, volume_light), OPALINE_OK) << opaline_last_error();
         EXPECT_EQ(query_state(is_es), before) << "light_volumes";
+        EXPECT_EQ(opaline_gl_show_layer(gl, host.asset(), layer_light), OPALINE_OK)
+            << opaline_last_error();
+        EXPECT_EQ(query_state(is_es), before) << "show_layer";
     }
     // What the host had in its hands did not change what was computed.
     const std::vector<float> cpu = host.expected(std::array<float, 3>{1, 2, 9}.data());
@@ -232,6 +239,7 @@ TEST_P(EmbedGlState, IsAsBeforeAfterEveryCall) {
         ASSERT_NEAR(relit[i / 3 * 4 + i % 3], cpu[i], 1e-4f);
     }
     opaline_volume_light_release(volume_light);
+    opaline_layer_light_release(layer_light);
     EXPECT_EQ(opaline_gl_release(gl), OPALINE_OK);
     EXPECT_EQ(query_state(is_es), before) << "release";
 }

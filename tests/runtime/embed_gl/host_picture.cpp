@@ -102,6 +102,13 @@ void HostPicture::set_flag(const char* uniform, bool value) {
     glUniform1i(location, value ? 1 : 0);
 }
 
+void HostPicture::set_number(const char* uniform, float value) {
+    const GLint location = glGetUniformLocation(program_, uniform);
+    EXPECT_GE(location, 0) << uniform;
+    glUseProgram(program_);
+    glUniform1f(location, value);
+}
+
 std::vector<float> HostPicture::draw(const std::vector<HostRay>& rays) {
     const auto rows = static_cast<GLsizei>((rays.size() + kRaysAcross - 1) / kRaysAcross);
     std::vector<HostRay> padded = rays;

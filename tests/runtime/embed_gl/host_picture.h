@@ -27,6 +27,7 @@ class HostPicture {
     void bind_texture(const char* uniform, unsigned texture);
     void bind_block(const char* name, unsigned buffer);
     void set_flag(const char* uniform, bool value);
+    void set_number(const char* uniform, float value);
 
     /// `a` and `b` of each ray, eight floats.
     std::vector<float> draw(const std::vector<HostRay>& rays);
