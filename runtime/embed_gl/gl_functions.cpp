@@ -33,7 +33,12 @@ opaline_gl_loader find_loader() {
     return nullptr;
 }
 
-const char* text_of_error(GLenum error) {
+// Bounded: a lost context reports errors for ever.
+constexpr int kMostErrors = 16;
+
+}  // namespace
+
+const char* gl_error_name(GLenum error) {
     switch (error) {
         case GL_INVALID_ENUM:
             return "invalid enumerator";
@@ -41,6 +46,8 @@ const char* text_of_error(GLenum error) {
             return "invalid value";
         case GL_INVALID_OPERATION:
             return "invalid operation";
+        case GL_INVALID_FRAMEBUFFER_OPERATION:
+            return "incomplete framebuffer";
         case GL_OUT_OF_MEMORY:
             return "out of memory";
         case GL_CONTEXT_LOST:
@@ -49,11 +56,6 @@ const char* text_of_error(GLenum error) {
             return "unknown error";
     }
 }
-
-// Bounded: a lost context reports errors for ever.
-constexpr int kMostErrors = 16;
-
-}  // namespace
 
 const char* GlFunctions::shader_head() const {
     return is_es ? "#version 310 es\nprecision highp float;\nprecision highp int;\n"
@@ -114,7 +116,7 @@ opaline_status check_errors(const GlFunctions& gl, const char* doing) {
     }
     if (first == GL_NO_ERROR) return OPALINE_OK;
     char text[200];
-    std::snprintf(text, sizeof text, "OpenGL: %s while %s", text_of_error(first), doing);
+    std::snprintf(text, sizeof text, "OpenGL: %s while %s", gl_error_name(first), doing);
     return fail(is_lost            ? OPALINE_GL_CONTEXT_LOST
                 : is_out_of_memory ? OPALINE_OUT_OF_MEMORY
                                    : OPALINE_GL_REFUSED,

@@ -4,30 +4,13 @@
 #include <array>
 #include <vector>
 
+#include "runtime/embed_gl/gl_functions.h"
+
 namespace opaline::runtime {
 namespace {
 
 using formats::ErrorKind;
 using formats::make_error;
-
-const char* error_name(GLenum error) {
-    switch (error) {
-        case GL_INVALID_ENUM:
-            return "invalid enumerator";
-        case GL_INVALID_VALUE:
-            return "invalid value";
-        case GL_INVALID_OPERATION:
-            return "invalid operation";
-        case GL_INVALID_FRAMEBUFFER_OPERATION:
-            return "incomplete framebuffer";
-        case GL_OUT_OF_MEMORY:
-            return "out of memory";
-        case GL_CONTEXT_LOST:
-            return "context lost";
-        default:
-            return "unknown error";
-    }
-}
 
 std::size_t padded(std::size_t size) {
     return std::max<std::size_t>(16, (size + 15) / 16 * 16);
@@ -67,8 +50,8 @@ formats::Status check_gl(const std::string& doing) {
     for (int i = 0; i < 16; ++i) {
         const GLenum error = glGetError();
         if (error == GL_NO_ERROR) break;
-        if (errors.find(error_name(error)) == std::string::npos) {
-            errors += (errors.empty() ? "" : ", ") + std::string(error_name(error));
+        if (errors.find(gl_error_name(error)) == std::string::npos) {
+            errors += (errors.empty() ? "" : ", ") + std::string(gl_error_name(error));
         }
     }
     if (errors.empty()) return formats::ok_status();

@@ -84,13 +84,13 @@ struct DrawWork {
 };
 
 formats::Status DrawWork::open_all(const DrawRequest& request) {
-    if (auto status = keep_open(file, request.state.file, request.file_version); !status) {
+    if (auto status = keep_open(file, request.state.file, request.version.file); !status) {
         return status;
     }
-    if (auto status = keep_open(other, request.state.other, request.other_version); !status) {
+    if (auto status = keep_open(other, request.state.other, request.version.other); !status) {
         return status;
     }
-    if (environment && light == request.state.light && light_request == request.light_version) {
+    if (environment && light == request.state.light && light_request == request.version.light) {
         return formats::ok_status();
     }
     auto opened = bake::open_environment(request.state.light);
@@ -98,7 +98,7 @@ formats::Status DrawWork::open_all(const DrawRequest& request) {
     if (auto status = report_warnings(opened->warnings); !status) return status;
     environment = std::move(opened->environment);
     light = request.state.light;
-    light_request = request.light_version;
+    light_request = request.version.light;
     ++light_version;
     return formats::ok_status();
 }

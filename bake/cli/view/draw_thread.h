@@ -10,6 +10,7 @@
 
 #include "bake/cli/view/shown_file.h"
 #include "bake/cli/view/view_state.h"
+#include "bake/cli/view/watched_files.h"
 #include "formats/opal/result.h"
 #include "runtime/picture/picture.h"
 
@@ -20,7 +21,7 @@ namespace opaline::cli {
 struct DrawRequest {
     ViewState state;
     std::uint64_t serial = 0;
-    std::uint64_t file_version = 0, other_version = 0, light_version = 0;
+    FileVersions version;
     bool is_exact = false;  ///< the last picture has the very samples of `render`
 };
 

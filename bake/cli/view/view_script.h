@@ -40,8 +40,4 @@ formats::Result<std::vector<ScriptStep>> parse_script(std::string_view text,
 /// The commands and what they do, one a line, for help texts.
 std::string script_help();
 
-/// A file that was dropped on the window at `share` of its width: an `.opal` file is shown in place
-/// of the one there, an .exr or .hdr file is the light. Errors: usage, for other endings.
-formats::Status drop_file(ViewState& state, const std::string& path, double share);
-
 }  // namespace opaline::cli

@@ -14,36 +14,19 @@
 #include "bake/cli/interrupt.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/view/draw_thread.h"
-#include "bake/cli/view/file_watch.h"
+#include "bake/cli/view/dropped_file.h"
 #include "bake/cli/view/picture_painter.h"
 #include "bake/cli/view/render_line.h"
+#include "bake/cli/view/script_run.h"
 #include "bake/cli/view/view_panels.h"
 #include "bake/cli/view/view_window.h"
-#include "bake/environment/builtin_environment.h"
+#include "bake/cli/view/watched_files.h"
 #include "formats/image/png.h"
 
 namespace opaline::cli {
 namespace {
 
 using SessionClock = std::chrono::steady_clock;
-
-// A file that is shown, read again when it changes.
-struct WatchedFile {
-    std::optional<FileWatch> watch;
-    std::uint64_t version = 0;
-
-    // Whether it changed; `path` empty: there is none.
-    bool look(const std::string& path) {
-        if (path.empty()) {
-            watch.reset();
-            return false;
-        }
-        if (!watch || watch->path() != path) watch.emplace(path);
-        if (!watch->look()) return false;
-        ++version;
-        return true;
-    }
-};
 
 // What it says on a terminal, where it does not stand among other programs' lines.
 std::string message_of(const formats::Error& error) {
@@ -63,28 +46,25 @@ std::string line_of(ViewState state, const std::string& file, const DrawnSide& s
 
 class Session {
   public:
-    Session(ViewWindow window, PicturePainter painter, ViewState begin)
-        : window_(std::move(window)), painter_(std::move(painter)), state_(std::move(begin)) {}
+    Session(ViewWindow window, PicturePainter painter, ViewState begin,
+            std::vector<ScriptStep> steps)
+        : window_(std::move(window)),
+          painter_(std::move(painter)),
+          state_(std::move(begin)),
+          script_(std::move(steps)) {}
 
-    int run(const std::vector<ScriptStep>& steps, const std::string& script);
+    int run(const std::string& script_name);
 
   private:
-    struct Shot {
-        std::string path;
-        bool with_panels = false;
-    };
     // The end of the session, or nothing yet.
     std::optional<int> take_drawn(bool has_script);
-    std::optional<int> step(const std::vector<ScriptStep>& steps);
-    bool do_step(const ScriptStep& step);
     void take_input();
-    void look_for_changes();
     void send_request();
     bool is_sent() const;
     bool wants_exact() const;
     bool is_settled() const;
     void paint_frame();
-    formats::Status save(const Shot& shot);
+    formats::Status save(const Screenshot& shot);
     int end_with(const formats::Error& error) const;
     std::string next_name() const;
     bool is_idle() const;
@@ -98,24 +78,23 @@ class Session {
     std::optional<ViewState> good_;  // the last that could be drawn
     std::shared_ptr<const DrawnView> drawn_;
     std::uint64_t final_serial_ = 0;  // of the last request that was drawn in full quality
-    WatchedFile file_, other_, light_;
-    SessionClock::time_point last_look_ = SessionClock::now(), second_ = SessionClock::now();
+    WatchedFiles files_;
+    SessionClock::time_point second_ = SessionClock::now();
     SessionClock::time_point last_input_ = SessionClock::now();
     std::size_t frames_ = 0, frames_of_second_ = 0, settled_frames_ = 0;
     std::size_t reloads_ = 0;  // since the last screenshot
-    std::size_t steps_ = 0, next_step_ = 0, waited_ = 0;
-    std::size_t line_ = 0;  // of the script, carried out last
-    std::string script_;
-    std::optional<Shot> shot_;
+    ScriptRun script_;
+    std::string script_name_;
+    std::optional<Screenshot> shot_;
     bool wants_shot_ = false;  // as soon as it is drawn
-    bool quits_ = false;
 };
 
 int Session::end_with(const formats::Error& error) const {
     formats::Error located = error;
-    if (line_ != 0) {
+    if (script_.line() != 0) {
         std::string& where = located.diagnostics.front().where;
-        where = fmt::format("{} line {}{}{}", script_, line_, where.empty() ? "" : ": ", where);
+        where = fmt::format("{} line {}{}{}", script_name_, script_.line(),
+                            where.empty() ? "" : ": ", where);
     }
     return report_error(located);
 }
@@ -123,13 +102,12 @@ int Session::end_with(const formats::Error& error) const {
 // Whether the state, with the files as they are now, was sent.
 bool Session::is_sent() const {
     return sent_.serial > 0 && same_radiance(state_, sent_.state) &&
-           sent_.file_version == file_.version && sent_.other_version == other_.version &&
-           sent_.light_version == light_.version && (sent_.is_exact || !wants_exact());
+           sent_.version == files_.versions() && (sent_.is_exact || !wants_exact());
 }
 
 // Scripts and screenshots.
 bool Session::wants_exact() const {
-    return next_step_ < steps_ || wants_shot_;
+    return !script_.is_done() || wants_shot_;
 }
 
 bool Session::is_settled() const {
@@ -140,12 +118,9 @@ void Session::send_request() {
     if (is_sent()) return;
     const bool is_renamed = good_ && (state_.file != good_->file || state_.other != good_->other ||
                                       state_.light != good_->light);
-    const bool is_read_again = sent_.file_version != file_.version ||
-                               sent_.other_version != other_.version ||
-                               sent_.light_version != light_.version;
+    const bool is_read_again = sent_.version != files_.versions();
     if (is_renamed || is_read_again) memory_.message.clear();
-    sent_ = {state_,         sent_.serial + 1, file_.version,
-             other_.version, light_.version,   wants_exact()};
+    sent_ = {state_, sent_.serial + 1, files_.versions(), wants_exact()};
     settled_frames_ = 0;
     thread_.request(sent_);
 }
@@ -177,18 +152,6 @@ std::optional<int> Session::take_drawn(bool has_script) {
     return {};
 }
 
-void Session::look_for_changes() {
-    constexpr std::chrono::milliseconds kPause{200};
-    if (SessionClock::now() - last_look_ < kPause) return;
-    last_look_ = SessionClock::now();
-    const bool is_file = !bake::is_builtin(state_.light);
-    const bool changed[] = {file_.look(state_.file), other_.look(state_.other),
-                            light_.look(is_file ? state_.light : "")};
-    for (const bool is_changed : changed) {
-        reloads_ += is_changed ? 1 : 0;
-    }
-}
-
 void Session::take_input() {
     for (const ViewWindow::Drop& drop : window_.take_drops()) {
         if (auto status = drop_file(state_, drop.path, drop.share); !status) {
@@ -202,41 +165,6 @@ void Session::take_input() {
     }
 }
 
-// Whether the step is done.
-bool Session::do_step(const ScriptStep& step) {
-    if (const auto* change = std::get_if<StateChange>(&step.what)) {
-        if (!state_.viewpoint) return false;
-        (*change)(state_);
-        return true;
-    }
-    if (const auto* wait = std::get_if<WaitFrames>(&step.what)) {
-        return waited_++ >= wait->frames;
-    }
-    if (std::holds_alternative<WaitReload>(step.what)) {
-        return reloads_ > 0 && is_settled();
-    }
-    if (const auto* screenshot = std::get_if<Screenshot>(&step.what)) {
-        // Controls take a few frames to find their sizes.
-        constexpr std::size_t kFrames = 4;
-        if (!is_settled() || settled_frames_ < kFrames) return false;
-        shot_ = Shot{screenshot->path, screenshot->with_panels};
-        return true;
-    }
-    quits_ = true;
-    return true;
-}
-
-std::optional<int> Session::step(const std::vector<ScriptStep>& steps) {
-    while (next_step_ < steps.size() && !shot_ && !quits_) {
-        line_ = steps[next_step_].line;
-        if (!do_step(steps[next_step_])) return {};
-        ++next_step_;
-        waited_ = 0;
-    }
-    if (next_step_ == steps.size()) line_ = 0;  // from now on the window is the user's
-    return quits_ ? std::optional<int>(kExitSuccess) : std::nullopt;
-}
-
 std::string Session::next_name() const {
     const std::string stem = std::filesystem::path(state_.file).stem().string();
     std::string name;
@@ -246,7 +174,7 @@ std::string Session::next_name() const {
     return name;
 }
 
-formats::Status Session::save(const Shot& shot) {
+formats::Status Session::save(const Screenshot& shot) {
     runtime::DisplayPicture image = painter_.read();
     if (auto status =
             formats::write_png(shot.path, {image.width, image.height, std::move(image.rgba)});
@@ -268,7 +196,7 @@ formats::Status Session::save(const Shot& shot) {
 // Nothing moves: no script, no picture that is drawn, no input of late.
 bool Session::is_idle() const {
     constexpr std::chrono::milliseconds kStill{400};
-    return next_step_ == steps_ && is_settled() && !wants_shot_ &&
+    return script_.is_done() && is_settled() && !wants_shot_ &&
            SessionClock::now() - last_input_ > kStill;
 }
 
@@ -286,20 +214,23 @@ void Session::paint_frame() {
                    {state_.exposure, state_.tone_map, state_.split, state_.difference_gain});
 }
 
-int Session::run(const std::vector<ScriptStep>& steps, const std::string& script) {
-    script_ = script;
-    steps_ = steps.size();
+int Session::run(const std::string& script_name) {
+    script_name_ = script_name;
     const std::atomic<bool>& interrupted = catch_interrupts();
     while (!window_.wants_to_close()) {
         if (interrupted.load()) return kExitInterrupted;
         const bool is_still = is_idle();
         const bool has_input = window_.wait(is_still ? 0.1 : 0.01);
         if (has_input) last_input_ = SessionClock::now();
-        look_for_changes();
+        reloads_ += files_.look(state_);
         if (is_still && !has_input && is_sent()) continue;  // the window shows it already
         take_input();
-        if (const auto code = take_drawn(next_step_ < steps_)) return *code;
-        if (const auto code = step(steps)) return *code;
+        if (const auto code = take_drawn(!script_.is_done())) return *code;
+        if (!shot_) {
+            script_.advance(state_, {is_settled(), settled_frames_, reloads_ > 0});
+            shot_ = script_.take_shot();
+        }
+        if (script_.quits()) return kExitSuccess;
         send_request();
         paint_frame();
         if (shot_ && !shot_->with_panels) {
@@ -316,7 +247,7 @@ int Session::run(const std::vector<ScriptStep>& steps, const std::string& script
         }
         wants_shot_ |= wishes.screenshot;
         if (wants_shot_ && is_settled()) {
-            shot_ = Shot{next_name(), false};
+            shot_ = Screenshot{next_name(), false};
             wants_shot_ = false;
         }
         painter_.show();
@@ -334,7 +265,7 @@ int run_view(const ViewState& begin, const std::vector<ScriptStep>& steps,
     window->set_title("Opaline: " + begin.file);
     auto painter = PicturePainter::create();
     if (!painter) return report_error(painter.error());
-    return Session(std::move(*window), std::move(*painter), begin).run(steps, script);
+    return Session(std::move(*window), std::move(*painter), begin, steps).run(script);
 }
 
 }  // namespace opaline::cli
