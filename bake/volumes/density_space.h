@@ -58,9 +58,9 @@ struct Collision {
 };
 
 /// Calls visit(bound, begin, end) for the cells with density that the ray crosses in [0, reach], in
-/// order, distances in metres; ends early where that is false.
-template <class Visit>
-void visit_cells(const DensityVolume& volume, glm::vec3 from, glm::vec3 direction, float reach,
+/// order, distances in metres; ends early where that is false. `Volume` has cells as DensityVolume.
+template <class Volume, class Visit>
+void visit_cells(const Volume& volume, glm::vec3 from, glm::vec3 direction, float reach,
                  Visit&& visit);
 
 /// A flight over at most `reach` [m] by delta tracking [Woodcock1965] in one band, unbiased.

@@ -8,8 +8,8 @@
 
 namespace opaline::bake {
 
-template <class Visit>
-void visit_cells(const DensityVolume& volume, glm::vec3 from, glm::vec3 direction, float reach,
+template <class Volume, class Visit>
+void visit_cells(const Volume& volume, glm::vec3 from, glm::vec3 direction, float reach,
                  Visit&& visit) {
     constexpr auto kSide = static_cast<float>(formats::SparseGrid<float>::kSide);
     // In units of cells, from the table's lowest corner.

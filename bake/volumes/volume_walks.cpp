@@ -3,69 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
-#include "bake/base/frame.h"
-#include "bake/base/rng.h"
 #include "bake/volumes/add_scattered.h"
+#include "bake/volumes/walk_parts.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "formats/opal/volumes.h"
 
 namespace opaline::bake {
 namespace {
-
-constexpr float kRoulette = 0.25f;  // weight below which a walk may end
-
-// Uniform numbers of one walk, in order.
-class WalkRandom {
-  public:
-    WalkRandom(std::uint64_t seed, std::uint64_t walk) : seed_(seed), walk_(walk) {}
-
-    float operator()() {
-        if (used_ == number_.size()) {
-            number_ = random_uniform(seed_, RandomStage::volume_walk, walk_, draw_++);
-            used_ = 0;
-        }
-        return number_[used_++];
-    }
-
-  private:
-    std::uint64_t seed_, walk_;
-    std::uint32_t draw_ = 0;
-    std::size_t used_ = 4;
-    std::array<float, 4> number_{};
-};
-
-// Direction i of `count` that cover the sphere evenly, turned by two random numbers.
-glm::vec3 even_direction(std::uint32_t i, std::uint32_t count, float u, float v) {
-    constexpr double kGolden = 0.61803398874989485;
-    const double z =
-        1 - 2 * (static_cast<double>(i) + static_cast<double>(u)) / static_cast<double>(count);
-    const double turn = static_cast<double>(i) * kGolden + static_cast<double>(v);
-    const double angle = 2 * std::numbers::pi * (turn - std::floor(turn));
-    const double r = std::sqrt(std::max(0.0, 1 - z * z));
-    return glm::vec3(glm::dvec3(r * std::cos(angle), r * std::sin(angle), z));
-}
-
-// Distance [m] to the first surface, infinite without one.
-float distance_to_surface(const RayScene& rays, glm::vec3 from, glm::vec3 direction,
-                          std::uint64_t& traced) {
-    if (rays.is_empty()) {
-        return std::numeric_limits<float>::infinity();
-    }
-    RayPacket packet = rays_from(from);
-    LaneMask lanes{};
-    lanes[0] = -1;
-    packet.dir_x[0] = direction.x;
-    packet.dir_y[0] = direction.y;
-    packet.dir_z[0] = direction.z;
-    packet.tfar[0] = std::numeric_limits<float>::infinity();
-    const PacketHits hits = rays.closest(lanes, packet);
-    ++traced;
-    return hits.hit[0] != 0 ? hits.distance[0] : std::numeric_limits<float>::infinity();
-}
 
 // One walk that follows the extinction of `band`, for the bands [first, end).
 struct Track {
@@ -121,21 +68,16 @@ std::uint64_t follow(const VolumeWalkSpace& walk, const Track& track, glm::vec3 
             weight[band] *= own.albedo[band];
             most = std::max(most, std::abs(weight[band]));
         }
-        if (most < kRoulette) {
-            if (random() * kRoulette >= most) {
+        if (most < kWalkRoulette) {
+            if (random() * kWalkRoulette >= most) {
                 break;
             }
             for (float& w : weight) {
-                w *= kRoulette / most;
+                w *= kWalkRoulette / most;
             }
         }
         add_light(walk, track, hit.volume, at, direction, weight, sum);
-        const SampledCosine sampled = sample_scaled(own.phase, random());
-        const float angle = 2 * std::numbers::pi_v<float> * random();
-        const float sine = std::sqrt(std::max(0.0f, 1 - sampled.cosine * sampled.cosine));
-        direction = make_frame(direction).to_world(
-            {sine * std::cos(angle), sine * std::sin(angle), sampled.cosine});
-        direction = glm::normalize(direction);
+        const SampledCosine sampled = turn_walk(own.phase, direction, random);
         for (float& w : weight) {
             w *= sampled.weight;
         }
@@ -156,14 +98,14 @@ std::uint64_t gather_walks(const VolumeWalkSpace& walk, const WalkReceiver& rece
     std::vector<float> sum(row);
     std::array<float, formats::kMaxHarmonics> view{1};
     std::uint64_t traced = 0;
-    WalkRandom shift(walk.seed, receiver.node);
+    WalkRandom shift(walk.seed, RandomStage::volume_walk, receiver.node);
     const float u = shift(), v = shift();
     for (std::uint32_t i = 0; i < receiver.walks; ++i) {
         const glm::vec3 direction = even_direction(i, receiver.walks, u, v);
         std::ranges::fill(sum, 0.0f);
         for (const Track& track : tracks) {
             // Bands of one walk share its numbers, so that its noise has no colour.
-            WalkRandom random(walk.seed,
+            WalkRandom random(walk.seed, RandomStage::volume_walk,
                               (std::uint64_t{i} + 1) << 40 | std::uint64_t{receiver.node});
             traced += follow(walk, track, receiver.position, direction, random, sum);
         }

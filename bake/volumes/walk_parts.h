@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "bake/base/rng.h"
+#include "bake/transport/ray_scene.h"
+#include "bake/volumes/scaled_phase.h"
+
+namespace opaline::bake {
+
+/// What random walks from nodes have in common, whatever light they look for.
+
+/// Weight below which a walk may end by chance; those that go on have this weight.
+inline constexpr float kWalkRoulette = 0.25f;
+
+/// Uniform numbers of one walk, in order.
+class WalkRandom {
+  public:
+    WalkRandom(std::uint64_t seed, RandomStage stage, std::uint64_t walk)
+        : seed_(seed), walk_(walk), stage_(stage) {}
+
+    /// In [0, 1).
+    float operator()() {
+        if (used_ == number_.size()) {
+            number_ = random_uniform(seed_, stage_, walk_, draw_++);
+            used_ = 0;
+        }
+        return number_[used_++];
+    }
+
+  private:
+    std::uint64_t seed_, walk_;
+    RandomStage stage_;
+    std::uint32_t draw_ = 0;
+    std::size_t used_ = 4;
+    std::array<float, 4> number_{};
+};
+
+/// Unit direction i of `count` that cover the sphere evenly, turned by two numbers in [0, 1).
+glm::vec3 even_direction(std::uint32_t i, std::uint32_t count, float u, float v);
+
+/// Distance [m] to the first surface, infinite without one; counts rays in `traced`.
+float distance_to_surface(const RayScene& rays, glm::vec3 from, glm::vec3 direction,
+                          std::uint64_t& traced);
+
+/// Turns a unit direction by the phase function; two random numbers.
+SampledCosine turn_walk(const ScaledPhase& phase, glm::vec3& direction, WalkRandom& random);
+
+}  // namespace opaline::bake
