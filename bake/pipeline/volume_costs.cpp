@@ -48,9 +48,9 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         bill.add_bytes(volume_density_bytes(work));
         bill.add_bytes(attenuated_row_bytes(work, request.knobs), payer);
     });
-    bill.open("walks through volumes");
+    bill.open(scattering_stage(volumes.layouts));
     for_each("volume-multiple", [&](const VolumeWork& work, PlanEntry* payer) {
-        bill.add(walking_work(input, work), payer);
+        bill.add(scattering_work(input, work), payer);
         bill.add_bytes(scattered_row_bytes(work, request.knobs), payer);
     });
     if (std::ranges::any_of(volumes.layouts, &VolumeLayout::has_nodes)) {

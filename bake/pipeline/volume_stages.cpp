@@ -31,10 +31,14 @@ struct BakedVolumes {
 formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const Knobs& knobs,
                                              const Context& context, BakeResult& result) {
     BakedVolumes baked{knobs, plan_volumes(inputs.scene, knobs), {}, {}};
+    std::vector<MethodMeasure> measured;
     auto volumes = bake_volumes({inputs.scene, inputs.rays, baked.plan.layouts, knobs}, context,
-                                result.stages);
+                                result.stages, &measured);
     if (!volumes) {
         return std::move(volumes).error();
+    }
+    for (const MethodMeasure& measure : measured) {
+        tell_method(measure, method_budget(knobs), baked.plan.entries);
     }
     if (context.cancelled()) {
         return interrupted_volumes();

@@ -14,6 +14,7 @@
 #include "bake/volumes/pack_density.h"
 #include "bake/volumes/phase_table.h"
 #include "bake/volumes/volume_knobs.h"
+#include "bake/volumes/volume_paths.h"
 #include "bake/volumes/volume_walks.h"
 
 namespace opaline::bake {
@@ -170,32 +171,65 @@ LitNodes light_nodes(const VolumeJob& job, const Nodes& nodes, const Context& co
     return lit;
 }
 
-// The rows of a node: V, then T_k.
-std::vector<SparseRow> walk_node(const VolumeJob& job, const Nodes& nodes,
-                                 const VolumeWalkSpace& space, std::size_t number,
-                                 std::uint64_t& rays) {
+// Both ways to light that was scattered before.
+struct Scattered {
+    const VolumeWalkSpace& walks;
+    const VolumePathSpace& paths;
+};
+
+// The rows T_k of a node.
+std::vector<SparseRow> scatter_node(const VolumeJob& job, const Nodes& nodes,
+                                    const Scattered& space, std::size_t number,
+                                    std::uint64_t& rays) {
     const Place place = find_place(job, nodes, number);
-    const std::uint32_t terms = place.layout->often_terms;
+    const VolumeLayout& layout = *place.layout;
+    const std::uint32_t terms = layout.often_terms;
     if (terms == 0) {
         return {};
     }
     const auto bands = static_cast<std::uint32_t>(nodes.space.bands());
-    const std::size_t size = bands * nodes.coarse.size();
-    std::vector<float> dense(terms * size);
-    rays += gather_walks(
-        space,
-        {place.layout->volume, number, position_of(job, nodes, place.layout->volume, place.node),
-         place.layout->walks, terms},
-        dense);
-    return encode_node_rows(nodes.scattered[number_of(job, *place.layout)], dense, terms,
-                            nodes.coarse.n, bands);
+    std::vector<float> dense(terms * bands * nodes.coarse.size());
+    const glm::vec3 position = position_of(job, nodes, layout.volume, place.node);
+    if (layout.method == VolumeMethod::path_integration) {
+        gather_paths(space.paths, {layout.volume, number, position, layout.views, terms}, dense);
+    } else {
+        rays += gather_walks(space.walks, {layout.volume, number, position, layout.walks, terms},
+                             dense);
+    }
+    return encode_node_rows(nodes.scattered[number_of(job, layout)], dense, terms, nodes.coarse.n,
+                            bands);
 }
 
-formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& job, const Nodes& nodes,
+// The methods of all layouts, those measured that the plan left open.
+std::vector<VolumeLayout> decide_methods(const VolumeJob& job, const VolumePathSpace& paths,
+                                         std::vector<MethodMeasure>* measured) {
+    std::vector<VolumeLayout> layouts(job.layouts.begin(), job.layouts.end());
+    for (VolumeLayout& layout : layouts) {
+        if (layout.method == VolumeMethod::automatic) {
+            const MethodMeasure measure = measure_method(
+                paths, job.scene.volumes[layout.volume].density, layout, method_budget(job.knobs));
+            layout.method = measure.method;
+            if (measured != nullptr) {
+                measured->push_back(measure);
+            }
+        }
+    }
+    return layouts;
+}
+
+formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& given, const Nodes& nodes,
                                                       LitNodes lit, const Context& context,
+                                                      std::vector<MethodMeasure>* measured,
                                                       std::uint64_t& rays) {
-    const VolumeWalkSpace space{nodes.space, job.rays,     nodes.lattices, nodes.first,
-                                lit.depths,  nodes.coarse, job.knobs.seed};
+    const VolumeWalkSpace walks{nodes.space, given.rays,   nodes.lattices,  nodes.first,
+                                lit.depths,  nodes.coarse, given.knobs.seed};
+    const PathCells groups = group_cells(nodes.coarse);
+    // Paths know one phase function; where there are several, the plan takes walks.
+    const VolumePathSpace paths{walks, groups, nodes.space.volumes.front().phase.moments(),
+                                path_lengths(given.knobs.quality)};
+    const std::vector<VolumeLayout> layouts = decide_methods(given, paths, measured);
+    const VolumeJob job{given.scene, given.rays, layouts, given.knobs};
+    const Scattered space{walks, paths};
     formats::SparseRows rows =
         formats::make_sparse_rows(job.knobs.cubemap_size, job.knobs.code_bits);
     bool fits = true;
@@ -208,7 +242,7 @@ formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& job, cons
         [&](Range range) {
             Block block;
             for (std::size_t i = range.begin; i < range.end; ++i) {
-                block.rows.push_back(walk_node(job, nodes, space, i, block.rays));
+                block.rows.push_back(scatter_node(job, nodes, space, i, block.rays));
             }
             return block;
         },
@@ -222,7 +256,7 @@ formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& job, cons
             }
             rays += block.rays;
             if (context.on_progress) {
-                context.on_progress({"walks through volumes", range.end, nodes.count});
+                context.on_progress({scattering_stage(given.layouts), range.end, nodes.count});
             }
         });
     if (!fits) {
@@ -260,7 +294,8 @@ formats::Rgb rgb(const std::array<float, 3>& band) {
 }  // namespace
 
 formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Context& context,
-                                               StageLog& log) {
+                                               StageLog& log,
+                                               std::vector<MethodMeasure>* measured) {
     formats::Volumes volumes;
     const Nodes nodes = place_nodes(job);
     const double bytes = 2.0 * static_cast<double>(nodes.count) *
@@ -298,9 +333,9 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
     if (context.cancelled()) {
         return formats::Volumes{};
     }
-    auto rows =
-        run_stage(log, "walks through volumes", "volume-multiple: rows", [&](std::uint64_t& rays) {
-            return gather_node_rows(job, nodes, std::move(lit), context, rays);
+    auto rows = run_stage(
+        log, scattering_stage(job.layouts), "volume-multiple: rows", [&](std::uint64_t& rays) {
+            return gather_node_rows(job, nodes, std::move(lit), context, measured, rays);
         });
     if (!rows) {
         return std::move(rows).error();

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "bake/base/context.h"
 #include "bake/base/stage_log.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/volumes/choose_method.h"
 #include "bake/volumes/plan_volumes.h"
 #include "formats/opal/result.h"
 #include "formats/opal/volumes.h"
@@ -24,10 +26,12 @@ struct VolumeJob {
 /// Memory [bytes] that the attenuated light of all nodes may take while walks look it up.
 inline constexpr double kDepthBytes = 4e9;
 
-/// The volumes of a file: density, nodes and their rows; two stages in the log. The same bits for
-/// any number of threads. Empty once the context is cancelled. Errors: resource (more nodes,
-/// bricks or coefficients than fit), bad_input (a row that is not finite).
+/// The volumes of a file: density, nodes and their rows; two stages in the log. Layouts whose
+/// method is automatic are measured first, into `measured` where it is not null. The same bits for
+/// any number of threads. Empty once the context is cancelled. Errors: resource (more nodes, bricks
+/// or coefficients than fit), bad_input (a row that is not finite).
 formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Context& context,
-                                               StageLog& log);
+                                               StageLog& log,
+                                               std::vector<MethodMeasure>* measured = nullptr);
 
 }  // namespace opaline::bake

@@ -9,7 +9,8 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::array<const KnobSpec*, 2> kKnobsOnce{&kVolumeSpacing, &kVolumeCoefficients};
-constexpr std::array<const KnobSpec*, 2> kKnobsOften{&kVolumeWalks, &kVolumeTerms};
+constexpr std::array<const KnobSpec*, 4> kKnobsOften{&kVolumeMethod, &kVolumeWalks, &kVolumePaths,
+                                                     &kVolumeTerms};
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bake/plan/plan_input.h"
+#include "bake/volumes/choose_method.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/scaled_phase.h"
 #include "bake/volumes/volume_knobs.h"
@@ -117,6 +118,14 @@ std::array<double, 3> largest_depth(const formats::Volume& volume) {
     return depth;
 }
 
+const char* scattering_stage(std::span<const VolumeLayout> layouts) {
+    const auto goes_by_paths = [](const VolumeLayout& layout) {
+        return layout.method == VolumeMethod::path_integration;
+    };
+    return std::ranges::any_of(layouts, goes_by_paths) ? "paths through volumes"
+                                                       : "walks through volumes";
+}
+
 VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
     VolumePlan plan;
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
@@ -139,21 +148,21 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         if (often.on) {
             layout.often_terms = often.terms = choose_terms(phase, knobs);
             layout.walks = choose_walks(phase, layout.often_terms, knobs);
-            often.choice = "walks";
-            often.reason = "light is scattered more than once: random walks, " +
-                           std::to_string(often.terms) +
-                           (often.terms == 1 ? " row a node" : " rows a node");
+            // Rows of degree l need as many views as they are, twice for good measure.
+            layout.views = std::max(whole(knobs, kVolumePaths), 2 * layout.often_terms);
         } else if (often.reason.empty()) {
             often.reason =
                 once.on ? "so thin or dark that light is scattered once at most" : why_dark(most);
         }
-        for (PlanEntry* const entry : {&once, &often}) {
-            entry->reason += entry->forced ? "; forced: by its bound it would be left out" : "";
-            plan.entries.push_back(std::move(*entry));
-        }
+        plan.entries.push_back(std::move(once));
+        plan.entries.push_back(std::move(often));
         if (most.seen >= kLeastBound || layout.has_nodes()) {
             plan.layouts.push_back(layout);
         }
+    }
+    plan_methods(scene, knobs, plan.layouts, plan.entries);
+    for (PlanEntry& entry : plan.entries) {
+        entry.reason += entry.forced ? "; forced: by its bound it would be left out" : "";
     }
     return plan;
 }

@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/knobs.h"
+#include "bake/volumes/volume_method.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -17,6 +19,9 @@ struct VolumeLayout {
     std::uint32_t often_terms = 0;  ///< K_m; 0: none that was scattered more often
     std::uint32_t spacing = 1;      ///< voxels between nodes
     std::uint32_t walks = 0;        ///< from each node; 0 where often_terms is
+    std::uint32_t views = 0;        ///< directions of quasi-paths from each node; 0 likewise
+    /// Automatic: the bake measures both ways (choose_method.h).
+    VolumeMethod method = VolumeMethod::walks;
 
     bool has_nodes() const { return once_terms > 0 || often_terms > 0; }
 };
@@ -31,6 +36,9 @@ struct VolumePlan {
 /// alpha the largest albedo, under light of radiance 1: light scattered once or more is at most
 /// alpha d, light scattered more than once at most (alpha d)^2 (README.md, "Bounds").
 VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs);
+
+/// The stage of a bake that finds light scattered more than once, by the ways of its layouts.
+const char* scattering_stage(std::span<const VolumeLayout> layouts);
 
 /// An upper bound [1] on the optical depth of any straight line through a volume, by band.
 std::array<double, 3> largest_depth(const formats::Volume& volume);

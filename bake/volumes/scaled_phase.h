@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "formats/scene.h"
@@ -20,6 +21,8 @@ struct ScaledPhase {
                                                        ///< may be negative somewhere
     std::vector<float> cumulative;  ///< of |p'| in even steps of the cosine from -1 to 1; ends at 1
 
+    /// lambda'_0 to lambda'_N.
+    std::span<const double> moments() const { return std::span(lambda).first(degree + 1); }
     std::uint32_t harmonics() const { return (degree + 1) * (degree + 1); }
 };
 

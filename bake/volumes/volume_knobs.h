@@ -6,6 +6,7 @@
 
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/knob.h"
+#include "bake/volumes/volume_method.h"
 
 namespace opaline::bake {
 
@@ -20,8 +21,23 @@ inline bool is_scattered_often(const RowLayout&, std::span<const PlanEntry> deci
         return entry.on && entry.name == "volume-multiple";
     });
 }
+// Whether a volume's light that is scattered more than once takes that way, or may.
+inline bool goes_by(std::span<const PlanEntry> decisions, VolumeMethod method) {
+    return std::ranges::any_of(decisions, [&](const PlanEntry& entry) {
+        return entry.on && entry.name == "volume-multiple" &&
+               (entry.choice.empty() || entry.choice == name_of(method));
+    });
+}
+inline bool is_walked(const RowLayout&, std::span<const PlanEntry> decisions) {
+    return goes_by(decisions, VolumeMethod::walks);
+}
+inline bool follows_paths(const RowLayout&, std::span<const PlanEntry> decisions) {
+    return goes_by(decisions, VolumeMethod::path_integration);
+}
 inline constexpr const char* kWhyDark = "no volume scatters light";
 inline constexpr const char* kWhyOnce = "no light is scattered more than once in a volume";
+inline constexpr const char* kWhyNoWalks = "no light of a volume is found by random walks";
+inline constexpr const char* kWhyNoPaths = "no light of a volume is found by path integration";
 inline constexpr std::array<double, 4> kSpacings{1, 2, 4, 8};
 inline constexpr std::array<double, 5> kTermCounts{1, 4, 9, 16, 25};
 // Of the sweep.
@@ -32,6 +48,9 @@ inline constexpr std::array<double, 6> kCoefficientTruths{4352, 4352, 2176, 2176
 inline constexpr std::array<double, 5> kWalkLadder{4, 16, 64, 256, 1024};
 inline constexpr std::array<double, 5> kWalkDiagonal{16, 32, 64, 128, 256};
 inline constexpr std::array<double, 6> kWalkTruths{1024, 512, 512, 256, 256, 128};
+inline constexpr std::array<double, 6> kPathLadder{8, 16, 32, 64, 128, 256};
+inline constexpr std::array<double, 5> kPathDiagonal{8, 16, 32, 64, 128};
+inline constexpr std::array<double, 6> kPathTruths{256, 256, 256, 128, 128, 64};
 // Degree l of 1, 4, 9, ... rows.
 inline double degree_of(double rows) {
     return std::sqrt(rows) - 1;
@@ -86,6 +105,43 @@ inline constexpr KnobSpec kVolumeCoefficients{
     .matters = volume_knobs::is_lit,
     .why_idle = volume_knobs::kWhyDark};
 
+/// VolumeMethod.
+inline constexpr KnobSpec kVolumeMethod{
+    .name = "volume_method",
+    .option = "--volume-method",
+    .placeholder = "auto|path-integration|walks [auto]",
+    .help =
+        "how light that is scattered more than once in a volume is found: by random walks, or by "
+        "most probable paths, which have no noise, err by 10 to 30 % and pay in media so dense "
+        "that walks are long; auto: walks, unless paths take less work and their measured error "
+        "fits",
+    .lowest = 0,
+    .highest = 2,
+    .words = kVolumeMethodWords,
+    .preset = {0, 0, 0, 0},
+    .matters = volume_knobs::is_scattered_often,
+    .why_idle = volume_knobs::kWhyOnce};
+
+/// Directions from each node along which quasi-paths begin; twice as many as rows at least.
+inline constexpr KnobSpec kVolumePaths{
+    .name = "volume_paths",
+    .option = "--volume-paths",
+    .placeholder = "P",
+    .help =
+        "directions from each of these points in which most probable paths begin, each path once "
+        "for every direction of light, where --volume-method takes them; default as the quality "
+        "says",
+    .lowest = 1,
+    .highest = 4096,
+    .preset = {16, 32, 64, 256},
+    .label = "%g directions of paths from a node",
+    .ladder = volume_knobs::kPathLadder,
+    .diagonal = volume_knobs::kPathDiagonal,
+    .truths = volume_knobs::kPathTruths,
+    .theory = {.label = "directions of paths from a node"},
+    .matters = volume_knobs::follows_paths,
+    .why_idle = volume_knobs::kWhyNoPaths};
+
 /// Random walks from each node.
 inline constexpr KnobSpec kVolumeWalks{
     .name = "volume_walks",
@@ -103,8 +159,8 @@ inline constexpr KnobSpec kVolumeWalks{
     .diagonal = volume_knobs::kWalkDiagonal,
     .truths = volume_knobs::kWalkTruths,
     .theory = {.label = "walks from a node", .words = "noise of independent walks", .rate = -0.5},
-    .matters = volume_knobs::is_scattered_often,
-    .why_idle = volume_knobs::kWhyOnce};
+    .matters = volume_knobs::is_walked,
+    .why_idle = volume_knobs::kWhyNoWalks};
 
 /// Rows of a node that say how light that was scattered more than once changes with the view.
 inline constexpr KnobSpec kVolumeTerms{

@@ -4,15 +4,22 @@
 #include <cmath>
 #include <limits>
 
+#include "bake/path_integral/path_estimate.h"
 #include "bake/volumes/count_walk.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"
+#include "bake/volumes/path_medium.h"
 #include "bake/volumes/volume_knobs.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/phase_table.h"
 
 namespace opaline::bake {
 namespace {
+
+// A scattering of the reference's paths takes as long as so many steps of an optical depth, or
+// directions of light that join a walk; a step of a quasi-path, with the light of four directions,
+// as long as so many steps (tests/bench/RESULTS.md, "Volumes").
+constexpr double kStepScattering = 1.0 / 16, kCellScattering = 1.0 / 180, kStepsOfPathStep = 8;
 
 constexpr float kForever = std::numeric_limits<float>::infinity();
 
@@ -26,6 +33,24 @@ double count_steps(const DensitySpace& space, glm::vec3 from, glm::vec3 directio
             return true;
         });
     }
+    return steps;
+}
+
+// Steps of a quasi-path between two directions, as volume_paths takes them.
+double count_path_steps(const DensitySpace& space, const MarchLimits& limits, glm::vec3 from,
+                        glm::vec3 onward, glm::vec3 light) {
+    PathMedium medium(space);
+    const auto coefficients = [&](glm::dvec3 x) { return medium(x); };
+    const glm::dvec3 view = glm::normalize(glm::dvec3(onward));
+    const Turns turns(view, glm::normalize(glm::dvec3(light)));
+    const double depth = probe_depth([&](glm::dvec3 x) { return medium(x).scattering; }, limits.box,
+                                     from, view, limits.step);
+    double steps = 0;
+    march_quasi_path({from, turns[0], std::max(depth, kShortestTurn)}, coefficients, limits,
+                     [&](const PathStep& step) {
+                         ++steps;
+                         return step.absorption < -std::log(kLeastSurvival);
+                     });
     return steps;
 }
 
@@ -44,6 +69,13 @@ double bytes_of_rows(double rows, std::uint32_t coefficients, const VolumeWork& 
     return details * (2 + work.bands * code) + rows * (work.bands * (6 * 2 + 8) + 4);
 }
 
+// Quasi-paths from a node: one a view, square of four cells, and length of turns.
+double path_count(const VolumeLayout& layout, const Knobs& knobs) {
+    constexpr double kCellsOfPath = 4;
+    return layout.views * static_cast<double>(path_lengths(knobs.quality).size()) *
+           static_cast<double>(formats::cubemap_texels(coarse_cells(knobs))) / kCellsOfPath;
+}
+
 double texels(std::uint32_t n) {
     return static_cast<double>(formats::cubemap_texels(n));
 }
@@ -53,14 +85,17 @@ void count_by_samples(const DensitySpace& space, const formats::Volume& volume,
                       const NodeLattice& lattice, VolumeWork& work) {
     constexpr std::size_t kNodes = 48, kDirections = 8, kWalks = 4;
     const std::size_t count = lattice.node.size(), drawn = std::min(count, kNodes);
-    double steps = 0;
+    double steps = 0, path_steps = 0;
     WalkCount walked;
+    const MarchLimits limits{box_of(space), path_step_length(volume.density, lattice.spacing)};
     for (std::size_t i = 0; i < drawn; ++i) {
         CostRandom random(i);
         const glm::ivec3 node = lattice.node[(2 * i + 1) * count / (2 * drawn)];
         const glm::vec3 at(volume.density.to_scene * glm::dvec4(glm::dvec3(node), 1.0));
         for (std::size_t d = 0; d < kDirections; ++d) {
-            steps += count_steps(space, at, random.direction());
+            const glm::vec3 direction = random.direction();
+            steps += count_steps(space, at, direction);
+            path_steps += count_path_steps(space, limits, at, random.direction(), direction);
         }
         for (std::size_t w = 0; w < kWalks; ++w) {
             const WalkCount one = count_walk(space, at, random);
@@ -71,6 +106,7 @@ void count_by_samples(const DensitySpace& space, const formats::Volume& volume,
     if (drawn > 0) {
         const auto nodes = static_cast<double>(drawn);
         work.depth_steps = work.nodes * work.cells * steps / (nodes * kDirections);
+        work.path_steps = work.nodes * work.paths * path_steps / (nodes * kDirections);
         work.flights = work.nodes * work.walks * walked.flights / (nodes * kWalks);
         work.collisions = work.nodes * work.walks * walked.collisions / (nodes * kWalks);
     }
@@ -102,6 +138,8 @@ std::vector<VolumeWork> count_volume_work(const formats::Scene& scene,
             work.nodes = static_cast<double>(lattice.node.size());
             work.terms = layout.often_terms;
             work.walks = layout.walks;
+            work.paths = path_count(layout, knobs);
+            work.method = layout.method;
             count_by_samples(space, volume, lattice, work);
         }
         works.push_back(work);
@@ -109,11 +147,20 @@ std::vector<VolumeWork> count_volume_work(const formats::Scene& scene,
     return works;
 }
 
+double count_walk_scatterings(const VolumeWork& work) {
+    return kCellScattering * work.tracks * work.collisions * work.walk_cells;
+}
+
+double count_path_scatterings(const VolumeWork& work) {
+    return kStepScattering * kStepsOfPathStep * work.path_steps;
+}
+
 double count_in_scatterings(std::span<const VolumeWork> works) {
-    constexpr double kStep = 1.0 / 16, kCell = 1.0 / 180;
     double sum = 0;
     for (const VolumeWork& work : works) {
-        sum += kStep * work.depth_steps + kCell * work.tracks * work.collisions * work.walk_cells;
+        sum += kStepScattering * work.depth_steps + (work.method == VolumeMethod::path_integration
+                                                         ? count_path_scatterings(work)
+                                                         : count_walk_scatterings(work));
     }
     return sum;
 }
@@ -124,9 +171,13 @@ Work attenuation_work(const CostInput& input, const VolumeWork& work) {
                    work.nodes * texel * input.rates.node_texel};
 }
 
-Work walking_work(const CostInput& input, const VolumeWork& work) {
+Work scattering_work(const CostInput& input, const VolumeWork& work) {
     const double texel = texels(input.knobs.cubemap_size) * work.bands;
     const double rows = work.nodes * work.terms;
+    if (work.method == VolumeMethod::path_integration) {
+        return {0, work.path_steps * kStepsOfPathStep * input.rates.density_step +
+                       rows * texel * input.rates.node_texel};
+    }
     return {0, work.tracks * (work.flights * input.rates.volume_flight +
                               work.collisions * work.walk_cells * input.rates.scattered_cell) +
                    rows * work.walks * work.tracks * work.walk_cells * input.rates.gather_entry +

@@ -23,8 +23,12 @@ struct VolumeWork {
     double walk_cells = 0;   ///< directions and bands of light that join a walk at a collision
     double tracks = 1;       ///< walks that follow extinctions of their own: 1, or 3 by band
     double walks = 0;        ///< from each node
-    double terms = 0;        ///< rows of multiple scattering of each node
-    double bands = 1;        ///< of a row
+    double paths = 0;        ///< quasi-paths from each node, and their steps in all; no walks then
+    double path_steps = 0;
+    /// That is billed: VolumeMethod::automatic as walks, which no other way exceeds then.
+    VolumeMethod method = VolumeMethod::walks;
+    double terms = 0;  ///< rows of multiple scattering of each node
+    double bands = 1;  ///< of a row
 };
 
 /// Counts the work of each layout, in order. Numbers of steps and collisions are means over some
@@ -38,9 +42,14 @@ std::vector<VolumeWork> count_volume_work(const formats::Scene& scene,
 /// some 16 steps or as light from 180 directions that joins a walk, on any machine about.
 double count_in_scatterings(std::span<const VolumeWork> works);
 
-/// Light scattered once: attenuation and its rows. Light scattered more often: walks and rows.
+/// Of light scattered more than once alone, by either way, whichever is taken.
+double count_walk_scatterings(const VolumeWork& work);
+double count_path_scatterings(const VolumeWork& work);
+
+/// Light scattered once: attenuation and its rows. Light scattered more often: walks or paths, and
+/// rows.
 Work attenuation_work(const CostInput& input, const VolumeWork& work);
-Work walking_work(const CostInput& input, const VolumeWork& work);
+Work scattering_work(const CostInput& input, const VolumeWork& work);
 
 /// Optical depths of `receivers` vertices toward all texels through volumes of these, and their
 /// rows once more.

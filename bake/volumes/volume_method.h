@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace opaline::bake {
+
+/// How light that was scattered more than once is found; the order of the knob's words.
+enum class VolumeMethod : std::uint8_t {
+    automatic,         ///< as the work that is counted and the error that is measured say
+    path_integration,  ///< quasi-most-probable paths: no noise, an error of the model
+    walks              ///< random walks: noise, no error of the model
+};
+
+inline constexpr std::array<std::string_view, 3> kVolumeMethodWords{"auto", "path-integration",
+                                                                    "walks"};
+
+constexpr std::string_view name_of(VolumeMethod method) {
+    return kVolumeMethodWords[static_cast<std::size_t>(method)];
+}
+
+}  // namespace opaline::bake
