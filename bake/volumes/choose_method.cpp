@@ -104,9 +104,9 @@ MethodMeasure compare_methods(std::span<const NodeComparison> nodes) {
             const auto p = static_cast<double>(node.paths[i]),
                        a = static_cast<double>(node.walks[i]),
                        b = static_cast<double>(node.others[i]);
-            error += (p - a) * (p - b);
-            noise += 0.5 * (a - b) * (a - b);
-            light += a * b;
+            error += node.weight * (p - a) * (p - b);
+            noise += node.weight * 0.5 * (a - b) * (a - b);
+            light += node.weight * a * b;
         }
     }
     MethodMeasure measure;
@@ -131,8 +131,8 @@ MethodMeasure measure_method(const VolumePathSpace& space, const formats::Sparse
         const std::size_t own = (2 * i + 1) * node.size() / (2 * count);
         const std::size_t number = walk.first[layout.volume] + own;
         const glm::vec3 position(grid.to_scene * glm::dvec4(glm::dvec3(node[own]), 1.0));
-        compared[i] = {std::vector<float>(size), std::vector<float>(size),
-                       std::vector<float>(size)};
+        compared[i] = {std::vector<float>(size), std::vector<float>(size), std::vector<float>(size),
+                       static_cast<double>(grid.sample(glm::vec3(node[own])))};
         gather_paths(space, {layout.volume, number, position, layout.views, layout.often_terms},
                      compared[i].paths);
         const WalkReceiver receiver{layout.volume, number, position, layout.walks,

@@ -27,7 +27,8 @@ void plan_methods(const formats::Scene& scene, const Knobs& knobs, std::span<Vol
 double method_budget(const Knobs& knobs);
 
 /// How far rows of two ways differ, and how much noise walks have; squares relative to those of the
-/// light itself, over all views, directions of light and bands, weighted alike.
+/// light itself, over all views, directions of light and bands alike, and over
+/// nodes by their density.
 struct MethodMeasure {
     std::uint32_t volume = 0;
     VolumeMethod method = VolumeMethod::walks;  ///< that was taken
@@ -41,6 +42,7 @@ struct MethodMeasure {
 /// Rows of one node, as gather_walks returns them: by paths, and by walks of two independent sets.
 struct NodeComparison {
     std::vector<float> paths, walks, others;
+    double weight = 1;  ///< of its squares: the density there, as rays see it
 };
 
 /// Both noises are independent, so that with p, a and b of `nodes` the mean of (p - a)(p - b) is

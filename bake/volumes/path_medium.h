@@ -12,10 +12,10 @@ namespace opaline::bake {
 /// All volumes together, as a medium of `path_integral/`. Paths turn with the scattering of one
 /// band, the one that scatters most; what the other bands meet at the point that was asked for last
 /// is kept.
-class PathMedium {
+class VolumeMedium {
   public:
     /// Refers to the space, which must stay.
-    explicit PathMedium(const DensitySpace& space) : space_(space) {
+    explicit VolumeMedium(const DensitySpace& space) : space_(space) {
         std::array<float, 3> most{};
         for (const DensityVolume& volume : space.volumes) {
             for (std::size_t band = 0; band < 3; ++band) {

@@ -12,8 +12,8 @@
 #include "bake/path_integral/quasi_path.h"
 #include "bake/path_integral/turn.h"
 #include "bake/scattering/poisson_phase.h"
-#include "bake/volumes/even_direction.h"
 #include "bake/volumes/path_medium.h"
+#include "bake/volumes/walk_parts.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "formats/opal/volumes.h"
 
@@ -69,7 +69,7 @@ void eval_degrees(double cosine, std::span<double> degree) {
 // What one view's paths share.
 struct View {
     const VolumePathSpace& space;
-    PathMedium& medium;
+    VolumeMedium& medium;
     const MarchLimits& limits;
     glm::dvec3 position, onward;
     double ell_onward = 0;  // scattering depth of the ray
@@ -186,7 +186,7 @@ std::span<const double> path_lengths(Quality quality) {
 
 PathSteps add_path_light(const VolumePathSpace& space, glm::vec3 position, glm::vec3 onward,
                          std::span<float> sum) {
-    PathMedium medium(space.walk.space);
+    VolumeMedium medium(space.walk.space);
     double step = std::numeric_limits<double>::infinity();
     for (std::size_t v = 0; v < space.walk.lattices.size(); ++v) {
         step = std::min(step, path_step_length(*space.walk.space.volumes[v].grid,

@@ -52,7 +52,7 @@ void add_light(const VolumeWalkSpace& walk, const Track& track, std::uint32_t vo
 
 // Follows one walk from a point; what it meets is added to `sum`, bands times cells.
 std::uint64_t follow(const VolumeWalkSpace& walk, const Track& track, glm::vec3 at,
-                     glm::vec3 direction, WalkRandom& random, std::span<float> sum) {
+                     glm::vec3 direction, FlightRandom& random, std::span<float> sum) {
     std::uint64_t traced = 0;
     std::array<float, 3> weight{1, 1, 1};
     for (std::uint32_t n = 0; n < kMostScatterings; ++n) {
@@ -98,15 +98,15 @@ std::uint64_t gather_walks(const VolumeWalkSpace& walk, const WalkReceiver& rece
     std::vector<float> sum(row);
     std::array<float, formats::kMaxHarmonics> view{1};
     std::uint64_t traced = 0;
-    WalkRandom shift(walk.seed, RandomStage::volume_walk, receiver.node);
+    FlightRandom shift(walk.seed, RandomStage::volume_walk, receiver.node);
     const float u = shift(), v = shift();
     for (std::uint32_t i = 0; i < receiver.walks; ++i) {
         const glm::vec3 direction = even_direction(i, receiver.walks, u, v);
         std::ranges::fill(sum, 0.0f);
         for (const Track& track : tracks) {
             // Bands of one walk share its numbers, so that its noise has no colour.
-            WalkRandom random(walk.seed, RandomStage::volume_walk,
-                              (std::uint64_t{i} + 1) << 40 | std::uint64_t{receiver.node});
+            FlightRandom random(walk.seed, RandomStage::volume_walk,
+                                (std::uint64_t{i} + 1) << 40 | std::uint64_t{receiver.node});
             traced += follow(walk, track, receiver.position, direction, random, sum);
         }
         if (receiver.terms > 1) {

@@ -19,7 +19,7 @@ namespace {
 // A scattering of the reference's paths takes as long as so many steps of an optical depth, or
 // directions of light that join a walk; a step of a quasi-path, with the light of four directions,
 // as long as so many steps (tests/bench/RESULTS.md, "Volumes").
-constexpr double kStepScattering = 1.0 / 16, kCellScattering = 1.0 / 180, kStepsOfPathStep = 8;
+constexpr double kStepScattering = 1.0 / 16, kCellScattering = 1.0 / 180, kStepsOfPathStep = 4;
 
 constexpr float kForever = std::numeric_limits<float>::infinity();
 
@@ -39,7 +39,7 @@ double count_steps(const DensitySpace& space, glm::vec3 from, glm::vec3 directio
 // Steps of a quasi-path between two directions, as volume_paths takes them.
 double count_path_steps(const DensitySpace& space, const MarchLimits& limits, glm::vec3 from,
                         glm::vec3 onward, glm::vec3 light) {
-    PathMedium medium(space);
+    VolumeMedium medium(space);
     const auto coefficients = [&](glm::dvec3 x) { return medium(x); };
     const glm::dvec3 view = glm::normalize(glm::dvec3(onward));
     const Turns turns(view, glm::normalize(glm::dvec3(light)));

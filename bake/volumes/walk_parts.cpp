@@ -36,7 +36,7 @@ float distance_to_surface(const RayScene& rays, glm::vec3 from, glm::vec3 direct
     return hits.hit[0] != 0 ? hits.distance[0] : std::numeric_limits<float>::infinity();
 }
 
-SampledCosine turn_walk(const ScaledPhase& phase, glm::vec3& direction, WalkRandom& random) {
+SampledCosine turn_walk(const ScaledPhase& phase, glm::vec3& direction, FlightRandom& random) {
     const SampledCosine sampled = sample_scaled(phase, random());
     const float angle = 2 * std::numbers::pi_v<float> * random();
     const float sine = std::sqrt(std::max(0.0f, 1 - sampled.cosine * sampled.cosine));

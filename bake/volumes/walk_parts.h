@@ -17,9 +17,9 @@ namespace opaline::bake {
 inline constexpr float kWalkRoulette = 0.25f;
 
 /// Uniform numbers of one walk, in order.
-class WalkRandom {
+class FlightRandom {
   public:
-    WalkRandom(std::uint64_t seed, RandomStage stage, std::uint64_t walk)
+    FlightRandom(std::uint64_t seed, RandomStage stage, std::uint64_t walk)
         : seed_(seed), walk_(walk), stage_(stage) {}
 
     /// In [0, 1).
@@ -47,6 +47,6 @@ float distance_to_surface(const RayScene& rays, glm::vec3 from, glm::vec3 direct
                           std::uint64_t& traced);
 
 /// Turns a unit direction by the phase function; two random numbers.
-SampledCosine turn_walk(const ScaledPhase& phase, glm::vec3& direction, WalkRandom& random);
+SampledCosine turn_walk(const ScaledPhase& phase, glm::vec3& direction, FlightRandom& random);
 
 }  // namespace opaline::bake

@@ -84,5 +84,19 @@ TEST(VolumeBake, TargetOutOfReachIsMissedWithAWarningThatStatesTheError) {
     EXPECT_EQ(result.knobs[bake::kVolumeWalks], 4);
 }
 
+TEST(VolumeBake, MethodThatWasAskedForIsTakenAndStated) {
+    bake::BakeOptions options = small_bake();
+    options.set(bake::kVolumeSpacing, 4);
+    const bake::BakeResult walks = bake_scene(make_cloud(), options);
+    options.set(bake::kVolumeMethod, static_cast<double>(bake::VolumeMethod::path_integration));
+    const bake::BakeResult paths = bake_scene(make_cloud(), options);
+    EXPECT_NE(paths.asset.volumes.rows.code8, walks.asset.volumes.rows.code8);
+    const auto json = nlohmann::json::parse(paths.asset.provenance);
+    EXPECT_EQ(json.at("knobs").at("volume_method"), "path-integration");
+    EXPECT_THAT(json.at("plan").at(1).at("reason").get<std::string>(),
+                HasSubstr("path integration, as --volume-method says"));
+    EXPECT_THAT(walks.volume_plan.at(1).reason, HasSubstr("random walks"));
+}
+
 }  // namespace
 }  // namespace opaline::tests

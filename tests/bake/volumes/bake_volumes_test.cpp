@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 
 #include "bake/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
@@ -29,18 +30,78 @@ Knobs coarse_knobs() {
     return knobs;
 }
 
-TEST(BakeVolumes, AnyNumberOfThreadsGivesTheSameBits) {
+Knobs knobs_by(VolumeMethod method) {
+    Knobs knobs = coarse_knobs();
+    knobs.set(kVolumeMethod, static_cast<double>(method));
+    return knobs;
+}
+
+class BakeVolumesBy : public testing::TestWithParam<VolumeMethod> {};
+
+TEST_P(BakeVolumesBy, AnyNumberOfThreadsGivesTheSameBits) {
     const formats::Scene scene =
-        tests::scene_of(tests::make_volume(tests::make_blob(0.4, 0.1), 3, 0.9f, 0.4f));
+        tests::scene_of(tests::make_volume(tests::make_blob(0.4, 0.2), 3, 0.9f, 0.4f));
     const RayScene sky = tests::empty_space();
-    const formats::Volumes one = bake(scene, sky, coarse_knobs(), 1);
-    const formats::Volumes four = bake(scene, sky, coarse_knobs(), 4);
+    const formats::Volumes one = bake(scene, sky, knobs_by(GetParam()), 1);
+    const formats::Volumes four = bake(scene, sky, knobs_by(GetParam()), 4);
     EXPECT_EQ(one.rows.row_offset, four.rows.row_offset);
     EXPECT_EQ(one.rows.code8, four.rows.code8);
     EXPECT_EQ(one.rows.average_code, four.rows.average_code);
     EXPECT_EQ(one.rows.average_scale, four.rows.average_scale);
     EXPECT_EQ(one.rows.detail_scale, four.rows.detail_scale);
     EXPECT_EQ(one.rows.index16, four.rows.index16);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, BakeVolumesBy,
+                         testing::Values(VolumeMethod::walks, VolumeMethod::path_integration));
+
+// Of each node, the integral of the first row of light scattered more than once.
+std::vector<double> scattered_often(const formats::Volumes& volumes) {
+    const formats::VolumeRecord& record = volumes.records.at(0);
+    std::vector<double> sums;
+    for (std::uint32_t node = 0; node < record.node_count; ++node) {
+        sums.push_back(tests::integrate_row(volumes.rows, record, node * record.terms() + 1));
+    }
+    return sums;
+}
+
+TEST(BakeVolumes, PathsAndWalksFindLightThatDiffersByTheErrorOfTheModel) {
+    const formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_ball_grid(1, 0.2), 2.5f, 0.9f, 0.6f));
+    Knobs walked = knobs_by(VolumeMethod::walks);
+    walked.set(kVolumeWalks, 500);
+    const std::vector<double> walks = scattered_often(bake(scene, tests::empty_space(), walked));
+    const std::vector<double> paths = scattered_often(
+        bake(scene, tests::empty_space(), knobs_by(VolumeMethod::path_integration)));
+    ASSERT_EQ(paths.size(), walks.size());
+    double by_walks = 0, by_paths = 0, apart = 0;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        by_walks += walks[i];
+        by_paths += paths[i];
+        apart += std::abs(paths[i] - walks[i]);
+    }
+    EXPECT_NEAR(by_paths / by_walks, 1, 0.3);
+    EXPECT_GT(apart / by_walks, 0.02) << "another way, another error";
+}
+
+TEST(BakeVolumes, AMethodThatThePlanLeavesOpenIsMeasuredAndTold) {
+    formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_ball_grid(1, 0.25), 3, 1, 0));
+    Knobs knobs = coarse_knobs();
+    VolumePlan plan = plan_volumes(scene, knobs);
+    plan.layouts.at(0).method = VolumeMethod::automatic;
+    StageLog log;
+    std::vector<MethodMeasure> measured;
+    const RayScene sky = tests::empty_space();
+    ASSERT_TRUE(bake_volumes({scene, sky, plan.layouts, knobs}, {}, log, &measured).has_value());
+    ASSERT_EQ(measured.size(), 1u);
+    EXPECT_GT(measured[0].path_error, 0);
+    EXPECT_EQ(measured[0].method, measured[0].path_error <= method_budget(knobs)
+                                      ? VolumeMethod::path_integration
+                                      : VolumeMethod::walks);
+    tell_method(measured[0], method_budget(knobs), plan.entries);
+    EXPECT_EQ(plan.entries.at(1).choice, name_of(measured[0].method));
+    EXPECT_NE(plan.entries.at(1).reason.find("measured at"), std::string::npos);
 }
 
 TEST(BakeVolumes, DensityIsKeptToAnEvenStepOfTheBrick) {
