@@ -12,8 +12,9 @@
    share/opaline/glsl/opaline_surface.glsl holds functions that turn a receiver's radiance into that
    of a surface seen by the eye, opaline_gloss.glsl those of glossy opaque ones (after the former).
    Paste them into shaders of GLSL 3.30, ES 3.00 or later, behind the version; default precisions
-   are high from there on. opaline_volumes.glsl and opaline_layer.glsl hold those of volumes and
-   cloud layers, below; each file may be used without the others but for opaline_gloss.glsl. */
+   are high from there on. opaline_images.glsl, opaline_volumes.glsl and opaline_layer.glsl hold
+   those of volumes and cloud layers, below; each file may be used without the others but for
+   opaline_gloss.glsl. */
 #ifndef OPALINE_GL_H
 #define OPALINE_GL_H
 
@@ -33,7 +34,8 @@ typedef enum opaline_gl_flags {
     OPALINE_GL_DEFAULT = 0,
     OPALINE_GL_WITH_MESH = 1,    /* uploads the mesh: for hosts that draw it from the asset */
     OPALINE_GL_WITH_TEXTURE = 2, /* keeps a texture of the radiance beside the buffer */
-    OPALINE_GL_WITH_VOLUMES = 4  /* uploads volumes, four at most */
+    OPALINE_GL_WITH_VOLUMES = 4, /* uploads volumes, four at most */
+    OPALINE_GL_WITH_IMAGES = 8   /* uploads images of surfaces */
 } opaline_gl_flags;
 
 /* Uploads transport and compiles the shaders; all radiance is 0 until the first relight. The asset
@@ -118,6 +120,34 @@ typedef struct opaline_gl_surface {
 /* Fills `surface`. */
 OPALINE_API opaline_status opaline_gl_get_surface(const opaline_gl* gl, uint32_t primitive,
                                                   opaline_gl_surface* surface);
+
+/* Images of surfaces, for opaline_images.glsl: all share the texture coordinates of the receivers.
+
+       vec3 opaline_sample_image(usampler2D image, vec2 texcoord, ivec2 wrap, bool is_srgb)
+           bilinear in linear light; is_srgb for base colour and emission, which are decoded.
+       bool opaline_covers(float alpha, vec2 cutoff_mode, uvec2 pixel, uint triangle)
+           whether a sample sees a surface of that alpha; `triangle`: any number of it. Blends are
+           spread over samples, so that nothing needs sorting; hosts that sort may blend instead. */
+typedef struct opaline_gl_image {
+    uint32_t texture; /* 2D, 8-bit codes for usampler2D; 0: there is none, take 1 */
+    int32_t wrap[2];
+} opaline_gl_image;
+
+typedef struct opaline_gl_images {
+    size_t struct_size;          /* in: sizeof(opaline_gl_images) */
+    opaline_gl_image base_color; /* times the receivers' base colour */
+    opaline_gl_image gloss;      /* .bg, times `factors` of opaline_gl_surface; is_srgb false */
+    opaline_gl_image emission;   /* times the radiance of opaline_asset_primitive_emission */
+    opaline_gl_image alpha;      /* .r, is_srgb false */
+    float alpha_factor;          /* times that of vertices and image */
+    float cutoff_mode[2];        /* for opaline_covers; mode 0: the surface is whole */
+    uint32_t vertex_alpha;       /* buffer of floats by receiver, stride 4; 0: take 1 */
+    uint32_t srgb_table;         /* 2D texture of the uniform opaline_srgb_table */
+} opaline_gl_images;
+
+/* Fills `images`; without OPALINE_GL_WITH_IMAGES all names are 0. */
+OPALINE_API opaline_status opaline_gl_get_images(const opaline_gl* gl, uint32_t primitive,
+                                                 opaline_gl_images* images);
 
 /* --- Volumes ------------------------------------------------------------------------------ */
 

@@ -112,6 +112,9 @@ opaline_status upload(opaline_gl& handle, const formats::AssetView& asset, std::
         handle.objects.albedo = handle.glossy.albedo();
     }
     if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_MESH) != 0) upload_mesh(handle, asset);
+    if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_IMAGES) != 0) {
+        status = handle.images.make(asset, handle.names);
+    }
     if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_VOLUMES) != 0) {
         status = handle.volumes.make(asset.volumes, handle.names);
     }
@@ -131,8 +134,8 @@ opaline_status opaline_gl_create(const opaline_asset* asset, opaline_gl_loader l
     if (asset == nullptr || out == nullptr) {
         return null_argument();
     }
-    constexpr std::uint32_t kKnown =
-        OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_TEXTURE | OPALINE_GL_WITH_VOLUMES;
+    constexpr std::uint32_t kKnown = OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_TEXTURE |
+                                     OPALINE_GL_WITH_VOLUMES | OPALINE_GL_WITH_IMAGES;
     if ((flags & ~kKnown) != 0) {
         return fail(OPALINE_INVALID_ARGUMENT, "unknown flags");
     }
@@ -267,6 +270,22 @@ opaline_status opaline_gl_get_surface(const opaline_gl* gl, uint32_t primitive,
         surface->factors[0] = gloss.metallic;
         surface->factors[1] = gloss.roughness;
     }
+    return OPALINE_OK;
+}
+
+opaline_status opaline_gl_get_images(const opaline_gl* gl, uint32_t primitive,
+                                     opaline_gl_images* images) {
+    if (gl == nullptr || images == nullptr) {
+        return null_argument();
+    }
+    if (images->struct_size != sizeof(opaline_gl_images)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+    }
+    if (primitive >= gl->primitives.size()) {
+        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
+    }
+    *images = gl->images.of(primitive);
+    images->struct_size = sizeof(opaline_gl_images);
     return OPALINE_OK;
 }
 

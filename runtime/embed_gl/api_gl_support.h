@@ -8,6 +8,7 @@
 #include "formats/opal/vec3.h"
 #include "runtime/embed_gl/gl_names.h"
 #include "runtime/embed_gl/glossy_light.h"
+#include "runtime/embed_gl/image_textures.h"
 #include "runtime/embed_gl/layer_textures.h"
 #include "runtime/embed_gl/mirrored_light.h"
 #include "runtime/embed_gl/relight.h"
@@ -28,6 +29,7 @@ struct opaline_gl {
     opaline::runtime::Relight relight{gl};
     opaline::runtime::MirroredLight mirrored{gl};
     opaline::runtime::GlossyLight glossy{gl};
+    opaline::runtime::ImageTextures images{gl};
     opaline::runtime::VolumeTextures volumes{gl};
     opaline::runtime::LayerTextures layer{gl};
     std::uint64_t asset_id = 0;  // lights of volumes and layers are of one asset

@@ -121,7 +121,7 @@ std::string fragment_text(SurfaceKind kind) {
                 define("NARROW_ROUGHNESS", std::to_string(kNarrowRoughness)) +
                 define("WIDE_ROUGHNESS", std::to_string(kWideRoughness)) + gloss_text;
     }
-    if (kind.has_holes) text += holes_text;
+    if (kind.has_holes) text += std::string(covers_text) + holes_text;
     return text + surface_frag_text;
 }
 

@@ -1,5 +1,6 @@
-// As runtime/holes.cpp: which samples see a surface that light passes in places. HOLE_IMAGE: alpha
-// has an image (image.glsl comes before this). HOLE_VERTICES: vertices have alpha.
+// As runtime/holes.cpp: which samples see a surface that light passes in places. covers.glsl comes
+// before it. HOLE_IMAGE: alpha has an image (image.glsl comes before this). HOLE_VERTICES: vertices
+// have alpha.
 flat layout(location = 6) in uint v_last_vertex;
 layout(location = 21) uniform vec3 hole;  // alpha, cutoff, 1: a mask, 2: a blend
 layout(location = 22) uniform uvec2 first_sample;  // of the tile
@@ -24,10 +25,5 @@ bool sees_surface(vec2 texcoord) {
 #ifdef HOLE_IMAGE
     alpha *= sample_image(hole_image, texcoord, hole_wrap, false).r;
 #endif
-    if (hole.z == 1.0) {
-        return alpha >= hole.y;
-    }
-    uvec2 at = first_sample + sample_step * uvec2(gl_FragCoord.xy);
-    uint place = 0xc13fa9a9u * at.x + 0x91e10da6u * at.y + 0x9e3779b9u * v_last_vertex;
-    return float(place >> 8) < alpha * 16777216.0;
+    return covers(alpha, hole.yz, first_sample + sample_step * uvec2(gl_FragCoord.xy), v_last_vertex);
 }

@@ -177,7 +177,7 @@ const Draw = (() => {
     if (hasImage) files.push("image.glsl");
     files.push("cube_map.glsl", "surface.glsl");
     if (gloss) files.push("gloss.glsl");
-    if (hole) files.push("holes.glsl");
+    if (hole) files.push("covers.glsl", "holes.glsl");
     return [defines, files];
   }
 

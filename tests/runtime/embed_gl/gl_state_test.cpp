@@ -193,6 +193,7 @@ TEST_P(EmbedGlState, IsAsBeforeAfterEveryCall) {
     const bool is_es = GetParam() == HostApi::es_31;
     formats::Asset asset = make_every_kind(8, 8);
     add_primitive(asset, make_sphere({-4, 0, 0}, 1, 50, 40), {.details = 5});  // a row of texels
+    asset.images.push_back(make_noise_image(7, 5));  // rows that are no whole words
     asset.volumes = make_volumes(8);
     TestVolume fog;
     fog.extent = {3, 3, 3};
@@ -205,8 +206,8 @@ TEST_P(EmbedGlState, IsAsBeforeAfterEveryCall) {
     set_host_state(is_es);
     const State before = query_state(is_es);
     opaline_gl* gl = nullptr;
-    constexpr std::uint32_t kAll =
-        OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_TEXTURE | OPALINE_GL_WITH_VOLUMES;
+    constexpr std::uint32_t kAll = OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_TEXTURE |
+                                   OPALINE_GL_WITH_VOLUMES | OPALINE_GL_WITH_IMAGES;
     ASSERT_EQ(opaline_gl_create(host.asset(), load_gl, kAll, &gl), OPALINE_OK)
         << opaline_last_error();
     EXPECT_EQ(query_state(is_es), before) << "create";

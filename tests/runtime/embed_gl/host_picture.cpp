@@ -95,18 +95,27 @@ void HostPicture::bind_block(const char* name, unsigned buffer) {
     glBindBufferBase(GL_UNIFORM_BUFFER, blocks_++, buffer);
 }
 
-void HostPicture::set_flag(const char* uniform, bool value) {
+int HostPicture::use(const char* uniform) const {
     const GLint location = glGetUniformLocation(program_, uniform);
     EXPECT_GE(location, 0) << uniform;
     glUseProgram(program_);
-    glUniform1i(location, value ? 1 : 0);
+    return location;
+}
+
+void HostPicture::set_flag(const char* uniform, bool value) {
+    glUniform1i(use(uniform), value ? 1 : 0);
 }
 
 void HostPicture::set_number(const char* uniform, float value) {
-    const GLint location = glGetUniformLocation(program_, uniform);
-    EXPECT_GE(location, 0) << uniform;
-    glUseProgram(program_);
-    glUniform1f(location, value);
+    glUniform1f(use(uniform), value);
+}
+
+void HostPicture::set_numbers(const char* uniform, float first, float second) {
+    glUniform2f(use(uniform), first, second);
+}
+
+void HostPicture::set_pair(const char* uniform, int first, int second) {
+    glUniform2i(use(uniform), first, second);
 }
 
 std::vector<float> HostPicture::draw(const std::vector<HostRay>& rays) {

@@ -28,11 +28,14 @@ class HostPicture {
     void bind_block(const char* name, unsigned buffer);
     void set_flag(const char* uniform, bool value);
     void set_number(const char* uniform, float value);
+    void set_numbers(const char* uniform, float first, float second);
+    void set_pair(const char* uniform, int first, int second);
 
     /// `a` and `b` of each ray, eight floats.
     std::vector<float> draw(const std::vector<HostRay>& rays);
 
   private:
+    int use(const char* uniform) const;
     unsigned program_ = 0, array_ = 0, framebuffer_ = 0;
     std::vector<std::pair<int, unsigned>> textures_;  // by unit from 1 on
     unsigned blocks_ = 0;

@@ -1,0 +1,81 @@
+#include "runtime/embed_gl/image_textures.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "runtime/api_support.h"
+#include "runtime/texture.h"
+
+namespace opaline::runtime {
+
+GLuint ImageTextures::upload(const formats::PreviewImage& image, GlNames& names) const {
+    const GLuint name = names.make_table_texture();
+    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGB8UI, static_cast<GLsizei>(image.width),
+                   static_cast<GLsizei>(image.height), 0, GL_RGB_INTEGER, GL_UNSIGNED_BYTE,
+                   image.rgb.data());
+    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    return name;
+}
+
+opaline_gl_image ImageTextures::find(std::uint32_t image, formats::Wrap u, formats::Wrap v) const {
+    if (image >= texture_.size()) return {};
+    return {texture_[image], {static_cast<std::int32_t>(u), static_cast<std::int32_t>(v)}};
+}
+
+opaline_status ImageTextures::make(const formats::AssetView& asset, GlNames& names) {
+    GLint limit = 0;
+    gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+    if (!asset.texcoord.empty()) {  // else there is nowhere to look them up
+        for (const formats::PreviewImage& image : asset.images) {
+            if (std::max(image.width, image.height) >
+                static_cast<std::uint32_t>(std::max(limit, 0))) {
+                char text[120];
+                std::snprintf(text, sizeof text,
+                              "an image of %ux%u pixels: the driver takes at most %d a side",
+                              image.width, image.height, limit);
+                return api::fail(OPALINE_GL_REFUSED, text);
+            }
+            texture_.push_back(upload(image, names));
+        }
+    }
+    std::array<float, 256> linear{};
+    for (std::size_t code = 0; code < linear.size(); ++code) {
+        linear[code] = linear_from_srgb(static_cast<std::uint8_t>(code));
+    }
+    const GLuint table = names.make_table_texture();
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, static_cast<GLsizei>(linear.size()), 1, 0, GL_RED,
+                   GL_FLOAT, linear.data());
+    const GLuint vertex_alpha =
+        asset.holes.vertex_alpha.empty() ? 0 : names.make_buffer_of(asset.holes.vertex_alpha);
+    for (std::uint32_t p = 0; p < asset.primitives.size(); ++p) {
+        const formats::PrimitiveRecord& record = asset.primitives[p];
+        opaline_gl_images images{};
+        images.base_color = find(record.base_color_image, record.wrap_u, record.wrap_v);
+        if (!asset.gloss.empty() && asset.gloss[p].is_glossy()) {
+            const formats::GlossRecord& gloss = asset.gloss[p];
+            images.gloss = find(gloss.image, gloss.wrap_u, gloss.wrap_v);
+        }
+        if (const formats::OwnLight* const own = asset.emitters.own_of(p)) {
+            images.emission = find(own->image, own->wrap_u, own->wrap_v);
+        }
+        images.alpha_factor = 1;
+        if (const formats::HoleRecord* const hole = asset.holes.of(p)) {
+            images.alpha = find(hole->image, hole->wrap_u, hole->wrap_v);
+            images.alpha_factor = hole->alpha;
+            images.cutoff_mode[0] = hole->cutoff;
+            images.cutoff_mode[1] = static_cast<float>(hole->mode);
+            images.vertex_alpha = vertex_alpha;
+        }
+        images.srgb_table = table;
+        primitive_.push_back(images);
+    }
+    return OPALINE_OK;
+}
+
+opaline_gl_images ImageTextures::of(std::uint32_t primitive) const {
+    return primitive < primitive_.size() ? primitive_[primitive] : opaline_gl_images{};
+}
+
+}  // namespace opaline::runtime
