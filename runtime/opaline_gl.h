@@ -226,6 +226,15 @@ OPALINE_API opaline_status opaline_layer_light_update(opaline_layer_light* layer
                                                       const opaline_layer_sky* sky,
                                                       uint32_t threads);
 
+/* Lights a body at a point of the world [m] beneath, in or above the layer: replaces map, suns and
+   rotation of `light`, of any asset, by what is seen from there of layer, ground and sky; the time
+   of 32768 rays and of a map. Clouds' shadows within the body are not resolved, and the body
+   darkens neither. Runs on the threads of the light. One writer. */
+OPALINE_API opaline_status opaline_light_set_from_layer(opaline_light* light,
+                                                        const opaline_asset* asset,
+                                                        const opaline_layer_light* layer_light,
+                                                        const float point[3]);
+
 /* Uploads what the layer light holds, which is copied from: the layer itself the first time, its
    thickness where other frames are seen, else some hundred kB. */
 OPALINE_API opaline_status opaline_gl_show_layer(opaline_gl* gl, const opaline_asset* asset,

@@ -4,6 +4,7 @@
 
 #include "formats/opal/cubemap.h"
 #include "runtime/api_support.h"
+#include "runtime/clouds/environment_at.h"
 #include "runtime/embed_gl/api_gl_support.h"
 #include "runtime/embed_gl/saved_state.h"
 #include "runtime/parallel.h"
@@ -121,6 +122,37 @@ opaline_status opaline_layer_light_update(opaline_layer_light* layer_light,
         }
         layer_light->light = runtime::light_layers(asset->loaded.view.clouds, environment, rotation,
                                                    {.time = sky->time, .threads = threads});
+        layer_light->environment = std::move(environment);
+        layer_light->rotation = rotation;
+        return OPALINE_OK;
+    });
+}
+
+opaline_status opaline_light_set_from_layer(opaline_light* light, const opaline_asset* asset,
+                                            const opaline_layer_light* layer_light,
+                                            const float point[3]) {
+    if (light == nullptr || asset == nullptr || layer_light == nullptr || point == nullptr) {
+        return null_argument();
+    }
+    const runtime::Writing writing(light->users);
+    const runtime::Reading reading(layer_light->users);
+    if (!writing || !reading) return busy();
+    if (const auto status = check_layer_pair(*asset, *layer_light); status != OPALINE_OK) {
+        return status;
+    }
+    if (!(std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]))) {
+        return fail(OPALINE_INVALID_ARGUMENT, "the point must be finite");
+    }
+    return guarded([&] {
+        const Environment seen = runtime::environment_at(
+            {layer_light->light, layer_light->environment, layer_light->rotation},
+            {point[0], point[1], point[2]}, {.threads = light->threads});
+        runtime::DistantLight lit(light->n, light->distant.needs());
+        lit.set_map(seen, light->threads);
+        for (const formats::DistantDisc& sun : seen.discs) {
+            lit.add_sun(sun, light->threads);
+        }
+        light->distant = std::move(lit);
         return OPALINE_OK;
     });
 }

@@ -19,7 +19,9 @@
 
 struct opaline_layer_light {
     std::uint64_t asset_id = 0;
-    opaline::runtime::LayerLight light;  // refers to the asset's bytes: for that id alone
+    opaline::runtime::LayerLight light;         // refers to the asset's bytes: for that id alone
+    opaline::formats::Environment environment;  // that it is lit by
+    opaline::runtime::Rotation rotation;
     mutable opaline::runtime::Users users;
 };
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "runtime/api_support.h"
+#include "runtime/clouds/environment_at.h"
 #include "runtime/clouds/see_layer.h"
 #include "runtime/embed_gl/api_gl_support.h"
 #include "runtime/picture/layer_pass.h"
@@ -270,6 +271,58 @@ TEST_P(EmbedGlLayer, PixelsAreThoseOfTheRenderedPicture) {
         }
         EXPECT_LE(differ, static_cast<int>(rays.size() / 20));
     }
+}
+
+std::vector<float> coefficients_of(const opaline_light* light) {
+    std::vector<float> rgb(std::size_t{18} * 8 * 8);
+    EXPECT_EQ(opaline_light_get_coefficients(light, rgb.data(), rgb.size()), OPALINE_OK);
+    return rgb;
+}
+
+// Needs no context.
+TEST(LayerLight, OfABodyIsWhatItsPointSeesAndDarkerBeneathTheClouds) {
+    const EmbeddedAsset clouds(make_cloudy(true, false)), body(make_asset(8, 8));
+    opaline_layer_light* layer_light = nullptr;
+    ASSERT_EQ(opaline_layer_light_create(clouds.asset(), &layer_light), OPALINE_OK);
+    // With a sun, then without: even light is dimmed by any cloud, a sun beside it is not.
+    const float quarter[9] = {0, 0, -1, 0, 1, 0, 1, 0, 0};
+    std::vector<float> brightness;
+    for (const auto& [suns, height] : {std::pair{1u, 1.0f}, std::pair{1u, 5000.0f},
+                                       std::pair{0u, 1.0f}, std::pair{0u, 5000.0f}}) {
+        opaline_layer_sky sky = even_sky(suns, 0);
+        sky.world_from_light = quarter;
+        ASSERT_EQ(opaline_layer_light_update(layer_light, clouds.asset(), &sky, 1), OPALINE_OK);
+        const float point[3] = {600, height, -200};
+        // What stood in the light before does not stay.
+        ASSERT_EQ(opaline_light_set_rotation(body.light(), quarter), OPALINE_OK);
+        ASSERT_EQ(opaline_light_set_from_layer(body.light(), clouds.asset(), layer_light, point),
+                  OPALINE_OK)
+            << opaline_last_error();
+        const formats::Environment seen = runtime::environment_at(
+            {layer_light->light, layer_light->environment, layer_light->rotation},
+            {point[0], point[1], point[2]}, {.threads = 1});
+        const runtime::LightVector expected = runtime::project_environment(seen, 8);
+        const std::vector<float> found = coefficients_of(body.light());
+        const float largest = *std::max_element(expected.rgba.begin(), expected.rgba.end());
+        for (std::size_t k = 0; k < found.size() / 3; ++k) {
+            EXPECT_NEAR(found[3 * k + 1], expected.rgba[4 * k + 1], 1e-5f * largest) << k;
+        }
+        const std::size_t up = std::size_t{2} * 8 * 8;  // of the face +Y
+        brightness.push_back(found[3 * up + 1]);
+    }
+    EXPECT_GT(brightness[2], 0);
+    EXPECT_LT(brightness[2], 0.95f * brightness[3]);
+    EXPECT_GT(brightness[1], 1.1f * brightness[3]);
+    const float lost[3] = {0, NAN, 0}, point[3] = {0, 0, 0};
+    EXPECT_EQ(opaline_light_set_from_layer(body.light(), clouds.asset(), layer_light, lost),
+              OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_from_layer(body.light(), body.asset(), layer_light, point),
+              OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_from_layer(nullptr, clouds.asset(), layer_light, point),
+              OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_light_set_from_layer(body.light(), clouds.asset(), layer_light, nullptr),
+              OPALINE_INVALID_ARGUMENT);
+    opaline_layer_light_release(layer_light);
 }
 
 TEST_P(EmbedGlLayer, WrongUseIsToldByStatus) {
