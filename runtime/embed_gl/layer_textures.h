@@ -6,7 +6,7 @@
 #include "formats/opal/vec3.h"
 #include "runtime/clouds/layer_light.h"
 #include "runtime/embed_gl/gl_names.h"
-#include "runtime/embed_gl/shader_layer.h"
+#include "runtime/clouds/shader_layer.h"
 #include "runtime/embed_gl/texel_lines.h"
 
 namespace opaline::runtime {

@@ -8,7 +8,7 @@
 #include "formats/opal/clouds.h"
 #include "formats/opal/result.h"
 #include "runtime/clouds/layer_light.h"
-#include "runtime/embed_gl/shader_layer.h"
+#include "runtime/clouds/shader_layer.h"
 #include "runtime/gl/gl_objects.h"
 
 namespace opaline::runtime {

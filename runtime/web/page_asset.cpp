@@ -5,6 +5,7 @@
 #include "formats/opal/ggx_albedo.h"
 #include "runtime/picture/camera.h"
 #include "runtime/web/data_script.h"
+#include "runtime/web/page_layer.h"
 
 namespace opaline::runtime {
 namespace {
@@ -63,7 +64,8 @@ void put_emitters(DataScript& script, const formats::EmittersView& emitters) {
     script.put("emitter values", emitters.value);
 }
 
-// The default camera at a square picture, and the spheres that near planes depend on.
+// The default camera at a square picture, the sphere that near planes depend on, and the near plane
+// where there is a cloud layer, else 0.
 void put_camera(DataScript& script, const AssetView& asset) {
     const Camera camera = frame_asset(asset, 32, 1, 1);
     const BoundingSphere all = bound_asset(asset);
@@ -76,7 +78,8 @@ void put_camera(DataScript& script, const AssetView& asset) {
                             static_cast<float>(all.x),
                             static_cast<float>(all.y),
                             static_cast<float>(all.z),
-                            static_cast<float>(all.radius)};
+                            static_cast<float>(all.radius),
+                            asset.clouds.empty() ? 0 : near_plane_for(asset, camera.eye)};
     script.put("camera", std::span<const float>(values));
 }
 
@@ -100,6 +103,7 @@ std::string make_asset_script(const AssetView& asset) {
     script.put("cubemap", std::span<const std::uint32_t>(&asset.cubemap_size, 1));
     put_rows(script, "", asset.transport);
     put_volumes(script, asset.volumes);
+    if (!asset.clouds.empty()) put_layer(script, asset);
     put_images(script, asset);
     put_emitters(script, asset.emitters);
     return script.text();
@@ -108,7 +112,10 @@ std::string make_asset_script(const AssetView& asset) {
 std::vector<std::string> left_out_of_page(const AssetView& asset) {
     std::vector<std::string> left_out;
     if (!asset.clouds.empty()) {
-        left_out.push_back("its cloud layer is not drawn and does not dim the light");
+        left_out.push_back("its light does not turn, and its clouds stand still");
+    }
+    if (has_bodies_apart(asset)) {
+        left_out.push_back("beneath its clouds all bodies have the light of their centre");
     }
     return left_out;
 }

@@ -81,19 +81,22 @@ void put_background(DataScript& script, const Environment& environment, unsigned
 }  // namespace
 
 std::string make_light_script(const std::string& owner, const PageLight& light,
-                              const PageLightNeeds& needs, unsigned threads) {
+                              const LightAboveLayer* above, const PageLightNeeds& needs,
+                              unsigned threads) {
     DataScript script(owner);
-    const DividedLight divided = divide_light(light.environment, threads);
+    const Environment& shining = above != nullptr ? above->below : light.environment;
+    const DividedLight divided = divide_light(shining, threads);
     put_radiance(script, "cube", divided.cube);
     script.put("points", std::span<const float>(divided.points));
     put_discs(script, "suns", divided.suns, false);
     put_background(script, light.environment, threads);
     put_discs(script, "discs", light.environment.discs, true);
-    if (needs.gloss) put_cells(script, make_gloss_light(light.environment, threads).cells);
+    if (needs.gloss) put_cells(script, make_gloss_light(shining, threads).cells);
     for (const SpecularLight::Map& map :
-         prefilter_specular(light.environment, needs.levels, {}, threads).maps) {
+         prefilter_specular(shining, needs.levels, {}, threads).maps) {
         put_radiance(script, "mirrored." + std::to_string(map.level), map.radiance.pixel);
     }
+    if (above != nullptr) put_layer_light(script, above->layer);
     return script.text();
 }
 

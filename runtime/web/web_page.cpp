@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
 #include "page_text.h"
 #include "runtime/gloss.h"
@@ -29,7 +30,8 @@ std::uint64_t bytes_of(const AssetView& asset) {
                           asset.index.size_bytes() + asset.emitters.value.size_bytes();
     bytes += asset.volumes.density.size_bytes() + asset.volumes.corner.size_bytes() +
              asset.volumes.rows.code8.size_bytes() + asset.volumes.rows.code16.size_bytes() +
-             asset.volumes.rows.index16.size_bytes() + asset.volumes.rows.index32.size_bytes();
+             asset.volumes.rows.index16.size_bytes() + asset.volumes.rows.index32.size_bytes() +
+             2 * asset.clouds.thickness.size_bytes() + 4 * asset.clouds.ground.size_bytes();
     for (const formats::PreviewImage& image : asset.images) {
         bytes += image.rgb.size_bytes();
     }
@@ -93,10 +95,10 @@ formats::Result<std::vector<PageFile>> make_web_page(const AssetView& asset,
                                                      std::span<const PageLight> lights,
                                                      const std::string& title,
                                                      const std::string& file, unsigned threads) {
-    if (asset.primitives.empty() && asset.volumes.empty()) {
+    if (asset.primitives.empty() && asset.volumes.empty() && asset.clouds.empty()) {
         return formats::make_error(formats::ErrorKind::bad_input, file, "",
-                                   "it has neither surfaces nor volumes, and pages show no more",
-                                   "use `opaline render` for cloud layers");
+                                   "it has neither surfaces nor volumes nor a cloud layer",
+                                   "bake a scene that has one of them");
     }
     if (asset.volumes.records.size() > kMostPageVolumes) {
         return formats::make_error(formats::ErrorKind::bad_input, file, "volumes",
@@ -123,7 +125,13 @@ formats::Result<std::vector<PageFile>> make_web_page(const AssetView& asset,
     const PageLightNeeds needs{specular.levels, specular.gloss};
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const std::string owner = "light-" + std::to_string(i);
-        files.push_back({owner + ".js", make_light_script(owner, lights[i], needs, threads)});
+        std::optional<LightAboveLayer> above;
+        if (!asset.clouds.empty()) {
+            above = light_above_layer(asset, lights[i].environment, threads);
+        }
+        files.push_back(
+            {owner + ".js",
+             make_light_script(owner, lights[i], above ? &*above : nullptr, needs, threads)});
     }
     return files;
 }

@@ -76,6 +76,9 @@ void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     bool at_corner = sees_corners != 0;
     float cosine, inverse = at_corner ? 0.0 : texelFetch(depth, here, 0).r;
+#ifdef FORWARD_DEPTH
+    inverse = 1.0 - inverse;
+#endif
     LayerRay ray = layer_ray(at_corner ? vec2(here * supersampling) : gl_FragCoord.xy, cosine);
     vec3 surface = vec3(0.0);
     if (inverse > 0.0) {

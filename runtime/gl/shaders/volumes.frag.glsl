@@ -77,11 +77,13 @@ Sheet mean_sheet(ivec2 first, float begin, float end, out bool agree) {
 }
 
 vec3 see_through(Ray ray, float harmonic[HARMONICS], vec3 color, Sheet sheet) {
-    Ray front = ray, behind = ray;
-    front.end = behind.begin = clamp(sheet.distance, ray.begin, max(ray.begin, ray.end));
+    float cut = clamp(sheet.distance, ray.begin, max(ray.begin, ray.end));
     Seen near, far;
     for (int part = 0; part < 2; ++part) {  // a loop: drivers inline a march for each call
-        Seen seen = march(part == 0 ? front : behind, harmonic);
+        Ray side = ray;
+        if (part == 0) side.end = cut;
+        else side.begin = cut;
+        Seen seen = march(side, harmonic);
         if (part == 0) near = seen;
         else far = seen;
     }

@@ -93,6 +93,7 @@ const Asset = (() => {
         width: sizes[2 * i], height: sizes[2 * i + 1], pixels: arrays.get(`image ${i}`) })),
       emitterValues: arrays.get("emitter values"),
       cubemap, rows: readRows(arrays, "", cubemap), volumes: readVolumes(arrays, cubemap),
+      layer: Layer.read(arrays),
     };
   }
 

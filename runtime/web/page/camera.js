@@ -42,6 +42,7 @@ const Camera = (() => {
   }
 
   function nearPlane(camera, eye) {
+    if (camera[10] > 0) return camera[10];  // beneath a cloud layer
     const centre = camera.subarray(6, 9);
     const away = Math.max(...centre.map(Math.abs));
     const radius = camera[9] > 0 ? Math.max(camera[9], 1e-6 * away, 1e-30)

@@ -8,7 +8,8 @@ const Draw = (() => {
                    own_image: 5, hole_image: 6, srgb_table: 7, cells: 8, sun_table: 9, albedo: 10,
                    map: 11, disc_table: 12, sampled: 13, sum: 14, samples: 0, depth: 1,
                    brick_numbers: 2, density_codes: 3, corner_numbers: 4, node_light: 5,
-                   phase_entries: 6 };
+                   phase_entries: 6, table_values: 2, sun_values: 3, thickness_values: 4, albedo_map: 5,
+                   ground_light: 6, base_light: 7, sheet_light: 7, sheet_through: 8 };
 
   // GLSL ES 3.00 has no explicit places of what passes between stages, nor of uniforms.
   function translate(text, stage) {
@@ -222,11 +223,12 @@ const Draw = (() => {
   }
 
   // What never changes of volumes.
-  function makeVolumeObjects(gl, volumes) {
+  function makeVolumeObjects(gl, volumes, hasLayer) {
     const numbers = [gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT];
     const most = Math.max(...volumes.list.map(volume => Math.max(volume.single, volume.multiple, 1)));
     const defines = [["VOLUMES", volumes.list.length], ["HARMONICS", most], ["SUNS", Volumes.kMostSuns],
-                     ["BRICK_WORDS", Volumes.kBrickWords], ["LAYER", 0], ["FORWARD_DEPTH", ""]];
+                     ["BRICK_WORDS", Volumes.kBrickWords], ["LAYER", hasLayer ? 1 : 0], ["SHEET_TOLERANCE", "0.03125"],
+                     ["FORWARD_DEPTH", ""]];
     return {
       program: makeProgram(gl, defines, ["screen.vert.glsl"],
                            ["volume_march.glsl", "harmonics.glsl", "volumes.frag.glsl"]),
@@ -236,6 +238,28 @@ const Draw = (() => {
       corners: makeLines(gl, numbers, volumes.corners),
       phase: makeLines(gl, [gl.R32F, gl.RED, gl.FLOAT], volumes.phase), light: null, lit: null,
     };
+  }
+
+  function makePictures(gl, levels) {
+    const texture = makeTexture(gl, gl.TEXTURE_2D, levels.length, gl.RGB32F, levels[0].width, levels[0].height);
+    levels.forEach(({ width, height, pixels }, level) => {
+      gl.texSubImage2D(gl.TEXTURE_2D, level, 0, 0, width, height, gl.RGB, gl.FLOAT, pixels);
+    });
+    return texture;
+  }
+
+  const kFloatLines = gl => [gl.R32F, gl.RED, gl.FLOAT];
+
+  // What never changes of a cloud layer; `hasSheet`: volumes are seen with it.
+  function makeLayerObjects(gl, layer, hasSheet) {
+    const program = makeProgram(
+        gl, [...Layer.defines(layer), ["SHEET", hasSheet ? 1 : 0]], ["screen.vert.glsl"],
+        ["cube_map.glsl", "arc_tangent.glsl", "environment.glsl", "layer_tables.glsl", "layer_march.glsl",
+         "layer_see.glsl", "layers.frag.glsl"]);
+    gl.uniformBlockBinding(program.name, gl.getUniformBlockIndex(program.name, "Layer"), 0);
+    return { program, block: gl.createBuffer(), tables: makeLines(gl, kFloatLines(gl), layer.tables),
+             thickness: makeLines(gl, kFloatLines(gl), layer.thickness),
+             albedo: makePictures(gl, layer.albedo) };
   }
 
   // Of one light, for all of its turns.
@@ -256,12 +280,15 @@ const Draw = (() => {
       map: background.layout === 0 ? null
           : makeLayers(gl, background.width, background.height, background.layout === 2 ? 6 : 1,
                        background.pixels),
+      layerSuns: light.layer && makeLines(gl, kFloatLines(gl), light.layer.suns),
+      layerGround: light.layer && makePictures(gl, light.layer.ground),
+      layerBase: light.layer && makePictures(gl, light.layer.base),
     };
   }
 
   function freeLightObjects(gl, objects) {
     [...objects.mirrored.values(), objects.sunTable, objects.discTable, objects.cells, objects.maps,
-     objects.map].forEach(texture => gl.deleteTexture(texture));
+     objects.map, objects.layerSuns, objects.layerGround, objects.layerBase].forEach(texture => gl.deleteTexture(texture));
   }
 
   function makeTarget(gl, width, height, format, hasDepth) {
@@ -276,8 +303,20 @@ const Draw = (() => {
     return target;
   }
 
+  // With the light and the transmittance of a layer (clouds/layer_sheet.h) beside it.
+  function addSheet(gl, target, width, height) {
+    target.sheet = [1, 2].map(i => {
+      const texture = makeTexture(gl, gl.TEXTURE_2D, 1, gl.RGBA32F, width, height);
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, texture, 0);
+      return texture;
+    });
+    gl.drawBuffers([0, 1, 2].map(i => gl.COLOR_ATTACHMENT0 + i));
+    return target;
+  }
+
   function freeTarget(gl, target) {
     gl.deleteFramebuffer(target.frame);
+    (target.sheet ?? []).forEach(texture => gl.deleteTexture(texture));
     gl.deleteTexture(target.color);
     gl.deleteTexture(target.depth);
   }
@@ -298,8 +337,9 @@ const Draw = (() => {
                                    ["cube_map.glsl", "arc_tangent.glsl", "environment.glsl", "background.frag.glsl"]);
     const adding = makeProgram(gl, [], ["screen.vert.glsl"], ["add_sample.frag.glsl"]);
     const presenting = makeProgram(gl, [], ["screen.vert.glsl"], ["present.frag.glsl"]);
-    const volumes = asset.volumes === null ? null : makeVolumeObjects(gl, asset.volumes);
-    let size = [0, 0], sampled = null, marched = null, sum = null, light = null, lightObjects = null;
+    const layer = asset.layer === null ? null : makeLayerObjects(gl, asset.layer, asset.volumes !== null);
+    const volumes = asset.volumes === null ? null : makeVolumeObjects(gl, asset.volumes, layer !== null);
+    let size = [0, 0], sampled = null, clouded = null, marched = null, sum = null, light = null, lightObjects = null;
 
     function setLight(next) {
       if (lightObjects !== null) freeLightObjects(gl, lightObjects);
@@ -321,9 +361,13 @@ const Draw = (() => {
 
     function resize(width, height) {
       if (size[0] === width && size[1] === height) return;
-      if (sum !== null) [sampled, marched, sum].forEach(target => target && freeTarget(gl, target));
+      if (sum !== null) [sampled, clouded, marched, sum].forEach(target => target && freeTarget(gl, target));
       size = [width, height];
       sampled = makeTarget(gl, width, height, gl.RGBA32F, true);
+      if (layer !== null) {
+        clouded = makeTarget(gl, width, height, gl.RGBA32F, false);
+        if (volumes !== null) addSheet(gl, clouded, width, height);
+      }
       if (volumes !== null) marched = makeTarget(gl, width, height, gl.RGBA32F, false);
       sum = makeTarget(gl, width, height, sumFormat, false);
     }
@@ -341,14 +385,18 @@ const Draw = (() => {
                down: Vector.times(-frame.tangent[1], frame.up), forward: frame.forward };
     }
 
-    function drawBackground(frame, turn, place) {
-      gl.useProgram(background.name);
+    // For what shows the sky; binds its map.
+    function skyUniforms(turn) {
       bind(gl, "map", lightObjects.map, gl.TEXTURE_2D_ARRAY);
       bind(gl, "disc_table", lightObjects.discTable);
-      setUniforms(gl, background, {
-        ...rayUniforms(frame, place), light_from_world: lightFromWorld(turn), layout_kind: light.background.layout,
-        u_offset_sign: light.background.turn, rows_include_poles: light.background.includesPoles,
-        discs: lightObjects.discs });
+      return { light_from_world: lightFromWorld(turn), layout_kind: light.background.layout,
+               u_offset_sign: light.background.turn, rows_include_poles: light.background.includesPoles,
+               discs: lightObjects.discs };
+    }
+
+    function drawBackground(frame, turn, place) {
+      gl.useProgram(background.name);
+      setUniforms(gl, background, { ...rayUniforms(frame, place), ...skyUniforms(turn) });
       gl.disable(gl.DEPTH_TEST);
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
@@ -401,12 +449,32 @@ const Draw = (() => {
       gl.bindVertexArray(null);
     }
 
+    // Layer, ground and sky before and behind surfaces, from `sampled` to `clouded`.
+    function drawLayer(frame, place) {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, clouded.frame);
+      gl.useProgram(layer.program.name);
+      gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, layer.block);
+      gl.bufferData(gl.UNIFORM_BUFFER, Layer.block(asset.layer, light.layer, frame.eye), gl.DYNAMIC_DRAW);
+      bind(gl, "samples", sampled.color);
+      bind(gl, "depth", sampled.depth);
+      bind(gl, "table_values", layer.tables);
+      bind(gl, "sun_values", lightObjects.layerSuns);
+      bind(gl, "thickness_values", layer.thickness);
+      bind(gl, "albedo_map", layer.albedo);
+      bind(gl, "ground_light", lightObjects.layerGround);
+      bind(gl, "base_light", lightObjects.layerBase);
+      setUniforms(gl, layer.program, {
+        ...rayUniforms(frame, place), ...skyUniforms(0), near_plane: frame.near, supersampling: 1,
+        sees_corners: 0, shows_sky: 1, spread: 2 * frame.tangent[1] / size[1] });
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
     // What is seen through volumes, of one sample a pixel, from `sampled` to `marched`.
     function drawVolumes(frame, place) {
       const { program, lit } = volumes;
       gl.bindFramebuffer(gl.FRAMEBUFFER, marched.frame);
       gl.useProgram(program.name);
-      bind(gl, "samples", sampled.color);
+      bind(gl, "samples", (clouded ?? sampled).color);
       bind(gl, "depth", sampled.depth);
       bind(gl, "brick_numbers", volumes.table);
       bind(gl, "density_codes", volumes.density);
@@ -416,6 +484,12 @@ const Draw = (() => {
       setUniforms(gl, program, {
         ...rayUniforms(frame, place), ...Volumes.uniforms(asset.volumes, volumes.inverses, lit.parts, frame),
         supersampling: 1, near_plane: frame.unit * frame.near });
+      if (layer !== null) {
+        bind(gl, "sheet_light", clouded.sheet[0]);
+        bind(gl, "sheet_through", clouded.sheet[1]);
+        setUniforms(gl, program, { units_of_metre: frame.unit,
+                                   eye_above_ground: frame.unit * Layer.eyeAboveGround(light.layer, frame.eye) });
+      }
       if (lit.suns.length > 0) setUniforms(gl, program, { "suns[0]": lit.suns.flat() });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
@@ -430,10 +504,11 @@ const Draw = (() => {
       drawBackground(frame, turn, place);
       drawSurfaces(frame, turn, colors, place, across, [i, j]);
       gl.disable(gl.DEPTH_TEST);
+      if (layer !== null) drawLayer(frame, place);
       if (volumes !== null) drawVolumes(frame, place);
       gl.bindFramebuffer(gl.FRAMEBUFFER, sum.frame);
       gl.useProgram(adding.name);
-      bind(gl, "sampled", (marched ?? sampled).color);
+      bind(gl, "sampled", (marched ?? clouded ?? sampled).color);
       setUniforms(gl, adding, { gain: 2 ** exposure });
       if (!isFirst) gl.enable(gl.BLEND);
       gl.blendFunc(gl.ONE, gl.ONE);

@@ -47,7 +47,7 @@ opaline.page = (() => {
       if (emitter >= 0 && areFinite(factors, 3)) colors[emitter] = factors.map(f => Math.max(f, 0));
     }
     const light = Math.max(0, opaline.lights.indexOf(given.get("light")));
-    return { view, light, turn: number("rotate", 0, -1e6, 1e6),
+    return { view, light, turn: asset.layer === null ? number("rotate", 0, -1e6, 1e6) : 0,
              exposure: number("exposure", 0, -64, 64), colors };
   }
 
@@ -273,6 +273,7 @@ opaline.page = (() => {
       return item;
     }));
     makeEmitterSliders();
+    at("turn").closest("label").hidden = asset.layer !== null;
     at("light").addEventListener("change", () => change({ light: +at("light").value }));
     at("turn").addEventListener("input", () => change({ turn: at("turn").valueAsNumber }));
     at("exposure").addEventListener("input", () => change({ exposure: at("exposure").valueAsNumber }));

@@ -9,10 +9,12 @@
 #include "runtime/picture/tone_map.h"
 #include "runtime/shade.h"
 #include "runtime/volumes/relight_volumes.h"
+#include "runtime/web/page_layer.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 #include "tests/runtime/web/browser.h"
 #include "tests/runtime/web/every_surface.h"
+#include "tests/support/cloud_layers.h"
 
 namespace opaline::runtime {
 namespace {
@@ -214,6 +216,91 @@ TEST(PagePicture, VolumesLookAsOnTheCpuUnderASunBehindThem) {
         test::take_page_picture(*page, "eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2", 80, 60);
     EXPECT_EQ(shown.console, "");
     expect_same_pixels(render_on_cpu(asset.view(), sky, camera, {{}, 20, -2}), shown.rgba);
+}
+
+// Bumps with holes over a ground of squares; `with_bodies`: a sheet and smoke partly in them.
+formats::Asset make_cloudy_scene(bool with_bodies) {
+    test::TestLayer layer = test::even_test_layer();
+    layer.flux = {16, 10};
+    layer.radiance = {8, 8, 4};
+    layer.record.columns = 24;
+    layer.record.rows = 20;
+    layer.record.highest = 300;
+    layer.record.center = {500, -300};
+    layer.record.ground_columns = 7;
+    layer.record.ground_rows = 6;
+    layer.record.haze = 2e-5f;
+    layer.droplets.kappa = {0.01, 0.012, 0.014};
+    formats::Asset asset = test::make_asset(8, 16);
+    asset.clouds = test::make_test_clouds(layer, [](std::uint32_t column, std::uint32_t row) {
+        return 300 * std::max(0.0, std::sin(column * 0.82) * std::cos(row * 0.74) + 0.4);
+    });
+    for (std::size_t i = 0; i < asset.clouds.ground.size(); ++i) {
+        const auto code = static_cast<std::uint8_t>(i % 2 == 0 ? 150 : 110);
+        asset.clouds.ground[i] = {code, 120, static_cast<std::uint8_t>(255 - code), 255};
+    }
+    if (!with_bodies) return asset;
+    test::add_primitive(asset,
+                        test::make_sheet({-200, 700, -900}, {900, 100, 0}, {0, 900, -300}, 2, 2),
+                        {.bands = 1, .details = 20});
+    asset.volumes = test::make_volumes(8);
+    test::TestVolume smoke;
+    smoke.extent = {4, 4, 4};
+    smoke.single_terms = 1;
+    smoke.to_world = {20, 0, 0, -70, 0, 20, 0, 800, 0, 0, 20, -720};
+    smoke.sigma_t = {0.01f, 0.015f, 0.02f};
+    smoke.albedo = {0.9f, 0.6f, 0.3f};
+    smoke.density = [](float x, float y, float z) {
+        const float r2 = (x - 16) * (x - 16) + (y - 16) * (y - 16) + (z - 16) * (z - 16);
+        return std::max(0.0f, 1 - r2 / 200);
+    };
+    test::add_volume(asset.volumes, smoke);
+    return asset;
+}
+
+// Bodies are lit from one point, that of a page.
+DisplayPicture render_cloudy_on_cpu(const formats::AssetView& view, const formats::Environment& sky,
+                                    const Camera& camera, float exposure) {
+    const LightAboveLayer above = light_above_layer(view, sky, 0);
+    const LightVector light = project_environment(above.below, view.cubemap_size);
+    SoftwareOptions options;
+    options.layers = &above.layer;
+    const VolumeLight volumes = relight_volumes(view.volumes, light);
+    if (!view.volumes.empty()) options.volumes = &volumes;
+    const auto picture =
+        render_software(view, shade_for_picture(view, light, camera.eye, formats::TermSet::all, 0),
+                        sky, {}, camera, options);
+    EXPECT_TRUE(picture);
+    return tone_map(*picture, exposure);
+}
+
+TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpu) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    sky.discs.push_back({normalize(formats::Vec3{-0.5f, 0.6f, -0.5f}), 0.01f, {4e3f, 3e3f, 1e3f}});
+    const PageLight lights[] = {{"sky", sky}};
+    for (const bool with_bodies : {false, true}) {
+        SCOPED_TRACE(with_bodies);
+        const formats::Asset asset = make_cloudy_scene(with_bodies);
+        const auto page = make_web_page(asset.view(), lights, "clouds", "a.opal", 0);
+        ASSERT_TRUE(page);
+        Camera camera;
+        camera.eye = with_bodies ? formats::Vec3{0, 3000, 600} : formats::Vec3{0, 2, 0};
+        camera.target =
+            with_bodies ? formats::Vec3{100, 1000, -900} : formats::Vec3{100, 600, -900};
+        camera.fov_y = 40;
+        camera.width = 80;
+        camera.height = 60;
+        camera.near_plane = near_plane_for(asset.view(), camera.eye);
+        const auto shown = test::take_page_picture(
+            *page,
+            with_bodies ? "eye=0,3000,600&target=100,1000,-900&fov=40&exposure=-0.5&rotate=50"
+                        : "eye=0,2,0&target=100,600,-900&fov=40&exposure=-2",
+            80, 60);
+        EXPECT_EQ(shown.console, "");
+        expect_same_pixels(
+            render_cloudy_on_cpu(asset.view(), sky, camera, with_bodies ? -0.5f : -2), shown.rgba);
+    }
 }
 
 TEST(PagePicture, ControlsAndTheAddressFollowEachOther) {

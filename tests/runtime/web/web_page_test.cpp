@@ -1,6 +1,7 @@
 // The files of a page.
 #include "runtime/web/web_page.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -12,6 +13,7 @@
 #include "runtime/web/divide_light.h"
 #include "runtime/web/page_asset.h"
 #include "tests/runtime/picture/synthetic_asset.h"
+#include "tests/support/cloud_layers.h"
 
 namespace opaline::runtime {
 namespace {
@@ -36,14 +38,15 @@ TEST(DataScript, LiteralsEndNeitherTheirStringNorTheirScript) {
     EXPECT_EQ(script_literal("Bäume"), "\"Bäume\"");
 }
 
-TEST(WebPage, AssetsWithoutSurfacesAndVolumesAreRefused) {
+TEST(WebPage, AssetsWithNothingToSeeAreRefused) {
     formats::Asset asset = test::make_asset(8, 8);
     const PageLight lights[] = {{"white", {}}};
     const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
     ASSERT_FALSE(page);
     EXPECT_EQ(page.error().kind, formats::ErrorKind::bad_input);
-    EXPECT_NE(page.error().diagnostics[0].fault.find("neither surfaces nor volumes"),
-              std::string::npos);
+    EXPECT_NE(
+        page.error().diagnostics[0].fault.find("neither surfaces nor volumes nor a cloud layer"),
+        std::string::npos);
 }
 
 TEST(WebPage, FilesAreAlikeForAnyNumberOfThreadsAndKnownAsThoseOfAPage) {
@@ -94,15 +97,24 @@ TEST(DividedLight, FluxOfASunInTheMapIsKept) {
     EXPECT_NEAR(points + cube, of_sun + 4 * std::numbers::pi, 2e-3 * of_sun);
 }
 
-TEST(WebPage, CloudLayersThatThePageLeavesOutAreNamed) {
+TEST(WebPage, WhatAPageDoesNotDoWithACloudLayerIsNamed) {
     formats::Asset asset = test::make_asset(8, 8);
     test::add_primitive(asset, test::make_sphere({0, 0, 0}, 1, 8, 6), {});
-    asset.volumes.records.resize(1);
     EXPECT_TRUE(left_out_of_page(asset.view()).empty());
-    asset.clouds.records.resize(1);
-    const auto left_out = left_out_of_page(asset.view());
-    ASSERT_EQ(left_out.size(), 1u);
-    EXPECT_NE(left_out[0].find("cloud layer is not drawn"), std::string::npos);
+    test::TestLayer layer = test::even_test_layer();
+    layer.flux = {8, 6};
+    layer.radiance = {4, 4, 2};
+    layer.record.flags = 0;
+    layer.record.columns = layer.record.rows = 16;  // of 500 m
+    asset.clouds = test::make_test_clouds(
+        layer, [](std::uint32_t column, std::uint32_t) { return 10.0 * column; });
+    EXPECT_THAT(left_out_of_page(asset.view()),
+                testing::ElementsAre(testing::HasSubstr("light does not turn")));
+    test::add_primitive(asset, test::make_sphere({3000, 0, 0}, 1, 8, 6), {});
+    asset.primitives.back().node = 1;
+    EXPECT_THAT(left_out_of_page(asset.view()),
+                testing::ElementsAre(testing::HasSubstr("light does not turn"),
+                                     testing::HasSubstr("the light of their centre")));
 }
 
 TEST(WebPage, MoreVolumesThanAPageDrawsAreRefused) {

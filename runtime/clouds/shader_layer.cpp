@@ -1,4 +1,4 @@
-#include "runtime/embed_gl/shader_layer.h"
+#include "runtime/clouds/shader_layer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,112 @@
+#include "runtime/web/page_layer.h"
+
+#include <cstdint>
+#include <span>
+
+#include "runtime/clouds/environment_at.h"
+#include "runtime/clouds/light_points.h"
+#include "runtime/clouds/shader_layer.h"
+#include "runtime/picture/camera.h"
+#include "runtime/volumes/volume_bounds.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Rgb;
+
+formats::Vec3 centre_of(const formats::AssetView& asset) {
+    const BoundingSphere bound = bound_asset(asset);
+    return {static_cast<float>(bound.x), static_cast<float>(bound.y), static_cast<float>(bound.z)};
+}
+
+void put_floats(DataScript& script, const std::string& name, const std::vector<float>& values) {
+    script.put(name, std::span<const float>(values));
+}
+
+void put_numbers(DataScript& script, const std::string& name,
+                 const std::vector<std::uint32_t>& values) {
+    script.put(name, std::span<const std::uint32_t>(values));
+}
+
+// Levels after each other, and their sizes.
+void put_pictures(DataScript& script, const std::string& name,
+                  std::span<const MipLevel<Rgb>> levels) {
+    std::vector<float> pixels;
+    std::vector<std::uint32_t> sizes;
+    for (const MipLevel<Rgb>& level : levels) {
+        sizes.insert(sizes.end(), {level.columns, level.rows});
+        for (const Rgb pixel : level.value) {
+            pixels.insert(pixels.end(), {pixel.r, pixel.g, pixel.b});
+        }
+    }
+    put_floats(script, name, pixels);
+    put_numbers(script, name + " sizes", sizes);
+}
+
+// Puts both into one array; the second begins at a number of its own.
+void put_joined(DataScript& script, const std::string& name,
+                std::vector<std::vector<float>> parts) {
+    std::vector<float> all;
+    std::vector<std::uint32_t> first;
+    for (const std::vector<float>& part : parts) {
+        first.push_back(static_cast<std::uint32_t>(all.size()));
+        all.insert(all.end(), part.begin(), part.end());
+    }
+    put_floats(script, name, all);
+    put_numbers(script, name + " first", first);
+}
+
+void append_grid(const LayerGrid& grid, std::vector<float>& values) {
+    for (const double value : {grid.low_x, grid.low_z, grid.size_x, grid.size_z}) {
+        values.push_back(static_cast<float>(value));
+    }
+}
+
+}  // namespace
+
+LightAboveLayer light_above_layer(const formats::AssetView& asset,
+                                  const formats::Environment& environment, unsigned threads) {
+    LightAboveLayer made;
+    made.layer = light_layers(asset.clouds, environment, {}, {.time = 0, .threads = threads});
+    made.below =
+        environment_at({made.layer, environment, {}}, centre_of(asset), {.threads = threads});
+    return made;
+}
+
+void put_layer(DataScript& script, const formats::AssetView& asset) {
+    const LayerLight light = light_layers(asset.clouds, {}, {}, {.time = 0, .threads = 1});
+    const LayerKind kind = layer_kind(light);
+    put_numbers(script, "layer kind", {kind.repeats ? 1u : 0u, kind.modes, kind.glows ? 1u : 0u});
+    put_floats(script, "layer thickness", pack_thickness(light));
+    put_joined(script, "layer tables",
+               {pack_layer_phase(light), pack_layer_flux(light), pack_layer_glow(light)});
+    put_pictures(script, "layer albedo", light.albedo.level);
+}
+
+void put_layer_light(DataScript& script, const LayerLight& light) {
+    const ShaderLayer record = make_shader_layer(light);
+    script.put_records("layer record", std::span<const ShaderLayer>(&record, 1));
+    put_joined(script, "layer suns", {pack_sun_tables(light), pack_sun_flux(light)});
+    put_pictures(script, "layer ground light",
+                 std::span<const MipLevel<Rgb>>(&light.ground_light.cell, 1));
+    put_pictures(script, "layer base light",
+                 std::span<const MipLevel<Rgb>>(&light.base_light.cell, 1));
+    const LayerPlaces places = layer_places(light);
+    std::vector<float> values;
+    for (const LayerGrid* grid : {&places.field, &places.ground, &places.light}) {
+        append_grid(*grid, values);
+    }
+    values.push_back(static_cast<float>(places.base));
+    values.push_back(static_cast<float>(places.ground_height));
+    put_floats(script, "layer places", values);
+}
+
+bool has_bodies_apart(const formats::AssetView& asset) {
+    if (asset.clouds.empty() || (asset.primitives.empty() && asset.volumes.empty())) return false;
+    const formats::LayerRecord& record = asset.clouds.records.front();
+    const LayerField field = make_layer_field(record, asset.clouds.thickness_of(record), 0);
+    return light_points(asset, volume_corners(asset.volumes), field, centre_of(asset))
+               .point.size() > 1;
+}
+
+}  // namespace opaline::runtime
