@@ -1,8 +1,9 @@
 // How far the model is from the Monte Carlo reference, as the table of RESULTS.md states it: light
-// that files of three seeds show over light that there is, along the normals of some receivers side
-// by side, with the standard error of both. `opaline_model_table [ETA [K]]`
-// prints it as markdown, of one index and with K rows by view where they are given; about 60
-// minutes.
+// that files of two to six seeds show over light that there is, along the normals of some receivers
+// side by side, with the standard error of both. `opaline_model_table [ETA[,ALBEDO] [K
+// [COLUMN...]]]` prints it as markdown, of one index or row, with K rows by view (0: as many as the
+// quality takes) and of some columns, counted from 0, where they are given; about 40 minutes in
+// all.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -75,12 +76,15 @@ struct Mean {
     double value, error;  ///< mean and its standard error
 };
 
-// Light that a file shows along the normals, mean of the receivers; over seeds of the walks.
+// Light that a file shows along the normals, mean of the receivers; over seeds of the walks, until
+// its standard error is 1 %.
 Mean shown_light(const Body& body, const formats::Scene& scene, const formats::Environment& light,
                  double views) {
-    constexpr int kSeeds = 3;
+    constexpr int kFewest = 2, kMost = 6;
+    Mean shown{0, HUGE_VAL};
     double sum = 0, squares = 0;
-    for (int seed = 0; seed < kSeeds; ++seed) {
+    for (int seed = 0; seed < kFewest || (seed < kMost && shown.error > 0.01 * shown.value);
+         ++seed) {
         BakeOptions options;
         options.effects = {"multiple", "single"};
         options.cubemap_size = 16;
@@ -98,13 +102,18 @@ Mean shown_light(const Body& body, const formats::Scene& scene, const formats::E
             runtime::shade_range(baked.asset.view(), projected, v, {&radiance, 1});
             mean += static_cast<double>(radiance.g) / static_cast<double>(body.vertices.size());
         }
-        sum += mean / kSeeds;
-        squares += mean * mean / kSeeds;
+        sum += mean;
+        squares += mean * mean;
+        if (const double count = seed + 1; count > 1) {
+            shown.value = sum / count;
+            shown.error =
+                std::sqrt(std::max(0.0, squares / count - shown.value * shown.value) / (count - 1));
+        }
     }
-    return {sum, std::sqrt(std::max(0.0, squares - sum * sum) / (kSeeds - 1))};
+    return shown;
 }
 
-// The light that there is: path tracing to a standard error of 0.7 %, for 8 s at most.
+// The light that there is: path tracing to a standard error of 0.7 %, for 12 s at most.
 Mean true_light(const Body& body, const formats::Scene& scene, const formats::Environment& light) {
     const ReferenceScene walked = make_reference_scene(scene, 0).value();
     const LightSampler sampler = make_light_sampler(light, glm::mat3(1.0f));
@@ -119,7 +128,7 @@ Mean true_light(const Body& body, const formats::Scene& scene, const formats::En
     Mean mean{0, 1};
     EstimateOptions wanted;
     wanted.samples = 4096 / static_cast<std::uint32_t>(receivers.size());
-    for (double seconds = 0; mean.error > 0.007 * mean.value && seconds < 8;) {
+    for (double seconds = 0; mean.error > 0.007 * mean.value && seconds < 12;) {
         const Estimate part =
             estimate_receivers({walked, sampler, paths}, receivers, wanted, {}).value();
         seconds += part.seconds;
@@ -147,20 +156,32 @@ void print_ratio(const Body& body, const formats::Medium& medium, double views) 
     std::fflush(stdout);
 }
 
-void print_table(std::span<const float> indices, double views) {
-    const std::vector<Body> bodies{make_sheet_body("slab of 40, white", 0.4f, false),
-                                   make_ball_body("ball of 10, white", 0.05f, false),
-                                   make_sheet_body("sheet of 1, white", 0.01f, false),
-                                   make_sheet_body("sheet of 1, from behind", 0.01f, true),
-                                   make_sheet_body("sheet of 5, from behind", 0.05f, true),
-                                   make_ball_body("ball of 10, from behind", 0.05f, true)};
+void print_table(std::span<const float> indices, std::span<const float> albedos, double views,
+                 std::span<const std::size_t> columns) {
+    std::vector<Body> bodies{make_sheet_body("slab of 40, white", 0.4f, false),
+                             make_ball_body("ball of 10, white", 0.05f, false),
+                             make_sheet_body("sheet of 1, white", 0.01f, false),
+                             make_sheet_body("sheet of 1, from behind", 0.01f, true),
+                             make_sheet_body("sheet of 5, from behind", 0.05f, true),
+                             make_ball_body("ball of 10, from behind", 0.05f, true)};
+    if (!columns.empty()) {
+        std::vector<Body> some;
+        for (const std::size_t column : columns) {
+            some.push_back(bodies[std::min(column, bodies.size() - 1)]);
+        }
+        bodies = std::move(some);
+    }
     std::printf("| index, albedo |");
     for (const Body& body : bodies) {
         std::printf(" %s |", body.name);
     }
-    std::printf("\n|---|%s\n", "---:|---:|---:|---:|---:|---:|");
+    std::printf("\n|---|");
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        std::printf("---:|");
+    }
+    std::printf("\n");
     for (const float eta : indices) {
-        for (const float albedo : {0.5f, 0.9f, 0.99f}) {
+        for (const float albedo : albedos) {
             std::printf("| %g, %g |", static_cast<double>(eta), static_cast<double>(albedo));
             for (const Body& body : bodies) {
                 print_ratio(body, tests::make_grey_medium(100 * albedo, 100 * (1 - albedo), eta),
@@ -175,9 +196,16 @@ void print_table(std::span<const float> indices, double views) {
 }  // namespace opaline::bake
 
 int main(int count, char** argument) {
-    constexpr std::array<float, 3> kIndices{1.0f, 1.3f, 1.5f};
-    const float index = count > 1 ? std::strtof(argument[1], nullptr) : 0;
+    constexpr std::array<float, 3> kIndices{1.0f, 1.3f, 1.5f}, kAlbedos{0.5f, 0.9f, 0.99f};
+    float index = 0, albedo = 0;
+    const int given = count > 1 ? std::sscanf(argument[1], "%f,%f", &index, &albedo) : 0;
     const double views = count > 2 ? std::strtod(argument[2], nullptr) : 0;
-    opaline::bake::print_table(index > 0 ? std::span(&index, 1) : std::span<const float>(kIndices),
-                               views);
+    std::vector<std::size_t> columns;
+    for (int i = 3; i < count; ++i) {
+        columns.push_back(std::strtoul(argument[i], nullptr, 10));
+    }
+    opaline::bake::print_table(
+        given > 0 ? std::span<const float>(&index, 1) : std::span<const float>(kIndices),
+        given > 1 ? std::span<const float>(&albedo, 1) : std::span<const float>(kAlbedos), views,
+        columns);
 }
