@@ -45,7 +45,7 @@ void put_pictures(DataScript& script, const std::string& name,
 
 // Puts both into one array; the second begins at a number of its own.
 void put_joined(DataScript& script, const std::string& name,
-                std::vector<std::vector<float>> parts) {
+                const std::vector<std::vector<float>>& parts) {
     std::vector<float> all;
     std::vector<std::uint32_t> first;
     for (const std::vector<float>& part : parts) {
