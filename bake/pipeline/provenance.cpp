@@ -93,7 +93,8 @@ Json volume_error_json(const VolumeErrorReport& error) {
         json["by_light"][part.name] = {{"rms_relative", part.rms_relative},
                                        {"ci95", {part.ci95[0], part.ci95[1]}},
                                        {"bias", part.bias},
-                                       {"noise", part.noise}};
+                                       {"noise", part.noise},
+                                       {"scattered_alone", part.scattered_alone}};
     }
     return json;
 }

@@ -1,37 +1,48 @@
 #include "bake/volumes/density_space.h"
 
+#include <limits>
+
 namespace opaline::bake {
 namespace {
 
 using Grid = formats::SparseGrid<float>;
 
-// The largest voxel of a brick whose coordinates are at most `last` along each axis.
-float largest_up_to(const Grid& grid, glm::ivec3 brick, glm::ivec3 last) {
+// Of the density between some voxels: the least and the largest of them.
+struct Bounds {
+    float least = std::numeric_limits<float>::infinity(), most = 0;
+
+    void include(float value) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+    }
+};
+
+// The voxels of a brick whose coordinates are at most `last` along each axis.
+void include_up_to(const Grid& grid, glm::ivec3 brick, glm::ivec3 last, Bounds& bounds) {
     const std::uint32_t number = grid.brick_at(brick);
     if (number == Grid::kEmpty) {
-        return 0;
+        bounds.include(0);
+        return;
     }
     const std::span<const float> value = grid.brick(number);
-    float most = 0;
     for (int z = 0; z <= last.z; ++z) {
         for (int y = 0; y <= last.y; ++y) {
             for (int x = 0; x <= last.x; ++x) {
-                most = std::max(most, value[Grid::offset_in_brick({x, y, z})]);
+                bounds.include(value[Grid::offset_in_brick({x, y, z})]);
             }
         }
     }
-    return most;
 }
 
-// Of the density between voxels 8 b and 8 b + 8: the largest of these voxels.
-float bound_of_cell(const Grid& grid, glm::ivec3 cell) {
-    float most = 0;
+// Of the density between voxels 8 b and 8 b + 8.
+Bounds bounds_of_cell(const Grid& grid, glm::ivec3 cell) {
+    Bounds bounds;
     for (int c = 0; c < 8; ++c) {
         const glm::ivec3 above(c & 1, c >> 1 & 1, c >> 2);
         const glm::ivec3 last = glm::ivec3(Grid::kSide - 1) * (1 - above);
-        most = std::max(most, largest_up_to(grid, cell + above, last));
+        include_up_to(grid, cell + above, last, bounds);
     }
-    return most;
+    return bounds;
 }
 
 // The forward peak counts as not scattered: c' = c - f b.
@@ -69,8 +80,9 @@ DensityVolume make_volume(const formats::Volume& volume) {
     for (c.z = 0; c.z < own.extent.z; ++c.z) {
         for (c.y = 0; c.y < own.extent.y; ++c.y) {
             for (c.x = 0; c.x < own.extent.x; ++c.x) {
-                own.bound.push_back(
-                    std::min(bound_of_cell(volume.density, own.first_cell + c), own.densest));
+                const Bounds bounds = bounds_of_cell(volume.density, own.first_cell + c);
+                own.bound.push_back(std::min(bounds.most, own.densest));
+                own.even.push_back(bounds.most > 0 && bounds.least >= own.bound.back());
             }
         }
     }
@@ -93,13 +105,26 @@ DensitySpace make_density_space(const formats::Scene& scene) {
     return space;
 }
 
+double even_share(const DensityVolume& volume) {
+    double dense = 0, even = 0;
+    for (std::size_t cell = 0; cell < volume.bound.size(); ++cell) {
+        dense += volume.bound[cell] > 0 ? 1 : 0;
+        even += volume.even[cell] ? 1 : 0;
+    }
+    return dense > 0 ? even / dense : 0;
+}
+
 std::array<float, 3> optical_depth(const DensitySpace& space, glm::vec3 from, glm::vec3 direction) {
     std::array<float, 3> depth{};
     for (const DensityVolume& volume : space.volumes) {
         const float voxels_per_metre = glm::length(volume.to_index * direction);
         float column = 0;
         visit_cells(volume, from, direction, std::numeric_limits<float>::infinity(),
-                    [&](float, float begin, float end) {
+                    [&](float bound, float begin, float end, bool is_even) {
+                        if (is_even) {
+                            column += bound * (end - begin);
+                            return true;
+                        }
                         const float steps = std::ceil((end - begin) * voxels_per_metre);
                         const float ds = (end - begin) / std::max(steps, 1.0f);
                         float sum = 0;

@@ -24,6 +24,7 @@ struct DensityVolume {
     /// brick of its own: between its last voxels and the brick's first ones.
     glm::ivec3 first_cell{0}, extent{0};
     std::vector<float> bound;      ///< of the density in each cell, x fastest
+    std::vector<bool> even;        ///< whether it is that everywhere in the cell
     std::array<float, 3> sigma_t;  ///< c' [1/m] where the density is 1, by band
     std::array<float, 3> albedo;   ///< of c', by band
     ScaledPhase phase;
@@ -46,8 +47,12 @@ struct DensitySpace {
 };
 DensitySpace make_density_space(const formats::Scene& scene);
 
-/// Optical depth [1] of each band from a point along a unit direction to where no volume is, by the
-/// midpoint rule in steps of at most a voxel.
+/// Share of a volume's cells with density in which it is even.
+double even_share(const DensityVolume& volume);
+
+/// Optical depth [1] of each band from a point along a unit direction to where no volume is: in
+/// closed form in cells of even density, elsewhere by the midpoint rule in steps of at most a
+/// voxel.
 std::array<float, 3> optical_depth(const DensitySpace& space, glm::vec3 from, glm::vec3 direction);
 
 /// Where a flight ends.
@@ -59,13 +64,14 @@ struct Collision {
 
 /// Calls visit(bound, begin, end) for the cells with density that the ray crosses in [0, reach], in
 /// order, distances in metres; ends early where that is false. `Volume` has cells as DensityVolume.
+/// With a fourth argument the visitor learns whether the density is `bound` all over the cell.
 template <class Volume, class Visit>
 void visit_cells(const Volume& volume, glm::vec3 from, glm::vec3 direction, float reach,
                  Visit&& visit);
 
-/// A flight over at most `reach` [m] by delta tracking [Woodcock1965] in one band, unbiased.
-/// Collisions with several volumes are independent: the nearest one counts. `random`: float() in
-/// [0, 1).
+/// A flight over at most `reach` [m] in one band, unbiased: exact in cells of even density,
+/// elsewhere by delta tracking [Woodcock1965]. Collisions with several volumes are independent: the
+/// nearest one counts. `random`: float() in [0, 1).
 template <class Random>
 Collision sample_flight(const DensitySpace& space, std::size_t band, glm::vec3 from,
                         glm::vec3 direction, float reach, Random&& random);

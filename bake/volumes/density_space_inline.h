@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "bake/volumes/density_space.h"
 
@@ -43,13 +44,22 @@ void visit_cells(const Volume& volume, glm::vec3 from, glm::vec3 direction, floa
     while (true) {
         const int axis = next.x <= next.y ? (next.x <= next.z ? 0 : 2) : (next.y <= next.z ? 1 : 2);
         const float leave = std::min(std::max(next[axis], begin), end);
-        const float bound = volume.bound[(static_cast<std::size_t>(cell.z) *
-                                              static_cast<std::size_t>(volume.extent.y) +
-                                          static_cast<std::size_t>(cell.y)) *
-                                             static_cast<std::size_t>(volume.extent.x) +
-                                         static_cast<std::size_t>(cell.x)];
-        if (bound > 0 && leave > begin && !visit(bound, begin, leave)) {
-            return;
+        const std::size_t number =
+            (static_cast<std::size_t>(cell.z) * static_cast<std::size_t>(volume.extent.y) +
+             static_cast<std::size_t>(cell.y)) *
+                static_cast<std::size_t>(volume.extent.x) +
+            static_cast<std::size_t>(cell.x);
+        const float bound = volume.bound[number];
+        if (bound > 0 && leave > begin) {
+            bool goes_on = true;
+            if constexpr (std::is_invocable_v<Visit&, float, float, float, bool>) {
+                goes_on = visit(bound, begin, leave, volume.even[number]);
+            } else {
+                goes_on = visit(bound, begin, leave);
+            }
+            if (!goes_on) {
+                return;
+            }
         }
         begin = leave;
         cell[axis] += d[axis] > 0 ? 1 : -1;
@@ -73,24 +83,25 @@ Collision sample_flight(const DensitySpace& space, std::size_t band, glm::vec3 f
         }
         // The optical depth to the next possible collision goes on from cell to cell.
         float left = -std::log(1 - random());
-        visit_cells(volume, from, direction, nearest.distance,
-                    [&](float bound, float begin, float end) {
-                        const float majorant = bound * sigma;
-                        while (true) {
-                            const float step = left / majorant;
-                            if (begin + step >= end) {
-                                left -= (end - begin) * majorant;
-                                left = std::max(left, 0.0f);
-                                return true;
-                            }
-                            begin += step;
-                            if (random() * bound < volume.density(from + begin * direction)) {
-                                nearest = {true, begin, v};
-                                return false;
-                            }
-                            left = -std::log(1 - random());
-                        }
-                    });
+        visit_cells(
+            volume, from, direction, nearest.distance,
+            [&](float bound, float begin, float end, bool is_even) {
+                const float majorant = bound * sigma;
+                while (true) {
+                    const float step = left / majorant;
+                    if (begin + step >= end) {
+                        left -= (end - begin) * majorant;
+                        left = std::max(left, 0.0f);
+                        return true;
+                    }
+                    begin += step;
+                    if (is_even || random() * bound < volume.density(from + begin * direction)) {
+                        nearest = {true, begin, v};
+                        return false;
+                    }
+                    left = -std::log(1 - random());
+                }
+            });
     }
     return nearest;
 }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "bake/plan/plan_input.h"
 #include "bake/volumes/choose_method.h"
+#include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/scaled_phase.h"
 #include "bake/volumes/volume_knobs.h"
@@ -93,6 +95,19 @@ Brightness brightest(const formats::Volume& volume) {
     return most;
 }
 
+// What is known of a volume whose density is the same in places; "" where it is nowhere.
+std::string tell_evenness(const DensityVolume& volume) {
+    const double share = even_share(volume);
+    char text[128] = "";
+    if (share > 0) {
+        std::snprintf(
+            text, sizeof text,
+            "; density is even in %.3g %% of its cells: depths and flights in closed form",
+            100 * share);
+    }
+    return text;
+}
+
 std::string why_dark(const Brightness& most) {
     return most.albedo <= 0          ? "the volume absorbs and does not scatter"
            : most.seen < kLeastBound ? "the volume is so thin that it is not seen"
@@ -128,6 +143,7 @@ const char* scattering_stage(std::span<const VolumeLayout> layouts) {
 
 VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
     VolumePlan plan;
+    const DensitySpace space = make_density_space(scene);
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
         const formats::Volume& volume = scene.volumes[v];
         const Brightness most = brightest(volume);
@@ -142,6 +158,7 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
                 once.terms == 1
                     ? "light is scattered alike in all directions: one view term"
                     : "light is scattered once: " + std::to_string(once.terms) + " view terms";
+            once.reason += tell_evenness(space.volumes[v]);
         } else if (once.reason.empty()) {
             once.reason = why_dark(most);
         }

@@ -28,10 +28,13 @@ double count_steps(const DensitySpace& space, glm::vec3 from, glm::vec3 directio
     double steps = 0;
     for (const DensityVolume& volume : space.volumes) {
         const float voxels_per_metre = glm::length(volume.to_index * direction);
-        visit_cells(volume, from, direction, kForever, [&](float, float begin, float end) {
-            steps += static_cast<double>(std::ceil((end - begin) * voxels_per_metre));
-            return true;
-        });
+        visit_cells(
+            volume, from, direction, kForever, [&](float, float begin, float end, bool is_even) {
+                // A product instead of steps.
+                steps +=
+                    is_even ? 0 : static_cast<double>(std::ceil((end - begin) * voxels_per_metre));
+                return true;
+            });
     }
     return steps;
 }

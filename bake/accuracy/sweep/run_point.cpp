@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bake/accuracy/sweep/sweep_layers.h"
+#include "bake/accuracy/volumes/see_through.h"
 #include "bake/accuracy/volumes/volume_radiance.h"
 #include "formats/opal/write_opal.h"
 #include "runtime/clouds/layer_light.h"
@@ -142,7 +143,9 @@ formats::Result<PointRecord> run_point(const EffectTable& effects, const formats
     if (!view.volumes.empty() && !asset.volumes.empty()) {
         const std::vector<double> marched = march_probes(
             asset.volumes, asset.cubemap_size, scene.origin, view.volumes.probes, context.threads);
-        record.volumes = compare_volumes(marched, view.volumes.truth, point.knobs.seed);
+        const std::vector<double> through = see_through_file(
+            asset.volumes, asset.cubemap_size, scene.origin, view.volumes.probes, context.threads);
+        record.volumes = compare_volumes(marched, through, view.volumes.truth, point.knobs.seed);
         record.volume_luminance = relative_luminance(view.volumes, marched);
         take_larger(record.error, as_error_report(record.volumes));
     }

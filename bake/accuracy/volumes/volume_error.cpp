@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bake/accuracy/model_pairs.h"
+#include "bake/accuracy/volumes/see_through.h"
 #include "bake/accuracy/volumes/volume_radiance.h"
 
 namespace opaline::bake {
@@ -57,6 +58,7 @@ std::vector<ModelPair> relative_pairs(std::span<const ModelPair> pairs, std::siz
     return relative;
 }
 
+// Of scattered light; place after place.
 std::vector<ModelPair> make_pairs(std::span<const double> luminance, const VolumeTruth& truth) {
     std::vector<ModelPair> pairs;
     for (std::size_t i = 0; i < luminance.size(); ++i) {
@@ -66,27 +68,46 @@ std::vector<ModelPair> make_pairs(std::span<const double> luminance, const Volum
     return pairs;
 }
 
+// The differences under even light, with those of what passes through.
+std::vector<ModelPair> with_passing(std::vector<ModelPair> pairs, std::span<const double> through,
+                                    const VolumeTruth& truth) {
+    const std::size_t first = static_cast<std::size_t>(LightPlace::around) * through.size();
+    for (std::size_t p = 0; p < through.size(); ++p) {
+        pairs[first + p].difference += through[p] - truth.through[p];
+    }
+    return pairs;
+}
+
 // Relative to the truth: difference and noise, in squares the means over places.
-MeanSquares sum_up_places(std::span<const double> luminance, const VolumeTruth& truth) {
-    const std::vector<ModelPair> pairs = make_pairs(luminance, truth);
+MeanSquares sum_up_places(std::span<const double> luminance, std::span<const double> through,
+                          const VolumeTruth& truth) {
+    const std::vector<ModelPair> pairs = with_passing(make_pairs(luminance, truth), through, truth);
     return sum_up(relative_pairs(pairs, pairs.size() / kLightPlaces));
 }
 
 }  // namespace
 
-VolumeErrorReport compare_volumes(std::span<const double> luminance, const VolumeTruth& truth,
+VolumeErrorReport compare_volumes(std::span<const double> luminance,
+                                  std::span<const double> through, const VolumeTruth& truth,
                                   std::uint64_t seed) {
     VolumeErrorReport report;
     const std::size_t probes = luminance.size() / kLightPlaces;
     if (probes == 0) {
         return report;
     }
-    const std::vector<ModelPair> pairs = make_pairs(luminance, truth);
+    const std::vector<ModelPair> scattered = make_pairs(luminance, truth);
+    const std::vector<ModelPair> pairs = with_passing(scattered, through, truth);
     for (std::size_t place = 0; place < kLightPlaces; ++place) {
         const auto own = std::span<const ModelPair>(pairs).subspan(place * probes, probes);
         const MeanSquares sum = sum_up(own);
         VolumeErrorReport::Part part{
-            std::string(kLightPlaceNames[place]), sum.rms_relative(), {}, sum.bias(), sum.noise()};
+            .name = std::string(kLightPlaceNames[place]),
+            .rms_relative = sum.rms_relative(),
+            .bias = sum.bias(),
+            .noise = sum.noise(),
+            .scattered_alone =
+                sum_up(std::span<const ModelPair>(scattered).subspan(place * probes, probes))
+                    .rms_relative()};
         std::ranges::copy(stated_interval(own, probes, seed), part.ci95);
         report.by_light.push_back(std::move(part));
     }
@@ -99,7 +120,7 @@ VolumeErrorReport compare_volumes(std::span<const double> luminance, const Volum
     report.reference =
         "path tracing; luminance that volumes scatter along rays through points drawn in "
         "proportion to extinction, under suns ahead of the eye, beside it and behind it, and "
-        "under even light";
+        "under even light, there with what passes through";
     return report;
 }
 
@@ -118,17 +139,19 @@ formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
     }
     const std::vector<double> luminance =
         march_probes(asset.volumes, asset.cubemap_size, scene.origin, probes, context.threads);
+    const std::vector<double> through =
+        see_through_file(asset.volumes, asset.cubemap_size, scene.origin, probes, context.threads);
     const auto truth = trace_volume_truth(
         *reference, probes, options.seed, options.max_events,
         [&](const VolumeTruth& so_far) {
-            const MeanSquares sum = sum_up_places(luminance, so_far);
+            const MeanSquares sum = sum_up_places(luminance, through, so_far);
             return sum.noise() <= std::max(options.noise, options.noise_share * sum.rms_relative());
         },
         context);
     if (!truth) {
         return truth.error();
     }
-    return compare_volumes(luminance, *truth, options.seed);
+    return compare_volumes(luminance, through, *truth, options.seed);
 }
 
 }  // namespace opaline::bake

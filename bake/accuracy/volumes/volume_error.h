@@ -14,9 +14,9 @@
 
 namespace opaline::bake {
 
-/// Error of a finished file's volumes: luminance that they scatter along rays, by the runtime's
-/// march, against path tracing. Model and numbers err together. The noise of the paths is
-/// subtracted.
+/// Error of a finished file's volumes: luminance that they scatter, and let pass, along rays, by
+/// the runtime's march, against path tracing. Model and numbers err together. The noise of the
+/// paths is subtracted.
 struct VolumeErrorReport {
     /// RMS of the error over that of the truth; in squares the mean of the parts.
     double rms_relative = 0;
@@ -32,6 +32,8 @@ struct VolumeErrorReport {
         double ci95[2] = {0, 0};
         double bias = 0;   ///< mean difference over mean truth; > 0: the file is too bright
         double noise = 0;  ///< RMS standard error of the truth
+        /// RMS of the error without the light that passes through; as rms_relative under suns.
+        double scattered_alone = 0;
     };
     std::vector<Part> by_light;  ///< in the order of LightPlace; empty: nothing was checked
 };
@@ -46,12 +48,16 @@ struct VolumeCheckOptions {
     std::uint64_t max_events = 1000000;  ///< scatterings and surfaces met, of all rays
 };
 
-/// Errors of `luminance` (march_probes) against a truth of the same probes.
-VolumeErrorReport compare_volumes(std::span<const double> luminance, const VolumeTruth& truth,
+/// Errors of `luminance` (march_probes) against a truth of the same probes. Under even light what
+/// passes through, `through` (see_through_file), counts on both sides, but not in the RMS of the
+/// truth (README.md, "Even light"); empty: it is the same on both.
+VolumeErrorReport compare_volumes(std::span<const double> luminance,
+                                  std::span<const double> through, const VolumeTruth& truth,
                                   std::uint64_t seed);
 
 /// Compares the volumes of `asset`, baked from `scene`, with path tracing. Light that surfaces
-/// reflect onto volumes, or that reaches the eye from surfaces or unscattered, is on neither side.
+/// reflect onto volumes, or that reaches the eye from surfaces, is on neither side; unscattered
+/// light is on both under even light.
 /// The same bits for any number of threads. Errors: resource, interrupted.
 formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
                                                  const formats::AssetView& asset,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bake/accuracy/volumes/see_through.h"
 #include "bake/accuracy/volumes/volume_lights.h"
 #include "formats/opal/rgb.h"
 
@@ -30,6 +31,7 @@ formats::Result<VolumeTruth> trace_volume_truth(
     };
     VolumeTruth truth;
     truth.luminance.resize(count);
+    truth.through = see_through_scene(reference.surfaces.scene().volumes, probes);
     EstimateOptions wanted;
     wanted.seed = seed;
     wanted.samples = 16;

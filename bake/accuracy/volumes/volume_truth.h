@@ -19,6 +19,8 @@ struct VolumeTruth {
     std::vector<Moments> luminance;
     std::uint32_t samples = 0;  ///< for each ray
     std::uint64_t events = 0;   ///< scatterings and surfaces met, of all paths
+    /// What the rays of LightPlace::around see of the light behind (see_through.h), by probe.
+    std::vector<double> through;
 };
 
 /// Traces until `is_enough` or until `max_events` are used up, as far as whole rounds allow; rounds

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bake/accuracy/volumes/see_through.h"
 #include "bake/accuracy/volumes/volume_radiance.h"
 #include "bake/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
@@ -61,6 +62,36 @@ TEST(VolumeError, OfABlobThatAbsorbsNothingIsAboutZeroUnderEvenLight) {
     EXPECT_LT(report.rms_relative, 0.2);
     EXPECT_LE(report.ci95[0], report.rms_relative);
     EXPECT_GE(report.ci95[1], report.rms_relative);
+}
+
+// Under even light nothing is lost that goes on instead of being scattered by a hair: a file counts
+// the peak of a phase function as light that goes on, a picture shows both together.
+TEST(VolumeError, UnderEvenLightTheForwardPeakIsSeenThroughTheVolume) {
+    const formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_blob(0.5, 1.0 / 6), 2, 1, 0.85f));
+    Knobs knobs = small_knobs();
+    knobs.set(kVolumeWalks, 16);
+    knobs.set(kVolumeTerms, 9);
+    const VolumeErrorReport report = check(scene, bake(scene, knobs));
+    const VolumeErrorReport::Part& even = part(report, LightPlace::around);
+    EXPECT_GT(even.scattered_alone, 0.15);
+    EXPECT_LT(even.rms_relative, 0.05);
+    EXPECT_EQ(part(report, LightPlace::ahead).rms_relative,
+              part(report, LightPlace::ahead).scattered_alone);
+}
+
+// exp(-4 0.5 sqrt(2 pi)) straight through the middle of a blob.
+TEST(VolumeError, WhatPassesThroughIsWhatBeerAndLambertSay) {
+    const formats::Scene scene =
+        tests::scene_of(tests::make_volume(tests::make_blob(0.5, 1.0 / 24), 2, 1, 0));
+    const auto reference = make_reference_scene(scene, 1);
+    std::vector<VolumeProbe> probes = choose_volume_probes(*reference, 1, 1);
+    VolumeRay& ray = probes[0].ray[static_cast<std::size_t>(LightPlace::around)];
+    ray.origin = {-5, 0, 0};
+    ray.direction = {1, 0, 0};
+    EXPECT_NEAR(see_through_scene(scene.volumes, probes)[0], std::exp(-2.5066282746), 1e-3);
+    ray.end = 20;
+    EXPECT_EQ(see_through_scene(scene.volumes, probes)[0], 0) << "a surface is there";
 }
 
 TEST(VolumeError, OfAFileThatScattersTooLittleRisesByWhatIsMissing) {
@@ -146,7 +177,7 @@ TEST(VolumeError, TotalIsTheMeanSquareOfTheParts) {
             luminance.push_back(place == 0 ? 1.4 * bright : bright);
         }
     }
-    const VolumeErrorReport report = compare_volumes(luminance, truth, 0);
+    const VolumeErrorReport report = compare_volumes(luminance, {}, truth, 0);
     EXPECT_NEAR(report.rms_relative, 0.2, 1e-9);
     EXPECT_NEAR(report.by_light[0].rms_relative, 0.4, 1e-9);
     EXPECT_NEAR(report.by_light[0].bias, 0.4, 1e-9);
@@ -165,7 +196,7 @@ TEST(VolumeError, NoiseOfThePathsIsNoErrorOfTheFile) {
     for (const Moments& m : many->luminance) {
         luminance.push_back(m.mean.x);
     }
-    const VolumeErrorReport report = compare_volumes(luminance, *few, 0);
+    const VolumeErrorReport report = compare_volumes(luminance, {}, *few, 0);
     double noise = 0;
     for (const VolumeErrorReport::Part& own : report.by_light) {
         noise += own.noise * own.noise / kLightPlaces;

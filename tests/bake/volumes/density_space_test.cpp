@@ -71,6 +71,57 @@ TEST(DensitySpace, TwoVolumesAtOnePlaceAreOneOfBothDensities) {
     EXPECT_NEAR(mean[0] / kFlights, mean[1] / kFlights, 4 * 3.5 / std::sqrt(kFlights));
 }
 
+// Voxels of 1 m, 48 along an edge, all of density 1; `ripple`: every other voxel is that much less.
+formats::Volume even_box(double ripple) {
+    return make_volume(
+        formats::fill_grid(
+            glm::ivec3(-24), glm::ivec3(24), 1.0,
+            [&](glm::ivec3 at) { return (at.x + at.y + at.z) % 2 == 0 ? 1.0 : 1 - ripple; }),
+        0.05f, 0.9f, 0);
+}
+
+TEST(DensitySpace, DepthsThroughEvenDensityAreInClosedForm) {
+    const formats::Scene scene = scene_of(even_box(0)), rippled = scene_of(even_box(1e-4));
+    const DensitySpace even = make_density_space(scene), uneven = make_density_space(rippled);
+    EXPECT_GT(even_share(even.volumes.front()), 0.3);
+    EXPECT_EQ(even_share(uneven.volumes.front()), 0);
+    std::mt19937 engine(5);
+    std::uniform_real_distribution<float> uniform(-20, 20);
+    for (int i = 0; i < 100; ++i) {
+        const glm::vec3 from(uniform(engine), uniform(engine), uniform(engine));
+        const glm::vec3 along =
+            glm::normalize(glm::vec3(uniform(engine), uniform(engine), uniform(engine)));
+        const float closed = optical_depth(even, from, along)[0];
+        EXPECT_NEAR(optical_depth(uneven, from, along)[0] / closed, 1, 2e-3);
+    }
+    // Straight out: 24 m, and half of the last voxel's fall to 0.
+    const float expected = 0.05f * 24.5f;
+    EXPECT_NEAR(optical_depth(even, glm::vec3(0), glm::vec3(0, 0, 1))[0], expected,
+                8 * 6e-8f * expected);
+}
+
+TEST(DensitySpace, FlightsThroughEvenDensityAreThoseOfTheGridWithFewerNumbers) {
+    const formats::Scene scene = scene_of(even_box(0)), rippled = scene_of(even_box(1e-4));
+    const DensitySpace even = make_density_space(scene), uneven = make_density_space(rippled);
+    double mean[2] = {}, drawn[2] = {};
+    constexpr int kFlights = 20000;
+    for (const std::size_t is_rippled : {0u, 1u}) {
+        std::mt19937 engine(6);
+        std::uniform_real_distribution<float> uniform(0, 1);
+        const auto random = [&] {
+            ++drawn[is_rippled];
+            return std::min(uniform(engine), 0x1.fffffep-1f);
+        };
+        for (int i = 0; i < kFlights; ++i) {
+            const Collision hit = sample_flight(is_rippled != 0 ? uneven : even, 0, glm::vec3(0),
+                                                glm::vec3(0.6f, 0, 0.8f), 1000, random);
+            mean[is_rippled] += hit.happens ? static_cast<double>(hit.distance) : 0;
+        }
+    }
+    EXPECT_NEAR(mean[0] / kFlights, mean[1] / kFlights, 4 * 12 / std::sqrt(kFlights));
+    EXPECT_LT(drawn[0], 0.8 * drawn[1]);
+}
+
 TEST(DensitySpace, NoPointIsDenserThanItsCellSays) {
     const formats::Scene scene = scene_of(make_volume(make_blob(0.3, 0.07), 1, 1, 0));
     const DensitySpace space = make_density_space(scene);

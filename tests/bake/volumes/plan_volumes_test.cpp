@@ -6,6 +6,7 @@
 
 #include "bake/volumes/scaled_phase.h"
 #include "bake/volumes/volume_knobs.h"
+#include "bake/volumes/volume_work.h"
 #include "tests/bake/volumes/volume_support.h"
 
 namespace opaline::bake {
@@ -113,6 +114,47 @@ TEST(PlanVolumes, MoreWalksLeaveWhereMediaScatterForwardSoThatAsManyCount) {
 TEST(PlanVolumes, TheDepthOfNoLineExceedsTheBound) {
     const formats::Volume blob = tests::make_volume(tests::make_blob(0.4, 0.1), 3, 1, 0);
     EXPECT_GT(largest_depth(blob)[0], 3 * 0.4 * 2.5066);
+}
+
+formats::Volume box_of_cells(double ripple) {
+    return tests::make_volume(
+        formats::fill_grid(glm::ivec3(-16), glm::ivec3(16), 0.1,
+                           [&](glm::ivec3 at) { return at.x % 2 == 0 ? 1.0 : 1 - ripple; }),
+        1, 0.9f, 0);
+}
+
+TEST(PlanVolumes, EvenDensityTakesTheHomogeneousPathAndNoOtherDoes) {
+    const Knobs knobs = preview();
+    const formats::Scene even = tests::scene_of(box_of_cells(0)),
+                         rippled = tests::scene_of(box_of_cells(1e-4));
+    const VolumePlan plan = plan_volumes(even, knobs), other = plan_volumes(rippled, knobs);
+    EXPECT_NE(plan.entries.at(0).reason.find("closed form"), std::string::npos);
+    EXPECT_EQ(other.entries.at(0).reason.find("closed form"), std::string::npos);
+    const VolumeWork less = count_volume_work(even, plan.layouts, knobs).at(0),
+                     more = count_volume_work(rippled, other.layouts, knobs).at(0);
+    EXPECT_LT(less.depth_steps, 0.75 * more.depth_steps);
+    EXPECT_EQ(less.nodes, more.nodes);
+}
+
+// The same from the other side: what is left out changes nothing but noise.
+TEST(PlanVolumes, TheHomogeneousPathFindsTheLightOfTheGrid) {
+    Knobs knobs = tests::knobs_for(Quality::draft);
+    knobs.set(kVolumeSpacing, 8);
+    knobs.set(kVolumeWalks, 200);
+    double light[2] = {};
+    for (const bool is_even : {false, true}) {
+        const formats::Scene scene = tests::scene_of(box_of_cells(is_even ? 0 : 1e-4));
+        const VolumePlan plan = plan_volumes(scene, knobs);
+        const RayScene sky = tests::empty_space();
+        StageLog log;
+        const auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
+        ASSERT_TRUE(volumes.has_value());
+        const formats::VolumeRecord& record = volumes->records.at(0);
+        for (std::uint32_t row = 0; row < record.node_count * record.terms(); ++row) {
+            light[is_even ? 1 : 0] += tests::integrate_row(volumes->rows, record, row);
+        }
+    }
+    EXPECT_NEAR(light[1] / light[0], 1, 0.005);
 }
 
 }  // namespace
