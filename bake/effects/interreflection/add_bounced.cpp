@@ -10,8 +10,7 @@ std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
                           std::uint32_t cubemap_size, std::span<float> rows) {
     const BounceGrid& own = point.is_averaged ? light.of_averaged : light.of_receiver;
     std::vector<float> sum(light.tree.row_size());
-    // Noise as of rays of its own, were these independent.
-    const float most = static_cast<float>(light.of_site.count()) / static_cast<float>(own.count());
+    const float most = light.most_noise(own);
     std::vector<SiteWeight> around;
     std::uint64_t rays = 0;
     if (light.sites.weigh(point.receiver, most, around)) {

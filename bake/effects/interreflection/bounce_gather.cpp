@@ -88,6 +88,8 @@ FootprintKernel footprint_of(const BounceHit& hit, const Frame& frame, const See
     const float inverse = std::copysign(1 / kernel.area, area);
     kernel.across = inverse * glm::cross(along, side.normal);
     kernel.along = inverse * glm::cross(side.normal, across);
+    const glm::vec3 up = std::sqrt(kernel.area) * side.normal;
+    kernel.extent = glm::sqrt(across * across + along * along + up * up);
     kernel.above = side.normal / std::sqrt(kernel.area);
     const float aa = glm::dot(kernel.across, kernel.across);
     const float bb = glm::dot(kernel.along, kernel.along);

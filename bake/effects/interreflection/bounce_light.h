@@ -35,6 +35,12 @@ struct BounceLight {
     std::uint32_t bounces = 0;                     ///< that were added before the next was too dark
     GatherSites sites;                             ///< among receivers
     CodedRows site_rows;                           ///< E, as long as the tree's
+
+    /// Variance of a fit to sites, of that of one: with it the fit is as good as the rays `instead`
+    /// of it, were these independent.
+    float most_noise(const BounceGrid& instead) const {
+        return static_cast<float>(of_site.count()) / static_cast<float>(instead.count());
+    }
 };
 
 /// Places scatterers and finds their light; null where receivers see no surface. `rays` counts up.

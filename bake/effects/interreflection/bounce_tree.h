@@ -22,6 +22,7 @@ struct Scatterer;
 struct FootprintKernel {
     glm::vec3 centre{0};                      ///< [m]
     glm::vec3 across{0}, along{0}, above{0};  ///< [1/m]
+    glm::vec3 extent{0};                      ///< [m], of a width along the axes of the world
     float steepest = 0;                       ///< [1/m], longest that any of the first two is
     float area = 0;                           ///< [m^2], > 0
 };
@@ -118,6 +119,10 @@ void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& sid
     }
     constexpr float kReach = 0.8660254f;  // 3 / sqrt(12)
     constexpr float kLargest = 1;
+    const glm::vec3 low = kernel.centre - kReach * kernel.extent;
+    const glm::vec3 high = kernel.centre + kReach * kernel.extent;
+    const glm::vec3 slope{glm::length(kernel.across), glm::length(kernel.along),
+                          glm::length(kernel.above)};
     // At most as many as the tree is deep: twenty halvings, between which a few parts of an axis
     // without half of the scatterers go.
     std::array<std::uint32_t, 512> waiting;
@@ -130,12 +135,19 @@ void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& sid
         const glm::vec3 d{glm::dot(offset, kernel.across), glm::dot(offset, kernel.along),
                           glm::dot(offset, kernel.above)};
         const float square = glm::dot(d, d), radius = node.radius * kernel.steepest;
-        if (square > (kReach + radius) * (kReach + radius)) {
+        const glm::vec3 nearest = glm::abs(d) - node.radius * slope;
+        if (square > (kReach + radius) * (kReach + radius) ||
+            std::max({nearest.x, nearest.y, nearest.z}) > kReach) {
             continue;
         }
         if (node.right != 0 && (radius > kLargest || node.is_mixed != 0)) {
-            waiting[count++] = node.right;
-            waiting[count++] = v + 1;
+            const auto axis = static_cast<glm::length_t>(node.axis);
+            if (high[axis] >= node.split) {
+                waiting[count++] = node.right;
+            }
+            if (low[axis] <= node.split) {
+                waiting[count++] = v + 1;
+            }
         } else if (square < kReach * kReach) {
             const float like = similarity(looked_for, node.middle);
             if (like > 0) {

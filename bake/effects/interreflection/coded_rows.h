@@ -24,6 +24,11 @@ class CodedRows {
         }
     }
 
+    /// `count` rows, new ones of zeros.
+    void resize(std::size_t count) {
+        code_.resize(count * size_);
+        scale_.resize(count);
+    }
     /// `row`: of size() finite values. Different rows may be set at the same time.
     void set(std::size_t i, std::span<const float> row);
     /// to += weight * row i.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,18 @@ struct Candidates {
             points.push_back({own.origin, {material, false, own.normal}});
         }
     }
+    // Those that are not 0.
+    void drop(std::span<const std::uint8_t> dropped) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            if (dropped[i] == 0) {
+                at[kept] = at[i];
+                points[kept++] = points[i];
+            }
+        }
+        at.resize(kept);
+        points.resize(kept);
+    }
 };
 
 // Copies of a vertex would count as if each had rays of its own.
@@ -37,20 +50,15 @@ void drop_copies(Candidates& all) {
     for (std::size_t i = 1; i < keys.size(); ++i) {
         is_copy[keys[i].second] = keys[i].first == keys[i - 1].first ? 1 : 0;
     }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < all.at.size(); ++i) {
-        if (is_copy[i] == 0) {
-            all.at[kept] = all.at[i];
-            all.points[kept++] = all.points[i];
-        }
-    }
-    all.at.resize(kept);
-    all.points.resize(kept);
+    all.drop(is_copy);
 }
 
-// Evenly spaced ones of the receivers, as dense as these. None where they are so few that rays of
-// their own cost less.
-std::vector<GatherSite> choose_sites(const LightInputs& inputs) {
+// Sites first stand as densely as receivers, then at every second receiver of which these say too
+// little, and again. Each of them costs a quarter of its own rays and spares its neighbours theirs.
+constexpr int kSiteLevels = 3;
+
+// Receivers where other light matters.
+Candidates find_candidates(const LightInputs& inputs) {
     Candidates all;
     for (const ReceiverSet& set : inputs.bake.receivers) {
         if (inputs.acts.empty() || inputs.acts[set.material] != 0) {
@@ -60,29 +68,48 @@ std::vector<GatherSite> choose_sites(const LightInputs& inputs) {
         }
     }
     drop_copies(all);
-    std::vector<GatherSite> sites;
-    if (all.at.size() >= kFewestWithSites) {
-        for (const std::uint32_t i : choose_evenly(all.points, kMostSites)) {
-            sites.push_back({all.at[i], 0});
-        }
-    }
-    return sites;
+    return all;
 }
 
-}  // namespace
+// Those of which the sites say too little.
+Candidates find_unknown(const LightInputs& inputs, const BounceLight& light,
+                        const Candidates& all) {
+    Candidates unknown;
+    constexpr std::size_t kBlock = 64;
+    for_each_block_in_order(
+        all.at.size(), kBlock, inputs.context,
+        [&](Range range) {
+            std::vector<std::size_t> found;
+            std::vector<SiteWeight> weights;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                if (!light.sites.weigh(all.at[i], light.most_noise(light.of_receiver), weights)) {
+                    found.push_back(i);
+                }
+            }
+            return found;
+        },
+        [&](Range, const std::vector<std::size_t>& found) {
+            for (const std::size_t i : found) {
+                unknown.at.push_back(all.at[i]);
+                unknown.points.push_back(all.points[i]);
+            }
+        });
+    return unknown;
+}
 
-void light_sites(const LightInputs& inputs, BounceLight& light, std::uint64_t& rays) {
-    std::vector<GatherSite> sites = choose_sites(inputs);
+// Gathers light at sites of which `done` have it.
+void light_new_sites(const LightInputs& inputs, BounceLight& light, std::vector<GatherSite>& sites,
+                     std::size_t done, std::uint64_t& rays) {
     const std::size_t size = light.tree.row_size();
-    light.site_rows = CodedRows(sites.size(), size);
+    light.site_rows.resize(sites.size());
     constexpr std::size_t kBlock = 16;
     for_each_block_in_order(
-        sites.size(), kBlock, inputs.context,
+        sites.size() - done, kBlock, inputs.context,
         [&](Range range) {
             std::uint64_t traced = 0;
             std::vector<NodeWeight> weights;
             std::vector<float> row(size);
-            for (std::size_t i = range.begin; i < range.end; ++i) {
+            for (std::size_t i = done + range.begin; i < done + range.end; ++i) {
                 const BounceGather gathered =
                     weigh_bounces(light.scene, light.rays, light.tree, sites[i].at, light.of_site,
                                   light.seed, weights);
@@ -96,7 +123,34 @@ void light_sites(const LightInputs& inputs, BounceLight& light, std::uint64_t& r
             return traced;
         },
         [&](Range, std::uint64_t traced) { rays += traced; });
-    light.sites = GatherSites(std::move(sites));
+}
+
+}  // namespace
+
+void light_sites(const LightInputs& inputs, BounceLight& light, std::uint64_t& rays) {
+    Candidates unknown = find_candidates(inputs);
+    // Rays of their own cost less for few.
+    if (unknown.at.size() < kFewestWithSites) {
+        return;
+    }
+    light.site_rows = CodedRows(0, light.tree.row_size());
+    std::vector<GatherSite> sites;
+    std::size_t wanted = kMostSites;
+    for (int level = 0; level < kSiteLevels && wanted > 0; ++level) {
+        const std::size_t done = sites.size();
+        std::vector<std::uint8_t> is_site(unknown.at.size());
+        for (const std::uint32_t i : choose_evenly(unknown.points, wanted)) {
+            sites.push_back({unknown.at[i], 0});
+            is_site[i] = 1;
+        }
+        unknown.drop(is_site);
+        light_new_sites(inputs, light, sites, done, rays);
+        light.sites = GatherSites(sites);
+        if (level + 1 < kSiteLevels) {
+            unknown = find_unknown(inputs, light, unknown);
+            wanted = unknown.at.size() / 2;
+        }
+    }
 }
 
 }  // namespace opaline::bake

@@ -130,6 +130,10 @@ TEST(BounceGather, FootprintEndsWhereTheEdgesOfTheCellLand) {
             EXPECT_NEAR(glm::dot(b, kernel.along), sign, 0.03) << i;
             EXPECT_NEAR(glm::dot(b, kernel.across), 0, 0.03) << i;
             EXPECT_LE(0.5f, glm::length(a) * kernel.steepest * 1.03f) << i;
+            for (glm::length_t axis = 0; axis < 3; ++axis) {
+                EXPECT_LE(std::abs(a[axis]), 0.52f * kernel.extent[axis]) << i;
+                EXPECT_LE(std::abs(b[axis]), 0.52f * kernel.extent[axis]) << i;
+            }
         }
     }
 }

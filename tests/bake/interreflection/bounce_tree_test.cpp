@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "bake/base/rng.h"
 #include "bake/effects/interreflection/scatterers.h"
 
@@ -55,6 +59,57 @@ TEST(BounceTree, TheFootprintOfNothingFindsANeighbourAndThatOfAllTheMean) {
     const auto leaf = tree.find({0.2f, 0, 0.7f}, {0, false, {0, 1, 0}}, 0);
     EXPECT_NEAR(tree.rows().row(leaf)[0], 0.2, 0.1);
     EXPECT_NEAR(tree.rows().row(leaf)[1], 0.7, 0.1);
+}
+
+// A footprint narrower than the gaps between scatterers, and long: nodes are scatterers.
+TEST(BounceTree, ALongFootprintFindsEveryScattererUnderIt) {
+    constexpr float kWide = 0.4f, kNarrow = 0.005f;
+    std::vector<Scatterer> all(1024);
+    for (std::uint32_t i = 0; i < 1024; ++i) {
+        const auto u = random_uniform(6, RandomStage::bounce_rays, i);
+        all[i].position = {(static_cast<float>(i % 32) + 0.5f * u[0]) / 32, 0,
+                           (std::floor(static_cast<float>(i) / 32) + 0.5f * u[1]) / 32};
+        all[i].normal = {0, 1, 0};
+    }
+    BounceTree tree(all, 1, 3);
+    tree.set_rows({rows_of(all), 3});
+    std::size_t found_in_all = 0;
+    for (std::uint32_t k = 0; k < 64; ++k) {
+        const auto u = random_uniform(5, RandomStage::bounce_rays, k);
+        const float turn = 6.2831853f * u[2];
+        const glm::vec3 across{std::cos(turn), 0, std::sin(turn)}, up{0, 1, 0};
+        const glm::vec3 along = glm::cross(across, up);
+        const float height = std::sqrt(kWide * kNarrow);
+        FootprintKernel kernel;
+        kernel.centre = {u[0], 0, u[1]};
+        kernel.across = across / kWide;
+        kernel.along = along / kNarrow;
+        kernel.above = up / height;
+        kernel.extent = glm::sqrt(kWide * across * kWide * across +
+                                  kNarrow * along * kNarrow * along + height * up * height * up);
+        kernel.steepest = 1 / kNarrow;
+        kernel.area = kWide * kNarrow;
+        std::vector<float> expected, found;
+        for (const Scatterer& s : all) {
+            const glm::vec3 offset = s.position - kernel.centre;
+            const float x = glm::dot(offset, kernel.across), y = glm::dot(offset, kernel.along);
+            if (x * x + y * y < 0.75f) {
+                expected.push_back(s.position.x);
+            }
+        }
+        tree.find_near(kernel, {0, false, up}, brightness_of(0),
+                       [&](std::uint32_t node, float, glm::vec2) {
+                           found.push_back(tree.rows().row(node)[0]);
+                       });
+        std::ranges::sort(expected);
+        std::ranges::sort(found);
+        ASSERT_EQ(found.size(), expected.size()) << k;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_NEAR(found[i], expected[i], 1e-4f) << k;
+        }
+        found_in_all += found.size();
+    }
+    EXPECT_GT(found_in_all, 100u);
 }
 
 // Means over a footprint lie closer to its middle the smaller it is.

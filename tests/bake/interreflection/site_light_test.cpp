@@ -21,15 +21,15 @@
 namespace opaline::bake {
 namespace {
 
-// A room open to the front.
-formats::Scene make_open_room() {
+// A room open to the front, walls of cells x cells squares.
+formats::Scene make_open_room(std::uint32_t cells = 32) {
     using tests::make_quad;
     formats::Scene room = tests::make_scene({
-        make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 32),  // floor
-        make_quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, 32),  // ceiling
-        make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 32),  // back
-        make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 32),  // left
-        make_quad({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, 32),  // right
+        make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, cells),  // floor
+        make_quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, cells),  // ceiling
+        make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, cells),  // back
+        make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, cells),  // left
+        make_quad({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, cells),  // right
     });
     room.materials[0].base_color = {0.7f, 0.7f, 0.7f};
     return room;
@@ -131,6 +131,22 @@ TEST(SiteLight, PointsBetweenSitesHaveTheLightOfManyRays) {
     EXPECT_GT(2 * without, all);
     // 1.3 times as much: a site's 16 stratified rays have more than four times the variance of 64.
     EXPECT_LT(of_sites, 2 * of_rays) << "a fit to sites is worth nearly as much as 64 rays";
+}
+
+// Near corners light changes within a fifth of the distance to the next wall: sites follow.
+TEST(SiteLight, SitesAreDenserWhereSurfacesAreNear) {
+    RowLayout opaque;
+    opaque.constant = true;
+    const LitWorld world(make_open_room(120), {opaque}, 16);
+    ASSERT_NE(world.light, nullptr);
+    EXPECT_GT(world.light->site_rows.count(), kMostSites + 2000);
+    EXPECT_LT(world.light->site_rows.count(), world.receivers.size());
+    std::vector<SiteWeight> weights;
+    std::size_t without = 0, all = 0;
+    for (std::size_t i = 0; i < world.receivers.size(); i += 13, ++all) {
+        without += world.light->sites.weigh(world.receivers[i], 0.25f, weights) ? 0 : 1;
+    }
+    EXPECT_LT(static_cast<double>(without), 0.15 * static_cast<double>(all)) << without;
 }
 
 // Vertices that seams double trace the same rays: a second site there would pass for another one.
