@@ -18,9 +18,16 @@ namespace {
 // fewer.
 constexpr double kHitShare = 0.44, kClustersPerHit = 4;
 constexpr double kBounces = 6;
-// Receivers that trace rays of their own where there are sites, and sites that the others read: of
-// the statue on its floor.
-constexpr double kOwnShare = 0.4, kSitesRead = 20;
+// Receivers that trace rays of their own where there are sites, sites that the others read, and
+// sites at receivers of which the first say too little: of the statue on its floor.
+constexpr double kOwnShare = 0.26, kSitesRead = 20, kAddedShare = 0.16;
+
+double count_sites(double receivers) {
+    constexpr auto kFirst = static_cast<double>(kMostSites);
+    return receivers < static_cast<double>(kFewestWithSites) ? 0
+           : receivers < kFirst                              ? receivers
+                                : kFirst + kAddedShare * (receivers - kFirst);
+}
 
 double row_cells(std::uint32_t bands) {
     return static_cast<double>(bands * formats::cubemap_texels(kBounceCubemap));
@@ -64,12 +71,10 @@ LightWork bounce_light_work(const CostInput& input) {
     constexpr double kCodeBytes = 2;
     const double row = kCodeBytes * row_cells(3);
     work.bytes = scatterers * (4 * row + kRaysOfScatterer * kHitShare * sizeof(NodeWeight));
-    if (input.receivers >= static_cast<double>(kFewestWithSites)) {
-        const double sites = std::min(input.receivers, static_cast<double>(kMostSites));
-        work.bytes += sites * row;
-        work.work.shared += ray_work(
-            input, sites * count_rays_of_site(count_bounce_rays(input.knobs[kBounceRays])), 3);
-    }
+    const double sites = count_sites(input.receivers);
+    work.bytes += sites * row;
+    work.work.shared +=
+        ray_work(input, sites * count_rays_of_site(count_bounce_rays(input.knobs[kBounceRays])), 3);
     work.work.shared += (kBounces - 1) * scatterers * kRaysOfScatterer * kHitShare * row_cells(3) *
                         input.rates.bounce_cell;
     return work;
