@@ -10,6 +10,7 @@
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/path_medium.h"
 #include "bake/volumes/volume_knobs.h"
+#include "bake/volumes/volume_paths.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/phase_table.h"
 
