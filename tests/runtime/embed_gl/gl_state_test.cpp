@@ -201,7 +201,10 @@ TEST_P(EmbedGlState, IsAsBeforeAfterEveryCall) {
     fog.single_terms = 1;
     fog.density = [](float, float, float) { return 1.0f; };
     add_volume(asset.volumes, fog);
-    asset.clouds = make_test_clouds(even_test_layer());
+    TestLayer layer = even_test_layer();
+    layer.flux = {8, 6};
+    layer.radiance = {4, 4, 2};
+    asset.clouds = make_test_clouds(layer);
     const EmbeddedAsset host(asset);
     set_host_state(is_es);
     const State before = query_state(is_es);
