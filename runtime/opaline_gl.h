@@ -56,9 +56,9 @@ OPALINE_API opaline_status opaline_gl_release(opaline_gl* gl);
    and number of emitters; it is copied from. OPALINE_OUT_OF_MEMORY where the driver has none. */
 OPALINE_API opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light);
 
-/* Where translucent and thin-walled receivers and volumes are seen from, in the asset's world [m],
-   three finite floats; NULL, as at first: each receiver along its own normal, volumes from the
-   world's origin. Opaque receivers cost nothing. */
+/* Where translucent and thin-walled receivers, volumes and the cloud layer are seen from, in the
+   asset's world [m], three finite floats; NULL, as at first: each receiver along its own normal,
+   the others from the world's origin. Opaque receivers cost nothing. */
 OPALINE_API opaline_status opaline_gl_look_from(opaline_gl* gl, const float eye[3]);
 
 /* Names of GL objects; 0 where there is none. They stay the library's and keep their names until
