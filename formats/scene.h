@@ -155,6 +155,11 @@ struct Volume {
     Rgb sigma_t{1, 1, 1};       ///< extinction [1/m] where the density is 1, finite, >= 0
     Rgb albedo{1, 1, 1};        ///< single-scattering albedo, in [0, 1]
     PhaseFunction phase;
+    /// Light that it sends out by itself: radiance per metre [W m^-3 sr^-1], finite, >= 0, the same
+    /// in all directions. On the voxels of `density`, whose to_scene holds; also where there is no
+    /// density. Empty: it does not glow.
+    SparseGrid<glm::vec3> emission = {};
+    std::string emitter = {};  ///< name of that light, where there is any
 };
 
 /// A stratiform cloud layer: droplets between the height `base` and `base` + thickness. Heights and

@@ -48,9 +48,15 @@ inline bool counts_lamps(const PathSpace& space) {
     return !space.scene.lamps.empty() && has_any(space.options.terms, TermSet::emitters);
 }
 
+/// True if volumes send out light by themselves and it is counted.
+inline bool counts_glow(const PathSpace& space) {
+    return !space.scene.volumes.glowing.empty() && has_any(space.options.terms, TermSet::emitters);
+}
+
 /// True if the path may still end in a term that is counted. It may meet lamps in any state.
 inline bool is_wanted(const PathSpace& space, PathState state) {
-    return has_any(reachable_terms(state), space.options.terms) || counts_lamps(space);
+    return has_any(reachable_terms(state), space.options.terms) || counts_lamps(space) ||
+           counts_glow(space);
 }
 
 /// A point of an opaque surface that a path has arrived at. Normals face the path.

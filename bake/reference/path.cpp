@@ -123,6 +123,9 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
             const VolumeFlight flight =
                 sample_volume_flight(space.scene.volumes, path.origin.position, path.direction,
                                      hit ? hit->distance : kForever, path.beta, random);
+            if (counts_glow(space)) {
+                path.radiance += path.beta * flight.emitted;
+            }
             path.beta *= flight.weight;
             if (flight.collides) {
                 return scatter_in_volume(space, path,

@@ -17,6 +17,37 @@ glm::vec3 passing_share(glm::vec3 depth, int channel) {
     return glm::exp(depth[channel] - depth);
 }
 
+/// From `begin` to `end` [m] along a ray: the sum over stretches of cells that glow of length times
+/// radiance per metre times weight_at(t), at one point t of each.
+template <class WeightAt>
+glm::vec3 gather_glow(const VolumeSpace& space, glm::vec3 from, glm::vec3 direction, float begin,
+                      float end, RandomStream& random, WeightAt&& weight_at) {
+    constexpr float kInverse = 1.0f / formats::SparseGrid<float>::kSide;
+    glm::vec3 sum(0);
+    for (const GlowingVolume& volume : space.glowing) {
+        LatticeRay ray;
+        if (!ray.start(kInverse * (volume.to_index * from + volume.offset),
+                       kInverse * (volume.to_index * direction), begin, end, volume.first,
+                       volume.extent)) {
+            continue;
+        }
+        do {
+            const glm::ivec3 c = ray.cell - volume.first;
+            const std::size_t cell =
+                (static_cast<std::size_t>(c.z) * static_cast<std::size_t>(volume.extent.y) +
+                 static_cast<std::size_t>(c.y)) *
+                    static_cast<std::size_t>(volume.extent.x) +
+                static_cast<std::size_t>(c.x);
+            const float length = ray.end - ray.begin;
+            if (volume.glows[cell] && length > 0) {
+                const float t = ray.begin + random.next() * length;
+                sum += length * volume.at(from + t * direction) * weight_at(t);
+            }
+        } while (ray.advance());
+    }
+    return sum;
+}
+
 }  // namespace
 
 VolumeFlight sample_volume_flight(const VolumeSpace& space, glm::vec3 from, glm::vec3 direction,
@@ -28,7 +59,20 @@ VolumeFlight sample_volume_flight(const VolumeSpace& space, glm::vec3 from, glm:
     int channel = draw_channel(odds, random.next());
     float left = -std::log(1 - random.next());  // optical depth to the next possible collision
     glm::vec3 depth(0);                         // since the last one
+    // Radiance of volumes from `gathered` to `end`, along which the bounds are `sigma`.
+    float gathered = 0;
+    const auto glow_up_to = [&](float end, glm::vec3 sigma) {
+        if (space.glowing.empty() || !(end > gathered)) {
+            return;
+        }
+        flight.emitted += gather_glow(space, from, direction, gathered, end, random, [&](float t) {
+            const glm::vec3 passing = passing_share(depth + (t - gathered) * sigma, channel);
+            return flight.weight * passing / glm::dot(odds, passing);
+        });
+        gathered = end;
+    };
     while (const auto segment = march.next()) {
+        glow_up_to(segment->begin, glm::vec3(0));
         // Steps may be shorter than a float of `at` resolves: those still left to go do.
         const float length = segment->end - segment->begin;
         const glm::vec3 sigma = segment->sigma_t;
@@ -37,12 +81,14 @@ VolumeFlight sample_volume_flight(const VolumeSpace& space, glm::vec3 from, glm:
             const float rest = static_cast<float>(static_cast<double>(length) - way);
             const float free = sigma[channel] > 0 ? left / sigma[channel] : reach;
             if (!(free < rest)) {
+                glow_up_to(segment->end, sigma);
                 depth += rest * sigma;
                 left = std::max(0.0f, left - rest * sigma[channel]);
                 break;
             }
             way += static_cast<double>(free);
             const float at = segment->begin + static_cast<float>(way);
+            glow_up_to(at, sigma);
             depth += free * sigma;
             // Which volume: in proportion to its part of the bound in the channel drawn.
             float u = random.next() * sigma[channel];
@@ -78,6 +124,7 @@ VolumeFlight sample_volume_flight(const VolumeSpace& space, glm::vec3 from, glm:
             depth = glm::vec3(0);
         }
     }
+    glow_up_to(reach, glm::vec3(0));
     const glm::vec3 passing = passing_share(depth, channel);
     flight.weight *= passing / glm::dot(odds, passing);
     return flight;

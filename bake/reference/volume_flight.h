@@ -14,6 +14,10 @@ struct VolumeFlight {
     float distance = 0;        ///< [m]
     std::uint32_t volume = 0;  ///< that scatters
     glm::vec3 weight{1};       ///< contribution over density, albedo included
+    /// What volumes send out by themselves on the way, per throughput [W m^-2 sr^-1]. Without bias
+    /// by track length: each stretch of the flight adds radiance per metre, at a point of it drawn
+    /// by chance, times its length and the weight of flights that come so far.
+    glm::vec3 emitted{0};
 };
 
 /// Samples the flight of a path with throughput `beta` (>= 0, not all 0) over at most `reach` [m].

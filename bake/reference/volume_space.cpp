@@ -60,6 +60,32 @@ void bound_density(TrackedVolume& v) {
     }
 }
 
+// A cell glows if one of the voxels 8 b .. 8 b + 8 does.
+GlowingVolume make_glowing_volume(const TrackedVolume& v) {
+    GlowingVolume own;
+    own.emission = &v.volume->emission;
+    own.to_index = v.to_index;
+    own.offset = v.offset;
+    own.first = own.emission->first_brick - 1;
+    own.extent = own.emission->extent + 1;
+    glm::ivec3 c;
+    for (c.z = 0; c.z < own.extent.z; ++c.z) {
+        for (c.y = 0; c.y < own.extent.y; ++c.y) {
+            for (c.x = 0; c.x < own.extent.x; ++c.x) {
+                bool glows = false;
+                constexpr int kVoxels = (kSide + 1) * (kSide + 1) * (kSide + 1);
+                for (int i = 0; i < kVoxels && !glows; ++i) {
+                    const glm::ivec3 in(i % (kSide + 1), i / (kSide + 1) % (kSide + 1),
+                                        i / ((kSide + 1) * (kSide + 1)));
+                    glows = own.emission->at(kSide * (own.first + c) + in) != glm::vec3(0);
+                }
+                own.glows.push_back(glows);
+            }
+        }
+    }
+    return own;
+}
+
 }  // namespace
 
 VolumeSpace make_volume_space(const formats::Scene& scene) {
@@ -75,6 +101,9 @@ VolumeSpace make_volume_space(const formats::Scene& scene) {
         v.albedo = {volume.albedo.r, volume.albedo.g, volume.albedo.b};
         v.phase = make_phase_sampler(volume.phase);
         bound_density(v);
+        if (!volume.emission.empty()) {
+            space.glowing.push_back(make_glowing_volume(v));
+        }
         space.volumes.push_back(std::move(v));
     }
     return space;

@@ -28,9 +28,23 @@ struct TrackedVolume {
     }
 };
 
+/// The light that a volume sends out by itself, with the cells in which there is any.
+struct GlowingVolume {
+    const formats::SparseGrid<glm::vec3>* emission = nullptr;  ///< radiance per metre
+    glm::mat3 to_index{1};  ///< index = to_index * position + offset
+    glm::vec3 offset{0};
+    glm::ivec3 first{0}, extent{0};  ///< cells, as those of TrackedVolume
+    std::vector<bool> glows;         ///< each cell, x fastest
+
+    glm::vec3 at(glm::vec3 position) const {
+        return emission->sample(to_index * position + offset);
+    }
+};
+
 /// All volumes of a scene, for flights of light.
 struct VolumeSpace {
     std::vector<TrackedVolume> volumes;
+    std::vector<GlowingVolume> glowing;  ///< those of them that do
 
     bool empty() const { return volumes.empty(); }
 };

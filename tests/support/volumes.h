@@ -45,4 +45,20 @@ inline formats::Volume make_volume(formats::SparseGrid<float> density, float sig
     return volume;
 }
 
+/// Makes a volume glow by its absorption, as matter in thermal equilibrium with light of radiance
+/// `own` does: radiance per metre a L_e = (1 - albedo) sigma_t density L_e in every band.
+inline void make_it_glow(formats::Volume& volume, glm::vec3 own) {
+    const glm::vec3 albedo(volume.albedo.r, volume.albedo.g, volume.albedo.b);
+    const glm::vec3 sigma_t(volume.sigma_t.r, volume.sigma_t.g, volume.sigma_t.b);
+    const formats::SparseGrid<float>& density = volume.density;
+    volume.emitter = "glow";
+    volume.emission.first_brick = density.first_brick;
+    volume.emission.extent = density.extent;
+    volume.emission.table = density.table;
+    volume.emission.value.clear();
+    for (const float value : density.value) {
+        volume.emission.value.push_back(value * sigma_t * (1.0f - albedo) * own);
+    }
+}
+
 }  // namespace opaline::tests

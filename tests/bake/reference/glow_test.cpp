@@ -1,0 +1,116 @@
+// Volumes that send out light by themselves, against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/bake/reference/reference_support.h"
+#include "tests/support/volumes.h"
+
+namespace opaline::tests {
+namespace {
+
+using formats::TermSet;
+
+formats::Environment even_sky(float value) {
+    formats::Environment sky = make_white_sky();
+    sky.pixel.assign(2, {value, value, value});
+    return sky;
+}
+
+bake::Moments look_at_glow(std::vector<formats::Volume> volumes, float sky, glm::vec3 from,
+                           glm::vec3 direction, std::uint32_t samples, TermSet terms) {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.volumes = std::move(volumes);
+    const auto fixture = make_fixture(std::move(scene), even_sky(sky));
+    bake::PathOptions options;
+    options.terms = terms;
+    const bake::PathSpace space = fixture->space(options);
+    bake::EstimateOptions wanted;
+    wanted.samples = samples / 16;
+    const auto estimate =
+        bake::estimate_pixels(16, wanted, {}, [&](std::uint32_t, bake::RandomStream& random) {
+            return bake::trace_ray(space, from, direction, random);
+        });
+    EXPECT_TRUE(estimate);
+    bake::Moments all;
+    for (const bake::Moments& m : estimate->pixel) {
+        all.merge(m);
+    }
+    return all;
+}
+
+// Within four standard errors and 1e-4 of rounding, in every band.
+void expect_radiance(const bake::Moments& seen, glm::vec3 truth) {
+    for (int band = 0; band < 3; ++band) {
+        const double error = std::sqrt(seen.variance_of_mean()[band]);
+        EXPECT_NEAR(seen.mean[band], static_cast<double>(truth[band]),
+                    4 * error + 1e-4 * static_cast<double>(truth[band]))
+            << "band " << band;
+        EXPECT_LT(error, 0.02 * static_cast<double>(truth[band])) << "too noisy to tell";
+    }
+}
+
+constexpr float kSize = 0.5f;
+
+// The line through the middle of a blob: its density integrates to size sqrt(2 pi).
+float column() {
+    return kSize * std::sqrt(2 * std::numbers::pi_v<float>);
+}
+
+TEST(ReferenceGlow, WithoutScatteringABlobShowsItsOwnRadianceTimesWhatItAbsorbs) {
+    formats::Volume blob = make_volume(make_blob(kSize, kSize / 8), 1, 0, 0);
+    blob.sigma_t = {0.5f, 2, 8};
+    const glm::vec3 own(3, 2, 1);
+    make_it_glow(blob, own);
+    const glm::vec3 depth = column() * glm::vec3(0.5f, 2, 8);
+    expect_radiance(look_at_glow({blob}, 0, {-4, 0, 0}, {1, 0, 0}, 64000, TermSet::all),
+                    own * (1.0f - glm::exp(-depth)));
+}
+
+TEST(ReferenceGlow, ItsLightNeedsNoDensity) {
+    // A flame of Gaussian radiance beside a thin veil of density.
+    formats::Volume flame = make_volume(make_blob(kSize, kSize / 8), 1, 0, 0);
+    make_it_glow(flame, {5, 4, 3});
+    for (float& value : flame.density.value) {
+        value = 0;
+    }
+    flame.density.value.front() = 1e-6f;
+    expect_radiance(look_at_glow({flame}, 0, {0, -4, 0}, {0, 1, 0}, 64000, TermSet::emitters),
+                    column() * glm::vec3(5, 4, 3));
+}
+
+TEST(ReferenceGlow, InEquilibriumWithTheSkyAScatteringVolumeCannotBeSeen) {
+    for (const float g : {0.0f, 0.7f}) {
+        formats::Volume blob = make_volume(make_blob(kSize, kSize / 8), 3, 0.9f, g);
+        blob.sigma_t = {1, 3, 6};
+        blob.albedo = {0.9f, 0.7f, 0.4f};
+        make_it_glow(blob, glm::vec3(2));
+        expect_radiance(look_at_glow({blob}, 2, {-4, 0.2f, 0.1f}, {1, 0, 0}, 64000, TermSet::all),
+                        glm::vec3(2));
+    }
+}
+
+TEST(ReferenceGlow, LightOfVolumesIsThatOfEmittersAndAddsUpWithTheSkys) {
+    formats::Volume blob = make_volume(make_blob(kSize, kSize / 8), 4, 0.8f, 0.3f);
+    make_it_glow(blob, glm::vec3(7, 5, 3));
+    formats::Volume dark = blob;
+    dark.emission = {};
+    const glm::vec3 from(-4, 0.3f, 0), direction(1, 0, 0);
+    const auto look = [&](const formats::Volume& volume, float sky, TermSet terms) {
+        return look_at_glow({volume}, sky, from, direction, 64000, terms);
+    };
+    const bake::Moments own = look(blob, 1, TermSet::emitters);
+    const bake::Moments sky = look(dark, 1, TermSet::all);
+    const bake::Moments both = look(blob, 1, TermSet::all);
+    EXPECT_EQ(look(dark, 1, TermSet::emitters).mean, glm::dvec3(0));
+    for (int band = 0; band < 3; ++band) {
+        const double error = std::sqrt(own.variance_of_mean()[band] + sky.variance_of_mean()[band] +
+                                       both.variance_of_mean()[band]);
+        EXPECT_NEAR(both.mean[band], own.mean[band] + sky.mean[band], 4 * error);
+    }
+}
+
+}  // namespace
+}  // namespace opaline::tests
