@@ -113,12 +113,11 @@ opaline_status opaline_asset_volume(const opaline_asset* asset, uint32_t index,
         return fail(OPALINE_INVALID_ARGUMENT, "there is no volume of that index");
     }
     return guarded([&] {
-        formats::VolumesView only = asset->loaded.view.volumes;
-        only.records = only.records.subspan(index, 1);
-        const formats::VolumeRecord& record = only.records.front();
+        const formats::VolumesView& volumes = asset->loaded.view.volumes;
+        const formats::VolumeRecord& record = volumes.records[index];
         opaline_volume_info found{};
         found.struct_size = sizeof found;
-        const std::vector<formats::Vec3> corners = runtime::volume_corners(only);
+        const std::vector<formats::Vec3> corners = runtime::volume_corners(volumes, index);
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const formats::Vec3 c = corners[i];
             store({c.x, c.y, c.z}, found.corner[i]);
@@ -140,8 +139,9 @@ opaline_status opaline_volume_light_create(const opaline_asset* asset, opaline_v
         const formats::VolumesView& volumes = asset->loaded.view.volumes;
         auto created = std::make_unique<opaline_volume_light>();
         created->asset_id = asset->id;
-        created->light =
-            runtime::relight_volumes(volumes, {}, {.terms = formats::TermSet::none, .threads = 1});
+        created->light = runtime::relight_volumes(
+            volumes, {},
+            {.terms = formats::TermSet::none, .emitters = runtime::dark_emitters(), .threads = 1});
         created->lit = runtime::light_volumes(volumes, created->light);
         *out = created.release();
         return OPALINE_OK;
@@ -168,7 +168,12 @@ opaline_status opaline_volume_light_update(opaline_volume_light* volume_light,
         return fail(OPALINE_INVALID_ARGUMENT,
                     "the light was made for an asset of another cube map size");
     }
-    constexpr std::uint32_t kKnown = OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE;
+    if (light->emitters.size() != asset->loaded.view.emitters.size()) {
+        return fail(OPALINE_INVALID_ARGUMENT,
+                    "the light was made for an asset of another number of emitters");
+    }
+    constexpr std::uint32_t kKnown = OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE |
+                                     OPALINE_SHADE_WITHOUT_EMISSION;
     if ((flags & ~kKnown) != 0) {
         return fail(OPALINE_INVALID_ARGUMENT, "flags that volumes do not have");
     }
@@ -177,9 +182,11 @@ opaline_status opaline_volume_light_update(opaline_volume_light* volume_light,
     }
     return guarded([&] {
         // In place, so that volume_light->lit goes on referring to it.
-        volume_light->light =
-            runtime::relight_volumes(asset->loaded.view.volumes, light->vector(),
-                                     {.terms = volume_terms_of(flags), .threads = threads});
+        const bool shows_own = (flags & OPALINE_SHADE_WITHOUT_EMISSION) == 0;
+        volume_light->light = runtime::relight_volumes(asset->loaded.view.volumes, light->vector(),
+                                                       {.terms = volume_terms_of(flags),
+                                                        .emitters = {light->emitters, shows_own},
+                                                        .threads = threads});
         return OPALINE_OK;
     });
 }

@@ -267,8 +267,8 @@ typedef enum opaline_shade_flags {
     OPALINE_SHADE_WITHOUT_SINGLE = 8,    /* scattered once */
     OPALINE_SHADE_WITHOUT_SPECULAR = 16, /* mirrored by glossy surfaces, translucent or opaque */
     OPALINE_SHADE_WITHOUT_DIFFUSE = 32,  /* by opaque surfaces; by thin-walled ones, both ways */
-    /* What surfaces of emitters send out by themselves; their light on other surfaces stays. Never
-       added where WITHOUT_BASE_COLOR or WITHOUT_FRESNEL is set. */
+    /* What surfaces and volumes of emitters send out by themselves; their light on other surfaces
+       stays. Never added where WITHOUT_BASE_COLOR or WITHOUT_FRESNEL is set. */
     OPALINE_SHADE_WITHOUT_EMISSION = 64
 } opaline_shade_flags;
 
@@ -310,8 +310,9 @@ OPALINE_API uint32_t opaline_asset_volume_count(const opaline_asset* asset);
 
 typedef struct opaline_volume_info {
     size_t struct_size;  /* in: sizeof(opaline_volume_info) */
-    float corner[8][3];  /* [m] of the smallest box around the density, turned and sheared as the
-                            volume is: corner x + 2 y + 4 z, x, y and z 0 or 1; all 0: no density */
+    float corner[8][3];  /* [m] of the smallest box around density and light of its own, turned and
+                            sheared as the volume is: corner x + 2 y + 4 z, x, y and z 0 or 1; all
+                            0: neither is there */
     uint32_t bricks;     /* of 8 x 8 x 8 voxels of density */
     uint32_t nodes;      /* points at which light is known */
     uint32_t node_terms; /* dot products per node when it is relit; up to 8 more where the
@@ -335,9 +336,10 @@ OPALINE_API void opaline_volume_light_release(opaline_volume_light* volume_light
 
 /* Relights every node: `light`, made for an asset of the same cube map size, is copied from and may
    change afterwards. `flags`: OPALINE_SHADE_DEFAULT, or OPALINE_SHADE_WITHOUT_SINGLE or
-   _WITHOUT_MULTIPLE, which every volume can show apart. Costs nodes times node_terms dot products
-   on up to `threads` threads, 1 to 256, or 0: one per core; the result has the same bits for any
-   number. One writer; the light must not change meanwhile. */
+   _WITHOUT_MULTIPLE, which every volume can show apart, or _WITHOUT_EMISSION: what volumes that are
+   emitters send straight to the eye is left out; what they scatter of it stays. Costs nodes times
+   node_terms dot products on up to `threads` threads, 1 to 256, or 0: one per core; the result has
+   the same bits for any number. One writer; the light must not change meanwhile. */
 OPALINE_API opaline_status opaline_volume_light_update(opaline_volume_light* volume_light,
                                                        const opaline_asset* asset,
                                                        const opaline_light* light, uint32_t flags,
@@ -351,7 +353,7 @@ typedef struct opaline_march_ray {
 } opaline_march_ray;
 
 typedef struct opaline_march_result {
-    float radiance[3];      /* what the volumes scatter toward the origin */
+    float radiance[3];      /* what the volumes scatter and send out toward the origin */
     float transmittance[3]; /* the share of light from behind `end` that comes through */
 } opaline_march_result;
 
@@ -381,7 +383,7 @@ typedef struct opaline_sample_point {
 
 typedef struct opaline_sample_result {
     float extinction[3]; /* sigma_t [1/m] */
-    float scattered[3];  /* radiance toward the eye added per metre [W m^-3 sr^-1] */
+    float scattered[3];  /* radiance toward the eye added per metre [W m^-3 sr^-1], own light too */
 } opaline_sample_result;
 
 /* The integrands of opaline_volumes_march, for hosts that march by themselves or fill a grid in

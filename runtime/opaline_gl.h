@@ -151,7 +151,9 @@ OPALINE_API opaline_status opaline_gl_get_images(const opaline_gl* gl, uint32_t 
 
 /* --- Volumes ------------------------------------------------------------------------------ */
 
-/* Uploads what the volumes scatter, updated by opaline_volume_light_update, which relights their
+/* Light that volumes send out by themselves is scattered in them, but not seen directly.
+
+   Uploads what the volumes scatter, updated by opaline_volume_light_update, which relights their
    nodes on the CPU: 12 bytes a node and term. Until the first call they only absorb. The volume
    light must have been made for the handle of the asset that opaline_gl_create had; it is copied
    from. Nothing happens without volumes, or without OPALINE_GL_WITH_VOLUMES. */

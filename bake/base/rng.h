@@ -34,7 +34,8 @@ enum class RandomStage : std::uint32_t {
     particle_bounces = 22,
     gather_rays = 23,
     true_gather = 24,
-    reference_group = 25
+    reference_group = 25,
+    volume_glow = 26
 };
 
 /// Four random words, a pure function of the arguments. There is no state, so results do not depend

@@ -60,9 +60,9 @@ int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
     auto start = FrameClock::now();
     std::vector<formats::Rgb> radiance = runtime::shade_for_picture(
         view, lights, shaded_for, shown.terms, options.threads, shown.emitters);
-    const runtime::VolumeLight volumes =
-        runtime::relight_volumes(view.volumes, lights.light[lights.of_volumes],
-                                 {.terms = shown.terms, .threads = options.threads});
+    const runtime::VolumeLight volumes = runtime::relight_volumes(
+        view.volumes, lights.light[lights.of_volumes],
+        {.terms = shown.terms, .emitters = shown.emitters, .threads = options.threads});
     print_seconds(options, "dot products", elapsed_since(start));
     runtime::SoftwareOptions software;
     software.volumes = &volumes;

@@ -68,10 +68,13 @@ int run(const PlanCommand& options) {
     const formats::Scene& scene = evened ? evened->scene : imported->scene;
     const bake::SceneFacts facts = bake::inspect_scene(scene);
     auto plan = bake::plan_bake(effects, scene, facts, *knobs);
-    std::vector<bake::PlanEntry> volumes = bake::plan_volumes(scene, *knobs).entries;
+    bake::VolumePlan planned = bake::plan_volumes(scene, *knobs);
+    std::vector<bake::PlanEntry> volumes = std::move(planned.entries);
     std::ranges::copy(bake::plan_layers(scene, *knobs).entries, std::back_inserter(volumes));
     const bake::EmitterPlan emitters = bake::plan_emitters(scene, *knobs);
-    if (auto status = bake::check_lamps(scene, emitters.lamps.size()); !status) {
+    if (auto status =
+            bake::check_lamps(scene, emitters.lamps.size() + bake::count_glowing(planned.layouts));
+        !status) {
         return report_error(status.error());
     }
     std::ranges::copy(emitters.entries, std::back_inserter(volumes));

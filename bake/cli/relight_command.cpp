@@ -111,7 +111,8 @@ formats::Status write_volumes(const RelightCommand& options, const formats::Volu
         return formats::ok_status();
     }
     const runtime::VolumeLight lit = runtime::relight_volumes(
-        volumes, light, {.terms = shading.terms, .threads = shading.threads});
+        volumes, light,
+        {.terms = shading.terms, .emitters = shading.emitters, .threads = shading.threads});
     return bake::write_volume_csv(volumes_path(options.output),
                                   make_volume_rows(volumes, lit, shading.eye));
 }

@@ -38,12 +38,8 @@ bool is_taken(const std::vector<Lamp>& lamps, std::string_view name) {
 }
 
 Lamp& add_lamp(std::vector<Lamp>& lamps, const std::string& wanted) {
-    constexpr std::size_t kSuffix = 16;
-    const std::string base = clean_name(wanted, formats::kMaxEmitterName - kSuffix);
-    std::string name = base;
-    for (int i = 2; is_taken(lamps, name); ++i) {
-        name = base + " (" + std::to_string(i) + ")";
-    }
+    std::string name =
+        free_emitter_name(wanted, [&](std::string_view taken) { return is_taken(lamps, taken); });
     return lamps.emplace_back(Lamp{std::move(name), {}, {}});
 }
 
@@ -112,6 +108,17 @@ formats::Status check_groups(const formats::Scene& scene) {
 }
 
 }  // namespace
+
+std::string free_emitter_name(const std::string& wanted,
+                              const std::function<bool(std::string_view)>& is_taken) {
+    constexpr std::size_t kSuffix = 16;
+    const std::string base = clean_name(wanted, formats::kMaxEmitterName - kSuffix);
+    std::string name = base;
+    for (int i = 2; is_taken(name); ++i) {
+        name = base + " (" + std::to_string(i) + ")";
+    }
+    return name;
+}
 
 std::vector<Lamp> list_lamps(const formats::Scene& scene) {
     const GroupOf group_of = group_members(scene);

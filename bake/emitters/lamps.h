@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/opal/result.h"
@@ -20,6 +22,10 @@ struct Lamp {
 /// Nodes whose surfaces glow, in the order of the scene, then lights that are not black. Names are
 /// unique: "Lamp", "Lamp (2)". Those of a group are one, in the place of its first one.
 std::vector<Lamp> list_lamps(const formats::Scene& scene);
+
+/// A name as a file takes it that differs from those for which is_taken(name): "fire", "fire (2)".
+std::string free_emitter_name(const std::string& wanted,
+                              const std::function<bool(std::string_view)>& is_taken);
 
 /// bad_input where there are more lamps than a file holds, formats::kMaxEmitters, where a group
 /// names one that there is not, and where two emitters would have the same name.

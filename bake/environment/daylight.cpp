@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "formats/spectrum.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -24,33 +26,13 @@ double zenith_chromaticity(const std::array<std::array<double, 4>, 3>& m, double
     return (cubic(m[0]) * turbidity + cubic(m[1])) * turbidity + cubic(m[2]);
 }
 
-/// Planck's law over wavelength [nm], unscaled.
-double black_body(double nm, double kelvin) {
-    const double second_constant = 1.438777e7;  // [nm K]
-    return 1.0 / (std::pow(nm, 5) * std::expm1(second_constant / (nm * kelvin)));
-}
-
-/// A Gaussian with different widths on both sides.
-double lobe(double nm, double mean, double below, double above) {
-    const double t = (nm - mean) / (nm < mean ? below : above);
-    return std::exp(-0.5 * t * t);
-}
-
-/// Colour matching functions of the 1931 observer, multi-lobe fit of [Wyman2013].
-Xyz matching(double nm) {
-    return {1.056 * lobe(nm, 599.8, 37.9, 31.0) + 0.362 * lobe(nm, 442.0, 16.0, 26.7) -
-                0.065 * lobe(nm, 501.1, 20.4, 26.2),
-            0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1),
-            1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)};
-}
-
 /// Transmittance of `mass` atmospheres.
 double transmittance(double nm, double turbidity, double mass) {
     const double um = 1e-3 * nm;
     const double molecules = 0.008735 * std::pow(um, -4.08);
     const double aerosol = std::max(0.0, 0.04608 * turbidity - 0.04586) * std::pow(um, -1.3);
     // The Chappuis band [1/cm], a Gaussian through its peak and half width.
-    const double ozone = 0.35 * 0.125 * lobe(nm, 600.0, 47.0, 47.0);
+    const double ozone = 0.35 * 0.125 * formats::spectral_lobe(nm, 600.0, 47.0, 47.0);
     return std::exp(-mass * (molecules + aerosol + ozone));
 }
 
@@ -97,8 +79,8 @@ Xyz sun_irradiance(double turbidity, double sun_zenith) {
     Xyz sum{};
     double outside = 0;
     for (double nm = 360; nm <= 830; nm += 5) {
-        const double power = black_body(nm, 5778);
-        const Xyz response = matching(nm);
+        const double power = formats::planck(nm, 5778);
+        const Xyz response = formats::color_matching(nm);
         outside += power * response[1];
         for (std::size_t i = 0; i < 3; ++i) {
             sum[i] += power * response[i] * transmittance(nm, turbidity, mass);
@@ -110,9 +92,7 @@ Xyz sun_irradiance(double turbidity, double sun_zenith) {
 }
 
 std::array<double, 3> rec709_from_xyz(const Xyz& c) {
-    return {3.2404542 * c[0] - 1.5371385 * c[1] - 0.4985314 * c[2],
-            -0.9692660 * c[0] + 1.8760108 * c[1] + 0.0415560 * c[2],
-            0.0556434 * c[0] - 0.2040259 * c[1] + 1.0572252 * c[2]};
+    return formats::rec709_of_xyz(c);
 }
 
 }  // namespace opaline::bake

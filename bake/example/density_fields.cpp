@@ -114,6 +114,64 @@ formats::SparseGrid<float> make_smoke_density(double base) {
                               kVoxel, density);
 }
 
+namespace {
+
+constexpr double kFireVoxel = 0.006, kFireHeight = 0.6;
+
+// How far inside of the flames a point is: 1 at their heart, 0 where they end.
+double flame_at(glm::dvec3 p) {
+    const double h = p.y / 0.36;
+    if (h < 0 || h > 1) {
+        return 0;
+    }
+    // Tongues lick: noise that is stretched upward pulls apart what would be a cone.
+    const glm::dvec3 q(p.x / 0.045, p.y / 0.12, p.z / 0.045);
+    const double strength = 0.06 * smooth_step(0, 0.6, h);
+    p.x += strength * fractal_noise(q, 3);
+    p.z += strength * fractal_noise(q + glm::dvec3(17, 5, 29), 3);
+    const double tongues =
+        1 - 1.1 * smooth_step(0.05, 0.8, h) * billows(q + glm::dvec3(3, 8, 1), 2);
+    const double radius = 0.11 * std::sqrt(1 - h) * (0.6 + 0.4 * smooth_step(0, 0.12, h));
+    const double r = std::hypot(p.x, p.z) / (radius * std::max(tongues, 0.05));
+    return (1 - smooth_step(0.4, 1.0, r)) * smooth_step(0, 0.03, h);
+}
+
+// Smoke that rises from them.
+double fire_smoke_at(glm::dvec3 p) {
+    const double h = p.y / kFireHeight;
+    if (h < 0.1 || h > 1) {
+        return 0;
+    }
+    p.x -= 0.1 * h * h;
+    const glm::dvec3 q = p / 0.07;
+    p.x += 0.1 * h * fractal_noise(q, 4);
+    p.z += 0.1 * h * fractal_noise(q + glm::dvec3(40, 13, 7), 4);
+    const double radius = 0.09 + 0.09 * h;
+    const double body = std::max(0.0, 1 - smooth_step(0.4, 1.0, std::hypot(p.x, p.z) / radius));
+    const double wisps = std::clamp(1.1 - 1.3 * billows(1.2 * q, 3), 0.0, 1.0);
+    return body * wisps * smooth_step(0.25, 0.6, h) * (1 - smooth_step(0.8, 1.0, h));
+}
+
+template <class Value>
+formats::SparseGrid<float> fill_fire(Value&& value) {
+    const int side = 35, top = static_cast<int>(kFireHeight / kFireVoxel) + 1;
+    return formats::fill_grid({-side, 0, -side}, {side, top, side}, kFireVoxel,
+                              [&](glm::ivec3 v) { return value(kFireVoxel * glm::dvec3(v)); });
+}
+
+}  // namespace
+
+formats::SparseGrid<float> make_fire_density() {
+    return fill_fire([](glm::dvec3 p) { return 0.25 * flame_at(p) + 0.5 * fire_smoke_at(p); });
+}
+
+formats::SparseGrid<float> make_fire_temperature() {
+    return fill_fire([](glm::dvec3 p) {
+        const double flame = flame_at(p);
+        return flame > 0 ? 1200 + 700 * std::sqrt(flame) * (1 - 0.4 * p.y / 0.36) : 0.0;
+    });
+}
+
 formats::SparseGrid<float> make_cumulus_density(double voxel) {
     constexpr double kBulge = 60;
     const std::vector<Puff> puffs = make_puffs();

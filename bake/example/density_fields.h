@@ -10,6 +10,13 @@ namespace opaline::bake {
 /// A plume that rises from (0, base, 0) and widens as it curls: 0.5 m tall, voxels of 4 mm.
 formats::SparseGrid<float> make_smoke_density(double base);
 
+/// A camp fire that stands on y = 0 and its smoke, 0.6 m tall: voxels of 6 mm. Tongues of flame are
+/// soot; above them it thins and drifts away as smoke.
+formats::SparseGrid<float> make_fire_density();
+
+/// Temperatures [K] of the same voxels: 1900 K within the flames, cold above 0.35 m.
+formats::SparseGrid<float> make_fire_temperature();
+
 /// A fair-weather cumulus: a flat base at y = 0, heaps of billows above it, 820 m wide and 370 m
 /// tall, voxels with edges of `voxel` [m], at least 1. Denser toward the top, as droplets grow with
 /// height.

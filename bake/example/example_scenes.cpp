@@ -34,8 +34,10 @@ struct Smoke {
     formats::SparseGrid<float> (*make)() = nullptr;
     std::array<double, 3> sigma_t{};  // [1/m] where the density is 1
     std::array<double, 3> albedo{};
-    double g = 0;          // Henyey-Greenstein
-    double rms_angle = 0;  // [rad]; > 0: Gaussian instead
+    double g = 0;                                                // Henyey-Greenstein
+    double rms_angle = 0;                                        // [rad]; > 0: Gaussian instead
+    formats::SparseGrid<float> (*make_temperature)() = nullptr;  // [K]
+    double emission_scale = 1;                                   // of a black body's radiance
 };
 
 // A cloud layer: the picture of the ground, and the media file that names it.
@@ -260,6 +262,14 @@ constexpr Example kExamples[] = {
     {{"smoke", "a plume that rises from a ball and widens as it curls: a volume beside meshes"},
      make_smouldering_ball,
      {.make = make_smoke, .sigma_t = grey(60), .albedo = grey(0.92), .g = 0.5}},
+    {{"fire", "a camp fire that lights its smoke: a volume that is an emitter, alone"},
+     nullptr,
+     {.make = make_fire_density,
+      .sigma_t = grey(40),
+      .albedo = grey(0.75),
+      .g = 0.4,
+      .make_temperature = make_fire_temperature,
+      .emission_scale = 4e-5}},
     {{"cumulus", "a fair-weather cloud, 820 m wide: a volume alone"},
      nullptr,
      {.make = [] { return make_cumulus_density(); },
@@ -301,9 +311,13 @@ std::string describe_volume(const Smoke& volume, const std::string& file) {
         volume.rms_angle > 0
             ? nlohmann::ordered_json{{"type", "gaussian"}, {"rms_angle", volume.rms_angle}}
             : nlohmann::ordered_json{{"type", "hg"}, {"g", volume.g}};
-    const nlohmann::ordered_json entry = {
+    nlohmann::ordered_json entry = {
         {"file", file},  {"density", "density"},    {"sigma_t", volume.sigma_t},
         {"unit", "1/m"}, {"albedo", volume.albedo}, {"phase", phase}};
+    if (volume.make_temperature != nullptr) {
+        entry["temperature"] = "temperature";
+        entry["emission_scale"] = volume.emission_scale;
+    }
     return nlohmann::ordered_json{{"volumes", nlohmann::ordered_json::array({entry})}}.dump(2) +
            "\n";
 }
@@ -344,8 +358,13 @@ formats::Result<std::vector<std::filesystem::path>> write_example(
     if (example->volume.make != nullptr) {
         const formats::SparseGrid<float> density = example->volume.make();
         const std::filesystem::path file = folder / (stem + ".vdb");
-        const formats::VdbOutputGrid grid{"density", &density, true};
-        if (auto status = formats::write_vdb(file, {&grid, 1}); !status) {
+        formats::SparseGrid<float> temperature;
+        std::vector<formats::VdbOutputGrid> grids{{"density", &density, true}};
+        if (example->volume.make_temperature != nullptr) {
+            temperature = example->volume.make_temperature();
+            grids.push_back({"temperature", &temperature, true});
+        }
+        if (auto status = formats::write_vdb(file, grids); !status) {
             return std::move(status).error();
         }
         others.push_back(file);

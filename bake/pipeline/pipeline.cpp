@@ -273,18 +273,20 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     }
     const formats::Scene& scene = evened ? evened->scene : facing;
     bool has_volumes = false;
+    std::size_t glowing = 0;
     LayerPlan layers;
     EmitterPlan emitters;
     result.plan = run_stage(log, "plan", [&](std::uint64_t&) {
         VolumePlan decided = plan_volumes(scene, wanted);
         has_volumes = !decided.layouts.empty();
+        glowing = count_glowing(decided.layouts);
         result.volume_plan = std::move(decided.entries);
         layers = plan_layers(scene, wanted);
         emitters = plan_emitters(scene, wanted);
         result.facts = inspect_scene(scene);
         return plan_bake(effects, scene, result.facts, wanted);
     });
-    if (auto status = check_lamps(scene, emitters.lamps.size()); !status) {
+    if (auto status = check_lamps(scene, emitters.lamps.size() + glowing); !status) {
         return std::move(status).error();
     }
     formats::Result<RayScene> sky = RayScene::build({}, context.threads);
@@ -336,6 +338,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
             return std::move(status).error();
         }
     }
+    number_glow(result);
     if (wanted.check_model && !scene.primitives.empty()) {
         if (auto status = check_model_of(effects, facing, context, result); !status) {
             return std::move(status).error();

@@ -32,7 +32,8 @@ struct BakeResult {
     std::optional<ModelErrorReport> model_error;    ///< where Knobs::check_model asks for it
     std::optional<VolumeErrorReport> volume_error;  ///< nothing: no volume scatters light
     std::optional<LayerErrorReport> layer_error;    ///< nothing: the file has no cloud layer
-    std::vector<VolumeTrial> volume_trials;  ///< where an error was asked for, in their order
+    std::vector<std::string> glowing_volumes;  ///< wanted names of the emitters that volumes are
+    std::vector<VolumeTrial> volume_trials;    ///< where an error was asked for, in their order
     std::vector<formats::Diagnostic> warnings;
     double seconds_total = 0;
 };

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "bake/accuracy/volumes/glow_error.h"
+#include "bake/emitters/lamps.h"
 #include "bake/volumes/bake_volumes.h"
 #include "bake/volumes/dim_surfaces.h"
 #include "bake/volumes/volume_knobs.h"
@@ -90,6 +92,36 @@ formats::Result<BakedVolumes> bake_for_target(const VolumeStages& inputs, const 
     return std::move(*best);
 }
 
+// How far the light of volumes errs, where there is any.
+formats::Status measure_glow(const VolumeStages& inputs, std::span<const VolumeLayout> layouts,
+                             const Context& context, BakeResult& result) {
+    if (result.glowing_volumes.empty()) {
+        return formats::ok_status();
+    }
+    auto error = run_stage(
+        result.stages, "self-check of light of volumes", "self-check", [&](std::uint64_t& traced) {
+            auto found =
+                check_glow(inputs.scene, result.asset.view(),
+                           volume_check_effort(inputs.scene, layouts, result.knobs), context);
+            traced += found ? found->events : 0;
+            return found;
+        });
+    if (!error) {
+        return std::move(error).error();
+    }
+    if (error->rays_checked > 0) {
+        result.error.by_effect.push_back({"light of volumes", error->rms_relative});
+    } else {
+        result.error.not_measured.emplace_back("light of volumes");
+    }
+    if (!inputs.scene.primitives.empty()) {
+        result.warnings.push_back(formats::make_warning(
+            "", "emitters", "light of volumes does not reach surfaces, which stay dark under it",
+            "nothing needs to be done where that is not seen"));
+    }
+    return formats::ok_status();
+}
+
 // What was chosen, so that the same options give the same bake again.
 void keep_knobs(const EffectTable& effects, const BakedVolumes& baked, Knobs& knobs) {
     for (const EffectDescriptor& effect : effects.effects) {
@@ -137,6 +169,19 @@ Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quali
     return knobs;
 }
 
+void number_glow(BakeResult& result) {
+    formats::Emitters& emitters = result.asset.emitters;
+    const std::uint32_t first = emitters.view().size();
+    for (const std::string& wanted : result.glowing_volumes) {
+        append_emitter(emitters, free_emitter_name(wanted, [&](std::string_view name) {
+                           return find_emitter(emitters.view(), name) < emitters.view().size();
+                       }));
+    }
+    for (formats::GlowRecord& record : result.asset.volumes.glow.record) {
+        record.emitter += first;
+    }
+}
+
 formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
                             BakeResult& result) {
     const bool has_target = result.knobs.error_target > 0;
@@ -148,7 +193,15 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
     if (has_target) {
         keep_knobs(inputs.effects, *baked, result.knobs);
     }
+    for (const VolumeLayout& layout : baked->plan.layouts) {
+        if (layout.glows) {
+            result.glowing_volumes.push_back(inputs.scene.volumes[layout.volume].emitter);
+        }
+    }
     result.asset.volumes = std::move(baked->volumes);
+    if (auto status = measure_glow(inputs, baked->plan.layouts, context, result); !status) {
+        return status;
+    }
     result.volume_plan = std::move(baked->plan.entries);
     result.volume_error = std::move(baked->error);
     if (result.asset.position.empty()) {

@@ -30,4 +30,8 @@ Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quali
 /// kept, and `result.knobs` has its values. Errors: as bake_volumes and check_volumes; interrupted.
 formats::Status add_volumes(const VolumeStages& inputs, const Context& context, BakeResult& result);
 
+/// Enters volumes that glow among the file's emitters, behind those that it has. After all other
+/// emitters are there.
+void number_glow(BakeResult& result);
+
 }  // namespace opaline::bake

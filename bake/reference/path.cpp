@@ -120,12 +120,10 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
     if (path.stack.empty()) {
         hit = surfaces.closest_hit(path.origin, path.direction, kForever, path.key);
         if (!space.scene.volumes.empty()) {
-            const VolumeFlight flight =
-                sample_volume_flight(space.scene.volumes, path.origin.position, path.direction,
-                                     hit ? hit->distance : kForever, path.beta, random);
-            if (counts_glow(space)) {
-                path.radiance += path.beta * flight.emitted;
-            }
+            const VolumeFlight flight = sample_volume_flight(
+                space.scene.volumes, path.origin.position, path.direction,
+                hit ? hit->distance : kForever, path.beta, random, counts_glow(space));
+            path.radiance += path.beta * flight.emitted;
             path.beta *= flight.weight;
             if (flight.collides) {
                 return scatter_in_volume(space, path,

@@ -51,7 +51,8 @@ glm::vec3 gather_glow(const VolumeSpace& space, glm::vec3 from, glm::vec3 direct
 }  // namespace
 
 VolumeFlight sample_volume_flight(const VolumeSpace& space, glm::vec3 from, glm::vec3 direction,
-                                  float reach, glm::vec3 beta, RandomStream& random) {
+                                  float reach, glm::vec3 beta, RandomStream& random,
+                                  bool gathers_glow) {
     VolumeFlight flight;
     flight.distance = reach;
     VolumeMarch march(space, from, direction, reach);
@@ -62,7 +63,7 @@ VolumeFlight sample_volume_flight(const VolumeSpace& space, glm::vec3 from, glm:
     // Radiance of volumes from `gathered` to `end`, along which the bounds are `sigma`.
     float gathered = 0;
     const auto glow_up_to = [&](float end, glm::vec3 sigma) {
-        if (space.glowing.empty() || !(end > gathered)) {
+        if (!gathers_glow || !(end > gathered)) {
             return;
         }
         flight.emitted += gather_glow(space, from, direction, gathered, end, random, [&](float t) {

@@ -25,9 +25,11 @@ struct VolumeFlight {
 /// Extinctions of one volume differ by channel, but the share of its collisions that are with
 /// nothing does not; so one channel, drawn in proportion to the throughput, decides each flight to
 /// a possible collision, and the weight divides by the mean density of all three (balance
-/// heuristic): the sum of the throughput's channels never grows.
+/// heuristic): the sum of the throughput's channels never grows. `gathers_glow`: whether `emitted`
+/// is wanted; without it it is 0.
 VolumeFlight sample_volume_flight(const VolumeSpace& space, glm::vec3 from, glm::vec3 direction,
-                                  float reach, glm::vec3 beta, RandomStream& random);
+                                  float reach, glm::vec3 beta, RandomStream& random,
+                                  bool gathers_glow = false);
 
 /// Transmittance of a straight line of `reach` [m], an estimate without bias by ratio tracking
 /// [Novak2014]: the share that is left at each possible collision with the densest channel. Each

@@ -7,6 +7,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/volumes/attenuation.h"
+#include "bake/volumes/bake_glow.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/light_cells.h"
 #include "bake/volumes/node_lattice.h"
@@ -45,7 +46,9 @@ Nodes place_nodes(const VolumeJob& job) {
     // Walks collide in all volumes; one without nodes reflects nothing.
     for (const VolumeLayout& layout : job.layouts) {
         NodeLattice& lattice = nodes.lattices[layout.volume];
-        lattice = make_node_lattice(job.scene.volumes[layout.volume].density, layout.spacing);
+        const formats::Volume& volume = job.scene.volumes[layout.volume];
+        lattice = layout.glows ? make_node_lattice(volume.density, layout.spacing, volume.emission)
+                               : make_node_lattice(volume.density, layout.spacing);
         if (!layout.has_nodes()) {
             lattice.node.clear();
             std::ranges::fill(lattice.corner, formats::kNoNode);
@@ -344,6 +347,17 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
         return formats::Volumes{};
     }
     volumes.rows = std::move(*rows);
+    if (std::ranges::any_of(job.layouts, &VolumeLayout::glows)) {
+        volumes.glow =
+            run_stage(log, "light of volumes", "emitters: rows", [&](std::uint64_t& rays) {
+                return bake_glow({job.scene, job.rays, nodes.space, job.layouts, nodes.lattices,
+                                  nodes.first, job.knobs.seed},
+                                 context, rays);
+            });
+        if (context.cancelled()) {
+            return formats::Volumes{};
+        }
+    }
     number_rows(job, nodes, volumes);
     if (formats::find_faulty_row(volumes.rows, static_cast<std::uint32_t>(nodes.space.bands()))) {
         return make_error(ErrorKind::bad_input, "", "volumes",

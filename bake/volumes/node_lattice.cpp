@@ -25,6 +25,17 @@ bool has_density(const Grid& grid, glm::ivec3 low, glm::ivec3 high) {
     return false;
 }
 
+// Whether any of the voxels 8 b .. 8 b + 8 sends out light.
+bool reaches_glow(const formats::SparseGrid<glm::vec3>& glow, glm::ivec3 brick) {
+    for (int c = 0; c < 8; ++c) {
+        const glm::ivec3 above(c & 1, c >> 1 & 1, c >> 2);
+        if (glow.brick_at(brick + above) != formats::SparseGrid<glm::vec3>::kEmpty) {
+            return true;
+        }
+    }
+    return false;
+}
+
 struct VoxelHash {
     std::size_t operator()(const glm::ivec3& v) const {
         std::uint64_t h = 0;
@@ -67,7 +78,8 @@ bool touches_density(const std::vector<bool>& has, glm::ivec3 corner, int cells)
 
 }  // namespace
 
-NodeLattice make_node_lattice(const Grid& grid, std::uint32_t spacing) {
+NodeLattice make_node_lattice(const Grid& grid, std::uint32_t spacing,
+                              const formats::SparseGrid<glm::vec3>& glow) {
     NodeLattice lattice;
     lattice.spacing = spacing;
     lattice.first_brick = grid.first_brick - 1;
@@ -80,7 +92,7 @@ NodeLattice make_node_lattice(const Grid& grid, std::uint32_t spacing) {
             for (b.x = 0; b.x < lattice.extent.x; ++b.x) {
                 const glm::ivec3 brick = lattice.first_brick + b;
                 const std::vector<bool> has = cells_with_density(grid, brick, step);
-                if (std::ranges::find(has, true) == has.end()) {
+                if (std::ranges::find(has, true) == has.end() && !reaches_glow(glow, brick)) {
                     lattice.table.push_back(formats::kNoBrick);
                     continue;
                 }

@@ -23,9 +23,11 @@ struct NodeLattice {
     std::vector<glm::ivec3> node;       ///< voxel of each node, neighbours together
 };
 
-/// Bricks are those of the grid, and the ones below them into which density between voxels reaches.
-/// `spacing`: 1, 2, 4 or 8.
-NodeLattice make_node_lattice(const formats::SparseGrid<float>& grid, std::uint32_t spacing);
+/// Bricks are those of the grid, and the ones below them into which density between voxels reaches;
+/// likewise of `glow`, without nodes where no density is. `spacing`: 1, 2, 4 or 8. Precondition:
+/// `glow` has the same table as the grid, or is empty.
+NodeLattice make_node_lattice(const formats::SparseGrid<float>& grid, std::uint32_t spacing,
+                              const formats::SparseGrid<glm::vec3>& glow = {});
 
 /// The eight nodes around a point, with trilinear weights.
 struct NodesAround {

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <string_view>
+#include <vector>
 
 #include "bake/plan/plan_input.h"
 #include "bake/volumes/choose_method.h"
@@ -15,8 +18,16 @@
 namespace opaline::bake {
 namespace {
 
+constexpr std::string_view kGlowEffect = "emitters";  // a volume that glows is one
+
 std::array<double, 3> bands(formats::Rgb c) {
     return {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)};
+}
+
+// Of a box, by its corners.
+double longest_line(const std::array<glm::dvec3, 8>& corners) {
+    return std::max({glm::length(corners[7] - corners[0]), glm::length(corners[6] - corners[1]),
+                     glm::length(corners[5] - corners[2]), glm::length(corners[3] - corners[4])});
 }
 
 // Radiance below which an effect is left out: two rows a volume share a quarter of the error.
@@ -108,6 +119,43 @@ std::string tell_evenness(const DensityVolume& volume) {
     return text;
 }
 
+// Of all volumes together: those that glow are seen through each other.
+double all_glow(const formats::Scene& scene, const Knobs& knobs) {
+    double sum = 0;
+    for (const formats::Volume& volume : scene.volumes) {
+        sum += is_wanted(knobs, kGlowEffect) ? largest_glow(volume) : 0;
+    }
+    return sum;
+}
+
+// Of light E of volumes a line scatters at most s E, s = alpha d; that of s E again s^2 E, and so
+// on.
+double scattered_glow(double glow, double once) {
+    return once < 1 ? glow * once / (1 - once) : std::numeric_limits<double>::max();
+}
+
+PlanEntry decide_glow(const formats::Volume& volume, const Subject& subject, const Knobs& knobs) {
+    PlanEntry entry = decide(kGlowEffect, subject, largest_glow(volume), knobs);
+    entry.has_bands = true;
+    if (entry.on) {
+        entry.reason = "it sends out light by itself: emitter '" + volume.emitter + "'";
+    } else if (entry.reason.empty()) {
+        entry.reason =
+            "what it sends out by itself is too dark to be seen beside light of radiance 1";
+    }
+    return entry;
+}
+
+// What nodes of a volume scatter of the light of all volumes.
+void scatter_glow_of_all(double glow, double once, const ScaledPhase& phase, const Knobs& knobs,
+                         VolumeLayout& layout) {
+    const double bound = scattered_glow(glow, once);
+    if (bound >= least_bound(knobs) || (knobs.simulate_all && bound > 0)) {
+        layout.glow_terms = phase.harmonics();
+        layout.glow_walks = choose_walks(phase, layout.glow_terms, knobs);
+    }
+}
+
 std::string why_dark(const Brightness& most) {
     return most.albedo <= 0          ? "the volume absorbs and does not scatter"
            : most.seen < kLeastBound ? "the volume is so thin that it is not seen"
@@ -116,12 +164,22 @@ std::string why_dark(const Brightness& most) {
 
 }  // namespace
 
+double largest_glow(const formats::Volume& volume) {
+    float most = 0;
+    for (const glm::vec3& v : volume.emission.value) {
+        most = std::max({most, v.x, v.y, v.z});
+    }
+    if (!(most > 0)) {
+        return 0;
+    }
+    formats::SparseGrid<glm::vec3> box = volume.emission;
+    box.to_scene = volume.density.to_scene;
+    return static_cast<double>(most) * longest_line(box.corners());
+}
+
 std::array<double, 3> largest_depth(const formats::Volume& volume) {
     // The longest line through the bricks, as dense as the densest voxel of all.
-    const auto corners = volume.density.corners();
-    const double diagonal =
-        std::max({glm::length(corners[7] - corners[0]), glm::length(corners[6] - corners[1]),
-                  glm::length(corners[5] - corners[2]), glm::length(corners[3] - corners[4])});
+    const double diagonal = longest_line(volume.density.corners());
     const double densest =
         volume.density.empty()
             ? 0
@@ -144,6 +202,7 @@ const char* scattering_stage(std::span<const VolumeLayout> layouts) {
 VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
     VolumePlan plan;
     const DensitySpace space = make_density_space(scene);
+    const double glow = all_glow(scene, knobs);
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
         const formats::Volume& volume = scene.volumes[v];
         const Brightness most = brightest(volume);
@@ -171,9 +230,18 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
             often.reason =
                 once.on ? "so thin or dark that light is scattered once at most" : why_dark(most);
         }
-        plan.entries.push_back(std::move(once));
-        plan.entries.push_back(std::move(often));
-        if (most.seen >= kLeastBound || layout.has_nodes()) {
+        if (glow > 0) {
+            scatter_glow_of_all(glow, most.once, phase, knobs, layout);
+        }
+        std::vector<PlanEntry> entries{std::move(once), std::move(often)};
+        if (!volume.emission.empty()) {
+            entries.push_back(decide_glow(volume, subject, knobs));
+            layout.glows = entries.back().on;
+        }
+        for (PlanEntry& entry : entries) {
+            plan.entries.push_back(std::move(entry));
+        }
+        if (most.seen >= kLeastBound || layout.has_nodes() || layout.glows) {
             plan.layouts.push_back(layout);
         }
     }

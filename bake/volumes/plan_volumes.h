@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,12 +24,16 @@ struct VolumeLayout {
     std::uint32_t views = 0;        ///< directions of quasi-paths from each node; 0 likewise
     /// Automatic: the bake measures both ways (choose_method.h).
     VolumeMethod method = VolumeMethod::walks;
+    bool glows = false;            ///< its own light is baked
+    std::uint32_t glow_terms = 0;  ///< K_e: of scattered light of volumes; 0: none is
+    std::uint32_t glow_walks = 0;  ///< from each node; 0 where glow_terms is
 
-    bool has_nodes() const { return once_terms > 0 || often_terms > 0; }
+    bool has_nodes() const { return once_terms > 0 || often_terms > 0 || glow_terms > 0; }
 };
 
 struct VolumePlan {
-    std::vector<PlanEntry> entries;     ///< two a volume, in order; they belong to no rule
+    std::vector<PlanEntry> entries;     ///< two a volume, three of one that glows, in order; they
+                                        ///< belong to no rule
     std::vector<VolumeLayout> layouts;  ///< of volumes that are seen at all
 };
 
@@ -39,6 +45,15 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs);
 
 /// The stage of a bake that finds light scattered more than once, by the ways of its layouts.
 const char* scattering_stage(std::span<const VolumeLayout> layouts);
+
+/// Volumes among these that are emitters of the file.
+inline std::size_t count_glowing(std::span<const VolumeLayout> layouts) {
+    return static_cast<std::size_t>(std::ranges::count(layouts, true, &VolumeLayout::glows));
+}
+
+/// An upper bound [W m^-2 sr^-1] on what a volume sends out by itself along any straight line, over
+/// all bands; 0 of one that does not glow.
+double largest_glow(const formats::Volume& volume);
 
 /// An upper bound [1] on the optical depth of any straight line through a volume, by band.
 std::array<double, 3> largest_depth(const formats::Volume& volume);

@@ -17,6 +17,10 @@ inline constexpr double kMinMarbleScale = 1e-6, kMaxMarbleScale = 1e6;  ///< [m]
 inline constexpr std::size_t kMaxMarbleColors = 16;
 inline constexpr double kMaxVolumeCoordinate = 1e9;  ///< of a corner of a volume [m]
 inline constexpr double kMinDensityScale = 1e-12, kMaxDensityScale = 1e12;
+inline constexpr double kMinEmissionScale = 1e-20, kMaxEmissionScale = 1e12;
+inline constexpr double kMinTemperatureScale = 1e-6, kMaxTemperatureScale = 1e6;
+inline constexpr double kMaxTemperature = 1e5;  ///< [K]; all that is hotter radiates as blue
+inline constexpr double kMaxEmission = 1e15;    ///< radiance per metre [W m^-3 sr^-1]
 /// Through a voxel along its longest edge; beyond, a volume is a surface, and walks through it take
 /// ever more steps (bake/reference/README.md, "Volumes").
 inline constexpr double kMaxVoxelDepth = 1e6;

@@ -12,6 +12,7 @@
 #include "formats/gltf/report.h"
 #include "formats/gltf/sha256.h"
 #include "formats/media/limits.h"
+#include "formats/media/load_emission.h"
 #include "formats/vdb/read_vdb.h"
 
 namespace opaline::formats {
@@ -67,18 +68,12 @@ Result<Volume> load_volume(const VolumeEntry& entry, const std::filesystem::path
     if (!read) {
         return std::move(read).error();
     }
-    if (read->not_a_number + read->negative > 0) {
-        warnings.push_back(
-            make_warning(file.string(), "grid " + in_quotes(read->name),
-                         std::to_string(read->not_a_number) + " voxels are not a number and " +
-                             std::to_string(read->negative) + " are negative, of " +
-                             std::to_string(read->active_voxels) + ": they count as 0",
-                         "export it again if they should not be"));
-    }
+    warn_of_repairs(file, *read, warnings);
     Volume volume;
     volume.name = "volume " + in_quotes(file.filename().string());
     volume.density = std::move(read->scalar);
     SparseGrid<float>& grid = volume.density;
+    const glm::dmat4 density_space = grid.to_scene;
     const glm::dmat4 placed = entry.transform * grid.to_scene;
     for (int column = 0; column < 4; ++column) {
         grid.to_scene[column] =
@@ -109,6 +104,10 @@ Result<Volume> load_volume(const VolumeEntry& entry, const std::filesystem::path
         return make_error(ErrorKind::bad_input, file.string(), "",
                           "a voxel of it holds more than a million mean free paths",
                           "lower sigma_t or scale, check the unit, or model it as a mesh");
+    }
+    if (Status status = load_emission(entry, file, density_space, reader, volume, warnings);
+        !status) {
+        return std::move(status).error();
     }
     return volume;
 }

@@ -31,6 +31,10 @@ struct VolumeEntry {
     Rgb albedo{0.99f, 0.99f, 0.99f};
     double scale = 1;  ///< of the density
     PhaseFunction phase;
+    /// Grid of radiance per metre, or of temperatures of a black body; at most one of both.
+    std::string emission, temperature;
+    double emission_scale = 1;     ///< of radiance
+    double temperature_scale = 1;  ///< [K] for a value of 1
     glm::dmat4 transform{1};  ///< affine: the file's world to the scene's, in units of the scene
 };
 

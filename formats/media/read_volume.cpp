@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "formats/media/fields.h"
@@ -45,6 +46,26 @@ std::optional<glm::dmat4> read_transform(const Fields& fields) {
     return matrix;
 }
 
+// Light of its own.
+void read_emission(const Fields& fields, VolumeEntry& volume) {
+    refuse_both(fields, "emission", "temperature");
+    volume.emission = text(fields, "emission").value_or("");
+    volume.temperature = text(fields, "temperature").value_or("");
+    for (const char* const key : {"emission_scale", "temperature_scale"}) {
+        const bool is_of_heat = key == std::string_view("temperature_scale");
+        if (has(fields, key) && !has(fields, "temperature") &&
+            (is_of_heat || !has(fields, "emission"))) {
+            fields.report.error(place(fields.where, key), "there is no grid for it",
+                                is_of_heat ? "give temperature, the name of a grid"
+                                           : "give emission or temperature, the name of a grid");
+        }
+    }
+    volume.emission_scale =
+        number(fields, "emission_scale", kMinEmissionScale, kMaxEmissionScale).value_or(1);
+    volume.temperature_scale =
+        number(fields, "temperature_scale", kMinTemperatureScale, kMaxTemperatureScale).value_or(1);
+}
+
 }  // namespace
 
 std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& where,
@@ -57,7 +78,8 @@ std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& whe
     }
     const Fields fields{entry, where, report};
     refuse_unknown_keys(
-        fields, {"file", "density", "sigma_t", "albedo", "unit", "scale", "phase", "transform"});
+        fields, {"file", "density", "sigma_t", "albedo", "unit", "scale", "phase", "transform",
+                 "emission", "temperature", "emission_scale", "temperature_scale"});
     VolumeEntry volume;
     volume.where = where;
     if (has(fields, "file")) {
@@ -77,6 +99,7 @@ std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& whe
                          .value_or(volume.sigma_t);
     volume.albedo = rgb(fields, "albedo", 0, 1).value_or(volume.albedo);
     volume.scale = number(fields, "scale", kMinDensityScale, kMaxDensityScale).value_or(1);
+    read_emission(fields, volume);
     if (const auto phase = entry.find("phase"); phase != entry.end()) {
         if (phase->is_object()) {
             volume.phase = read_phase({*phase, place(where, "phase"), report}, resources)

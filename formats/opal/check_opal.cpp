@@ -6,6 +6,7 @@
 
 #include "formats/opal/check_clouds.h"
 #include "formats/opal/check_emitters.h"
+#include "formats/opal/check_glow.h"
 #include "formats/opal/check_holes.h"
 #include "formats/opal/check_rows.h"
 #include "formats/opal/check_volumes.h"
@@ -194,7 +195,10 @@ Fault find_structure_fault(const AssetView& asset) {
     if (Fault fault = find_clouds_fault(asset.clouds); !fault.what.empty()) {
         return fault;
     }
-    return find_emitters_fault(asset);
+    if (Fault fault = find_emitters_fault(asset); !fault.what.empty()) {
+        return fault;
+    }
+    return find_glow_fault(asset);
 }
 
 Fault find_value_fault(const AssetView& asset) {
@@ -229,7 +233,10 @@ Fault find_value_fault(const AssetView& asset) {
     if (Fault fault = find_cloud_value_fault(asset.clouds); !fault.what.empty()) {
         return fault;
     }
-    return find_emitter_value_fault(asset.emitters);
+    if (Fault fault = find_emitter_value_fault(asset.emitters); !fault.what.empty()) {
+        return fault;
+    }
+    return find_glow_value_fault(asset.volumes.glow);
 }
 
 }  // namespace opaline::formats

@@ -93,6 +93,12 @@ struct EmittersHead {
 };
 static_assert(sizeof(EmittersHead) == 48);
 
+struct GlowHead {
+    std::uint32_t count = 0, record_size = 0;
+    std::uint64_t bricks = 0, values = 0, reserved[3] = {};
+};
+static_assert(sizeof(GlowHead) == 48);
+
 /// Largest ratio of decoded to stored size that a reader accepts and a writer makes: bounds what a
 /// hostile file can make a reader allocate.
 inline constexpr std::uint64_t kMaxCompressionRatio = 1024;

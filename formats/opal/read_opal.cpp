@@ -9,6 +9,7 @@
 #include "formats/opal/cloud_arrays.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/emitter_arrays.h"
+#include "formats/opal/glow_arrays.h"
 #include "formats/opal/layout.h"
 #include "formats/opal/row_arrays.h"
 #include "formats/opal/section_cursor.h"
@@ -95,6 +96,10 @@ bool read_emitters(SectionCursor cursor, AssetView& view) {
     return take_emitters(cursor, view.emitters) && cursor.at_end();
 }
 
+bool read_glow(SectionCursor cursor, AssetView& view) {
+    return take_glow(cursor, view.volumes.glow) && cursor.at_end();
+}
+
 }  // namespace
 
 DecodedBytes::DecodedBytes(const Memory& memory, std::size_t size) : memory_(memory), size_(size) {
@@ -172,6 +177,9 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 break;
             case kEmitSection:
                 read = read_emitters;
+                break;
+            case kGlowSection:
+                read = read_glow;
                 break;
             case kProvSection:
                 break;

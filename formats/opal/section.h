@@ -41,6 +41,7 @@ inline constexpr std::uint32_t kTranSection = section_id("TRAN");
 inline constexpr std::uint32_t kVoluSection = section_id("VOLU");
 inline constexpr std::uint32_t kClouSection = section_id("CLOU");
 inline constexpr std::uint32_t kEmitSection = section_id("EMIT");
+inline constexpr std::uint32_t kGlowSection = section_id("GLOW");
 
 struct FileHeader {
     std::array<char, 8> magic = kOpalMagic;

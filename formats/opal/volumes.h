@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "formats/opal/glow.h"
 #include "formats/opal/phase_table.h"
 #include "formats/opal/rgb.h"
 #include "formats/opal/sparse_rows.h"
@@ -77,6 +78,7 @@ struct VolumesView {
     std::span<const NodeVoxel> node;         ///< (i, j, k) of each node
     std::span<const float> phase;            ///< kPhaseEntries a volume: p', see phase_table.h
     SparseRowsView rows;                     ///< terms() rows a node
+    GlowView glow;                           ///< light of their own; empty without any
 
     bool empty() const { return records.empty(); }
 
@@ -96,9 +98,11 @@ struct Volumes {
     std::vector<NodeVoxel> node;
     std::vector<float> phase;
     SparseRows rows;
+    Glow glow;
 
     VolumesView view() const {
-        return {records, table, density_scale, density, corner, node, phase, rows.view()};
+        return {records, table, density_scale, density,    corner,
+                node,    phase, rows.view(),   glow.view()};
     }
 };
 

@@ -6,6 +6,7 @@
 
 #include "formats/opal/cloud_arrays.h"
 #include "formats/opal/emitter_arrays.h"
+#include "formats/opal/glow_arrays.h"
 #include "formats/opal/layout.h"
 #include "formats/opal/row_arrays.h"
 #include "formats/opal/section.h"
@@ -48,6 +49,7 @@ struct SectionHeads {
     TransportHead volume_rows;
     CloudsHead clouds;
     EmittersHead emitters;
+    GlowHead glow;
 };
 
 SectionHeads make_heads(const AssetView& asset) {
@@ -69,6 +71,7 @@ SectionHeads make_heads(const AssetView& asset) {
     heads.volume_rows = rows_head(asset.volumes.rows);
     heads.clouds = clouds_head(asset.clouds);
     heads.emitters = emitters_head(asset.emitters);
+    heads.glow = glow_head(asset.volumes.glow);
     return heads;
 }
 
@@ -135,6 +138,9 @@ std::vector<StoredSection> store_sections(const AssetView& asset, const SectionH
     }
     if (!asset.emitters.empty()) {
         add(kEmitSection, Codec::none, emitter_arrays(heads.emitters, asset.emitters));
+    }
+    if (!asset.volumes.glow.empty()) {
+        add(kGlowSection, Codec::none, glow_arrays(heads.glow, asset.volumes.glow));
     }
     return sections;
 }

@@ -8,6 +8,7 @@
 
 #include "runtime/parallel.h"
 #include "runtime/volumes/suns.h"
+#include "runtime/volumes/volume_glow.h"
 #include "runtime/volumes/volume_source.h"
 
 namespace opaline::runtime {
@@ -79,8 +80,51 @@ void pack_bricks(const VolumeLattice& lattice, std::span<std::uint32_t> words) {
     });
 }
 
-std::uint32_t terms_of(const formats::VolumeRecord& record) {
-    return std::max(record.single_terms, record.multiple_terms);
+// A brick's own light at its 9 x 9 x 9 voxels; empty where it is dark.
+std::vector<std::uint32_t> pad_glow(const VolumeGlow& glow, const BrickBlock& block) {
+    std::vector<std::uint32_t> words(kSide * kSide * kSide);
+    bool is_dark = true;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const std::array<std::size_t, 3> at{i % kSide, i / kSide % kSide, i / kSide / kSide};
+        std::size_t neighbour = 0, offset = 0;
+        for (std::size_t a = 3; a-- > 0;) {
+            neighbour |= (at[a] / kBrickSide) << a;
+            offset = offset * kBrickSide + at[a] % kBrickSide;
+        }
+        const std::uint32_t brick = block.number[neighbour];
+        const std::uint32_t place = brick == kNoBrick ? kNoBrick : glow.place[brick];
+        if (place == kNoBrick) continue;
+        words[i] = glow.code[place * kBrickVoxels + offset];
+        is_dark = is_dark && words[i] == 0;
+    }
+    return is_dark ? std::vector<std::uint32_t>{} : words;
+}
+
+// Appends the bricks of one volume to the words of all, and says where they begin.
+void append_glow(const VolumeLattice& lattice, const VolumeGlow& glow,
+                 std::vector<std::uint32_t>& words) {
+    const auto& extent = lattice.record->extent;
+    for (std::uint32_t at = 0; at < lattice.table.size(); ++at) {
+        if (lattice.table[at] == kNoBrick) continue;
+        const BrickBlock block =
+            brick_block(lattice, {static_cast<std::int32_t>(at % extent[0]),
+                                  static_cast<std::int32_t>(at / extent[0] % extent[1]),
+                                  static_cast<std::int32_t>(at / extent[0] / extent[1])});
+        const std::vector<std::uint32_t> own = pad_glow(glow, block);
+        if (own.empty()) continue;
+        words[lattice.record->first_brick_number + lattice.table[at]] =
+            static_cast<std::uint32_t>(words.size());
+        words.insert(words.end(), own.begin(), own.end());
+    }
+}
+
+std::uint32_t terms_of(const formats::VolumesView& volumes, std::size_t v) {
+    std::uint32_t most =
+        std::max(volumes.records[v].single_terms, volumes.records[v].multiple_terms);
+    for (const formats::GlowRecord& glow : volumes.glow.of_volume(v)) {
+        most = std::max(most, glow.terms);
+    }
+    return most;
 }
 
 // The way from the eye into the table, in shader units. False where floats cannot hold it.
@@ -118,10 +162,21 @@ std::vector<float> tame_phases(const formats::VolumesView& volumes) {
     return phase;
 }
 
-std::uint32_t most_node_terms(std::span<const formats::VolumeRecord> records) {
+std::vector<std::uint32_t> pack_glow(const formats::VolumesView& volumes) {
+    if (volumes.glow.brick.empty()) return {};
+    std::vector<std::uint32_t> words(volumes.density_scale.size(), kNoBrick);
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        const VolumeGlow own = make_glow(volumes, v);
+        const auto lattice = make_lattice(volumes, volumes.records[v]);
+        if (lattice && !own.empty()) append_glow(*lattice, own, words);
+    }
+    return words;
+}
+
+std::uint32_t most_node_terms(const formats::VolumesView& volumes) {
     std::uint32_t most = 1;
-    for (const formats::VolumeRecord& record : records) {
-        most = std::max(most, terms_of(record));
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        most = std::max(most, terms_of(volumes, v));
     }
     return most;
 }
@@ -131,7 +186,7 @@ std::size_t most_coefficients(const formats::VolumesView& volumes) {
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         const formats::VolumeRecord& record = volumes.records[v];
         const std::size_t suns = needs_suns(record, volumes.phase_of(v)) ? kMaxSuns : 0;
-        count += record.node_count * (terms_of(record) + suns);
+        count += record.node_count * (terms_of(volumes, v) + suns);
     }
     return count;
 }

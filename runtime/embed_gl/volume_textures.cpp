@@ -32,6 +32,7 @@ opaline_status VolumeTextures::make(const formats::VolumesView& volumes, GlNames
     if (volumes.records.empty()) return OPALINE_OK;
     if (const opaline_status status = check_sizes(volumes); status != OPALINE_OK) return status;
     records_.assign(volumes.records.begin(), volumes.records.end());
+    terms_ = most_node_terms(volumes);
     for (std::size_t v = 0; v < records_.size(); ++v) {
         const auto lattice = make_lattice(volumes, records_[v]);
         if (lattice) entry_.push_back({{&records_[v], lattice->to_index, {}, {}, {}, {}}, v});
@@ -46,7 +47,8 @@ opaline_status VolumeTextures::make(const formats::VolumesView& volumes, GlNames
     phase_entries_.fill_of(std::span<const float>(tame_phases(volumes)));
     block_ =
         names.make_buffer(records_.size() * sizeof(ShaderVolume) + kMaxSuns * 16, GL_DYNAMIC_DRAW);
-    upload(relight_volumes(volumes, {}, {.terms = formats::TermSet::none, .threads = 1}));
+    upload(relight_volumes(
+        volumes, {}, {.terms = formats::TermSet::none, .emitters = dark_emitters(), .threads = 1}));
     return OPALINE_OK;
 }
 

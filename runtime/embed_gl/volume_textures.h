@@ -29,7 +29,7 @@ class VolumeTextures {
     void look_from(formats::Vec3 eye);
 
     std::size_t size() const { return records_.size(); }
-    std::uint32_t terms() const { return most_node_terms(records_); }
+    std::uint32_t terms() const { return terms_; }
 
     GLuint block() const { return block_; }
     GLuint brick_numbers() const { return brick_numbers_.name(); }
@@ -51,6 +51,7 @@ class VolumeTextures {
     std::vector<Entry> entry_;
     std::vector<VolumeLight::Part> part_;
     formats::Vec3 eye_;
+    std::uint32_t terms_ = 1;
     GLuint block_ = 0;
     TexelLines brick_numbers_{gl_, kWordTexel}, density_codes_{gl_, kWordTexel};
     TexelLines corner_numbers_{gl_, kWordTexel}, phase_entries_{gl_, kFloatTexel};

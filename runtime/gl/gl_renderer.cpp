@@ -156,7 +156,7 @@ formats::Status GlRenderer::set_light(const PartLights& lights, const Rotation& 
     if (auto status = resources.relight.dot(emitters); !status) return status;
     state_->own = own_radiances(resources.asset, emitters);
     if (auto status = relight_gl_volumes(resources.volumes, lights.light[lights.of_volumes],
-                                         formats::TermSet::all);
+                                         formats::TermSet::all, emitters);
         !status) {
         return status;
     }

@@ -1,5 +1,6 @@
 #include "runtime/gl/gl_volume_pass.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -26,40 +27,67 @@ enum Uniform : GLint {
 };
 static_assert(kEyeAboveGround == 15);
 
+// ShaderVolume where volumes have light of their own: GLOW.
+struct GlowingShaderVolume {
+    ShaderVolume volume;
+    std::array<float, 4> glow{};  // colour times the scale of codes [1 / unit]
+};
+static_assert(sizeof(GlowingShaderVolume) == 144);
+
+std::array<float, 4> glow_color(const GlVolumes& volumes, std::size_t volume, double unit) {
+    const formats::GlowView glow = volumes.kept.glow.view();
+    const formats::GlowRecord* const record = glow.own_of(volume);
+    if (record == nullptr) return {};
+    const formats::Rgb color = volumes.light.glow[volume];
+    const double scale = static_cast<double>(record->code_scale) / unit;
+    const auto channel = [&](float c) {
+        return static_cast<float>(std::min(scale * static_cast<double>(c), 1e30));
+    };
+    return {channel(color.r), channel(color.g), channel(color.b), 0};
+}
+
+GlBuffer upload_records(const GlVolumes& volumes, const Camera& camera) {
+    const double unit = view_unit(camera);
+    std::vector<ShaderVolume> dark;
+    std::vector<GlowingShaderVolume> glowing;
+    for (const GlVolumes::Entry& entry : volumes.entry) {
+        dark.push_back(make_shader_volume(entry.lattice, entry.volume,
+                                          volumes.light.part[entry.volume], camera.eye, unit));
+        glowing.push_back({dark.back(), glow_color(volumes, entry.volume, unit)});
+    }
+    std::size_t size = 0;
+    return volumes.glows ? make_buffer_of(std::span<const GlowingShaderVolume>(glowing), size)
+                         : make_buffer_of(std::span<const ShaderVolume>(dark), size);
+}
+
 }  // namespace
 
 formats::Result<GlProgram> make_volume_program(const GlVolumes& volumes, bool layer) {
     const std::string text = std::string(volume_march_text) + harmonics_text + volumes_frag_text;
     const std::array<StageSource, 2> stages{
         {{GL_VERTEX_SHADER, screen_vert_text}, {GL_FRAGMENT_SHADER, text.c_str()}}};
-    return make_program("volumes",
-                        "#define VOLUMES " + std::to_string(volumes.entry.size()) +
-                            "\n#define HARMONICS " + std::to_string(volumes.harmonics) +
-                            "\n#define SUNS " + std::to_string(kMaxSuns) +
-                            "\n#define BRICK_WORDS " + std::to_string(kGlBrickWords) +
-                            "\n#define LAYER " + (layer ? "1" : "0") +
-                            "\n#define SHEET_TOLERANCE " + std::to_string(kSheetTolerance) + "\n",
-                        stages);
+    return make_program(
+        "volumes",
+        "#define VOLUMES " + std::to_string(volumes.entry.size()) + "\n#define HARMONICS " +
+            std::to_string(volumes.harmonics) + "\n#define SUNS " + std::to_string(kMaxSuns) +
+            "\n#define BRICK_WORDS " + std::to_string(kGlBrickWords) + "\n#define LAYER " +
+            (layer ? "1" : "0") + (volumes.glows ? "\n#define GLOW" : "") +
+            "\n#define SHEET_TOLERANCE " + std::to_string(kSheetTolerance) + "\n",
+        stages);
 }
 
 void draw_volumes_filtered(const DrawScene& scene, const GlProgram& program, const TileView& view) {
     const CameraFrame& frame = view.frame;
     const TileGrid& grid = view.grid;
-    std::vector<ShaderVolume> records;
-    for (const GlVolumes::Entry& entry : scene.volumes.entry) {
-        records.push_back(make_shader_volume(entry.lattice, entry.volume,
-                                             scene.volumes.light.part[entry.volume],
-                                             scene.camera.eye, view_unit(scene.camera)));
-    }
-    std::size_t size = 0;
-    const GlBuffer buffer = make_buffer_of(std::span<const ShaderVolume>(records), size);
-    const std::array<const GlBuffer*, 6> buffers{&buffer,
+    const GlBuffer records = upload_records(scene.volumes, scene.camera);
+    const std::array<const GlBuffer*, 7> buffers{&records,
                                                  &scene.volumes.table,
                                                  &scene.volumes.density,
                                                  &scene.volumes.corner,
                                                  &scene.volumes.coefficient,
-                                                 &scene.volumes.phase};
-    for (GLuint i = 0; i < buffers.size(); ++i) {
+                                                 &scene.volumes.phase,
+                                                 &scene.volumes.glow};
+    for (GLuint i = 0; i < (scene.volumes.glows ? buffers.size() : buffers.size() - 1); ++i) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]->name());
     }
     const GLuint name = program.name();

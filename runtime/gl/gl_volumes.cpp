@@ -71,9 +71,11 @@ TermSet of_volumes(TermSet terms) {
 // Coefficients of the last light.
 formats::Status update_coefficients(GlVolumes& volumes, TermSet terms) {
     volumes.lit_terms = of_volumes(terms);
-    volumes.light =
-        relight_volumes(volumes.kept.view(), volumes.lit_by,
-                        {.terms = volumes.lit_by.n == 0 ? TermSet::none : volumes.lit_terms});
+    volumes.light = relight_volumes(
+        volumes.kept.view(), volumes.lit_by,
+        {.terms = volumes.lit_by.n == 0 ? TermSet::none : volumes.lit_terms,
+         .emitters = volumes.lit_by.n == 0 ? dark_emitters()
+                                           : EmitterLight{volumes.emitters, volumes.shows_own}});
     std::size_t size = 0;
     volumes.coefficient =
         make_buffer_of(std::span<const formats::Rgb>(volumes.light.coefficient), size);
@@ -90,7 +92,21 @@ formats::Result<GlVolumes> upload_volumes(const VolumesView& volumes, std::size_
     gl.kept.records.assign(volumes.records.begin(), volumes.records.end());
     gl.kept.phase.assign(volumes.phase.begin(), volumes.phase.end());
     gl.kept.rows = copy_rows(volumes.rows);
-    gl.harmonics = most_node_terms(gl.kept.records);
+    const formats::GlowView& glow = volumes.glow;
+    gl.kept.glow = {
+        {glow.record.begin(), glow.record.end()}, {}, {}, {glow.value.begin(), glow.value.end()}};
+    const std::vector<std::uint32_t> glow_words = pack_glow(volumes);
+    if (glow_words.size() * sizeof(std::uint32_t) > max_block_bytes) {
+        return make_error(ErrorKind::resource, {}, "volumes",
+                          "their own light takes more than the " + std::to_string(max_block_bytes) +
+                              " bytes that the OpenGL driver shows a shader",
+                          "render on the CPU");
+    }
+    gl.glows = !glow_words.empty();
+    if (gl.glows) {
+        gl.glow = make_buffer_of(std::span<const std::uint32_t>(glow_words), gl.resident);
+    }
+    gl.harmonics = most_node_terms(volumes);
     for (std::size_t v = 0; v < gl.kept.records.size(); ++v) {
         const formats::VolumeRecord& record = gl.kept.records[v];
         const auto lattice = make_lattice(volumes, record);
@@ -110,9 +126,12 @@ formats::Result<GlVolumes> upload_volumes(const VolumesView& volumes, std::size_
     return gl;
 }
 
-formats::Status relight_gl_volumes(GlVolumes& volumes, const LightVector& light, TermSet terms) {
+formats::Status relight_gl_volumes(GlVolumes& volumes, const LightVector& light, TermSet terms,
+                                   const EmitterLight& emitters) {
     if (volumes.empty()) return formats::ok_status();
     volumes.lit_by = light;
+    volumes.emitters.assign(emitters.color.begin(), emitters.color.end());
+    volumes.shows_own = emitters.shows_own;
     return update_coefficients(volumes, terms);
 }
 

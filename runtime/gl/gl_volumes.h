@@ -22,16 +22,23 @@ struct GlVolumes {
         std::size_t volume = 0;  ///< its number in the asset
     };
     std::vector<Entry> entry;  ///< those that a ray can meet
-    formats::Volumes kept;     ///< records, phase functions and rows
+    formats::Volumes kept;     ///< records, phase functions, rows, and what nodes scatter of own
+                               ///< light
 
     GlBuffer table, corner;
     GlBuffer density;  ///< pack_density
     GlBuffer phase;    ///< kPhaseEntries a volume
+    /// Of a volume's own light: for each brick the first of its words or kNoBrick, then 9 x 9 x 9
+    /// words of each brick around which any is, x fastest, shared_exponent.h.
+    GlBuffer glow;
+    bool glows = false;  ///< whether there is any
     GlBuffer coefficient;
     VolumeLight light;            ///< its coefficients are on the GPU
     std::uint32_t harmonics = 1;  ///< the most terms of a node, suns left out
     std::size_t resident = 0;     ///< [bytes], most coefficients included
 
+    std::vector<formats::Rgb> emitters;  ///< their colours; empty: 1 each
+    bool shows_own = true;
     LightVector lit_by;  ///< the last light; n = 0 before there is one
     formats::TermSet lit_terms = formats::TermSet::none;  ///< components in `coefficient`
 
@@ -44,10 +51,11 @@ formats::Result<GlVolumes> upload_volumes(const formats::VolumesView& volumes,
                                           std::size_t max_block_bytes);
 
 /// Computes the nodes' coefficients (relight_volumes) on the CPU and uploads them, `terms` of them;
-/// without a light the volumes only absorb. Does nothing where there are no volumes. Errors:
-/// resource. Precondition: light.n is the asset's cube map size, or 0.
+/// without a light the volumes only absorb. `emitters`: of the asset, or none. Does nothing where
+/// there are no volumes. Errors: resource. Precondition: light.n is the asset's cube map size, or
+/// 0.
 formats::Status relight_gl_volumes(GlVolumes& volumes, const LightVector& light,
-                                   formats::TermSet terms);
+                                   formats::TermSet terms, const EmitterLight& emitters = {});
 
 /// The same light with other components, if they are others for volumes.
 formats::Status show_volume_terms(GlVolumes& volumes, formats::TermSet terms);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "formats/opal/half.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "runtime/parallel.h"
 #include "runtime/volumes/moment_lights.h"
@@ -40,6 +41,15 @@ struct Shown {
         : single(has_any(terms, TermSet::volume_single) ? record.single_terms : 0),
           multiple(has_any(terms, TermSet::volume_multiple) ? record.multiple_terms : 0) {}
 };
+
+// The most terms of light of emitters that are not switched off.
+std::uint32_t glow_terms(std::span<const formats::GlowRecord> glow, const EmitterLight& emitters) {
+    std::uint32_t most = 0;
+    for (const formats::GlowRecord& each : glow) {
+        if (emitters.color_of(each.emitter) != Rgb{}) most = std::max(most, each.terms);
+    }
+    return most;
+}
 
 // The light in the forms that volumes meet. Those with suns have the moments of the rest, the
 // others those of the whole.
@@ -83,7 +93,12 @@ Lights prepare(const formats::VolumesView& volumes, const LightVector& light,
     std::size_t size = 0;
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         const Shown shown(volumes.records[v], options.terms);
-        VolumeLight::Part part{std::max(shown.single, shown.multiple), 0, size};
+        const auto glow = volumes.glow.of_volume(v);
+        const formats::GlowRecord* const own = volumes.glow.own_of(v);
+        const bool shows_own = own != nullptr && options.emitters.shows_own;
+        result.glow.push_back(shows_own ? options.emitters.color_of(own->emitter) : Rgb{});
+        VolumeLight::Part part{
+            std::max({shown.single, shown.multiple, glow_terms(glow, options.emitters)}), 0, size};
         if (meets_suns[v] != 0) part.suns = static_cast<std::uint32_t>(result.sun.size());
         size += std::size_t{volumes.records[v].node_count} * part.stride();
         result.part.push_back(part);
@@ -100,6 +115,8 @@ struct Job {
     const Lights& lights;
     Shown shown;
     DotPath path;
+    std::span<const formats::GlowRecord> glow;
+    EmitterLight emitters;
 };
 
 // Coefficients of the nodes from `first` to `end`, stride() of each.
@@ -156,6 +173,24 @@ void add_multiple(const Job& job, const Block& block) {
     }
 }
 
+// What nodes scatter of one emitter's light.
+void add_glow(const Job& job, const Block& block, const formats::GlowRecord& glow) {
+    const Rgb color = job.emitters.color_of(glow.emitter);
+    if (color == Rgb{}) return;
+    const std::size_t terms = glow.terms;
+    const Rgb scale = glow.value_scale * color;
+    const auto value = job.volumes.glow.value.subspan(glow.first_value);
+    for (std::uint32_t node = block.first; node < block.end; ++node) {
+        for (std::size_t k = 0; k < terms; ++k) {
+            const std::size_t i = 3 * (node * terms + k);
+            Rgb& c = block.coefficient[std::size_t{node - block.first} * job.part.stride() + k];
+            c = c + scale * Rgb{formats::float_from_half(value[i]),
+                                formats::float_from_half(value[i + 1]),
+                                formats::float_from_half(value[i + 2])};
+        }
+    }
+}
+
 }  // namespace
 
 VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVector& light,
@@ -165,7 +200,14 @@ VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVect
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         const VolumeRecord& record = volumes.records[v];
         const VolumeLight::Part& part = result.part[v];
-        const Job job{volumes, record, part, lights, {record, options.terms}, options.path};
+        const Job job{volumes,
+                      record,
+                      part,
+                      lights,
+                      {record, options.terms},
+                      options.path,
+                      volumes.glow.of_volume(v),
+                      options.emitters};
         const auto own = std::span<Rgb>(result.coefficient).subspan(part.first);
         for_ranges(record.node_count, kBlock, options.threads,
                    [&](std::uint32_t first, std::uint32_t end) {
@@ -174,6 +216,9 @@ VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVect
                                                      std::size_t{end - first} * part.stride())};
                        add_single(job, block);
                        add_multiple(job, block);
+                       for (const formats::GlowRecord& glow : job.glow) {
+                           add_glow(job, block, glow);
+                       }
                        std::ranges::transform(block.coefficient, block.coefficient.begin(),
                                               [](Rgb c) { return finite(c); });
                    });

@@ -11,6 +11,7 @@
 #include "formats/opal/vec3.h"
 #include "formats/opal/volumes.h"
 #include "runtime/dot.h"
+#include "runtime/emitter_light.h"
 #include "runtime/light_vector.h"
 
 namespace opaline::runtime {
@@ -22,23 +23,27 @@ namespace opaline::runtime {
 ///
 /// before max(0, .), with coefficients(v, i) = c_0 ..., e_0 ... and, for k = l (l + 1) + m,
 ///
-///     c_k = (-1)^l m_l <V, Y_k L'> [k < K_s] + <T_k, L> [k < K_m],   e_s = <V, L_s>,
+///     c_k = (-1)^l m_l <V, Y_k L'> [k < K_s] + <T_k, L> [k < K_m] + g E_k [k < K_e],
+///     e_s = <V, L_s>,
 ///
 /// m_l the moments of the phase function p', V row 0 of the node and T_k row 1 + k. The light L is
 /// split into suns L_s in the directions l_s, which meet the phase function as it is, and the rest
 /// L' (suns.h); where the moments say the same there are no suns, and L' = L. Where K_m = 1 its
-/// h_0 = 1 is taken as Y_0 / Y_0, so that all of J but suns is in harmonics.
+/// h_0 = 1 is taken as Y_0 / Y_0, so that all of J but suns is in harmonics. E_k is what the node
+/// scatters of the light that a volume sends out by itself, g the colour of that emitter.
 struct VolumeLight {
     struct Part {
         std::uint32_t terms =
-            0;                   ///< K = max(K_s, K_m) of what is shown; 0: the volume only absorbs
+            0;  ///< K = max(K_s, K_m, K_e) of what is shown; 0: the volume scatters nothing
         std::uint32_t suns = 0;  ///< 0, or all of VolumeLight::sun
         std::size_t first = 0;   ///< of the volume's coefficients
 
         /// Coefficients of a node.
         std::uint32_t stride() const { return terms + suns; }
     };
-    std::vector<Part> part;                 ///< one for each volume
+    std::vector<Part> part;  ///< one for each volume
+    /// One for each volume: the colour times which it shows its own light; 0: it does not.
+    std::vector<formats::Rgb> glow;
     std::vector<formats::Vec3> sun;         ///< l_s, unit, toward the suns, world; kMaxSuns at most
     std::vector<formats::Rgb> coefficient;  ///< [W m^-2 sr^-1], finite; node after node
 
@@ -53,6 +58,9 @@ struct RelightVolumesOptions {
     /// Components to add up; only volume_single and volume_multiple matter. Every file can show
     /// them apart.
     formats::TermSet terms = formats::TermSet::all;
+    /// Of the asset, or none: 1 each. Light of volumes is scattered in all of them whatever `terms`
+    /// are; seen directly it is with `shows_own`.
+    EmitterLight emitters = {};
     unsigned threads = 0;  ///< 0: all cores; the result has the same bits for any number
     DotPath path = best_dot_path();
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "runtime/volumes/brick_walk.h"
 #include "runtime/volumes/volume_source.h"
@@ -82,18 +83,29 @@ std::array<float, 3> place_in_brick(const Traveller& traveller, double t) {
     return at;
 }
 
-// One step of one band: extinction c [1/m], scattering times source b, length h [m].
-void step_band(float c, float b, float h, float& radiance, float& transmittance) {
-    if (!(c > 0)) return;
-    const float absorbed = -std::expm1(-c * h);
-    radiance += transmittance * (b / c) * absorbed;
+// What a step adds up in a band: extinction c [1/m], scattering times source b, own light e.
+struct Coefficients {
+    float c = 0, b = 0, e = 0;
+};
+
+// One step of one band, of length h [m].
+void step_band(const Coefficients& sum, float h, float& radiance, float& transmittance) {
+    constexpr float kThin = 1e-6f;  // depth below which 1 - exp(-c h) is c h
+    const float absorbed = sum.c > 0 ? -std::expm1(-sum.c * h) : 0.0f;
+    if (sum.e > 0) {
+        const float way = sum.c * h > kThin ? absorbed / sum.c : h;
+        radiance =
+            std::min(radiance + transmittance * sum.e * way, std::numeric_limits<float>::max());
+    }
+    if (!(sum.c > 0)) return;
+    radiance += transmittance * (sum.b / sum.c) * absorbed;
     transmittance *= 1 - absorbed;
 }
 
-void step(Rgb extinction, Rgb scattered, float h, MarchResult& result) {
-    step_band(extinction.r, scattered.r, h, result.radiance.r, result.transmittance.r);
-    step_band(extinction.g, scattered.g, h, result.radiance.g, result.transmittance.g);
-    step_band(extinction.b, scattered.b, h, result.radiance.b, result.transmittance.b);
+void step(Rgb extinction, Rgb scattered, Rgb emitted, float h, MarchResult& result) {
+    step_band({extinction.r, scattered.r, emitted.r}, h, result.radiance.r, result.transmittance.r);
+    step_band({extinction.g, scattered.g, emitted.g}, h, result.radiance.g, result.transmittance.g);
+    step_band({extinction.b, scattered.b, emitted.b}, h, result.radiance.b, result.transmittance.b);
 }
 
 // Everything that the segments of a ray share.
@@ -121,19 +133,24 @@ void march_segment(March& march, double begin, double end) {
     const double count = std::clamp(std::ceil((end - begin) / (march.step * voxel)), 1.0, most);
     const double h = (end - begin) / count;
     for (double i = 0; i < count && !march.is_opaque(); ++i) {
-        Rgb extinction, scattered;
+        Rgb extinction, scattered, emitted;
         for (Traveller& traveller : march.travellers) {
             if (traveller.span.begin > begin) continue;
             const VolumeLattice& lattice = traveller.entry->lattice;
             const auto at = place_in_brick(traveller, begin + (i + 0.5) * h);
             const float density = density_at(lattice, traveller.block, at);
+            const Rgb glow = march.light.glow[traveller.entry->volume];
+            if (glow != Rgb{} && !traveller.entry->glow.empty()) {
+                emitted = emitted + tame(glow * glow_at(traveller.entry->glow, traveller.block, at),
+                                         kLargestSource);
+            }
             if (!(density > 0)) continue;
             const Rgb c = tame(density * lattice.record->sigma_t, kLargestExtinction);
             extinction = extinction + c;
             scattered =
                 scattered + c * lattice.record->albedo * source_at(traveller, march.light, at);
         }
-        step(extinction, scattered, static_cast<float>(std::min(h, 1e30)), march.result);
+        step(extinction, scattered, emitted, static_cast<float>(std::min(h, 1e30)), march.result);
     }
 }
 
@@ -144,7 +161,7 @@ LitVolumes light_volumes(const formats::VolumesView& volumes, const VolumeLight&
     lit.light = &light;
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         if (const auto lattice = make_lattice(volumes, volumes.records[v])) {
-            lit.entry.push_back({*lattice, v, volumes.phase_of(v)});
+            lit.entry.push_back({*lattice, v, volumes.phase_of(v), make_glow(volumes, v)});
         }
     }
     return lit;

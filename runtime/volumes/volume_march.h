@@ -8,6 +8,7 @@
 #include "formats/opal/vec3.h"
 #include "formats/opal/volumes.h"
 #include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/volume_glow.h"
 #include "runtime/volumes/volume_lattice.h"
 
 namespace opaline::runtime {
@@ -18,6 +19,7 @@ struct LitVolumes {
         VolumeLattice lattice;
         std::size_t volume = 0;        ///< its number in the asset
         std::span<const float> phase;  ///< its phase function, kPhaseEntries values
+        VolumeGlow glow;               ///< its own light
     };
     std::vector<Entry> entry;
     const VolumeLight* light = nullptr;
@@ -41,21 +43,23 @@ struct MarchOptions {
 };
 
 struct MarchResult {
-    formats::Rgb radiance;                ///< scattered toward the origin [W m^-2 sr^-1]
+    formats::Rgb radiance;  ///< scattered or sent out toward the origin [W m^-2 sr^-1]
     formats::Rgb transmittance{1, 1, 1};  ///< of what lies behind
 };
 
 /// What volumes add to a ray that is seen from its origin, and what they leave of the light behind:
 ///
-///     L = int_begin^end T(t) sum_v sigma_t,v albedo_v density_v(t) max(0, J_v(t, -direction)) dt,
+///     L = int_begin^end T(t) sum_v (sigma_t,v albedo_v density_v(t) max(0, J_v(t, -direction)) +
+///                                   glow_v(t)) dt,
 ///     T(t) = exp(-int_begin^t sum_v sigma_t,v density_v),
 ///
 /// per band, v over all volumes, also where they overlap. Density is trilinear between voxels, J
 /// between nodes (volumes.h). Bricks that do not exist are skipped; within the others steps of
 /// equal length h <= options.step voxels, cut at the faces of bricks, take the coefficients at
-/// their midpoints as constant: with c the extinction and b the scattering times J,
+/// their midpoints as constant: with c the extinction and b the scattering times J plus the own
+/// light of volumes, which needs no density,
 ///
-///     L += T (b / c) (1 - exp(-c h)),   T *= exp(-c h).
+///     L += T (b / c) (1 - exp(-c h)),   T *= exp(-c h),   for c = 0: L += T b h.
 ///
 /// Any finite ray gives finite values that are not negative; where begin >= end or the direction is
 /// zero, nothing. Costs at most 3 + 14 / step evaluations per brick that the ray crosses.

@@ -56,6 +56,11 @@ VolumeSample sample_volumes(const LitVolumes& volumes, formats::Vec3 point, form
         if (!place) continue;
         const BrickBlock block = brick_block(entry.lattice, place->cell);
         if (block.number[0] == formats::kNoBrick) continue;
+        const Rgb glow = volumes.light->glow[entry.volume];
+        if (glow != Rgb{} && !entry.glow.empty()) {
+            sample.scattered = sample.scattered +
+                               tame(glow * glow_at(entry.glow, block, place->at), kLargestSource);
+        }
         const float density = density_at(entry.lattice, block, place->at);
         if (!(density > 0)) continue;
         const formats::VolumeRecord& record = *entry.lattice.record;

@@ -16,4 +16,9 @@ std::vector<double> march_probes(const formats::VolumesView& volumes, std::uint3
                                  glm::dvec3 origin, std::span<const VolumeProbe> probes,
                                  unsigned threads);
 
+/// Luminance of the light that volumes send out by themselves, seen directly or scattered, along
+/// the same rays, in the same order.
+std::vector<double> march_glow(const formats::VolumesView& volumes, glm::dvec3 origin,
+                               std::span<const VolumeProbe> probes, unsigned threads);
+
 }  // namespace opaline::bake

@@ -11,14 +11,14 @@ namespace opaline::bake {
 formats::Result<VolumeTruth> trace_volume_truth(
     const ReferenceScene& reference, std::span<const VolumeProbe> probes, std::uint64_t seed,
     std::uint64_t max_events, const std::function<bool(const VolumeTruth&)>& is_enough,
-    const Context& context) {
+    const Context& context, TermSet terms) {
     const std::vector<formats::Environment> lights = make_volume_lights(probes);
     std::vector<LightSampler> samplers;
     for (const formats::Environment& light : lights) {
         samplers.push_back(make_light_sampler(light, glm::mat3(1.0f)));
     }
     PathOptions paths;
-    paths.terms = TermSet::volume_single | TermSet::volume_multiple;
+    paths.terms = terms;
     const auto count = static_cast<std::uint32_t>(kLightPlaces * probes.size());
     const auto sample = [&](std::uint32_t pixel, RandomStream& random) {
         const std::size_t place = pixel / probes.size(), probe = pixel % probes.size();

@@ -12,9 +12,9 @@
 
 namespace opaline::bake {
 
-/// Luminance along the rays of all probes by path tracing of light that volumes alone scattered,
-/// once or more often: place * probes + probe. The first channel counts; its variance is that of
-/// the luminance.
+/// Luminance along the rays of all probes by path tracing of light of some terms, by default what
+/// volumes alone scattered, once or more often: place * probes + probe. The first channel counts;
+/// its variance is that of the luminance.
 struct VolumeTruth {
     std::vector<Moments> luminance;
     std::uint32_t samples = 0;  ///< for each ray
@@ -28,6 +28,6 @@ struct VolumeTruth {
 formats::Result<VolumeTruth> trace_volume_truth(
     const ReferenceScene& reference, std::span<const VolumeProbe> probes, std::uint64_t seed,
     std::uint64_t max_events, const std::function<bool(const VolumeTruth&)>& is_enough,
-    const Context& context);
+    const Context& context, TermSet terms = TermSet::volume_single | TermSet::volume_multiple);
 
 }  // namespace opaline::bake

@@ -1,5 +1,6 @@
 // The integral along a ray through all volumes, the same steps as runtime/volumes/volume_march.cpp.
-// Specialised by VOLUMES, their number, and HARMONICS, the most terms that a node may have.
+// Specialised by VOLUMES, their number, HARMONICS, the most terms that a node may have, and GLOW, where
+// one of them has light of its own.
 // Distances are in units of the scene (view_unit), positions in bricks from a table's lowest corner.
 
 struct Volume {
@@ -9,6 +10,9 @@ struct Volume {
     vec4 extinction;     // where the density is 1 [1 / unit]
     vec4 albedo;
     uvec4 coefficient;  // the first; suns; the first entry of its phase function
+#ifdef GLOW
+    vec4 glow;  // colour of its own light, times the scale of codes [1 / unit]
+#endif
 };
 // Density: of each brick the scale, then 8 x 9 x 9 pairs of codes: of a voxel and of the next along x.
 // Coefficients: R, G, B. Phases: phase_table.h.
@@ -23,12 +27,18 @@ uniform Volume volumes[VOLUMES];
 #endif
 uniform usampler2D brick_numbers, density_codes, corner_numbers;
 uniform sampler2D node_light, phase_entries;
+#ifdef GLOW
+uniform usampler2D glow_words;
+#endif
 ivec2 place_of(uint i) { return ivec2(i & 2047u, i >> 11); }
 uint brick_at(uint cell) { return texelFetch(brick_numbers, place_of(cell), 0).r; }
 uint density_word(uint i) { return texelFetch(density_codes, place_of(i), 0).r; }
 uint node_at(uint corner) { return texelFetch(corner_numbers, place_of(corner), 0).r; }
 vec3 coefficient_at(uint i) { return texelFetch(node_light, place_of(i / 3u), 0).rgb; }
 float phase_at(uint i) { return texelFetch(phase_entries, place_of(i), 0).r; }
+#ifdef GLOW
+uint glow_word(uint i) { return texelFetch(glow_words, place_of(i), 0).r; }
+#endif
 int lowest_bit(uint bits) {
     int bit = 0;
     while (bit < VOLUMES && (bits >> bit & 1u) == 0u) ++bit;
@@ -46,6 +56,10 @@ uint density_word(uint i) { return density_words[i]; }
 uint node_at(uint corner) { return corner_nodes[corner]; }
 vec3 coefficient_at(uint i) { return vec3(coefficients[i], coefficients[i + 1u], coefficients[i + 2u]); }
 float phase_at(uint i) { return phase[i]; }
+#ifdef GLOW
+layout(std430, binding = 6) readonly buffer Glow { uint glow_codes[]; };
+uint glow_word(uint i) { return glow_codes[i]; }
+#endif
 int lowest_bit(uint bits) { return findLSB(bits); }
 #endif
 #ifndef RECORDS_IN_BLOCK
@@ -211,6 +225,36 @@ vec3 source_at(Volume volume, inout Traveller traveller, vec3 at, vec3 to_eye,
     return tame_to(mix(low, high, w.z), 1e20);
 }
 
+#ifdef GLOW
+// Own light: for each brick the first of its words, or kNone; then 9 x 9 x 9 codes a brick,
+// formats/opal/shared_exponent.h.
+vec3 glow_code(uint i) {
+    uint code = glow_word(i);
+    return vec3(code & 511u, code >> 9 & 511u, code >> 18 & 511u) * exp2(float(code >> 27) - 24.0);
+}
+
+// Radiance per unit at a point of the brick, `at` as density_at's.
+vec3 glow_at(Volume volume, Traveller traveller, vec3 at) {
+    uint first = glow_word(volume.numbers.x + traveller.brick);
+    if (first == kNone) return vec3(0.0);
+    vec3 base = min(floor(at), 7.0), w = at - base;
+    uvec3 b = uvec3(base);
+    uint i = first + (b.z * 9u + b.y) * 9u + b.x;
+    vec3 sum = vec3(0.0);
+    for (uint z = 0u; z < 2u; ++z, i += 81u) {
+        vec3 low = mix(glow_code(i), glow_code(i + 1u), w.x);
+        vec3 high = mix(glow_code(i + 9u), glow_code(i + 10u), w.x);
+        sum += (z == 0u ? 1.0 - w.z : w.z) * mix(low, high, w.y);
+    }
+    return tame_to(volume.glow.rgb * sum, 1e20);
+}
+
+// The way [units] over which light of a step comes through.
+vec3 way_through(vec3 c, float h, vec3 absorbed) {
+    return mix(vec3(h), absorbed / max(c, 1e-36), greaterThan(c * h, vec3(1e-6)));
+}
+#endif
+
 // 1 - exp(-x): where that would cancel, its Taylor series, whose first left-out term is below
 // 6e-8 x.
 vec3 absorbed_over(vec3 x) {
@@ -218,8 +262,11 @@ vec3 absorbed_over(vec3 x) {
     return mix(series, 1.0 - exp(-x), greaterThan(x, vec3(0.05)));
 }
 
-void step_ray(vec3 c, vec3 b, float h, inout Seen seen) {
+void step_ray(vec3 c, vec3 b, vec3 e, float h, inout Seen seen) {
     vec3 absorbed = absorbed_over(min(c * h, 1e4));
+#ifdef GLOW
+    seen.radiance += seen.transmittance * e * way_through(c, h, absorbed);
+#endif
     seen.radiance += seen.transmittance * (b / max(c, 1e-36)) * absorbed;
     seen.transmittance *= 1.0 - absorbed;
 }
@@ -236,11 +283,14 @@ void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin
     float h = (end - begin) / count;
     for (float i = 0.0; i < count && !is_opaque(seen); ++i) {
         float t = begin + (i + 0.5) * h;
-        vec3 extinction = vec3(0.0), scattered = vec3(0.0);
+        vec3 extinction = vec3(0.0), scattered = vec3(0.0), emitted = vec3(0.0);
         for (uint left = inside; left != 0u; left &= left - 1u) {
             int v = lowest_bit(left);
             vec3 place = travellers[v].origin + t * travellers[v].direction;
             vec3 at = clamp((place - travellers[v].corner) * 8.0, 0.0, 8.0);
+#ifdef GLOW
+            emitted += glow_at(volumes[v], travellers[v], at);
+#endif
             float density = density_at(volumes[v], travellers[v], at);
             if (!(density > 0.0)) continue;
             vec3 c = tame_to(density * volumes[v].extinction.rgb, 1e15);
@@ -248,7 +298,7 @@ void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin
             scattered += c * volumes[v].albedo.rgb *
                          source_at(volumes[v], travellers[v], at, to_eye, harmonic);
         }
-        step_ray(extinction, scattered, h, seen);
+        step_ray(extinction, scattered, emitted, h, seen);
     }
 }
 

@@ -46,6 +46,24 @@ TEST(ReadVolume, DefaultsAreDensityPerMetreAndAGreyAlbedoOf99Percent) {
     EXPECT_EQ(v.transform, glm::dmat4(1));
 }
 
+TEST(ReadVolume, LightOfItsOwnIsOneGridAndItsScales) {
+    const auto media = read_entry(R"({"temperature": "heat", "temperature_scale": 3000,
+                                      "emission_scale": 1e-5})");
+    ASSERT_TRUE(media) << faults(media);
+    EXPECT_EQ(media->volumes[0].temperature, "heat");
+    EXPECT_EQ(media->volumes[0].temperature_scale, 3000);
+    EXPECT_EQ(media->volumes[0].emission_scale, 1e-5);
+    EXPECT_TRUE(media->volumes[0].emission.empty());
+    EXPECT_EQ(read_entry(R"({"emission": "flame"})")->volumes[0].emission, "flame");
+    for (const char* entry :
+         {R"({"emission": "a", "temperature": "b"})", R"({"emission_scale": 2})",
+          R"({"temperature_scale": 2})", R"({"emission": "a", "temperature_scale": 2})",
+          R"({"emission": "a", "emission_scale": 0})", R"({"emission": 3})",
+          R"({"temperature": "a", "temperature_scale": -1})"}) {
+        EXPECT_FALSE(read_entry(entry)) << entry;
+    }
+}
+
 TEST(ReadVolume, ExtinctionIsPerMillimetreUnlessItSaysPerMetre) {
     const auto media = read_entry(R"({"sigma_t": [1, 2, 3]})");
     ASSERT_TRUE(media) << faults(media);

@@ -9,7 +9,9 @@
 
 #include "formats/opal/cubemap.h"
 #include "formats/opal/file_bytes.h"
+#include "formats/opal/half.h"
 #include "formats/opal/read_opal.h"
+#include "formats/opal/shared_exponent.h"
 
 namespace opaline::formats {
 namespace {
@@ -178,6 +180,25 @@ TEST_F(GoldenFile, EmittersToo) {
     EXPECT_EQ(emitters.own[0].radiance, (Rgb{100, 50, 25}));
     EXPECT_EQ(emitters.own[0].image, 0u);
     EXPECT_EQ(emitters.own[0].wrap_u, Wrap::mirror);
+}
+
+TEST_F(GoldenFile, LightOfVolumesToo) {
+    const AssetView& asset = read("glow1.opal");
+    EXPECT_EQ(version_of(kGlowSection), 1u);
+    EXPECT_EQ(version_of(kVoluSection), 1u);
+    EXPECT_EQ(list_emitters(asset.emitters), "'Fire'");
+    const GlowView& glow = asset.volumes.glow;
+    ASSERT_EQ(glow.record.size(), 2u);
+    EXPECT_EQ(glow.record[0].terms, 4u);
+    EXPECT_EQ(glow.record[0].value_scale, 0.25f);
+    EXPECT_EQ(glow.record[0].code_scale, 2);
+    EXPECT_EQ(glow.record[1].volume, 1u);
+    EXPECT_EQ(glow.record[1].brick_count, 0u);
+    ASSERT_EQ(glow.brick.size(), 1u);
+    EXPECT_EQ(glow.brick[0], 1u);
+    ASSERT_EQ(glow.code.size(), kBrickVoxels);
+    EXPECT_EQ(unpack_shared(glow.code[17]), (Rgb{27.875f, 15.375f, 34.5f}));
+    EXPECT_EQ(float_from_half(glow.value[glow.record[1].first_value + 2]), 41120);
 }
 
 TEST_F(GoldenFile, HolesToo) {

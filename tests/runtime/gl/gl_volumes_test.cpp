@@ -10,6 +10,7 @@
 #include "runtime/shade.h"
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
+#include "tests/runtime/volumes/glow_support.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 #include "tests/support/cut_phase.h"
 
@@ -222,6 +223,35 @@ TEST_F(Gl, TermsOfVolumesAreShownApart) {
         const auto gl = renderer.render(camera(), options);
         ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
         test::expect_same_picture(draw_on_cpu(asset, camera(), options), *gl);
+    }
+}
+
+TEST_F(Gl, LightOfVolumesAgrees) {
+    Asset asset = volumes_alone({smoke(8, 9, 4)});
+    const auto flame = [](float x, float y, float z) {
+        const float r2 = (x - 3) * (x - 3) + (y + 2) * (y + 2) + (z - 4) * (z - 4);
+        return std::exp(-r2 / 20) * Rgb{30, 10, 2};
+    };
+    formats::append_emitter(asset.emitters, "flame");
+    test::add_glow(asset.volumes, smoke(8, 9, 4), flame, {0.5f, 0.3f, 0.1f});
+    // Beside a volume that is dark.
+    test::add_volume(asset.volumes, slanted());
+    const LightVector light = project_environment(kSky, kSize);
+    GlRenderer renderer = lit_renderer(asset);
+    for (const Rgb color : {Rgb{1, 1, 1}, Rgb{0, 2, 0.5f}, Rgb{}}) {
+        const std::array<Rgb, 1> colors{color};
+        ASSERT_TRUE(renderer.set_light(light, {}, {colors}));
+        const auto gl = renderer.render(camera(), {.background = false});
+        ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
+        const VolumeLight volumes =
+            relight_volumes(asset.view().volumes, light, {.emitters = {colors}});
+        SoftwareOptions software;
+        software.supersampling = GlRenderOptions{}.supersampling;
+        software.background = false;
+        software.volumes = &volumes;
+        const auto cpu = render_software(asset.view(), {}, kSky, {}, camera(), software);
+        ASSERT_TRUE(cpu.has_value());
+        test::expect_same_picture(*cpu, *gl);
     }
 }
 

@@ -1,0 +1,105 @@
+#include "bake/volumes/glow_walks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "bake/volumes/volume_walks.h"
+#include "bake/volumes/walk_parts.h"
+#include "formats/opal/spherical_harmonics.h"
+
+namespace opaline::bake {
+namespace {
+
+// Bands [first, end) that follow the extinction of `first`.
+struct Bands {
+    int first = 0, end = 3;
+};
+
+// Adds to `sum`, one for each grid, the light that arrives at a point from a direction: a walk
+// against the light gathers what is sent out along each of its flights. Track length is an unbiased
+// estimate, also where there is light without density.
+std::uint64_t follow_glow(const GlowWalkSpace& walk, const Bands& bands, glm::vec3 at,
+                          glm::vec3 direction, FlightRandom& random, std::span<glm::vec3> sum) {
+    std::uint64_t traced = 0;
+    glm::vec3 weight(0);
+    for (int band = bands.first; band < bands.end; ++band) {
+        weight[band] = 1;
+    }
+    for (std::uint32_t n = 0; n < kMostScatterings; ++n) {
+        const float reach = distance_to_surface(walk.rays, at, direction, traced);
+        const Collision hit = sample_flight(walk.space, static_cast<std::size_t>(bands.first), at,
+                                            direction, reach, random);
+        const float length = hit.happens ? hit.distance : reach;
+        for (std::size_t i = 0; i < walk.glow.size(); ++i) {
+            sum[i] += weight * glow_along(walk.glow[i], at, direction, length);
+        }
+        if (!hit.happens) {
+            break;
+        }
+        at += hit.distance * direction;
+        const DensityVolume& own = walk.space.volumes[hit.volume];
+        float most = 0;
+        for (int band = bands.first; band < bands.end; ++band) {
+            weight[band] *= own.albedo[static_cast<std::size_t>(band)];
+            most = std::max(most, std::abs(weight[band]));
+        }
+        if (most < kWalkRoulette) {
+            if (random() * kWalkRoulette >= most) {
+                break;
+            }
+            weight *= kWalkRoulette / most;
+        }
+        weight *= turn_walk(own.phase, direction, random).weight;
+    }
+    return traced;
+}
+
+}  // namespace
+
+std::uint64_t gather_glow(const GlowWalkSpace& walk, const GlowReceiver& receiver,
+                          std::span<glm::vec3> out) {
+    std::ranges::fill(out, glm::vec3(0));
+    std::vector<Bands> tracks{{0, 3}};
+    if (!walk.space.is_grey) {
+        tracks = {{0, 1}, {1, 2}, {2, 3}};
+    }
+    std::vector<glm::vec3> sum(walk.glow.size());
+    std::array<float, formats::kMaxHarmonics> view{};
+    std::uint64_t traced = 0;
+    FlightRandom shift(walk.seed, RandomStage::volume_glow, receiver.node);
+    const float u = shift(), v = shift();
+    for (std::uint32_t i = 0; i < receiver.walks; ++i) {
+        const glm::vec3 direction = even_direction(i, receiver.walks, u, v);
+        std::ranges::fill(sum, glm::vec3(0));
+        for (const Bands& bands : tracks) {
+            FlightRandom random(walk.seed, RandomStage::volume_glow,
+                                (std::uint64_t{i} + 1) << 40 | std::uint64_t{receiver.node});
+            traced += follow_glow(walk, bands, receiver.position, direction, random, sum);
+        }
+        formats::eval_spherical_harmonics({direction.x, direction.y, direction.z},
+                                          std::span(view).first(receiver.terms));
+        for (std::size_t grid = 0; grid < sum.size(); ++grid) {
+            for (std::uint32_t k = 0; k < receiver.terms; ++k) {
+                out[grid * receiver.terms + k] += view[k] * sum[grid];
+            }
+        }
+    }
+    // Coefficient k of J is (-1)^l lambda'_l times that of the incident radiance.
+    const ScaledPhase& phase = walk.space.volumes[receiver.volume].phase;
+    constexpr float kSphere = 4 * std::numbers::pi_v<float>;
+    for (std::uint32_t k = 0, degree = 0; k < receiver.terms; ++k) {
+        degree += k >= (degree + 1) * (degree + 1) ? 1 : 0;
+        const float factor = (degree % 2 == 0 ? kSphere : -kSphere) *
+                             static_cast<float>(phase.lambda[degree]) /
+                             static_cast<float>(receiver.walks);
+        for (std::size_t grid = 0; grid < sum.size(); ++grid) {
+            out[grid * receiver.terms + k] *= factor;
+        }
+    }
+    return traced;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,266 @@
+#include "formats/media/load_emission.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "formats/gltf/report.h"
+#include "formats/media/black_body.h"
+#include "formats/media/limits.h"
+#include "formats/vdb/limits.h"
+
+namespace opaline::formats {
+namespace {
+
+using gltf::in_quotes;
+using Color = glm::vec3;
+using Emission = SparseGrid<Color>;
+constexpr int kSide = Emission::kSide;
+
+// Bricks along each axis: `low` and what follows.
+struct BrickBox {
+    glm::ivec3 low{0}, extent{0};
+
+    std::size_t cells() const {
+        return static_cast<std::size_t>(extent.x) * static_cast<std::size_t>(extent.y) *
+               static_cast<std::size_t>(extent.z);
+    }
+};
+
+template <class T>
+BrickBox box_of(const SparseGrid<T>& grid) {
+    return {grid.first_brick, grid.extent};
+}
+
+BrickBox join(const BrickBox& a, const BrickBox& b) {
+    const glm::ivec3 low = glm::min(a.low, b.low);
+    return {low, glm::max(a.low + a.extent, b.low + b.extent) - low};
+}
+
+// The same grid with a table over `box`, which holds its own.
+template <class T>
+void widen(SparseGrid<T>& grid, const BrickBox& box) {
+    std::vector<std::uint32_t> table;
+    table.reserve(box.cells());
+    glm::ivec3 b;
+    for (b.z = 0; b.z < box.extent.z; ++b.z) {
+        for (b.y = 0; b.y < box.extent.y; ++b.y) {
+            for (b.x = 0; b.x < box.extent.x; ++b.x) {
+                table.push_back(grid.brick_at(box.low + b));
+            }
+        }
+    }
+    grid.first_brick = box.low;
+    grid.extent = box.extent;
+    grid.table = std::move(table);
+}
+
+// Fills a grid over `box` where may_glow(brick); bricks without light are left out.
+template <class MayGlow, class Value>
+Emission fill_bricks(const BrickBox& box, MayGlow&& may_glow, Value&& value) {
+    Emission grid;
+    grid.first_brick = box.low;
+    grid.extent = box.extent;
+    grid.table.reserve(box.cells());
+    std::vector<Color> brick(Emission::kBrickVoxels);
+    glm::ivec3 b;
+    for (b.z = 0; b.z < box.extent.z; ++b.z) {
+        for (b.y = 0; b.y < box.extent.y; ++b.y) {
+            for (b.x = 0; b.x < box.extent.x; ++b.x) {
+                bool is_dark = true;
+                if (!may_glow(box.low + b)) {
+                    grid.table.push_back(Emission::kEmpty);
+                    continue;
+                }
+                for (int i = 0; i < static_cast<int>(brick.size()); ++i) {
+                    const glm::ivec3 at =
+                        kSide * (box.low + b) +
+                        glm::ivec3(i % kSide, i / kSide % kSide, i / (kSide * kSide));
+                    Color& voxel = brick[static_cast<std::size_t>(i)];
+                    voxel = value(at);
+                    is_dark = is_dark && voxel == Color(0);
+                }
+                grid.table.push_back(is_dark ? Emission::kEmpty
+                                             : static_cast<std::uint32_t>(grid.brick_count()));
+                if (!is_dark) {
+                    grid.value.insert(grid.value.end(), brick.begin(), brick.end());
+                }
+            }
+        }
+    }
+    return grid;
+}
+
+// Values of a grid at the voxels of another one.
+struct Resampler {
+    const VdbGrid& grid;
+    glm::mat4 to_own{1};  // from index coordinates of the density to those of the grid
+    bool is_same = true;
+
+    // Whether a brick of the density's lattice may have values.
+    bool may_reach(glm::ivec3 brick) const {
+        return !is_same || (grid.is_color ? grid.color.brick_at(brick)
+                                          : grid.scalar.brick_at(brick)) != Emission::kEmpty;
+    }
+    Color at(glm::ivec3 voxel) const {
+        if (is_same) {
+            return grid.is_color ? grid.color.at(voxel) : Color(grid.scalar.at(voxel));
+        }
+        const Color place(to_own * glm::vec4(glm::vec3(voxel), 1));
+        return grid.is_color ? grid.color.sample(place) : Color(grid.scalar.sample(place));
+    }
+};
+
+double shortest_edge(const glm::dmat4& m) {
+    return std::min({glm::length(glm::dvec3(m[0])), glm::length(glm::dvec3(m[1])),
+                     glm::length(glm::dvec3(m[2]))});
+}
+
+// The bricks of the density's lattice that a grid reaches; nothing where they are too many.
+std::optional<BrickBox> reach_of(const VdbGrid& grid, const glm::dmat4& density_space) {
+    const auto corners = grid.is_color ? grid.color.corners() : grid.scalar.corners();
+    const glm::dmat4 to_index = glm::inverse(density_space);
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const glm::dvec3& corner : corners) {
+        const glm::dvec3 at(to_index * glm::dvec4(corner, 1));
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+    }
+    const double most = static_cast<double>(vdb::kMaxIndex);
+    if (!(glm::all(glm::greaterThan(low, glm::dvec3(-most))) &&
+          glm::all(glm::lessThan(high, glm::dvec3(most))))) {
+        return std::nullopt;
+    }
+    const glm::ivec3 first = Emission::brick_of(glm::ivec3(glm::floor(low)));
+    const glm::ivec3 last = Emission::brick_of(glm::ivec3(glm::ceil(high)));
+    return BrickBox{first, last - first + 1};
+}
+
+// black_body_radiance at 2048 temperatures up to a largest one, linear between them.
+class HeatColors {
+  public:
+    explicit HeatColors(double hottest) : step_(hottest / kSteps) {
+        for (int i = 0; i <= kSteps + 1; ++i) {
+            const Rgb c = black_body_radiance(i * step_);
+            radiance_.emplace_back(c.r, c.g, c.b);
+        }
+    }
+    /// Precondition: 0 <= kelvin <= the largest one.
+    Color at(double kelvin) const {
+        const double place = step_ > 0 ? kelvin / step_ : 0;
+        const auto i = static_cast<std::size_t>(std::clamp(place, 0.0, double{kSteps}));
+        const auto f = static_cast<float>(place - static_cast<double>(i));
+        return radiance_[i] + f * (radiance_[i + 1] - radiance_[i]);
+    }
+
+  private:
+    static constexpr int kSteps = 2048;
+    double step_;
+    std::vector<Color> radiance_;
+};
+
+Color to_vec3(Rgb c) {
+    return {c.r, c.g, c.b};
+}
+
+}  // namespace
+
+void warn_of_repairs(const std::filesystem::path& file, const VdbGrid& grid,
+                     std::vector<Diagnostic>& warnings) {
+    if (grid.not_a_number + grid.negative > 0) {
+        warnings.push_back(
+            make_warning(file.string(), "grid " + in_quotes(grid.name),
+                         std::to_string(grid.not_a_number) + " voxels are not a number and " +
+                             std::to_string(grid.negative) + " are negative, of " +
+                             std::to_string(grid.active_voxels) + ": they count as 0",
+                         "export it again if they should not be"));
+    }
+}
+
+Status load_emission(const VolumeEntry& entry, const std::filesystem::path& file,
+                     const glm::dmat4& density_space, const VdbReadOptions& reader, Volume& volume,
+                     std::vector<Diagnostic>& warnings) {
+    const bool is_heat = !entry.temperature.empty();
+    const std::string name = is_heat ? entry.temperature : entry.emission;
+    if (name.empty()) return ok_status();
+    const auto refuse = [&](std::string fault, std::string remedy) {
+        return make_error(ErrorKind::bad_input, file.string(), "grid " + in_quotes(name),
+                          std::move(fault), std::move(remedy));
+    };
+    const std::vector<std::string> names{name};
+    auto read = read_vdb(file, names, reader);
+    if (!read) return std::move(read).error();
+    const VdbGrid& grid = read->front();
+    warn_of_repairs(file, grid, warnings);
+    if (is_heat && grid.is_color) {
+        return refuse("it holds colours, not temperatures", "name a grid of one float a voxel");
+    }
+    const glm::dmat4& own_space = grid.is_color ? grid.color.to_scene : grid.scalar.to_scene;
+    const Resampler values{grid, glm::mat4(glm::inverse(own_space) * density_space),
+                           own_space == density_space};
+    // Only what absorbs glows by its heat.
+    const auto reach =
+        is_heat ? std::optional(box_of(volume.density)) : reach_of(grid, density_space);
+    // Bricks that are looked at are bounded, whatever the file says.
+    if (!reach || join(*reach, box_of(volume.density)).cells() > vdb::kMaxTableBricks ||
+        (!values.is_same && !is_heat && reach->cells() > vdb::kMaxBricks)) {
+        return refuse("it takes too many voxels of the density's size",
+                      "write it with the voxels of the density, or cut off what lies far away");
+    }
+    double hottest = 0;
+    if (is_heat) {
+        hottest = entry.temperature_scale *
+                  static_cast<double>(*std::ranges::max_element(grid.scalar.value));
+        if (!(hottest <= media::kMaxTemperature)) {
+            return refuse("it is hotter than 100000 K",
+                          "give temperature_scale, kelvin for a value of 1");
+        }
+    }
+    if (!values.is_same && shortest_edge(own_space) < 0.75 * shortest_edge(density_space)) {
+        warnings.push_back(
+            make_warning(file.string(), "grid " + in_quotes(name),
+                         "its voxels are finer than those of the density, at which it is sampled",
+                         "write both with the same voxels"));
+    }
+    const Color absorbed = (Color(1) - to_vec3(volume.albedo)) * to_vec3(volume.sigma_t);
+    const HeatColors heat(hottest);
+    const auto scale = static_cast<float>(entry.emission_scale);
+    float most = 0;
+    Emission emission = fill_bricks(
+        *reach,
+        [&](glm::ivec3 brick) {
+            return values.may_reach(brick) &&
+                   (!is_heat || volume.density.brick_at(brick) != Emission::kEmpty);
+        },
+        [&](glm::ivec3 voxel) {
+            Color radiance = scale * values.at(voxel);
+            if (is_heat) {
+                const double kelvin =
+                    entry.temperature_scale * static_cast<double>(values.at(voxel).x);
+                radiance = scale * volume.density.at(voxel) * absorbed * heat.at(kelvin);
+            }
+            most = std::max({most, radiance.x, radiance.y, radiance.z});
+            return radiance;
+        });
+    if (!(most <= static_cast<float>(media::kMaxEmission))) {
+        return refuse("it sends out more than 1e15 W m^-3 sr^-1", "lower emission_scale");
+    }
+    if (emission.empty()) {
+        warnings.push_back(make_warning(
+            file.string(), "grid " + in_quotes(name), "nothing of it is light that can be seen",
+            is_heat ? "give temperature_scale, kelvin for a value of 1; only what absorbs glows: "
+                      "density above 0, albedo below 1"
+                    : "raise emission_scale"));
+        return ok_status();
+    }
+    const BrickBox both = join(box_of(emission), box_of(volume.density));
+    widen(emission, both);
+    widen(volume.density, both);
+    volume.emission = std::move(emission);
+    volume.emitter = file.stem().string();
+    return ok_status();
+}
+
+}  // namespace opaline::formats

@@ -1,0 +1,187 @@
+// Light that volumes send out by themselves, as it is baked.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "bake/volumes/glow_walks.h"
+#include "bake/volumes/volume_knobs.h"
+#include "formats/opal/half.h"
+#include "formats/opal/shared_exponent.h"
+#include "runtime/volumes/volume_march.h"
+#include "tests/bake/volumes/volume_support.h"
+
+namespace opaline::bake {
+namespace {
+
+formats::Scene glowing_blob(glm::vec3 sigma_t, glm::vec3 albedo, float g, glm::vec3 own) {
+    formats::Volume blob = tests::make_volume(tests::make_blob(0.5, 0.125), 1, 0, g);
+    blob.sigma_t = {sigma_t.x, sigma_t.y, sigma_t.z};
+    blob.albedo = {albedo.x, albedo.y, albedo.z};
+    tests::make_it_glow(blob, own);
+    return tests::scene_of(std::move(blob));
+}
+
+formats::Volumes bake_glowing(const formats::Scene& scene, const Knobs& knobs,
+                              unsigned threads = 0) {
+    const VolumePlan plan = plan_volumes(scene, knobs);
+    const RayScene sky = tests::empty_space();
+    StageLog log;
+    Context context;
+    context.threads = threads;
+    auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, context, log);
+    EXPECT_TRUE(volumes.has_value());
+    return std::move(*volumes);
+}
+
+Knobs glow_knobs() {
+    Knobs knobs = tests::knobs_for(Quality::preview);
+    knobs.cubemap_size = 8;
+    knobs.set(kVolumeSpacing, 4);
+    return knobs;
+}
+
+// At the middle of a blob that absorbs, light L_e (1 - exp(-depth)) comes from all directions.
+TEST(GlowWalks, InTheMiddleOfABlobTheyFindWhatItsHalvesAbsorb) {
+    const glm::vec3 sigma_t(0.5f, 2, 6), own(3, 2, 1);
+    const formats::Scene scene = glowing_blob(sigma_t, glm::vec3(0), 0, own);
+    const DensitySpace space = make_density_space(scene);
+    const auto grids = make_glowing_grids(scene, {0});
+    const RayScene sky = tests::empty_space();
+    glm::vec3 found(0);
+    gather_glow({space, grids, sky, 7}, {0, 0, glm::vec3(0), 20000, 1}, {&found, 1});
+    const float column = 0.5f * std::sqrt(std::numbers::pi_v<float> / 2);
+    const glm::vec3 truth =
+        std::sqrt(4 * std::numbers::pi_v<float>) * own * (1.0f - glm::exp(-column * sigma_t));
+    for (int band = 0; band < 3; ++band) {
+        EXPECT_NEAR(found[band], truth[band], 0.02f * truth[band]) << band;
+    }
+}
+
+TEST(GlowWalks, TheirLightIsScatteredTowardWhereItGoes) {
+    // Beside the blob all its light comes from one side: it is scattered forward, away from it.
+    const formats::Scene scene = glowing_blob(glm::vec3(2), glm::vec3(0.5f), 0.7f, glm::vec3(1));
+    const DensitySpace space = make_density_space(scene);
+    const auto grids = make_glowing_grids(scene, {0});
+    const RayScene sky = tests::empty_space();
+    std::array<glm::vec3, 4> found{};
+    gather_glow({space, grids, sky, 7}, {0, 0, glm::vec3(1.5f, 0, 0), 4000, 4}, found);
+    // Term 3 is x of the direction toward the eye, which the light goes on to.
+    EXPECT_GT(found[3].x, 0.5f * found[0].x);
+    EXPECT_NEAR(found[1].x, 0, 0.05f * found[0].x);
+    EXPECT_NEAR(found[2].x, 0, 0.05f * found[0].x);
+}
+
+TEST(BakeGlow, InEquilibriumWithEvenLightAScatteringVolumeCannotBeSeen) {
+    for (const float g : {0.0f, 0.5f}) {
+        const formats::Scene scene = glowing_blob({1, 3, 6}, {0.9f, 0.7f, 0.4f}, g, glm::vec3(1));
+        const formats::Volumes volumes = bake_glowing(scene, glow_knobs());
+        ASSERT_EQ(volumes.glow.record.size(), 1u);
+        runtime::LightVector white = runtime::project_cubemap(
+            std::vector<formats::Rgb>(formats::cubemap_texels(8), {1, 1, 1}), 8);
+        const runtime::VolumeLight lit = runtime::relight_volumes(volumes.view(), white);
+        const runtime::LitVolumes ready = runtime::light_volumes(volumes.view(), lit);
+        double worst = 0;
+        for (const float off : {0.0f, 0.3f, 0.7f, 1.0f}) {
+            const runtime::MarchResult seen =
+                runtime::march_volumes(ready, {{-4, off, 0.1f}, {1, 0, 0}});
+            for (const float total :
+                 {seen.radiance.r + seen.transmittance.r, seen.radiance.g + seen.transmittance.g,
+                  seen.radiance.b + seen.transmittance.b}) {
+                worst = std::max(worst, std::abs(static_cast<double>(total) - 1));
+            }
+        }
+        EXPECT_LT(worst, 0.04) << "g " << g;
+    }
+}
+
+TEST(BakeGlow, AnyNumberOfThreadsGivesTheSameBits) {
+    const formats::Scene scene = glowing_blob({1, 2, 3}, glm::vec3(0.8f), 0.3f, glm::vec3(1));
+    Knobs knobs = glow_knobs();
+    knobs.set(kVolumeSpacing, 8);
+    const formats::Glow one = bake_glowing(scene, knobs, 1).glow;
+    const formats::Glow four = bake_glowing(scene, knobs, 4).glow;
+    EXPECT_EQ(one.code, four.code);
+    EXPECT_EQ(one.value, four.value);
+    EXPECT_EQ(one.brick, four.brick);
+    EXPECT_FALSE(one.value.empty());
+}
+
+TEST(BakeGlow, RadianceIsKeptToAThousandthAndThereWhereNoDensityIs) {
+    formats::Scene scene = glowing_blob({1, 1, 1}, glm::vec3(0), 0, {3, 2, 1});
+    formats::Volume& volume = scene.volumes[0];
+    for (float& value : volume.density.value) {
+        value = value < 0.9f ? 0 : value;
+    }
+    const formats::Volumes volumes = bake_glowing(scene, glow_knobs());
+    const formats::VolumeRecord& record = volumes.records.at(0);
+    ASSERT_EQ(volumes.glow.record.size(), 1u);
+    const formats::GlowRecord& glow = volumes.glow.record[0];
+    EXPECT_EQ(glow.terms, 0u) << "nothing is scattered";
+    std::size_t found = 0;
+    for (std::uint32_t cell = 0; cell < volumes.table.size(); ++cell) {
+        const auto at = std::ranges::find(volumes.glow.brick, volumes.table[cell]);
+        if (volumes.table[cell] == formats::kNoBrick || at == volumes.glow.brick.end()) {
+            continue;
+        }
+        const glm::ivec3 brick =
+            glm::ivec3(record.first_brick[0], record.first_brick[1], record.first_brick[2]) +
+            glm::ivec3(cell % record.extent[0], cell / record.extent[0] % record.extent[1],
+                       cell / record.extent[0] / record.extent[1]);
+        const auto first = static_cast<std::size_t>(at - volumes.glow.brick.begin()) * 512;
+        for (int i = 0; i < 512; ++i) {
+            const glm::vec3 truth =
+                volume.emission.at(8 * brick + glm::ivec3(i % 8, i / 8 % 8, i / 64));
+            const formats::Rgb kept =
+                glow.code_scale *
+                formats::unpack_shared(volumes.glow.code[first + static_cast<std::size_t>(i)]);
+            EXPECT_NEAR(kept.r, truth.x, 0.002f * truth.x + 1e-7f);
+            EXPECT_NEAR(kept.b, truth.z, 0.002f * truth.x + 1e-7f);
+            found += truth != glm::vec3(0) ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(found, static_cast<std::size_t>(std::ranges::count_if(
+                         volume.emission.value, [](glm::vec3 v) { return v != glm::vec3(0); })));
+}
+
+TEST(PlanGlow, LightUnderTheBudgetIsLeftOutAndWhatIsLeftOutIsDarker) {
+    Knobs knobs = glow_knobs();
+    knobs.set(kVolumeSpacing, 8);
+    for (const float own : {2e-4f, 1.0f}) {
+        formats::Scene scene = glowing_blob(glm::vec3(0.3f), glm::vec3(0.5f), 0, glm::vec3(own));
+        const VolumePlan plan = plan_volumes(scene, knobs);
+        ASSERT_EQ(plan.entries.size(), 3u);
+        const PlanEntry& entry = plan.entries[2];
+        EXPECT_EQ(entry.name, "emitters");
+        EXPECT_EQ(entry.on, own == 1.0f) << entry.reason;
+        EXPECT_EQ(plan.layouts.at(0).glows, entry.on);
+        EXPECT_EQ(plan.layouts[0].glow_terms, entry.on ? 1u : 0u);
+        // Forced on, it adds no more than the bound along any ray.
+        Knobs forced = knobs;
+        forced.simulate_all = true;
+        const formats::Volumes volumes = bake_glowing(scene, forced);
+        const runtime::VolumeLight lit =
+            runtime::relight_volumes(volumes.view(), {}, {.terms = formats::TermSet::none});
+        const runtime::LitVolumes ready = runtime::light_volumes(volumes.view(), lit);
+        const float seen = runtime::march_volumes(ready, {{-4, 0, 0}, {1, 0, 0}}).radiance.g;
+        EXPECT_GT(seen, 0);
+        EXPECT_LT(static_cast<double>(seen), entry.bound);
+    }
+}
+
+TEST(PlanGlow, WhatIsLeftOutByItsNameIsNotThere) {
+    const formats::Scene scene = glowing_blob(glm::vec3(1), glm::vec3(0.5f), 0, glm::vec3(1));
+    BakeOptions options;
+    options.quality = Quality::draft;
+    options.effects = {"volume-single"};
+    const auto knobs = resolve_knobs(all_effects(), options);
+    ASSERT_TRUE(knobs);
+    const VolumePlan plan = plan_volumes(scene, *knobs);
+    EXPECT_FALSE(plan.entries.at(2).on);
+    EXPECT_EQ(plan.layouts.at(0).glow_terms, 0u);
+    EXPECT_TRUE(bake_glowing(scene, *knobs).glow.record.empty());
+}
+
+}  // namespace
+}  // namespace opaline::bake
