@@ -171,7 +171,9 @@ OPALINE_API opaline_status opaline_gl_light_volumes(opaline_gl* gl,
            the ray from begin >= 0 to end: as opaline_volumes_march with its usual options. An end
            of 1e30: a ray without end. A pixel shows radiance + transmittance * its color.
        OpalineVolumeSample opaline_sample_volumes(vec3 place, vec3 to_eye)
-           .extinction [1/m] and .scattered radiance per metre: as opaline_volumes_sample. */
+           .extinction [1/m] and .scattered radiance per metre: as opaline_volumes_sample.
+
+   What volumes send out by themselves (fire) is not part of either yet. */
 typedef struct opaline_gl_volumes {
     size_t struct_size; /* in: sizeof(opaline_gl_volumes) */
     uint32_t count;     /* 0: there are none, or without the flag; then all names are 0 */

@@ -114,6 +114,10 @@ std::vector<std::string> left_out_of_page(const AssetView& asset) {
     if (!asset.clouds.empty()) {
         left_out.push_back("its light does not turn, and its clouds stand still");
     }
+    if (!asset.volumes.glow.empty()) {
+        left_out.emplace_back(
+            "light of emitters in its volumes, and what these send out themselves");
+    }
     if (has_bodies_apart(asset)) {
         left_out.push_back("beneath its clouds all bodies have the light of their centre");
     }
