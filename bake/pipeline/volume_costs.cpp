@@ -17,6 +17,26 @@ PlanEntry* payer_of(std::span<PlanEntry> plan, std::uint32_t volume, std::string
     return found == plan.end() ? nullptr : &*found;
 }
 
+// Walks of a volume that gather light of volumes: they fly as the others do, and look along their
+// flights for light: in half of the volume as a guess, three channels at twice the time of one.
+Work glow_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout) {
+    constexpr double kShortWalk = 2, kGlowing = 0.5 * 2;
+    if (!(work.nodes > 0) || layout.glow_walks == 0) {
+        return {};
+    }
+    const double flights =
+        work.walks > 0 && work.flights > 0 ? work.flights / (work.nodes * work.walks) : kShortWalk;
+    const double steps = work.depth_steps / (work.nodes * work.cells);
+    return {
+        0, work.nodes * layout.glow_walks * work.tracks *
+               (flights * input.rates.volume_flight + kGlowing * steps * input.rates.density_step)};
+}
+
+// Three halves a term, four bytes a voxel of the bricks that glow: half of them as a guess.
+double glow_bytes(const VolumeWork& work, const VolumeLayout& layout) {
+    return 6 * work.nodes * layout.glow_terms + (layout.glows ? 2 * work.voxels : 0);
+}
+
 }  // namespace
 
 CostedVolumes make_costed_volumes(const CostRequest& request) {
@@ -64,6 +84,18 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         bill.open("self-check of volumes");
         bill.add({0, static_cast<double>(check.max_events) * request.rates.traced_collision +
                          entries * request.rates.gather_entry});
+    }
+    if (count_glowing(volumes.layouts) > 0) {
+        bill.open("light of volumes");
+        for (std::size_t i = 0; i < volumes.works.size(); ++i) {
+            PlanEntry* const payer = payer_of(volume_plan, volumes.layouts[i].volume, "emitters");
+            bill.add(glow_work(input, volumes.works[i], volumes.layouts[i]), payer);
+            bill.add_bytes(glow_bytes(volumes.works[i], volumes.layouts[i]), payer);
+        }
+        bill.open("self-check of light of volumes");
+        const VolumeCheckOptions check =
+            volume_check_effort(request.scene, volumes.layouts, request.knobs);
+        bill.add({0, static_cast<double>(check.max_events) * request.rates.traced_collision});
     }
     if (request.facts.receivers > 0) {
         bill.open("shadows of volumes");
