@@ -112,7 +112,7 @@ inline constexpr KnobSpec kVolumeMethod{
     .placeholder = "auto|path-integration|walks [auto]",
     .help =
         "how light that is scattered more than once in a volume is found: by random walks, or by "
-        "most probable paths, which have no noise, err by 10 to 30 % and pay in media so dense "
+        "most probable paths, which have no noise, err by some 30 % and pay in media so dense "
         "that walks are long; auto: walks, unless paths take less work and their measured error "
         "fits",
     .lowest = 0,
