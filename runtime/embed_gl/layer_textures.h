@@ -5,8 +5,8 @@
 
 #include "formats/opal/vec3.h"
 #include "runtime/clouds/layer_light.h"
-#include "runtime/embed_gl/gl_names.h"
 #include "runtime/clouds/shader_layer.h"
+#include "runtime/embed_gl/gl_names.h"
 #include "runtime/embed_gl/texel_lines.h"
 
 namespace opaline::runtime {
