@@ -20,6 +20,21 @@ using formats::kNoBrick;
 
 constexpr std::size_t kSide = kBrickSide + 1;
 
+// Where the i-th of a brick's 9 x 9 x 9 voxels is, x fastest: in it or the brick above along some
+// axes, bit a for axis a.
+struct PaddedVoxel {
+    std::size_t neighbour = 0, offset = 0;
+};
+PaddedVoxel place_of(std::size_t i) {
+    const std::array<std::size_t, 3> at{i % kSide, i / kSide % kSide, i / kSide / kSide};
+    PaddedVoxel voxel;
+    for (std::size_t a = 3; a-- > 0;) {
+        voxel.neighbour |= (at[a] / kBrickSide) << a;
+        voxel.offset = voxel.offset * kBrickSide + at[a] % kBrickSide;
+    }
+    return voxel;
+}
+
 // The density at a brick's 9 x 9 x 9 voxels, x fastest.
 using PaddedBrick = std::array<float, kSide * kSide * kSide>;
 
@@ -27,12 +42,7 @@ PaddedBrick pad_brick(const VolumeLattice& lattice, std::array<std::int32_t, 3> 
     const BrickBlock block = brick_block(lattice, cell);
     PaddedBrick value{};
     for (std::size_t i = 0; i < value.size(); ++i) {
-        const std::array<std::size_t, 3> at{i % kSide, i / kSide % kSide, i / kSide / kSide};
-        std::size_t neighbour = 0, offset = 0;
-        for (std::size_t a = 3; a-- > 0;) {
-            neighbour |= (at[a] / kBrickSide) << a;
-            offset = offset * kBrickSide + at[a] % kBrickSide;
-        }
+        const auto [neighbour, offset] = place_of(i);
         const std::uint32_t brick = block.number[neighbour];
         if (brick == kNoBrick) continue;
         value[i] = lattice.density_scale[brick] *
@@ -85,12 +95,7 @@ std::vector<std::uint32_t> pad_glow(const VolumeGlow& glow, const BrickBlock& bl
     std::vector<std::uint32_t> words(kSide * kSide * kSide);
     bool is_dark = true;
     for (std::size_t i = 0; i < words.size(); ++i) {
-        const std::array<std::size_t, 3> at{i % kSide, i / kSide % kSide, i / kSide / kSide};
-        std::size_t neighbour = 0, offset = 0;
-        for (std::size_t a = 3; a-- > 0;) {
-            neighbour |= (at[a] / kBrickSide) << a;
-            offset = offset * kBrickSide + at[a] % kBrickSide;
-        }
+        const auto [neighbour, offset] = place_of(i);
         const std::uint32_t brick = block.number[neighbour];
         const std::uint32_t place = brick == kNoBrick ? kNoBrick : glow.place[brick];
         if (place == kNoBrick) continue;

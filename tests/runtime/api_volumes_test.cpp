@@ -8,12 +8,9 @@
 #include <random>
 #include <thread>
 
-#include "runtime/opaline.hpp"
 #include "runtime/volumes/volume_sample.h"
-#include "tests/formats/opal/opal_bytes.h"
+#include "tests/runtime/api_volumes_support.h"
 #include "tests/runtime/light_test_support.h"
-#include "tests/runtime/volumes/glow_support.h"
-#include "tests/runtime/volumes/synthetic_volume.h"
 
 namespace opaline::runtime {
 namespace {
@@ -21,45 +18,10 @@ namespace {
 using formats::Rgb;
 using formats::TermSet;
 using formats::Vec3;
+using test::VolumeHandles;
 using testing::HasSubstr;
 
-constexpr std::uint32_t kSize = 8;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-test::TestVolume smoke(float x) {
-    test::TestVolume volume;
-    volume.extent = {2, 2, 2};
-    volume.to_world = {0.1f, 0, 0, x, 0, 0.1f, 0, 0, 0, 0, 0.1f, 0};
-    volume.spacing = 4;
-    volume.single_terms = 4;
-    volume.multiple_terms = 1;
-    volume.moment = {1, 0.4f, 0, 0, 0};
-    volume.sigma_t = {1, 2, 4};
-    volume.albedo = {0.9f, 0.8f, 0.7f};
-    volume.density = [](float i, float j, float k) {
-        const float r2 = (i - 8) * (i - 8) + (j - 8) * (j - 8) + (k - 8) * (k - 8);
-        return std::max(0.0f, 1 - r2 / 40);
-    };
-    volume.rows = [](formats::NodeVoxel node) {
-        return std::vector<formats::SparseRow>{
-            test::constant_row(kSize, 0.05f * static_cast<float>(node[1])),
-            test::constant_row(kSize, 0.01f * static_cast<float>(node[0]))};
-    };
-    return volume;
-}
-
-// Volumes and no receivers.
-formats::Asset make_smoky_asset(std::uint32_t n) {
-    formats::Asset asset;
-    asset.provenance = "{}";
-    asset.transport = formats::make_sparse_rows(n, 8);
-    if (n == kSize) {
-        asset.volumes = test::make_volumes(n);
-        test::add_volume(asset.volumes, smoke(0));
-        test::add_volume(asset.volumes, smoke(0.7f));
-    }
-    return asset;
-}
 
 // Some of them miss.
 std::vector<opaline_march_ray> make_rays(std::size_t count) {
@@ -74,20 +36,6 @@ std::vector<opaline_march_ray> make_rays(std::size_t count) {
     }
     return rays;
 }
-
-struct Handles {
-    explicit Handles(const formats::Asset& source) : file(tests::encode(source)) {
-        asset = load_asset(file.bytes().data(), file.bytes().size()).handle;
-        EXPECT_NE(asset, nullptr) << opaline_last_error();
-        light = create_light(asset).handle;
-        volume_light = create_volume_light(asset).handle;
-        EXPECT_TRUE(light && volume_light) << opaline_last_error();
-    }
-    tests::AlignedBytes file;
-    AssetHandle asset;
-    LightHandle light;
-    VolumeLightHandle volume_light;
-};
 
 class ApiVolumes : public testing::Test {
   protected:
@@ -108,14 +56,14 @@ class ApiVolumes : public testing::Test {
         return results;
     }
     formats::Environment sky = tests::lat_long_map(64, 32, tests::smooth_sky);
-    formats::Asset source = make_smoky_asset(kSize);
+    formats::Asset source = test::make_smoky_asset(test::kSmokySize);
     formats::VolumesView volumes = source.volumes.view();
-    Handles handles{source};
+    VolumeHandles handles{source};
     opaline_asset* asset = handles.asset.get();
     opaline_light* light = handles.light.get();
     opaline_volume_light* volume_light = handles.volume_light.get();
     std::vector<opaline_march_ray> rays = make_rays(300);
-    LightVector vector = project_environment(sky, kSize);
+    LightVector vector = project_environment(sky, test::kSmokySize);
 };
 
 bool same(const float found[3], Rgb expected) {
@@ -328,11 +276,11 @@ TEST_F(ApiVolumes, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
 }
 
 TEST_F(ApiVolumes, OtherAssetsAndLightsOfAnotherBasisAreRefused) {
-    const Handles again(source), other(make_smoky_asset(16));
+    const VolumeHandles again(source), other(test::make_smoky_asset(16));
     opaline_march_result result{};
     opaline_sample_result sample{};
     const opaline_sample_point at{{0, 0, 0}, {0, 0, 1}};
-    for (const Handles* each : {&again, &other}) {
+    for (const VolumeHandles* each : {&again, &other}) {
         opaline_asset* const a = each->asset.get();
         EXPECT_EQ(opaline_volumes_march(a, volume_light, nullptr, rays.data(), 1, &result),
                   OPALINE_INVALID_ARGUMENT);
@@ -362,7 +310,7 @@ TEST_F(ApiVolumes, AnAssetReleasedAndLoadedAgainIsAnother) {
 }
 
 TEST(ApiWithoutVolumes, NothingIsMet) {
-    const Handles handles(make_smoky_asset(16));
+    const VolumeHandles handles(test::make_smoky_asset(16));
     EXPECT_EQ(opaline_asset_volume_count(handles.asset.get()), 0u);
     EXPECT_EQ(opaline_volume_light_update(handles.volume_light.get(), handles.asset.get(),
                                           handles.light.get(), 0, 0),
@@ -374,44 +322,6 @@ TEST(ApiWithoutVolumes, NothingIsMet) {
               OPALINE_OK);
     EXPECT_TRUE(same(result.radiance, {}));
     EXPECT_TRUE(same(result.transmittance, {1, 1, 1}));
-}
-
-TEST(ApiGlow, VolumesThatAreEmittersAreSwitchedLikeLamps) {
-    formats::Asset source = make_smoky_asset(kSize);
-    formats::append_emitter(source.emitters, "fire");
-    test::add_glow(source.volumes, smoke(0.7f),
-                   [](float, float, float) {
-                       return Rgb{4, 2, 1};
-                   },
-                   {1, 1, 1});
-    const Handles handles(source);
-    const opaline_march_ray ray{{1.5f, 0.8f, -1}, {0, 0, 1}, 0, kInfinity};
-    const auto see = [&](std::uint32_t flags, const std::array<float, 3>& color) {
-        EXPECT_EQ(opaline_light_set_emitter(handles.light.get(), 0, color.data()), OPALINE_OK);
-        EXPECT_EQ(opaline_volume_light_update(handles.volume_light.get(), handles.asset.get(),
-                                              handles.light.get(), flags, 1),
-                  OPALINE_OK)
-            << opaline_last_error();
-        opaline_march_result seen{};
-        EXPECT_EQ(opaline_volumes_march(handles.asset.get(), handles.volume_light.get(), nullptr,
-                                        &ray, 1, &seen),
-                  OPALINE_OK);
-        return seen.radiance[0];
-    };
-    const float all = see(0, {1, 1, 1}), scattered = see(OPALINE_SHADE_WITHOUT_EMISSION, {1, 1, 1});
-    EXPECT_GT(scattered, 0);
-    EXPECT_GT(all, 2 * scattered);
-    EXPECT_NEAR(see(0, {3, 1, 1}), 3 * all, 1e-4f * all);
-    EXPECT_EQ(see(0, {0, 0, 0}), 0);
-    // A point shows the same light.
-    see(0, {1, 1, 1});
-    const opaline_sample_point point{{1.5f, 0.8f, 0.8f}, {0, 0, -1}};
-    opaline_sample_result sample{};
-    ASSERT_EQ(
-        opaline_volumes_sample(handles.asset.get(), handles.volume_light.get(), &point, 1, &sample),
-        OPALINE_OK);
-    const Rgb extinction{sample.extinction[0], sample.extinction[1], sample.extinction[2]};
-    EXPECT_NEAR(sample.scattered[0], 4 + 0.9f * 0.2820948f * extinction.r, 0.02f);
 }
 
 }  // namespace

@@ -73,6 +73,21 @@ inline TestLayer even_test_layer() {
     return layer;
 }
 
+// One up to 300 m thick with haze, for heights of the caller's, over a ground of 7 x 6 squares.
+inline TestLayer uneven_test_layer(std::uint32_t columns, std::uint32_t rows) {
+    TestLayer layer = even_test_layer();
+    layer.flux = {16, 10};
+    layer.radiance = {8, 8, 4};
+    layer.record.columns = columns;
+    layer.record.rows = rows;
+    layer.record.highest = 300;
+    layer.record.center = {500, -300};
+    layer.record.ground_columns = 7;
+    layer.record.ground_rows = 6;
+    layer.record.haze = 2e-5f;
+    return layer;
+}
+
 inline formats::Clouds make_test_clouds(
     const TestLayer& layer,
     const TestThickness& thickness = [](std::uint32_t, std::uint32_t) { return 1e9; },

@@ -49,20 +49,14 @@ constexpr float kSpread = 2e-3f;
 
 // Bumps with holes, over a ground of squares.
 formats::Clouds bumpy_clouds(bool repeats, bool is_bare) {
-    TestLayer layer = even_test_layer();
-    layer.flux = {16, 10};
-    layer.radiance = is_bare ? bake::RadianceTableSize{0, 0, 0} : bake::RadianceTableSize{8, 8, 4};
-    if (is_bare) layer.droplets.peak_angle = 0;
+    TestLayer layer = uneven_test_layer(48, 40);
+    if (is_bare) {
+        layer.radiance = {0, 0, 0};
+        layer.droplets.peak_angle = 0;
+    }
     // Of thin clouds: floats round places to 0.3 mm in 5 km, and exp(-kappa * 0.3 mm) is seen.
     layer.droplets.kappa = {0.012, 0.015, 0.018};
     if (!repeats) layer.record.flags = 0;
-    layer.record.columns = 48;
-    layer.record.rows = 40;
-    layer.record.highest = 300;
-    layer.record.center = {500, -300};
-    layer.record.ground_columns = 7;
-    layer.record.ground_rows = 6;
-    layer.record.haze = 2e-5f;
     layer.record.wind = {20, 5};
     formats::Clouds clouds = make_test_clouds(layer, [](std::uint32_t column, std::uint32_t row) {
         return 300 * std::max(0.0, std::sin(column * 0.41) * std::cos(row * 0.37) + 0.25);

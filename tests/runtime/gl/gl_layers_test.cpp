@@ -28,21 +28,7 @@ using test::text_of;
 
 constexpr std::uint32_t kLayerLight = 8;
 
-// Bumps with holes, over a ground of squares.
-test::TestLayer broken_layer() {
-    test::TestLayer layer = test::even_test_layer();
-    layer.flux = {16, 10};
-    layer.radiance = {8, 8, 4};
-    layer.record.columns = 48;
-    layer.record.rows = 40;
-    layer.record.highest = 300;
-    layer.record.center = {500, -300};
-    layer.record.ground_columns = 7;
-    layer.record.ground_rows = 6;
-    layer.record.haze = 2e-5f;
-    return layer;
-}
-
+// Bumps with holes.
 double bumps(std::uint32_t column, std::uint32_t row) {
     return 300 * std::max(0.0, std::sin(column * 0.41) * std::cos(row * 0.37) + 0.25) *
            (0.7 + 0.3 * std::sin(column * 1.9 + row * 2.3));
@@ -172,7 +158,8 @@ void expect_layer_agreement(const Asset& asset, const LitAsset& lit,
 }
 
 const formats::Clouds& broken_clouds() {
-    static const formats::Clouds clouds = squares(test::make_test_clouds(broken_layer(), bumps));
+    static const formats::Clouds clouds =
+        squares(test::make_test_clouds(test::uneven_test_layer(48, 40), bumps));
     return clouds;
 }
 
@@ -213,7 +200,7 @@ TEST_F(Gl, SmokeBeforeInAndBehindALayerAgrees) {
 }
 
 TEST_F(Gl, LayersWithLessInThemAgree) {
-    test::TestLayer layer = broken_layer();
+    test::TestLayer layer = test::uneven_test_layer(48, 40);
     layer.record.flags = 0;
     layer.droplets.peak_angle = 0;
     layer.radiance = {0, 0, 0};

@@ -220,16 +220,7 @@ TEST(PagePicture, VolumesLookAsOnTheCpuUnderASunBehindThem) {
 
 // Bumps with holes over a ground of squares; `with_bodies`: a sheet and smoke partly in them.
 formats::Asset make_cloudy_scene(bool with_bodies) {
-    test::TestLayer layer = test::even_test_layer();
-    layer.flux = {16, 10};
-    layer.radiance = {8, 8, 4};
-    layer.record.columns = 24;
-    layer.record.rows = 20;
-    layer.record.highest = 300;
-    layer.record.center = {500, -300};
-    layer.record.ground_columns = 7;
-    layer.record.ground_rows = 6;
-    layer.record.haze = 2e-5f;
+    test::TestLayer layer = test::uneven_test_layer(24, 20);
     layer.droplets.kappa = {0.01, 0.012, 0.014};
     formats::Asset asset = test::make_asset(8, 16);
     asset.clouds = test::make_test_clouds(layer, [](std::uint32_t column, std::uint32_t row) {
