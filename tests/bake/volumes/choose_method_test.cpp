@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -50,6 +51,16 @@ Knobs with_method(VolumeMethod method, Quality quality = Quality::preview) {
     Knobs knobs = tests::knobs_for(quality);
     knobs.set(kVolumeMethod, static_cast<double>(method));
     return knobs;
+}
+
+TEST(ChooseMethod, PathsBeginInAsManyDirectionsAsAskedButInTwiceAsManyAsThereAreRows) {
+    for (const std::uint32_t asked : {1u, 100u}) {
+        Knobs knobs = with_method(VolumeMethod::path_integration);
+        knobs.set(kVolumePaths, asked);
+        const VolumeLayout layout =
+            plan_volumes(tests::scene_of(ball(2, 1, 0.3f)), knobs).layouts.at(0);
+        EXPECT_EQ(layout.views, std::max(asked, 2 * layout.often_terms));
+    }
 }
 
 TEST(ChooseMethod, WalksOfFewScatteringsAreLessWorkThanPaths) {
