@@ -1,8 +1,5 @@
 #include "runtime/surface.h"
 
-#include <algorithm>
-#include <limits>
-
 #include "runtime/gloss.h"
 #include "runtime/texture.h"
 
@@ -10,15 +7,6 @@ namespace opaline::runtime {
 namespace {
 
 using formats::Rgb;
-
-// Truncated rows ring below zero where the truth is black; sums of absurd scales overflow. The
-// comparison is false for NaN, which becomes black.
-float displayable(float x) {
-    return x > 0.0f ? std::min(x, std::numeric_limits<float>::max()) : 0.0f;
-}
-Rgb displayable(Rgb c) {
-    return {displayable(c.r), displayable(c.g), displayable(c.b)};
-}
 
 Rgb shade_translucent(const SurfaceMaterial& material, const SurfacePoint& point) {
     const float eta = material.primitive->eta;

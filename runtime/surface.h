@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 
 #include "formats/opal/asset.h"
 #include "formats/opal/rgb.h"
@@ -48,6 +50,15 @@ void set_gloss_factors(const formats::AssetView& asset, const SurfaceMaterial& m
 /// Sets `own` from the primitive's record and image.
 void set_own_light(const formats::AssetView& asset, const SurfaceMaterial& material,
                    formats::Float2 texcoord, SurfacePoint& point);
+
+/// Truncated rows ring below zero where the truth is black; sums of absurd scales overflow: finite
+/// and not negative, NaN as black (the comparison is false for it).
+inline float displayable(float x) {
+    return x > 0.0f ? std::min(x, std::numeric_limits<float>::max()) : 0.0f;
+}
+inline formats::Rgb displayable(formats::Rgb c) {
+    return {displayable(c.r), displayable(c.g), displayable(c.b)};
+}
 
 /// Outgoing radiance toward the eye, finite and not negative: diffuse base_color * radiance;
 /// translucent base_color * Ft * radiance, plus what the boundary mirrors; glossy opaque
