@@ -60,11 +60,11 @@ DotPath best_dot_path() {
 void dot_rows(const formats::SparseRowsView& rows, const formats::RowRange& range,
               const LightVector& light, std::uint32_t first, std::span<Rgb> out, DotPath path) {
 #if defined(__x86_64__)
-    if (path == DotPath::avx512) {
+    if (path == DotPath::avx512 && rows.index_bytes == 2) {
         dot_rows_avx512(rows, range, light, first, out);
         return;
     }
-    if (path == DotPath::avx2) {
+    if (path == DotPath::avx2 || path == DotPath::avx512) {
         dot_rows_avx2(rows, range, light, first, out);
         return;
     }

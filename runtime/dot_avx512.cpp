@@ -27,18 +27,13 @@ OPALINE_AVX512 inline void prefetch_ahead(const T* p) {
                  _MM_HINT_T0);
 }
 
-// Broadcasts under a mask: loads alone, where inserts would take the shuffling unit too. Four short
+// Broadcasts under a mask: loads alone, where inserts would take the shuffling unit too. The four
 // indices are one load as well: loads are what this loop is short of.
-template <class Index>
-OPALINE_AVX512 inline __m512 load_four(const float* light, const Index* index) {
-    std::size_t i0 = index[0], i1 = 0, i2 = 0, i3 = 0;
-    if constexpr (sizeof(Index) == 2) {
-        std::uint64_t all = 0;
-        std::memcpy(&all, index, sizeof all);
-        i0 = all & 0xffff, i1 = all >> 16 & 0xffff, i2 = all >> 32 & 0xffff, i3 = all >> 48;
-    } else {
-        i1 = index[1], i2 = index[2], i3 = index[3];
-    }
+OPALINE_AVX512 inline __m512 load_four(const float* light, const std::uint16_t* index) {
+    std::uint64_t all = 0;
+    std::memcpy(&all, index, sizeof all);
+    const std::size_t i0 = all & 0xffff, i1 = all >> 16 & 0xffff, i2 = all >> 32 & 0xffff,
+                      i3 = all >> 48;
     __m512 v = _mm512_broadcast_f32x4(_mm_loadu_ps(light + 4 * i0));
     v = _mm512_mask_broadcast_f32x4(v, 0x00f0, _mm_loadu_ps(light + 4 * i1));
     v = _mm512_mask_broadcast_f32x4(v, 0x0f00, _mm_loadu_ps(light + 4 * i2));
@@ -94,9 +89,9 @@ OPALINE_AVX512 inline __m128 add_quarters(__m512 v) {
 }
 
 // sum code * light over the details of a row.
-template <class Index, class Code, std::uint32_t bands>
-OPALINE_AVX512 inline __m128 sum_details(const float* light, const Index* index, const Code* code,
-                                         std::uint32_t count) {
+template <class Code, std::uint32_t bands>
+OPALINE_AVX512 inline __m128 sum_details(const float* light, const std::uint16_t* index,
+                                         const Code* code, std::uint32_t count) {
     __m512 s0 = _mm512_setzero_ps(), s1 = s0, s2 = s0, s3 = s0;
     std::uint32_t i = 0;
     for (; i + 16 <= count; i += 16) {
@@ -124,6 +119,12 @@ OPALINE_AVX512 inline __m128 sum_details(const float* light, const Index* index,
         s2 = _mm512_fmadd_ps(load_four(light, index + i + 8), c2, s2);
         s3 = _mm512_fmadd_ps(load_four(light, index + i + 12), c3, s3);
     }
+    if constexpr (bands == 3) {
+        for (; i + 4 <= count; i += 4) {
+            s0 = _mm512_fmadd_ps(load_four(light, index + i),
+                                 four_colors(code + std::size_t{bands} * i), s0);
+        }
+    }
     __m128 rest = _mm_setzero_ps();
     for (; i < count; ++i) {
         rest = _mm_fmadd_ps(_mm_loadu_ps(light + std::size_t{4} * index[i]),
@@ -133,15 +134,15 @@ OPALINE_AVX512 inline __m128 sum_details(const float* light, const Index* index,
                       rest);
 }
 
-template <class Index, class Code, std::uint32_t bands>
-OPALINE_AVX512 void dot_wide(const TypedRows<Index, Code>& rows, const LightVector& light,
+template <class Code, std::uint32_t bands>
+OPALINE_AVX512 void dot_wide(const TypedRows<std::uint16_t, Code>& rows, const LightVector& light,
                              std::uint32_t first, std::span<Rgb> out) {
     const float* const l = light.rgba.data();
     const std::size_t face_stride = std::size_t{4} * light.n * light.n;
     for (std::size_t i = 0; i < out.size(); ++i) {
         const std::size_t row = first + i;
         const std::uint32_t begin = rows.row_offset[row];
-        const __m128 details = sum_details<Index, Code, bands>(
+        const __m128 details = sum_details<Code, bands>(
             l, rows.index + begin, rows.code + std::size_t{begin - rows.row_offset[0]} * bands,
             rows.row_offset[row + 1] - begin);
         const float* const detail = rows.detail_scale + row * bands;
@@ -167,9 +168,16 @@ OPALINE_AVX512 void dot_wide(const TypedRows<Index, Code>& rows, const LightVect
 
 void dot_rows_avx512(const formats::SparseRowsView& rows, const formats::RowRange& range,
                      const LightVector& light, std::uint32_t first, std::span<Rgb> out) {
-    with_widths(rows, range.bands, [&]<class Index, class Code, std::uint32_t bands>() {
-        dot_wide<Index, Code, bands>(typed_rows<Index, Code>(rows, range), light, first, out);
-    });
+    const auto dot = [&]<class Code, std::uint32_t bands>() {
+        dot_wide<Code, bands>(typed_rows<std::uint16_t, Code>(rows, range), light, first, out);
+    };
+    if (rows.code_bits == 8) {
+        range.bands == 1 ? dot.template operator()<std::int8_t, 1>()
+                         : dot.template operator()<std::int8_t, 3>();
+    } else {
+        range.bands == 1 ? dot.template operator()<std::int16_t, 1>()
+                         : dot.template operator()<std::int16_t, 3>();
+    }
 }
 
 }  // namespace opaline::runtime
