@@ -148,18 +148,30 @@ inline float diffuse_share(const Material& material) {
 }
 
 /// A medium that fills no closed surface: smoke, fog, a cloud. Its extinction at a point is
-/// density * sigma_t, and its albedo is the same everywhere. Overlapping volumes add up.
+/// density * sigma_t. Overlapping volumes add up.
 struct Volume {
     std::string name;           ///< "volume 1 (smoke.vdb)", for messages
     SparseGrid<float> density;  ///< >= 0, of some unit; at least one voxel is > 0
     Rgb sigma_t{1, 1, 1};       ///< extinction [1/m] where the density is 1, finite, >= 0
-    Rgb albedo{1, 1, 1};        ///< single-scattering albedo, in [0, 1]
+    Rgb albedo{1, 1, 1};        ///< single-scattering albedo, in [0, 1]; where `scattering` is
+                                ///< there, the largest of each band
     PhaseFunction phase;
     /// Light that it sends out by itself: radiance per metre [W m^-3 sr^-1], finite, >= 0, the same
     /// in all directions. On the voxels of `density`, whose to_scene holds; also where there is no
     /// density. Empty: it does not glow.
     SparseGrid<glm::vec3> emission = {};
     std::string emitter = {};  ///< name of that light, where there is any
+    /// Where the albedo is not the same everywhere: density times albedo of each voxel, in bricks
+    /// numbered as those of `density`, whose table and to_scene hold. Else empty.
+    SparseGrid<glm::vec3> scattering = {};
+
+    /// The albedo at a point in index coordinates: scattering and extinction are linear between
+    /// voxels, so that voxels without density do not count. `albedo` where there is no density.
+    glm::vec3 albedo_at(glm::vec3 index) const {
+        const glm::vec3 largest(albedo.r, albedo.g, albedo.b);
+        const float here = scattering.empty() ? 0.0f : density.sample(index);
+        return here > 0 ? glm::min(scattering.sample(index) / here, largest) : largest;
+    }
 };
 
 /// A stratiform cloud layer: droplets between the height `base` and `base` + thickness. Heights and

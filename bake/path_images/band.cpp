@@ -11,7 +11,10 @@ std::vector<MediumBand> make_bands(const VolumeSpace& space) {
         for (std::size_t v = 0; v < space.volumes.size(); ++v) {
             const TrackedVolume& volume = space.volumes[v];
             band.extinction[v] = static_cast<double>(volume.sigma_t[c]);
-            band.scattering[v] = band.extinction[v] * static_cast<double>(volume.albedo[c]);
+            const formats::Rgb albedo = volume.volume->albedo;
+            band.scattering[v] = band.extinction[v] * static_cast<double>(c == 0   ? albedo.r
+                                                                          : c == 1 ? albedo.g
+                                                                                   : albedo.b);
         }
         auto same = std::find(bands.begin(), bands.end(), band);
         if (same == bands.end()) {

@@ -167,6 +167,10 @@ formats::Status check_path_scene(const formats::Scene& scene) {
                       "leave out --method, or place a volume with --media");
     }
     for (const formats::Volume& volume : scene.volumes) {
+        if (!volume.scattering.empty()) {
+            return refuse(volume.name, "path integration needs an albedo that is alike everywhere",
+                          "leave out --method, or give one albedo instead of a grid");
+        }
         if (!same_phase(volume.phase, scene.volumes.front().phase)) {
             return refuse(volume.name,
                           "path integration needs one phase function in all volumes, and this one "

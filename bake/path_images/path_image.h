@@ -32,8 +32,8 @@ struct PathImage {
     double seconds = 0;              ///< in all
 };
 
-/// Whether path integration applies: there are volumes, all with one phase function, and no body
-/// has a medium. Errors: bad_input, with a remedy.
+/// Whether path integration applies: there are volumes, all with one phase function and albedos
+/// that are alike everywhere, and no body has a medium. Errors: bad_input, with a remedy.
 formats::Status check_path_scene(const formats::Scene& scene);
 
 /// The picture of a pinhole camera by path integration [Premoze2003], corrected (README.md). The

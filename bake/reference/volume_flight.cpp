@@ -110,7 +110,7 @@ VolumeFlight sample_volume_flight(const VolumeSpace& space, glm::vec3 from, glm:
             const float density = volume.density(from + at * direction);
             const bool is_real = random.next() * segment->bound[v] < density;
             if (is_real) {
-                flight.weight *= volume.albedo;
+                flight.weight *= volume.albedo(from + at * direction);
             }
             if (is_real || !(glm::dot(beta, flight.weight) > 0)) {
                 flight.collides = true;

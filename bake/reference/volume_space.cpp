@@ -98,7 +98,6 @@ VolumeSpace make_volume_space(const formats::Scene& scene) {
         v.to_index = glm::mat3(glm::dmat3(to_index));
         v.offset = glm::vec3(glm::dvec3(to_index[3]));
         v.sigma_t = {volume.sigma_t.r, volume.sigma_t.g, volume.sigma_t.b};
-        v.albedo = {volume.albedo.r, volume.albedo.g, volume.albedo.b};
         v.phase = make_phase_sampler(volume.phase);
         bound_density(v);
         if (!volume.emission.empty()) {

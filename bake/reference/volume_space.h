@@ -20,11 +20,14 @@ struct TrackedVolume {
     glm::vec3 offset{0};
     glm::ivec3 first{0}, extent{0};  ///< cells: the lowest one, and how many along each axis
     std::vector<float> bound;        ///< of the density in each cell, x fastest
-    glm::vec3 sigma_t{0}, albedo{0};
+    glm::vec3 sigma_t{0};
     PhaseSampler phase;
 
     float density(glm::vec3 position) const {
         return volume->density.sample(to_index * position + offset);
+    }
+    glm::vec3 albedo(glm::vec3 position) const {
+        return volume->albedo_at(to_index * position + offset);
     }
 };
 

@@ -84,13 +84,17 @@ std::vector<std::vector<glm::vec3>> scatter_glow(const GlowJob& job, const Volum
             Block block;
             block.values.resize((range.end - range.begin) * of_node);
             for (std::size_t i = range.begin; i < range.end; ++i) {
+                const auto values =
+                    std::span(block.values).subspan((i - range.begin) * of_node, of_node);
                 const glm::vec3 position(job.scene.volumes[layout.volume].density.to_scene *
                                          glm::dvec4(glm::dvec3(lattice.node[i]), 1.0));
-                block.rays += gather_glow(
-                    space,
-                    {layout.volume, job.first[layout.volume] + i, position, layout.glow_walks,
-                     terms},
-                    std::span(block.values).subspan((i - range.begin) * of_node, of_node));
+                block.rays += gather_glow(space,
+                                          {layout.volume, job.first[layout.volume] + i, position,
+                                           layout.glow_walks, terms},
+                                          values);
+                for (glm::vec3& value : values) {
+                    value *= job.albedo[layout.volume][i];
+                }
             }
             return block;
         },

@@ -23,6 +23,7 @@ struct GlowJob {
     std::span<const VolumeLayout> layouts;
     std::span<const NodeLattice> lattices;  ///< of each volume of the scene
     std::span<const std::size_t> first;     ///< number of each volume's first node among all
+    std::span<const std::vector<glm::vec3>> albedo;  ///< node_albedo_shares of each volume
     std::uint64_t seed = 0;
 };
 

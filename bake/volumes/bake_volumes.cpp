@@ -10,6 +10,7 @@
 #include "bake/volumes/bake_glow.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/light_cells.h"
+#include "bake/volumes/node_albedo.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/node_rows.h"
 #include "bake/volumes/pack_density.h"
@@ -32,6 +33,7 @@ struct Nodes {
     DensitySpace space;
     std::vector<NodeLattice> lattices;  // of each volume of the scene; empty where nothing is baked
     std::vector<std::size_t> first;     // node of each volume, among all
+    std::vector<std::vector<glm::vec3>> albedo;  // shares of each volume's nodes
     std::size_t count = 0;
     LightCells fine;                                 // of single scattering
     LightCells coarse;                               // of multiple scattering, which is smoother
@@ -57,6 +59,7 @@ Nodes place_nodes(const VolumeJob& job) {
     for (std::size_t v = 0; v < nodes.lattices.size(); ++v) {
         nodes.first[v] = nodes.count;
         nodes.count += nodes.lattices[v].node.size();
+        nodes.albedo.push_back(node_albedo_shares(nodes.space.volumes[v], nodes.lattices[v]));
     }
     // Light changes little within 5 degrees, light that is scattered often within 11.
     const std::uint32_t n = job.knobs.cubemap_size;
@@ -99,6 +102,14 @@ std::size_t number_of(const VolumeJob& job, const VolumeLayout& layout) {
     return static_cast<std::size_t>(&layout - job.layouts.data());
 }
 
+// Rows of a node times its albedo's share, term after term and band after band.
+void scale_rows(glm::vec3 share, std::size_t bands, std::size_t cells, std::span<float> rows) {
+    if (share == glm::vec3(1)) return;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i] *= share[static_cast<int>(i / cells % bands)];
+    }
+}
+
 // V of a node: its row, and its depths toward the coarse cells.
 struct Lit {
     SparseRow row;
@@ -123,6 +134,7 @@ Lit light_node(const VolumeJob& job, const Nodes& nodes, const Place& place, std
         fine.insert(fine.end(), fine.begin(), fine.begin() + static_cast<std::ptrdiff_t>(cells));
     }
     const auto row_bands = static_cast<std::uint32_t>(nodes.space.bands());
+    scale_rows(nodes.albedo[place.layout->volume][place.node], row_bands, cells, fine);
     lit.row = std::move(encode_node_rows(nodes.attenuated[number_of(job, *place.layout)], fine, 1,
                                          nodes.fine.n, row_bands)
                             .front());
@@ -199,6 +211,7 @@ std::vector<SparseRow> scatter_node(const VolumeJob& job, const Nodes& nodes,
         rays += gather_walks(space.walks, {layout.volume, number, position, layout.walks, terms},
                              dense);
     }
+    scale_rows(nodes.albedo[layout.volume][place.node], bands, nodes.coarse.size(), dense);
     return encode_node_rows(nodes.scattered[number_of(job, layout)], dense, terms, nodes.coarse.n,
                             bands);
 }
@@ -320,8 +333,8 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
             record.moment[l] = static_cast<float>(own.phase.lambda[l]);
         }
         if (auto status =
-                pack_density(job.scene.volumes[layout.volume], nodes.lattices[layout.volume],
-                             job.scene.origin, record, volumes);
+                pack_density(*own.grid, job.scene.volumes[layout.volume].name,
+                             nodes.lattices[layout.volume], job.scene.origin, record, volumes);
             !status) {
             return std::move(status).error();
         }
@@ -351,7 +364,7 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
         volumes.glow =
             run_stage(log, "light of volumes", "emitters: rows", [&](std::uint64_t& rays) {
                 return bake_glow({job.scene, job.rays, nodes.space, job.layouts, nodes.lattices,
-                                  nodes.first, job.knobs.seed},
+                                  nodes.first, nodes.albedo, job.knobs.seed},
                                  context, rays);
             });
         if (context.cancelled()) {

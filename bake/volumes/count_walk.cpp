@@ -40,7 +40,7 @@ WalkCount count_walk(const DensitySpace& space, glm::vec3 at, CostRandom& random
         }
         at += hit.distance * direction;
         const DensityVolume& own = space.volumes[hit.volume];
-        weight *= own.albedo[kGreen];
+        weight *= own.albedo_at(at)[kGreen];
         if (weight < kRoulette) {
             if (random() * kRoulette >= weight) {
                 break;

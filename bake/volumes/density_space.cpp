@@ -1,6 +1,7 @@
 #include "bake/volumes/density_space.h"
 
 #include <limits>
+#include <utility>
 
 namespace opaline::bake {
 namespace {
@@ -45,18 +46,6 @@ Bounds bounds_of_cell(const Grid& grid, glm::ivec3 cell) {
     return bounds;
 }
 
-// The forward peak counts as not scattered: c' = c - f b.
-void scale_coefficients(const formats::Volume& volume, DensityVolume& own) {
-    own.phase = scale_phase(volume.phase);
-    const std::array<float, 3> sigma_t{volume.sigma_t.r, volume.sigma_t.g, volume.sigma_t.b};
-    const std::array<float, 3> albedo{volume.albedo.r, volume.albedo.g, volume.albedo.b};
-    const auto peak = static_cast<float>(own.phase.peak);
-    for (std::size_t band = 0; band < 3; ++band) {
-        own.sigma_t[band] = sigma_t[band] * (1 - peak * albedo[band]);
-        own.albedo[band] = albedo[band] * (1 - peak) / (1 - peak * albedo[band]);
-    }
-}
-
 float densest_followed(const Grid& grid, const std::array<float, 3>& sigma_t) {
     const float most = std::max({sigma_t[0], sigma_t[1], sigma_t[2]});
     const double edge = std::min({glm::length(glm::dvec3(grid.to_scene[0])),
@@ -68,19 +57,26 @@ float densest_followed(const Grid& grid, const std::array<float, 3>& sigma_t) {
 
 DensityVolume make_volume(const formats::Volume& volume) {
     DensityVolume own;
-    own.grid = &volume.density;
+    own.phase = scale_phase(volume.phase);
+    ScaledMedium medium = scale_medium(volume, own.phase.peak);
+    own.sigma_t = medium.sigma_t;
+    own.albedo = medium.albedo;
+    own.scaled = std::move(medium.grids);
+    own.grid = own.scaled ? &own.scaled->density : &volume.density;
+    if (!volume.scattering.empty()) {
+        own.scattering = own.scaled ? &own.scaled->scattering : &volume.scattering;
+    }
     const glm::dmat4 to_index = glm::inverse(volume.density.to_scene);
     own.to_index = glm::mat3(to_index);
     own.offset = glm::vec3(to_index[3]);
     own.first_cell = volume.density.first_brick - 1;
     own.extent = volume.density.extent + 1;
-    scale_coefficients(volume, own);
-    own.densest = densest_followed(volume.density, own.sigma_t);
+    own.densest = densest_followed(*own.grid, own.sigma_t);
     glm::ivec3 c;
     for (c.z = 0; c.z < own.extent.z; ++c.z) {
         for (c.y = 0; c.y < own.extent.y; ++c.y) {
             for (c.x = 0; c.x < own.extent.x; ++c.x) {
-                const Bounds bounds = bounds_of_cell(volume.density, own.first_cell + c);
+                const Bounds bounds = bounds_of_cell(*own.grid, own.first_cell + c);
                 own.bound.push_back(std::min(bounds.most, own.densest));
                 own.even.push_back(bounds.most > 0 && bounds.least >= own.bound.back());
             }
@@ -93,6 +89,13 @@ bool is_grey(const std::array<float, 3>& band) {
     return band[0] == band[1] && band[1] == band[2];
 }
 
+bool has_grey_albedo(const DensityVolume& volume) {
+    return is_grey(volume.albedo) &&
+           (volume.scattering == nullptr ||
+            std::ranges::all_of(volume.scattering->value,
+                                [](glm::vec3 v) { return v.x == v.y && v.y == v.z; }));
+}
+
 }  // namespace
 
 DensitySpace make_density_space(const formats::Scene& scene) {
@@ -100,7 +103,7 @@ DensitySpace make_density_space(const formats::Scene& scene) {
     for (const formats::Volume& volume : scene.volumes) {
         space.volumes.push_back(make_volume(volume));
         space.is_grey = space.is_grey && is_grey(space.volumes.back().sigma_t);
-        space.albedo_grey = space.albedo_grey && is_grey(space.volumes.back().albedo);
+        space.albedo_grey = space.albedo_grey && has_grey_albedo(space.volumes.back());
     }
     return space;
 }

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <vector>
 
+#include "bake/volumes/scale_medium.h"
 #include "bake/volumes/scaled_phase.h"
 #include "formats/scene.h"
 
@@ -18,7 +20,10 @@ inline constexpr float kMostDepth = 64;
 /// A volume as light is followed through it. Coefficients are those without the forward peak.
 struct DensityVolume {
     const formats::SparseGrid<float>* grid = nullptr;
-    glm::mat3 to_index{1};  ///< index = to_index * position + offset
+    /// Density times albedo where that varies; null: `albedo` holds everywhere.
+    const formats::SparseGrid<glm::vec3>* scattering = nullptr;
+    std::shared_ptr<const ScaledGrids> scaled;  ///< holds both, where they are not the scene's
+    glm::mat3 to_index{1};                      ///< index = to_index * position + offset
     glm::vec3 offset{0};
     /// Cells: the points [8 b, 8 b + 8) of brick b. A cell below a brick has density without a
     /// brick of its own: between its last voxels and the brick's first ones.
@@ -26,13 +31,22 @@ struct DensityVolume {
     std::vector<float> bound;      ///< of the density in each cell, x fastest
     std::vector<bool> even;        ///< whether it is that everywhere in the cell
     std::array<float, 3> sigma_t;  ///< c' [1/m] where the density is 1, by band
-    std::array<float, 3> albedo;   ///< of c', by band
+    std::array<float, 3> albedo;   ///< of c', by band; the largest where it varies
     ScaledPhase phase;
 
     float densest = 0;  ///< kMostDepth of extinction in a voxel: more looks alike
 
     float density(glm::vec3 position) const {
         return std::min(grid->sample(to_index * position + offset), densest);
+    }
+    /// Of c', by band; `albedo` where there is no density.
+    std::array<float, 3> albedo_at(glm::vec3 position) const {
+        if (scattering == nullptr) return albedo;
+        const glm::vec3 index = to_index * position + offset;
+        const float here = grid->sample(index);
+        if (!(here > 0)) return albedo;
+        const glm::vec3 own = scattering->sample(index) / here;
+        return {std::min(own.x, albedo[0]), std::min(own.y, albedo[1]), std::min(own.z, albedo[2])};
     }
 };
 

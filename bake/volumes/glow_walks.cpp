@@ -41,9 +41,10 @@ std::uint64_t follow_glow(const GlowWalkSpace& walk, const Bands& bands, glm::ve
         }
         at += hit.distance * direction;
         const DensityVolume& own = walk.space.volumes[hit.volume];
+        const std::array<float, 3> albedo = own.albedo_at(at);
         float most = 0;
         for (int band = bands.first; band < bands.end; ++band) {
-            weight[band] *= own.albedo[static_cast<std::size_t>(band)];
+            weight[band] *= albedo[static_cast<std::size_t>(band)];
             most = std::max(most, std::abs(weight[band]));
         }
         if (most < kWalkRoulette) {

@@ -30,17 +30,17 @@ void append_brick(const Grid& grid, glm::ivec3 brick, formats::Volumes& volumes)
 
 }  // namespace
 
-formats::Status pack_density(const formats::Volume& volume, const NodeLattice& lattice,
-                             glm::dvec3 world, formats::VolumeRecord& record,
-                             formats::Volumes& volumes) {
+formats::Status pack_density(const formats::SparseGrid<float>& density, const std::string& name,
+                             const NodeLattice& lattice, glm::dvec3 world,
+                             formats::VolumeRecord& record, formats::Volumes& volumes) {
     constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
     if (volumes.density_scale.size() + lattice.brick.size() > kMost ||
         volumes.node.size() + lattice.node.size() > kMost) {
-        return formats::make_error(formats::ErrorKind::resource, "", volume.name,
+        return formats::make_error(formats::ErrorKind::resource, "", name,
                                    "it has more than 2^32 bricks or points of light",
                                    "bake it in parts, or in larger voxels");
     }
-    glm::dmat4 to_world = volume.density.to_scene;
+    glm::dmat4 to_world = density.to_scene;
     to_world[3] += glm::dvec4(world, 0);
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 4; ++column) {
@@ -62,7 +62,7 @@ formats::Status pack_density(const formats::Volume& volume, const NodeLattice& l
     volumes.table.insert(volumes.table.end(), lattice.table.begin(), lattice.table.end());
     volumes.corner.insert(volumes.corner.end(), lattice.corner.begin(), lattice.corner.end());
     for (const glm::ivec3 brick : lattice.brick) {
-        append_brick(volume.density, brick, volumes);
+        append_brick(density, brick, volumes);
     }
     for (const glm::ivec3 voxel : lattice.node) {
         volumes.node.push_back({voxel.x, voxel.y, voxel.z});

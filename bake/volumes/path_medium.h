@@ -32,9 +32,11 @@ class VolumeMedium {
         here_ = {};
         for (const DensityVolume& volume : space_.volumes) {
             const auto density = static_cast<double>(volume.density(glm::vec3(x)));
-            for (std::size_t band = 0; density > 0 && band < space_.bands(); ++band) {
+            if (!(density > 0)) continue;
+            const std::array<float, 3> albedo = volume.albedo_at(glm::vec3(x));
+            for (std::size_t band = 0; band < space_.bands(); ++band) {
                 const double extinction = density * static_cast<double>(volume.sigma_t[band]);
-                const double scattering = extinction * static_cast<double>(volume.albedo[band]);
+                const double scattering = extinction * static_cast<double>(albedo[band]);
                 here_[band].scattering += scattering;
                 here_[band].absorption += extinction - scattering;
             }

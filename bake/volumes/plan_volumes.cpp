@@ -11,6 +11,7 @@
 #include "bake/plan/plan_input.h"
 #include "bake/volumes/choose_method.h"
 #include "bake/volumes/density_space.h"
+#include "bake/volumes/node_albedo.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/scaled_phase.h"
 #include "bake/volumes/volume_knobs.h"
@@ -61,14 +62,22 @@ std::uint32_t choose_walks(const ScaledPhase& phase, std::uint32_t terms, const 
     return static_cast<std::uint32_t>(std::lround(knobs[kVolumeWalks] * spread));
 }
 
-std::uint32_t spacing_of(const formats::Volume& volume, const Knobs& knobs) {
+std::uint32_t spacing_of(const formats::Volume& volume, const DensityVolume& own,
+                         const Knobs& knobs) {
     if (const double given = knobs[kVolumeSpacing]; given > 0) {
         return static_cast<std::uint32_t>(given);
     }
     constexpr std::array<double, 4> kDepth{2, 1, 0.5, 0.25};
     const formats::Rgb s = volume.sigma_t;
-    return choose_spacing(volume.density, static_cast<double>(std::max({s.r, s.g, s.b})),
-                          kDepth[static_cast<std::size_t>(knobs.quality)]);
+    const auto quality = static_cast<std::size_t>(knobs.quality);
+    std::uint32_t spacing = choose_spacing(
+        volume.density, static_cast<double>(std::max({s.r, s.g, s.b})), kDepth[quality]);
+    // Where albedos differ, they are known at nodes alone.
+    constexpr std::array<double, 4> kDetail{0.2, 0.1, 0.05, 0.02};
+    while (lost_albedo_detail(own, spacing) > kDetail[quality]) {
+        spacing /= 2;
+    }
+    return spacing;
 }
 
 PlanEntry decide(std::string_view name, const Subject& subject, double bound, const Knobs& knobs) {
@@ -210,7 +219,7 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         const ScaledPhase phase = scale_phase(volume.phase);
         PlanEntry once = decide("volume-single", subject, most.once, knobs);
         PlanEntry often = decide("volume-multiple", subject, most.once * most.once, knobs);
-        VolumeLayout layout{.volume = v, .spacing = spacing_of(volume, knobs)};
+        VolumeLayout layout{.volume = v, .spacing = spacing_of(volume, space.volumes[v], knobs)};
         if (once.on) {
             layout.once_terms = once.terms = phase.harmonics();
             once.reason =

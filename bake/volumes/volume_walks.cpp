@@ -63,9 +63,10 @@ std::uint64_t follow(const VolumeWalkSpace& walk, const Track& track, glm::vec3 
         }
         at += hit.distance * direction;
         const DensityVolume& own = walk.space.volumes[hit.volume];
+        const std::array<float, 3> albedo = own.albedo_at(at);
         float most = 0;
         for (std::size_t band = track.first; band < track.end; ++band) {
-            weight[band] *= own.albedo[band];
+            weight[band] *= albedo[band];
             most = std::max(most, std::abs(weight[band]));
         }
         if (most < kWalkRoulette) {

@@ -9,6 +9,7 @@
 #include "formats/gltf/report.h"
 #include "formats/media/black_body.h"
 #include "formats/media/limits.h"
+#include "formats/media/resampler.h"
 #include "formats/vdb/limits.h"
 
 namespace opaline::formats {
@@ -93,31 +94,6 @@ Emission fill_bricks(const BrickBox& box, MayGlow&& may_glow, Value&& value) {
     return grid;
 }
 
-// Values of a grid at the voxels of another one.
-struct Resampler {
-    const VdbGrid& grid;
-    glm::mat4 to_own{1};  // from index coordinates of the density to those of the grid
-    bool is_same = true;
-
-    // Whether a brick of the density's lattice may have values.
-    bool may_reach(glm::ivec3 brick) const {
-        return !is_same || (grid.is_color ? grid.color.brick_at(brick)
-                                          : grid.scalar.brick_at(brick)) != Emission::kEmpty;
-    }
-    Color at(glm::ivec3 voxel) const {
-        if (is_same) {
-            return grid.is_color ? grid.color.at(voxel) : Color(grid.scalar.at(voxel));
-        }
-        const Color place(to_own * glm::vec4(glm::vec3(voxel), 1));
-        return grid.is_color ? grid.color.sample(place) : Color(grid.scalar.sample(place));
-    }
-};
-
-double shortest_edge(const glm::dmat4& m) {
-    return std::min({glm::length(glm::dvec3(m[0])), glm::length(glm::dvec3(m[1])),
-                     glm::length(glm::dvec3(m[2]))});
-}
-
 // The bricks of the density's lattice that a grid reaches; nothing where they are too many.
 std::optional<BrickBox> reach_of(const VdbGrid& grid, const glm::dmat4& density_space) {
     const auto corners = grid.is_color ? grid.color.corners() : grid.scalar.corners();
@@ -167,18 +143,6 @@ Color to_vec3(Rgb c) {
 
 }  // namespace
 
-void warn_of_repairs(const std::filesystem::path& file, const VdbGrid& grid,
-                     std::vector<Diagnostic>& warnings) {
-    if (grid.not_a_number + grid.negative > 0) {
-        warnings.push_back(
-            make_warning(file.string(), "grid " + in_quotes(grid.name),
-                         std::to_string(grid.not_a_number) + " voxels are not a number and " +
-                             std::to_string(grid.negative) + " are negative, of " +
-                             std::to_string(grid.active_voxels) + ": they count as 0",
-                         "export it again if they should not be"));
-    }
-}
-
 Status load_emission(const VolumeEntry& entry, const std::filesystem::path& file,
                      const glm::dmat4& density_space, const VdbReadOptions& reader, Volume& volume,
                      std::vector<Diagnostic>& warnings) {
@@ -197,9 +161,7 @@ Status load_emission(const VolumeEntry& entry, const std::filesystem::path& file
     if (is_heat && grid.is_color) {
         return refuse("it holds colours, not temperatures", "name a grid of one float a voxel");
     }
-    const glm::dmat4& own_space = grid.is_color ? grid.color.to_scene : grid.scalar.to_scene;
-    const Resampler values{grid, glm::mat4(glm::inverse(own_space) * density_space),
-                           own_space == density_space};
+    const Resampler values(grid, density_space);
     // Only what absorbs glows by its heat.
     const auto reach =
         is_heat ? std::optional(box_of(volume.density)) : reach_of(grid, density_space);
@@ -218,13 +180,15 @@ Status load_emission(const VolumeEntry& entry, const std::filesystem::path& file
                           "give temperature_scale, kelvin for a value of 1");
         }
     }
-    if (!values.is_same && shortest_edge(own_space) < 0.75 * shortest_edge(density_space)) {
-        warnings.push_back(
-            make_warning(file.string(), "grid " + in_quotes(name),
-                         "its voxels are finer than those of the density, at which it is sampled",
-                         "write both with the same voxels"));
-    }
-    const Color absorbed = (Color(1) - to_vec3(volume.albedo)) * to_vec3(volume.sigma_t);
+    warn_of_lost_detail(file, values, warnings);
+    const Color sigma_t = to_vec3(volume.sigma_t);
+    const Color absorbed = (Color(1) - to_vec3(volume.albedo)) * sigma_t;
+    const auto absorption_at = [&](glm::ivec3 voxel) {
+        const float density = volume.density.at(voxel);
+        return volume.scattering.empty()
+                   ? density * absorbed
+                   : glm::max(Color(density) - volume.scattering.at(voxel), 0.0f) * sigma_t;
+    };
     const HeatColors heat(hottest);
     const auto scale = static_cast<float>(entry.emission_scale);
     float most = 0;
@@ -239,7 +203,7 @@ Status load_emission(const VolumeEntry& entry, const std::filesystem::path& file
             if (is_heat) {
                 const double kelvin =
                     entry.temperature_scale * static_cast<double>(values.at(voxel).x);
-                radiance = scale * volume.density.at(voxel) * absorbed * heat.at(kelvin);
+                radiance = scale * absorption_at(voxel) * heat.at(kelvin);
             }
             most = std::max({most, radiance.x, radiance.y, radiance.z});
             return radiance;
@@ -258,6 +222,7 @@ Status load_emission(const VolumeEntry& entry, const std::filesystem::path& file
     const BrickBox both = join(box_of(emission), box_of(volume.density));
     widen(emission, both);
     widen(volume.density, both);
+    if (!volume.scattering.empty()) widen(volume.scattering, both);
     volume.emission = std::move(emission);
     volume.emitter = file.stem().string();
     return ok_status();

@@ -11,8 +11,8 @@
 namespace opaline::formats {
 
 /// Reads the light of its own that an entry gives to a volume, if any: sets `volume.emission` and
-/// `volume.emitter`, and widens the table of its density so that both have the same one. `volume`
-/// is complete but for these; `density_space` is the density's transform in its file.
+/// `volume.emitter`, and widens the tables of its other grids so that all have the same one.
+/// `volume` is complete but for these; `density_space` is the density's transform in its file.
 ///
 /// A grid of another transform than the density's is sampled at the voxels of the density, linear
 /// between its own; a warning says so where that loses details. Temperatures T become radiance per
@@ -23,10 +23,6 @@ namespace opaline::formats {
 /// K, more than 1e15 W m^-3 sr^-1, and a grid that takes too many voxels of the density's size.
 Status load_emission(const VolumeEntry& entry, const std::filesystem::path& file,
                      const glm::dmat4& density_space, const VdbReadOptions& reader, Volume& volume,
-                     std::vector<Diagnostic>& warnings);
-
-/// A warning of voxels that were set to 0, if any were.
-void warn_of_repairs(const std::filesystem::path& file, const VdbGrid& grid,
                      std::vector<Diagnostic>& warnings);
 
 }  // namespace opaline::formats

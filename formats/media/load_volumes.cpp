@@ -12,7 +12,10 @@
 #include "formats/gltf/report.h"
 #include "formats/gltf/sha256.h"
 #include "formats/media/limits.h"
+#include "formats/media/load_albedo.h"
 #include "formats/media/load_emission.h"
+#include "formats/media/resampler.h"
+#include "formats/media/split_absorption.h"
 #include "formats/vdb/read_vdb.h"
 
 namespace opaline::formats {
@@ -105,6 +108,10 @@ Result<Volume> load_volume(const VolumeEntry& entry, const std::filesystem::path
                           "a voxel of it holds more than a million mean free paths",
                           "lower sigma_t or scale, check the unit, or model it as a mesh");
     }
+    if (Status status = load_albedo(entry, file, density_space, reader, volume, warnings);
+        !status) {
+        return std::move(status).error();
+    }
     if (Status status = load_emission(entry, file, density_space, reader, volume, warnings);
         !status) {
         return std::move(status).error();
@@ -150,7 +157,11 @@ Result<LoadedVolumes> load_all(const std::vector<VolumeEntry>& entries,
         if (!volume) {
             return std::move(volume).error();
         }
+        std::optional<Volume> absorber = split_absorption(*volume);
         loaded.volumes.push_back(std::move(*volume));
+        if (absorber) {
+            loaded.volumes.push_back(std::move(*absorber));
+        }
     }
     return loaded;
 }
@@ -177,6 +188,9 @@ Result<std::vector<Diagnostic>> load_volumes(const MediaFile& media, double metr
     auto loaded = load_all(media.volumes, {}, metres_per_unit, reader);
     if (!loaded) {
         return std::move(loaded).error();
+    }
+    if (scene.volumes.size() + loaded->volumes.size() > kMaxVolumes) {
+        return too_many(media.file);
     }
     const bool is_bare = scene.primitives.empty() && scene.volumes.empty();
     if (is_bare && !loaded->volumes.empty()) {
@@ -227,6 +241,9 @@ Result<ImportedScene> import_vdb(const std::filesystem::path& path, const MediaF
     auto loaded = load_all(entries, path, metres_per_unit, reader);
     if (!loaded) {
         return std::move(loaded).error();
+    }
+    if (loaded->volumes.size() > kMaxVolumes) {
+        return too_many(media.file);
     }
     scene.source = path.string();
     scene.inputs = {path};

@@ -29,7 +29,8 @@ struct VolumeEntry {
     std::string density;         ///< name of the grid; empty: "density", or the only one there is
     Rgb sigma_t{1, 1, 1};        ///< [1/m] where the density, times scale, is 1
     Rgb albedo{0.99f, 0.99f, 0.99f};
-    double scale = 1;  ///< of the density
+    std::string albedo_grid;  ///< name of a grid that says it instead; empty: `albedo` everywhere
+    double scale = 1;         ///< of the density
     PhaseFunction phase;
     /// Grid of radiance per metre, or of temperatures of a black body; at most one of both.
     std::string emission, temperature;

@@ -97,7 +97,12 @@ std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& whe
     }
     volume.sigma_t = rgb(fields, "sigma_t", 0, kMaxCoefficientPerM / per_metre, per_metre)
                          .value_or(volume.sigma_t);
-    volume.albedo = rgb(fields, "albedo", 0, 1).value_or(volume.albedo);
+    if (const auto albedo = entry.find("albedo");
+        albedo != entry.end() && albedo->is_string() && *albedo != "") {
+        volume.albedo_grid = text(fields, "albedo").value_or("");
+    } else {
+        volume.albedo = rgb(fields, "albedo", 0, 1).value_or(volume.albedo);
+    }
     volume.scale = number(fields, "scale", kMinDensityScale, kMaxDensityScale).value_or(1);
     read_emission(fields, volume);
     if (const auto phase = entry.find("phase"); phase != entry.end()) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/volumes/volume_knobs.h"
+#include "formats/media/split_absorption.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/volumes.h"
 
@@ -47,6 +48,27 @@ TEST(VolumeBake, AVolumeThatOnlyAbsorbsHasNoErrorToMeasure) {
     Scene scene = make_cloud();
     scene.volumes[0].albedo = {0, 0, 0};
     EXPECT_FALSE(bake_scene(scene, small_bake()).volume_error.has_value());
+}
+
+bake::VolumeErrorReport bake_two_albedos(glm::vec3 below, glm::vec3 above,
+                                         bake::VolumeMethod method) {
+    Scene scene = make_cloud();
+    vary_albedo(scene.volumes[0], [&](glm::dvec3 p) { return p.y > 0 ? above : below; });
+    scene.volumes.push_back(*formats::split_absorption(scene.volumes[0]));
+    bake::BakeOptions options = small_bake();
+    options.set(bake::kVolumeSpacing, 2);
+    options.set(bake::kVolumeMethod, static_cast<double>(method));
+    return *bake_scene(scene, options).volume_error;
+}
+
+// Against path tracing, by both ways to light that was scattered before.
+TEST(VolumeBake, AlbedosThatDifferFromPlaceToPlaceErrAsOneDoes) {
+    const auto walks =
+        bake_two_albedos({0.9f, 0.7f, 0.5f}, glm::vec3(0.1f), bake::VolumeMethod::walks);
+    EXPECT_LT(walks.rms_relative, 0.09);
+    const auto paths =
+        bake_two_albedos(glm::vec3(0.9f), glm::vec3(0.1f), bake::VolumeMethod::path_integration);
+    EXPECT_LT(paths.rms_relative, 0.25);
 }
 
 TEST(VolumeBake, TargetWithinReachIsMetByTheCheapestQualityThatReachesIt) {

@@ -45,8 +45,41 @@ inline formats::Volume make_volume(formats::SparseGrid<float> density, float sig
     return volume;
 }
 
+/// Gives each voxel the albedo that albedo(position of its centre [m]) says, a glm::vec3.
+template <class Albedo>
+void vary_albedo(formats::Volume& volume, Albedo&& albedo) {
+    using Grid = formats::SparseGrid<float>;
+    const Grid& density = volume.density;
+    volume.scattering.first_brick = density.first_brick;
+    volume.scattering.extent = density.extent;
+    volume.scattering.table = density.table;
+    volume.scattering.value.assign(density.value.size(), glm::vec3(0));
+    glm::vec3 most(0);
+    std::size_t cell = 0;
+    glm::ivec3 b;
+    for (b.z = 0; b.z < density.extent.z; ++b.z) {
+        for (b.y = 0; b.y < density.extent.y; ++b.y) {
+            for (b.x = 0; b.x < density.extent.x; ++b.x) {
+                const std::uint32_t number = density.table[cell++];
+                for (int i = 0; number != Grid::kEmpty && i < 512; ++i) {
+                    const glm::ivec3 voxel = Grid::kSide * (density.first_brick + b) +
+                                             glm::ivec3(i % 8, i / 8 % 8, i / 64);
+                    const std::size_t at =
+                        number * Grid::kBrickVoxels + static_cast<std::size_t>(i);
+                    if (!(density.value[at] > 0)) continue;
+                    const glm::vec3 own =
+                        albedo(glm::dvec3(density.to_scene * glm::dvec4(glm::dvec3(voxel), 1)));
+                    volume.scattering.value[at] = density.value[at] * own;
+                    most = glm::max(most, own);
+                }
+            }
+        }
+    }
+    volume.albedo = {most.x, most.y, most.z};
+}
+
 /// Makes a volume glow by its absorption, as matter in thermal equilibrium with light of radiance
-/// `own` does: radiance per metre a L_e = (1 - albedo) sigma_t density L_e in every band.
+/// `own` does: radiance per metre a L_e = (1 - albedo) sigma_t density L_e in every band and voxel.
 inline void make_it_glow(formats::Volume& volume, glm::vec3 own) {
     const glm::vec3 albedo(volume.albedo.r, volume.albedo.g, volume.albedo.b);
     const glm::vec3 sigma_t(volume.sigma_t.r, volume.sigma_t.g, volume.sigma_t.b);
@@ -56,8 +89,11 @@ inline void make_it_glow(formats::Volume& volume, glm::vec3 own) {
     volume.emission.extent = density.extent;
     volume.emission.table = density.table;
     volume.emission.value.clear();
-    for (const float value : density.value) {
-        volume.emission.value.push_back(value * sigma_t * (1.0f - albedo) * own);
+    for (std::size_t i = 0; i < density.value.size(); ++i) {
+        const float value = density.value[i];
+        const glm::vec3 scattered =
+            volume.scattering.empty() ? value * albedo : volume.scattering.value[i];
+        volume.emission.value.push_back((value - scattered) * sigma_t * own);
     }
 }
 

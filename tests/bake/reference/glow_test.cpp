@@ -92,6 +92,18 @@ TEST(ReferenceGlow, InEquilibriumWithTheSkyAScatteringVolumeCannotBeSeen) {
     }
 }
 
+TEST(ReferenceGlow, InEquilibriumWithTheSkyAlbedosThatDifferFromPlaceToPlaceCannotBeSeen) {
+    formats::Volume blob = make_volume(make_blob(kSize, kSize / 8), 3, 0, 0.7f);
+    vary_albedo(blob,
+                [](glm::dvec3 p) { return p.y > 0 ? glm::vec3(0) : glm::vec3(1, 0.9f, 0.3f); });
+    const glm::vec3 from(-4, 0.1f, 0.1f), along(1, 0, 0);
+    // Between its halves the sky alone does not hold.
+    const bake::Moments dark = look_at_glow({blob}, 2, from, along, 16000, TermSet::all);
+    EXPECT_LT(dark.mean.x, 1.9);
+    make_it_glow(blob, glm::vec3(2));
+    expect_radiance(look_at_glow({blob}, 2, from, along, 64000, TermSet::all), glm::vec3(2));
+}
+
 TEST(ReferenceGlow, LightOfVolumesIsThatOfEmittersAndAddsUpWithTheSkys) {
     formats::Volume blob = make_volume(make_blob(kSize, kSize / 8), 4, 0.8f, 0.3f);
     make_it_glow(blob, glm::vec3(7, 5, 3));

@@ -70,6 +70,16 @@ TEST(ReadVolume, ExtinctionIsPerMillimetreUnlessItSaysPerMetre) {
     EXPECT_EQ(media->volumes[0].sigma_t, (Rgb{1000, 2000, 3000}));
 }
 
+TEST(ReadVolume, AnAlbedoIsANumberABandOrTheNameOfAGrid) {
+    const auto named = read_entry(R"({"albedo": "colour"})");
+    ASSERT_TRUE(named) << faults(named);
+    EXPECT_EQ(named->volumes[0].albedo_grid, "colour");
+    const auto given = read_entry(R"({"albedo": [0.5, 0.25, 1]})");
+    ASSERT_TRUE(given) << faults(given);
+    EXPECT_EQ(given->volumes[0].albedo, (Rgb{0.5f, 0.25f, 1}));
+    EXPECT_TRUE(given->volumes[0].albedo_grid.empty());
+}
+
 TEST(ReadVolume, MaterialsMayBeMissingBesideVolumes) {
     EXPECT_TRUE(read_text_as_media(R"({"volumes": []})"));
     EXPECT_FALSE(read_text_as_media(R"({})"));
@@ -87,6 +97,7 @@ TEST(ReadVolume, FaultsAreNamedWithTheirPlace) {
         {R"({"sigma_t": [-1, 0, 0]})", "volumes > 0 > sigma_t", ""},
         {R"({"sigma_t": [1, 1]})", "volumes > 0 > sigma_t", ""},
         {R"({"albedo": [1, 1, 1.1]})", "volumes > 0 > albedo", ""},
+        {R"({"albedo": ""})", "volumes > 0 > albedo", ""},
         {R"({"unit": "1/m"})", "volumes > 0 > unit", "no sigma_t"},
         {R"({"scale": 0})", "volumes > 0 > scale", ""},
         {R"({"phase": {"type": "hg", "g": 1}})", "volumes > 0 > phase", ""},

@@ -1,0 +1,122 @@
+#include "bake/volumes/node_albedo.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+
+namespace opaline::bake {
+namespace {
+
+using Grid = formats::SparseGrid<float>;
+
+// Sums over the voxels less than `reach` from a node along each axis.
+struct TentSum {
+    glm::vec3 scattering{0};
+    float density = 0;
+};
+
+TentSum sum_tent(const DensityVolume& volume, glm::ivec3 node, int reach) {
+    TentSum sum;
+    glm::ivec3 d;
+    for (d.z = 1 - reach; d.z < reach; ++d.z) {
+        for (d.y = 1 - reach; d.y < reach; ++d.y) {
+            for (d.x = 1 - reach; d.x < reach; ++d.x) {
+                const float density = volume.grid->at(node + d);
+                if (!(density > 0)) continue;
+                const glm::ivec3 left = reach - glm::abs(d);
+                const auto weight = static_cast<float>(left.x * left.y * left.z);
+                sum.density += weight * density;
+                sum.scattering += weight * volume.scattering->at(node + d);
+            }
+        }
+    }
+    return sum;
+}
+
+glm::vec3 albedo_of_node(const DensityVolume& volume, glm::ivec3 node, std::uint32_t spacing) {
+    const int reach = static_cast<int>(spacing);
+    TentSum sum = sum_tent(volume, node, reach);
+    if (!(sum.density > 0)) {
+        // At the edge of the density, which begins next to this node.
+        sum = sum_tent(volume, node, reach + 1);
+    }
+    return sum.density > 0 ? sum.scattering / sum.density : glm::vec3(0);
+}
+
+// Voxels of one brick: sums of density times squares.
+struct Squares {
+    double lost = 0, all = 0;
+};
+
+Squares compare_brick(const DensityVolume& volume, glm::ivec3 brick, std::uint32_t spacing) {
+    const int step = static_cast<int>(spacing), side = Grid::kSide / step + 1;
+    std::vector<glm::vec3> corner;
+    for (int i = 0; i < side * side * side; ++i) {
+        const glm::ivec3 at(i % side, i / side % side, i / (side * side));
+        corner.push_back(albedo_of_node(volume, Grid::kSide * brick + step * at, spacing));
+    }
+    Squares sum;
+    for (int i = 0; i < static_cast<int>(Grid::kBrickVoxels); ++i) {
+        const glm::ivec3 at(i % Grid::kSide, i / Grid::kSide % Grid::kSide,
+                            i / (Grid::kSide * Grid::kSide));
+        const float density = volume.grid->at(Grid::kSide * brick + at);
+        if (!(density > 0)) continue;
+        const glm::ivec3 low = at / step;
+        const glm::vec3 w = glm::vec3(at - step * low) / static_cast<float>(step);
+        glm::vec3 between(0);
+        for (int c = 0; c < 8; ++c) {
+            const glm::ivec3 up(c & 1, c >> 1 & 1, c >> 2), node = low + up;
+            const glm::vec3 each = glm::mix(1.0f - w, w, glm::vec3(up));
+            between += each.x * each.y * each.z *
+                       corner[static_cast<std::size_t>((node.z * side + node.y) * side + node.x)];
+        }
+        const glm::vec3 own = volume.scattering->at(Grid::kSide * brick + at) / density;
+        const glm::vec3 lost = own - between;
+        sum.lost += static_cast<double>(density * glm::dot(lost, lost));
+        sum.all += static_cast<double>(density * glm::dot(own, own));
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::vector<glm::vec3> node_albedo_shares(const DensityVolume& volume, const NodeLattice& lattice) {
+    std::vector<glm::vec3> shares(lattice.node.size(), glm::vec3(1));
+    if (volume.scattering == nullptr) {
+        return shares;
+    }
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        const glm::vec3 own = albedo_of_node(volume, lattice.node[i], lattice.spacing);
+        for (int band = 0; band < 3; ++band) {
+            const float largest = volume.albedo[static_cast<std::size_t>(band)];
+            shares[i][band] = largest > 0 ? std::min(own[band] / largest, 1.0f) : 1.0f;
+        }
+    }
+    return shares;
+}
+
+double lost_albedo_detail(const DensityVolume& volume, std::uint32_t spacing) {
+    if (volume.scattering == nullptr || spacing <= 1) {
+        return 0;
+    }
+    constexpr std::size_t kMostBricks = 1024;
+    const Grid& grid = *volume.grid;
+    const std::size_t stride = (grid.brick_count() + kMostBricks - 1) / kMostBricks;
+    Squares sum;
+    std::size_t cell = 0, seen = 0;
+    glm::ivec3 b;
+    for (b.z = 0; b.z < grid.extent.z; ++b.z) {
+        for (b.y = 0; b.y < grid.extent.y; ++b.y) {
+            for (b.x = 0; b.x < grid.extent.x; ++b.x) {
+                if (grid.table[cell++] == Grid::kEmpty || seen++ % stride != 0) continue;
+                const Squares own = compare_brick(volume, grid.first_brick + b, spacing);
+                sum.lost += own.lost;
+                sum.all += own.all;
+            }
+        }
+    }
+    return sum.all > 0 ? std::sqrt(sum.lost / sum.all) : 0;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "bake/volumes/density_space.h"
+#include "bake/volumes/node_lattice.h"
+
+namespace opaline::bake {
+
+/// The albedo of each node of a volume, relative to DensityVolume::albedo, in [0, 1]: 1 where that
+/// holds everywhere. It is the mean over voxels nearer than the next node, linear in their distance
+/// along each axis and weighted by density. A file has one albedo a volume; rows times these
+/// shares, linear between nodes, scatter as much as all voxels do.
+std::vector<glm::vec3> node_albedo_shares(const DensityVolume& volume, const NodeLattice& lattice);
+
+/// How far albedos between nodes are from those of voxels: RMS weighted by density, relative to the
+/// RMS of these; 0 where one holds everywhere. At most 1024 bricks are looked at. `spacing` as in
+/// NodeLattice.
+double lost_albedo_detail(const DensityVolume& volume, std::uint32_t spacing);
+
+}  // namespace opaline::bake
