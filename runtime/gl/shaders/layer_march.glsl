@@ -103,11 +103,16 @@ LayerMarch march_layer(LayerRay ray, float kappa) {
     cut_to(part, origin.y, d.z / field.y, -0.125, 1.125);
 #endif
     if (!(part.y > part.x) || !(highest > 0.0)) return none;
+    // Where it comes in through base or top its height is exact, and so is the way from there to the
+    // other: as a sum of far distances both would be off by their rounding.
+    float entry = d.y < 0.0 ? highest : 0.0, exit = highest - entry;
+    bool comes_in = part.x == (entry - above_base) / d.y, goes_out = part.y == (exit - above_base) / d.y;
+    float first_height = comes_in ? entry : above_base + d.y * part.x;
     // Distances from part.x: (part.x + offset) growth, growth + 1 a power of the ratio.
-    float offset = 0.5 * highest, start = part.x + offset, whole = part.y - part.x;
+    float offset = 0.5 * highest, start = part.x + offset;
+    float whole = goes_out ? (exit - first_height) / d.y : part.y - part.x;
     float step_growth = exp_minus_one(log_of_one_more(whole / start) / float(kSteps));
     float level_scale = length(d.xz) * step_growth;
-    float first_height = above_base + d.y * part.x;
     float s = 0.0, growth = 0.0;
     float level = field_level(max(level_scale * start, ray.spread * part.x));
     float thickness = thickness_at(ray.from.xz + part.x * d.xz, level), below_top = thickness - first_height;

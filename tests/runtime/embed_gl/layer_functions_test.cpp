@@ -54,8 +54,8 @@ formats::Clouds bumpy_clouds(bool repeats, bool is_bare) {
         layer.radiance = {0, 0, 0};
         layer.droplets.peak_angle = 0;
     }
-    // Of thin clouds: floats round places to 0.3 mm in 5 km, and exp(-kappa * 0.3 mm) is seen.
-    layer.droplets.kappa = {0.012, 0.015, 0.018};
+    // Floats round places to 0.2 mm in 4 km: of steep tops exp(-kappa * 0.2 mm) is seen.
+    layer.droplets.kappa = {0.03, 0.035, 0.04};
     if (!repeats) layer.record.flags = 0;
     layer.record.wind = {20, 5};
     formats::Clouds clouds = make_test_clouds(layer, [](std::uint32_t column, std::uint32_t row) {
