@@ -130,6 +130,11 @@ struct Material {
     std::uint32_t emission_image = kNone;  ///< index into Scene::images: multiplies `emission` by
                                            ///< sRGB codes. Coordinates: Primitive::texcoord
     Wrap emission_wrap_u = Wrap::repeat, emission_wrap_v = Wrap::repeat;  ///< of that image
+    std::uint32_t normal_image = kNone;  ///< index into Scene::images: a normal map, linear codes
+                                         ///< in the frame of Primitive::tangent
+                                         ///< (opal/normal_maps.h). Coordinates: Primitive::texcoord
+    float normal_scale = 1;              ///< of its x and y, finite
+    Wrap normal_wrap_u = Wrap::repeat, normal_wrap_v = Wrap::repeat;  ///< of that image
     /// Coverage of the surface, of materials without a medium: alpha * Primitive::alpha * alpha of
     /// the base colour's image. mask: there is no surface where it is below alpha_cutoff; blend: it
     /// is there with that probability.
@@ -232,6 +237,10 @@ struct Primitive {
     std::vector<glm::vec3> normal;     ///< unit; one per vertex; {0,0,0} where none can be defined
     std::vector<glm::vec2> texcoord;   ///< of the textures, set 0 without any; transform
                                        ///< applied; empty or one per vertex
+    std::vector<glm::vec4> tangent;    ///< of a normal map: unit, perpendicular to the normal,
+                                       ///< toward growing u; w = 1, or -1 where the image is
+                                       ///< mirrored; all 0 where none can be defined. Empty
+                                       ///< without a map, else one per vertex
     std::vector<Rgb> color;            ///< COLOR_0, linear; empty or one per vertex
     std::vector<float> alpha;          ///< of COLOR_0; empty or one per vertex, in [0, 1]
     std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();

@@ -14,11 +14,12 @@ std::uint32_t roughness_level(float roughness) {
 
 std::vector<std::uint32_t> roughness_levels(const formats::AssetView& asset) {
     std::vector<std::uint32_t> levels;
-    for (const float roughness : asset.roughness) {
-        if (roughness >= 0) levels.push_back(roughness_level(roughness));
+    for (std::uint32_t level = 0; level <= kRoughnessSteps; ++level) {
+        const bool is_used =
+            std::any_of(asset.roughness.begin(), asset.roughness.end(),
+                        [&](float r) { return r >= 0 && roughness_level(r) == level; });
+        if (is_used) levels.push_back(level);
     }
-    std::sort(levels.begin(), levels.end());
-    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
     return levels;
 }
 

@@ -66,6 +66,7 @@ int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
     print_seconds(options, "dot products", elapsed_since(start));
     runtime::SoftwareOptions software;
     software.volumes = &volumes;
+    software.lights = lights;
     software.threads = options.threads;
     software.background = shown.background;
     software.emitters = shown.emitters;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bake/encode/pack_holes.h"
+#include "bake/encode/pack_normal_maps.h"
 #include "bake/scene/lobe_record.h"
 #include "bake/scene/marble.h"
 
@@ -81,7 +82,8 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
                                transport.row_offset[record.first_row]} *
                  record.bands;
         const bool has_image = material.base_color_image != kNone ||
-                               material.gloss.image != kNone || material.emission_image != kNone;
+                               material.gloss.image != kNone || material.emission_image != kNone ||
+                               material.normal_image != kNone;
         const bool mapped = has_image && !p.texcoord.empty();
         if (mapped && material.base_color_image != kNone) {
             record.base_color_image = material.base_color_image;
@@ -109,6 +111,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         asset.images.push_back(to_preview(image));
     }
     asset.holes = pack_holes(scene, asset.images);
+    asset.normal_maps = pack_normal_maps(scene);
     if (std::none_of(asset.gloss.begin(), asset.gloss.end(),
                      [](const GlossRecord& g) { return g.is_glossy(); })) {
         asset.gloss.clear();

@@ -8,6 +8,7 @@
 #include "bake/reference/boundary.h"
 #include "bake/reference/events.h"
 #include "bake/reference/light_line.h"
+#include "bake/reference/shading_normal.h"
 #include "bake/reference/volume_flight.h"
 #include "bake/scene/emission.h"
 
@@ -43,7 +44,7 @@ bool meet_boundary(const PathSpace& space, Path& path, const SurfaceHit& hit, st
         return path.beta != glm::vec3(0) && is_wanted(space, path.state);
     }
     const float side = enters ? 1.0f : -1.0f;
-    crossing.normal = side * hit.smooth;
+    crossing.normal = side * shading_normal(scene.surfaces.scene(), hit);
     crossing.ratio = ratio;
     crossing.flat = side * hit.flat;
     crossing.alpha = scene.media[medium].boundary_alpha;
@@ -96,7 +97,7 @@ bool meet_surface(const PathSpace& space, Path& path, const SurfaceHit& hit, Ran
     }
     const float side = back ? -1.0f : 1.0f;
     const OpaquePoint point{leave_surface(hit, side * hit.flat),
-                            leave_surface(hit, -side * hit.flat), side * hit.smooth,
+                            leave_surface(hit, -side * hit.flat), side * shading_normal(scene, hit),
                             side * hit.flat, opaque_surface_at(scene, hit, view)};
     return reflect_at_surface(space, path, point, random);
 }

@@ -77,6 +77,11 @@ glm::vec3 roughness_texture(const formats::Scene& scene, const SurfacePlace& pla
     return look_up(scene, place, {gloss.image, gloss.wrap_u, gloss.wrap_v, true}, view);
 }
 
+glm::vec3 normal_texture(const formats::Scene& scene, const SurfacePlace& place) {
+    const Material& m = material_of(scene, place);
+    return look_up(scene, place, {m.normal_image, m.normal_wrap_u, m.normal_wrap_v, true}, nullptr);
+}
+
 glm::vec3 emission_texture(const formats::Scene& scene, const SurfacePlace& place,
                            const TextureView* view) {
     const Material& m = material_of(scene, place);

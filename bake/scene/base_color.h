@@ -34,6 +34,9 @@ glm::vec3 base_color_texture(const formats::Scene& scene, const SurfacePlace& pl
 glm::vec3 roughness_texture(const formats::Scene& scene, const SurfacePlace& place,
                             const TextureView* view = nullptr);
 
+/// The codes of its normal map over 255, at the point. Precondition: it has one and coordinates.
+glm::vec3 normal_texture(const formats::Scene& scene, const SurfacePlace& place);
+
 /// Of emission; 1 without one.
 glm::vec3 emission_texture(const formats::Scene& scene, const SurfacePlace& place,
                            const TextureView* view = nullptr);

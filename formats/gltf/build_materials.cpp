@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "formats/gltf/add_emission.h"
+#include "formats/gltf/add_normal_map.h"
 #include "formats/gltf/clamp_factor.h"
 #include "formats/gltf/load_texture.h"
 #include "formats/gltf/map_gloss.h"
@@ -69,9 +70,6 @@ std::vector<std::string> unsimulated(const MaterialSource& material, const Mater
     if (has_medium && material.translucency.metallic > 0.0) {
         faults.push_back(
             "metallicFactor above 0 is not simulated: the surface is baked as a dielectric");
-    }
-    if (material.has_normal_map) {
-        faults.push_back("normalTexture is not simulated: vertex normals are used alone");
     }
     if (material.has_occlusion_map) {
         faults.push_back("occlusionTexture is not used: occlusion is computed");
@@ -246,6 +244,7 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
                 add_scatter_textures(source, where, loader, material, remarks);
             }
             add_emission(source, where, loader, material, remarks);
+            add_normal_map(source, where, loader, material, remarks);
             add_coverage(source, material, remarks);
             for (const std::string& fault : unsimulated(source, material)) {
                 lost[fault].push_back(where);

@@ -7,6 +7,7 @@
 #include "formats/gltf/choose_origin.h"
 #include "formats/gltf/read_primitive.h"
 #include "formats/gltf/smooth_normals.h"
+#include "formats/gltf/tangents.h"
 
 namespace opaline::formats::gltf {
 
@@ -68,7 +69,7 @@ void place_normals(const PrimitiveData& data, const glm::dmat4& world, Primitive
 void place_texcoords(const PrimitiveData& data, const Material& material, Primitive& out,
                      Report& report) {
     const bool has_image = material.base_color_image != kNone || material.gloss.image != kNone ||
-                           material.emission_image != kNone ||
+                           material.emission_image != kNone || material.normal_image != kNone ||
                            (material.medium && material.medium->variation);
     if (data.texcoord.empty() && has_image) {
         report.warn(out.name,
@@ -95,6 +96,12 @@ void place_texcoords(const PrimitiveData& data, const Material& material, Primit
             std::to_string(bad) + " texture coordinates are not finite and are taken as (0, 0)",
             "repair the mesh before export");
     }
+}
+
+// Whether u and v grow where they did: TANGENT belongs to coordinates before their transform.
+bool keeps_axes(const glm::mat3& transform) {
+    return transform[0][0] > 0 && transform[1][1] > 0 && transform[0][1] == 0 &&
+           transform[1][0] == 0;
 }
 
 void place_colors(const PrimitiveData& data, const Material& material, Primitive& out,
@@ -243,20 +250,32 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
             }
             const Material& material = scene.materials[out.material];
             // Kept without a texture, too: a media file may bring one.
-            const auto data = read_primitive(document, buffers, source,
-                                             material.base_color_texcoord, out.name, report);
+            const bool has_normal_map = material.normal_image != kNone;
+            const auto data =
+                read_primitive(document, buffers, source, material.base_color_texcoord,
+                               has_normal_map, out.name, report);
             if (!data) {
                 continue;
             }
             place_positions(*data, instance.world, metres_per_unit, scene.origin, out, report);
             place_normals(*data, instance.world, out);
             place_texcoords(*data, material, out, report);
+            if (has_normal_map && keeps_axes(material.base_color_uv_transform)) {
+                out.tangent = turn_tangents(data->tangent, instance.world);
+            }
             place_colors(*data, material, out, report);
             place_indices(*data, mirrored, out, report);
             warn_of_coarse_positions(*data, out, scene.origin, report);
         }
         if (!report.failed()) {
-            complete_normals(std::span(scene.primitives).subspan(first), report);
+            const auto made = std::span(scene.primitives).subspan(first);
+            complete_normals(made, report);
+            for (Primitive& primitive : made) {
+                if (scene.materials[primitive.material].normal_image != kNone &&
+                    !primitive.texcoord.empty()) {
+                    complete_tangents(primitive);
+                }
+            }
         }
     }
     if (morphed > 0) {

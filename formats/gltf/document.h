@@ -129,9 +129,10 @@ struct LightSource {
 struct MaterialSource {
     std::string name;
     glm::dvec4 base_color{1.0};
-    TextureUse base_color_texture, metallic_roughness_texture;
+    TextureUse base_color_texture, metallic_roughness_texture, normal_texture;
+    double normal_scale = 1.0;  ///< of normal_texture
     EmissionSource emission;
-    bool double_sided = false, has_normal_map = false, has_occlusion_map = false;
+    bool double_sided = false, has_occlusion_map = false;
     std::string alpha_mode;
     double alpha_cutoff = 0.5;
     std::vector<std::string> extensions;

@@ -187,7 +187,9 @@ double number_in(const tinygltf::Value& value, const char* key, std::size_t elem
     return found->IsNumber() ? found->GetNumberAsDouble() : otherwise;
 }
 
-TextureUse convert(const tinygltf::TextureInfo& in, const std::string& where, Report& report) {
+/// Of a TextureInfo or a NormalTextureInfo.
+template <class Info>
+TextureUse convert_use(const Info& in, const std::string& where, Report& report) {
     TextureUse out;
     out.texture = link(in.index);
     out.texcoord = static_cast<std::uint32_t>(in.texCoord);
@@ -218,11 +220,12 @@ MaterialSource convert(const tinygltf::Material& in, std::size_t index, Report& 
         out.base_color = glm::make_vec4(pbr.baseColorFactor.data());
     }
     out.base_color_texture =
-        convert(pbr.baseColorTexture, label("material", index, in.name), report);
+        convert_use(pbr.baseColorTexture, label("material", index, in.name), report);
     out.metallic_roughness_texture =
-        convert(pbr.metallicRoughnessTexture, label("material", index, in.name), report);
+        convert_use(pbr.metallicRoughnessTexture, label("material", index, in.name), report);
     out.double_sided = in.doubleSided;
-    out.has_normal_map = in.normalTexture.index >= 0;
+    out.normal_texture = convert_use(in.normalTexture, label("material", index, in.name), report);
+    out.normal_scale = in.normalTexture.scale;
     out.has_occlusion_map = in.occlusionTexture.index >= 0;
     out.alpha_mode = in.alphaMode.empty() ? "OPAQUE" : in.alphaMode;
     out.alpha_cutoff = in.alphaCutoff;

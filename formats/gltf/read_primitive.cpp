@@ -127,8 +127,8 @@ std::vector<std::uint32_t> triangulate(Mode mode, std::vector<std::uint32_t> dra
 std::optional<PrimitiveData> read_primitive(const Document& document,
                                             const std::vector<Bytes>& buffers,
                                             const MeshPrimitive& primitive,
-                                            std::uint32_t texcoord_set, const std::string& where,
-                                            Report& report) {
+                                            std::uint32_t texcoord_set, bool wants_tangents,
+                                            const std::string& where, Report& report) {
     const Reader reader{document, buffers, primitive, where, report};
     const auto position = primitive.attributes.find("POSITION");
     if (position == primitive.attributes.end()) {
@@ -143,6 +143,11 @@ std::optional<PrimitiveData> read_primitive(const Document& document,
     data.normal =
         reader.attribute("NORMAL", 3, 3, vertices,
                          "export with one normal per vertex, or drop NORMAL to have it computed");
+    if (wants_tangents) {
+        data.tangent = reader.attribute("TANGENT", 4, 4, vertices,
+                                        "export with one tangent per vertex, or drop TANGENT to "
+                                        "have it computed");
+    }
     if (texcoord_set != kNone) {
         data.texcoord = reader.attribute("TEXCOORD_" + std::to_string(texcoord_set), 2, 2, vertices,
                                          "export with one coordinate per vertex");

@@ -15,6 +15,7 @@ namespace opaline::formats::gltf {
 struct PrimitiveData {
     std::vector<float> position;  ///< 3 per vertex, finite
     std::vector<float> normal;    ///< 3 per vertex, as stored; empty if there is none
+    std::vector<float> tangent;   ///< 4 per vertex, as stored; empty if there is none or not wanted
     std::vector<float> texcoord;  ///< 2 per vertex, as stored; empty if there is none
     std::vector<float> color;     ///< `color_components` per vertex; empty if there is none
     std::uint32_t color_components = 3;
@@ -22,12 +23,13 @@ struct PrimitiveData {
 };
 
 /// Reads the attributes that Opaline uses and makes a triangle list of strips, fans and
-/// primitives without indices. `texcoord_set` is kNone where no texture needs one. Nothing and
+/// primitives without indices. `texcoord_set` is kNone where no texture needs one; TANGENT is read
+/// where `wants_tangents`. Nothing and
 /// errors named after `where` if the primitive does not conform. Precondition: a triangle mode.
 std::optional<PrimitiveData> read_primitive(const Document& document,
                                             const std::vector<Bytes>& buffers,
                                             const MeshPrimitive& primitive,
-                                            std::uint32_t texcoord_set, const std::string& where,
-                                            Report& report);
+                                            std::uint32_t texcoord_set, bool wants_tangents,
+                                            const std::string& where, Report& report);
 
 }  // namespace opaline::formats::gltf

@@ -163,7 +163,7 @@ void validate_links(const Document& document, Report& report) {
         const MaterialSource& material = document.materials[i];
         for (const TextureUse& use :
              {material.base_color_texture, material.metallic_roughness_texture,
-              material.translucency.scatter_strength_texture,
+              material.normal_texture, material.translucency.scatter_strength_texture,
               material.translucency.multiscatter_color_texture, material.emission.texture}) {
             check_link(use.texture, document.textures.size(), label("material", i, material.name),
                        "texture", report);

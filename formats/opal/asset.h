@@ -12,6 +12,7 @@
 #include "formats/opal/emitters.h"
 #include "formats/opal/gloss.h"
 #include "formats/opal/holes.h"
+#include "formats/opal/normal_maps.h"
 #include "formats/opal/openness.h"
 #include "formats/opal/preview_image.h"
 #include "formats/opal/rgb.h"
@@ -108,10 +109,11 @@ struct AssetView {
     std::span<const Openness> openness;
     /// Gloss of opaque primitives: empty (none), or one per primitive; needs `openness`.
     std::span<const GlossRecord> gloss;
-    HolesView holes;        ///< where opaque and thin-walled surfaces are not there
-    VolumesView volumes;    ///< smoke, clouds; empty without any
-    CloudsView clouds;      ///< cloud layers; empty without any
-    EmittersView emitters;  ///< light that is not the environment's; empty without any
+    HolesView holes;             ///< where opaque and thin-walled surfaces are not there
+    NormalMapsView normal_maps;  ///< empty without any
+    VolumesView volumes;         ///< smoke, clouds; empty without any
+    CloudsView clouds;           ///< cloud layers; empty without any
+    EmittersView emitters;       ///< light that is not the environment's; empty without any
 
     std::uint32_t receivers() const { return static_cast<std::uint32_t>(position.size()); }
 };
@@ -133,6 +135,7 @@ struct Asset {
     std::vector<Openness> openness;  ///< empty, or one per vertex; where `roughness` is not empty
     std::vector<GlossRecord> gloss;  ///< empty, or one per primitive; kNotGlossy if translucent
     Holes holes;                     ///< empty without any
+    NormalMaps normal_maps;          ///< empty without any
     Volumes volumes;                 ///< empty without any
     Clouds clouds;                   ///< empty without any
     Emitters emitters;               ///< empty without any

@@ -8,6 +8,7 @@
 #include "formats/opal/check_emitters.h"
 #include "formats/opal/check_glow.h"
 #include "formats/opal/check_holes.h"
+#include "formats/opal/check_normal_maps.h"
 #include "formats/opal/check_rows.h"
 #include "formats/opal/check_volumes.h"
 #include "formats/opal/cubemap.h"
@@ -187,6 +188,9 @@ Fault find_structure_fault(const AssetView& asset) {
         }
     }
     if (Fault fault = find_holes_fault(asset); !fault.what.empty()) {
+        return fault;
+    }
+    if (Fault fault = find_normal_maps_fault(asset); !fault.what.empty()) {
         return fault;
     }
     if (Fault fault = find_volumes_fault(asset.volumes); !fault.what.empty()) {

@@ -67,6 +67,11 @@ struct HolesHead {
 };
 static_assert(sizeof(HolesHead) == 16);
 
+struct NormalMapsHead {
+    std::uint32_t count = 0, record_size = 0, vertices = 0, reserved = 0;
+};
+static_assert(sizeof(NormalMapsHead) == 16);
+
 struct TransportHead {
     std::uint32_t rows = 0, code_bits = 0, index_bytes = 0, reserved = 0;
     std::uint64_t band_rows = 0, details = 0, codes = 0, reserved_wide = 0;

@@ -80,6 +80,13 @@ bool read_holes(SectionCursor cursor, AssetView& view) {
            cursor.take(head.vertices, view.holes.vertex_alpha) && cursor.at_end();
 }
 
+bool read_normal_maps(SectionCursor cursor, AssetView& view) {
+    NormalMapsHead head;
+    return cursor.take_one(head) && head.record_size == sizeof(NormalMapRecord) &&
+           cursor.take(head.count, view.normal_maps.record) &&
+           cursor.take(head.vertices, view.normal_maps.tangent) && cursor.at_end();
+}
+
 bool read_transport(SectionCursor cursor, AssetView& view) {
     return take_rows(cursor, view.transport) && cursor.at_end();
 }
@@ -168,6 +175,9 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 break;
             case kHoleSection:
                 read = read_holes;
+                break;
+            case kNormSection:
+                read = read_normal_maps;
                 break;
             case kVoluSection:
                 read = read_volumes;

@@ -45,6 +45,7 @@ struct SectionHeads {
     SpecularHead specular;
     GlossHead gloss;
     HolesHead holes;
+    NormalMapsHead normal_maps;
     VolumesHead volumes;
     TransportHead volume_rows;
     CloudsHead clouds;
@@ -67,6 +68,8 @@ SectionHeads make_heads(const AssetView& asset) {
     heads.gloss = {count(asset.gloss), sizeof(GlossRecord), {}};
     heads.holes = {count(asset.holes.record), sizeof(HoleRecord), count(asset.holes.vertex_alpha),
                    0};
+    heads.normal_maps = {count(asset.normal_maps.record), sizeof(NormalMapRecord),
+                         count(asset.normal_maps.tangent), 0};
     heads.volumes = volumes_head(asset.volumes);
     heads.volume_rows = rows_head(asset.volumes.rows);
     heads.clouds = clouds_head(asset.clouds);
@@ -127,6 +130,11 @@ std::vector<StoredSection> store_sections(const AssetView& asset, const SectionH
         add(kHoleSection, Codec::zstd,
             Arrays{bytes_of(heads.holes), std::as_bytes(asset.holes.record),
                    std::as_bytes(asset.holes.vertex_alpha)});
+    }
+    if (!asset.normal_maps.empty()) {
+        add(kNormSection, Codec::zstd,
+            Arrays{bytes_of(heads.normal_maps), std::as_bytes(asset.normal_maps.record),
+                   std::as_bytes(asset.normal_maps.tangent)});
     }
     if (!asset.volumes.empty()) {
         assert(asset.volumes.rows.cubemap_size == asset.cubemap_size);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "runtime/holes.h"
+#include "runtime/normal_map.h"
 #include "runtime/parallel.h"
 #include "runtime/picture/layer_pass.h"
 #include "runtime/picture/passes.h"
@@ -12,6 +13,7 @@
 #include "runtime/picture/volume_pass.h"
 #include "runtime/surface.h"
 #include "runtime/texture.h"
+#include "runtime/turned_light.h"
 
 namespace opaline::runtime {
 namespace {
@@ -41,6 +43,8 @@ struct Job {
     LitVolumes volumes;
     const LayerLight* layers = nullptr;
     bool shows_sky = true;
+    std::optional<PartLights> lights;
+    std::vector<TurnedLight> turned;  // of `lights`, where there are normal maps
 };
 
 // The limit keeps sums of samples finite.
@@ -96,6 +100,32 @@ void set_openness(const Job& job, const GridTriangle& triangle, const std::array
     point.open_fraction = open;
 }
 
+formats::DecodedTangent interpolate_tangent(const Job& job, const GridTriangle& triangle,
+                                            const std::array<float, 3>& weight) {
+    formats::DecodedTangent sum;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto at = formats::decode_tangent(job.asset.normal_maps.tangent[triangle.vertex[k]]);
+        sum = {sum.direction + weight[k] * at.direction, sum.sign + weight[k] * at.sign};
+    }
+    return sum;
+}
+
+// What a normal map changes: the view, and the light of diffuse surfaces with one side's row.
+void apply_normal_map(const Job& job, const formats::NormalMapRecord& map,
+                      const GridTriangle& triangle, const std::array<float, 3>& weight, Float2 uv,
+                      SurfacePoint& point) {
+    const formats::Vec3 normal =
+        unit_or_zero(interpolate(job.asset.normal, triangle.vertex, weight));
+    const formats::Vec3 mapped =
+        mapped_normal(job.asset, map, uv, normal, interpolate_tangent(job, triangle, weight));
+    point.view = view_mapped(point.view, mapped);
+    if (!job.turned.empty() &&
+        job.asset.primitives[triangle.primitive].shading == formats::Shading::diffuse) {
+        const TurnedLight& light = job.turned[job.lights->number(triangle.primitive)];
+        point.radiance = turn_light(light, point.radiance, normal, mapped);
+    }
+}
+
 SurfacePoint point_at(const Job& job, const GridTriangle& triangle,
                       const std::array<float, 3>& weight) {
     const SurfaceMaterial& material = job.materials[triangle.primitive];
@@ -112,6 +142,9 @@ SurfacePoint point_at(const Job& job, const GridTriangle& triangle,
     const bool is_glossy = material.gloss != nullptr || material.lobe.radiance != nullptr;
     if (is_glossy || primitive.shading == formats::Shading::translucent) {
         point.view = view_at(job, primitive, triangle, weight);
+    }
+    if (const auto* const map = job.asset.normal_maps.of(triangle.primitive)) {
+        apply_normal_map(job, *map, triangle, weight, uv, point);
     }
     set_own_light(job.asset, material, uv, point);
     if (is_glossy) set_openness(job, triangle, weight, point);
@@ -260,7 +293,10 @@ formats::Result<Picture> render_software(const AssetView& asset, std::span<const
             .materials = {},
             .volumes = {},
             .layers = options.layers,
-            .shows_sky = options.background};
+            .shows_sky = options.background,
+            .lights = options.lights,
+            .turned = {}};
+    if (job.lights && !asset.normal_maps.empty()) job.turned = make_turned_lights(*job.lights);
     if (has_volumes) job.volumes = light_volumes(asset.volumes, *options.volumes);
     for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
         job.materials.push_back(

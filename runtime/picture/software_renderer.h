@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "formats/opal/asset.h"
@@ -10,6 +11,7 @@
 #include "runtime/clouds/layer_light.h"
 #include "runtime/emitter_light.h"
 #include "runtime/light_vector.h"
+#include "runtime/part_lights.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/check_camera.h"
 #include "runtime/picture/picture.h"
@@ -28,6 +30,9 @@ struct SoftwareOptions {
     const VolumeLight* volumes = nullptr;
     /// The asset's cloud layer under the light (light_layers); nothing: none is drawn.
     const LayerLight* layers = nullptr;
+    /// The light of `radiance`, for diffuse surfaces with normal maps (turned_light.h); nothing:
+    /// those show them in what they mirror alone.
+    std::optional<PartLights> lights = std::nullopt;
     /// Of the asset's emitters: what surfaces send out by themselves. Their light on other surfaces
     /// is part of `radiance`.
     EmitterLight emitters = {};
@@ -39,12 +44,13 @@ struct SoftwareOptions {
 /// translucent vertices sum_k h_k(w_o') <T_k, L> toward the camera's eye (`shade` with `base_color`
 /// and `fresnel` false and that eye). It is interpolated with perspective correction, like base
 /// colour, normal and openness; each sample is then shaded as surface.h says, with images sampled
-/// bilinearly. Triangles show from both sides; diffuse ones are shaded alike, translucent and
-/// glossy ones face away with one of them unless they are double-sided. Where no triangle is seen
-/// stands the radiance of the environment, turned by `rotation` like the light. Volumes are marched
-/// up to what a sample sees (volume_pass.h), before a black background too. A cloud layer stands
-/// with its ground between the eye and that (layer_pass.h). Depth and clipping:
-/// what is nearest, from the near plane on. Passes: passes.h.
+/// bilinearly, and with the normal of its map where it has one (normal_map.h). Triangles show from
+/// both sides; diffuse ones are shaded alike, translucent and glossy ones face away with one of
+/// them unless they are double-sided. Where no triangle is seen stands the radiance of the
+/// environment, turned by `rotation` like the light. Volumes are marched up to what a sample sees
+/// (volume_pass.h), before a black background too. A cloud layer stands with its ground between the
+/// eye and that (layer_pass.h). Depth and clipping: what is nearest, from the near plane on.
+/// Passes: passes.h.
 ///
 /// Errors: usage (see check_camera; not one value per vertex or volume), resource (memory).
 formats::Result<Picture> render_software(const formats::AssetView& asset,

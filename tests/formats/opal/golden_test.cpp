@@ -216,6 +216,21 @@ TEST_F(GoldenFile, HolesToo) {
     EXPECT_EQ(holes.vertex_alpha[3], 0.75f);
 }
 
+TEST_F(GoldenFile, NormalMapsToo) {
+    const NormalMapsView& maps = read("norm1.opal").normal_maps;
+    EXPECT_EQ(version_of(kNormSection), 1u);
+    ASSERT_EQ(maps.record.size(), 1u);
+    EXPECT_EQ(maps.record[0].primitive, 1u);
+    EXPECT_EQ(maps.record[0].image, 0u);
+    EXPECT_EQ(maps.record[0].wrap_v, Wrap::clamp);
+    EXPECT_EQ(maps.record[0].scale, 0.75f);
+    ASSERT_EQ(maps.tangent.size(), 8u);
+    EXPECT_EQ(decode_tangent(maps.tangent[0]).direction, Vec3{});
+    EXPECT_EQ(decode_tangent(maps.tangent[3]).sign, -1);
+    EXPECT_NEAR(decode_tangent(maps.tangent[3]).direction.x, -0.98999f, 1e-4f);
+    EXPECT_NEAR(decode_tangent(maps.tangent[3]).direction.z, 0.14112f, 1e-4f);
+}
+
 TEST_F(GoldenFile, CloudLayersToo) {
     const AssetView& asset = read("clou1.opal");
     EXPECT_EQ(version_of(kClouSection), 1u);

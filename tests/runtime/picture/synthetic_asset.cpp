@@ -183,6 +183,30 @@ void add_bare_primitive(formats::Asset& asset, const TestMesh& mesh) {
     }
 }
 
+void add_normal_map(formats::Asset& asset, formats::NormalMapRecord map, Vec3 along, float sign) {
+    asset.normal_maps.record.push_back(map);
+    asset.normal_maps.tangent.resize(asset.position.size());
+    const formats::PrimitiveRecord& primitive = asset.primitives[map.primitive];
+    for (std::uint32_t i = 0; i < primitive.vertex_count; ++i) {
+        const Vec3 normal = asset.normal[primitive.first_vertex + i];
+        const Vec3 flat = along - dot(along, normal) * normal;
+        asset.normal_maps.tangent[primitive.first_vertex + i] = formats::encode_tangent(flat, sign);
+    }
+}
+
+formats::PreviewImageData make_even_normals(Vec3 normal) {
+    formats::PreviewImageData image{1, 1, {}};
+    for (const float x : {normal.x, normal.y, normal.z}) {
+        image.rgb.push_back(static_cast<std::uint8_t>(std::lround(128 + 127 * x)));
+    }
+    return image;
+}
+
+Vec3 coded_normal(const formats::PreviewImageData& even) {
+    const auto value = [&](std::size_t i) { return (static_cast<float>(even.rgb[i]) - 128) / 127; };
+    return formats::normalize({value(0), value(1), value(2)});
+}
+
 formats::PreviewImageData make_noise_image(std::uint32_t width, std::uint32_t height) {
     formats::PreviewImageData image{width, height, {}};
     std::uint32_t state = 12345;

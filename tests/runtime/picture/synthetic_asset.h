@@ -51,6 +51,16 @@ void add_primitive(formats::Asset& asset, const TestMesh& mesh, const TestPrimit
 /// Adds a primitive without transport details or averages: for tests that bring own radiance.
 void add_bare_primitive(formats::Asset& asset, const TestMesh& mesh);
 
+/// Gives a primitive a normal map. Tangents: `along` without its part along the vertex's normal,
+/// and `sign`, 0 for none.
+void add_normal_map(formats::Asset& asset, formats::NormalMapRecord map, formats::Vec3 along,
+                    float sign);
+
+/// A normal map with one normal everywhere; unit, z > 0.
+formats::PreviewImageData make_even_normals(formats::Vec3 normal);
+/// The normal that its codes stand for, unit.
+formats::Vec3 coded_normal(const formats::PreviewImageData& even);
+
 /// Colourful noise, so that a mirrored or shifted image shows.
 formats::PreviewImageData make_noise_image(std::uint32_t width, std::uint32_t height);
 

@@ -1,0 +1,38 @@
+#include "formats/opal/check_normal_maps.h"
+
+#include <cmath>
+
+namespace opaline::formats {
+namespace {
+
+const char* find_map_fault(const AssetView& asset) {
+    const NormalMapsView& maps = asset.normal_maps;
+    if (!maps.empty() && maps.tangent.size() != asset.position.size()) {
+        return "it does not have a tangent for each vertex";
+    }
+    std::uint64_t next = 0;
+    for (const NormalMapRecord& map : maps.record) {
+        if (map.primitive < next || map.primitive >= asset.primitives.size()) {
+            return "a primitive does not exist, is out of order, or stands twice";
+        }
+        next = std::uint64_t{map.primitive} + 1;
+        if (map.image >= asset.images.size() || asset.texcoord.empty()) {
+            return "it uses an image or texture coordinates that are not there";
+        }
+        if (static_cast<std::uint32_t>(map.wrap_u) > 2 ||
+            static_cast<std::uint32_t>(map.wrap_v) > 2 || !std::isfinite(map.scale) ||
+            (map.reserved[0] | map.reserved[1] | map.reserved[2]) != 0) {
+            return "a texture wrap mode, a scale or a value is not one of this version";
+        }
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+Fault find_normal_maps_fault(const AssetView& asset) {
+    const char* const fault = find_map_fault(asset);
+    return fault == nullptr ? Fault{} : Fault{"section NORM", fault};
+}
+
+}  // namespace opaline::formats

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "formats/opal/rgb.h"
+#include "formats/opal/vec3.h"
+#include "runtime/light_vector.h"
+#include "runtime/part_lights.h"
+
+namespace opaline::runtime {
+
+/// What a receiver would get with another normal: its relit light, of the normal n of the vertices,
+/// for the normal m of a map. Of the light's directions at the receiver nothing is stored, so those
+/// of the unblocked light stand for them. With A(n) what smooth light and S(n) what suns give an
+/// open white surface, both as radiance, L the relit radiance and e a small share of the mean
+/// light, for each band
+///
+///     v  = clamp((L - A(n)) / max(S(n), e), 0, 1)      of all bands together: the share of suns
+///     D  = min(L, A(n) + v S(n))                       what can have come straight
+///     L' = L - D + D (A(m) + v S(m) + e) / (A(n) + v S(n) + e)
+///
+/// A is the expansion of irradiance in spherical harmonics up to degree 2 [Ramamoorthi2001], whose
+/// error is 1 % for most maps once suns are split off. So L' = L where m = n and under even light,
+/// a sun is exact on open surfaces and without effect where it does not reach, and light of
+/// bounces and of emitters beyond what the sky can give stays as it is. What it errs:
+/// occlusion is taken to be the same in all directions, a surface that faces away from a sun gets
+/// none of it back, and light of bounces and emitters that is within what the sky can
+/// give is turned with the sky's.
+struct TurnedLight {
+    /// A(n) = h0 + h1 y + h2 z + h3 x + h4 xy + h5 yz + h6 (3 z^2 - 1) + h7 xz + h8 (x^2 - y^2), in
+    /// the world; not below 0.
+    std::array<formats::Rgb, 9> harmonics{};
+    struct Sun {
+        formats::Vec3 direction;  ///< unit, world
+        formats::Rgb light;       ///< irradiance facing it over pi
+    };
+    std::vector<Sun> suns;  ///< at most kMaxSuns (volumes/suns.h)
+    formats::Rgb least;     ///< e: 1/64 of the mean of A + S over all normals
+};
+
+TurnedLight make_turned_light(const LightVector& light);
+
+/// The same of each of them.
+std::vector<TurnedLight> make_turned_lights(const PartLights& lights);
+
+/// L'. `radiance`: L, of any sign. Unit normals.
+formats::Rgb turn_light(const TurnedLight& light, formats::Rgb radiance, formats::Vec3 from,
+                        formats::Vec3 to);
+
+}  // namespace opaline::runtime
