@@ -65,7 +65,7 @@ void make_vertex_array(const AssetView& asset, GLuint radiance, GlAsset& gl) {
     if (!asset.texcoord.empty()) {
         bind_attribute(name, 3, gl.texcoord.name(), 2, sizeof(formats::Float2));
     }
-    if (gl.has_translucent || !gl.gloss.empty()) {
+    if (gl.has_translucent || !gl.gloss.empty() || !gl.normal_maps.empty()) {
         bind_attribute(name, 4, gl.normal.name(), 3, sizeof(formats::Vec3));
     }
     if (!gl.roughness.empty() || !gl.gloss.empty()) {
@@ -82,6 +82,12 @@ void make_vertex_array(const AssetView& asset, GLuint radiance, GlAsset& gl) {
     }
     if (!asset.holes.vertex_alpha.empty()) {
         bind_attribute(name, 7, gl.vertex_alpha.name(), 1, sizeof(float));
+    }
+    if (!gl.normal_maps.empty()) {
+        glVertexArrayVertexBuffer(name, 8, gl.tangent.name(), 0, sizeof(formats::Tangent));
+        glVertexArrayAttribFormat(name, 8, 3, GL_SHORT, GL_TRUE, 0);
+        glVertexArrayAttribBinding(name, 8, 8);
+        glEnableVertexArrayAttrib(name, 8);
     }
     glVertexArrayElementBuffer(name, gl.triangle.name());
 }
@@ -105,7 +111,11 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, GLuint radiance) {
         return primitive.shading == formats::Shading::translucent;
     });
     const SpecularNeeds needs = specular_needs(asset);
-    if (gl.has_translucent || needs.gloss) {
+    gl.normal_maps.assign(asset.normal_maps.record.begin(), asset.normal_maps.record.end());
+    if (!gl.normal_maps.empty()) {
+        gl.tangent = make_buffer_of(asset.normal_maps.tangent, gl.resident);
+    }
+    if (gl.has_translucent || needs.gloss || !gl.normal_maps.empty()) {
         gl.normal = make_buffer_of(asset.normal, gl.resident);
     }
     if (!needs.levels.empty()) {

@@ -21,10 +21,12 @@ struct GlAsset {
     std::vector<float> roughness;  ///< of each primitive; empty: no translucent one is glossy
     std::vector<formats::GlossRecord> gloss;  ///< of each primitive; empty: no opaque one is
     std::vector<formats::HoleRecord> holes;   ///< as formats::HolesView::record
-    GlBuffer vertex_alpha;                    ///< where vertices have alpha
-    GlBuffer openness;                        ///< where one is: formats::Openness of each vertex
-    GlBuffer normal;                          ///< where has_translucent or glossy
-    GlBuffer srgb_table;                      ///< linear value of each 8-bit code, 256 floats
+    std::vector<formats::NormalMapRecord> normal_maps;  ///< as formats::NormalMapsView::record
+    GlBuffer tangent;       ///< where there is a normal map: formats::Tangent
+    GlBuffer vertex_alpha;  ///< where vertices have alpha
+    GlBuffer openness;      ///< where one is: formats::Openness of each vertex
+    GlBuffer normal;        ///< where has_translucent, glossy or with a normal map
+    GlBuffer srgb_table;    ///< linear value of each 8-bit code, 256 floats
     GlVertexArray vertex_array;
     std::vector<GlTexture> images;  ///< 8-bit codes, undecoded
     std::size_t resident = 0;       ///< [bytes]

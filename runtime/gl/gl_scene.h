@@ -11,6 +11,7 @@
 #include "runtime/gl/gl_volumes.h"
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
+#include "runtime/turned_light.h"
 
 namespace opaline::runtime {
 
@@ -28,6 +29,9 @@ struct DrawScene {
     formats::TermSet terms = formats::TermSet::all;
     bool background = true;               ///< false: black
     std::span<const formats::Rgb> own{};  ///< own_radiances (gl_emitters.h)
+    /// Where there are normal maps: of each light, and which one each primitive has (PartLights).
+    std::span<const TurnedLight> turned{};
+    std::span<const std::uint32_t> turned_of{};
 };
 
 /// Where a tile's samples lie in the picture.

@@ -5,6 +5,7 @@
 
 #include "formats/opal/ggx_albedo.h"
 #include "runtime/gloss.h"
+#include "runtime/volumes/suns.h"
 #include "shader_text.h"
 
 namespace opaline::runtime {
@@ -36,7 +37,14 @@ enum Uniform : GLint {
     kOwnWrap,
     kHole,
     kFirstSample,
-    kHoleWrap
+    kHoleWrap,
+    kNormalWrap,
+    kNormalScale,
+    kTurnedLight,  // as many as opaline_turn_light's struct has vectors
+    kTurnedLeast = kTurnedLight + 9,
+    kTurnedSuns,
+    kTurnedSunDirection,
+    kTurnedSunLight = kTurnedSunDirection + static_cast<GLint>(kMaxSuns)
 };
 
 // What a surface's program has to do.
@@ -47,13 +55,16 @@ struct SurfaceKind {
     bool glows = false, has_own_image = false;        ///< sends out light by itself; with an image
     bool has_holes = false, has_hole_image = false;   ///< light passes it in places; with an image
 
+    bool has_normal_map = false, is_turned = false;  ///< by an image; and its light is
+
     bool has_image() const {
-        return is_textured || has_gloss_image || has_own_image || has_hole_image;
+        return is_textured || has_gloss_image || has_own_image || has_hole_image || has_normal_map;
     }
     std::size_t number() const {
         return (is_textured ? 1u : 0u) + (is_translucent ? 2u : 0u) + (is_mirroring ? 4u : 0u) +
                (is_glossy ? 8u : 0u) + (has_gloss_image ? 16u : 0u) + (has_own_image ? 32u : 0u) +
-               (glows ? 64u : 0u) + (has_holes ? 128u : 0u) + (has_hole_image ? 256u : 0u);
+               (glows ? 64u : 0u) + (has_holes ? 128u : 0u) + (has_hole_image ? 256u : 0u) +
+               (has_normal_map ? 512u : 0u) + (is_turned ? 1024u : 0u);
     }
 };
 
@@ -63,6 +74,10 @@ const formats::OwnLight* own_light_of(const GlAsset& asset, std::size_t primitiv
 
 const formats::HoleRecord* hole_of(const GlAsset& asset, std::size_t primitive) {
     return formats::HolesView{asset.holes, {}}.of(static_cast<std::uint32_t>(primitive));
+}
+
+const formats::NormalMapRecord* normal_map_of(const GlAsset& asset, std::size_t primitive) {
+    return formats::NormalMapsView{asset.normal_maps, {}}.of(static_cast<std::uint32_t>(primitive));
 }
 
 SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
@@ -79,7 +94,13 @@ SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
     const formats::HoleRecord* const hole = hole_of(asset, primitive);
     kind.has_holes = hole != nullptr;
     kind.has_hole_image = hole != nullptr && hole->image < asset.images.size();
+    kind.has_normal_map = normal_map_of(asset, primitive) != nullptr;
+    kind.is_turned = kind.has_normal_map && record.shading == formats::Shading::diffuse;
     return kind;
+}
+
+bool has_view(SurfaceKind kind) {
+    return kind.is_translucent || kind.is_glossy || kind.has_normal_map;
 }
 
 std::string define(const char* name, const std::string& value = {}) {
@@ -99,7 +120,9 @@ std::string defines_of(SurfaceKind kind, bool has_vertex_alpha) {
     if (kind.has_hole_image) text += define("HOLE_IMAGE");
     if (kind.has_holes && has_vertex_alpha) text += define("HOLE_VERTICES");
     if (kind.has_image()) text += define("HAS_TEXCOORD");
-    if (kind.is_translucent || kind.is_glossy) text += define("HAS_VIEW");
+    if (kind.has_normal_map) text += define("NORMAL_MAP");
+    if (kind.is_turned) text += define("TURNED");
+    if (has_view(kind)) text += define("HAS_VIEW");
     if (kind.is_mirroring || kind.is_glossy) text += define("HAS_OPENNESS");
     return text;
 }
@@ -212,6 +235,36 @@ void set_hole(const DrawScene& scene, const TileGrid& grid, GLuint program,
                        static_cast<GLint>(hole.wrap_v));
 }
 
+void set_normal_map(const DrawScene& scene, GLuint program, const formats::NormalMapRecord& map) {
+    glBindTextureUnit(6, scene.asset.images[map.image].name());
+    glProgramUniform2i(program, kNormalWrap, static_cast<GLint>(map.wrap_u),
+                       static_cast<GLint>(map.wrap_v));
+    glProgramUniform1f(program, kNormalScale, map.scale);
+}
+
+void set_turned_light(const TurnedLight& light, GLuint program) {
+    const auto set = [&](GLint location, formats::Rgb c) {
+        set_vec3(program, location, {c.r, c.g, c.b});
+    };
+    for (std::size_t k = 0; k < light.harmonics.size(); ++k) {
+        set(kTurnedLight + static_cast<GLint>(k), light.harmonics[k]);
+    }
+    set(kTurnedLeast, light.least);
+    glProgramUniform1i(program, kTurnedSuns, static_cast<GLint>(light.suns.size()));
+    for (std::size_t i = 0; i < light.suns.size(); ++i) {
+        const auto at = static_cast<GLint>(i);
+        set_vec3(program, kTurnedSunDirection + at, light.suns[i].direction);
+        set(kTurnedSunLight + at, light.suns[i].light);
+    }
+}
+
+// Before the first light there is none to turn.
+const TurnedLight& turned_light_of(const DrawScene& scene, std::size_t primitive) {
+    static const TurnedLight kNone;
+    if (scene.turned.empty()) return kNone;
+    return scene.turned[scene.turned_of.empty() ? 0 : scene.turned_of[primitive]];
+}
+
 void draw_triangles(const formats::PrimitiveRecord& primitive) {
     // In pieces that a signed count holds; each a whole number of triangles.
     constexpr std::uint32_t kPiece = 3u << 28;
@@ -265,13 +318,15 @@ void draw_surfaces(const DrawScene& scene, const SurfacePrograms& programs, cons
             glBindTextureUnit(0, asset.images[primitive.base_color_image].name());
         }
         if (kind.is_translucent) glUniform1f(kEta, primitive.eta);
-        if (kind.is_translucent || kind.is_glossy) {
+        if (has_view(kind)) {
             glUniform1ui(kIsDoubleSided, primitive.flags & formats::PrimitiveRecord::kDoubleSided);
         }
         glUniform1f(kShown, is_shown(primitive, scene.terms) ? 1.0f : 0.0f);
         if (kind.is_mirroring) set_mirroring(scene, program, p);
         if (kind.is_glossy) set_gloss(scene, program, asset.gloss[p]);
         if (kind.has_holes) set_hole(scene, view.grid, program, *hole_of(asset, p));
+        if (kind.has_normal_map) set_normal_map(scene, program, *normal_map_of(asset, p));
+        if (kind.is_turned) set_turned_light(turned_light_of(scene, p), program);
         if (kind.glows) set_own_light(scene, program, p);
         draw_triangles(primitive);
     }

@@ -5,7 +5,8 @@
 // MIRRORING: translucent with a specular reflection on top;
 // GLOSS: glossy opaque (gloss.glsl comes before this); GLOSS_TEXTURED: with an
 // image of roughness and metallic (image.glsl); GLOWS: it sends out light by itself; OWN_TEXTURED: with
-// an image (image.glsl); HOLES: light passes it in places (holes.glsl comes before this).
+// an image (image.glsl); HOLES: light passes it in places (holes.glsl comes before this);
+// NORMAL_MAP: an image has its normals (image.glsl); TURNED: its light is turned to them.
 layout(location = 0) in vec3 v_radiance;
 layout(location = 1) in vec3 v_base_color;
 layout(location = 0) out vec4 color;
@@ -65,6 +66,16 @@ vec2 gloss_factors() {
 }
 #endif
 
+#ifdef NORMAL_MAP
+layout(location = 8) in vec4 v_tangent;
+layout(binding = 6) uniform usampler2D normal_image;
+layout(location = 24) uniform ivec2 normal_wrap;
+layout(location = 25) uniform float normal_scale;
+#endif
+#ifdef TURNED
+layout(location = 26) uniform OpalineTurnedLight turned_light;
+#endif
+
 // As shade_surface of runtime/surface.cpp.
 void main() {
 #ifdef HOLES
@@ -81,6 +92,15 @@ void main() {
     vec3 radiance = shown * v_radiance;
 #ifdef HAS_VIEW
     OpalineView view = opaline_view(v_normal, v_to_eye, is_double_sided != 0u);
+#endif
+#ifdef NORMAL_MAP
+    vec3 normal = opaline_unit_or_zero(v_normal);
+    vec3 mapped = opaline_mapped_normal(sample_image(normal_image, v_texcoord, normal_wrap, false),
+                                        normal_scale, normal, v_tangent);
+    view = opaline_view_mapped(view, mapped);
+#endif
+#ifdef TURNED
+    radiance = opaline_turn_light(turned_light, radiance, normal, mapped);
 #endif
 #ifdef TRANSLUCENT
     radiance = opaline_translucent(radiance, base_color, view, eta);

@@ -1,5 +1,5 @@
 // What a surface sends to the eye from the radiance of its receivers, as runtime/surface.cpp,
-// view_terms.cpp and specular.cpp. No uniforms. cube_map.glsl comes before this.
+// view_terms.cpp, specular.cpp, normal_map.cpp and turned_light.cpp. No uniforms. cube_map.glsl comes before this.
 
 float opaline_displayable(float value) {
     return value > 0.0 ? min(value, 1e35) : 0.0;
@@ -31,6 +31,68 @@ OpalineView opaline_view(vec3 normal, vec3 to_eye, bool is_double_sided) {
         view = OpalineView(-view.normal, view.to_eye, -view.cosine, true);
     }
     return view;
+}
+
+// The unit normal that a normal map gives a point: mapped_normal. `value`: the image's, code / 255,
+// interpolated. `normal`: unit; `tangent`: interpolated direction and sign.
+vec3 opaline_mapped_normal(vec3 value, float scale, vec3 normal, vec4 tangent) {
+    vec3 at = (255.0 * value - 128.0) / 127.0;
+    vec3 bitangent = tangent.w * cross(normal, tangent.xyz);
+    vec3 mapped = (scale * at.x) * tangent.xyz + (scale * at.y) * bitangent + at.z * normal;
+    float size = length(mapped);
+    return size > 0.0 ? mapped / size : normal;
+}
+
+// The same point with that normal, bent toward an eye that it turns away from: view_mapped.
+OpalineView opaline_view_mapped(OpalineView view, vec3 mapped) {
+    OpalineView bent = view;
+    bent.normal = view.is_turned ? -mapped : mapped;
+    bent.cosine = dot(bent.normal, view.to_eye);
+    float least = min(view.cosine, 0.05);
+    if (bent.cosine < least) {
+        vec3 toward = bent.normal + (least - bent.cosine) * view.to_eye;
+        bent.normal = toward / length(toward);
+        bent.cosine = dot(bent.normal, view.to_eye);
+    }
+    return bent;
+}
+
+// Distant light, as it is turned to the normal of a map: TurnedLight.
+struct OpalineTurnedLight {
+    vec3 harmonics[9];
+    vec3 least;
+    int suns;
+    vec3 sun_direction[8], sun_light[8];
+};
+
+vec3 opaline_smooth_light(OpalineTurnedLight light, vec3 n) {
+    return max(light.harmonics[0] + n.y * light.harmonics[1] + n.z * light.harmonics[2] +
+                   n.x * light.harmonics[3] + (n.x * n.y) * light.harmonics[4] +
+                   (n.y * n.z) * light.harmonics[5] + (3.0 * n.z * n.z - 1.0) * light.harmonics[6] +
+                   (n.x * n.z) * light.harmonics[7] + (n.x * n.x - n.y * n.y) * light.harmonics[8],
+               vec3(0.0));
+}
+
+vec3 opaline_sun_light(OpalineTurnedLight light, vec3 n) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < light.suns; ++i) {
+        sum += max(dot(n, light.sun_direction[i]), 0.0) * light.sun_light[i];
+    }
+    return sum;
+}
+
+// The radiance of receivers with the normal `from`, for the normal `to`: turn_light. Unit normals.
+vec3 opaline_turn_light(OpalineTurnedLight light, vec3 radiance, vec3 from, vec3 to) {
+    const vec3 kOne = vec3(1.0);
+    vec3 smoothly = opaline_smooth_light(light, from), sun = opaline_sun_light(light, from);
+    float most = max(dot(sun, kOne), dot(light.least, kOne));
+    float share = most > 0.0 ? clamp((dot(radiance, kOne) - dot(smoothly, kOne)) / most, 0.0, 1.0) : 0.0;
+    vec3 a = smoothly + share * sun;
+    vec3 b = opaline_smooth_light(light, to) + share * opaline_sun_light(light, to);
+    vec3 straight = min(radiance, a), below = a + light.least, above = b + light.least;
+    vec3 ratio = vec3(below.r > 0.0 ? above.r / below.r : 1.0, below.g > 0.0 ? above.g / below.g : 1.0,
+                      below.b > 0.0 ? above.b / below.b : 1.0);
+    return radiance - straight + straight * ratio;
 }
 
 // The share of light that passes a smooth boundary: fresnel_transmittance. `eta`: index of

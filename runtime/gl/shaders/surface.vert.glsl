@@ -1,7 +1,7 @@
 // Homogeneous position without a projection matrix: w is the distance along the view axis, depth is
 // near / w (reversed, no far plane). y points down, so that row 0 is the top of the picture.
 // FORWARD_DEPTH: 1 - near / w instead, where depth cannot be reversed without losing its digits.
-// HAS_OPENNESS: openness.glsl comes before this.
+// HAS_OPENNESS, NORMAL_MAP: openness.glsl comes before this.
 // RADIANCE_OF_ROWS: what comes before this looks up what the vertex sends to the eye.
 layout(location = 0) in vec3 position;
 #ifndef RADIANCE_OF_ROWS
@@ -24,6 +24,11 @@ layout(location = 4) out vec3 v_to_eye;
 layout(location = 5) in vec2 open_axis;
 layout(location = 6) in float open_fraction;
 layout(location = 5) out vec4 v_open;  // mean open direction, open fraction
+#endif
+
+#ifdef NORMAL_MAP
+layout(location = 8) in vec3 tangent;  // octahedral direction, sign
+layout(location = 8) out vec4 v_tangent;
 #endif
 
 layout(location = 0) uniform vec3 eye;
@@ -72,6 +77,9 @@ void main() {
 #ifdef HAS_VIEW
     v_normal = normal;
     v_to_eye = -p;
+#endif
+#ifdef NORMAL_MAP
+    v_tangent = vec4(abs(tangent.z) * opaline_decode_axis(tangent.xy), tangent.z);
 #endif
 #ifdef HAS_OPENNESS
     v_open = vec4(opaline_decode_axis(open_axis), open_fraction);

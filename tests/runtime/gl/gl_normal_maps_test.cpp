@@ -1,0 +1,83 @@
+// Normal maps on the GPU against the CPU: diffuse and glossy surfaces, plain, mirrored and bent
+// ones.
+#include <gtest/gtest.h>
+
+#include "runtime/gl/gl_renderer.h"
+#include "runtime/picture/software_renderer.h"
+#include "runtime/shade.h"
+#include "tests/runtime/gl/gl_comparison.h"
+#include "tests/runtime/picture/synthetic_asset.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::Asset;
+using formats::Wrap;
+using test::Gl;
+
+// A floor, a ball, a mirrored sheet that is seen from behind, and a translucent ball.
+Asset asset_with_normal_maps(bool is_glossy) {
+    Asset asset = test::make_asset(16, 8);
+    asset.images.push_back(test::make_noise_image(7, 5));
+    test::add_primitive(asset, test::make_sheet({0, 0, 0}, {4, 0, 0}, {0, 0, -4}, 4, 2), {});
+    test::add_primitive(asset, test::make_sphere({-0.9f, 0.7f, 0}, 0.7f, 20, 12),
+                        {.bands = 3, .image = 0});
+    test::add_primitive(asset, test::make_sheet({1, 1, -1}, {0.7f, 0, 0}, {0, -0.7f, 0}, 2, 3),
+                        {.is_double_sided = true});
+    test::add_primitive(asset, test::make_sphere({0.9f, 0.5f, 0.5f}, 0.5f, 20, 12), {.eta = 1.4f});
+    test::add_normal_map(asset, {.primitive = 0, .image = 0, .scale = 0.5f}, {1, 0, 0}, -1);
+    test::add_normal_map(asset, {.primitive = 1, .image = 0, .wrap_u = Wrap::mirror, .scale = 0.8f},
+                         {1, 0.1f, 0}, 1);
+    test::add_normal_map(asset, {.primitive = 2, .image = 0, .wrap_v = Wrap::clamp}, {-1, 0, 0}, 1);
+    test::add_normal_map(asset, {.primitive = 3, .image = 0, .scale = 0.3f}, {0, 1, 0}, 1);
+    if (is_glossy) {
+        asset.roughness = {formats::kNotGlossy, formats::kNotGlossy, formats::kNotGlossy, 0.3f};
+        asset.gloss.resize(4);
+        asset.gloss[0] = {.roughness = 0.4f, .f0 = {0.04f, 0.04f, 0.04f}, .f90 = 1};
+        asset.gloss[1] = {.metallic = 0.7f, .roughness = 0.6f, .f0 = {0.1f, 0.1f, 0.1f}, .f90 = 1};
+        asset.gloss[2] = {.roughness = 0.5f, .f0 = {0.2f, 0.2f, 0.2f}, .f90 = 1};
+        for (const formats::Vec3 normal : asset.normal) {
+            asset.openness.push_back(formats::encode_openness(normal, 0.8f));
+        }
+    }
+    return asset;
+}
+
+TEST_F(Gl, NormalMapsAgreeWithTheCpu) {
+    formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    sky.discs.push_back({normalize(formats::Vec3{0.5f, 1, 0.4f}), 0.01f, {6000, 5000, 4000}});
+    const Rotation rotation = rotation_about_y(0.7f);
+    Camera camera;
+    camera.eye = {0.5f, 2, 5};
+    camera.target = {0, 0.6f, 0};
+    camera.width = 96;
+    camera.height = 72;
+    for (const bool is_glossy : {false, true}) {
+        Asset asset = asset_with_normal_maps(is_glossy);
+        const LightVector light = project_environment(sky, 16, rotation);
+        auto renderer = GlRenderer::create(asset.view(), sky);
+        ASSERT_TRUE(renderer) << test::text_of(renderer.error());
+        ASSERT_TRUE(renderer->set_light(light, rotation));
+        const auto gl = renderer->render(camera);
+        ASSERT_TRUE(gl);
+        const SpecularLight specular =
+            make_specular_light(sky, specular_needs(asset.view()), rotation, 0);
+        SoftwareOptions options;
+        options.lights = light;
+        if (is_glossy) options.specular = &specular;
+        const auto draw = [&] {
+            return render_software(
+                asset.view(),
+                shade_for_picture(asset.view(), light, camera.eye, formats::TermSet::all, 0, {}),
+                sky, rotation, camera, options);
+        };
+        const auto cpu = draw();
+        ASSERT_TRUE(cpu);
+        test::expect_same_picture(*cpu, *gl);
+        asset.normal_maps = {};
+        EXPECT_NE(cpu->pixel, draw()->pixel);
+    }
+}
+
+}  // namespace
+}  // namespace opaline::runtime
