@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "bake/example/bricks.h"
 #include "bake/example/contact.h"
 #include "bake/example/density_fields.h"
 #include "bake/example/example_table.h"
@@ -178,6 +179,26 @@ std::vector<GltfObject> make_playing_pieces() {
         floor_object(std::move(table))};
 }
 
+GltfObject brick_object(const char* name, std::array<double, 3> base_color, MappedMesh mapped,
+                        const GltfReflection& reflection = {}) {
+    GltfObject object = piece_object(name, base_color, std::move(mapped.mesh), reflection);
+    object.texcoord = std::move(mapped.texcoord);
+    object.normal_map = "bricks.png";
+    return object;
+}
+
+// A plastered ball and a metal one before a wall, on a floor.
+std::vector<GltfObject> make_bricks() {
+    constexpr double kTile = 130;
+    return {brick_object("Plaster", {0.70, 0.68, 0.64}, make_mapped_ball({55, 60, -30}, 60)),
+            brick_object("Bronze", {0.80, 0.58, 0.35}, make_mapped_ball({-75, 45, 45}, 45),
+                         {.metallic = 1, .roughness = 0.35, .strength = 1}),
+            brick_object("Wall", {0.60, 0.34, 0.26},
+                         make_panel({-200, 0, -140}, {400, 0, 0}, {0, 240, 0}, 48, kTile)),
+            brick_object("Floor", {0.55, 0.52, 0.48},
+                         make_panel({-200, 0, 200}, {400, 0, 0}, {0, 0, -340}, 64, kTile))};
+}
+
 constexpr double kBallRadius = 40;  // [mm]
 
 // What smoulders, and a floor for the shadow.
@@ -227,6 +248,11 @@ constexpr Example kExamples[] = {
      .make = make_playing_pieces,
      .media = kGlassOfPiece,
      .make_image = paint_board},
+    {.info = {"bricks",
+              "a matt and a metal ball between a wall and a floor of bricks: relief in a normal "
+              "map"},
+     .make = make_bricks,
+     .make_image = paint_brick_normals},
     {{"smoke", "a plume that rises from a ball and widens as it curls: a volume beside meshes"},
      make_smouldering_ball,
      {.make = make_smoke, .sigma_t = grey(60), .albedo = grey(0.92), .g = 0.5}},

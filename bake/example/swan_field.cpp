@@ -46,15 +46,15 @@ double tube(const TaperedCurve& curve, const glm::dvec3& p) {
 /// A blade around a spine: thick at the quill and thinner toward its rounded rim, so that
 /// neighbours in a fan meet in a groove. `tilt` raises one side above the other, like shingles.
 double blade(const Feather& feather, const glm::dvec3& p, double tilt) {
-    constexpr double kRim = 1.0;  ///< radius of the rim [mm]
+    constexpr double kWingRim = 1.0;  ///< radius of the rim [mm]
     const TaperedCurve::Nearest near = feather.spine.nearest({0.0, p.y, p.z});
     const double dy = p.y - near.point.y, dz = p.z - near.point.z;
     const double side = near.tangent.y * dz - near.tangent.z * dy;
     const double height = std::abs(p.x - feather.lift - tilt * side);
-    const double wide = near.radius - kRim, reach = std::hypot(dy, dz);
-    if (reach > wide) return std::hypot(reach - wide, height) - kRim;
+    const double wide = near.radius - kWingRim, reach = std::hypot(dy, dz);
+    if (reach > wide) return std::hypot(reach - wide, height) - kWingRim;
     const double flat = 1.0 - reach * reach / (wide * wide);
-    return height - mix(feather.thickness, 0.2, near.fraction) * flat * flat - kRim;
+    return height - mix(feather.thickness, 0.2, near.fraction) * flat * flat - kWingRim;
 }
 
 /// Filleted union of the feathers of a fan; of those too far to matter only a bound is taken.

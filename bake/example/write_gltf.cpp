@@ -101,6 +101,17 @@ void name_once(Json& extensions, const char* name) {
     }
 }
 
+/// Of an image that several materials may use.
+std::size_t index_of_image(const std::string& file, Json& images) {
+    const Json image = {{"uri", file}};
+    const auto found = std::find(images.begin(), images.end(), image);
+    const auto index = static_cast<std::size_t>(found - images.begin());
+    if (found == images.end()) {
+        images.push_back(image);
+    }
+    return index;
+}
+
 }  // namespace
 
 formats::Result<std::vector<std::filesystem::path>> write_gltf(
@@ -120,7 +131,7 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
         const std::size_t normal = add_vectors(draft, object.mesh.normal);
         const std::size_t indices = add_indices(draft, object.mesh);
         Json attributes = {{"POSITION", position}, {"NORMAL", normal}};
-        if (!object.image.empty()) {
+        if (!object.image.empty() || !object.normal_map.empty()) {
             assert(object.texcoord.size() == object.mesh.position.size());
             attributes["TEXCOORD_0"] = add_texture_coordinates(draft, object.texcoord);
         }
@@ -138,8 +149,11 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
               {{kReflectionExtension, {{"specularFactor", object.reflection.strength}}}}}});
         if (!object.image.empty()) {
             materials.back()["pbrMetallicRoughness"]["baseColorTexture"] = {
-                {"index", images.size()}};
-            images.push_back({{"uri", object.image}});
+                {"index", index_of_image(object.image, images)}};
+        }
+        if (!object.normal_map.empty()) {
+            materials.back()["normalTexture"] = {
+                {"index", index_of_image(object.normal_map, images)}};
         }
         if (const GltfThinWall& thin = object.thin_wall; thin.share > 0) {
             Json& material = materials.back();

@@ -48,6 +48,7 @@ struct GltfObject {
     GltfEmission emission = {};
     std::vector<glm::dvec2> texcoord = {};  ///< one a vertex where there is an image
     std::string image = {};  ///< file of the base colour's image, beside the .gltf; empty: none
+    std::string normal_map = {};  ///< of its normal map, likewise
 };
 
 /// Writes FOLDER/NAME.gltf and its buffer FOLDER/NAME.bin as glTF 2.0 and returns both paths; the
