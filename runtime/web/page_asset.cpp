@@ -99,6 +99,8 @@ std::string make_asset_script(const AssetView& asset) {
     script.put_records("gloss", asset.gloss);
     script.put_records("holes", asset.holes.record);
     script.put("alpha", asset.holes.vertex_alpha);
+    script.put_records("normal maps", asset.normal_maps.record);
+    script.put_records("tangents", asset.normal_maps.tangent);
     if (!asset.gloss.empty()) script.put("albedo", floats_of(formats::ggx_albedo_table()));
     script.put("cubemap", std::span<const std::uint32_t>(&asset.cubemap_size, 1));
     put_rows(script, "", asset.transport);

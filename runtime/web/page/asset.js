@@ -22,7 +22,7 @@ const Asset = (() => {
       firstRow: w[10], firstBandRow: w[11], firstCode: large(w, 12),
       shading: ["", "diffuse", "translucent", "sheet"][w[14]], image: image(w[15]),
       wrap: [w[16], w[17]], isDoubleSided: (w[18] & 1) !== 0, isSeparate: (w[18] & 2) !== 0,
-      eta: f[19], roughness: -1, gloss: null, hole: null, own: null, blocks: [] }));
+      eta: f[19], roughness: -1, gloss: null, hole: null, normalMap: null, own: null, blocks: [] }));
   }
 
   function readGloss(words) {
@@ -75,6 +75,9 @@ const Asset = (() => {
       primitives[w[0]].hole = { image: image(w[1]), wrap: [w[2], w[3]], alpha: f[4], cutoff: f[5],
                                 mode: w[6] };
     });
+    records(arrays.get("normal maps"), 8, (w, f) => {
+      primitives[w[0]].normalMap = { image: image(w[1]), wrap: [w[2], w[3]], scale: f[4] };
+    });
     records(arrays.get("own lights"), 8, (w, f) => {
       primitives[w[0]].own = { emitter: w[1], radiance: Array.from(f.subarray(2, 5)),
                                image: image(w[5]), wrap: [w[6], w[7]] };
@@ -87,7 +90,8 @@ const Asset = (() => {
       primitives, camera: arrays.get("camera"),
       position: arrays.get("position"), normal: arrays.get("normal"),
       baseColor: arrays.get("base color"), texcoord: arrays.get("texcoord"),
-      openness: arrays.get("openness"), alpha: arrays.get("alpha"), albedo: arrays.get("albedo"),
+      openness: arrays.get("openness"), alpha: arrays.get("alpha"),
+      tangents: arrays.get("tangents"), albedo: arrays.get("albedo"),
       triangles: absoluteTriangles(arrays.get("triangles"), primitives),
       images: Array.from({ length: sizes.length / 2 }, (_, i) => ({
         width: sizes[2 * i], height: sizes[2 * i + 1], pixels: arrays.get(`image ${i}`) })),

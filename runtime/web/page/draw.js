@@ -6,7 +6,7 @@ const Draw = (() => {
   // Texture units; those of volumes are shared with surfaces, which bind theirs anew.
   const kUnits = { products: 0, base_color_image: 1, mirrored_light: 2, light_maps: 3, gloss_image: 4,
                    own_image: 5, hole_image: 6, srgb_table: 7, cells: 8, sun_table: 9, albedo: 10,
-                   map: 11, disc_table: 12, sampled: 13, sum: 14, samples: 0, depth: 1,
+                   map: 11, disc_table: 12, sampled: 13, normal_image: 13, sum: 14, samples: 0, depth: 1,
                    brick_numbers: 2, density_codes: 3, corner_numbers: 4, node_light: 5,
                    phase_entries: 6, table_values: 2, sun_values: 3, thickness_values: 4, albedo_map: 5,
                    ground_light: 6, base_light: 7, sheet_light: 7, sheet_through: 8 };
@@ -146,6 +146,7 @@ const Draw = (() => {
     attribute(5, asset.openness, 2, gl.BYTE, 4, 0);
     attribute(6, asset.openness, 1, gl.UNSIGNED_BYTE, 4, 2);
     attribute(7, asset.alpha, 1);
+    attribute(8, asset.tangents, 3, gl.SHORT, 8, 0);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, asset.triangles, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
@@ -154,16 +155,17 @@ const Draw = (() => {
 
   // [defines, files before the fragment shader] of a primitive.
   function kindOf(primitive, hasAlpha) {
-    const { shading, terms, gloss, hole, own } = primitive, c = opaline.constants;
+    const { shading, terms, gloss, hole, normalMap, own } = primitive, c = opaline.constants;
     const isTranslucent = shading === "translucent", mirrors = primitive.roughness >= 0;
     const harmonics = isTranslucent ? terms - (primitive.isSeparate ? 1 : 0) : 0;
     const hasImage = primitive.image !== null || gloss?.image != null || own?.image != null ||
-                     hole?.image != null;
+                     hole?.image != null || normalMap !== null;
     const words = {
       TEXTURED: primitive.image !== null, TRANSLUCENT: isTranslucent, MIRRORING: mirrors,
       GLOSS: gloss, GLOSS_TEXTURED: gloss?.image != null, GLOWS: own,
       OWN_TEXTURED: own?.image != null, HOLES: hole, HOLE_IMAGE: hole?.image != null,
-      HOLE_VERTICES: hole && hasAlpha, HAS_TEXCOORD: hasImage, HAS_VIEW: isTranslucent || gloss,
+      HOLE_VERTICES: hole && hasAlpha, HAS_TEXCOORD: hasImage, HAS_VIEW: isTranslucent || gloss || normalMap,
+      NORMAL_MAP: normalMap, TURNED: normalMap && shading === "diffuse",
       HAS_OPENNESS: mirrors || gloss, SHEET: shading === "sheet", OPAQUE: shading === "diffuse",
       SEPARATE: primitive.isSeparate };
     const defines = Object.entries(words).filter(([, wanted]) => wanted).map(([word]) => [word, ""]);
@@ -340,6 +342,7 @@ const Draw = (() => {
     const layer = asset.layer === null ? null : makeLayerObjects(gl, asset.layer, asset.volumes !== null);
     const volumes = asset.volumes === null ? null : makeVolumeObjects(gl, asset.volumes, layer !== null);
     let size = [0, 0], sampled = null, clouded = null, marched = null, sum = null, light = null, lightObjects = null;
+    let turned = {};  // uniforms, where there are normal maps
 
     function setLight(next) {
       if (lightObjects !== null) freeLightObjects(gl, lightObjects);
@@ -353,6 +356,9 @@ const Draw = (() => {
       bind(gl, "products", objects.products);
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, kColumns, objects.lines, gl.RGBA, gl.FLOAT,
                        objects.values);
+      if (asset.primitives.some(p => p.normalMap !== null)) {
+        turned = TurnedLight.uniforms(projected, asset.cubemap);
+      }
       if (volumes === null) return;
       volumes.lit = Volumes.relight(asset.volumes, projected, asset.cubemap);
       gl.deleteTexture(volumes.light);
@@ -403,7 +409,7 @@ const Draw = (() => {
 
     // Of the primitive alone.
     function surfaceUniforms(primitive, colors) {
-      const { gloss, hole, own } = primitive, level = levelOf(Math.max(primitive.roughness, 0));
+      const { gloss, hole, normalMap, own } = primitive, level = levelOf(Math.max(primitive.roughness, 0));
       const bindImage = (unit, number) => {
         if (number != null) bind(gl, unit, objects.images[number]);
       };
@@ -411,6 +417,7 @@ const Draw = (() => {
       bindImage("gloss_image", gloss?.image);
       bindImage("own_image", own?.image);
       bindImage("hole_image", hole?.image);
+      bindImage("normal_image", normalMap?.image);
       bind(gl, "mirrored_light", lightObjects.mirrored.get(level) ?? null, gl.TEXTURE_2D_ARRAY);
       return {
         first_row: (primitive.firstRow - primitive.firstVertex * primitive.terms) >>> 0,
@@ -422,7 +429,8 @@ const Draw = (() => {
         own_light: own ? own.radiance.map((x, k) => x * colors[own.emitter][k]) : [0, 0, 0],
         own_wrap: own?.wrap ?? [0, 0],
         hole: hole ? [hole.alpha, hole.cutoff, hole.mode] : [1, 0, 1],
-        hole_wrap: hole?.wrap ?? [0, 0] };
+        hole_wrap: hole?.wrap ?? [0, 0],
+        normal_wrap: normalMap?.wrap ?? [0, 0], normal_scale: normalMap?.scale ?? 1 };
     }
 
     function drawSurfaces(frame, turn, colors, place, across, number) {
@@ -438,7 +446,7 @@ const Draw = (() => {
         unit: frame.unit, near_plane: frame.unit * frame.near,
         tile: [1, 1, (1 - 2 * place[0]) / size[0], (1 - 2 * place[1]) / size[1]],
         light_from_world: lightFromWorld(turn), suns: lightObjects.suns,
-        first_sample: number, sample_step: across };
+        first_sample: number, sample_step: across, ...turned };
       gl.enable(gl.DEPTH_TEST);
       gl.bindVertexArray(objects.array);
       for (const { primitive, program } of objects.surfaces) {

@@ -195,5 +195,5 @@ const Volumes = (() => {
     return values;
   }
 
-  return { packDensity, inverseOf, relight, uniforms, kBrickWords, kMostSuns };
+  return { packDensity, inverseOf, relight, uniforms, splitSuns, harmonics, kBrickWords, kMostSuns };
 })();

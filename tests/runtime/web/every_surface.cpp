@@ -77,6 +77,13 @@ void add_lamps(Asset& asset) {
                           {9, 1, {0.1f, 0.1f, 0.4f}}};
 }
 
+void add_normal_maps(Asset& asset) {
+    add_normal_map(asset, {.primitive = 0, .image = 1, .scale = 0.4f}, {1, 0, 0}, -1);
+    add_normal_map(asset, {.primitive = 2, .image = 1, .wrap_u = Wrap::mirror, .scale = 0.5f},
+                   {1, 0, 0.2f}, 1);
+    add_normal_map(asset, {.primitive = 5, .image = 0, .scale = 0.2f}, {0, 0, 1}, 1);
+}
+
 }  // namespace
 
 Asset make_every_surface() {
@@ -85,6 +92,7 @@ Asset make_every_surface() {
     add_gloss(asset);
     add_holes(asset);
     add_lamps(asset);
+    add_normal_maps(asset);
     return asset;
 }
 

@@ -48,6 +48,7 @@ DisplayPicture render_on_cpu(const formats::AssetView& view, const formats::Envi
     SoftwareOptions options;
     options.specular = &specular;
     options.emitters = emitters;
+    options.lights = light;
     const VolumeLight volumes = relight_volumes(view.volumes, light);
     options.volumes = &volumes;
     const auto picture = render_software(
