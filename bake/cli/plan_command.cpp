@@ -72,8 +72,8 @@ int run(const PlanCommand& options) {
     std::vector<bake::PlanEntry> volumes = std::move(planned.entries);
     std::ranges::copy(bake::plan_layers(scene, *knobs).entries, std::back_inserter(volumes));
     const bake::EmitterPlan emitters = bake::plan_emitters(scene, *knobs);
-    if (auto status =
-            bake::check_lamps(scene, emitters.lamps.size() + bake::count_glowing(planned.layouts));
+    if (auto status = bake::check_lamps(
+            scene, bake::count_emitters(emitters.lamps, bake::count_glowing(planned.layouts)));
         !status) {
         return report_error(status.error());
     }

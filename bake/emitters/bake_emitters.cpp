@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,6 +40,17 @@ bool is_bright(const ParticleLight& light) {
     return caustic > all / 256;
 }
 
+std::vector<std::unique_ptr<GlowLight>> make_glow_lights(const EmitterJob& job, unsigned threads) {
+    std::vector<std::unique_ptr<GlowLight>> glow(job.lamps.size());
+    for (std::size_t e = 0; e < glow.size(); ++e) {
+        const Lamp& lamp = job.lamps[e];
+        if (lamp.volume == formats::kNone) continue;
+        glow[e] = std::make_unique<GlowLight>(
+            make_glow_light(job.scene, lamp.volume, job.volumes, lamp.glow, threads));
+    }
+    return glow;
+}
+
 void append_own_light(const formats::Scene& scene, std::span<const Lamp> lamps,
                       formats::Emitters& emitters) {
     for (std::uint32_t e = 0; e < lamps.size(); ++e) {
@@ -70,29 +82,33 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     for (const Lamp& lamp : job.lamps) {
         sources.push_back(make_lamp_sources(job.scene, lamp, job.textures));
     }
+    std::optional<DensitySpace> space;
+    if (!job.scene.volumes.empty()) space = make_density_space(job.scene);
+    const DensitySpace* const volumes = space ? &*space : nullptr;
     const ElementLayout layout(job.scene, finest_area(job.scene, particles));
     std::vector<ElementLight> elements(job.lamps.size()), caustics(job.lamps.size());
     const std::uint32_t more = caustic_particles(particles);
     std::optional<ElementLayout> caustic_layout;
     run_stage(log, "particles of emitters", [&](std::uint64_t& rays) {
         for (std::uint32_t e = 0; e < job.lamps.size() && !context.cancelled(); ++e) {
+            ParticleRun run{particles, e, job.knobs.seed, 0, job.textures};
+            run.volumes = volumes;
             const ParticleLight traced =
-                trace_particles(job.scene, job.rays, sources[e], layout,
-                                {particles, e, job.knobs.seed, 0, job.textures}, context, rays);
+                trace_particles(job.scene, job.rays, sources[e], layout, run, context, rays);
             if (has_light(traced.all)) elements[e] = layout.join(traced.all, kGatheredElements);
             if (!has_light(traced.caustic)) continue;
             if (!caustic_layout) caustic_layout.emplace(job.scene, finest_area(job.scene, more));
-            caustics[e] = caustic_layout->join(
-                trace_particles(job.scene, job.rays, sources[e], *caustic_layout,
-                                {is_bright(traced) ? more : particles, e, job.knobs.seed, 0,
-                                 job.textures, true},
-                                context, rays)
-                    .caustic,
-                kCausticElements);
+            run.particles = is_bright(traced) ? more : particles;
+            run.only_caustic = true;
+            caustics[e] = caustic_layout->join(trace_particles(job.scene, job.rays, sources[e],
+                                                               *caustic_layout, run, context, rays)
+                                                   .caustic,
+                                               kCausticElements);
         }
         return true;
     });
     MediaLight exitance;
+    const auto glow = make_glow_lights(job, context.threads);
     const LampLight light{job.scene,
                           job.rays,
                           sources,
@@ -103,7 +119,9 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
                           &exitance,
                           job.textures,
                           caustics,
-                          caustic_layout ? &*caustic_layout : nullptr};
+                          caustic_layout ? &*caustic_layout : nullptr,
+                          volumes,
+                          glow};
     BakedEmitters baked;
     MediaRows of_media(job.primitives.size());
     if (job.media.light_medium) {
@@ -132,8 +150,13 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     });
     if (context.cancelled()) return interrupted_bake();
     baked.error = run_stage(log, "self-check of emitters", [&](std::uint64_t& rays) {
+        std::vector<std::uint32_t> glowing;
+        for (const Lamp& lamp : job.lamps) {
+            if (lamp.volume != formats::kNone) glowing.push_back(lamp.volume);
+        }
+        const std::vector<GlowingGrid> grids = make_glowing_grids(job.scene, glowing);
         return check_emitters({job.scene, job.rays, job.receivers, job.primitives, sources,
-                               baked.emitters.view(), &light},
+                               baked.emitters.view(), &light, volumes, grids},
                               job.knobs.seed, context, rays);
     });
     if (context.cancelled()) return interrupted_bake();

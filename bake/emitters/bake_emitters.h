@@ -25,6 +25,8 @@ struct EmitterJob {
     const Knobs& knobs;
     LitMedia media{};  ///< none: rows of translucent primitives have no light of emitters
     const ScenePyramids* textures = nullptr;  ///< BakeInputs::textures
+    formats::VolumesView
+        volumes{};  ///< what is baked of the scene's volumes, as the lamps have them
 };
 
 struct BakedEmitters {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "bake/emitters/onward_ray.h"
 #include "bake/emitters/surface_arrival.h"
 #include "bake/scene/punctual_light.h"
+#include "bake/volumes/walk_parts.h"
 
 namespace opaline::bake {
 namespace {
@@ -23,6 +25,8 @@ namespace {
 constexpr std::uint32_t kCheckedReceivers = 32, kPathsOfHalf = 2048, kMostBounces = 64;
 constexpr double kCrease = 1e-3;  // of the scene's radius
 constexpr float kRayEnd = 1 - 1e-4f;
+constexpr std::uint32_t kMostTurns = 1024;
+constexpr double kRoulette = 0.1;
 
 /// The glowing triangles of all lamps, by power, and all lights.
 struct TrueSources {
@@ -45,6 +49,23 @@ TrueSources collect_sources(std::span<const LampSources> lamps) {
     return all;
 }
 
+std::vector<Ball> balls_around(std::span<const GlowingGrid> glow) {
+    std::vector<Ball> balls;
+    balls.reserve(glow.size());
+    for (const GlowingGrid& grid : glow) {
+        const glm::dmat3 to_scene = glm::inverse(glm::dmat3(grid.to_index));
+        const glm::dvec3 size = 8.0 * glm::dvec3(grid.extent);
+        const glm::dvec3 middle = 8.0 * glm::dvec3(grid.first_cell) + 0.5 * size;
+        double radius = 0;
+        for (unsigned c = 0; c < 4; ++c) {
+            const glm::dvec3 corner(size.x, c & 1 ? size.y : -size.y, c & 2 ? size.z : -size.z);
+            radius = std::max(radius, 0.5 * glm::length(to_scene * corner));
+        }
+        balls.push_back({to_scene * (middle - glm::dvec3(grid.offset)), radius});
+    }
+    return balls;
+}
+
 bool is_hidden(const RayScene& surfaces, const glm::vec3& from, const glm::vec3& direction,
                float reach) {
     RayPacket packet = rays_from(from);
@@ -58,15 +79,24 @@ bool is_hidden(const RayScene& surfaces, const glm::vec3& from, const glm::vec3&
     return packet.tfar[0] < 0;
 }
 
+/// Bands that follow the extinction of one of them.
+struct FlightBand {
+    std::size_t band = 0;
+    glm::dvec3 counts{1};  // 1 of those bands
+};
+
 /// A path backward from a receiver.
 struct BackwardPath {
     const EmitterCheck& check;
     const TrueSources& sources;
     std::uint64_t seed, key;
+    FlightBand flight;
     std::uint32_t draws = 0;
     std::uint64_t rays = 0;
     /// The first numbers of a path: a lattice over all paths [Roberts2018], shifted at random.
     std::array<float, 5> first{};
+
+    std::vector<Ball> balls = balls_around(check.glow);
 
     void begin(std::uint32_t path) {
         const auto shift = random_uniform(seed, RandomStage::true_gather, key, 0xfffffffeu);
@@ -93,7 +123,10 @@ struct BackwardPath {
             ++rays;
             if (is_hidden(check.rays, at.origin, arriving.to_light, arriving.distance)) continue;
             const formats::Rgb e = cosine * arriving.irradiance;
-            sum += glm::dvec3(e.r, e.g, e.b);
+            sum += glm::dvec3(e.r, e.g, e.b) *
+                   volume_transmittance(check.volumes, glm::dvec3(at.origin),
+                                        glm::dvec3(arriving.to_light),
+                                        static_cast<double>(arriving.distance));
         }
         return sources.triangles.empty() ? sum : sum + from_a_triangle(at, is_first);
     }
@@ -126,7 +159,8 @@ struct BackwardPath {
             return glm::dvec3(0);
         }
         return cosine * std::abs(facing) / (square * square) * triangle.area / chance *
-               triangle.radiance;
+               triangle.radiance *
+               volume_transmittance(check.volumes, glm::dvec3(at.origin), way / distance, distance);
     }
 
     // What lamps bring to a vertex without diffuse bounces.
@@ -150,8 +184,66 @@ struct BackwardPath {
         return sum;
     }
 
+    // Spread by the cosine around the axis; at first half of them toward volumes that glow.
+    // `weight` takes the cosine / (pi density).
+    glm::dvec3 draw_diffuse(const glm::dvec3& from, const glm::dvec3& axis, bool is_first,
+                            std::array<float, 4> x, glm::dvec3& weight) {
+        const BallDirections cosine({}, glm::dvec3(0), axis);
+        if (!is_first || balls.empty()) return cosine.sample(x[0], x[1]);
+        const auto choice = std::min(
+            static_cast<std::size_t>(static_cast<float>(balls.size()) * x[3]), balls.size() - 1);
+        const double within = static_cast<double>(x[3]) * static_cast<double>(balls.size()) -
+                              static_cast<double>(choice);
+        const BallDirections toward(balls[choice], from, axis);
+        const glm::dvec3 direction =
+            within < 0.5 ? cosine.sample(x[0], x[1]) : toward.sample(x[0], x[1]);
+        double density = 0.5 * cosine.pdf(direction);
+        for (const Ball& ball : balls) {
+            density += 0.5 * BallDirections(ball, from, axis).pdf(direction) /
+                       static_cast<double>(balls.size());
+        }
+        weight *= density > 0 ? cosine.pdf(direction) / density : 0;
+        return direction;
+    }
+
+    // Along a flight through volumes, to the surface that ends it: what they send out by themselves
+    // joins, what scatters turns the path. Nothing: the path is lost.
+    std::optional<Arrival> fly(glm::dvec3& from, glm::dvec3& direction, glm::dvec3& throughput,
+                               glm::dvec3& sum) {
+        for (std::uint32_t n = 0; n < kMostTurns; ++n) {
+            ++rays;
+            auto at = find_arrival(check.rays, glm::vec3(from), glm::vec3(direction));
+            if (check.volumes == nullptr) return at;
+            const float reach =
+                at ? static_cast<float>(at->distance) : std::numeric_limits<float>::infinity();
+            FlightRandom random(seed, RandomStage::true_gather, ~key << 32 | draws++);
+            const Collision hit = sample_flight(*check.volumes, flight.band, glm::vec3(from),
+                                                glm::vec3(direction), reach, random);
+            for (const GlowingGrid& grid : check.glow) {
+                const float length = hit.happens ? hit.distance : reach;
+                sum += std::numbers::pi * throughput *
+                       glm::dvec3(glow_along(grid, glm::vec3(from), glm::vec3(direction), length));
+            }
+            if (!hit.happens) return at;
+            const DensityVolume& own = check.volumes->volumes[hit.volume];
+            from += static_cast<double>(hit.distance) * direction;
+            const std::array<float, 3> albedo = own.albedo_at(glm::vec3(from));
+            throughput *= glm::dvec3(albedo[0], albedo[1], albedo[2]);
+            const double most = largest_band(glm::abs(throughput));
+            if (most < kRoulette) {
+                if (static_cast<double>(random()) * kRoulette >= most) return std::nullopt;
+                throughput *= kRoulette / most;
+            }
+            glm::vec3 turned(direction);
+            throughput *= static_cast<double>(turn_walk(own.phase, turned, random).weight);
+            direction = glm::dvec3(turned);
+        }
+        return std::nullopt;
+    }
+
     glm::dvec3 run(const Receiver& receiver) {
-        glm::dvec3 sum(0), throughput(1), from(receiver.origin), direction, axis(receiver.normal);
+        glm::dvec3 sum(0), throughput(flight.counts), from(receiver.origin), direction,
+            axis(receiver.normal);
         bool is_diffuse = true;  // the next direction is drawn around the axis
         PathDifferential unused;
         for (std::uint32_t bounce = 0; bounce < kMostBounces; ++bounce) {
@@ -160,15 +252,9 @@ struct BackwardPath {
             }
             auto x = draw();
             if (bounce == 0) std::copy_n(first.begin() + 3, 2, x.begin());
-            if (is_diffuse) {
-                const float radius = std::sqrt(x[0]), turn = 2 * std::numbers::pi_v<float> * x[1];
-                direction =
-                    glm::dvec3(make_frame(glm::vec3(axis))
-                                   .to_world({radius * std::cos(turn), radius * std::sin(turn),
-                                              std::sqrt(std::max(0.0f, 1 - x[0]))}));
-            }
-            ++rays;
-            const auto at = find_arrival(check.rays, glm::vec3(from), glm::vec3(direction));
+            if (is_diffuse) direction = draw_diffuse(from, axis, bounce == 0, x, throughput);
+            if (throughput == glm::dvec3(0)) break;
+            const auto at = fly(from, direction, throughput, sum);
             if (!at) break;
             throughput *= straight_transmittance(check.scene, *at);
             sum += throughput * from_media(*at);
@@ -222,12 +308,19 @@ glm::dvec3 mean_irradiance(const EmitterCheck& check, const TrueSources& sources
                            const Receiver& receiver, std::uint32_t paths, std::uint64_t seed,
                            std::uint64_t key, std::uint64_t& rays) {
     glm::dvec3 sum(0);
-    BackwardPath path{check, sources, seed, key};
-    for (std::uint32_t i = 0; i < paths; ++i) {
-        path.begin(i);
-        sum += path.run(receiver);
+    // Bands of one extinction go one way.
+    std::vector<FlightBand> flights{{0, glm::dvec3(1)}};
+    if (check.volumes != nullptr && !check.volumes->is_grey) {
+        flights = {{0, {1, 0, 0}}, {1, {0, 1, 0}}, {2, {0, 0, 1}}};
     }
-    rays += path.rays;
+    for (const FlightBand& flight : flights) {
+        BackwardPath path{check, sources, seed, key, flight};
+        for (std::uint32_t i = 0; i < paths; ++i) {
+            path.begin(i);
+            sum += path.run(receiver);
+        }
+        rays += path.rays;
+    }
     return sum / static_cast<double>(paths);
 }
 

@@ -8,6 +8,8 @@
 #include "bake/emitters/receiver_light.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/volumes/density_space.h"
+#include "bake/volumes/glow_space.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::bake {
@@ -32,11 +34,14 @@ struct EmitterCheck {
     /// What media send out, and what metals and media alone pass on from lamps, are taken from here
     /// as they are; null: nothing.
     const LampLight* known = nullptr;
+    const DensitySpace* volumes = nullptr;   ///< that stand between surfaces; null: none
+    std::span<const GlowingGrid> glow = {};  ///< of them, those that are lamps
 };
 
 /// Compares the first row of receivers drawn at random, opaque ones, with path tracing: a point of
 /// an emitter's surface and one of the lights at every vertex, and any number of bounces, diffuse
-/// or mirrored by metal; at media they end in what is known of these, or go straight through.
+/// or mirrored by metal; at media they end in what is known of these, or go straight through. In
+/// volumes they are scattered and gather the volumes' own light; light of other lamps is dimmed.
 /// Receivers in creases, with a surface nearer than a thousandth of the scene, are left out: there
 /// paths lose their way in rounding. Precondition: at least one source.
 /// It shares surfaces' colours with what it checks, but no elements, particles or form factors.

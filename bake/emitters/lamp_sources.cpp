@@ -75,7 +75,38 @@ void add_triangle(const TriangleSource& from, const Weights& weights, int cuts,
     triangles.push_back(triangle);
 }
 
+GlowingVoxels collect_voxels(const formats::Volume& volume) {
+    using Grid = formats::SparseGrid<glm::vec3>;
+    const Grid& grid = volume.emission;
+    GlowingVoxels voxels;
+    voxels.to_scene = volume.density.to_scene;
+    voxels.volume = std::abs(glm::determinant(glm::dmat3(voxels.to_scene)));
+    std::size_t cell = 0;
+    glm::ivec3 b;
+    for (b.z = 0; b.z < grid.extent.z; ++b.z) {
+        for (b.y = 0; b.y < grid.extent.y; ++b.y) {
+            for (b.x = 0; b.x < grid.extent.x; ++b.x) {
+                const std::uint32_t number = grid.table[cell++];
+                for (int i = 0; number != Grid::kEmpty && i < static_cast<int>(Grid::kBrickVoxels);
+                     ++i) {
+                    const glm::vec3 q = grid.brick(number)[static_cast<std::size_t>(i)];
+                    if (q == glm::vec3(0)) continue;
+                    constexpr int kSide = Grid::kSide;
+                    const glm::ivec3 in(i % kSide, i / kSide % kSide, i / (kSide * kSide));
+                    voxels.centre.emplace_back(kSide * (grid.first_brick + b) + in);
+                    voxels.radiance.emplace_back(q);
+                }
+            }
+        }
+    }
+    return voxels;
+}
+
 }  // namespace
+
+glm::dvec3 GlowingVoxels::power(std::size_t i) const {
+    return 4 * std::numbers::pi * volume * radiance[i];
+}
 
 glm::dvec3 GlowingTriangle::power() const {
     return (is_two_sided ? 2 : 1) * std::numbers::pi * area * radiance;
@@ -101,6 +132,7 @@ LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp,
     for (const std::uint32_t i : lamp.lights) {
         sources.lights.push_back(scene.lights[i]);
     }
+    if (lamp.volume != formats::kNone) sources.voxels = collect_voxels(scene.volumes[lamp.volume]);
     glm::dvec3 low(1e300), high(-1e300);
     for (const formats::Primitive& primitive : scene.primitives) {
         for (const glm::vec3& position : primitive.position) {

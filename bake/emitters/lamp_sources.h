@@ -22,15 +22,27 @@ struct GlowingTriangle {
     glm::dvec3 power() const;
 };
 
+/// Voxels of a volume that glow: around each of them light linear to the next ones along each axis.
+struct GlowingVoxels {
+    std::vector<glm::dvec3> centre;    ///< index coordinates
+    std::vector<glm::dvec3> radiance;  ///< per metre at the centre [nit / m]
+    glm::dmat4 to_scene{1};            ///< index coordinates to the scene [m]
+    double volume = 0;                 ///< of a voxel [m^3]
+
+    /// Power [lm] of one: 4 pi q V.
+    glm::dvec3 power(std::size_t i) const;
+};
+
 /// What a lamp sends out.
 struct LampSources {
     std::vector<GlowingTriangle> triangles;
     std::vector<formats::Light> lights;
+    GlowingVoxels voxels;
     /// Sphere around all surfaces of the scene: directional lights shine on its square.
     glm::dvec3 centre{0};
     double radius = 0;
 
-    bool empty() const { return triangles.empty() && lights.empty(); }
+    bool empty() const { return triangles.empty() && lights.empty() && voxels.centre.empty(); }
 };
 
 /// Textured triangles are cut into 256 parts. Facets without area are left out. `textures`: a part

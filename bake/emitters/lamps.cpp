@@ -40,7 +40,7 @@ bool is_taken(const std::vector<Lamp>& lamps, std::string_view name) {
 Lamp& add_lamp(std::vector<Lamp>& lamps, const std::string& wanted) {
     std::string name =
         free_emitter_name(wanted, [&](std::string_view taken) { return is_taken(lamps, taken); });
-    return lamps.emplace_back(Lamp{std::move(name), {}, {}});
+    return lamps.emplace_back(Lamp{.name = std::move(name)});
 }
 
 std::vector<Lamp> list_ungrouped_lamps(const formats::Scene& scene) {
@@ -131,7 +131,7 @@ std::vector<Lamp> list_lamps(const formats::Scene& scene) {
         }
         auto group = std::ranges::find(lamps, found->second->name, &Lamp::name);
         if (group == lamps.end()) {
-            group = lamps.insert(lamps.end(), Lamp{found->second->name, {}, {}});
+            group = lamps.insert(lamps.end(), Lamp{.name = found->second->name});
         }
         const auto append = [](const auto& from, auto& to) {
             to.insert(to.end(), from.begin(), from.end());
@@ -140,6 +140,12 @@ std::vector<Lamp> list_lamps(const formats::Scene& scene) {
         append(lamp.lights, group->lights);
     }
     return lamps;
+}
+
+std::size_t count_emitters(std::span<const Lamp> lamps, std::size_t glowing) {
+    const auto lit = std::ranges::count_if(
+        lamps, [](const Lamp& lamp) { return lamp.volume != formats::kNone; });
+    return lamps.size() + glowing - static_cast<std::size_t>(lit);
 }
 
 formats::Status check_lamps(const formats::Scene& scene, std::size_t lamps) {

@@ -68,10 +68,10 @@ void send(const MediaJob& job, const LampLight& light, const MediaLight& exitanc
         // Lamps have the numbers below.
         const auto key = static_cast<std::uint32_t>(formats::kMaxEmitters) + e;
         // Rays of receivers find media by themselves, mirrored too.
+        ParticleRun run{job.particles, key, light.seed, 0, light.textures};
+        run.volumes = light.volumes;
         const auto deposits =
-            trace_particles(light.scene, light.rays, sources, light.layout,
-                            {job.particles, key, light.seed, 0, light.textures}, context, rays)
-                .all;
+            trace_particles(light.scene, light.rays, sources, light.layout, run, context, rays).all;
         elements[e] = of_surfaces[e];
         if (!has_light(deposits)) continue;
         elements[e] = light.layout.join(deposits, kGatheredElements);

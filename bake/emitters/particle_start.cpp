@@ -78,17 +78,42 @@ void start_at_light(const LampSources& lamp, const formats::Light& light,
                flux_per_intensity(light);
 }
 
+// From -1 to 1 with the density 1 - |t|.
+double hat_of(double u) {
+    return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u));
+}
+
+// `chance`: of this voxel among those of the lamp, as for triangles. u: along the axes.
+void start_in_voxel(const GlowingVoxels& voxels, std::size_t i, double chance,
+                    const DifferentialRules& rules, const std::array<double, 3>& u,
+                    const std::array<double, 4>& x, Particle& p) {
+    const glm::dvec3 index =
+        voxels.centre[i] + glm::dvec3(hat_of(u[0]), hat_of(u[1]), hat_of(u[2]));
+    p.position = glm::dvec3(voxels.to_scene * glm::dvec4(index, 1));
+    const double scale = 1 / std::cbrt(chance);
+    for (int axis = 0; axis < 3; ++axis) {
+        add_variable(p.path, {scale * glm::dvec3(voxels.to_scene[axis]), kStill, 0, 1});
+    }
+    p.direction = scatter_in_lobe(
+        p.path, rules,
+        {.axis = {0, 0, 1}, .lobe = {Lobe::Kind::henyey_greenstein, 0}, .u = x[2], .v = x[3]});
+}
+
 }  // namespace
 
 StartTable make_start_table(const LampSources& lamp) {
     StartTable table{lamp, {}};
-    table.cumulative.reserve(lamp.triangles.size() + lamp.lights.size());
+    table.cumulative.reserve(lamp.triangles.size() + lamp.lights.size() +
+                             lamp.voxels.centre.size());
     double sum = 0;
     for (const GlowingTriangle& triangle : lamp.triangles) {
         table.cumulative.push_back(sum += largest_band(triangle.power()));
     }
     for (const formats::Light& light : lamp.lights) {
         table.cumulative.push_back(sum += largest_band(light_power(lamp, light)));
+    }
+    for (std::size_t i = 0; i < lamp.voxels.centre.size(); ++i) {
+        table.cumulative.push_back(sum += largest_band(lamp.voxels.power(i)));
     }
     return table;
 }
@@ -129,14 +154,23 @@ Particle start_particle(const StartTable& table, const DifferentialRules& rules,
         p.first_bounce[k] = std::min(static_cast<float>(lattice[5 + k]), kBelowOne);
     }
     const LampSources& lamp = table.lamp;
-    const bool is_light = source >= lamp.triangles.size();
-    p.power = (is_light ? light_power(lamp, lamp.lights[source - lamp.triangles.size()])
-                        : lamp.triangles[source].power()) /
-              (chance * run.particles);
-    if (is_light) {
+    const std::size_t first_light = lamp.triangles.size();
+    const std::size_t first_voxel = first_light + lamp.lights.size();
+    const auto share_of = [&](const glm::dvec3& power) { return power / (chance * run.particles); };
+    if (source >= first_voxel) {
+        const auto more_of =
+            random_uniform(run.seed, RandomStage::particle_starts, particle_key(run, particle), 2);
         p.path.survival = chance;
-        start_at_light(lamp, lamp.lights[source - lamp.triangles.size()], rules, x, p);
+        p.power = share_of(lamp.voxels.power(source - first_voxel));
+        start_in_voxel(lamp.voxels, source - first_voxel, chance, rules,
+                       {x[0], x[1], static_cast<double>(more_of[0])}, x, p);
+    } else if (source >= first_light) {
+        const formats::Light& light = lamp.lights[source - first_light];
+        p.path.survival = chance;
+        p.power = share_of(light_power(lamp, light));
+        start_at_light(lamp, light, rules, x, p);
     } else {
+        p.power = share_of(lamp.triangles[source].power());
         start_on_triangle(lamp.triangles[source], chance, rules, x, p);
     }
     return p;

@@ -12,7 +12,8 @@ namespace opaline::bake {
 
 struct ParticleRun;
 
-/// Where particles of a lamp start: its triangles, then its lights, chosen in proportion to power.
+/// Where particles of a lamp start: its triangles, its lights, its voxels, chosen in proportion to
+/// power.
 struct StartTable {
     const LampSources& lamp;
     std::vector<double> cumulative;  ///< of largest bands [lm]

@@ -1,19 +1,98 @@
 #include "bake/emitters/plan_emitters.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "bake/plan/plan_input.h"
+#include "bake/volumes/plan_volumes.h"
 
 namespace opaline::bake {
+namespace {
+
+struct GapBox {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()};
+    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+
+    void include(const glm::dvec3& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+};
+
+// Between any two of their points, at least.
+double distance_of(const GapBox& a, const GapBox& b) {
+    return glm::length(glm::max(glm::dvec3(0), glm::max(a.low - b.high, b.low - a.high)));
+}
+
+// No surface sends out more of what arrives; 1 where metals, sheets or media have a say.
+double largest_albedo(const formats::Scene& scene) {
+    float most = 0;
+    for (const formats::Primitive& primitive : scene.primitives) {
+        const formats::Material& material = scene.materials[primitive.material];
+        if (material.medium || material.sheet || diffuse_share(material) < 1) return 1;
+        const formats::Rgb c = material.base_color;
+        most = std::max({most, c.r, c.g, c.b});
+    }
+    return std::min(1.0, static_cast<double>(most));
+}
+
+// Light that arrives where no volume scatters it, over pi: all voxels at the least distance.
+double largest_far_light(const formats::Scene& scene, const formats::Volume& volume) {
+    GapBox surfaces, glow;
+    for (const formats::Primitive& primitive : scene.primitives) {
+        for (const glm::vec3& position : primitive.position)
+            surfaces.include(glm::dvec3(position));
+    }
+    formats::SparseGrid<glm::vec3> placed = volume.emission;
+    placed.to_scene = volume.density.to_scene;
+    for (const glm::dvec3& corner : placed.corners())
+        glow.include(corner);
+    glm::dvec3 sum(0);
+    for (const glm::vec3& q : placed.value)
+        sum += glm::dvec3(q);
+    const double voxel = std::abs(glm::determinant(glm::dmat3(placed.to_scene)));
+    const double distance = distance_of(surfaces, glow);
+    return distance > 0
+               ? voxel * std::max({sum.x, sum.y, sum.z}) / (std::numbers::pi * distance * distance)
+               : std::numeric_limits<double>::infinity();
+}
+
+double bound_on_surfaces(const formats::Scene& scene, const formats::Volume& volume) {
+    const double glow = largest_glow(volume), seen = largest_scattered_glow(scene, volume);
+    const double arriving = seen > glow ? seen : std::min(seen, largest_far_light(scene, volume));
+    const double albedo = largest_albedo(scene);
+    return albedo < 1 ? arriving / (1 - albedo) : std::numeric_limits<double>::infinity();
+}
+
+PlanEntry decide_volume(const formats::Scene& scene, const formats::Volume& volume,
+                        bool has_surfaces, const Knobs& knobs) {
+    PlanEntry entry;
+    entry.name = "emitters";
+    entry.has_bands = true;
+    entry.bound = has_surfaces ? bound_on_surfaces(scene, volume) : 0;
+    const double least =
+        knobs.error_target > 0 ? std::min(kLeastBound, knobs.error_target / 8) : kLeastBound;
+    entry.on = entry.bound >= least;
+    if (!entry.on && knobs.simulate_all && entry.bound > 0) entry.on = entry.forced = true;
+    entry.reason = entry.on       ? "a volume glows: surfaces have rows of its light"
+                   : has_surfaces ? "too far from surfaces to be seen on them"
+                                  : "there is no surface that it could light";
+    if (entry.forced) entry.reason += "; forced: by its bound it would be left out";
+    return entry;
+}
+
+}  // namespace
 
 EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
     EmitterPlan plan;
     const bool has_surfaces =
         std::ranges::any_of(scene.primitives, [](const auto& p) { return !p.index.empty(); });
     std::uint32_t number = 0;
-    for (Lamp& lamp : list_lamps(scene)) {
+    std::vector<Lamp> lamps = list_lamps(scene);
+    for (const Lamp& lamp : lamps) {
         PlanEntry entry;
         entry.name = "emitters";
         entry.subject = {Subject::Kind::emitter, number++, "emitter '" + lamp.name + "'"};
@@ -24,7 +103,28 @@ EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
                                                              : "it sends out light: rows of its own")
                        : has_surfaces ? "left out by --effects"
                                       : "there is no surface that it could light";
-        if (entry.on) plan.lamps.push_back(std::move(lamp));
+        if (entry.on) plan.lamps.push_back(lamp);
+        plan.entries.push_back(std::move(entry));
+    }
+    std::uint32_t glow = 0;
+    for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
+        const formats::Volume& volume = scene.volumes[v];
+        if (!is_seen_to_glow(volume, knobs)) continue;
+        Lamp lamp{.name = free_emitter_name(volume.emitter,
+                                            [&](std::string_view name) {
+                                                return std::ranges::any_of(
+                                                    lamps, [&](const Lamp& other) {
+                                                        return other.name == name;
+                                                    });
+                                            }),
+                  .primitives = {},
+                  .lights = {},
+                  .volume = v,
+                  .glow = glow++};
+        PlanEntry entry = decide_volume(scene, volume, has_surfaces, knobs);
+        entry.subject = {Subject::Kind::emitter, number++, "emitter '" + lamp.name + "'"};
+        if (entry.on) plan.lamps.push_back(lamp);
+        lamps.push_back(std::move(lamp));
         plan.entries.push_back(std::move(entry));
     }
     return plan;

@@ -26,6 +26,7 @@ constexpr std::size_t kReceiversPerBlock = 16;
 constexpr std::uint32_t kMostGathered = 16;
 constexpr double kLeastGathered = 1e-3;  // of what a ray gathers
 constexpr double kNear = 0.01;           // of the scene: a receiver's surface is not farther
+constexpr std::uint32_t kLeastGlowRays = 16;
 
 double fraction(double x) {
     return x - std::floor(x);
@@ -102,7 +103,7 @@ struct GatherRay {
 // and media pass on what is beyond. `view`: of the first surface's textures; others are points'.
 void gather_along(const LampLight& light, GatherRay ray, Arrival at, const TextureView* view,
                   std::vector<glm::dvec3>& sum, std::uint64_t& rays) {
-    glm::dvec3 weight(1);
+    glm::dvec3 weight = volume_transmittance(light.volumes, ray.from, ray.direction, at.distance);
     PathDifferential unused;
     for (std::uint32_t flight = 0; flight < kMostGathered; ++flight) {
         add_reflected(light, at, weight, flight == 0 ? view : nullptr, sum);
@@ -123,7 +124,8 @@ void gather_along(const LampLight& light, GatherRay ray, Arrival at, const Textu
         const auto next = find_arrival(light.rays, glm::vec3(ray.from), glm::vec3(ray.direction));
         if (!next) return;
         at = *next;
-        weight *= onward->weight * straight_transmittance(light.scene, at);
+        weight *= onward->weight * straight_transmittance(light.scene, at) *
+                  volume_transmittance(light.volumes, ray.from, ray.direction, at.distance);
         if (!(largest_band(weight) > kLeastGathered)) return;
     }
 }
@@ -192,8 +194,14 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
     }
     add_caustics(light, receiver, total, rays);
     for (std::size_t lamp = 0; lamp < total.size(); ++lamp) {
+        total[lamp] += straight_irradiance(light.rays, light.sources[lamp], receiver, light.samples,
+                                           rays, light.volumes);
+        if (lamp >= light.glow.size() || light.glow[lamp] == nullptr) continue;
+        const auto turn = random_uniform(light.seed, RandomStage::gather_rays, key,
+                                         ~static_cast<std::uint32_t>(lamp));
         total[lamp] +=
-            straight_irradiance(light.rays, light.sources[lamp], receiver, light.samples, rays);
+            glow_irradiance(*light.glow[lamp], light.rays, receiver,
+                            std::max(kLeastGlowRays, light.samples / 4), {turn[0], turn[1]}, rays);
     }
     return total;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/emitters/glow_light.h"
 #include "bake/emitters/largest_band.h"
 #include "bake/path_differentials/area_sample.h"
 #include "bake/scene/punctual_light.h"
@@ -19,8 +20,13 @@ constexpr float kShadowEnd = 1 - 1e-4f;
 /// Rays from one receiver, sixteen at a time.
 class ShadowRays {
   public:
-    ShadowRays(const RayScene& scene, const Receiver& receiver, std::uint64_t& rays)
-        : scene_(scene), packet_(rays_from(receiver.origin)), rays_(rays) {}
+    ShadowRays(const RayScene& scene, const Receiver& receiver, std::uint64_t& rays,
+               const DensitySpace* volumes)
+        : scene_(scene),
+          volumes_(volumes),
+          origin_(receiver.origin),
+          packet_(rays_from(receiver.origin)),
+          rays_(rays) {}
 
     /// Adds `light` to what arrives if nothing is up to `reach` along the unit direction.
     void add(const glm::vec3& direction, float reach, const glm::dvec3& light) {
@@ -30,6 +36,7 @@ class ShadowRays {
         packet_.tfar[count_] = reach;
         lanes_[count_] = -1;
         light_[count_] = light;
+        reach_[count_] = static_cast<double>(reach);
         if (++count_ == RayPacket::kSize) trace();
     }
 
@@ -43,16 +50,21 @@ class ShadowRays {
         rays_ += count_;
         if (!scene_.is_empty()) scene_.occluded(lanes_, packet_);
         for (std::size_t i = 0; i < count_; ++i) {
-            if (packet_.tfar[i] >= 0) arrived_ += light_[i];
+            if (!(packet_.tfar[i] >= 0)) continue;
+            const glm::dvec3 direction(packet_.dir_x[i], packet_.dir_y[i], packet_.dir_z[i]);
+            arrived_ += light_[i] * volume_transmittance(volumes_, origin_, direction, reach_[i]);
         }
         lanes_ = {};
         count_ = 0;
     }
 
     const RayScene& scene_;
+    const DensitySpace* volumes_;
+    glm::dvec3 origin_;
     RayPacket packet_;
     LaneMask lanes_{};
     std::array<glm::dvec3, RayPacket::kSize> light_{};
+    std::array<double, RayPacket::kSize> reach_{};
     std::size_t count_ = 0;
     glm::dvec3 arrived_{0};
     std::uint64_t& rays_;
@@ -72,8 +84,8 @@ double geometry(const glm::dvec3& way, const glm::dvec3& normal, const glm::dvec
                       : 0.0;
 }
 
-glm::dvec3 from_triangles(const RayScene& scene, const LampSources& lamp, const Receiver& receiver,
-                          std::uint32_t samples, std::uint64_t& rays) {
+glm::dvec3 from_triangles(const LampSources& lamp, const Receiver& receiver, std::uint32_t samples,
+                          ShadowRays shadow) {
     const glm::dvec3 point(receiver.origin), normal(receiver.normal);
     std::vector<double> factor(lamp.triangles.size()), cumulative(lamp.triangles.size());
     glm::dvec3 total(0);
@@ -86,7 +98,6 @@ glm::dvec3 from_triangles(const RayScene& scene, const LampSources& lamp, const 
         cumulative[t] = sum;
     }
     if (!(sum > 0)) return glm::dvec3(0);
-    ShadowRays shadow(scene, receiver, rays);
     glm::dvec3 all(0);
     for (std::uint32_t i = 0; i < samples; ++i) {
         const double at = (i + 0.5) / samples * sum;
@@ -112,9 +123,7 @@ glm::dvec3 from_triangles(const RayScene& scene, const LampSources& lamp, const 
     return irradiance;
 }
 
-glm::dvec3 from_lights(const RayScene& scene, const LampSources& lamp, const Receiver& receiver,
-                       std::uint64_t& rays) {
-    ShadowRays shadow(scene, receiver, rays);
+glm::dvec3 from_lights(const LampSources& lamp, const Receiver& receiver, ShadowRays shadow) {
     for (const formats::Light& light : lamp.lights) {
         const ArrivingLight arriving = light_at(light, receiver.origin);
         const float cosine = glm::dot(arriving.to_light, receiver.normal);
@@ -155,11 +164,11 @@ double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& po
 }
 
 glm::dvec3 straight_irradiance(const RayScene& scene, const LampSources& lamp,
-                               const Receiver& receiver, std::uint32_t samples,
-                               std::uint64_t& rays) {
+                               const Receiver& receiver, std::uint32_t samples, std::uint64_t& rays,
+                               const DensitySpace* volumes) {
     if (receiver.normal == glm::vec3(0)) return glm::dvec3(0);
-    return from_triangles(scene, lamp, receiver, samples, rays) +
-           from_lights(scene, lamp, receiver, rays);
+    const ShadowRays shadow(scene, receiver, rays, volumes);
+    return from_triangles(lamp, receiver, samples, shadow) + from_lights(lamp, receiver, shadow);
 }
 
 }  // namespace opaline::bake

@@ -7,6 +7,7 @@
 #include "bake/emitters/lamp_sources.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/volumes/density_space.h"
 
 namespace opaline::bake {
 
@@ -20,9 +21,10 @@ double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& po
 ///
 /// Triangles: exact unoccluded irradiance, times the mean visibility of `samples` points, spread
 /// over them in proportion to it: without noise where nothing or all is hidden. Lights: one shadow
-/// ray each. `rays` counts those traced.
+/// ray each. Light of voxels: glow_light.h. `volumes` dim all; null: none. `rays` counts those
+/// traced.
 glm::dvec3 straight_irradiance(const RayScene& scene, const LampSources& lamp,
-                               const Receiver& receiver, std::uint32_t samples,
-                               std::uint64_t& rays);
+                               const Receiver& receiver, std::uint32_t samples, std::uint64_t& rays,
+                               const DensitySpace* volumes = nullptr);
 
 }  // namespace opaline::bake

@@ -9,6 +9,7 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
 #include "bake/emitters/bounce_color.h"
+#include "bake/emitters/glow_light.h"
 #include "bake/emitters/largest_band.h"
 #include "bake/emitters/onward_ray.h"
 #include "bake/emitters/particle_start.h"
@@ -118,7 +119,8 @@ void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
         if (!at) return;
         move_to_surface(p.path, p.direction, at->normal, at->distance);
         if (flight == 0) p.power *= p.dimming(at->distance);
-        p.power *= straight_transmittance(tracer.scene, *at);
+        p.power *= straight_transmittance(tracer.scene, *at) *
+                   volume_transmittance(tracer.run.volumes, p.position, p.direction, at->distance);
         if (!(largest_band(p.power) > least)) return;
         const double footprint =
             tracer.run.fixed_area > 0

@@ -8,6 +8,7 @@
 #include "bake/emitters/lamp_sources.h"
 #include "bake/emitters/surface_elements.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/volumes/density_space.h"
 
 namespace opaline::bake {
 
@@ -19,8 +20,9 @@ struct ParticleRun {
     double fixed_area = 0;
     /// Colours of surfaces are means over the footprint; null: of points.
     const ScenePyramids* textures = nullptr;
-    bool only_caustic = false;    ///< particles end where they scatter diffusely
-    double gradient_limit = 0.7;  ///< of footprints; infinite, for comparisons: none
+    bool only_caustic = false;              ///< particles end where they scatter diffusely
+    double gradient_limit = 0.7;            ///< of footprints; infinite, for comparisons: none
+    const DensitySpace* volumes = nullptr;  ///< that dim particles; null: none
 };
 
 /// What a lamp's particles brought to elements.

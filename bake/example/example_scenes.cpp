@@ -215,6 +215,24 @@ formats::SparseGrid<float> make_smoke() {
     return make_smoke_density((2 * kBallRadius - 10) * kMetresPerMillimetre);
 }
 
+// Stones around a fire, on a floor.
+std::vector<GltfObject> make_fireplace() {
+    constexpr int kStones = 7;
+    constexpr double kRing = 190, kStone = 42;  // [mm]
+    std::vector<GltfObject> objects;
+    for (int i = 0; i < kStones; ++i) {
+        const double turn = 2 * std::numbers::pi * (i + 0.5) / kStones, size = kStone + 5 * (i % 3);
+        const glm::dvec3 centre(kRing * std::sin(turn), 0.8 * size, kRing * std::cos(turn));
+        objects.push_back({"Stone " + std::to_string(i + 1),
+                           "Stone",
+                           {0.40, 0.38, 0.35},
+                           in_metres(make_sphere(centre, size, 3))});
+    }
+    objects.push_back(floor_object(
+        make_floor({.finest = 12.0, .fine_radius = 300.0, .growth = 0.15, .levels = 7})));
+    return objects;
+}
+
 constexpr std::array<double, 3> grey(double value) {
     return {value, value, value};
 }
@@ -258,6 +276,14 @@ constexpr Example kExamples[] = {
      {.make = make_smoke, .sigma_t = grey(60), .albedo = grey(0.92), .g = 0.5}},
     {{"fire", "a camp fire that lights its smoke: a volume that is an emitter, alone"},
      nullptr,
+     {.make = make_fire_density,
+      .sigma_t = grey(40),
+      .albedo = grey(0.75),
+      .g = 0.4,
+      .make_temperature = make_fire_temperature,
+      .emission_scale = 4e-5}},
+    {{"campfire", "that fire among stones on a floor: light of a volume on surfaces"},
+     make_fireplace,
      {.make = make_fire_density,
       .sigma_t = grey(40),
       .albedo = grey(0.75),

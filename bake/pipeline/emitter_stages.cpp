@@ -1,6 +1,7 @@
 #include "bake/pipeline/emitter_stages.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +25,17 @@ constexpr double kIncoherent = 4;
 // Passes between media and surfaces until the next adds little, mostly.
 constexpr double kPasses = 6;
 
+// Steps of a ray to volumes that glow, in times of steps of a depth: half across, and each with the
+// light of eight nodes.
+double glow_steps(const formats::Scene& scene) {
+    constexpr double kShare = 0.5, kOfNodes = 16;
+    double voxels = 0;
+    for (const formats::Volume& volume : scene.volumes) {
+        voxels = std::max(voxels, static_cast<double>(volume.emission.value.size()));
+    }
+    return kShare * kOfNodes * std::cbrt(voxels);
+}
+
 // Media that no effect of the plan lights with light of lamps.
 bool has_dark_media(const BakeInputs& bake, std::span<const PlanEntry> plan,
                     std::span<const SubjectState> subjects) {
@@ -33,10 +45,11 @@ bool has_dark_media(const BakeInputs& bake, std::span<const PlanEntry> plan,
     });
 }
 
-void warn_of_unlit(const formats::Scene& scene, bool has_dark,
+// `of_volumes`: all lamps are volumes, which light each other.
+void warn_of_unlit(const formats::Scene& scene, bool has_dark, bool of_volumes,
                    std::vector<formats::Diagnostic>& warnings) {
     std::string unlit = has_dark ? "media whose multiple scattering is left out" : "";
-    if (!scene.volumes.empty()) unlit += unlit.empty() ? "volumes" : ", volumes";
+    if (!scene.volumes.empty() && !of_volumes) unlit += unlit.empty() ? "volumes" : ", volumes";
     if (!scene.layers.empty()) unlit += unlit.empty() ? "cloud layers" : ", cloud layers";
     if (unlit.empty()) return;
     warnings.push_back(formats::make_warning(
@@ -121,9 +134,10 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
         media = {make_light_medium(bake, result.plan, result.knobs, context, subjects), layouts,
                  result.asset.base_color};
     }
-    auto baked = bake_emitters({bake.scene, bake.rays, bake.receivers, result.asset.primitives,
-                                lamps, result.knobs, media, bake.textures},
-                               context, result.stages);
+    auto baked =
+        bake_emitters({bake.scene, bake.rays, bake.receivers, result.asset.primitives, lamps,
+                       result.knobs, media, bake.textures, result.asset.volumes.view()},
+                      context, result.stages);
     if (!baked) {
         return std::move(baked).error();
     }
@@ -142,7 +156,10 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
                 error_percent(limit),
             "give more --emitter-rays and --emitter-particles"));
     }
-    warn_of_unlit(bake.scene, has_dark_media(bake, result.plan, subjects), result.warnings);
+    const bool of_volumes =
+        std::ranges::all_of(lamps, [](const Lamp& lamp) { return lamp.volume != formats::kNone; });
+    warn_of_unlit(bake.scene, has_dark_media(bake, result.plan, subjects), of_volumes,
+                  result.warnings);
     warn_of_immersed(baked->immersed, result.warnings);
     return check_media(bake, lamps, context, result);
 }
@@ -170,6 +187,12 @@ void bill_lamps(const CostedBake& bake, std::span<PlanEntry> plan, Bill& bill) {
         for_each("media lit by emitters", {share * media->alone, share * media->shared});
     }
     for_each("light of emitters", {0, rays * ray});
+    const std::size_t first_volume = list_lamps(request.scene).size();
+    for (PlanEntry* lamp : lamps) {
+        if (lamp->subject.index >= first_volume) {
+            bill.add({0, rays / 4 * glow_steps(request.scene) * request.rates.density_step}, lamp);
+        }
+    }
     bill.add({0, rays * ray});  // to surfaces that reflect, for all
     bill.open("self-check of emitters");
     if (media) {

@@ -286,7 +286,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         result.facts = inspect_scene(scene);
         return plan_bake(effects, scene, result.facts, wanted);
     });
-    if (auto status = check_lamps(scene, emitters.lamps.size() + glowing); !status) {
+    if (auto status = check_lamps(scene, count_emitters(emitters.lamps, glowing)); !status) {
         return std::move(status).error();
     }
     formats::Result<RayScene> sky = RayScene::build({}, context.threads);
@@ -338,7 +338,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
             return std::move(status).error();
         }
     }
-    number_glow(result);
+    number_glow(emitters.lamps, result);
     if (wanted.check_model && !scene.primitives.empty()) {
         if (auto status = check_model_of(effects, facing, context, result); !status) {
             return std::move(status).error();

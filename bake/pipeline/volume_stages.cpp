@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bake/accuracy/volumes/glow_error.h"
-#include "bake/emitters/lamps.h"
 #include "bake/volumes/bake_volumes.h"
 #include "bake/volumes/dim_surfaces.h"
 #include "bake/volumes/volume_knobs.h"
@@ -114,11 +113,6 @@ formats::Status measure_glow(const VolumeStages& inputs, std::span<const VolumeL
     } else {
         result.error.not_measured.emplace_back("light of volumes");
     }
-    if (!inputs.scene.primitives.empty()) {
-        result.warnings.push_back(formats::make_warning(
-            "", "emitters", "light of volumes does not reach surfaces, which stay dark under it",
-            "nothing needs to be done where that is not seen"));
-    }
     return formats::ok_status();
 }
 
@@ -169,16 +163,23 @@ Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quali
     return knobs;
 }
 
-void number_glow(BakeResult& result) {
+void number_glow(std::span<const Lamp> lamps, BakeResult& result) {
     formats::Emitters& emitters = result.asset.emitters;
-    const std::uint32_t first = emitters.view().size();
-    for (const std::string& wanted : result.glowing_volumes) {
-        append_emitter(emitters, free_emitter_name(wanted, [&](std::string_view name) {
+    std::vector<std::uint32_t> number;
+    for (std::uint32_t glow = 0; glow < result.glowing_volumes.size(); ++glow) {
+        const auto lit = std::ranges::find(lamps, glow, &Lamp::glow);
+        if (lit != lamps.end()) {
+            number.push_back(static_cast<std::uint32_t>(lit - lamps.begin()));
+            continue;
+        }
+        number.push_back(emitters.view().size());
+        append_emitter(emitters,
+                       free_emitter_name(result.glowing_volumes[glow], [&](std::string_view name) {
                            return find_emitter(emitters.view(), name) < emitters.view().size();
                        }));
     }
     for (formats::GlowRecord& record : result.asset.volumes.glow.record) {
-        record.emitter += first;
+        record.emitter = number[record.emitter];
     }
 }
 

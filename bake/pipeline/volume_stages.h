@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "bake/emitters/lamps.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/volumes/plan_volumes.h"
@@ -30,8 +31,8 @@ Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quali
 /// kept, and `result.knobs` has its values. Errors: as bake_volumes and check_volumes; interrupted.
 formats::Status add_volumes(const VolumeStages& inputs, const Context& context, BakeResult& result);
 
-/// Enters volumes that glow among the file's emitters, behind those that it has. After all other
-/// emitters are there.
-void number_glow(BakeResult& result);
+/// Gives light of volumes the numbers of the file's emitters. `lamps`: those that the file has;
+/// volumes that are not among them come last.
+void number_glow(std::span<const Lamp> lamps, BakeResult& result);
 
 }  // namespace opaline::bake

@@ -117,12 +117,13 @@ double even_share(const DensityVolume& volume) {
     return dense > 0 ? even / dense : 0;
 }
 
-std::array<float, 3> optical_depth(const DensitySpace& space, glm::vec3 from, glm::vec3 direction) {
+std::array<float, 3> optical_depth(const DensitySpace& space, glm::vec3 from, glm::vec3 direction,
+                                   float reach) {
     std::array<float, 3> depth{};
     for (const DensityVolume& volume : space.volumes) {
         const float voxels_per_metre = glm::length(volume.to_index * direction);
         float column = 0;
-        visit_cells(volume, from, direction, std::numeric_limits<float>::infinity(),
+        visit_cells(volume, from, direction, reach,
                     [&](float bound, float begin, float end, bool is_even) {
                         if (is_even) {
                             column += bound * (end - begin);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -64,10 +65,11 @@ DensitySpace make_density_space(const formats::Scene& scene);
 /// Share of a volume's cells with density in which it is even.
 double even_share(const DensityVolume& volume);
 
-/// Optical depth [1] of each band from a point along a unit direction to where no volume is: in
-/// closed form in cells of even density, elsewhere by the midpoint rule in steps of at most a
-/// voxel.
-std::array<float, 3> optical_depth(const DensitySpace& space, glm::vec3 from, glm::vec3 direction);
+/// Optical depth [1] of each band from a point along a unit direction over `reach` [m], or to where
+/// no volume is: in closed form in cells of even density, elsewhere by the midpoint rule in steps
+/// of at most a voxel.
+std::array<float, 3> optical_depth(const DensitySpace& space, glm::vec3 from, glm::vec3 direction,
+                                   float reach = std::numeric_limits<float>::infinity());
 
 /// Where a flight ends.
 struct Collision {

@@ -186,6 +186,28 @@ double largest_glow(const formats::Volume& volume) {
     return static_cast<double>(most) * longest_line(box.corners());
 }
 
+double largest_scattered_glow(const formats::Scene& scene, const formats::Volume& volume) {
+    // A flight meets the next collision in some volume: at most all depths together.
+    std::array<double, 3> depth{}, albedo{};
+    for (const formats::Volume& each : scene.volumes) {
+        const std::array<double, 3> own = largest_depth(each), scatters = bands(each.albedo);
+        for (std::size_t band = 0; band < 3; ++band) {
+            depth[band] += own[band];
+            albedo[band] = std::max(albedo[band], own[band] > 0 ? scatters[band] : 0);
+        }
+    }
+    double most = 0;
+    for (std::size_t band = 0; band < 3; ++band) {
+        most = std::max(most, albedo[band] * -std::expm1(-depth[band]));
+    }
+    const double glow = largest_glow(volume);
+    return most < 1 ? glow / (1 - most) : (glow > 0 ? std::numeric_limits<double>::infinity() : 0);
+}
+
+bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs) {
+    return !volume.emission.empty() && decide_glow(volume, {}, knobs).on;
+}
+
 std::array<double, 3> largest_depth(const formats::Volume& volume) {
     // The longest line through the bricks, as dense as the densest voxel of all.
     const double diagonal = longest_line(volume.density.corners());

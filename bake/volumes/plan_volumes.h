@@ -55,6 +55,13 @@ inline std::size_t count_glowing(std::span<const VolumeLayout> layouts) {
 /// all bands; 0 of one that does not glow.
 double largest_glow(const formats::Volume& volume);
 
+/// An upper bound [W m^-2 sr^-1] on that light with what all volumes of a scene scatter of it: with
+/// s the largest albedo times 1 - e^-tau of all, glow / (1 - s).
+double largest_scattered_glow(const formats::Scene& scene, const formats::Volume& volume);
+
+/// Whether it is an emitter of the file, by that bound and by --effects.
+bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs);
+
 /// An upper bound [1] on the optical depth of any straight line through a volume, by band.
 std::array<double, 3> largest_depth(const formats::Volume& volume);
 

@@ -2,7 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
+#include "bake/accuracy/model_pairs.h"
+#include "bake/reference/reference_receivers.h"
 #include "runtime/volumes/volume_march.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/volumes.h"
@@ -59,14 +63,81 @@ TEST(GlowBake, AFileKnowsHowFarItsLightErrs) {
     EXPECT_TRUE(plain.asset.emitters.name_end.empty());
 }
 
-TEST(GlowBake, BesideSurfacesAWarningSaysThatTheyStayDark) {
-    Scene scene = make_scene({make_quad({-1, -3, -1}, {0, 0, 2}, {2, 0, 0}, 2)});
+// A floor of some albedo below fire and its smoke, beside a glowing quad.
+Scene fire_above_a_floor() {
+    Scene scene = make_scene({make_quad({-3, -1.5f, -3}, {0, 0, 6}, {6, 0, 0}, 12),
+                              make_quad({2, -1, -0.5f}, {0, 0, 1}, {0, 1, 0})});
+    scene.materials.resize(2);
+    scene.materials[0].base_color = {0.5f, 0.5f, 0.5f};
+    scene.materials[1].emission = {0.1f, 0.1f, 0.1f};
+    scene.primitives[1].material = 1;
+    scene.primitives[1].node = 1;
+    scene.primitives[1].name = "node 'Panel' > mesh 1";
     scene.volumes = {glowing_volume()};
+    return scene;
+}
+
+TEST(GlowBake, FireLightsSurfacesAsTheReferenceSaysAndIsSwitchedByItsName) {
+    const Scene scene = fire_above_a_floor();
     const bake::BakeResult result = bake_scene(scene, small_bake());
-    EXPECT_TRUE(std::ranges::any_of(result.warnings, [](const formats::Diagnostic& warning) {
-        return warning.fault.find("does not reach surfaces") != std::string::npos;
-    }));
-    EXPECT_EQ(list_emitters(result.asset.view().emitters), "'fire'");
+    const formats::AssetView view = result.asset.view();
+    EXPECT_EQ(list_emitters(view.emitters), "'Panel', 'fire'");
+    EXPECT_EQ(view.volumes.glow.own_of(0)->emitter, 1u);
+    const auto floor = [&](const std::vector<formats::Rgb>& colors) {
+        std::vector<formats::Rgb> radiance(result.asset.position.size());
+        runtime::ShadeOptions options;
+        options.emitters = {colors};
+        runtime::shade(view, make_light("black", view.cubemap_size), radiance, options);
+        return radiance;
+    };
+    const auto fire = floor({{}, {1, 1, 1}}), both = floor({{1, 1, 1}, {1, 1, 1}}),
+               panel = floor({{1, 1, 1}, {}}), dark = floor({{}, {}});
+    constexpr std::size_t kMiddle = 6 * 13 + 6;
+    EXPECT_GT(fire[kMiddle].r, 3 * fire[kMiddle].b) << "it is red";
+    EXPECT_NEAR(both[kMiddle].g, fire[kMiddle].g + panel[kMiddle].g, 1e-3f * both[kMiddle].g);
+    EXPECT_EQ(dark[kMiddle].g, 0);
+
+    const auto reference = bake::make_reference_scene(scene, 2);
+    ASSERT_TRUE(reference);
+    std::vector<bake::ReferenceReceiver> receivers =
+        bake::choose_receivers(*reference, 60, 3, std::nullopt);
+    std::erase_if(receivers, [](const auto& receiver) { return receiver.primitive != 0; });
+    const formats::Environment black;
+    const bake::LightSampler sky = bake::make_light_sampler(black, glm::mat3(1.0f));
+    const bake::PathSpace space{*reference, sky, {.terms = formats::TermSet::emitters}};
+    const std::vector<formats::Rgb> lit{{1, 1, 1}, {1, 1, 1}};
+    bake::ModelCheckOptions options;
+    options.max_events = 6000000;
+    options.noise = 0.02;
+    const auto check = bake::check_light(
+        space, receivers,
+        bake::relight_receivers(
+            view, receivers,
+            {.vector = make_light("black", view.cubemap_size), .emitters = {.color = lit}}),
+        options, {});
+    ASSERT_TRUE(check);
+    const bake::MeanSquares sum = bake::sum_up(check->pairs);
+    EXPECT_LT(sum.noise(), 0.05);
+    // Nodes of the smoke and what bounces between floor and smoke: as the file says of itself.
+    EXPECT_LT(sum.rms_relative(), 0.08);
+    EXPECT_LT(std::abs(sum.bias()), 0.05);
+    const auto stated =
+        std::ranges::find(result.error.by_effect, "emitters", &bake::ErrorReport::Part::name);
+    ASSERT_NE(stated, result.error.by_effect.end());
+    EXPECT_NEAR(stated->rms_relative, sum.rms_relative(), 0.03);
+}
+
+TEST(GlowBake, LightOfFireOnSurfacesIsTheSameForAnyNumberOfThreads) {
+    Scene scene = fire_above_a_floor();
+    scene.primitives.pop_back();
+    bake::BakeOptions options = small_bake();
+    options.quality = bake::Quality::draft;
+    options.threads = 1;
+    const bake::BakeResult one = bake_scene(scene, options);
+    options.threads = 3;
+    const bake::BakeResult three = bake_scene(scene, options);
+    ASSERT_FALSE(one.asset.emitters.value.empty());
+    EXPECT_EQ(one.asset.emitters.value, three.asset.emitters.value);
 }
 
 }  // namespace

@@ -1,0 +1,144 @@
+#include "bake/emitters/glow_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace opaline::bake {
+namespace {
+
+// Irradiance averages over many steps.
+constexpr float kStep = 1;  // voxels
+
+/// The box of the scene around some points.
+struct PointBox {
+    glm::dvec3 low{1e300}, high{-1e300};
+
+    void include(const glm::dvec3& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    Ball ball() const { return {0.5 * (low + high), 0.5 * glm::length(high - low)}; }
+};
+
+formats::Vec3 to_vec3(const glm::dvec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+double turn_fraction(double x) {
+    return x - std::floor(x);
+}
+
+// Sixteen rays from a receiver, and what each is worth.
+struct RayBlock {
+    RayPacket packet;
+    LaneMask lanes{};
+    std::array<double, RayPacket::kSize> weight{};
+    std::uint32_t count = 0;
+};
+
+glm::dvec3 march_block(const GlowLight& glow, const RayScene& surfaces, const Receiver& receiver,
+                       RayBlock& block, std::uint64_t& rays) {
+    const PacketHits hits =
+        surfaces.is_empty() ? PacketHits{} : surfaces.closest(block.lanes, block.packet);
+    rays += block.count;
+    glm::dvec3 sum(0);
+    for (std::uint32_t lane = 0; lane < block.count; ++lane) {
+        runtime::MarchRay ray{
+            to_vec3(glow.origin + glm::dvec3(receiver.origin)),
+            {block.packet.dir_x[lane], block.packet.dir_y[lane], block.packet.dir_z[lane]}};
+        if (!surfaces.is_empty() && hits.hit[lane] != 0) {
+            ray.end = static_cast<double>(hits.distance[lane]);
+        }
+        const formats::Rgb seen = runtime::march_volumes(glow.lit, ray, {.step = kStep}).radiance;
+        sum += block.weight[lane] * glm::dvec3(seen.r, seen.g, seen.b);
+    }
+    block.lanes = {};
+    block.count = 0;
+    return sum;
+}
+
+}  // namespace
+
+GlowLight make_glow_light(const formats::Scene& scene, std::uint32_t volume,
+                          const formats::VolumesView& volumes, std::uint32_t glow,
+                          unsigned threads) {
+    std::uint32_t emitters = glow + 1;
+    for (const formats::GlowRecord& record : volumes.glow.record) {
+        emitters = std::max(emitters, record.emitter + 1);
+    }
+    std::vector<formats::Rgb> color(emitters);
+    color[glow] = {1, 1, 1};
+    GlowLight result;
+    result.light = std::make_unique<runtime::VolumeLight>(runtime::relight_volumes(
+        volumes, {},
+        {.terms = formats::TermSet::none, .emitters = {.color = color}, .threads = threads}));
+    result.lit = runtime::light_volumes(volumes, *result.light);
+    result.origin = scene.origin;
+    PointBox box;
+    const formats::Volume& own = scene.volumes[volume];
+    // Voxels of emission are those of density.
+    const glm::dmat4 placed = own.density.to_scene * glm::inverse(own.emission.to_scene);
+    for (const glm::dvec3& corner : own.emission.corners()) {
+        box.include(glm::dvec3(placed * glm::dvec4(corner, 1)));
+    }
+    result.own = box.ball();
+    const bool is_scattered =
+        std::ranges::any_of(volumes.glow.record, [&](const formats::GlowRecord& record) {
+            return record.emitter == glow && record.terms > 0;
+        });
+    for (const formats::Volume& other : scene.volumes) {
+        if (!is_scattered || other.density.empty()) continue;
+        for (const glm::dvec3& corner : other.density.corners())
+            box.include(corner);
+    }
+    result.all = box.ball();
+    return result;
+}
+
+glm::dvec3 glow_irradiance(const GlowLight& glow, const RayScene& surfaces,
+                           const Receiver& receiver, std::uint32_t samples,
+                           std::array<float, 2> turn, std::uint64_t& rays) {
+    const glm::dvec3 point(receiver.origin), normal(receiver.normal);
+    const std::array<BallDirections, 2> ways{BallDirections(glow.own, point, normal),
+                                             BallDirections(glow.all, point, normal)};
+    const bool is_one = glow.all.radius <= glow.own.radius;
+    const std::array<std::uint32_t, 2> count{is_one ? samples : (samples + 1) / 2,
+                                             is_one ? 0 : samples / 2};
+    RayBlock block{rays_from(receiver.origin)};
+    glm::dvec3 sum(0);
+    for (std::size_t w = 0; w < ways.size(); ++w) {
+        for (std::uint32_t i = 0; i < count[w]; ++i) {
+            const glm::dvec3 direction = ways[w].sample(
+                turn_fraction(static_cast<double>(turn[0]) + i * 0.7548776662466927),
+                turn_fraction(static_cast<double>(turn[1]) + i * 0.5698402909980532));
+            const double cosine = glm::dot(direction, normal);
+            const double density =
+                count[0] * ways[0].pdf(direction) + count[1] * ways[1].pdf(direction);
+            if (!(cosine > 0) || !(density > 0)) continue;
+            const std::uint32_t lane = block.count++;
+            block.packet.dir_x[lane] = static_cast<float>(direction.x);
+            block.packet.dir_y[lane] = static_cast<float>(direction.y);
+            block.packet.dir_z[lane] = static_cast<float>(direction.z);
+            block.packet.tfar[lane] = std::numeric_limits<float>::infinity();
+            block.lanes[lane] = -1;
+            block.weight[lane] = cosine / density;
+            if (block.count == RayPacket::kSize) {
+                sum += march_block(glow, surfaces, receiver, block, rays);
+            }
+        }
+    }
+    if (block.count > 0) sum += march_block(glow, surfaces, receiver, block, rays);
+    return sum;
+}
+
+glm::dvec3 volume_transmittance(const DensitySpace* volumes, const glm::dvec3& from,
+                                const glm::dvec3& direction, double reach) {
+    if (volumes == nullptr) return glm::dvec3(1);
+    const std::array<float, 3> depth =
+        optical_depth(*volumes, glm::vec3(from), glm::vec3(direction), static_cast<float>(reach));
+    return {std::exp(-static_cast<double>(depth[0])), std::exp(-static_cast<double>(depth[1])),
+            std::exp(-static_cast<double>(depth[2]))};
+}
+
+}  // namespace opaline::bake
