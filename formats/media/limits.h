@@ -17,7 +17,9 @@ inline constexpr double kMinMarbleScale = 1e-6, kMaxMarbleScale = 1e6;  ///< [m]
 inline constexpr std::size_t kMaxMarbleColors = 16;
 inline constexpr double kMaxVolumeCoordinate = 1e9;  ///< of a corner of a volume [m]
 inline constexpr double kMinDensityScale = 1e-12, kMaxDensityScale = 1e12;
-inline constexpr float kAlbedoRounding = 1e-3f;  ///< by which a voxel's albedo may exceed 1
+inline constexpr std::uint32_t kMinBodyVoxels = 8,
+                               kMaxBodyVoxels = 256;  ///< along the longest edge
+inline constexpr float kAlbedoRounding = 1e-3f;       ///< by which a voxel's albedo may exceed 1
 inline constexpr double kMinEmissionScale = 1e-20, kMaxEmissionScale = 1e12;
 inline constexpr double kMinTemperatureScale = 1e-6, kMaxTemperatureScale = 1e6;
 inline constexpr double kMaxTemperature = 1e5;  ///< [K]; all that is hotter radiates as blue

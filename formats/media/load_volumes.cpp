@@ -11,6 +11,7 @@
 #include "formats/gltf/container.h"
 #include "formats/gltf/report.h"
 #include "formats/gltf/sha256.h"
+#include "formats/media/fill_body.h"
 #include "formats/media/limits.h"
 #include "formats/media/load_albedo.h"
 #include "formats/media/load_emission.h"
@@ -146,14 +147,31 @@ struct LoadedVolumes {
     std::vector<Diagnostic> warnings;
 };
 
+// The inside of meshes of the scene.
+Result<Volume> load_body(const MediaFile& media, const VolumeEntry& entry, const Scene& scene) {
+    const auto named_before = [&](const VolumeEntry& e) { return e.material == entry.material; };
+    const auto first = std::ranges::find_if(media.volumes, named_before);
+    if (first != media.volumes.end() && first->where != entry.where) {
+        return make_error(ErrorKind::bad_input, media.file, entry.where,
+                          "it names the same material as " + first->where, "keep one of them");
+    }
+    auto volume = fill_body(scene, entry.material, entry.voxels, media.file, entry.where);
+    if (volume) {
+        volume->density.to_scene[3] += glm::dvec4(scene.origin, 0);
+    }
+    return volume;
+}
+
 // In world space. `own`: the file of entries that name none.
-Result<LoadedVolumes> load_all(const std::vector<VolumeEntry>& entries,
+Result<LoadedVolumes> load_all(const MediaFile& media, const std::vector<VolumeEntry>& entries,
                                const std::filesystem::path& own, double metres_per_unit,
-                               const VdbReadOptions& reader) {
+                               const Scene& scene, const VdbReadOptions& reader) {
     LoadedVolumes loaded;
     for (const VolumeEntry& entry : entries) {
-        auto volume = load_volume(entry, entry.file.empty() ? own : entry.file, metres_per_unit,
-                                  reader, loaded.warnings);
+        auto volume = entry.material.empty()
+                          ? load_volume(entry, entry.file.empty() ? own : entry.file,
+                                        metres_per_unit, reader, loaded.warnings)
+                          : load_body(media, entry, scene);
         if (!volume) {
             return std::move(volume).error();
         }
@@ -180,12 +198,12 @@ Result<std::vector<Diagnostic>> load_volumes(const MediaFile& media, double metr
         return too_many(media.file);
     }
     for (const VolumeEntry& entry : media.volumes) {
-        if (entry.file.empty()) {
+        if (entry.file.empty() && entry.material.empty()) {
             return make_error(ErrorKind::bad_input, media.file, entry.where, "it names no file",
                               "give file, the OpenVDB file that holds the volume");
         }
     }
-    auto loaded = load_all(media.volumes, {}, metres_per_unit, reader);
+    auto loaded = load_all(media, media.volumes, {}, metres_per_unit, scene, reader);
     if (!loaded) {
         return std::move(loaded).error();
     }
@@ -197,6 +215,9 @@ Result<std::vector<Diagnostic>> load_volumes(const MediaFile& media, double metr
         scene.origin = choose_origin(loaded->volumes);
     }
     move(loaded->volumes, scene.origin);
+    for (const VolumeEntry& entry : media.volumes) {
+        if (!entry.material.empty()) remove_surface(scene, entry.material);
+    }
     for (Volume& volume : loaded->volumes) {
         scene.volumes.push_back(std::move(volume));
     }
@@ -211,7 +232,8 @@ Result<ImportedScene> import_vdb(const std::filesystem::path& path, const MediaF
     const bool is_described =
         std::any_of(entries.begin(), entries.end(), [&](const VolumeEntry& e) {
             std::error_code none;
-            return e.file.empty() || std::filesystem::equivalent(e.file, path, none);
+            return e.material.empty() &&
+                   (e.file.empty() || std::filesystem::equivalent(e.file, path, none));
         });
     ImportedScene imported;
     if (!is_described) {
@@ -238,7 +260,7 @@ Result<ImportedScene> import_vdb(const std::filesystem::path& path, const MediaF
         return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
                           "make it smaller");
     }
-    auto loaded = load_all(entries, path, metres_per_unit, reader);
+    auto loaded = load_all(media, entries, path, metres_per_unit, scene, reader);
     if (!loaded) {
         return std::move(loaded).error();
     }

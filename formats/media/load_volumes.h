@@ -16,9 +16,12 @@ namespace opaline::formats {
 /// transforms are units of the scene [metres_per_unit m]. A scene without triangles gets an origin
 /// among its volumes. Gives warnings: about voxels that were repaired.
 ///
-/// Errors, with the scene unchanged: those of read_vdb; `bad_input` for a color grid as density, a
-/// volume that lies beyond 1e9 m, or one whose voxels hold more than a million mean free paths;
-/// `resource` for more than kMaxVolumes.
+/// Entries of a material become the inside of its meshes, whose surfaces are taken out
+/// (fill_body.h).
+///
+/// Errors, with the scene unchanged: those of read_vdb and fill_body; `bad_input` for a color grid
+/// as density, a volume that lies beyond 1e9 m, or one whose voxels hold more than a million mean
+/// free paths; `resource` for more than kMaxVolumes.
 Result<std::vector<Diagnostic>> load_volumes(const MediaFile& media, double metres_per_unit,
                                              Scene& scene, const VdbReadOptions& reader = {});
 

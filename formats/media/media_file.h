@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -25,6 +26,8 @@ struct MaterialMedium {
 /// A volume that a media file places.
 struct VolumeEntry {
     std::string where;           ///< in the media file, for messages: "volumes > 0"
+    std::string material;        ///< of the closed meshes whose inside it is; empty: a file says it
+    std::uint32_t voxels = 64;   ///< of such an inside, along the longest edge of its box
     std::filesystem::path file;  ///< OpenVDB; empty: the scene itself is such a file
     std::string density;         ///< name of the grid; empty: "density", or the only one there is
     Rgb sigma_t{1, 1, 1};        ///< [1/m] where the density, times scale, is 1

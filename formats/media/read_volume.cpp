@@ -66,6 +66,21 @@ void read_emission(const Fields& fields, VolumeEntry& volume) {
         number(fields, "temperature_scale", kMinTemperatureScale, kMaxTemperatureScale).value_or(1);
 }
 
+// The inside of closed meshes.
+std::optional<VolumeEntry> read_body(const Fields& fields) {
+    refuse_unknown_keys(fields, {"material", "voxels"});
+    VolumeEntry volume;
+    volume.where = fields.where;
+    volume.material = text(fields, "material").value_or("");
+    if (fields.object.at("material") == "") {
+        fields.report.error(place(fields.where, "material"), "it is empty",
+                            "name the material of a closed mesh");
+    }
+    volume.voxels = static_cast<std::uint32_t>(
+        count(fields, "voxels", kMinBodyVoxels, kMaxBodyVoxels).value_or(volume.voxels));
+    return volume;
+}
+
 }  // namespace
 
 std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& where,
@@ -77,6 +92,9 @@ std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& whe
         return std::nullopt;
     }
     const Fields fields{entry, where, report};
+    if (has(fields, "material")) {
+        return read_body(fields);
+    }
     refuse_unknown_keys(
         fields, {"file", "density", "sigma_t", "albedo", "unit", "scale", "phase", "transform",
                  "emission", "temperature", "emission_scale", "temperature_scale"});

@@ -3,7 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/volumes/volume_knobs.h"
+#include "formats/media/fill_body.h"
 #include "formats/media/split_absorption.h"
+#include "runtime/volumes/volume_march.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/volumes.h"
 
@@ -69,6 +71,45 @@ TEST(VolumeBake, AlbedosThatDifferFromPlaceToPlaceErrAsOneDoes) {
     const auto paths =
         bake_two_albedos(glm::vec3(0.9f), glm::vec3(0.1f), bake::VolumeMethod::path_integration);
     EXPECT_LT(paths.rms_relative, 0.25);
+}
+
+// What is seen of a file along lines beside each other, under even light and a sun.
+std::vector<float> see_lines(const bake::BakeResult& result) {
+    const formats::VolumesView volumes = result.asset.view().volumes;
+    const std::uint32_t n = volumes.rows.cubemap_size;
+    std::vector<formats::Rgb> sky(formats::cubemap_texels(n), {0.2f, 0.2f, 0.2f});
+    sky[formats::texel_index(n, {0.6f, 0.8f, 0})] = {20, 20, 20};
+    const runtime::VolumeLight lit =
+        runtime::relight_volumes(volumes, runtime::project_cubemap(sky, n));
+    const runtime::LitVolumes ready = runtime::light_volumes(volumes, lit);
+    std::vector<float> seen;
+    for (const float x : {-0.4f, -0.3f, 0.0f, 0.2f, 0.35f}) {
+        const auto one = runtime::march_volumes(ready, {{x, 0.1f, -4}, {0, 0, 1}});
+        seen.push_back(one.radiance.g);
+        seen.push_back(one.transmittance.g);
+    }
+    return seen;
+}
+
+TEST(VolumeBake, AMeshedBallIsLitAsTheSameBallOfAGridIs) {
+    Scene meshed = make_scene({make_sphere(4, 0.5f)});
+    formats::Medium& medium = meshed.materials[0].medium.emplace();
+    medium.sigma_s = {3.6f, 3.6f, 3.6f};
+    medium.sigma_a = {0.4f, 0.4f, 0.4f};
+    meshed.volumes.push_back(*formats::fill_body(meshed, "Grey", 16, "", ""));
+    formats::remove_surface(meshed, "Grey");
+    Scene grid;
+    grid.materials.resize(1);
+    grid.volumes.push_back(make_volume(make_ball_grid(0.5, 1.0 / 16), 4, 0.9f, 0));
+    bake::BakeOptions options = small_bake();
+    options.set(bake::kVolumeSpacing, 4);
+    const bake::BakeResult result = bake_scene(meshed, options);
+    ASSERT_EQ(result.asset.primitives.size(), 1u);
+    EXPECT_EQ(result.asset.primitives[0].vertex_count, 0u);
+    const std::vector<float> a = see_lines(result), b = see_lines(bake_scene(grid, options));
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_NEAR(a[i], b[i], 0.015f) << i;
+    }
 }
 
 TEST(VolumeBake, TargetWithinReachIsMetByTheCheapestQualityThatReachesIt) {
