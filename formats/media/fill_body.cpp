@@ -253,12 +253,11 @@ Result<Volume> fill_body(const Scene& scene, const std::string& material, std::u
 void remove_surface(Scene& scene, const std::string& material) {
     for (Primitive& p : scene.primitives) {
         if (scene.materials[p.material].name != material) continue;
-        p.index.clear();
-        p.position.clear();
-        p.normal.clear();
-        p.texcoord.clear();
-        p.color.clear();
-        p.alpha.clear();
+        Primitive bare;
+        bare.node = p.node, bare.mesh = p.mesh, bare.primitive = p.primitive;
+        bare.name = p.name;
+        bare.material = p.material;
+        p = std::move(bare);
     }
     for (Material& m : scene.materials) {
         if (m.name == material) m.medium.reset();
