@@ -68,8 +68,8 @@ Squares compare_brick(const DensityVolume& volume, glm::ivec3 brick, std::uint32
         for (int c = 0; c < 8; ++c) {
             const glm::ivec3 up(c & 1, c >> 1 & 1, c >> 2), node = low + up;
             const glm::vec3 each = glm::mix(1.0f - w, w, glm::vec3(up));
-            between += each.x * each.y * each.z *
-                       corner[static_cast<std::size_t>((node.z * side + node.y) * side + node.x)];
+            const int number = (node.z * side + node.y) * side + node.x;
+            between += each.x * each.y * each.z * corner[static_cast<std::size_t>(number)];
         }
         const glm::vec3 own = volume.scattering->at(Grid::kSide * brick + at) / density;
         const glm::vec3 lost = own - between;

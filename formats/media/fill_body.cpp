@@ -161,6 +161,7 @@ std::vector<float> find_inside(const Body& body, const Lines& lines) {
     std::vector<float> inside(depth * static_cast<std::size_t>(lines.voxels.x) *
                               static_cast<std::size_t>(lines.voxels.y));
     const std::vector<Crossing> crossings = cross_lines(body, lines);
+    const int columns = lines.columns();
     float turns = 0;
     for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
         const Crossing &here = crossings[i], &next = crossings[i + 1];
@@ -168,9 +169,11 @@ std::vector<float> find_inside(const Body& body, const Lines& lines) {
         if (next.line != here.line) {
             turns = 0;
         } else if (turns != 0) {
-            const auto column = static_cast<int>(here.line) % lines.columns() / kLinesOfVoxel;
-            const auto row = static_cast<int>(here.line) / lines.columns() / kLinesOfVoxel;
-            const auto at = static_cast<std::size_t>(row * lines.voxels.x + column) * depth;
+            const auto along = static_cast<std::size_t>(columns);
+            const std::size_t column = here.line % along / kLinesOfVoxel;
+            const std::size_t row = here.line / along / kLinesOfVoxel;
+            const std::size_t at =
+                (row * static_cast<std::size_t>(lines.voxels.x) + column) * depth;
             add_stretch((here.z - lines.low.z) / lines.voxel, (next.z - lines.low.z) / lines.voxel,
                         std::span(inside).subspan(at, depth));
         }
@@ -187,13 +190,13 @@ SparseGrid<float> fill_voxels(const Body& body, std::uint32_t voxels) {
     Lines lines;
     lines.low = body.low;
     lines.voxel = std::max({size.x, size.y, size.z}) / voxels;
+    if (!(lines.voxel > 0)) return {};
     lines.voxels = glm::max(glm::ivec3(glm::ceil(size / lines.voxel - 1e-9)), 1);
     const std::vector<float> inside = find_inside(body, lines);
     SparseGrid<float> grid =
         fill_grid(glm::ivec3(0), lines.voxels - 1, lines.voxel, [&](glm::ivec3 v) {
-            const auto column = static_cast<std::size_t>(v.y * lines.voxels.x + v.x);
-            const float share = inside[column * static_cast<std::size_t>(lines.voxels.z) +
-                                       static_cast<std::size_t>(v.z)];
+            const int number = (v.y * lines.voxels.x + v.x) * lines.voxels.z + v.z;
+            const float share = inside[static_cast<std::size_t>(number)];
             return static_cast<double>(std::min(share, 1.0f));
         });
     // Voxel 0 has its centre half a voxel from the corner of the box.

@@ -5,6 +5,7 @@
 #include "bake/volumes/volume_knobs.h"
 #include "formats/media/fill_body.h"
 #include "formats/media/split_absorption.h"
+#include "formats/opal/cubemap.h"
 #include "runtime/volumes/volume_march.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/volumes.h"

@@ -151,6 +151,8 @@ TEST(FillBody, WhatHasNoMediumThatIsAlikeEverywhereIsRefused) {
     Primitive flat = make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     flat.index.insert(flat.index.end(), flat.index.rbegin(), flat.index.rend());
     EXPECT_THAT(fault_of(milky({flat})), HasSubstr("no inside"));
+    Primitive point = make_sphere(1, 0);
+    EXPECT_THAT(fault_of(milky({point})), HasSubstr("no inside"));
 }
 
 class LoadBody : public testing::Test {
