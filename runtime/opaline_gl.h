@@ -149,6 +149,34 @@ typedef struct opaline_gl_images {
 OPALINE_API opaline_status opaline_gl_get_images(const opaline_gl* gl, uint32_t primitive,
                                                  opaline_gl_images* images);
 
+/* The normal map of a primitive, for functions of opaline_surface.glsl:
+
+       vec3 opaline_mapped_normal(vec3 value, float scale, vec3 normal, vec4 tangent)
+           the unit normal of a point. value: opaline_sample_image(...), is_srgb false; normal:
+           interpolated and unit; tangent: what vertices make of their attribute t,
+           vec4(abs(t.z) * opaline_decode_axis(t.xy), t.z), interpolated.
+       OpalineView opaline_view_mapped(OpalineView view, vec3 mapped)
+           the same point seen with that normal: for translucent and glossy surfaces.
+       vec3 opaline_turn_light(OpalineTurnedLight light, vec3 radiance, vec3 from, vec3 to)
+           where `is_turned`: interpolated radiance of receivers, turned from their normal to the
+           mapped one. Uniforms of a struct OpalineTurnedLight take the numbers below.
+   Rows of other surfaces stay as they are. */
+typedef struct opaline_gl_normal_map {
+    size_t struct_size;     /* in: sizeof(opaline_gl_normal_map) */
+    opaline_gl_image image; /* texture 0: there is none */
+    float scale;
+    uint32_t tangent;   /* buffer, stride 8: by receiver three signed normalised shorts, t above */
+    uint32_t is_turned; /* 1: diffuse; else 0 */
+    /* Of the light that relit last; 0 before. The first `suns` of eight count. */
+    float harmonics[9][3], least[3];
+    int32_t suns;
+    float sun_direction[8][3], sun_light[8][3];
+} opaline_gl_normal_map;
+
+/* Fills `map`; without OPALINE_GL_WITH_IMAGES there is none. */
+OPALINE_API opaline_status opaline_gl_get_normal_map(const opaline_gl* gl, uint32_t primitive,
+                                                     opaline_gl_normal_map* map);
+
 /* --- Volumes ------------------------------------------------------------------------------ */
 
 /* Light that volumes send out by themselves is scattered in them, but not seen directly.

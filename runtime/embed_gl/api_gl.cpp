@@ -198,6 +198,7 @@ opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
         gl->relight.light(light->vector(), gl->names);
         gl->relight.dot({light->emitters, false});
         upload_specular(*gl, light->specular());
+        gl->images.relight(light->vector());
         gl->is_relit = true;
         show(*gl);
         return runtime::check_errors(gl->gl, "relighting");
@@ -286,6 +287,22 @@ opaline_status opaline_gl_get_images(const opaline_gl* gl, uint32_t primitive,
     }
     *images = gl->images.of(primitive);
     images->struct_size = sizeof(opaline_gl_images);
+    return OPALINE_OK;
+}
+
+opaline_status opaline_gl_get_normal_map(const opaline_gl* gl, uint32_t primitive,
+                                         opaline_gl_normal_map* map) {
+    if (gl == nullptr || map == nullptr) {
+        return null_argument();
+    }
+    if (map->struct_size != sizeof(opaline_gl_normal_map)) {
+        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+    }
+    if (primitive >= gl->primitives.size()) {
+        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
+    }
+    *map = gl->images.normal_map_of(primitive);
+    map->struct_size = sizeof(opaline_gl_normal_map);
     return OPALINE_OK;
 }
 

@@ -3,11 +3,24 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <type_traits>
 
 #include "runtime/api_support.h"
 #include "runtime/texture.h"
+#include "runtime/volumes/suns.h"
 
 namespace opaline::runtime {
+namespace {
+
+static_assert(kMaxSuns == std::extent_v<decltype(opaline_gl_normal_map::sun_light)>);
+
+void put(formats::Rgb c, float (&to)[3]) {
+    to[0] = c.r;
+    to[1] = c.g;
+    to[2] = c.b;
+}
+
+}  // namespace
 
 GLuint ImageTextures::upload(const formats::PreviewImage& image, GlNames& names) const {
     const GLuint name = names.make_table_texture();
@@ -71,7 +84,42 @@ opaline_status ImageTextures::make(const formats::AssetView& asset, GlNames& nam
         images.srgb_table = table;
         primitive_.push_back(images);
     }
+    make_normal_maps(asset, names);
     return OPALINE_OK;
+}
+
+void ImageTextures::make_normal_maps(const formats::AssetView& asset, GlNames& names) {
+    if (asset.normal_maps.empty()) return;
+    const GLuint tangent = names.make_buffer_of(asset.normal_maps.tangent);
+    for (const formats::NormalMapRecord& record : asset.normal_maps.record) {
+        opaline_gl_normal_map& map = normal_map_[record.primitive];
+        map.image = find(record.image, record.wrap_u, record.wrap_v);
+        map.scale = record.scale;
+        map.tangent = tangent;
+        map.is_turned =
+            asset.primitives[record.primitive].shading == formats::Shading::diffuse ? 1 : 0;
+    }
+}
+
+void ImageTextures::relight(const LightVector& light) {
+    if (!normal_map_.empty()) turned_ = make_turned_light(light);
+}
+
+opaline_gl_normal_map ImageTextures::normal_map_of(std::uint32_t primitive) const {
+    const auto found = normal_map_.find(primitive);
+    if (found == normal_map_.end()) return {};
+    opaline_gl_normal_map map = found->second;
+    for (std::size_t k = 0; k < turned_.harmonics.size(); ++k) {
+        put(turned_.harmonics[k], map.harmonics[k]);
+    }
+    put(turned_.least, map.least);
+    map.suns = static_cast<std::int32_t>(turned_.suns.size());
+    for (std::size_t i = 0; i < turned_.suns.size(); ++i) {
+        const TurnedLight::Sun& sun = turned_.suns[i];
+        put({sun.direction.x, sun.direction.y, sun.direction.z}, map.sun_direction[i]);
+        put(sun.light, map.sun_light[i]);
+    }
+    return map;
 }
 
 opaline_gl_images ImageTextures::of(std::uint32_t primitive) const {

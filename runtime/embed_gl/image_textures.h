@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "formats/opal/asset.h"
 #include "runtime/embed_gl/gl_names.h"
+#include "runtime/turned_light.h"
 
 namespace opaline::runtime {
 
@@ -20,13 +22,21 @@ class ImageTextures {
     /// Of a primitive, but for struct_size; zeros before `make`.
     opaline_gl_images of(std::uint32_t primitive) const;
 
+    /// The light of normal maps, where there are some.
+    void relight(const LightVector& light);
+    /// Of a primitive, but for struct_size; zeros where it has none.
+    opaline_gl_normal_map normal_map_of(std::uint32_t primitive) const;
+
   private:
+    void make_normal_maps(const formats::AssetView& asset, GlNames& names);
     GLuint upload(const formats::PreviewImage& image, GlNames& names) const;
     opaline_gl_image find(std::uint32_t image, formats::Wrap u, formats::Wrap v) const;
 
     const GlFunctions& gl_;
     std::vector<opaline_gl_images> primitive_;
     std::vector<GLuint> texture_;
+    std::map<std::uint32_t, opaline_gl_normal_map> normal_map_;  // of primitives; without light
+    TurnedLight turned_;
 };
 
 }  // namespace opaline::runtime

@@ -1,0 +1,159 @@
+// What is installed for hosts that draw normal maps, beside the CPU's normals and light.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include "runtime/normal_map.h"
+#include "runtime/turned_light.h"
+#include "tests/runtime/embed_gl/embedded_asset.h"
+#include "tests/runtime/embed_gl/host_picture.h"
+
+namespace opaline::test {
+namespace {
+
+using formats::Asset;
+using formats::Vec3;
+
+class EmbedGlNormalMaps : public EmbedGl {};
+
+Asset make_mapped() {
+    Asset asset = make_asset(16, 8);
+    asset.images.push_back(make_noise_image(7, 5));
+    add_primitive(asset, make_sphere({}, 1, 5, 4), {});
+    add_primitive(asset, make_sphere({3, 0, 0}, 1, 5, 4), {.eta = 1.3f});
+    add_primitive(asset, make_sphere({6, 0, 0}, 1, 5, 4), {});
+    add_normal_map(asset,
+                   {.primitive = 0, .image = 0, .wrap_v = formats::Wrap::mirror, .scale = 0.7f},
+                   {1, 0, 0}, -1);
+    add_normal_map(asset, {.primitive = 1, .image = 0}, {1, 0, 0}, 1);
+    return asset;
+}
+
+std::string glsl(const float (&v)[3]) {
+    std::ostringstream text;
+    text.precision(9);
+    text << std::scientific << "vec3(" << v[0] << ", " << v[1] << ", " << v[2] << ")";
+    return text.str();
+}
+
+template <std::size_t N>
+std::string glsl_array(const float (&values)[N][3]) {
+    std::string text = "vec3[" + std::to_string(N) + "](";
+    for (std::size_t i = 0; i < N; ++i)
+        text += (i == 0 ? "" : ", ") + glsl(values[i]);
+    return text + ")";
+}
+
+opaline_gl_normal_map normal_map_of(const opaline_gl* gl, std::uint32_t primitive) {
+    opaline_gl_normal_map map{};
+    map.struct_size = sizeof map;
+    EXPECT_EQ(opaline_gl_get_normal_map(gl, primitive, &map), OPALINE_OK);
+    return map;
+}
+
+TEST_P(EmbedGlNormalMaps, NormalsAndTurnedLightAreTheCpus) {
+    const Asset asset = make_mapped();
+    const EmbeddedAsset host(asset);
+    opaline_gl* gl = nullptr;
+    ASSERT_EQ(opaline_gl_create(host.asset(), load_gl, OPALINE_GL_WITH_IMAGES, &gl), OPALINE_OK)
+        << opaline_last_error();
+    EXPECT_EQ(normal_map_of(gl, 0).harmonics[0][0], 0);
+    opaline_light* light = nullptr;
+    ASSERT_EQ(opaline_light_create(host.asset(), &light), OPALINE_OK);
+    const float sky[9][3] = {{2, 2, 3}, {1, 0.9f, 0.5f}, {0.2f, 0.1f, 0}};
+    ASSERT_EQ(opaline_light_set_harmonics(light, &sky[0][0]), OPALINE_OK) << opaline_last_error();
+    const float toward[3] = {0.3f, 0.8f, 0.5f}, radiance[3] = {9000, 8000, 7000};
+    ASSERT_EQ(opaline_light_add_sun(light, toward, 0.01f, radiance), OPALINE_OK);
+    ASSERT_EQ(opaline_gl_relight(gl, light), OPALINE_OK) << opaline_last_error();
+    const opaline_gl_normal_map map = normal_map_of(gl, 0);
+    ASSERT_GE(map.suns, 1);
+    EXPECT_EQ(map.is_turned, 1u);
+    EXPECT_EQ(map.scale, 0.7f);
+
+    runtime::TurnedLight turned;
+    for (std::size_t k = 0; k < 9; ++k) {
+        turned.harmonics[k] = {map.harmonics[k][0], map.harmonics[k][1], map.harmonics[k][2]};
+    }
+    turned.least = {map.least[0], map.least[1], map.least[2]};
+    for (int i = 0; i < map.suns; ++i) {
+        const auto& d = map.sun_direction[i];
+        const auto& c = map.sun_light[i];
+        turned.suns.push_back({{d[0], d[1], d[2]}, {c[0], c[1], c[2]}});
+    }
+    // The light that these numbers should be of.
+    EXPECT_GT(dot(turned.suns[0].direction, formats::normalize({0.3f, 0.8f, 0.5f})), 0.999f);
+    EXPECT_NEAR(turned.harmonics[0].b / turned.harmonics[0].r, 1.5f, 0.05f);
+
+    // from.xy: texture coordinates; direction: the normal of the receiver; begin: its radiance.
+    const std::string see =
+        "uniform usampler2D image;\nuniform ivec2 wrap;\n"
+        "void see(vec3 from, float begin, vec3 direction, float end, out vec4 a, out vec4 b) {\n"
+        "    OpalineTurnedLight light = OpalineTurnedLight(" +
+        glsl_array(map.harmonics) + ", " + glsl(map.least) + ", " + std::to_string(map.suns) +
+        ", " + glsl_array(map.sun_direction) + ", " + glsl_array(map.sun_light) +
+        ");\n"
+        "    vec3 mapped = opaline_mapped_normal(opaline_sample_image(image, from.xy, wrap, "
+        "false), "
+        "0.7, direction, vec4(normalize(cross(direction, vec3(0.1, 0.2, 1.0))), -1.0));\n"
+        "    a = vec4(mapped, 0.0);\n"
+        "    b = vec4(opaline_turn_light(light, vec3(begin, 0.9 * begin, 0.8 * begin), direction, "
+        "mapped), 0.0);\n}\n";
+    HostPicture picture(GetParam(), {"opaline_surface.glsl", "opaline_images.glsl"}, "", see);
+    picture.bind_texture("image", map.image.texture);
+    picture.set_pair("wrap", map.image.wrap[0], map.image.wrap[1]);
+    std::mt19937 generator(5);
+    std::uniform_real_distribution<float> value(-2, 2), share(0, 3);
+    std::vector<HostRay> samples;
+    for (int i = 0; i < 300; ++i) {
+        const Vec3 n = formats::normalize({value(generator), value(generator), value(generator)});
+        samples.push_back(
+            {{value(generator), value(generator), 0}, share(generator), {n.x, n.y, n.z}, 0});
+    }
+    const std::vector<float> drawn = picture.draw(samples);
+    const formats::AssetView view = asset.view();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const auto& d = samples[i].direction;
+        const Vec3 n{d[0], d[1], d[2]};
+        const Vec3 mapped = runtime::mapped_normal(
+            view, view.normal_maps.record[0], {samples[i].from[0], samples[i].from[1]}, n,
+            {formats::normalize(cross(n, {0.1f, 0.2f, 1})), -1});
+        EXPECT_NEAR(drawn[8 * i], mapped.x, 1e-5f);
+        EXPECT_NEAR(drawn[8 * i + 1], mapped.y, 1e-5f);
+        const float x = samples[i].begin;
+        const formats::Rgb lit = runtime::turn_light(turned, {x, 0.9f * x, 0.8f * x}, n, mapped);
+        EXPECT_NEAR(drawn[8 * i + 4], lit.r, 1e-5f * (1 + lit.r)) << i;
+        EXPECT_NEAR(drawn[8 * i + 6], lit.b, 1e-5f * (1 + lit.b)) << i;
+    }
+    opaline_light_release(light);
+    EXPECT_EQ(opaline_gl_release(gl), OPALINE_OK);
+}
+
+TEST_P(EmbedGlNormalMaps, PrimitivesSayWhatTheyHaveAndWrongUseIsTold) {
+    const EmbeddedAsset host(make_mapped());
+    opaline_gl *gl = nullptr, *without = nullptr;
+    ASSERT_EQ(opaline_gl_create(host.asset(), load_gl, OPALINE_GL_WITH_IMAGES, &gl), OPALINE_OK);
+    ASSERT_EQ(opaline_gl_create(host.asset(), load_gl, 0, &without), OPALINE_OK);
+    EXPECT_EQ(normal_map_of(gl, 0).image.wrap[1], 2);
+    EXPECT_NE(normal_map_of(gl, 0).tangent, 0u);
+    EXPECT_EQ(normal_map_of(gl, 1).is_turned, 0u);  // translucent
+    EXPECT_NE(normal_map_of(gl, 1).image.texture, 0u);
+    EXPECT_EQ(normal_map_of(gl, 2).image.texture, 0u);
+    EXPECT_EQ(normal_map_of(without, 0).image.texture, 0u);
+    opaline_gl_normal_map map{};
+    EXPECT_EQ(opaline_gl_get_normal_map(gl, 0, &map), OPALINE_INVALID_ARGUMENT);
+    map.struct_size = sizeof map;
+    EXPECT_EQ(opaline_gl_get_normal_map(gl, 3, &map), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_gl_get_normal_map(nullptr, 0, &map), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_gl_get_normal_map(gl, 0, nullptr), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_gl_release(gl), OPALINE_OK);
+    EXPECT_EQ(opaline_gl_release(without), OPALINE_OK);
+}
+
+INSTANTIATE_TEST_SUITE_P(On, EmbedGlNormalMaps,
+                         testing::Values(HostApi::desktop_43, HostApi::es_31), api_name);
+
+}  // namespace
+}  // namespace opaline::test
