@@ -277,7 +277,7 @@ int run(const InfoCommand& options) {
     for (std::size_t i = 0; i < view.primitives.size(); ++i) {
         const formats::PrimitiveRecord& p = view.primitives[i];
         fmt::print(
-            "  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}{}{}{}{}\n", i,
+            "  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}{}{}{}{}{}\n", i,
             p.vertex_count, p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
             p.shading == formats::Shading::sheet ? ", thin-walled" : "",
             p.is_separate()
@@ -285,6 +285,7 @@ int run(const InfoCommand& options) {
                 : "",
             is_glossy(view, i) ? fmt::format(", roughness {:.2g}", view.roughness[i]) : "",
             p.base_color_image == formats::kNoImage ? "" : ", textured",
+            view.normal_maps.of(static_cast<std::uint32_t>(i)) == nullptr ? "" : ", normal map",
             view.holes.of(static_cast<std::uint32_t>(i)) == nullptr
                 ? ""
                 : std::string(", alpha ") + alpha_mode_of(view, i));

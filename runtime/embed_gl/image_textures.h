@@ -6,7 +6,7 @@
 
 #include "formats/opal/asset.h"
 #include "runtime/embed_gl/gl_names.h"
-#include "runtime/turned_light.h"
+#include "runtime/normal_maps/turned_light.h"
 
 namespace opaline::runtime {
 

@@ -11,7 +11,7 @@
 #include "runtime/gl/gl_volumes.h"
 #include "runtime/light_vector.h"
 #include "runtime/picture/camera.h"
-#include "runtime/turned_light.h"
+#include "runtime/normal_maps/turned_light.h"
 
 namespace opaline::runtime {
 

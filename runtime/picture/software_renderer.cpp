@@ -5,7 +5,7 @@
 #include <string>
 
 #include "runtime/holes.h"
-#include "runtime/normal_map.h"
+#include "runtime/normal_maps/normal_map.h"
 #include "runtime/parallel.h"
 #include "runtime/picture/layer_pass.h"
 #include "runtime/picture/passes.h"
@@ -13,7 +13,7 @@
 #include "runtime/picture/volume_pass.h"
 #include "runtime/surface.h"
 #include "runtime/texture.h"
-#include "runtime/turned_light.h"
+#include "runtime/normal_maps/turned_light.h"
 
 namespace opaline::runtime {
 namespace {

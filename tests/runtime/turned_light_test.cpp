@@ -1,5 +1,5 @@
 // What a receiver gets with another normal than that of its rows.
-#include "runtime/turned_light.h"
+#include "runtime/normal_maps/turned_light.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 "use strict";
-// Light as it is turned to the normals of maps: the numbers of runtime/turned_light.h.
+// Light as it is turned to the normals of maps: the numbers of runtime/normal_maps/turned_light.h.
 const TurnedLight = (() => {
   const kLeastShare = 1 / 64;
   // Irradiance over pi of degree l, times the factor of Y_k before its polynomial.

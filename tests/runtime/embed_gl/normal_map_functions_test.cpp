@@ -6,8 +6,8 @@
 #include <sstream>
 #include <string>
 
-#include "runtime/normal_map.h"
-#include "runtime/turned_light.h"
+#include "runtime/normal_maps/normal_map.h"
+#include "runtime/normal_maps/turned_light.h"
 #include "tests/runtime/embed_gl/embedded_asset.h"
 #include "tests/runtime/embed_gl/host_picture.h"
 

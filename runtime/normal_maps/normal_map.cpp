@@ -1,4 +1,4 @@
-#include "runtime/normal_map.h"
+#include "runtime/normal_maps/normal_map.h"
 
 #include <algorithm>
 
@@ -29,11 +29,11 @@ Vec3 mapped_normal(const formats::AssetView& asset, const formats::NormalMapReco
 }
 
 ViewOfReceiver view_mapped(const ViewOfReceiver& view, Vec3 mapped) {
-    constexpr float kLeastCosine = 0.05f;
+    constexpr float kLeastSeen = 0.05f;
     ViewOfReceiver bent = view;
     bent.normal = view.is_turned ? -1.0f * mapped : mapped;
     bent.cosine = dot(bent.normal, view.to_eye);
-    const float least = std::min(view.cosine, kLeastCosine);
+    const float least = std::min(view.cosine, kLeastSeen);
     if (bent.cosine < least) {
         const Vec3 toward = bent.normal + (least - bent.cosine) * view.to_eye;
         bent.normal = (1 / length(toward)) * toward;

@@ -1,4 +1,4 @@
-#include "runtime/turned_light.h"
+#include "runtime/normal_maps/turned_light.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -16,7 +16,6 @@ namespace {
 using formats::Rgb;
 using formats::Vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kLeastShare = 1.0f / 64;
 
 // Irradiance over pi of a unit of radiance in degree l [Ramamoorthi2001], times the factor of Y_k
@@ -83,9 +82,9 @@ TurnedLight make_turned_light(const LightVector& light) {
     }
     turned.least = turned.harmonics[0];
     for (const Sun& sun : split.sun) {
-        const Rgb facing =
-            (1 / kPi) * Rgb{static_cast<float>(sun.light[0]), static_cast<float>(sun.light[1]),
-                            static_cast<float>(sun.light[2])};
+        const Rgb facing = std::numbers::inv_pi_v<float> * Rgb{static_cast<float>(sun.light[0]),
+                                                               static_cast<float>(sun.light[1]),
+                                                               static_cast<float>(sun.light[2])};
         turned.suns.push_back({sun.direction, facing});
         turned.least = turned.least + 0.25f * facing;
     }
