@@ -8,7 +8,7 @@
 #include "bake/accuracy/model_lights.h"
 #include "bake/accuracy/model_pairs.h"
 #include "bake/accuracy/model_receivers.h"
-#include "bake/scene/orient_bodies.h"
+#include "bake/accuracy/model_scenes.h"
 #include "runtime/light_vector.h"
 #include "runtime/specular.h"
 
@@ -72,10 +72,9 @@ formats::Result<ModelErrorReport> check_model(const formats::Scene& given,
                                               const ModelCheckOptions& options,
                                               const Context& context) {
     const auto start = std::chrono::steady_clock::now();
-    const OrientedBodies bodies = orient_bodies(given);
-    auto scene = make_reference_scene(bodies.scene ? *bodies.scene : given, context.threads);
-    if (!scene) {
-        return std::move(scene).error();
+    const auto scenes = make_model_scenes(given, context.threads);
+    if (!scenes) {
+        return scenes.error();
     }
     std::vector<std::string> left_out;
     const auto lights = make_model_lights(given, left_out);
@@ -83,12 +82,12 @@ formats::Result<ModelErrorReport> check_model(const formats::Scene& given,
         return lights.error();
     }
     const std::vector<ReferenceReceiver> receivers =
-        choose_model_receivers(*scene, options.receivers, options.seed);
+        choose_model_receivers(scenes->whole, options.receivers, options.seed);
     std::vector<LightCheck> checks;
     for (const ModelLight& light : *lights) {
         const runtime::LightVector vector = runtime::project_environment(
             light.environment, asset.cubemap_size, {}, context.threads);
-        auto check = check_unmirrored(*scene, light, receivers,
+        auto check = check_unmirrored(*scenes, light, receivers,
                                       relight_receivers(asset, receivers, {.vector = vector}),
                                       options, context);
         if (!check) {
@@ -99,7 +98,7 @@ formats::Result<ModelErrorReport> check_model(const formats::Scene& given,
     ModelErrorReport report = make_model_report(checks, receivers.size(), options.seed);
     report.left_out = std::move(left_out);
     if (const auto mirrors = find_mirrors(asset, receivers); !mirrors.empty()) {
-        auto mirrored = check_mirrors(*scene, asset, mirrors, *lights, options, context);
+        auto mirrored = check_mirrors(scenes->whole, asset, mirrors, *lights, options, context);
         if (!mirrored) {
             return std::move(mirrored).error();
         }

@@ -63,9 +63,10 @@ TermSet held_light(const EffectTable& effects, std::span<const PlanEntry> plan);
 
 /// Compares `asset`, baked from `scene`, with path tracing of the same terms; this measures the
 /// error of diffusion and straight paths. Other light, such as interreflection, is not compared but
-/// stated as `missing`. Light that receivers mirror is left out on
-/// both sides; that of opaque ones is compared by itself (`mirrored`). Receivers inside a body, on
-/// a sharp edge, or with another surface close behind them in their own body are left out.
+/// stated as `missing`; what volumes scatter to surfaces always is, as no file holds it. Light that
+/// receivers mirror is left out on both sides; that of opaque ones is compared by itself
+/// (`mirrored`). Receivers inside a body, on a sharp edge, or with another surface close behind
+/// them in their own body are left out.
 ///
 /// Behind a refracting boundary a path hits the sun's disc by chance only. Scenes with such bodies
 /// are therefore checked without suns, also without the sun of `sky`. The bits are the same for any

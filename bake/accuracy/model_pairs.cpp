@@ -13,13 +13,10 @@ namespace {
 // environment and is no part of it.
 formats::Result<double> measure_missing(const PathSpace& space,
                                         std::span<const ReferenceReceiver> receivers,
-                                        const ModelCheckOptions& options, const Context& context) {
+                                        TermSet compared, EstimateOptions wanted,
+                                        const Context& context) {
     PathSpace other = space;
-    other.options.terms =
-        TermSet::all & ~TermSet::specular & ~TermSet::emitters & ~options.simulated;
-    EstimateOptions wanted;
-    wanted.seed = options.seed;
-    wanted.samples = 256;
+    other.options.terms = TermSet::all & ~TermSet::specular & ~TermSet::emitters & ~compared;
     const auto estimate = estimate_luminance(other, receivers, wanted, context);
     if (!estimate) {
         return estimate.error();
@@ -108,7 +105,7 @@ formats::Result<LightCheck> check_light(const PathSpace& space,
     }
 }
 
-formats::Result<LightCheck> check_unmirrored(const ReferenceScene& scene, const ModelLight& light,
+formats::Result<LightCheck> check_unmirrored(const ModelScenes& scenes, const ModelLight& light,
                                              std::span<const ReferenceReceiver> receivers,
                                              std::span<const double> baked,
                                              const ModelCheckOptions& options,
@@ -117,17 +114,27 @@ formats::Result<LightCheck> check_unmirrored(const ReferenceScene& scene, const 
     paths.terms = options.simulated;
     paths.own_mirror = false;
     const LightSampler sampler = make_light_sampler(light.environment, glm::mat3(1.0f));
-    const PathSpace space{scene, sampler, paths};
-    auto check = check_light(space, receivers, baked, options, context);
+    auto check = check_light({scenes.held(), sampler, paths}, receivers, baked, options, context);
     if (!check) {
         return check;
     }
-    const auto missing = measure_missing(space, receivers, options, context);
+    // Volumes send light along all kinds of paths: then all of it is measured, less what was held.
+    const bool has_volumes = scenes.without_scattering.has_value();
+    EstimateOptions wanted;
+    wanted.seed = options.seed;
+    wanted.samples = has_volumes ? std::max(256u, check->samples) : 256;
+    const auto missing =
+        measure_missing({scenes.whole, sampler, paths}, receivers,
+                        has_volumes ? TermSet::none : options.simulated, wanted, context);
     if (!missing) {
         return missing.error();
     }
     check->light = light.name;
     check->missing = *missing;
+    if (has_volumes && !receivers.empty()) {
+        const MeanSquares held = sum_up(check->pairs);
+        check->missing = std::max(0.0, *missing - held.mean_truth / held.count);
+    }
     check->terms = options.simulated;
     return check;
 }

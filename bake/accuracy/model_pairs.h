@@ -8,6 +8,7 @@
 
 #include "bake/accuracy/check_model.h"
 #include "bake/accuracy/model_lights.h"
+#include "bake/accuracy/model_scenes.h"
 #include "bake/base/context.h"
 #include "bake/reference/path.h"
 #include "formats/opal/result.h"
@@ -55,8 +56,9 @@ formats::Result<LightCheck> check_light(const PathSpace& space,
                                         std::span<const double> baked,
                                         const ModelCheckOptions& options, const Context& context);
 
-/// The same of what files simulate without mirror reflection, and what is missing.
-formats::Result<LightCheck> check_unmirrored(const ReferenceScene& scene, const ModelLight& light,
+/// The same of what files simulate without mirror reflection, and what is missing: other terms, and
+/// all that volumes scatter to surfaces.
+formats::Result<LightCheck> check_unmirrored(const ModelScenes& scenes, const ModelLight& light,
                                              std::span<const ReferenceReceiver> receivers,
                                              std::span<const double> baked,
                                              const ModelCheckOptions& options,

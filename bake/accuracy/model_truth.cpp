@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bake/accuracy/model_receivers.h"
+#include "bake/accuracy/model_scenes.h"
 #include "bake/scene/orient_bodies.h"
 
 namespace opaline::bake {
@@ -30,17 +31,16 @@ formats::Result<std::vector<LightCheck>> trace_model_truth(const formats::Scene&
                                                            const ModelProbes& probes,
                                                            const ModelCheckOptions& options,
                                                            const Context& context) {
-    const OrientedBodies bodies = orient_bodies(given);
-    const auto scene = make_reference_scene(bodies.scene ? *bodies.scene : given, context.threads);
-    if (!scene) {
-        return scene.error();
+    const auto scenes = make_model_scenes(given, context.threads);
+    if (!scenes) {
+        return scenes.error();
     }
     ModelCheckOptions alike = options;
     alike.noise_share = 0;  // of the files to come nothing is known
     const std::vector<double> black(probes.receivers.size());
     std::vector<LightCheck> truth;
     for (const ModelLight& light : probes.lights) {
-        auto traced = check_unmirrored(*scene, light, probes.receivers, black, alike, context);
+        auto traced = check_unmirrored(*scenes, light, probes.receivers, black, alike, context);
         if (!traced) {
             return std::move(traced).error();
         }

@@ -7,6 +7,7 @@
 #include "runtime/light_vector.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/sheets.h"
+#include "tests/support/volumes.h"
 
 namespace opaline::bake {
 namespace {
@@ -23,6 +24,26 @@ BakeOptions fine_bake() {
     BakeOptions options = tests::small_bake();
     options.cubemap_size = 32;
     return options;
+}
+
+// Far from all else a volume without absorption is as bright as even light. A black one that is a
+// ball of radius r takes the share (r / d)^2 from a plane below, at the distance d of its centre.
+TEST(ModelError, WhatAThickCloudScattersToTheGroundIsMissing) {
+    constexpr float kSize = 0.05f;
+    tests::Scene scene = tests::make_scene(
+        {tests::make_quad({-kSize, -1, -kSize}, {0, 0, 2 * kSize}, {2 * kSize, 0, 0}, 2)});
+    scene.volumes = {tests::make_volume(tests::make_ball_grid(0.5, 0.05), 12, 1, 0)};
+    BakeOptions options = tests::only({"direct"});
+    options.cubemap_size = 32;
+    const BakeResult baked = tests::bake_scene(scene, options);
+    ModelCheckOptions quick;
+    quick.noise = 0.02;
+    quick.max_events = 100000;
+    const ModelErrorReport report = check(scene, baked, quick);
+    EXPECT_EQ(report.by_light[0].name, "white");
+    EXPECT_NEAR(report.by_light[0].missing, 0.25, 0.02);
+    EXPECT_NEAR(report.by_light[0].bias, 0, 0.02);
+    EXPECT_LT(report.by_light[0].rms_relative, 0.05);
 }
 
 // (d + noise)^2 is d^2 + variance in the mean. Here d is 0 (convex and opaque again; white light
