@@ -1,7 +1,6 @@
 #include "bake/transport/sample_transport.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -28,26 +27,6 @@ std::vector<float> tabulate_transmittance(double eta) {
             fresnel_transmittance(static_cast<double>(i) / static_cast<double>(kSteps), eta)));
     }
     return table;
-}
-
-// Coordinates of the texels' directions, axis by axis.
-std::array<std::vector<float>, 3> texel_axes(std::uint32_t n) {
-    std::array<std::vector<float>, 3> axes;
-    for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
-        for (std::uint32_t i = 0; i < n * n; ++i) {
-            const formats::Vec3 w = formats::texel_direction(n, face, i / n, i % n);
-            axes[0].push_back(w.x);
-            axes[1].push_back(w.y);
-            axes[2].push_back(w.z);
-        }
-    }
-    return axes;
-}
-
-void multiply(std::span<float> values, std::span<const float> factors) {
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        values[k] *= factors[k];
-    }
 }
 
 // int Ft(c) 2 c dc, by trapezoids.
@@ -98,23 +77,19 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
     const std::vector<double> solid_angle =
         environment ? formats::texel_solid_angles(n) : std::vector<double>{};
     const std::size_t texels = formats::cubemap_texels(n);
-    const std::array<std::vector<float>, 3> direction =
-        environment ? texel_axes(n) : std::array<std::vector<float>, 3>{};
-    const std::size_t axes = options.moments > 0 ? 3 : 0;
     const std::size_t together = options.share_rays ? kSamplesPerGroup : 1;
     const float entering = mean_transmittance(transmittance);
     SampleTransport result;
     result.other.bands = options.light == nullptr ? 1 : options.light->bands;
     struct Part {
         SparseVectors::Block rows, other;
-        std::array<SparseVectors::Block, 3> moments;
         std::vector<float> mean, norm;
         std::uint64_t rays = 0;
     };
     static_assert(SparseVectors::kPerBlock % kSamplesPerGroup == 0);
     const auto gather_environment = [&](std::span<const Receiver> group, std::size_t first,
                                         Part& part) {
-        std::vector<float> dense(group.size() * texels), moment;
+        std::vector<float> dense(group.size() * texels);
         part.rays += options.share_rays
                          ? gather_irradiance_together(rays, directions, group, dense, transmittance)
                          : gather_irradiance(rays, directions.sets[first % 4], group.front(), dense,
@@ -122,13 +97,6 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
         for (std::size_t i = 0; i < group.size(); ++i) {
             const std::span<float> own = std::span(dense).subspan(i * texels, texels);
             part.mean.push_back(mean_over_sphere(own, solid_angle));
-            for (std::size_t axis = 0; axis < axes; ++axis) {
-                moment.assign(own.begin(), own.end());
-                multiply(moment, direction[axis]);
-                formats::haar_forward_cube(moment, n);
-                append_truncated(part.moments[axis], moment, options.moments,
-                                 samples[first + i].area);
-            }
             formats::haar_forward_cube(own, n);
             part.norm.push_back(norm(own));
             append_truncated(part.rows, own, options.kept, samples[first + i].area);
@@ -139,9 +107,6 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
             part.mean.push_back(0);
             part.norm.push_back(0);
             append_nothing(part.rows);
-            for (std::size_t axis = 0; axis < axes; ++axis) {
-                append_nothing(part.moments[axis]);
-            }
         }
     };
     const auto gather_other = [&](std::size_t s, float& all, Part& part) {
@@ -177,16 +142,12 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
                 }
             }
             shrink(part.rows);
-            std::ranges::for_each(part.moments, shrink);
             return part;
         },
         [&](Range range, Part&& part) {
             result.rows.blocks.push_back(std::move(part.rows));
             if (options.light != nullptr) {
                 result.other.blocks.push_back(std::move(part.other));
-            }
-            for (std::size_t axis = 0; axis < axes; ++axis) {
-                result.moments[axis].blocks.push_back(std::move(part.moments[axis]));
             }
             result.mean.insert(result.mean.end(), part.mean.begin(), part.mean.end());
             result.norm.insert(result.norm.end(), part.norm.begin(), part.norm.end());

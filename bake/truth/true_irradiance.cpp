@@ -19,11 +19,6 @@ glm::vec3 direction_of(const RayPacket& packet, std::uint32_t lane) {
     return {packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]};
 }
 
-double factor_at(glm::vec4 factor, glm::vec3 direction) {
-    return static_cast<double>(factor.x +
-                               glm::dot(glm::vec3(factor.y, factor.z, factor.w), direction));
-}
-
 // Traces the lanes above the horizon and keeps those that see the sky.
 std::uint64_t keep_unoccluded(const RayScene& rays, RayPacket& packet, LaneMask& lanes) {
     if (rays.is_empty()) {
@@ -82,7 +77,7 @@ SunRays make_sun_rays(std::span<const TestLight> lights, std::uint32_t per_sun) 
 
 std::uint64_t add_sun_irradiance(const RayScene& rays, const SunRays& suns,
                                  const Receiver& receiver, double eta, std::span<double> irradiance,
-                                 glm::vec4 factor) {
+                                 const LightFactor& factor) {
     std::uint64_t traced = 0;
     RayPacket packet = rays_from(receiver.origin);
     for (const SunRays::Packet& sun : suns.packets) {
@@ -101,7 +96,7 @@ std::uint64_t add_sun_irradiance(const RayScene& rays, const SunRays& suns,
                 const double c = std::min(1.0, static_cast<double>(cosine[lane]));
                 irradiance[sun.light[lane]] += c * fresnel_transmittance(c, eta) *
                                                static_cast<double>(sun.flux[lane]) *
-                                               factor_at(factor, direction_of(packet, lane));
+                                               factor.at(direction_of(packet, lane));
             }
         }
     }
@@ -127,7 +122,7 @@ const float* SmoothLights::towards(glm::vec3 d) const {
 
 std::uint64_t add_smooth_irradiance(const RayScene& rays, const SmoothLights& lights,
                                     const Receiver& receiver, double eta, glm::vec2 u,
-                                    std::span<double> irradiance, glm::vec4 factor) {
+                                    std::span<double> irradiance) {
     constexpr std::uint32_t kSide = 4;
     const Frame frame = make_frame(receiver.normal);
     RayPacket packet = rays_from(receiver.origin);
@@ -148,13 +143,30 @@ std::uint64_t add_smooth_irradiance(const RayScene& rays, const SmoothLights& li
     const std::uint64_t traced = keep_unoccluded(rays, packet, lanes);
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
         if (lanes[lane] != 0) {
-            const double weight = pi / kLanes *
-                                  fresnel_transmittance(static_cast<double>(cosine[lane]), eta) *
-                                  factor_at(factor, direction_of(packet, lane));
+            const double weight =
+                pi / kLanes * fresnel_transmittance(static_cast<double>(cosine[lane]), eta);
             const float* radiance = lights.towards(direction_of(packet, lane));
             for (std::size_t l = 0; l < lights.lights; ++l) {
                 irradiance[l] += weight * static_cast<double>(radiance[l]);
             }
+        }
+    }
+    return traced;
+}
+
+std::uint64_t add_smooth_radiance(const RayScene& rays, const SmoothLights& lights,
+                                  const Receiver& receiver, glm::vec3 direction, double factor,
+                                  std::span<double> radiance) {
+    RayPacket packet = rays_from(receiver.origin);
+    LaneMask lanes{-1};
+    packet.dir_x[0] = direction.x;
+    packet.dir_y[0] = direction.y;
+    packet.dir_z[0] = direction.z;
+    const std::uint64_t traced = keep_unoccluded(rays, packet, lanes);
+    if (lanes[0] != 0) {
+        const float* from = lights.towards(direction);
+        for (std::size_t l = 0; l < lights.lights; ++l) {
+            radiance[l] += factor * static_cast<double>(from[l]);
         }
     }
     return traced;

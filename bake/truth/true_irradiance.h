@@ -25,14 +25,22 @@ struct SunRays {
 /// `per_sun`: rays to each disc, >= 1.
 SunRays make_sun_rays(std::span<const TestLight> lights, std::uint32_t per_sun);
 
-/// A factor of the light from direction w: x + (y, z, w) . w.
-inline constexpr glm::vec4 kEvenly{1, 0, 0, 0};
+/// A factor of the light from direction w: constant + linear . w + w . square w.
+struct LightFactor {
+    double constant = 1;
+    glm::dvec3 linear{0};
+    glm::dmat3 square{0};
+
+    double at(glm::dvec3 w) const {
+        return constant + glm::dot(linear, w) + glm::dot(w, square * w);
+    }
+};
 
 /// Adds the irradiance by suns, times Ft(eta, n.w) and the factor, to that of each light. eta = 1:
 /// a diffuse surface. Returns the number of rays.
 std::uint64_t add_sun_irradiance(const RayScene& rays, const SunRays& suns,
                                  const Receiver& receiver, double eta, std::span<double> irradiance,
-                                 glm::vec4 factor = kEvenly);
+                                 const LightFactor& factor = {});
 
 /// The smooth part of all lights side by side: radiance[texel * lights + l], mean over the texels
 /// of kTruthCubemap.
@@ -44,10 +52,16 @@ struct SmoothLights {
 };
 SmoothLights make_smooth_lights(std::span<const TestLight> lights);
 
-/// Adds an estimate of the irradiance without suns, times Ft and the factor, from sixteen
+/// Adds an estimate of the irradiance without suns, times Ft, from sixteen
 /// cosine-distributed rays. `u`: random, in [0, 1)^2. Unbiased. Returns the number of rays.
 std::uint64_t add_smooth_irradiance(const RayScene& rays, const SmoothLights& lights,
                                     const Receiver& receiver, double eta, glm::vec2 u,
-                                    std::span<double> irradiance, glm::vec4 factor = kEvenly);
+                                    std::span<double> irradiance);
+
+/// Adds `factor` times the radiance without suns from one direction, unit, where nothing stands
+/// before it. Returns the number of rays.
+std::uint64_t add_smooth_radiance(const RayScene& rays, const SmoothLights& lights,
+                                  const Receiver& receiver, glm::vec3 direction, double factor,
+                                  std::span<double> radiance);
 
 }  // namespace opaline::bake

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "bake/effects/multiple/gather_multiple.h"
@@ -107,15 +108,17 @@ double shortest_path(const formats::Scene& scene, std::uint32_t material,
 struct EnteringLight {
     std::span<const SurfaceSample> samples;
     const SparseVectors& rows;
-    const std::array<SparseVectors, 3>& moments;
     const SparseVectors& other;
 };
 
 void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& entering, double walks,
           const MultipleOptions& options, const Context& context, MultipleStage& stage) {
     const bool scales = options.model == MultipleModel::scaled;
-    const ExitLight light(entering.samples, entering.rows, scales ? nullptr : &entering.moments,
-                          stage.medium.eta, stage.medium.exit,
+    std::optional<ExitCells> cells;
+    if (!scales) {
+        cells.emplace(entering.samples, options.cubemap_size, make_exit_lobe(stage.medium.eta));
+    }
+    const ExitLight light(entering.samples, entering.rows, std::move(cells), stage.medium.exit,
                           options.light == nullptr ? nullptr : &entering.other);
     const bool is_inside = !scales && !plan.is_residual && options.all_orders &&
                            space.media.size() == 1 && !space.media.front().field;
@@ -185,18 +188,17 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
                             scene_diagonal(scene, all_primitives(scene)), options.bands);
     const bool walks = options.model != MultipleModel::dipole;
     stage.model = options.model;
-    SampleTransport transport = bake_sample_transport(
-        rays, samples,
-        {options.cubemap_size, options.kept, stage.medium.eta, options.share_rays,
-         options.model == MultipleModel::walks ? options.kept / 4 : 0, options.light, kKeptOfLight},
-        context);
+    SampleTransport transport =
+        bake_sample_transport(rays, samples,
+                              {options.cubemap_size, options.kept, stage.medium.eta,
+                               options.share_rays, options.light, kKeptOfLight},
+                              context);
     stage.rays = transport.rays;
     SitePlan plan;
     if (walks) {
         plan = plan_sites(area, scene_diagonal(scene, primitives), path, options.walks);
         plan.is_residual = plan.is_residual && !options.layered;
     }
-    const std::array<SparseVectors, 3> moments = std::move(transport.moments);
     SparseVectors light, other;
     if (options.model == MultipleModel::walks && !plan.is_residual) {
         light = std::move(transport.rows);
@@ -211,7 +213,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
             make_walk_space(scene, bodies.hierarchy(), material, options.bands == 1, options.inner);
         const bool has_tree = !stage.tree.nodes.empty();
         walk(space, plan,
-             {samples, has_tree ? stage.tree.samples : light, moments,
+             {samples, has_tree ? stage.tree.samples : light,
               has_tree ? stage.tree.other_samples : other},
              count_walks(plan, area, options.walks), options, context, stage);
     }

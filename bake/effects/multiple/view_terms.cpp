@@ -11,7 +11,7 @@
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/rule_layers.h"
 #include "bake/effects/multiple/thin_parts.h"
-#include "bake/effects/multiple/walks/exit_light.h"
+#include "bake/effects/multiple/walks/exit_lobe.h"
 #include "bake/effects/multiple/walks/view_fit.h"
 #include "bake/effects/multiple/walks/walk_space.h"
 #include "formats/media/mean_cosine.h"

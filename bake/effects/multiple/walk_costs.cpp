@@ -13,9 +13,9 @@
 namespace opaline::bake {
 namespace {
 
-constexpr double kExitsPerWalk = 1.5;    // measured at indices from 1.3 to 1.5
-constexpr double kMomentEntries = 1.75;  // of a sample's row and its three moments, in rows
-constexpr double kOwnSample = 0.6;       // exits that share their sample with none of the site's
+constexpr double kExitsPerWalk = 1.5;  // measured at indices from 1.3 to 1.5
+constexpr double kCellEntries = 250;   // an exit's lobe in 96 cells, in entries of a row
+constexpr double kOwnSample = 0.6;     // exits that share their sample with none of the site's
 
 double kept(const Knobs& knobs) {
     return std::min(static_cast<double>(sample_coefficients(knobs)),
@@ -85,7 +85,8 @@ Work walks_work(const SubjectCost& cost) {
     const double walks = std::max(count_walks(plan, cost.facts.area, budget_of(knobs)),
                                   static_cast<double>(plan.sites));
     const double views = are_inside(cost, plan) ? 0 : rows_by_view(cost.layout);
-    const double entries = kOwnSample * (kMomentEntries + views) * kept(knobs) * rates.gather_entry;
+    const double entries =
+        kOwnSample * (kCellEntries + (1 + views) * kept(knobs)) * rates.gather_entry;
     const double dense = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     // Measured on Spot: an event with veins to evaluate takes as long as three without.
     const auto& variation = cost.medium().variation;

@@ -68,7 +68,7 @@ void calibrate_walks(const CalibrationBench& bench, std::span<const SurfaceSampl
         return;
     }
     const SparseVectors none;
-    const ExitLight light(samples, none, nullptr, static_cast<double>(space.eta), 1);
+    const ExitLight light(samples, none, std::nullopt, 1);
     std::vector<std::uint32_t> around;
     watch.restart();
     for (const WalkExit& exit : exits) {

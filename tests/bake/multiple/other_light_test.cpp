@@ -40,7 +40,7 @@ struct OtherSetup {
     std::vector<SurfaceSample> samples = sample_surface(scene, {0}, 600, 1, {});
 
     SampleTransport bake(const OtherLight* light) const {
-        return bake_sample_transport(rays, samples, {kSize, kAllOfThem, 1, false, 0, light}, {});
+        return bake_sample_transport(rays, samples, {kSize, kAllOfThem, 1, false, light}, {});
     }
 };
 
@@ -82,15 +82,18 @@ TEST(OtherLightOfMedia, LeavesWalksAsTheEnvironmentDoes) {
     const OtherSetup setup;
     const OtherLight light = copy_of_environment(setup.rays, 1);
     const SampleTransport plain = setup.bake(nullptr), other = setup.bake(&light);
-    const ExitLight environment(setup.samples, plain.rows, nullptr, 1.3, 0.9);
-    const ExitLight instead(setup.samples, other.rows, nullptr, 1.3, 0.9, &other.other);
+    const ExitLight environment(setup.samples, plain.rows, std::nullopt, 0.9);
+    const ExitLight instead(setup.samples, other.rows, std::nullopt, 0.9, &other.other);
     for (const std::uint32_t sample : {3u, 77u, 310u}) {
         WalkExit exit;
         exit.direction = exit.normal = setup.samples[sample].normal;
         std::vector<float> a(4 * kAllOfThem), b(4 * kAllOfThem);
-        const glm::vec4 factors = environment.factors(sample, exit);
-        environment.add(sample, {factors, factors, factors}, a);
-        instead.add(sample, {factors, factors, factors}, b);
+        exit.weight = {1, 1, 1};
+        ExitCells::Sums sums{};
+        ExitCells::Cells cells{};
+        environment.add_exit(sample, exit, 1, sums);
+        environment.add(sample, sums, a, cells);
+        instead.add(sample, sums, b, cells);
         double sum = 0, same = 0;
         for (std::size_t k = 0; k < a.size(); k += kAllOfThem * 4 / 6) {
             sum += a[k];

@@ -15,11 +15,10 @@ namespace {
 
 using Float4 = float __attribute__((vector_size(16)));
 
-// An exit as light of a sample.
+// An exit and the sample whose light it sees.
 struct SampleExit {
     std::uint32_t sample = 0;
-    std::array<glm::vec4, 3> factors{};                     // per band
-    std::array<std::array<float, 3>, kAllDegrees> views{};  // of each row by view, per band
+    std::uint32_t exit = 0;
 };
 
 class SiteWalker {
@@ -75,41 +74,38 @@ class SiteWalker {
         }
     }
 
-    // Exits of one sample are added up before its vectors are read.
+    // Exits of one sample are added up before its vector is read.
     void add_exits(float scale) {
         by_sample_.clear();
-        for (std::size_t e = 0; e < exits_.size(); ++e) {
-            const WalkExit& exit = exits_[e];
-            SampleExit to{light_.nearest(exit, around_), {}, {}};
-            const glm::vec4 factors = scale * light_.factors(to.sample, exit);
-            for (std::size_t b = 0; b < 3; ++b) {
-                to.factors[b] = exit.weight[b] * factors;
-                for (std::size_t r = 0; r + 1 < options_.views; ++r) {
-                    to.views[r][b] = scale * exit.weight[b] * seen_[e][r];
-                }
-            }
-            by_sample_.push_back(to);
+        for (std::uint32_t e = 0; e < exits_.size(); ++e) {
+            by_sample_.push_back({light_.nearest(exits_[e], around_), e});
         }
         std::stable_sort(
             by_sample_.begin(), by_sample_.end(),
             [](const SampleExit& a, const SampleExit& b) { return a.sample < b.sample; });
+        const std::size_t size = dense_.size() / options_.views;
+        const std::span<float> row = std::span(dense_).first(size);
+        ExitCells::Cells cells{};
         for (std::size_t i = 0; i < by_sample_.size();) {
-            SampleExit sum = by_sample_[i++];
-            for (; i < by_sample_.size() && by_sample_[i].sample == sum.sample; ++i) {
-                for (std::size_t b = 0; b < 3; ++b) {
-                    sum.factors[b] += by_sample_[i].factors[b];
-                    for (std::size_t r = 0; r + 1 < options_.views; ++r) {
-                        sum.views[r][b] += by_sample_[i].views[r][b];
+            const std::uint32_t sample = by_sample_[i].sample;
+            ExitCells::Sums sums{};
+            std::array<std::array<float, 3>, kAllDegrees> views{};  // of rows by view, per band
+            for (; i < by_sample_.size() && by_sample_[i].sample == sample; ++i) {
+                const std::uint32_t e = by_sample_[i].exit;
+                light_.add_exit(sample, exits_[e], scale, sums);
+                for (std::size_t r = 0; r + 1 < options_.views; ++r) {
+                    for (std::size_t b = 0; b < 3; ++b) {
+                        views[r][b] += scale * exits_[e].weight[b] * seen_[e][r];
                     }
                 }
             }
-            const std::size_t size = dense_.size() / options_.views;
-            light_.add(sum.sample, sum.factors, std::span(dense_).first(size));
+            light_.add(sample, sums, row, cells);
             if (options_.views > 1) {
-                light_.add_views(sum.sample, std::span(sum.views).first(options_.views - 1),
+                light_.add_views(sample, std::span(views).first(options_.views - 1),
                                  std::span(dense_).subspan(size));
             }
         }
+        light_.add_cells(cells, row);
     }
 
     const WalkSpace& space_;

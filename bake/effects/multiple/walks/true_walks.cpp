@@ -31,6 +31,21 @@ double luminance_of(const WalkExit& exit, bool is_grey) {
     return is_grey ? static_cast<double>(exit.weight[0]) : sum;
 }
 
+// Light at an exit as the irradiance of even light that is as bright there. Hardly any exit meets a
+// sun: they look at it through a lobe.
+std::uint64_t add_light(const WalkLight& light, const SurfaceSample& at, const WalkExit& exit,
+                        glm::vec2 u, std::span<double> irradiance) {
+    const std::uint64_t rays =
+        add_sun_irradiance(light.rays, light.suns, at.receiver, light.lobe.eta, irradiance,
+                           light.lobe.eval(at.normal, exit.direction));
+    if (glm::dot(at.normal, exit.direction) > 0) {
+        return rays + add_smooth_radiance(light.rays, light.smooth, at.receiver, exit.direction,
+                                          std::numbers::pi * light.escape, irradiance);
+    }
+    return rays + add_smooth_irradiance(light.rays, light.smooth, at.receiver, light.lobe.eta, u,
+                                        irradiance);
+}
+
 }  // namespace
 
 TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, const BodyPoint& point,
@@ -88,12 +103,8 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
                                    {1 - exit->u - exit->v, exit->u, exit->v}),
                 0);
             std::ranges::fill(irradiance, 0.0);
-            const glm::vec4 lobe = light.lobe.eval(at.normal, exit->direction);
-            const auto eta = static_cast<double>(space.eta);
-            traced +=
-                add_sun_irradiance(light.rays, light.suns, at.receiver, eta, irradiance, lobe);
-            traced += add_smooth_irradiance(light.rays, light.smooth, at.receiver, eta,
-                                            {random.next(), random.next()}, irradiance, lobe);
+            const glm::vec2 u{random.next(), random.next()};
+            traced += add_light(light, at, *exit, u, irradiance);
             if (light.other != nullptr && *light.other) {
                 std::ranges::fill(diffuse, 0.0);
                 traced += (*light.other)(at.receiver, std::uint64_t{key} << 32 | walk, 1, diffuse);

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "bake/effects/multiple/walks/exit_light.h"
+#include "bake/effects/multiple/walks/exit_lobe.h"
 #include "bake/effects/multiple/walks/walk_space.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/other_light.h"

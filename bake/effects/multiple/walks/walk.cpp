@@ -279,7 +279,7 @@ class Walk {
         for (std::size_t b = 0; b < 3; ++b) {
             exit.weight[b] = passed * weight_.value()[b];
         }
-        exit.is_diffuse = scatterings_ >= space_.diffuse_after;
+        exit.turned = static_cast<float>(scatterings_) / static_cast<float>(space_.diffuse_after);
         exit.drift = length_ > 0 ? (hit.position - start_) / length_ : glm::vec3(0);
         exit.primitive = hit.primitive;
         exit.first_index = hit.first_index;

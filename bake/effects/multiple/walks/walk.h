@@ -81,9 +81,10 @@ struct WalkExit {
     glm::vec3 normal{0};            ///< unit, outward, smooth
     glm::vec3 direction{0};         ///< unit, outside, away from the body
     std::array<float, 3> weight{};  ///< per band; 0 in bands that never scatter
-    /// Scattered so often that `direction` says no more of where the walk has been than `drift`,
-    /// the way from the start over the length of the walk: the mean of all directions inside.
-    bool is_diffuse = false;
+    /// How often it was scattered, over WalkSpace::diffuse_after. From 1 on `direction` says no
+    /// more of where the walk has been than `drift`, the way from the start over the length of the
+    /// walk: the mean of all directions inside.
+    float turned = 0;
     glm::vec3 drift{0};
     std::uint32_t primitive = 0, first_index = 0;  ///< of the triangle
     float u = 0, v = 0;                            ///< weights of its second and third corner
