@@ -46,8 +46,9 @@ LobeTree make_lobe_tree(const LightQuadtree& tree) {
     return lobes;
 }
 
-Tile make_tile(std::uint32_t size, std::uint32_t face, std::uint32_t row, std::uint32_t column) {
-    Tile tile;
+DirectionTile make_tile(std::uint32_t size, std::uint32_t face, std::uint32_t row,
+                        std::uint32_t column) {
+    DirectionTile tile;
     std::array<Vec3, 8> direction;
     Vec3 sum{0, 0, 0};
     for (std::uint32_t k = 0; k < 8; ++k) {
@@ -69,7 +70,7 @@ Tile make_tile(std::uint32_t size, std::uint32_t face, std::uint32_t row, std::u
 BlockCells::BlockCells(const LobeTree& tree, float alpha_squared)
     : tree_(tree), reach_(reaches(tree.level.size(), alpha_squared)), square_(reach_.size()) {}
 
-void BlockCells::move_to(const std::array<Tile, 8>& tiles) {
+void BlockCells::move_to(const std::array<DirectionTile, 8>& tiles) {
     for (std::size_t t = 0; t < 8; ++t) {
         x_[t / 4][t % 4] = tiles[t].centre.x;
         y_[t / 4][t % 4] = tiles[t].centre.y;

@@ -29,14 +29,15 @@ LobeTree make_lobe_tree(const LightQuadtree& tree);
 /// Eight directions that are next to each other: a tile of 4 x 2 texels. Eight tiles are a block of
 /// 8 x 8.
 constexpr std::uint32_t kTileWidth = 4, kTileHeight = 2, kTileBlock = 8;
-struct Tile {
+struct DirectionTile {
     alignas(32) std::array<float, 8> x, y, z;
     formats::Vec3 centre;
     float radius = 0;  ///< no direction is further from the centre, as a chord
 };
 
 /// Of the texels from (row, column) of a face of `size` texels a side.
-Tile make_tile(std::uint32_t size, std::uint32_t face, std::uint32_t row, std::uint32_t column);
+DirectionTile make_tile(std::uint32_t size, std::uint32_t face, std::uint32_t row,
+                        std::uint32_t column);
 
 /// Chords between a direction and the centre of a cell of one level. Cells are divided while they
 /// are large beside the distance over which the lobe changes, which is alpha at its peak and half
@@ -56,7 +57,7 @@ class BlockCells {
     BlockCells(const LobeTree& tree, float alpha_squared);
 
     /// Chooses for these tiles; what was chosen before is gone.
-    void move_to(const std::array<Tile, 8>& tiles);
+    void move_to(const std::array<DirectionTile, 8>& tiles);
 
     /// Cells that all tiles add.
     std::span<const LobeCell* const> common() const { return common_; }

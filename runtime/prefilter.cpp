@@ -58,8 +58,8 @@ struct TileSums {
 
 // Three bands: adds each cell's flux by the lobe toward it. One: its solid angle.
 template <std::size_t bands>
-void add_cells(std::span<const LobeCell* const> cells, float alpha_squared, const Tile& tile,
-               TileSums<bands>& sums) {
+void add_cells(std::span<const LobeCell* const> cells, float alpha_squared,
+               const DirectionTile& tile, TileSums<bands>& sums) {
     constexpr std::size_t kAtOnce = 16;
     run_wide([&](auto lanes) __attribute__((always_inline)) {
         using L = decltype(lanes);
@@ -108,7 +108,7 @@ void for_tiles(const LobeTree& tree, float alpha_squared, const Area& area, unsi
         for (std::uint32_t left = 0; left < area.columns; left += kTileBlock) {
             const auto row_of = [top](std::uint32_t t) { return top + t / 2 * kTileHeight; };
             const auto column_of = [left](std::uint32_t t) { return left + t % 2 * kTileWidth; };
-            std::array<Tile, 8> tiles;
+            std::array<DirectionTile, 8> tiles;
             for (std::uint32_t t = 0; t < 8; ++t) {
                 tiles[t] = make_tile(size, top / size, row_of(t) % size, column_of(t));
             }
