@@ -85,6 +85,7 @@ formats::Result<runtime::Picture> draw(const formats::AssetView& asset, const Sw
     runtime::SoftwareOptions options;
     options.threads = threads;
     options.volumes = &volumes;
+    options.lights = lights;
     options.layers = layers ? &*layers : nullptr;
     options.specular = needs.any() ? &specular : nullptr;
     return runtime::render_software(asset, radiance, view.picture_light, {}, camera, options);

@@ -147,6 +147,18 @@ TEST_F(ExampleFiles, SayOutrightWhatIsDiffuseAndWhatIsGlossy) {
     }
 }
 
+TEST_F(ExampleFiles, OfBricksShareOneNormalMap) {
+    ASSERT_TRUE(write_example("bricks", folder_));
+    const auto document = nlohmann::json::parse(contents(folder_ / "bricks.gltf"));
+    EXPECT_EQ(document["images"].size(), 1u);
+    EXPECT_EQ(document["images"][0]["uri"], "bricks.png");
+    for (const auto& material : document["materials"]) {
+        EXPECT_EQ(material["normalTexture"]["index"], 0);
+        EXPECT_FALSE(material["pbrMetallicRoughness"].contains("baseColorTexture"));
+    }
+    EXPECT_TRUE(fs::exists(folder_ / "bricks.png"));
+}
+
 TEST_F(ExampleFiles, RefuseAnUnknownNameAndListTheKnownOnes) {
     const auto files = write_example("dragon", folder_ / "never");
     ASSERT_FALSE(files);
