@@ -137,9 +137,10 @@ ExitCells::Table ExitCells::make_table(glm::vec3 normal, std::span<const Part> p
             variance += p[cell] / all * value[cell] * value[cell].transpose();
         }
     }
-    // Below index 1 what enters may lie within a few cells, too few to tell all functions apart.
-    constexpr double kRidge = 5e-5;
-    variance.diagonal().array() += kRidge;
+    // Below index 1 what enters lies within a cone of few cells, too few to tell all functions
+    // apart, and their shares of it are not known well.
+    constexpr double kRidge = 5e-5, kRidgeOfCone = 0.02;
+    variance.diagonal().array() += kRidge + kRidgeOfCone * std::max(0.0, 1 - lobe_.eta);
     const auto solver = variance.ldlt();
     for (std::uint32_t cell = 0; cell < kCount; ++cell) {
         const Vector own =
