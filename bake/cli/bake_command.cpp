@@ -139,11 +139,13 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
     bake::predict_costs(used, result.plan, result.volume_plan);
     bake::predict_savings(used, result.plan);
     std::vector<bake::PlanEntry> first = bake::plan_bake(effects, scene, result.facts, wanted);
+    std::vector<bake::PlanEntry> others = result.volume_plan;
     bake::Knobs budget = wanted;
     budget.model_error = bake::find_model_error(first);
-    return {bake::predict_costs(
-                {effects, scene, result.facts, budget, machine.rates, result.threads}, first),
-            machine.note};
+    return {
+        bake::predict_costs({effects, scene, result.facts, budget, machine.rates, result.threads},
+                            first, others),
+        machine.note};
 }
 
 int run(const BakeCommand& options) {

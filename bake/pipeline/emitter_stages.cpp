@@ -28,7 +28,7 @@ constexpr double kPasses = 6;
 // Steps of a ray to volumes that glow, in times of steps of a depth: half across, and each with the
 // light of eight nodes.
 double glow_steps(const formats::Scene& scene) {
-    constexpr double kShare = 0.5, kOfNodes = 16;
+    constexpr double kShare = 0.5, kOfNodes = 12;
     double voxels = 0;
     for (const formats::Volume& volume : scene.volumes) {
         voxels = std::max(voxels, static_cast<double>(volume.emission.value.size()));
