@@ -133,7 +133,7 @@ BakeOptions layered_bake(double walks) {
 // on average. The coat alone would show 2.4 times the light, or none.
 void expect_true_light(std::vector<Part> parts, const char* what) {
     const tests::Scene scene = tests::make_nested_scene(std::move(parts));
-    const BakeResult baked = tests::bake_scene(scene, layered_bake(150000));
+    const BakeResult baked = tests::bake_scene(scene, layered_bake(400000));
     EXPECT_EQ(entry_of(baked, "multiple.model").choice, "walks");
     EXPECT_TRUE(baked.warnings.empty()) << what;
     EXPECT_TRUE(tests::all_finite(baked.asset));
