@@ -20,8 +20,8 @@ void absorb_all(formats::Volume& volume) {
 }  // namespace
 
 formats::Result<ModelScenes> make_model_scenes(const formats::Scene& scene, unsigned threads) {
-    OrientedBodies bodies = orient_bodies(scene);
-    auto facing = std::make_unique<formats::Scene>(bodies.scene ? std::move(*bodies.scene) : scene);
+    const OrientedBodies bodies = orient_bodies(scene);
+    auto facing = std::make_unique<formats::Scene>(bodies.scene ? *bodies.scene : scene);
     auto whole = make_reference_scene(*facing, threads);
     if (!whole) {
         return std::move(whole).error();

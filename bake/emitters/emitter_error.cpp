@@ -188,15 +188,15 @@ struct BackwardPath {
     // `weight` takes the cosine / (pi density).
     glm::dvec3 draw_diffuse(const glm::dvec3& from, const glm::dvec3& axis, bool is_first,
                             std::array<float, 4> x, glm::dvec3& weight) {
+        const double u = static_cast<double>(x[0]), v = static_cast<double>(x[1]);
         const BallDirections cosine({}, glm::dvec3(0), axis);
-        if (!is_first || balls.empty()) return cosine.sample(x[0], x[1]);
+        if (!is_first || balls.empty()) return cosine.sample(u, v);
         const auto choice = std::min(
             static_cast<std::size_t>(static_cast<float>(balls.size()) * x[3]), balls.size() - 1);
         const double within = static_cast<double>(x[3]) * static_cast<double>(balls.size()) -
                               static_cast<double>(choice);
         const BallDirections toward(balls[choice], from, axis);
-        const glm::dvec3 direction =
-            within < 0.5 ? cosine.sample(x[0], x[1]) : toward.sample(x[0], x[1]);
+        const glm::dvec3 direction = within < 0.5 ? cosine.sample(u, v) : toward.sample(u, v);
         double density = 0.5 * cosine.pdf(direction);
         for (const Ball& ball : balls) {
             density += 0.5 * BallDirections(ball, from, axis).pdf(direction) /
