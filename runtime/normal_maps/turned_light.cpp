@@ -16,7 +16,7 @@ namespace {
 using formats::Rgb;
 using formats::Vec3;
 
-constexpr float kLeastShare = 1.0f / 64;
+constexpr float kShareOfLeast = 1.0f / 64;
 
 // Irradiance over pi of a unit of radiance in degree l [Ramamoorthi2001], times the factor of Y_k
 // before its polynomial (formats/README.md, "View terms").
@@ -88,8 +88,8 @@ TurnedLight make_turned_light(const LightVector& light) {
         turned.suns.push_back({sun.direction, facing});
         turned.least = turned.least + 0.25f * facing;
     }
-    turned.least = kLeastShare * Rgb{positive(turned.least.r), positive(turned.least.g),
-                                     positive(turned.least.b)};
+    turned.least = kShareOfLeast * Rgb{positive(turned.least.r), positive(turned.least.g),
+                                       positive(turned.least.b)};
     return turned;
 }
 
