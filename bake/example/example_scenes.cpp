@@ -237,6 +237,15 @@ constexpr std::array<double, 3> grey(double value) {
     return {value, value, value};
 }
 
+constexpr ExampleVolume make_fire() {
+    return {.make = make_fire_density,
+            .sigma_t = grey(40),
+            .albedo = grey(0.75),
+            .g = 0.4,
+            .make_temperature = make_fire_temperature,
+            .emission_scale = 4e-5};
+}
+
 // Skim milk of [Jensen2001] (formats/media/presets.cpp) with g = 0.9: sigma_s' / (1 - g) + sigma_a.
 constexpr std::array<double, 3> kMilk{7001.4, 12202.5, 19014.2};
 constexpr std::array<double, 3> kMilkAlbedo{7000 / 7001.4, 12200 / 12202.5, 19000 / 19014.2};
@@ -276,20 +285,10 @@ constexpr Example kExamples[] = {
      {.make = make_smoke, .sigma_t = grey(60), .albedo = grey(0.92), .g = 0.5}},
     {{"fire", "a camp fire that lights its smoke: a volume that is an emitter, alone"},
      nullptr,
-     {.make = make_fire_density,
-      .sigma_t = grey(40),
-      .albedo = grey(0.75),
-      .g = 0.4,
-      .make_temperature = make_fire_temperature,
-      .emission_scale = 4e-5}},
+     make_fire()},
     {{"campfire", "that fire among stones on a floor: light of a volume on surfaces"},
      make_fireplace,
-     {.make = make_fire_density,
-      .sigma_t = grey(40),
-      .albedo = grey(0.75),
-      .g = 0.4,
-      .make_temperature = make_fire_temperature,
-      .emission_scale = 4e-5}},
+     make_fire()},
     {{"cumulus", "a fair-weather cloud, 820 m wide: a volume alone"},
      nullptr,
      {.make = [] { return make_cumulus_density(); },

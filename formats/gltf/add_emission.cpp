@@ -4,6 +4,7 @@
 #include <array>
 
 #include "formats/gltf/clamp_factor.h"
+#include "formats/gltf/share_coordinates.h"
 #include "formats/image/srgb.h"
 
 namespace opaline::formats::gltf {
@@ -41,14 +42,7 @@ void add_emission(const MaterialSource& source, const std::string& where, Textur
     if (use.texture == kNone || material.emission == Rgb{0, 0, 0}) {
         return;
     }
-    const bool is_mapped = source.base_color_texture.texture != kNone ||
-                           material.gloss.image != kNone ||
-                           (material.medium && material.medium->variation);
-    if (!is_mapped) {
-        material.base_color_texcoord = use.texcoord;
-        material.base_color_uv_transform = use.transform;
-    } else if (use.texcoord != material.base_color_texcoord ||
-               use.transform != material.base_color_uv_transform) {
+    if (!share_coordinates(source, use, material)) {
         remarks.emplace_back(
             "emissiveTexture is mapped otherwise than the material's other textures: its mean is "
             "used (give all the same texCoord and KHR_texture_transform)");

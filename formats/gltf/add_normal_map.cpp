@@ -1,6 +1,7 @@
 #include "formats/gltf/add_normal_map.h"
 
 #include "formats/gltf/clamp_factor.h"
+#include "formats/gltf/share_coordinates.h"
 
 namespace opaline::formats::gltf {
 
@@ -11,14 +12,7 @@ void add_normal_map(const MaterialSource& source, const std::string& where, Text
     if (use.texture == kNone) {
         return;
     }
-    const bool is_mapped = source.base_color_texture.texture != kNone ||
-                           material.gloss.image != kNone || material.emission_image != kNone ||
-                           (material.medium && material.medium->variation);
-    if (!is_mapped) {
-        material.base_color_texcoord = use.texcoord;
-        material.base_color_uv_transform = use.transform;
-    } else if (use.texcoord != material.base_color_texcoord ||
-               use.transform != material.base_color_uv_transform) {
+    if (!share_coordinates(source, use, material)) {
         remarks.emplace_back(
             "normalTexture is mapped otherwise than the material's other textures: it is not used "
             "(give all the same texCoord and KHR_texture_transform)");
