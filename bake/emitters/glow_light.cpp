@@ -45,7 +45,7 @@ glm::dvec3 march_block(const GlowLight& glow, const RayScene& surfaces, const Re
     glm::dvec3 sum(0);
     for (std::uint32_t lane = 0; lane < block.count; ++lane) {
         runtime::MarchRay ray{
-            to_vec3(glow.origin + glm::dvec3(receiver.origin)),
+            to_vec3(glm::dvec3(receiver.origin)),
             {block.packet.dir_x[lane], block.packet.dir_y[lane], block.packet.dir_z[lane]}};
         if (!surfaces.is_empty() && hits.hit[lane] != 0) {
             ray.end = static_cast<double>(hits.distance[lane]);
@@ -74,7 +74,14 @@ GlowLight make_glow_light(const formats::Scene& scene, std::uint32_t volume,
         volumes, {},
         {.terms = formats::TermSet::none, .emitters = {.color = color}, .threads = threads}));
     result.lit = runtime::light_volumes(volumes, *result.light);
-    result.origin = scene.origin;
+    // Rays begin in the scene's frame: floats are too coarse for places in a world far from 0.
+    for (runtime::LitVolumes::Entry& entry : result.lit.entry) {
+        for (std::size_t row = 0; row < 12; row += 4) {
+            std::array<double, 12>& m = entry.lattice.to_index;
+            m[row + 3] +=
+                m[row] * scene.origin.x + m[row + 1] * scene.origin.y + m[row + 2] * scene.origin.z;
+        }
+    }
     PointBox box;
     const formats::Volume& own = scene.volumes[volume];
     // Voxels of emission are those of density.

@@ -20,9 +20,8 @@ namespace opaline::bake {
 /// all volumes. Immutable; refers to the file's arrays.
 struct GlowLight {
     std::unique_ptr<runtime::VolumeLight> light;  ///< `lit` refers to it
-    runtime::LitVolumes lit;
-    glm::dvec3 origin{0};  ///< of the scene's frame, in the world
-    Ball own, all;         ///< around what glows; around that and all that scatters its light
+    runtime::LitVolumes lit;  ///< for rays in the scene's frame, not in the world
+    Ball own, all;            ///< around what glows; around that and all that scatters its light
 };
 
 /// `glow`: number of the volume's light in the records of GLOW. Precondition: `volumes` holds what

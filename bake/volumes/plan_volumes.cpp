@@ -147,7 +147,7 @@ PlanEntry decide_glow(const formats::Volume& volume, const Subject& subject, con
     PlanEntry entry = decide(kGlowEffect, subject, largest_glow(volume), knobs);
     entry.has_bands = true;
     if (entry.on) {
-        entry.reason = "it sends out light by itself: emitter '" + volume.emitter + "'";
+        entry.reason = "it sends out light by itself, as an emitter";
     } else if (entry.reason.empty()) {
         entry.reason =
             "what it sends out by itself is too dark to be seen beside light of radiance 1";

@@ -260,7 +260,9 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
             place_positions(*data, instance.world, metres_per_unit, scene.origin, out, report);
             place_normals(*data, instance.world, out);
             place_texcoords(*data, material, out, report);
-            if (has_normal_map && keeps_axes(material.base_color_uv_transform)) {
+            // The specification ignores tangents without normals.
+            if (has_normal_map && !data->normal.empty() &&
+                keeps_axes(material.base_color_uv_transform)) {
                 out.tangent = turn_tangents(data->tangent, instance.world);
             }
             place_colors(*data, material, out, report);

@@ -114,6 +114,17 @@ double height_at(const std::array<glm::dvec3, 3>& corner, double x, double y) {
     return std::clamp(z, low, high);
 }
 
+// How many lines its triangles' boxes meet, all in all.
+double count_meetings(const Body& body, const Lines& lines) {
+    double sum = 0;
+    for (const auto& [a, b, c] : body.triangle) {
+        const glm::dvec3 size = glm::max(a, glm::max(b, c)) - glm::min(a, glm::min(b, c));
+        sum +=
+            (1 + kLinesOfVoxel * size.x / lines.voxel) * (1 + kLinesOfVoxel * size.y / lines.voxel);
+    }
+    return sum;
+}
+
 struct Crossing {
     std::uint32_t line = 0;
     float turns = 0;
@@ -185,13 +196,20 @@ float largest_of(Rgb c) {
     return std::max({c.r, c.g, c.b});
 }
 
-SparseGrid<float> fill_voxels(const Body& body, std::uint32_t voxels) {
+// `voxels` along the longest edge of a box that is not empty.
+Lines lines_of(const Body& body, std::uint32_t voxels) {
     const glm::dvec3 size = body.high - body.low;
     Lines lines;
     lines.low = body.low;
     lines.voxel = std::max({size.x, size.y, size.z}) / voxels;
+    if (lines.voxel > 0) {
+        lines.voxels = glm::max(glm::ivec3(glm::ceil(size / lines.voxel - 1e-9)), 1);
+    }
+    return lines;
+}
+
+SparseGrid<float> fill_voxels(const Body& body, const Lines& lines) {
     if (!(lines.voxel > 0)) return {};
-    lines.voxels = glm::max(glm::ivec3(glm::ceil(size / lines.voxel - 1e-9)), 1);
     const std::vector<float> inside = find_inside(body, lines);
     SparseGrid<float> grid =
         fill_grid(glm::ivec3(0), lines.voxels - 1, lines.voxel, [&](glm::ivec3 v) {
@@ -229,13 +247,30 @@ Result<Volume> fill_body(const Scene& scene, const std::string& material, std::u
                           "other way",
                       "close it, weld its vertices, and turn all triangles outward");
     }
+    const glm::dvec3 farthest =
+        glm::max(glm::abs(scene.origin + body.low), glm::abs(scene.origin + body.high));
+    if (!(std::max({farthest.x, farthest.y, farthest.z}) <= media::kMaxVolumeCoordinate)) {
+        return refuse("the mesh of material " + gltf::in_quotes(material) +
+                          " reaches beyond 1e9 m from the origin",
+                      "check its transform and --metres-per-unit");
+    }
+    const Lines lines = lines_of(body, voxels);
+    // A crossing takes 16 bytes; at most every second meeting is one.
+    constexpr double kMostMeetings = 1 << 26;
+    if (!(count_meetings(body, lines) <= kMostMeetings)) {
+        return refuse("the mesh of material " + gltf::in_quotes(material) +
+                          " has too many large triangles, one above the other",
+                      "lower voxels, or join parts that overlap");
+    }
     const Medium& medium = *own->medium;
     Volume volume;
     volume.name = "volume of material " + gltf::in_quotes(material);
-    volume.density = fill_voxels(body, voxels);
+    volume.density = fill_voxels(body, lines);
     if (volume.density.empty()) {
-        return refuse("the mesh of material " + gltf::in_quotes(material) + " has no inside",
-                      "give it a thickness");
+        return refuse("the mesh of material " + gltf::in_quotes(material) +
+                          " has no inside, or one that is thinner than an eighth of a voxel",
+                      "give it a thickness, turn all parts outward, or give parts that lie far "
+                      "apart materials of their own");
     }
     volume.sigma_t = medium.sigma_s + medium.sigma_a;
     const double depth = static_cast<double>(largest_of(volume.sigma_t)) *

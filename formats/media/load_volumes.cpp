@@ -186,7 +186,8 @@ Result<LoadedVolumes> load_all(const MediaFile& media, const std::vector<VolumeE
 
 Error too_many(const std::string& file) {
     return make_error(ErrorKind::resource, file, "volumes",
-                      "the scene has more than " + std::to_string(kMaxVolumes) + " in all",
+                      "the scene has more than " + std::to_string(kMaxVolumes) +
+                          " in all, of which an entry whose albedo is a grid counts as two",
                       "join grids that lie beside each other in one file");
 }
 

@@ -20,7 +20,8 @@ const char* find_map_fault(const AssetView& asset) {
             return "it uses an image or texture coordinates that are not there";
         }
         if (static_cast<std::uint32_t>(map.wrap_u) > 2 ||
-            static_cast<std::uint32_t>(map.wrap_v) > 2 || !std::isfinite(map.scale) ||
+            static_cast<std::uint32_t>(map.wrap_v) > 2 ||
+            !(std::abs(map.scale) <= kMostNormalScale) ||
             (map.reserved[0] | map.reserved[1] | map.reserved[2]) != 0) {
             return "a texture wrap mode, a scale or a value is not one of this version";
         }

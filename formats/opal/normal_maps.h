@@ -11,6 +11,8 @@ namespace opaline::formats {
 
 /// What an `.opal` file holds of normal maps; formats/README.md, `NORM`.
 
+inline constexpr float kMostNormalScale = 1000;  ///< far steeper than any surface
+
 /// The normal map of a primitive: with x, y, z the image's red, green and blue code, each
 /// (code - 128) / 127, the shading normal is that of scale x T + scale y B + z N, with N and T the
 /// interpolated normal and tangent of the vertices and B = sign cross(N, T). Fixed size, stored as
@@ -19,7 +21,7 @@ struct NormalMapRecord {
     std::uint32_t primitive = 0;
     std::uint32_t image = kNoImage;  ///< index into images; its coordinates are the vertices'
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    float scale = 1;  ///< finite
+    float scale = 1;  ///< at most kMostNormalScale on either side of 0
     std::uint32_t reserved[3] = {};
 };
 static_assert(sizeof(NormalMapRecord) == 32);

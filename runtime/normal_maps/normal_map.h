@@ -17,7 +17,8 @@ formats::Vec3 mapped_normal(const formats::AssetView& asset, const formats::Norm
                             formats::DecodedTangent tangent);
 
 /// The view of the same point with the normal `mapped`, of the front. A normal that turns away from
-/// an eye which sees the surface is bent toward it, to a cosine of 0.05 or the surface's own.
+/// an eye which sees the surface is bent toward it, to a cosine of at least 0.05 or the surface's
+/// own.
 ViewOfReceiver view_mapped(const ViewOfReceiver& view, formats::Vec3 mapped);
 
 }  // namespace opaline::runtime
