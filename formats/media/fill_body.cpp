@@ -257,7 +257,7 @@ Result<Volume> fill_body(const Scene& scene, const std::string& material, std::u
     const Lines lines = lines_of(body, voxels);
     // A crossing takes 16 bytes; at most every second meeting is one.
     constexpr double kMostMeetings = 1 << 26;
-    if (!(count_meetings(body, lines) <= kMostMeetings)) {
+    if (lines.voxel > 0 && !(count_meetings(body, lines) <= kMostMeetings)) {
         return refuse("the mesh of material " + gltf::in_quotes(material) +
                           " has too many large triangles, one above the other",
                       "lower voxels, or join parts that overlap");

@@ -72,6 +72,8 @@ TEST(GltfNormalMap, TangentsFollowTheImageWhereTheFileHasNone) {
 
 TEST(GltfNormalMap, TangentsOfTheFileAreTurnedWithItsNodes) {
     AssetBuilder asset = mapped_square(kUpright);
+    asset.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+        asset.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
     // Slanted against the normal, of any length; the last one is missing.
     asset.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] =
         asset.add<float>({0, 1, 1, 1, 0, 1, 0, -1, 0, 5, 0, 1, 0, 0, 0, 1}, "VEC4");
@@ -84,11 +86,21 @@ TEST(GltfNormalMap, TangentsOfTheFileAreTurnedWithItsNodes) {
     expect_tangent(p.tangent.at(3), {-1, 0, 0}, -1);  // from the image
 }
 
+TEST(GltfNormalMap, TangentsWithoutNormalsComeFromTheImage) {
+    AssetBuilder asset = mapped_square(kUpright);
+    const auto own = must_import(asset).scene.primitives.at(0).tangent;
+    asset.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] =
+        asset.add<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1}, "VEC4");
+    EXPECT_EQ(must_import(asset).scene.primitives.at(0).tangent, own);
+}
+
 TEST(GltfNormalMap, OfATransformedImageFollowsTheTransform) {
     AssetBuilder asset = mapped_square(
         kUpright,
         {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"scale", {-1, 1}}}}}}});
     asset.json["extensionsUsed"] = {"KHR_texture_transform"};
+    asset.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+        asset.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
     asset.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] =
         asset.add<float>({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, "VEC4");
     const auto imported = must_import(asset);

@@ -155,6 +155,16 @@ TEST(FillBody, WhatHasNoMediumThatIsAlikeEverywhereIsRefused) {
     EXPECT_THAT(fault_of(milky({point})), HasSubstr("no inside"));
 }
 
+TEST(FillBody, TooFarOrTooOftenOneAboveTheOtherIsRefused) {
+    Scene scene = milky({make_sphere(1)});
+    scene.origin = {0, 2e9, 0};
+    EXPECT_THAT(fault_of(scene), HasSubstr("beyond 1e9 m"));
+    std::vector<Primitive> cubes(2, make_cube(2, false));
+    EXPECT_EQ(fault_of(milky(cubes)), "");
+    cubes.resize(2000, cubes.front());
+    EXPECT_THAT(fault_of(milky(cubes)), HasSubstr("one above the other"));
+}
+
 class LoadBody : public testing::Test {
   protected:
     static formats::MediaFile media(int entries) {
