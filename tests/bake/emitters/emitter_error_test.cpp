@@ -40,6 +40,7 @@ TEST(EmitterError, PathsReproduceTheFurnace) {
     const auto records = records_of(scene);
     std::uint64_t traced = 0;
     const glm::dvec3 E = trace_irradiance({scene, rays, receivers, records, sources, {}},
+                                          collect_true_sources(sources),
                                           {{0, 0.2f, 0.999f}, {0, 0, -1}}, 20000, 1, 2, traced);
     EXPECT_NEAR(E.x, 2, 0.05);
     EXPECT_GT(traced, 20000u);

@@ -87,6 +87,15 @@ TEST(GlowLight, ABallOfFlameGivesItsPowerOverTheSphereTimesTheCosine) {
     EXPECT_EQ(light_at_point(*flame, {{0, -1, 0}, {0, -1, 0}}), glm::dvec3(0));
 }
 
+// Floats of the world are 0.06 m apart there.
+TEST(GlowLight, IsTheSameFarFromTheOriginOfTheWorld) {
+    const Receiver below{{0.1f, -0.3f, 0}, {0, 1, 0}};
+    const glm::dvec3 near = light_at_point(*bake_flame(flame_alone()), below);
+    formats::Scene scene = flame_alone();
+    scene.origin = {1e6, -1e6, 3e5};
+    expect_light(light_at_point(*bake_flame(std::move(scene)), below), near, 1e-3);
+}
+
 TEST(GlowLight, InsideOfTheBallItIsOfTheFlameAlone) {
     // At the centre of a blob all directions have the radiance of half a line through it.
     const auto flame = bake_flame(flame_alone());
@@ -162,7 +171,8 @@ TEST(GlowLight, RowsAgreeWithPathsThroughSmokeThatScatters) {
     std::uint64_t traced = 0;
     for (const float x : {0.0f, 0.7f, 1.6f}) {
         const Receiver floor{{x, -0.999f, 0.1f}, {0, 1, 0}};
-        const glm::dvec3 truth = trace_irradiance(check, floor, 20000, 3, 5, traced);
+        const glm::dvec3 truth = trace_irradiance(check, collect_true_sources(check.sources), floor,
+                                                  20000, 3, 5, traced);
         expect_light(light_at_point(*baked, floor), truth, 0.05);
     }
 }

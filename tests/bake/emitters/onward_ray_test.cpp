@@ -196,7 +196,9 @@ TEST(OnwardRay, RowsBesideMetalAndGlassAreThoseOfPathTracing) {
                                           {{0.7f, 0.2f, 0.999f}, {0, 0, -1}},
                                           {{-0.999f, 0, 0.1f}, {1, 0, 0}}}};
     for (const Receiver& place : places) {
-        const double truth = trace_irradiance(check, place, 20000, 3, ++key, traced).y;
+        const double truth = trace_irradiance(check, collect_true_sources(check.sources), place,
+                                              20000, 3, ++key, traced)
+                                 .y;
         const double found = receive_light(light, place, key, traced)[0].y;
         squares += (found / truth - 1) * (found / truth - 1) / 4;
     }

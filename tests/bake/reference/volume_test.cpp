@@ -5,64 +5,15 @@
 
 #include "bake/base/frame.h"
 #include "bake/reference/volume_flight.h"
-#include "formats/media/fill_body.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/reference/transport_rows.h"
+#include "tests/bake/reference/volume_support.h"
 #include "tests/support/volumes.h"
 
 namespace opaline::tests {
 namespace {
 
 using formats::TermSet;
-
-std::unique_ptr<ReferenceFixture> make_volume_fixture(std::vector<formats::Volume> volumes,
-                                                      formats::Environment sky) {
-    Scene scene;
-    scene.materials.resize(1);
-    scene.volumes = std::move(volumes);
-    return make_fixture(std::move(scene), std::move(sky));
-}
-
-bake::Moments look(const ReferenceFixture& fixture, glm::vec3 from, glm::vec3 direction,
-                   bake::PathOptions options, std::uint32_t samples) {
-    const bake::PathSpace space = fixture.space(options);
-    bake::EstimateOptions wanted;
-    wanted.samples = samples / 16;
-    const auto estimate =
-        bake::estimate_pixels(16, wanted, {}, [&](std::uint32_t, bake::RandomStream& random) {
-            return bake::trace_ray(space, from, direction, random);
-        });
-    EXPECT_TRUE(estimate);
-    EXPECT_EQ(estimate->lost, 0u);
-    bake::Moments all;
-    for (const bake::Moments& m : estimate->pixel) {
-        all.merge(m);
-    }
-    return all;
-}
-
-// The blobs and balls of the table as grids; what voxels of a 16th or 32nd leave is below the
-// noise.
-std::vector<TransportRow> read_volume_transport(const std::string& group) {
-    std::vector<TransportRow> rows = read_transport_rows(group);
-    std::erase_if(
-        rows, [](const TransportRow& r) { return r.geometry != "blob" && r.geometry != "sphere"; });
-    return rows;
-}
-
-std::unique_ptr<ReferenceFixture> make_row_fixture(const TransportRow& row,
-                                                   formats::Environment sky) {
-    auto grid = row.geometry == "blob" ? make_blob(row.size, row.size / 16)
-                                       : make_ball_grid(row.size, row.size / 32);
-    return make_volume_fixture({make_volume(std::move(grid), row.sigma_t, row.albedo, row.g)},
-                               std::move(sky));
-}
-
-bake::Moments march_grid(const ReferenceFixture& fixture, const TransportRow& row,
-                         bake::PathOptions options, std::uint32_t samples) {
-    // From outside: the grid is not cut as sharply as the ball.
-    return look(fixture, row.start - row.size * row.march, row.march, options, samples);
-}
 
 TEST(ReferenceVolume, ScattersADistantLightOnceTwiceAndOften) {
     OPALINE_NEEDS_REFERENCE("volumes.csv");
@@ -106,57 +57,6 @@ TEST(ReferenceVolume, LetsABeamOutWhereItIsKnownTo) {
         }
         expect_within(row, m, limit_for(rows.size()));
     }
-}
-
-// The volume that is the inside of a mesh.
-formats::Volume make_body_volume(Primitive mesh, const TransportRow& row, std::uint32_t voxels) {
-    Scene scene = make_scene({std::move(mesh)});
-    formats::Medium& medium = scene.materials[0].medium.emplace();
-    const float s = row.albedo * row.sigma_t, a = row.sigma_t - s;
-    medium.sigma_s = {s, s, s};
-    medium.sigma_a = {a, a, a};
-    medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
-    medium.phase.g = row.g;
-    return *formats::fill_body(scene, "Grey", voxels, "", "");
-}
-
-TEST(ReferenceVolume, AMeshedBallScattersADistantLightAsABallOfTheTableDoes) {
-    OPALINE_NEEDS_REFERENCE("volumes.csv");
-    auto rows = read_volume_transport("radiance");
-    std::erase_if(rows, [](const TransportRow& r) {
-        return r.geometry != "sphere" || r.quantity != "order1";
-    });
-    ASSERT_FALSE(rows.empty());
-    for (const TransportRow& row : rows) {
-        const auto fixture = make_volume_fixture(
-            {make_body_volume(make_sphere(5, row.size), row, 64)}, make_distant_light(row.light));
-        bake::PathOptions options;
-        options.terms = TermSet::volume_single;
-        expect_within(row, march_grid(*fixture, row, options, 64000), limit_for(rows.size()));
-    }
-}
-
-// A plate 16 wide and 1 thick, seen and lit from above. Light that is scattered once in depth t,
-// of unit irradiance: albedo p int exp(-t / v - t / l) dt / v up to tau, with cosines v and l.
-TEST(ReferenceVolume, AMeshedSlabScattersOnceAsTheClosedFormSays) {
-    TransportRow row;
-    row.g = 0.75f, row.albedo = 0.9f, row.sigma_t = 2;
-    Primitive plate = make_cube(1, false);
-    for (glm::vec3& p : plate.position) {
-        p *= glm::vec3(8, 0.5f, 8);
-    }
-    const glm::vec3 march(0.6f, -0.8f, 0);
-    row.light = {0, 0.8f, 0.6f};
-    const auto fixture = make_volume_fixture({make_body_volume(std::move(plate), row, 128)},
-                                             make_distant_light(row.light));
-    const double cosine = -glm::dot(glm::dvec3(-row.light), glm::dvec3(march)), g = 0.75;
-    const double phase =
-        (1 - g * g) / (4 * std::numbers::pi) / std::pow(1 + g * g - 2 * g * cosine, 1.5);
-    const double slope = 2 / 0.8;
-    row.value = 0.9 * phase / 0.8 * -std::expm1(-2 * slope) / slope;
-    bake::PathOptions options;
-    options.terms = TermSet::volume_single;
-    expect_within(row, look(*fixture, -2.0f * march, march, options, 128000), 4);
 }
 
 // Layers of sigma(z) = sigma_t (1 + 0.8 sin(6 pi z / size)): only the depth counts, whatever the
