@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "tests/bake/emitters/lamp_scenes.h"
+#include "tests/support/volumes.h"
 
 namespace opaline::bake {
 namespace {
@@ -106,6 +107,36 @@ TEST(StraightLight, PointLightFallsWithTheSquareOfTheDistanceAndTheCosine) {
     const glm::dvec3 aside = receive(scene, {{4, 1e-4f, 0}, {0, 1, 0}});
     EXPECT_NEAR(aside.x, 9.0 / 25 * 3 / 5, 1e-3);
     EXPECT_EQ(receive(scene, {{0, 1e-4f, 0}, {0, -1, 0}}).x, 0);
+}
+
+// Smoke 0.22 m thick between lamp and receiver, and more of it behind both: density falls to 0
+// within half a voxel more on either side.
+TEST(StraightLight, SmokeBetweenDimsLampsByBeersLaw) {
+    formats::Scene scene = lit_by({.name = "", .intensity = {9, 9, 9}, .position = {0, 3, 0}});
+    tests::add_surface(scene, tests::make_quad({-0.1f, 2, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}), 0,
+                       1);
+    const Receiver below{{0, 1e-4f, 0}, {0, 1, 0}};
+    const RayScene rays = tests::build_rays(scene);
+    std::uint64_t traced = 0;
+    for (const double height : {1.0, -2.0}) {
+        formats::Volume smoke = tests::make_volume(
+            tests::sample_grid({0.6, 0.1, 0.6}, 0.02, [](glm::dvec3) { return 1.0; }), 1, 0, 0);
+        smoke.sigma_t = {2, 5, 10};
+        smoke.density.to_scene[3] = glm::dvec4(0, height, 0, 1);
+        scene.volumes = {smoke};
+        const DensitySpace space = make_density_space(scene);
+        const glm::dvec3 depth = (height > 0 ? 0.22 : 0.0) * glm::dvec3(2, 5, 10);
+        for (const LampSources& lamp : tests::all_sources(scene)) {
+            const bool is_quad = !lamp.triangles.empty();
+            const Receiver aside = is_quad ? below : Receiver{{0, 2.5f, 0}, {0, 1, 0}};
+            const glm::dvec3 bare = straight_irradiance(rays, lamp, aside, 256, traced);
+            const glm::dvec3 dim = straight_irradiance(rays, lamp, aside, 256, traced, &space);
+            for (int band = 0; band < 3; ++band) {
+                const double share = is_quad ? std::exp(-depth[band]) : 1;
+                EXPECT_NEAR(dim[band] / bare[band], share, 0.04 * share) << height << band;
+            }
+        }
+    }
 }
 
 TEST(StraightLight, SpotFallsOffBetweenItsCones) {

@@ -98,8 +98,15 @@ TEST(ExitLobe, OfLightScatteredOftenIsThatOfAConservativeHalfSpace) {
     }
 }
 
-// A walk's way and length tell the mean of its exits' directions: over exits, the two have the same
-// product with the way.
+// By how much the mean square of a direction along d, in the tangent plane, is above that across
+// it, times |d|^2 / 2.
+double square_along(glm::vec3 d, const glm::mat3& square) {
+    return static_cast<double>(glm::dot(d, square * d) -
+                               0.5f * glm::dot(d, d) * (square[0][0] + square[2][2]));
+}
+
+// A walk's way and length tell the mean of its exits' directions and of their squares: over exits,
+// these have the same products with the way as the directions themselves.
 TEST(ExitLobe, OfLightScatteredOftenRemembersTheWayOfTheWalk) {
     const glm::vec3 up(0, 1, 0);
     constexpr std::uint32_t kWalks = 20000;
@@ -107,7 +114,7 @@ TEST(ExitLobe, OfLightScatteredOftenRemembersTheWayOfTheWalk) {
         const ExitLobe lobe = make_exit_lobe(static_cast<double>(eta));
         const auto slab = tests::make_walked_body(tests::make_wide_slab(40),
                                                   tests::make_forward_medium(1, 0.98f, 0, eta));
-        double directions = 0, ways = 0;
+        double directions = 0, ways = 0, true_squares = 0, squares = 0;
         std::vector<WalkExit> exits;
         WalkCounts counts;
         for (std::uint32_t w = 0; w < kWalks; ++w) {
@@ -117,13 +124,20 @@ TEST(ExitLobe, OfLightScatteredOftenRemembersTheWayOfTheWalk) {
                         counts);
             for (const WalkExit& exit : exits) {
                 if (exit.turned >= 1 && exit.normal.y > 0.5f) {
-                    const glm::vec3 way = exit.weight[0] * glm::vec3(exit.drift.x, 0, exit.drift.z);
+                    const glm::vec3 along(exit.drift.x, 0, exit.drift.z);
+                    const glm::vec3 way = exit.weight[0] * along;
+                    const ExitDirection known = lobe.direction(up, exit);
                     directions += static_cast<double>(glm::dot(way, exit.direction));
-                    ways += static_cast<double>(glm::dot(way, lobe.direction(up, exit).mean));
+                    ways += static_cast<double>(glm::dot(way, known.mean));
+                    const auto weight = static_cast<double>(exit.weight[0]);
+                    true_squares += weight * square_along(along, glm::outerProduct(exit.direction,
+                                                                                   exit.direction));
+                    squares += weight * square_along(along, known.square);
                 }
             }
         }
         EXPECT_NEAR(ways / directions, 1, 0.15) << eta;
+        EXPECT_NEAR(squares / true_squares, 1, 0.45) << eta;
     }
 }
 

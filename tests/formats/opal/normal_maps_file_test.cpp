@@ -57,6 +57,7 @@ TEST(NormalMapsFile, WhatCannotBeIsRefusedByName) {
         {[](Asset& a) { a.normal_maps.record[0].wrap_u = Wrap{3}; }, "wrap mode"},
         {[](Asset& a) { a.normal_maps.record[0].scale = std::numeric_limits<float>::infinity(); },
          "scale"},
+        {[](Asset& a) { a.normal_maps.record[0].scale = -1001; }, "scale"},
         {[](Asset& a) { a.normal_maps.record[0].reserved[2] = 1; }, "not one of this version"},
         {[](Asset& a) { a.normal_maps.tangent.pop_back(); }, "a tangent for each vertex"},
     };
