@@ -47,13 +47,8 @@ BakedRow bake_row(const tests::VolumeRow& row, const Knobs& knobs) {
         is_ball ? tests::make_ball_grid(size, size / 8) : tests::make_blob(size, size / 4),
         static_cast<float>(row.number("sigma_t")), static_cast<float>(row.number("albedo")),
         static_cast<float>(row.number("g"))));
-    const VolumePlan plan = plan_volumes(scene, knobs);
-    const RayScene sky = tests::empty_space();
-    StageLog log;
-    auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
-    EXPECT_TRUE(volumes.has_value());
     BakedRow baked;
-    baked.volumes = std::move(*volumes);
+    baked.volumes = tests::bake_volumes_of(scene, knobs);
     // From well outside: an edge of a grid is a voxel wide.
     const Vec3 along = vector_of(row, "vx", "vy", "vz");
     baked.ray.direction = along;
@@ -114,13 +109,9 @@ TEST(VolumeRadiance, ABlobThatAbsorbsNothingIsNotSeenUnderEvenLightFromAnySide) 
         const formats::Scene scene =
             tests::scene_of(tests::make_volume(tests::make_blob(0.5, 0.125), 6, 1, g));
         const Knobs knobs = fine_knobs();
-        const VolumePlan plan = plan_volumes(scene, knobs);
-        const RayScene sky = tests::empty_space();
-        StageLog log;
-        auto baked = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
-        ASSERT_TRUE(baked.has_value());
-        const runtime::VolumeLight lit = runtime::relight_volumes(baked->view(), white);
-        const runtime::LitVolumes volumes = runtime::light_volumes(baked->view(), lit);
+        const formats::Volumes baked = tests::bake_volumes_of(scene, knobs);
+        const runtime::VolumeLight lit = runtime::relight_volumes(baked.view(), white);
+        const runtime::LitVolumes volumes = runtime::light_volumes(baked.view(), lit);
         // Walks are noise at a node: rays from all sides, beside the middle.
         std::mt19937 engine(1);
         std::normal_distribution<float> normal;
@@ -148,14 +139,10 @@ TEST(VolumeRadiance, AThinBlobUnderABeamShowsThePhaseFunctionAtAllAngles) {
         const formats::Scene scene = tests::scene_of(
             tests::make_volume(tests::make_blob(kDeviation, kDeviation / 8),
                                static_cast<float>(kSigmaS), 1, static_cast<float>(g)));
-        const VolumePlan plan = plan_volumes(scene, knobs);
-        const RayScene sky = tests::empty_space();
-        StageLog log;
-        const auto baked = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
-        ASSERT_TRUE(baked.has_value());
+        const formats::Volumes baked = tests::bake_volumes_of(scene, knobs);
         const Vec3 toward = formats::texel_direction(8, 2, 3, 1);
-        const runtime::VolumeLight lit = runtime::relight_volumes(baked->view(), beam(toward, 8));
-        const runtime::LitVolumes volumes = runtime::light_volumes(baked->view(), lit);
+        const runtime::VolumeLight lit = runtime::relight_volumes(baked.view(), beam(toward, 8));
+        const runtime::LitVolumes volumes = runtime::light_volumes(baked.view(), lit);
         const tests::CutPhase phase = tests::make_cut_phase(g);
         const Vec3 side = normalize(cross(toward, Vec3{1, 0.2f, 0.3f}));
         for (double angle = 0.02; angle < 3.14; angle += 0.02) {

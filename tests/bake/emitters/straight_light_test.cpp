@@ -109,7 +109,7 @@ TEST(StraightLight, PointLightFallsWithTheSquareOfTheDistanceAndTheCosine) {
     EXPECT_EQ(receive(scene, {{0, 1e-4f, 0}, {0, -1, 0}}).x, 0);
 }
 
-// Smoke 0.22 m thick between lamp and receiver, and more of it behind both: density falls to 0
+// Smoke 0.22 m thick between lamp and receiver, or beyond the lamp: its density falls to 0
 // within half a voxel more on either side.
 TEST(StraightLight, SmokeBetweenDimsLampsByBeersLaw) {
     formats::Scene scene = lit_by({.name = "", .intensity = {9, 9, 9}, .position = {0, 3, 0}});

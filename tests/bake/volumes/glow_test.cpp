@@ -23,18 +23,6 @@ formats::Scene glowing_blob(glm::vec3 sigma_t, glm::vec3 albedo, float g, glm::v
     return tests::scene_of(std::move(blob));
 }
 
-formats::Volumes bake_glowing(const formats::Scene& scene, const Knobs& knobs,
-                              unsigned threads = 0) {
-    const VolumePlan plan = plan_volumes(scene, knobs);
-    const RayScene sky = tests::empty_space();
-    StageLog log;
-    Context context;
-    context.threads = threads;
-    auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, context, log);
-    EXPECT_TRUE(volumes.has_value());
-    return std::move(*volumes);
-}
-
 Knobs glow_knobs() {
     Knobs knobs = tests::knobs_for(Quality::preview);
     knobs.cubemap_size = 8;
@@ -76,7 +64,7 @@ TEST(GlowWalks, TheirLightIsScatteredTowardWhereItGoes) {
 TEST(BakeGlow, InEquilibriumWithEvenLightAScatteringVolumeCannotBeSeen) {
     for (const float g : {0.0f, 0.5f}) {
         const formats::Scene scene = glowing_blob({1, 3, 6}, {0.9f, 0.7f, 0.4f}, g, glm::vec3(1));
-        const formats::Volumes volumes = bake_glowing(scene, glow_knobs());
+        const formats::Volumes volumes = tests::bake_volumes_of(scene, glow_knobs());
         ASSERT_EQ(volumes.glow.record.size(), 1u);
         runtime::LightVector white = runtime::project_cubemap(
             std::vector<formats::Rgb>(formats::cubemap_texels(8), {1, 1, 1}), 8);
@@ -100,8 +88,8 @@ TEST(BakeGlow, AnyNumberOfThreadsGivesTheSameBits) {
     const formats::Scene scene = glowing_blob({1, 2, 3}, glm::vec3(0.8f), 0.3f, glm::vec3(1));
     Knobs knobs = glow_knobs();
     knobs.set(kVolumeSpacing, 8);
-    const formats::Glow one = bake_glowing(scene, knobs, 1).glow;
-    const formats::Glow four = bake_glowing(scene, knobs, 4).glow;
+    const formats::Glow one = tests::bake_volumes_of(scene, knobs, 1).glow;
+    const formats::Glow four = tests::bake_volumes_of(scene, knobs, 4).glow;
     EXPECT_EQ(one.code, four.code);
     EXPECT_EQ(one.value, four.value);
     EXPECT_EQ(one.brick, four.brick);
@@ -114,7 +102,7 @@ TEST(BakeGlow, RadianceIsKeptToAThousandthAndThereWhereNoDensityIs) {
     for (float& value : volume.density.value) {
         value = value < 0.9f ? 0 : value;
     }
-    const formats::Volumes volumes = bake_glowing(scene, glow_knobs());
+    const formats::Volumes volumes = tests::bake_volumes_of(scene, glow_knobs());
     const formats::VolumeRecord& record = volumes.records.at(0);
     ASSERT_EQ(volumes.glow.record.size(), 1u);
     const formats::GlowRecord& glow = volumes.glow.record[0];
@@ -160,7 +148,7 @@ TEST(PlanGlow, LightUnderTheBudgetIsLeftOutAndWhatIsLeftOutIsDarker) {
         // Forced on, it adds no more than the bound along any ray.
         Knobs forced = knobs;
         forced.simulate_all = true;
-        const formats::Volumes volumes = bake_glowing(scene, forced);
+        const formats::Volumes volumes = tests::bake_volumes_of(scene, forced);
         const runtime::VolumeLight lit =
             runtime::relight_volumes(volumes.view(), {}, {.terms = formats::TermSet::none});
         const runtime::LitVolumes ready = runtime::light_volumes(volumes.view(), lit);
@@ -180,7 +168,7 @@ TEST(PlanGlow, WhatIsLeftOutByItsNameIsNotThere) {
     const VolumePlan plan = plan_volumes(scene, *knobs);
     EXPECT_FALSE(plan.entries.at(2).on);
     EXPECT_EQ(plan.layouts.at(0).glow_terms, 0u);
-    EXPECT_TRUE(bake_glowing(scene, *knobs).glow.record.empty());
+    EXPECT_TRUE(tests::bake_volumes_of(scene, *knobs).glow.record.empty());
 }
 
 }  // namespace

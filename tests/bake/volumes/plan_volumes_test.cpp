@@ -144,14 +144,10 @@ TEST(PlanVolumes, TheHomogeneousPathFindsTheLightOfTheGrid) {
     double light[2] = {};
     for (const bool is_even : {false, true}) {
         const formats::Scene scene = tests::scene_of(box_of_cells(is_even ? 0 : 1e-4));
-        const VolumePlan plan = plan_volumes(scene, knobs);
-        const RayScene sky = tests::empty_space();
-        StageLog log;
-        const auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
-        ASSERT_TRUE(volumes.has_value());
-        const formats::VolumeRecord& record = volumes->records.at(0);
+        const formats::Volumes volumes = tests::bake_volumes_of(scene, knobs);
+        const formats::VolumeRecord& record = volumes.records.at(0);
         for (std::uint32_t row = 0; row < record.node_count * record.terms(); ++row) {
-            light[is_even ? 1 : 0] += tests::integrate_row(volumes->rows, record, row);
+            light[is_even ? 1 : 0] += tests::integrate_row(volumes.rows, record, row);
         }
     }
     EXPECT_NEAR(light[1] / light[0], 1, 0.005);

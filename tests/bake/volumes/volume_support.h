@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <random>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
@@ -30,6 +32,24 @@ inline bake::Knobs knobs_for(bake::Quality quality) {
     bake::BakeOptions options;
     options.quality = quality;
     return *bake::resolve_knobs(bake::all_effects(), options);
+}
+
+/// What a bake makes of a scene's volumes; `surfaces`: those of the scene.
+inline formats::Volumes bake_volumes_of(const formats::Scene& scene, const bake::RayScene& surfaces,
+                                        const bake::Knobs& knobs, unsigned threads = 0) {
+    const bake::VolumePlan plan = bake::plan_volumes(scene, knobs);
+    bake::StageLog log;
+    bake::Context context;
+    context.threads = threads;
+    auto volumes = bake::bake_volumes({scene, surfaces, plan.layouts, knobs}, context, log);
+    if (!volumes) throw std::runtime_error("volumes cannot be baked");
+    return std::move(*volumes);
+}
+
+/// The same of a scene without surfaces.
+inline formats::Volumes bake_volumes_of(const formats::Scene& scene, const bake::Knobs& knobs,
+                                        unsigned threads = 0) {
+    return bake_volumes_of(scene, empty_space(), knobs, threads);
 }
 
 /// The integral of one band of a row over all directions.

@@ -36,14 +36,8 @@ Furnace measure(const formats::Volumes& volumes) {
     return furnace;
 }
 
-formats::Volumes bake(const formats::Volume& volume, Knobs knobs) {
-    const formats::Scene scene = tests::scene_of(volume);
-    const VolumePlan plan = plan_volumes(scene, knobs);
-    const RayScene sky = tests::empty_space();
-    StageLog log;
-    auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
-    EXPECT_TRUE(volumes.has_value());
-    return std::move(*volumes);
+formats::Volumes bake(const formats::Volume& volume, const Knobs& knobs) {
+    return tests::bake_volumes_of(tests::scene_of(volume), knobs);
 }
 
 Knobs coarse_knobs(std::uint32_t walks) {

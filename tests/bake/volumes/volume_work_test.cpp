@@ -40,15 +40,11 @@ TEST(VolumeWork, NodesAndRowsAreThoseOfTheFile) {
     const formats::Scene scene = scene_of_blob(4, 0.9f, 0.5f);
     const Knobs knobs = knobs_of_draft();
     const VolumeWork work = work_of(scene, knobs);
-    const VolumePlan plan = plan_volumes(scene, knobs);
-    const RayScene sky = tests::empty_space();
-    StageLog log;
-    const auto volumes = bake_volumes({scene, sky, plan.layouts, knobs}, {}, log);
-    ASSERT_TRUE(volumes.has_value());
-    EXPECT_EQ(work.nodes, static_cast<double>(volumes->node.size()));
+    const formats::Volumes volumes = tests::bake_volumes_of(scene, knobs);
+    EXPECT_EQ(work.nodes, static_cast<double>(volumes.node.size()));
     EXPECT_EQ(work.nodes * (1 + work.terms),
-              static_cast<double>(volumes->rows.row_offset.size() - 1));
-    EXPECT_EQ(work.bricks, static_cast<double>(volumes->records[0].brick_count));
+              static_cast<double>(volumes.rows.row_offset.size() - 1));
+    EXPECT_EQ(work.bricks, static_cast<double>(volumes.records[0].brick_count));
 }
 
 TEST(VolumeWork, FlightsAreThoseOfAllNodesWithinAFactorOfTwo) {
