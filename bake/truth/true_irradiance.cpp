@@ -129,9 +129,10 @@ std::uint64_t add_smooth_irradiance(const RayScene& rays, const SmoothLights& li
     RayPacket::Lane cosine;
     LaneMask lanes;
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-        const float r2 = (static_cast<float>(lane / kSide) + u.x) / kSide;
-        const float phi =
-            2 * static_cast<float>(pi) * (static_cast<float>(lane % kSide) + u.y) / kSide;
+        const std::uint32_t ring = lane / kSide;
+        const std::uint32_t sector = lane % kSide;
+        const float r2 = (static_cast<float>(ring) + u.x) / kSide;
+        const float phi = 2 * static_cast<float>(pi) * (static_cast<float>(sector) + u.y) / kSide;
         const float r = std::sqrt(r2);
         cosine[lane] = std::sqrt(std::max(0.0f, 1 - r2));
         const glm::vec3 w = frame.to_world({r * std::cos(phi), r * std::sin(phi), cosine[lane]});
