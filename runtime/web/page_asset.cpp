@@ -41,6 +41,10 @@ void put_volumes(DataScript& script, const formats::VolumesView& volumes) {
     script.put("corners", volumes.corner);
     script.put("phase", volumes.phase);
     put_rows(script, "volume ", volumes.rows);
+    script.put_records("glow", volumes.glow.record);
+    script.put("glow bricks", volumes.glow.brick);
+    script.put("glow codes", volumes.glow.code);
+    script.put("glow values", volumes.glow.value);
 }
 
 void put_images(DataScript& script, const AssetView& asset) {
@@ -115,10 +119,6 @@ std::vector<std::string> left_out_of_page(const AssetView& asset) {
     std::vector<std::string> left_out;
     if (!asset.clouds.empty()) {
         left_out.push_back("its light does not turn, and its clouds stand still");
-    }
-    if (!asset.volumes.glow.empty()) {
-        left_out.emplace_back(
-            "light of emitters in its volumes, and what these send out themselves");
     }
     if (has_bodies_apart(asset)) {
         left_out.push_back("beneath its clouds all bodies have the light of their centre");

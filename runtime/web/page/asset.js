@@ -52,6 +52,13 @@ const Asset = (() => {
              code: arrays.get(`${of}code`) };
   }
 
+  // What volumes send out, and scatter of emitters (`GLOW`).
+  function readGlow(arrays) {
+    return records(arrays.get("glow"), 12, (w, f) => ({
+      volume: w[0], emitter: w[1], firstValue: large(w, 2), valueScale: f[4], terms: w[5],
+      firstBrick: w[6], bricks: w[7], codeScale: f[8] }));
+  }
+
   function readVolumes(arrays, cubemap) {
     const list = records(arrays.get("volumes"), 48, (w, f) => ({
       toWorld: Array.from(f.subarray(0, 12)), extinction: Array.from(f.subarray(12, 15)),
@@ -62,8 +69,15 @@ const Asset = (() => {
       single: w[33], multiple: w[34], bands: w[35], firstRow: w[36], firstBandRow: w[37],
       firstCode: large(w, 38), moments: Array.from(f.subarray(40, 45)) }));
     if (list.length === 0) return null;
+    const glow = readGlow(arrays);
+    list.forEach((volume, v) => {
+      volume.glow = glow.filter(record => record.volume === v);
+      volume.own = volume.glow.find(record => record.bricks > 0) ?? null;
+    });
     return { list, table: arrays.get("brick table"), scale: arrays.get("density scale"),
              density: arrays.get("density"), corners: arrays.get("corners"),
+             glowBricks: arrays.get("glow bricks"), glowCodes: arrays.get("glow codes"),
+             glowValues: arrays.get("glow values"),
              phase: arrays.get("phase"), rows: readRows(arrays, "volume ", cubemap) };
   }
 

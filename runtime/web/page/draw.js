@@ -9,7 +9,8 @@ const Draw = (() => {
                    map: 11, disc_table: 12, sampled: 13, normal_image: 13, sum: 14, samples: 0, depth: 1,
                    brick_numbers: 2, density_codes: 3, corner_numbers: 4, node_light: 5,
                    phase_entries: 6, table_values: 2, sun_values: 3, thickness_values: 4, albedo_map: 5,
-                   ground_light: 6, base_light: 7, sheet_light: 7, sheet_through: 8 };
+                   ground_light: 6, base_light: 7, sheet_light: 7, sheet_through: 8,
+                   glow_words: 9 };
 
   // GLSL ES 3.00 has no explicit places of what passes between stages, nor of uniforms.
   function translate(text, stage) {
@@ -227,10 +228,11 @@ const Draw = (() => {
   // What never changes of volumes.
   function makeVolumeObjects(gl, volumes, hasLayer) {
     const numbers = [gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT];
-    const most = Math.max(...volumes.list.map(volume => Math.max(volume.single, volume.multiple, 1)));
+    const most = Math.max(1, ...volumes.list.map(Volumes.termsOf));
+    const glows = volumes.list.some(volume => volume.own !== null);
     const defines = [["VOLUMES", volumes.list.length], ["HARMONICS", most], ["SUNS", Volumes.kMostSuns],
                      ["BRICK_WORDS", Volumes.kBrickWords], ["LAYER", hasLayer ? 1 : 0], ["SHEET_TOLERANCE", "0.03125"],
-                     ["FORWARD_DEPTH", ""]];
+                     ["FORWARD_DEPTH", ""], ...(glows ? [["GLOW", ""]] : [])];
     return {
       program: makeProgram(gl, defines, ["screen.vert.glsl"],
                            ["volume_march.glsl", "harmonics.glsl", "volumes.frag.glsl"]),
@@ -238,7 +240,9 @@ const Draw = (() => {
       table: makeLines(gl, numbers, volumes.table),
       density: makeLines(gl, numbers, Volumes.packDensity(volumes)),
       corners: makeLines(gl, numbers, volumes.corners),
-      phase: makeLines(gl, [gl.R32F, gl.RED, gl.FLOAT], volumes.phase), light: null, lit: null,
+      phase: makeLines(gl, [gl.R32F, gl.RED, gl.FLOAT], volumes.phase),
+      glow: glows ? makeLines(gl, numbers, Volumes.packGlow(volumes)) : null,
+      light: null, lit: null, litBy: null,
     };
   }
 
@@ -360,9 +364,13 @@ const Draw = (() => {
         turned = TurnedLight.uniforms(projected, asset.cubemap);
       }
       if (volumes === null) return;
-      volumes.lit = Volumes.relight(asset.volumes, projected, asset.cubemap);
+      if (volumes.litBy !== projected) {
+        volumes.lit = Volumes.relight(asset.volumes, projected, asset.cubemap);
+        volumes.litBy = projected;
+      }
       gl.deleteTexture(volumes.light);
-      volumes.light = makeLines(gl, [gl.RGBA32F, gl.RGBA, gl.FLOAT], volumes.lit.values, 4);
+      volumes.light = makeLines(gl, [gl.RGBA32F, gl.RGBA, gl.FLOAT],
+                                Volumes.withGlow(asset.volumes, volumes.lit, colors), 4);
     }
 
     function resize(width, height) {
@@ -478,7 +486,7 @@ const Draw = (() => {
     }
 
     // What is seen through volumes, of one sample a pixel, from `sampled` to `marched`.
-    function drawVolumes(frame, place) {
+    function drawVolumes(frame, colors, place) {
       const { program, lit } = volumes;
       gl.bindFramebuffer(gl.FRAMEBUFFER, marched.frame);
       gl.useProgram(program.name);
@@ -489,8 +497,9 @@ const Draw = (() => {
       bind(gl, "corner_numbers", volumes.corners);
       bind(gl, "node_light", volumes.light);
       bind(gl, "phase_entries", volumes.phase);
+      bind(gl, "glow_words", volumes.glow);
       setUniforms(gl, program, {
-        ...rayUniforms(frame, place), ...Volumes.uniforms(asset.volumes, volumes.inverses, lit.parts, frame),
+        ...rayUniforms(frame, place), ...Volumes.uniforms(asset.volumes, volumes.inverses, lit.parts, frame, colors),
         supersampling: 1, near_plane: frame.unit * frame.near });
       if (layer !== null) {
         bind(gl, "sheet_light", clouded.sheet[0]);
@@ -513,7 +522,7 @@ const Draw = (() => {
       drawSurfaces(frame, turn, colors, place, across, [i, j]);
       gl.disable(gl.DEPTH_TEST);
       if (layer !== null) drawLayer(frame, place);
-      if (volumes !== null) drawVolumes(frame, place);
+      if (volumes !== null) drawVolumes(frame, colors, place);
       gl.bindFramebuffer(gl.FRAMEBUFFER, sum.frame);
       gl.useProgram(adding.name);
       bind(gl, "sampled", (marched ?? clouded ?? sampled).color);

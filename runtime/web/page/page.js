@@ -10,7 +10,7 @@ opaline.page = (() => {
   const lights = new Map();  // by number, as read
   let asset, draw, state, home;
   let drawn = 0;             // samples of the current picture
-  let shown = { light: -1, turn: NaN, colors: null };
+  let shown = { light: -1, turn: NaN, colors: null }, projected = null;
   let requested = false, moved = 0, lastFrame = 0, coarseness = 1;
 
   function say(text) { at("message").textContent = text; }
@@ -102,9 +102,9 @@ opaline.page = (() => {
       return false;
     }
     if (shown.light !== light) draw.setLight(lights.get(light));
-    if (shown.light !== light || shown.turn !== turn || shown.colors !== colors) {
-      draw.relight(Light.project(lights.get(light), asset.cubemap, turn * Math.PI / 180), colors);
-    }
+    const isNew = shown.light !== light || shown.turn !== turn;
+    if (isNew) projected = Light.project(lights.get(light), asset.cubemap, turn * Math.PI / 180);
+    if (isNew || shown.colors !== colors) draw.relight(projected, colors);
     shown = { light, turn, colors };
     return true;
   }

@@ -1,6 +1,6 @@
 "use strict";
-// Volumes: their density as shaders read it, and the light of their nodes: the steps of
-// runtime/volumes and runtime/gl/gl_volumes.cpp.
+// Volumes: their density and own light as shaders read them, and the light of their nodes: the steps
+// of runtime/volumes and runtime/embed_gl/volume_tables.cpp.
 const Volumes = (() => {
   const kNone = 0xffffffff, kPhaseEntries = 257, kMostSuns = 8, kBrickWords = 1 + 81 * 8;
 
@@ -40,6 +40,50 @@ const Volumes = (() => {
       }
     }
     return words;
+  }
+
+  // Codes of a brick's own light at 9 x 9 x 9 voxels, those of neighbours among them; null where all
+  // are 0. `places`: of each brick of the volume, its number among codes or kNone.
+  function padGlow(volumes, volume, cell, places) {
+    const [nx, ny, nz] = volume.extent, [x0, y0, z0] = cell, words = new Uint32Array(729);
+    for (let i = 0; i < 729; ++i) {
+      const x = i % 9, y = Math.floor(i / 9) % 9, z = Math.floor(i / 81);
+      const at = [x0 + (x >> 3), y0 + (y >> 3), z0 + (z >> 3)];
+      if (at[0] >= nx || at[1] >= ny || at[2] >= nz) continue;
+      const brick = volumes.table[volume.firstCell + (at[2] * ny + at[1]) * nx + at[0]];
+      const place = brick === kNone ? kNone : places[brick];
+      if (place !== kNone) words[i] = volumes.glowCodes[512 * place + ((z & 7) * 8 + (y & 7)) * 8 + (x & 7)];
+    }
+    return words.some(word => word !== 0) ? words : null;
+  }
+
+  // Of each brick of all volumes the first of its words, or kNone; then those of bricks that glow.
+  function packGlow(volumes) {
+    const firsts = new Uint32Array(volumes.scale.length).fill(kNone), parts = [firsts];
+    let size = firsts.length;
+    for (const volume of volumes.list.filter(volume => volume.own !== null)) {
+      const [nx, ny, nz] = volume.extent, places = new Uint32Array(volume.bricks).fill(kNone);
+      for (let i = volume.own.firstBrick; i < volume.own.firstBrick + volume.own.bricks; ++i) {
+        places[volumes.glowBricks[i]] = i;
+      }
+      for (let at = 0; at < nx * ny * nz; ++at) {
+        const number = volumes.table[volume.firstCell + at];
+        if (number === kNone) continue;
+        const cell = [at % nx, Math.floor(at / nx) % ny, Math.floor(at / nx / ny)];
+        const words = padGlow(volumes, volume, cell, places);
+        if (words === null) continue;
+        firsts[volume.firstBrickNumber + number] = size;
+        parts.push(words);
+        size += words.length;
+      }
+    }
+    const all = new Uint32Array(size);
+    let to = 0;
+    for (const part of parts) {
+      all.set(part, to);
+      to += part.length;
+    }
+    return all;
   }
 
   // Rows of a 3 x 4 matrix, world to index coordinates; null where there is no inverse.
@@ -147,7 +191,11 @@ const Volumes = (() => {
     }
   }
 
-  // Light of all nodes: four values a coefficient, stride of them a node; suns: their directions.
+  // The most terms of a node, suns left out.
+  const termsOf = volume => Math.max(volume.single, volume.multiple, ...volume.glow.map(g => g.terms));
+
+  // What nodes scatter of distant light: four values a coefficient, stride of them a node; suns: their
+  // directions.
   function relight(volumes, { integral, coefficients }, n) {
     const wants = volumes.list.map((volume, v) =>
         needsSuns(volume, volumes.phase.subarray(kPhaseEntries * v, kPhaseEntries * (v + 1))));
@@ -164,7 +212,7 @@ const Volumes = (() => {
                      momentsOfRest: suns.length > 0 ? joined(momentLights(rest, n, most(true))) : null };
     let first = 0;
     const parts = volumes.list.map((volume, v) => {
-      const part = { terms: Math.max(volume.single, volume.multiple), suns: wants[v] ? suns.length : 0,
+      const part = { terms: termsOf(volume), suns: wants[v] ? suns.length : 0,
                      first };
       first += volume.nodes * (part.terms + part.suns);
       return part;
@@ -174,8 +222,30 @@ const Volumes = (() => {
     return { parts, values, suns: suns.map(sun => sun.direction) };
   }
 
+  // The same with what nodes scatter of emitters; `colors`: times which these shine.
+  function withGlow(volumes, { parts, values }, colors) {
+    if (volumes.glowValues.length === 0) return values;
+    const sum = values.slice();
+    volumes.list.forEach((volume, v) => {
+      const { first, terms, suns } = parts[v];
+      for (const glow of volume.glow) {
+        const color = colors[glow.emitter].map(c => c * glow.valueScale);
+        if (color.every(c => c === 0)) continue;
+        for (let node = 0, from = glow.firstValue; node < volume.nodes; ++node) {
+          const to = 4 * (first + node * (terms + suns));
+          for (let k = 0; k < glow.terms; ++k, from += 3) {
+            for (let b = 0; b < 3; ++b) {
+              sum[to + 4 * k + b] += color[b] * Light.kFloats[volumes.glowValues[from + b]];
+            }
+          }
+        }
+      }
+    });
+    return sum;
+  }
+
   // What the shader knows of each volume, seen from there.
-  function uniforms(volumes, inverses, parts, frame) {
+  function uniforms(volumes, inverses, parts, frame, colors) {
     const values = {};
     volumes.list.forEach((volume, v) => {
       const inverse = inverses[v], set = (name, value) => { values[`volumes[${v}].${name}`] = value; };
@@ -191,9 +261,13 @@ const Volumes = (() => {
       set("extinction", [...volume.extinction.map(s => Math.min(s / frame.unit, 1e30)), 0]);
       set("albedo", [...volume.albedo, 0]);
       set("coefficient", [3 * parts[v].first, parts[v].suns, kPhaseEntries * v, 0]);
+      const glow = volume.own === null ? [0, 0, 0]
+          : colors[volume.own.emitter].map(c => Math.min(c * volume.own.codeScale / frame.unit, 1e30));
+      set("glow", [...glow, 0]);
     });
     return values;
   }
 
-  return { packDensity, inverseOf, relight, uniforms, splitSuns, harmonics, kBrickWords, kMostSuns };
+  return { packDensity, packGlow, inverseOf, termsOf, relight, withGlow, uniforms, splitSuns, harmonics,
+           kBrickWords, kMostSuns };
 })();

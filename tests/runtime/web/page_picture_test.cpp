@@ -11,6 +11,7 @@
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/web/page_layer.h"
 #include "tests/runtime/picture/synthetic_asset.h"
+#include "tests/runtime/volumes/glow_support.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 #include "tests/runtime/web/browser.h"
 #include "tests/runtime/web/every_surface.h"
@@ -49,7 +50,7 @@ DisplayPicture render_on_cpu(const formats::AssetView& view, const formats::Envi
     options.specular = &specular;
     options.emitters = emitters;
     options.lights = light;
-    const VolumeLight volumes = relight_volumes(view.volumes, light);
+    const VolumeLight volumes = relight_volumes(view.volumes, light, {.emitters = emitters});
     options.volumes = &volumes;
     const auto picture = render_software(
         view, shade_for_picture(view, light, camera.eye, formats::TermSet::all, 0, emitters), sky,
@@ -217,6 +218,60 @@ TEST(PagePicture, VolumesLookAsOnTheCpuUnderASunBehindThem) {
         test::take_page_picture(*page, "eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2", 80, 60);
     EXPECT_EQ(shown.console, "");
     expect_same_pixels(render_on_cpu(asset.view(), sky, camera, {{}, 20, -2}), shown.rgba);
+}
+
+// Fire of one brick of eight in a volume that is dark elsewhere, beside dark smoke.
+formats::Asset make_fire() {
+    formats::Asset asset = test::make_asset(8, 16);
+    formats::append_emitter(asset.emitters, "lamp");
+    formats::append_emitter(asset.emitters, "fire");
+    asset.volumes = test::make_volumes(8);
+    const test::TestVolume smoke = make_smoke(9, 1, 1);
+    test::TestVolume other = make_smoke(1, 0, 3);
+    other.to_world[3] = -1;
+    test::add_volume(asset.volumes, other);
+    test::add_volume(asset.volumes, smoke);
+    test::add_glow(asset.volumes, smoke,
+                   [](float x, float y, float z) {
+                       const float r2 = (x - 2) * (x - 2) + (y - 2) * (y - 2) + (z - 2) * (z - 2);
+                       return std::exp(-r2 / 12) * Rgb{60, 20, 10};
+                   },
+                   {0.3f, 0.2f, 0.1f});
+    asset.volumes.glow.record.back().emitter = 1;
+    return asset;
+}
+
+TEST(PagePicture, FireShinesAndLightsItsSmokeAsOnTheCpuInItsSlidersColour) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    const formats::Asset asset = make_fire();
+    const PageLight lights[] = {{"sky", test::make_lat_long(64, 32, test::two_lights)}};
+    const auto page = make_web_page(asset.view(), lights, "fire", "a.opal", 0);
+    ASSERT_TRUE(page);
+    Camera camera;
+    camera.eye = {0.7f, 1, 4};
+    camera.target = {0, 0.7f, 0};
+    camera.fov_y = 32;
+    camera.width = 64;
+    camera.height = 48;
+    camera.near_plane = near_plane_for(asset.view(), camera.eye);
+    PageView wanted{"eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2&emitter=fire%3D0.5,1,3",
+                    20,
+                    -2,
+                    {{1, 1, 1}, {0.5f, 1, 3}}};
+    const auto shown = test::take_page_picture(*page, wanted.address, 64, 48);
+    EXPECT_EQ(shown.console, "");
+    const auto cpu = [&] {
+        return render_on_cpu(asset.view(), lights[0].environment, camera, wanted);
+    };
+    const DisplayPicture lit = cpu();
+    expect_same_pixels(lit, shown.rgba);
+    wanted.emitters[1] = {};
+    const DisplayPicture dark = cpu();
+    int of_fire = 0;
+    for (std::size_t i = 0; i < lit.rgba.size(); ++i) {
+        of_fire = std::max(of_fire, lit.rgba[i] - dark.rgba[i]);
+    }
+    EXPECT_GT(of_fire, 60);
 }
 
 // Bumps with holes over a ground of squares; `with_bodies`: a sheet and smoke partly in them.
