@@ -179,29 +179,28 @@ OPALINE_API opaline_status opaline_gl_get_normal_map(const opaline_gl* gl, uint3
 
 /* --- Volumes ------------------------------------------------------------------------------ */
 
-/* Light that volumes send out by themselves is scattered in them, but not seen directly.
-
-   Uploads what the volumes scatter, updated by opaline_volume_light_update, which relights their
-   nodes on the CPU: 12 bytes a node and term. Until the first call they only absorb. The volume
-   light must have been made for the handle of the asset that opaline_gl_create had; it is copied
-   from. Nothing happens without volumes, or without OPALINE_GL_WITH_VOLUMES. */
+/* Uploads what the volumes scatter, updated by opaline_volume_light_update, which relights their
+   nodes on the CPU: 12 bytes a node and term; and the colour of what they send out by themselves
+   (fire), black with OPALINE_SHADE_WITHOUT_EMISSION. Until the first call they only absorb. The
+   volume light must have been made for the handle of the asset that opaline_gl_create had; it is
+   copied from. Nothing happens without volumes, or without OPALINE_GL_WITH_VOLUMES. */
 OPALINE_API opaline_status opaline_gl_light_volumes(opaline_gl* gl,
                                                     const opaline_volume_light* volume_light);
 
 /* What share/opaline/glsl/opaline_volumes.glsl reads, in GLSL 4.00 or ES 3.00 and later. Before it
-   the host defines OPALINE_VOLUMES and OPALINE_VOLUME_TERMS, the `count` and `terms` below; a
-   program costs registers and time to compile for each volume. Its functions take places as
-   offsets from the eye of opaline_gl_look_from, in world directions [m], so that floats keep
-   digits; `direction` and `to_eye` are unit vectors:
+   the host defines OPALINE_VOLUMES, OPALINE_VOLUME_TERMS and OPALINE_VOLUME_GLOW, the `count`,
+   `terms` and `glows` below (without the last, volumes show no light of their own); a program costs
+   registers and time to compile for each volume. Its functions take places as offsets from the eye
+   of opaline_gl_look_from, in world directions [m], so that floats keep digits; `direction` and
+   `to_eye` are unit vectors:
 
        OpalineSeen opaline_march_volumes(vec3 from, vec3 direction, float begin, float end)
-           .radiance that volumes scatter toward `from` and .transmittance of what lies behind, of
-           the ray from begin >= 0 to end: as opaline_volumes_march with its usual options. An end
-           of 1e30: a ray without end. A pixel shows radiance + transmittance * its color.
+           .radiance that volumes scatter and send out toward `from` and .transmittance of what lies
+   behind, of the ray from begin >= 0 to end: as opaline_volumes_march with its usual options. An
+   end of 1e30: a ray without end. A pixel shows radiance + transmittance * its color.
        OpalineVolumeSample opaline_sample_volumes(vec3 place, vec3 to_eye)
-           .extinction [1/m] and .scattered radiance per metre: as opaline_volumes_sample.
-
-   What volumes send out by themselves (fire) is not part of either yet. */
+           .extinction [1/m] and .scattered radiance per metre, with what is sent out: as
+           opaline_volumes_sample. */
 typedef struct opaline_gl_volumes {
     size_t struct_size; /* in: sizeof(opaline_gl_volumes) */
     uint32_t count;     /* 0: there are none, or without the flag; then all names are 0 */
@@ -210,9 +209,12 @@ typedef struct opaline_gl_volumes {
     /* 2D textures of the usampler2D opaline_brick_numbers, opaline_density_codes and
        opaline_corner_numbers, and of the sampler2D opaline_node_light and opaline_phase_entries. */
     uint32_t brick_numbers, density_codes, corner_numbers, node_light, phase_entries;
+    uint32_t glows;      /* 1: one of them sends out light by itself; else 0 */
+    uint32_t glow_words; /* then 2D texture of the usampler2D opaline_glow_words; else 0 */
 } opaline_gl_volumes;
 
-/* Fills `volumes`. The names stay the library's and the same until the release. */
+/* Fills `volumes`, a struct_size of those before `glows` too. The names stay the library's and the
+   same until the release. */
 OPALINE_API opaline_status opaline_gl_get_volumes(const opaline_gl* gl,
                                                   opaline_gl_volumes* volumes);
 

@@ -1,3 +1,6 @@
+#include <cstddef>
+#include <cstring>
+
 #include "runtime/api_support.h"
 #include "runtime/embed_gl/api_gl_support.h"
 #include "runtime/embed_gl/saved_state.h"
@@ -31,19 +34,24 @@ opaline_status opaline_gl_get_volumes(const opaline_gl* gl, opaline_gl_volumes* 
     if (gl == nullptr || volumes == nullptr) {
         return null_argument();
     }
-    if (volumes->struct_size != sizeof(opaline_gl_volumes)) {
+    // Hosts of the first version know nothing of own light.
+    const std::size_t size = volumes->struct_size;
+    if (size != sizeof(opaline_gl_volumes) && size != offsetof(opaline_gl_volumes, glows)) {
         return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
     }
     const runtime::VolumeTextures& made = gl->volumes;
-    *volumes = {sizeof(opaline_gl_volumes),
-                static_cast<std::uint32_t>(made.size()),
-                made.terms(),
-                made.block(),
-                made.brick_numbers(),
-                made.density_codes(),
-                made.corner_numbers(),
-                made.node_light(),
-                made.phase_entries()};
+    const opaline_gl_volumes found{size,
+                                   static_cast<std::uint32_t>(made.size()),
+                                   made.terms(),
+                                   made.block(),
+                                   made.brick_numbers(),
+                                   made.density_codes(),
+                                   made.corner_numbers(),
+                                   made.node_light(),
+                                   made.phase_entries(),
+                                   made.glow_words() != 0 ? 1u : 0u,
+                                   made.glow_words()};
+    std::memcpy(volumes, &found, size);
     return OPALINE_OK;
 }
 

@@ -217,4 +217,16 @@ ShaderVolume make_shader_volume(const VolumeLattice& lattice, std::size_t volume
     return made;
 }
 
+std::array<float, 4> shader_glow(const formats::GlowView& glow, const VolumeLight& light,
+                                 std::size_t volume, double units_per_metre) {
+    const formats::GlowRecord* const record = glow.own_of(volume);
+    if (record == nullptr) return {};
+    const double scale = static_cast<double>(record->code_scale) / units_per_metre;
+    const auto channel = [&](float c) {
+        return static_cast<float>(std::min(scale * static_cast<double>(c), 1e30));
+    };
+    const formats::Rgb color = light.glow[volume];
+    return {channel(color.r), channel(color.g), channel(color.b), 0};
+}
+
 }  // namespace opaline::runtime

@@ -57,4 +57,8 @@ ShaderVolume make_shader_volume(const VolumeLattice& lattice, std::size_t volume
                                 const VolumeLight::Part& part, formats::Vec3 eye,
                                 double units_per_metre);
 
+/// Colour of a volume's own light in `light`, times the scale of codes; 0 where it has none.
+std::array<float, 4> shader_glow(const formats::GlowView& glow, const VolumeLight& light,
+                                 std::size_t volume, double units_per_metre);
+
 }  // namespace opaline::runtime

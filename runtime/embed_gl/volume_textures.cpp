@@ -31,7 +31,13 @@ opaline_status VolumeTextures::check_sizes(const formats::VolumesView& volumes) 
 opaline_status VolumeTextures::make(const formats::VolumesView& volumes, GlNames& names) {
     if (volumes.records.empty()) return OPALINE_OK;
     if (const opaline_status status = check_sizes(volumes); status != OPALINE_OK) return status;
+    const std::vector<std::uint32_t> glow_words = pack_glow(volumes);
+    if (const opaline_status status = check_lines(gl_, "own light of volumes", glow_words.size());
+        status != OPALINE_OK) {
+        return status;
+    }
     records_.assign(volumes.records.begin(), volumes.records.end());
+    glow_.assign(volumes.glow.record.begin(), volumes.glow.record.end());
     terms_ = most_node_terms(volumes);
     for (std::size_t v = 0; v < records_.size(); ++v) {
         const auto lattice = make_lattice(volumes, records_[v]);
@@ -45,8 +51,13 @@ opaline_status VolumeTextures::make(const formats::VolumesView& volumes, GlNames
     density_codes_.fill_of(std::span<const std::uint32_t>(pack_density(volumes)));
     corner_numbers_.fill_of(volumes.corner);
     phase_entries_.fill_of(std::span<const float>(tame_phases(volumes)));
-    block_ =
-        names.make_buffer(records_.size() * sizeof(ShaderVolume) + kMaxSuns * 16, GL_DYNAMIC_DRAW);
+    if (!glow_words.empty()) {
+        glow_words_.make(names);
+        glow_words_.fill_of(std::span(glow_words));
+    }
+    block_ = names.make_buffer(
+        records_.size() * (sizeof(ShaderVolume) + sizeof(std::array<float, 4>)) + kMaxSuns * 16,
+        GL_DYNAMIC_DRAW);
     upload(relight_volumes(
         volumes, {}, {.terms = formats::TermSet::none, .emitters = dark_emitters(), .threads = 1}));
     return OPALINE_OK;
@@ -60,8 +71,14 @@ void VolumeTextures::upload(const VolumeLight& light) {
     for (std::size_t i = 0; i < light.sun.size(); ++i) {
         suns[i] = {light.sun[i].x, light.sun[i].y, light.sun[i].z, 0};
     }
-    fill_buffer(gl_, block_, records_.size() * sizeof(ShaderVolume),
-                std::as_bytes(std::span(suns)));
+    const std::size_t behind_records = records_.size() * sizeof(ShaderVolume);
+    fill_buffer(gl_, block_, behind_records, std::as_bytes(std::span(suns)));
+    std::vector<std::array<float, 4>> glow_colors;
+    glow_colors.reserve(records_.size());
+    for (std::size_t v = 0; v < records_.size(); ++v) {
+        glow_colors.push_back(shader_glow({glow_, {}, {}, {}}, light, v, 1));
+    }
+    fill_buffer(gl_, block_, behind_records + sizeof suns, std::as_bytes(std::span(glow_colors)));
     fill_records();
 }
 

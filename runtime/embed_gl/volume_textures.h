@@ -13,7 +13,7 @@
 namespace opaline::runtime {
 
 /// An asset's volumes as opaline_volumes.glsl reads them: arrays in textures of 2048 columns, and a
-/// uniform block. Every call wants a SavedState around it.
+/// uniform block: volumes, suns, colours of own light. Every call wants a SavedState around it.
 class VolumeTextures {
   public:
     explicit VolumeTextures(const GlFunctions& gl) : gl_(gl) {}
@@ -37,6 +37,8 @@ class VolumeTextures {
     GLuint corner_numbers() const { return corner_numbers_.name(); }
     GLuint node_light() const { return node_light_.name(); }
     GLuint phase_entries() const { return phase_entries_.name(); }
+    /// pack_glow; 0 where no volume has light of its own.
+    GLuint glow_words() const { return glow_words_.name(); }
 
   private:
     struct Entry {
@@ -50,12 +52,13 @@ class VolumeTextures {
     std::vector<formats::VolumeRecord> records_;
     std::vector<Entry> entry_;
     std::vector<VolumeLight::Part> part_;
+    std::vector<formats::GlowRecord> glow_;
     formats::Vec3 eye_;
     std::uint32_t terms_ = 1;
     GLuint block_ = 0;
     TexelLines brick_numbers_{gl_, kWordTexel}, density_codes_{gl_, kWordTexel};
     TexelLines corner_numbers_{gl_, kWordTexel}, phase_entries_{gl_, kFloatTexel};
-    TexelLines node_light_{gl_, kColorTexel};
+    TexelLines node_light_{gl_, kColorTexel}, glow_words_{gl_, kWordTexel};
 };
 
 }  // namespace opaline::runtime

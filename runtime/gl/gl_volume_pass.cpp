@@ -1,6 +1,5 @@
 #include "runtime/gl/gl_volume_pass.h"
 
-#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -23,41 +22,29 @@ enum Uniform : GLint {
     kNearPlane,
     kSuns,
     kEyeAboveGround = kSuns + static_cast<GLint>(kMaxSuns),  // with a layer
-    kUnitsOfMetre
+    kUnitsOfMetre,
+    kGlowColors  // where volumes have light of their own
 };
-static_assert(kEyeAboveGround == 15);
-
-// ShaderVolume where volumes have light of their own: GLOW.
-struct GlowingShaderVolume {
-    ShaderVolume volume;
-    std::array<float, 4> glow{};  // colour times the scale of codes [1 / unit]
-};
-static_assert(sizeof(GlowingShaderVolume) == 144);
-
-std::array<float, 4> glow_color(const GlVolumes& volumes, std::size_t volume, double unit) {
-    const formats::GlowView glow = volumes.kept.glow.view();
-    const formats::GlowRecord* const record = glow.own_of(volume);
-    if (record == nullptr) return {};
-    const formats::Rgb color = volumes.light.glow[volume];
-    const double scale = static_cast<double>(record->code_scale) / unit;
-    const auto channel = [&](float c) {
-        return static_cast<float>(std::min(scale * static_cast<double>(c), 1e30));
-    };
-    return {channel(color.r), channel(color.g), channel(color.b), 0};
-}
+static_assert(kEyeAboveGround == 15 && kGlowColors == 17);
 
 GlBuffer upload_records(const GlVolumes& volumes, const Camera& camera) {
     const double unit = view_unit(camera);
-    std::vector<ShaderVolume> dark;
-    std::vector<GlowingShaderVolume> glowing;
+    std::vector<ShaderVolume> records;
     for (const GlVolumes::Entry& entry : volumes.entry) {
-        dark.push_back(make_shader_volume(entry.lattice, entry.volume,
-                                          volumes.light.part[entry.volume], camera.eye, unit));
-        glowing.push_back({dark.back(), glow_color(volumes, entry.volume, unit)});
+        records.push_back(make_shader_volume(entry.lattice, entry.volume,
+                                             volumes.light.part[entry.volume], camera.eye, unit));
     }
     std::size_t size = 0;
-    return volumes.glows ? make_buffer_of(std::span<const GlowingShaderVolume>(glowing), size)
-                         : make_buffer_of(std::span<const ShaderVolume>(dark), size);
+    return make_buffer_of(std::span<const ShaderVolume>(records), size);
+}
+
+void set_glow_colors(const GlVolumes& volumes, const Camera& camera) {
+    std::vector<std::array<float, 4>> colors;
+    for (const GlVolumes::Entry& entry : volumes.entry) {
+        colors.push_back(
+            shader_glow(volumes.kept.glow.view(), volumes.light, entry.volume, view_unit(camera)));
+    }
+    glUniform4fv(kGlowColors, static_cast<GLsizei>(colors.size()), colors.front().data());
 }
 
 }  // namespace
@@ -71,7 +58,7 @@ formats::Result<GlProgram> make_volume_program(const GlVolumes& volumes, bool la
         "#define VOLUMES " + std::to_string(volumes.entry.size()) + "\n#define HARMONICS " +
             std::to_string(volumes.harmonics) + "\n#define SUNS " + std::to_string(kMaxSuns) +
             "\n#define BRICK_WORDS " + std::to_string(kGlBrickWords) + "\n#define LAYER " +
-            (layer ? "1" : "0") + (volumes.glows ? "\n#define GLOW" : "") +
+            (layer ? "1" : "0") + "\n#define GLOW " + (volumes.glows ? "1" : "0") +
             "\n#define SHEET_TOLERANCE " + std::to_string(kSheetTolerance) + "\n",
         stages);
 }
@@ -100,6 +87,7 @@ void draw_volumes_filtered(const DrawScene& scene, const GlProgram& program, con
     set_vec3(name, kForward, -1.0f * frame.backward);
     const std::vector<formats::Vec3>& suns = scene.volumes.light.sun;
     if (!suns.empty()) glUniform3fv(kSuns, static_cast<GLsizei>(suns.size()), &suns.front().x);
+    if (scene.volumes.glows) set_glow_colors(scene.volumes, scene.camera);
     glUniform1f(kNearPlane, static_cast<float>(view_unit(scene.camera) *
                                                static_cast<double>(scene.camera.near_plane)));
     if (scene.layers.shown) {

@@ -8,8 +8,8 @@ Seen march_volumes(vec3 from, vec3 direction, float begin, float end) {
     return march(Ray(from, direction, begin, end), harmonic);
 }
 
-// The integrands of that: extinction [1/m] and radiance scattered per metre, toward `to_eye`, unit;
-// all volumes added up. runtime/volumes/volume_sample.cpp.
+// The integrands of that: extinction [1/m] and radiance per metre, scattered toward `to_eye`, unit,
+// and sent out; all volumes added up. runtime/volumes/volume_sample.cpp.
 struct Sample {
     vec3 extinction, scattered;
 };
@@ -30,6 +30,9 @@ Sample sample_volumes(vec3 place, vec3 to_eye) {
                                    uint((cell.z * extent.y + cell.y) * extent.x + cell.x));
         if (traveller.brick == kNone) continue;
         vec3 at = clamp((traveller.origin - traveller.corner) * 8.0, 0.0, 8.0);
+#if GLOW
+        found.scattered += glow_at(volumes[v], glow_colors[v].rgb, traveller, at);
+#endif
         float density = density_at(volumes[v], traveller, at);
         if (!(density > 0.0)) continue;
         vec3 c = tame_to(density * volumes[v].extinction.rgb, 1e15);

@@ -1,6 +1,6 @@
 // The integral along a ray through all volumes, the same steps as runtime/volumes/volume_march.cpp.
-// Specialised by VOLUMES, their number, HARMONICS, the most terms that a node may have, and GLOW, where
-// one of them has light of its own.
+// Specialised by VOLUMES, their number, HARMONICS, the most terms that a node may have, and GLOW: 1 where
+// one of them has light of its own, else 0.
 // Distances are in units of the scene (view_unit), positions in bricks from a table's lowest corner.
 
 struct Volume {
@@ -10,9 +10,6 @@ struct Volume {
     vec4 extinction;     // where the density is 1 [1 / unit]
     vec4 albedo;
     uvec4 coefficient;  // the first; suns; the first entry of its phase function
-#ifdef GLOW
-    vec4 glow;  // colour of its own light, times the scale of codes [1 / unit]
-#endif
 };
 // Density: of each brick the scale, then 8 x 9 x 9 pairs of codes: of a voxel and of the next along x.
 // Coefficients: R, G, B. Phases: phase_table.h.
@@ -21,13 +18,16 @@ struct Volume {
 layout(std140) uniform VolumeRecords {
     Volume volumes[VOLUMES];
     vec3 suns[SUNS];  // directions toward them
+#if GLOW
+    vec4 glow_colors[VOLUMES];  // of their own light, times the scale of codes [1 / unit]
+#endif
 };
 #else
 uniform Volume volumes[VOLUMES];
 #endif
 uniform usampler2D brick_numbers, density_codes, corner_numbers;
 uniform sampler2D node_light, phase_entries;
-#ifdef GLOW
+#if GLOW
 uniform usampler2D glow_words;
 #endif
 ivec2 place_of(uint i) { return ivec2(i & 2047u, i >> 11); }
@@ -36,7 +36,7 @@ uint density_word(uint i) { return texelFetch(density_codes, place_of(i), 0).r; 
 uint node_at(uint corner) { return texelFetch(corner_numbers, place_of(corner), 0).r; }
 vec3 coefficient_at(uint i) { return texelFetch(node_light, place_of(i / 3u), 0).rgb; }
 float phase_at(uint i) { return texelFetch(phase_entries, place_of(i), 0).r; }
-#ifdef GLOW
+#if GLOW
 uint glow_word(uint i) { return texelFetch(glow_words, place_of(i), 0).r; }
 #endif
 int lowest_bit(uint bits) {
@@ -56,14 +56,17 @@ uint density_word(uint i) { return density_words[i]; }
 uint node_at(uint corner) { return corner_nodes[corner]; }
 vec3 coefficient_at(uint i) { return vec3(coefficients[i], coefficients[i + 1u], coefficients[i + 2u]); }
 float phase_at(uint i) { return phase[i]; }
-#ifdef GLOW
+#if GLOW
 layout(std430, binding = 6) readonly buffer Glow { uint glow_codes[]; };
 uint glow_word(uint i) { return glow_codes[i]; }
 #endif
 int lowest_bit(uint bits) { return findLSB(bits); }
 #endif
 #ifndef RECORDS_IN_BLOCK
-layout(location = 7) uniform vec3 suns[SUNS];  // directions toward them
+layout(location = 7) uniform vec3 suns[SUNS];  // as in the block
+#if GLOW
+layout(location = 17) uniform vec4 glow_colors[VOLUMES];
+#endif
 #endif
 
 const uint kNone = 0xffffffffu;  // no brick, no node
@@ -225,7 +228,7 @@ vec3 source_at(Volume volume, inout Traveller traveller, vec3 at, vec3 to_eye,
     return tame_to(mix(low, high, w.z), 1e20);
 }
 
-#ifdef GLOW
+#if GLOW
 // Own light: for each brick the first of its words, or kNone; then 9 x 9 x 9 codes a brick,
 // formats/opal/shared_exponent.h.
 vec3 glow_code(uint i) {
@@ -233,8 +236,8 @@ vec3 glow_code(uint i) {
     return vec3(code & 511u, code >> 9 & 511u, code >> 18 & 511u) * exp2(float(code >> 27) - 24.0);
 }
 
-// Radiance per unit at a point of the brick, `at` as density_at's.
-vec3 glow_at(Volume volume, Traveller traveller, vec3 at) {
+// Radiance per unit at a point of the brick, `at` as density_at's; `color` of glow_colors.
+vec3 glow_at(Volume volume, vec3 color, Traveller traveller, vec3 at) {
     uint first = glow_word(volume.numbers.x + traveller.brick);
     if (first == kNone) return vec3(0.0);
     vec3 base = min(floor(at), 7.0), w = at - base;
@@ -246,7 +249,7 @@ vec3 glow_at(Volume volume, Traveller traveller, vec3 at) {
         vec3 high = mix(glow_code(i + 9u), glow_code(i + 10u), w.x);
         sum += (z == 0u ? 1.0 - w.z : w.z) * mix(low, high, w.y);
     }
-    return tame_to(volume.glow.rgb * sum, 1e20);
+    return tame_to(color * sum, 1e20);
 }
 
 // The way [units] over which light of a step comes through.
@@ -264,7 +267,7 @@ vec3 absorbed_over(vec3 x) {
 
 void step_ray(vec3 c, vec3 b, vec3 e, float h, inout Seen seen) {
     vec3 absorbed = absorbed_over(min(c * h, 1e4));
-#ifdef GLOW
+#if GLOW
     seen.radiance += seen.transmittance * e * way_through(c, h, absorbed);
 #endif
     seen.radiance += seen.transmittance * (b / max(c, 1e-36)) * absorbed;
@@ -288,8 +291,8 @@ void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin
             int v = lowest_bit(left);
             vec3 place = travellers[v].origin + t * travellers[v].direction;
             vec3 at = clamp((place - travellers[v].corner) * 8.0, 0.0, 8.0);
-#ifdef GLOW
-            emitted += glow_at(volumes[v], travellers[v], at);
+#if GLOW
+            emitted += glow_at(volumes[v], glow_colors[v].rgb, travellers[v], at);
 #endif
             float density = density_at(volumes[v], travellers[v], at);
             if (!(density > 0.0)) continue;

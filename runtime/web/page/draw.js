@@ -232,7 +232,7 @@ const Draw = (() => {
     const glows = volumes.list.some(volume => volume.own !== null);
     const defines = [["VOLUMES", volumes.list.length], ["HARMONICS", most], ["SUNS", Volumes.kMostSuns],
                      ["BRICK_WORDS", Volumes.kBrickWords], ["LAYER", hasLayer ? 1 : 0], ["SHEET_TOLERANCE", "0.03125"],
-                     ["FORWARD_DEPTH", ""], ...(glows ? [["GLOW", ""]] : [])];
+                     ["FORWARD_DEPTH", ""], ["GLOW", glows ? 1 : 0]];
     return {
       program: makeProgram(gl, defines, ["screen.vert.glsl"],
                            ["volume_march.glsl", "harmonics.glsl", "volumes.frag.glsl"]),

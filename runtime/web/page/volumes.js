@@ -246,7 +246,8 @@ const Volumes = (() => {
 
   // What the shader knows of each volume, seen from there.
   function uniforms(volumes, inverses, parts, frame, colors) {
-    const values = {};
+    const values = { "glow_colors[0]": volumes.list.flatMap(({ own }) => own === null ? [0, 0, 0, 0]
+        : [...colors[own.emitter].map(c => Math.min(c * own.codeScale / frame.unit, 1e30)), 0]) };
     volumes.list.forEach((volume, v) => {
       const inverse = inverses[v], set = (name, value) => { values[`volumes[${v}].${name}`] = value; };
       if (inverse === null) {
@@ -261,9 +262,6 @@ const Volumes = (() => {
       set("extinction", [...volume.extinction.map(s => Math.min(s / frame.unit, 1e30)), 0]);
       set("albedo", [...volume.albedo, 0]);
       set("coefficient", [3 * parts[v].first, parts[v].suns, kPhaseEntries * v, 0]);
-      const glow = volume.own === null ? [0, 0, 0]
-          : colors[volume.own.emitter].map(c => Math.min(c * volume.own.codeScale / frame.unit, 1e30));
-      set("glow", [...glow, 0]);
     });
     return values;
   }

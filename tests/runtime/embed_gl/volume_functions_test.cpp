@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <random>
 #include <string>
@@ -12,6 +13,7 @@
 #include "runtime/picture/software_renderer.h"
 #include "tests/runtime/embed_gl/embedded_asset.h"
 #include "tests/runtime/embed_gl/host_picture.h"
+#include "tests/runtime/volumes/glow_support.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 
 namespace opaline::test {
@@ -76,6 +78,23 @@ formats::Asset make_puffs(float far) {
     return asset;
 }
 
+// The second is fire, also where there is no smoke.
+formats::Asset make_burning_puffs() {
+    formats::Asset asset = make_asset(8, 8);
+    formats::append_emitter(asset.emitters, "fire");
+    asset.volumes = make_volumes(8);
+    add_volume(asset.volumes, puff(0, 4, 0));
+    const TestVolume burning = puff(0.7f, 4, 0);
+    add_volume(asset.volumes, burning);
+    add_glow(asset.volumes, burning,
+             [](float i, float j, float k) {
+                 const float r2 = i * i + (j - 16) * (j - 16) + (k - 24) * (k - 24);
+                 return std::exp(-r2 / 25) * formats::Rgb{6, 3, 1};
+             },
+             {0.5f, 0.3f, 0.1f});
+    return asset;
+}
+
 class EmbedGlVolumes : public EmbedGl {
   protected:
     void make(const formats::Asset& asset) {
@@ -89,9 +108,10 @@ class EmbedGlVolumes : public EmbedGl {
         opaline_volume_light_release(volume_light_);
         EXPECT_EQ(opaline_gl_release(gl_), OPALINE_OK);
     }
-    void light() {
-        ASSERT_EQ(opaline_volume_light_update(volume_light_, host_->asset(), host_->light(), 0, 0),
-                  OPALINE_OK)
+    void light(std::uint32_t flags = 0) {
+        ASSERT_EQ(
+            opaline_volume_light_update(volume_light_, host_->asset(), host_->light(), flags, 0),
+            OPALINE_OK)
             << opaline_last_error();
         ASSERT_EQ(opaline_gl_light_volumes(gl_, volume_light_), OPALINE_OK) << opaline_last_error();
     }
@@ -106,7 +126,7 @@ class EmbedGlVolumes : public EmbedGl {
         return HostPicture(GetParam(), {"opaline_volumes.glsl"},
                            "#define OPALINE_VOLUMES " + std::to_string(volumes.count) +
                                "\n#define OPALINE_VOLUME_TERMS " + std::to_string(volumes.terms) +
-                               "\n",
+                               (volumes.glows != 0 ? "\n#define OPALINE_VOLUME_GLOW 1\n" : "\n"),
                            kSeeVolumes);
     }
     void bind(HostPicture& picture) const {
@@ -117,6 +137,24 @@ class EmbedGlVolumes : public EmbedGl {
         picture.bind_texture("opaline_node_light", volumes.node_light);
         picture.bind_texture("opaline_phase_entries", volumes.phase_entries);
         picture.bind_block("OpalineVolumeRecords", volumes.block);
+        EXPECT_EQ(volumes.glows != 0, volumes.glow_words != 0);
+        if (volumes.glows != 0) picture.bind_texture("opaline_glow_words", volumes.glow_words);
+    }
+    // What the CPU sees of rays from the eye.
+    std::vector<opaline_march_result> march(const std::vector<HostRay>& rays,
+                                            const float (&eye)[3]) const {
+        std::vector<opaline_march_ray> march;
+        for (const HostRay& ray : rays) {
+            march.push_back({{eye[0] + ray.from[0], eye[1] + ray.from[1], eye[2] + ray.from[2]},
+                             {ray.direction[0], ray.direction[1], ray.direction[2]},
+                             ray.begin,
+                             ray.end});
+        }
+        std::vector<opaline_march_result> seen(march.size());
+        EXPECT_EQ(opaline_volumes_march(host_->asset(), volume_light_, nullptr, march.data(),
+                                        static_cast<std::uint32_t>(march.size()), seen.data()),
+                  OPALINE_OK);
+        return seen;
     }
     std::unique_ptr<EmbeddedAsset> host_;
     opaline_gl* gl_ = nullptr;
@@ -161,17 +199,7 @@ TEST_P(EmbedGlVolumes, RaysSeeWhatTheCpuMarches) {
             }
             if (step > 0) light();
             ASSERT_EQ(opaline_gl_look_from(gl_, eye), OPALINE_OK);
-            std::vector<opaline_march_ray> march;
-            for (const HostRay& ray : rays) {
-                march.push_back({{eye[0] + ray.from[0], eye[1] + ray.from[1], eye[2] + ray.from[2]},
-                                 {ray.direction[0], ray.direction[1], ray.direction[2]},
-                                 ray.begin,
-                                 ray.end});
-            }
-            std::vector<opaline_march_result> cpu(march.size());
-            ASSERT_EQ(opaline_volumes_march(host_->asset(), volume_light_, nullptr, march.data(),
-                                            static_cast<std::uint32_t>(march.size()), cpu.data()),
-                      OPALINE_OK);
+            const std::vector<opaline_march_result> cpu = march(rays, eye);
             const std::vector<float> drawn = host.draw(rays);
             float brightest = 1e-30f, largest = 0, largest_left = 0, darkest = 1;
             for (const opaline_march_result& result : cpu) {
@@ -232,6 +260,99 @@ TEST_P(EmbedGlVolumes, PointsHaveTheCpusExtinctionAndScattering) {
             EXPECT_NEAR(drawn[8 * i + b], cpu[i].extinction[b], 1e-5f * thickest) << i;
             EXPECT_NEAR(drawn[8 * i + 4 + b], cpu[i].scattered[b], 1e-5f * brightest) << i;
         }
+    }
+}
+
+float brightest_of(const std::vector<opaline_march_result>& seen) {
+    float brightest = 0;
+    for (const opaline_march_result& result : seen) {
+        brightest = std::max(brightest, result.radiance[0]);
+    }
+    return brightest;
+}
+
+TEST_P(EmbedGlVolumes, FireShinesAlongRaysAndAtPointsAsOnTheCpuInItsEmittersColour) {
+    make(make_burning_puffs());
+    EXPECT_EQ(objects().glows, 1u);
+    HostPicture host = picture();
+    bind(host);
+    const float eye[3] = {0.4f, 1.2f, -2};
+    ASSERT_EQ(opaline_gl_look_from(gl_, eye), OPALINE_OK);
+    const std::vector<HostRay> rays = scattered_rays(300);
+    const float color[3] = {1, 0.5f, 3};
+    ASSERT_EQ(opaline_light_set_emitter(host_->light(), 0, color), OPALINE_OK);
+    float scattered_alone = 0;
+    for (const std::uint32_t flags : {std::uint32_t{OPALINE_SHADE_WITHOUT_EMISSION}, 0u}) {
+        light(flags);
+        const std::vector<opaline_march_result> cpu = march(rays, eye);
+        const std::vector<float> drawn = host.draw(rays);
+        const float brightest = brightest_of(cpu);
+        for (std::size_t i = 0; i < cpu.size(); ++i) {
+            for (std::size_t b = 0; b < 3; ++b) {
+                EXPECT_NEAR(drawn[8 * i + b], cpu[i].radiance[b], 1e-5f * brightest) << i;
+            }
+        }
+        EXPECT_GT(brightest, 1.5f * scattered_alone);
+        scattered_alone = brightest;
+    }
+    std::vector<HostRay> places;
+    std::vector<opaline_sample_point> points;
+    for (int i = 0; i < 200; ++i) {
+        const float at = 0.01f * static_cast<float>(i);
+        places.push_back({{0.5f * at, 0.7f - 0.3f * at, 2 + at}, 0, {0, 0, -1}, 0});
+        const float* from = places.back().from;
+        points.push_back({{eye[0] + from[0], eye[1] + from[1], eye[2] + from[2]}, {0, 0, -1}});
+    }
+    std::vector<opaline_sample_result> cpu(points.size());
+    ASSERT_EQ(opaline_volumes_sample(host_->asset(), volume_light_, points.data(),
+                                     static_cast<std::uint32_t>(points.size()), cpu.data()),
+              OPALINE_OK);
+    host.set_flag("is_point", true);
+    const std::vector<float> drawn = host.draw(places);
+    bool glows_without_smoke = false;
+    for (std::size_t i = 0; i < cpu.size(); ++i) {
+        glows_without_smoke =
+            glows_without_smoke || (cpu[i].extinction[0] == 0 && cpu[i].scattered[0] > 0.1f);
+        for (std::size_t b = 0; b < 3; ++b) {
+            EXPECT_NEAR(drawn[8 * i + 4 + b], cpu[i].scattered[b], 5e-5f) << i;  // of 6
+        }
+    }
+    EXPECT_TRUE(glows_without_smoke);
+}
+
+// One that was built before volumes had light of their own.
+TEST_P(EmbedGlVolumes, AnEarlierHostSeesFireWithoutItsOwnLight) {
+    make(make_burning_puffs());
+    light();
+    opaline_gl_volumes early{};
+    early.struct_size = offsetof(opaline_gl_volumes, glows);
+    early.glows = 7;
+    ASSERT_EQ(opaline_gl_get_volumes(gl_, &early), OPALINE_OK) << opaline_last_error();
+    EXPECT_EQ(early.struct_size, offsetof(opaline_gl_volumes, glows));
+    EXPECT_EQ(early.glows, 7u);  // behind what it knows
+    EXPECT_EQ(early.block, objects().block);
+    HostPicture host(GetParam(), {"opaline_volumes.glsl"},
+                     "#define OPALINE_VOLUMES 2\n#define OPALINE_VOLUME_TERMS " +
+                         std::to_string(early.terms) + "\n",
+                     kSeeVolumes);
+    host.bind_texture("opaline_brick_numbers", early.brick_numbers);
+    host.bind_texture("opaline_density_codes", early.density_codes);
+    host.bind_texture("opaline_corner_numbers", early.corner_numbers);
+    host.bind_texture("opaline_node_light", early.node_light);
+    host.bind_texture("opaline_phase_entries", early.phase_entries);
+    host.bind_block("OpalineVolumeRecords", early.block);
+    const float eye[3] = {0.4f, 1.2f, -2};
+    ASSERT_EQ(opaline_gl_look_from(gl_, eye), OPALINE_OK);
+    const std::vector<HostRay> rays = scattered_rays(100);
+    const std::vector<float> drawn = host.draw(rays);
+    ASSERT_EQ(opaline_volume_light_update(volume_light_, host_->asset(), host_->light(),
+                                          OPALINE_SHADE_WITHOUT_EMISSION, 0),
+              OPALINE_OK);
+    const std::vector<opaline_march_result> cpu = march(rays, eye);
+    const float brightest = brightest_of(cpu);
+    EXPECT_GT(brightest, 0.01f);
+    for (std::size_t i = 0; i < cpu.size(); ++i) {
+        EXPECT_NEAR(drawn[8 * i], cpu[i].radiance[0], 1e-5f * brightest) << i;
     }
 }
 
