@@ -29,6 +29,7 @@ struct BakeCommand {
     SceneOptions scene;
     std::string output, report, depfile;
     bool verbose = false;
+    bake::BakeExtras extras;
     ProgressStyle progress = ProgressStyle::automatic;
 };
 
@@ -186,7 +187,8 @@ int run(const BakeCommand& options) {
     context.cancel = &interrupted;
     context.cache = bake::cache_folder();
     context.on_progress = make_progress_printer(options.progress);
-    auto result = bake::run_bake(bake::all_effects(), imported->scene, *knobs, context);
+    auto result =
+        bake::run_bake(bake::all_effects(), imported->scene, *knobs, context, options.extras);
     if (!result) {
         return report_error(result.error());
     }
@@ -202,7 +204,9 @@ int run(const BakeCommand& options) {
         return report_error(status.error());
     }
     formats::AtomicFile& file = files.back();
-    if (auto status = formats::write_opal_bytes(result->asset.view(), file); !status) {
+    if (auto status =
+            formats::write_opal_bytes(result->asset.view(), file, result->receiver_errors);
+        !status) {
         return report_error(status.error());
     }
     const std::uint64_t bytes = file.bytes_written();
@@ -252,6 +256,11 @@ void add_bake_command(CLI::App& app, Job& job) {
         ->add_option("--depfile", options->depfile,
                      "write the files read as a rule for make and ninja")
         ->check(file_name());
+    command->add_flag(
+        "--receiver-errors", options->extras.receiver_errors,
+        "also store how far the rows of each vertex are from those before coefficients were "
+        "dropped and rounded (4 bytes a vertex): a map of it is shown by `view` and `render "
+        "--receiver-errors`");
     command->add_flag("--verbose", options->verbose,
                       "also print what is simulated and why, and what each stage took");
     add_progress_option(*command, options->progress);

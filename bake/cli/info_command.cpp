@@ -12,6 +12,7 @@
 #include "bake/cli/layer_info.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/volume_facts.h"
+#include "formats/opal/receiver_errors.h"
 #include "formats/opal/terms.h"
 
 namespace opaline::cli {
@@ -59,7 +60,30 @@ void print_emitters(const formats::EmittersView& emitters) {
     }
 }
 
-Json describe(const OpenedAsset& asset) {
+// A share in percent; NaN where it is none.
+double percent_of(const Json& json, const char* key) {
+    return json.is_object() && json.contains(key) && json[key].is_number()
+               ? 100 * json[key].get<double>()
+               : std::nan("");
+}
+
+// Of encoding the rows, by receiver; null where the file does not say.
+Json receiver_errors_json(std::span<const float> errors) {
+    if (errors.empty()) return nullptr;
+    const formats::ErrorSummary summary = formats::summarize_errors(errors);
+    return {{"mean", summary.mean}, {"p95", summary.p95}, {"max", summary.largest}};
+}
+
+void print_receiver_errors(const Json& errors) {
+    if (!errors.is_null()) {
+        fmt::print(
+            "row errors    {:.2f} % in the mean of receivers, {:.2f} % at most at 95 % of them, "
+            "{:.2f} % at the worst: coefficients dropped and rounded, white light\n",
+            percent_of(errors, "mean"), percent_of(errors, "p95"), percent_of(errors, "max"));
+    }
+}
+
+Json describe(const OpenedAsset& asset, std::span<const float> receiver_errors) {
     const formats::AssetView& view = asset.loaded.view;
     Json info;
     info["format_version"] = formats::kOpalVersion;
@@ -69,6 +93,7 @@ Json describe(const OpenedAsset& asset) {
     info["rows"] = view.transport.rows();
     info["coefficients"] = view.transport.row_offset.back();
     info["code_bits"] = view.transport.code_bits;
+    info["receiver_errors"] = receiver_errors_json(receiver_errors);
     info["images"] = view.images.size();
     info["primitives"] = Json::array();
     for (const formats::PrimitiveRecord& p : view.primitives) {
@@ -126,13 +151,6 @@ std::string text_of(const Json& json, const char* key) {
     return printable(json[key].is_string()
                          ? json[key].get<std::string>()
                          : json[key].dump(-1, ' ', true, Json::error_handler_t::replace));
-}
-
-// A share of the provenance in percent; NaN where it is none.
-double percent_of(const Json& json, const char* key) {
-    return json.is_object() && json.contains(key) && json[key].is_number()
-               ? 100 * json[key].get<double>()
-               : std::nan("");
 }
 
 void print_volume_error(const Json& error) {
@@ -252,7 +270,12 @@ int run(const InfoCommand& options) {
     if (!asset) {
         return report_error(asset.error());
     }
-    const Json info = describe(*asset);
+    const auto receiver_errors =
+        formats::read_receiver_errors(asset->file.bytes(), asset->loaded, options.path);
+    if (!receiver_errors) {
+        return report_error(receiver_errors.error());
+    }
+    const Json info = describe(*asset, *receiver_errors);
     if (options.json) {
         fmt::print("{}", json_text(info));
         return kExitSuccess;
@@ -267,6 +290,7 @@ int run(const InfoCommand& options) {
                    ? 0.0
                    : static_cast<double>(view.transport.row_offset.back()) / view.transport.rows(),
                view.transport.code_bits);
+    print_receiver_errors(info["receiver_errors"]);
     print_provenance(info["provenance"]);
     print_volumes(view.volumes);
     print_layers(view.clouds);

@@ -8,6 +8,7 @@
 #include "bake/cli/command.h"
 #include "bake/cli/draw_frames.h"
 #include "bake/cli/emitter_options.h"
+#include "bake/cli/error_map.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/light_with_layers.h"
 #include "bake/cli/look_options.h"
@@ -31,6 +32,7 @@ struct RenderCommand {
     std::optional<double> time_step;  ///< from frame to frame [s]
     std::optional<double> turn;       ///< [degrees]
     std::optional<std::uint32_t> coefficients;
+    double error_white = 0;  ///< errors by receiver in place of light, where it is above 0
 };
 
 // Of options that set frames apart.
@@ -73,6 +75,26 @@ int draw_at(const RenderCommand& options, const formats::AssetView& view, const 
     return draw_frames(options.frame, view, picture_light, camera, shown, end, drawing);
 }
 
+// The errors by receiver in place of light.
+int draw_errors(const RenderCommand& options, const OpenedAsset& asset) {
+    const auto errors = stored_errors(asset, options.path);
+    if (!errors) {
+        return report_error(errors.error());
+    }
+    const auto camera = make_camera(options.camera, asset.loaded.view);
+    if (!camera) {
+        return report_error(camera.error());
+    }
+    const ErrorMap map =
+        make_error_map(asset.loaded.view, *errors, static_cast<float>(options.error_white));
+    RenderCommand plain = options;
+    plain.frame.exposure = 0;
+    plain.frame.tone_map = runtime::ToneMap::none;
+    Drawing drawing;
+    return draw_at(plain, map.view_of(asset.loaded.view), error_map_light(), *camera, {}, 0,
+                   options.frame.frames, drawing);
+}
+
 int run(const RenderCommand& options) {
     std::vector<OutputFile> outputs;
     for (std::uint32_t frame = 0; frame < options.frame.frames; ++frame) {
@@ -89,6 +111,9 @@ int run(const RenderCommand& options) {
     const auto asset = open_asset(options.path);
     if (!asset) {
         return report_error(asset.error());
+    }
+    if (options.error_white > 0) {
+        return draw_errors(options, *asset);
     }
     formats::AssetView view = asset->loaded.view;
     bake::ShortRows short_rows;
@@ -179,6 +204,13 @@ void add_render_command(CLI::App& app, Job& job) {
         ->option_text("DEG [360, with --time-step 0]");
     add_look_options(*command, {options->rotate_light, options->terms, options->frame.exposure,
                                 options->frame.tone_map, options->coefficients});
+    command
+        ->add_option("--receiver-errors", options->error_white,
+                     "show the errors of rows that `bake --receiver-errors` stored in place of "
+                     "light: black for 0, then red, yellow, and white from E on; options of light "
+                     "and exposure change nothing")
+        ->check(real_number(1e-6, 10))
+        ->option_text("E");
     command->add_option("--threads", options->frame.threads, "0: one per core")
         ->transform(whole_number(0, 1024))
         ->option_text("T [0]");

@@ -12,6 +12,7 @@
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
+#include "formats/opal/receiver_errors.h"
 
 namespace opaline::cli {
 namespace {
@@ -36,6 +37,10 @@ Verdict verify(const std::string& path) {
     if (!loaded) {
         const int code = exit_code_of(loaded.error());
         return {loaded.error(), code == kExitBadInput ? kExitNo : code};
+    }
+    if (const auto errors = formats::read_receiver_errors(file->bytes(), *loaded, path); !errors) {
+        const int code = exit_code_of(errors.error());
+        return {errors.error(), code == kExitBadInput ? kExitNo : code};
     }
     // A file without provenance is sound: nothing is computed from it.
     const std::string_view provenance = loaded->view.provenance;

@@ -60,10 +60,11 @@ std::string group_of(std::span<const Gatherer> gatherers) {
 }
 
 // The rows of all receivers, in their order; one stage of the report for each set.
-formats::Result<formats::SparseRows> bake_rows(const BakeInputs& bake,
-                                               std::span<const SubjectState> subjects,
-                                               const Knobs& knobs, const Context& context,
-                                               StageLog& log) {
+formats::Result<GatheredRows> bake_rows(const BakeInputs& bake,
+                                        std::span<const SubjectState> subjects, const Knobs& knobs,
+                                        const Context& context, const BakeExtras& extras,
+                                        StageLog& log) {
+    std::vector<float> errors;
     RowSink sink =
         make_row_sink(make_row_encoder(knobs.cubemap_size, knobs.coefficients, knobs.code_bits));
     const std::uint32_t total = count_receivers(bake.receivers);
@@ -75,12 +76,14 @@ formats::Result<formats::SparseRows> bake_rows(const BakeInputs& bake,
         }
         std::vector<Gatherer> gatherers = make_gatherers(bake, *subject, knobs, context);
         std::string group = group_of(gatherers);
-        formats::SparseRows part =
+        RowJob job{set, subject->layout, sink.encoder, total};
+        job.measures_errors = extras.receiver_errors;
+        GatheredRows gathered =
             run_stage(log, "rows of '" + bake.scene.primitives[set.primitive].name + "'",
                       std::move(group), [&](std::uint64_t& rays) {
-                          return gather_rows({set, subject->layout, sink.encoder, total},
-                                             std::move(gatherers), context, rays);
+                          return gather_rows(job, std::move(gatherers), context, rays);
                       });
+        formats::SparseRows& part = gathered.rows;
         if (context.cancelled()) {
             break;
         }
@@ -95,8 +98,9 @@ formats::Result<formats::SparseRows> bake_rows(const BakeInputs& bake,
                               "more than 2^32 coefficients do not fit into one file",
                               "lower --coefficients, or split the scene");
         }
+        errors.insert(errors.end(), gathered.receiver_error.begin(), gathered.receiver_error.end());
     }
-    return std::move(sink.rows);
+    return GatheredRows{std::move(sink.rows), std::move(errors)};
 }
 
 // Of all receivers; empty where nothing is glossy.
@@ -168,7 +172,8 @@ void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjec
 
 // What an inspected scene becomes: all stages from the receivers on. `subjects`: left studied.
 formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
-                               std::vector<SubjectState>& subjects, BakeResult& result) {
+                               const BakeExtras& extras, std::vector<SubjectState>& subjects,
+                               BakeResult& result) {
     Knobs& knobs = result.knobs;
     StageLog& log = result.stages;
     std::vector<TestLight> lights;  // none where there is nothing to relight
@@ -204,7 +209,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     if (context.cancelled()) {
         return interrupted();
     }
-    formats::Result<formats::SparseRows> rows = bake_rows(bake, subjects, knobs, context, log);
+    formats::Result<GatheredRows> rows = bake_rows(bake, subjects, knobs, context, extras, log);
     if (!rows) {
         return std::move(rows).error();
     }
@@ -213,8 +218,9 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     if (context.cancelled()) {
         return interrupted();
     }
-    result.asset = pack_asset(bake.scene, final_layouts(bake, subjects), std::move(*rows),
+    result.asset = pack_asset(bake.scene, final_layouts(bake, subjects), std::move(rows->rows),
                               std::move(openness));
+    result.receiver_errors = std::move(rows->receiver_error);
     result.error = run_stage(log, "self-check", "self-check", [&](std::uint64_t& traced) {
         return check_file({bake, subjects, knobs, lights}, result.asset.view(), context, traced);
     });
@@ -254,7 +260,8 @@ formats::Status check_model_of(const EffectTable& effects, const formats::Scene&
 }  // namespace
 
 formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::Scene& given,
-                                     const Knobs& wanted, const Context& outer) {
+                                     const Knobs& wanted, const Context& outer,
+                                     const BakeExtras& extras) {
     const Clock::time_point start = Clock::now();
     Context context = outer;
     context.threads = thread_count(outer);
@@ -317,7 +324,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         bake.textures = &*textures;
     }
     std::vector<SubjectState> subjects;
-    if (auto status = bake_inspected(bake, context, subjects, result); !status) {
+    if (auto status = bake_inspected(bake, context, extras, subjects, result); !status) {
         return std::move(status).error();
     }
     if (has_volumes) {

@@ -21,6 +21,7 @@ struct VolumeTrial {
 
 struct BakeResult {
     formats::Asset asset;
+    std::vector<float> receiver_errors;  ///< one for each receiver, where they are wanted
     Knobs knobs;                         ///< as used
     unsigned threads = 1;                ///< as used
     std::vector<PlanEntry> plan;         ///< of materials
@@ -38,10 +39,16 @@ struct BakeResult {
     double seconds_total = 0;
 };
 
+/// What a bake is asked for that changes nothing else in it.
+struct BakeExtras {
+    bool receiver_errors = false;  ///< what encoding costs each receiver (receiver_error.h)
+};
+
 /// The whole bake: the stages in order, nothing else. `knobs`: as resolve_knobs makes them for the
 /// same table.
 /// Errors: resource, interrupted (the context was cancelled).
 formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::Scene& scene,
-                                     const Knobs& knobs, const Context& context);
+                                     const Knobs& knobs, const Context& context,
+                                     const BakeExtras& extras = {});
 
 }  // namespace opaline::bake

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/encode/receiver_error.h"
 #include "bake/receivers/spatial_order.h"
 #include "formats/opal/cubemap.h"
 
@@ -93,8 +94,8 @@ DenseRow shape_row(const RowLayout& layout, std::uint32_t cubemap_size,
     return {values, cubemap_size, layout.terms(), layout.bands()};
 }
 
-formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers,
-                                const Context& context, std::uint64_t& rays) {
+GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, const Context& context,
+                         std::uint64_t& rays) {
     // References, because C++20 lets no lambda of clang 14 capture a structured binding.
     const ReceiverSet& set = job.set;
     const RowLayout& layout = job.layout;
@@ -102,11 +103,14 @@ formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gathere
     constexpr std::size_t kReceiversPerBlock = 64;
     struct Block {
         formats::SparseRows rows;
+        std::vector<float> errors;
         std::uint64_t rays = 0;
     };
     const std::vector<std::uint32_t> order = order_of(set, layout);
     const std::size_t step = batch_size(gatherers, set.size(), job.batch_bytes);
+    const TermsSeen seen = layout.separate ? TermsSeen::together : TermsSeen::apart;
     formats::SparseRows rows = empty_rows(encoder);
+    std::vector<float> errors(job.measures_errors ? set.size() : 0);
     std::vector<BodyPoint> points;
     for (std::size_t begin = 0; begin < set.size() && !context.cancelled(); begin += step) {
         const std::span<const std::uint32_t> batch =
@@ -119,18 +123,24 @@ formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gathere
         for_each_block_in_order(
             batch.size(), kReceiversPerBlock, context,
             [&](Range range) {
-                Block block{empty_rows(encoder), 0};
+                Block block{empty_rows(encoder), {}, 0};
                 std::vector<float> values;
                 const DenseRow row = shape_row(layout, encoder.selector.cubemap_size, values);
                 for (std::size_t v = range.begin; v < range.end; ++v) {
                     block.rays +=
                         gather_receiver(gatherers, set.outside[batch[v]], points[v], v, row);
                     encode_receiver(encoder, row, block.rows);
+                    if (job.measures_errors) {
+                        block.errors.push_back(receiver_error(row, seen, block.rows));
+                    }
                 }
                 return block;
             },
             [&](Range range, const Block& block) {
                 formats::append_rows(rows, block.rows);
+                for (std::size_t i = 0; i < block.errors.size(); ++i) {
+                    errors[batch[range.begin + i]] = block.errors[i];
+                }
                 rays += block.rays;
                 if (context.on_progress) {
                     context.on_progress({"rows", set.first + begin + range.end, job.total});
@@ -141,7 +151,8 @@ formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gathere
     // Rows are missing if the bake was cancelled or if they are too many for one file; the caller
     // checks.
     const bool is_whole = rows.row_offset.size() == set.size() * layout.terms() + 1;
-    return is_whole && layout.translucent ? as_given(rows, order, layout) : std::move(rows);
+    if (is_whole && layout.translucent) rows = as_given(rows, order, layout);
+    return {std::move(rows), std::move(errors)};
 }
 
 }  // namespace opaline::bake

@@ -38,11 +38,17 @@ struct RowJob {
     const RowEncoder& encoder;
     std::uint32_t total = 0;  ///< receivers of all sets, for the progress
     std::size_t batch_bytes = static_cast<std::size_t>(kBatchBytes);
+    bool measures_errors = false;
+};
+
+struct GatheredRows {
+    formats::SparseRows rows;
+    std::vector<float> receiver_error;  ///< of encoding (receiver_error.h), where it is measured
 };
 
 /// The encoded rows of a set's receivers in the order of the set; fewer, in no order, if the
 /// context is cancelled or they hold more than 2^32 - 1 coefficients. `rays` counts up.
-formats::SparseRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers,
-                                const Context& context, std::uint64_t& rays);
+GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, const Context& context,
+                         std::uint64_t& rays);
 
 }  // namespace opaline::bake

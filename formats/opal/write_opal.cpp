@@ -8,6 +8,7 @@
 #include "formats/opal/emitter_arrays.h"
 #include "formats/opal/glow_arrays.h"
 #include "formats/opal/layout.h"
+#include "formats/opal/receiver_errors.h"
 #include "formats/opal/row_arrays.h"
 #include "formats/opal/section.h"
 #include "formats/opal/stored_section.h"
@@ -51,9 +52,10 @@ struct SectionHeads {
     CloudsHead clouds;
     EmittersHead emitters;
     GlowHead glow;
+    ReceiverErrorsHead receiver_errors;
 };
 
-SectionHeads make_heads(const AssetView& asset) {
+SectionHeads make_heads(const AssetView& asset, std::span<const float> receiver_errors) {
     const auto count = [](auto span) { return static_cast<std::uint32_t>(span.size()); };
     SectionHeads heads;
     heads.basis = {1, asset.cubemap_size, static_cast<std::uint32_t>(asset.pairing), 0};
@@ -75,6 +77,7 @@ SectionHeads make_heads(const AssetView& asset) {
     heads.clouds = clouds_head(asset.clouds);
     heads.emitters = emitters_head(asset.emitters);
     heads.glow = glow_head(asset.volumes.glow);
+    heads.receiver_errors.receivers = count(receiver_errors);
     return heads;
 }
 
@@ -100,7 +103,9 @@ StoredSection store_images(const AssetView& asset, const SectionHeads& heads) {
 }
 
 // In the order of the file.
-std::vector<StoredSection> store_sections(const AssetView& asset, const SectionHeads& heads) {
+std::vector<StoredSection> store_sections(const AssetView& asset,
+                                          std::span<const float> receiver_errors,
+                                          const SectionHeads& heads) {
     std::vector<StoredSection> sections;
     const auto add = [&](std::uint32_t id, Codec codec, const auto& arrays) {
         sections.push_back(store_arrays(id, codec, arrays));
@@ -150,6 +155,11 @@ std::vector<StoredSection> store_sections(const AssetView& asset, const SectionH
     if (!asset.volumes.glow.empty()) {
         add(kGlowSection, Codec::none, glow_arrays(heads.glow, asset.volumes.glow));
     }
+    if (!receiver_errors.empty()) {
+        assert(receiver_errors.size() == asset.receivers());
+        add(kRerrSection, Codec::zstd,
+            Arrays{bytes_of(heads.receiver_errors), std::as_bytes(receiver_errors)});
+    }
     return sections;
 }
 
@@ -167,9 +177,9 @@ Status write_padded(Write& write, std::uint64_t& position, std::uint64_t target)
 
 // Hands the file to `write`, a Status(std::span<const std::byte>), from beginning to end.
 template <class Write>
-Status write_parts(const AssetView& asset, Write write) {
-    const SectionHeads heads = make_heads(asset);
-    std::vector<StoredSection> sections = store_sections(asset, heads);
+Status write_parts(const AssetView& asset, std::span<const float> receiver_errors, Write write) {
+    const SectionHeads heads = make_heads(asset, receiver_errors);
+    std::vector<StoredSection> sections = store_sections(asset, receiver_errors, heads);
     std::vector<SectionEntry> table;
     std::uint64_t end = sizeof(FileHeader) + sections.size() * sizeof(SectionEntry);
     for (StoredSection& section : sections) {
@@ -206,8 +216,10 @@ Status write_parts(const AssetView& asset, Write write) {
 
 }  // namespace
 
-Status write_opal_bytes(const AssetView& asset, AtomicFile& file) {
-    return write_parts(asset, [&](std::span<const std::byte> bytes) { return file.write(bytes); });
+Status write_opal_bytes(const AssetView& asset, AtomicFile& file,
+                        std::span<const float> receiver_errors) {
+    return write_parts(asset, receiver_errors,
+                       [&](std::span<const std::byte> bytes) { return file.write(bytes); });
 }
 
 Status write_opal(const AssetView& asset, AtomicFile file) {
@@ -217,7 +229,7 @@ Status write_opal(const AssetView& asset, AtomicFile file) {
 
 std::uint64_t opal_size(const AssetView& asset) {
     std::uint64_t size = 0;
-    const Status counted = write_parts(asset, [&](std::span<const std::byte> bytes) {
+    const Status counted = write_parts(asset, {}, [&](std::span<const std::byte> bytes) {
         size += bytes.size();
         return ok_status();
     });

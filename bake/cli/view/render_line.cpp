@@ -40,6 +40,10 @@ std::string render_line(const ViewState& state, const std::string& file, const V
                                    state.height, triple(from.eye), triple(from.target));
     if (from.up != formats::Vec3{0, 1, 0}) line += " --up " + triple(from.up);
     if (state.fov != kDefaultFov) line += fmt::format(" --fov {}", state.fov);
+    if (state.error_white > 0) {  // nothing below changes that picture
+        return line +
+               fmt::format(" --receiver-errors {} -o {}", state.error_white, quote_word(output));
+    }
     if (state.rotate_light != 0) line += fmt::format(" --rotate-light {}", state.rotate_light);
     if (state.time != 0) line += fmt::format(" --time {}", state.time);
     if (state.terms != formats::TermSet::baked) {

@@ -162,6 +162,12 @@ std::optional<What> parse_difference(Words words) {
         [v = *to](ViewState& state) { state.difference_gain = static_cast<float>(v[0]); });
 }
 
+std::optional<What> parse_receiver_errors(Words words) {
+    const auto to = numbers_in(words, 1, 0, 10);
+    if (!to || ((*to)[0] > 0 && (*to)[0] < 1e-6)) return {};
+    return change([v = *to](ViewState& state) { state.error_white = static_cast<float>(v[0]); });
+}
+
 std::optional<What> parse_light(Words words) {
     if (words.size() != 1) return {};
     return change([light = words[0]](ViewState& state) { state.light = light; });
@@ -215,6 +221,8 @@ constexpr ScriptCommand kCommands[] = {
     {"terms", "all|LIST", "components to show, as `render --terms`", parse_terms_word},
     {"toggle", "TERM|panels", "show a component, or the controls, or leave them out", parse_toggle},
     {"coefficients", "M|all", "use at most M coefficients of a row", parse_coefficients},
+    {"receiver-errors", "E", "errors by receiver in place of light, as `render`; 0: light",
+     parse_receiver_errors},
     {"emitter", "NAME=R,G,B", "multiply the light of an emitter", parse_emitter},
     {"time", "S", "move cloud layers by their wind times S [s]", parse_time},
     {"load", "FILE.opal", "another file", parse_load},

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bake/cli/draw_frames.h"
+#include "bake/cli/error_map.h"
 #include "bake/cli/light_with_layers.h"
 #include "bake/cli/view/coefficient_error.h"
 #include "bake/encode/shorten_rows.h"
@@ -84,20 +85,24 @@ struct ShownFile::Parts {
 
     const formats::AssetView& whole() const { return asset.loaded.view; }
     std::vector<formats::Rgb> emitter_colors(const ViewState& state) const;
-    formats::Status choose_coefficients(const ViewState& state);
+    formats::Status choose_rows(const ViewState& state);
     formats::Status make_renderer(const formats::Environment& map, const LightWithLayers& layers);
     PartVectors project(const LightWithLayers& layers, const OpenedLight& sky,
                         runtime::MapSampling sampling);
     formats::Status relight(const ViewState& state, const formats::Environment& map,
                             runtime::MapSampling sampling);
+    formats::Status light_errors();
 
     OpenedAsset asset;
     std::string path;
     FileFacts facts;
     ViewSeconds seconds;
+    std::vector<float> receiver_errors;  ///< empty without any
     bake::ShortRows short_rows;
-    formats::AssetView view;  ///< with the coefficients that are shown
+    ErrorMap error_map;
+    formats::AssetView view;  ///< with the coefficients that are shown, or the map of errors
     std::optional<std::uint32_t> coefficients;
+    float error_white = 0;
     std::optional<runtime::GlRenderer> renderer;
     std::uint64_t light_version = 0;
     std::optional<runtime::DistantLight> light;  ///< of that version, where there is no layer
@@ -116,20 +121,30 @@ std::vector<formats::Rgb> ShownFile::Parts::emitter_colors(const ViewState& stat
     return colors;
 }
 
-formats::Status ShownFile::Parts::choose_coefficients(const ViewState& state) {
-    if (state.coefficients == coefficients) return formats::ok_status();
+formats::Status ShownFile::Parts::choose_rows(const ViewState& state) {
+    if (state.coefficients == coefficients && state.error_white == error_white) {
+        return formats::ok_status();
+    }
+    if (state.error_white > 0 && receiver_errors.empty()) {
+        return stored_errors(asset, path).error();
+    }
     const auto start = ViewClock::now();
     renderer.reset();
     lit_for.reset();
     view = whole();
     short_rows = {};
-    if (state.coefficients && *state.coefficients < facts.coefficients) {
+    error_map = {};
+    if (state.error_white > 0) {
+        error_map = make_error_map(whole(), receiver_errors, state.error_white);
+        view = error_map.view_of(whole());
+    } else if (state.coefficients && *state.coefficients < facts.coefficients) {
         auto made = bake::shorten_rows(whole(), *state.coefficients);
         if (!made) return made.error();
         short_rows = std::move(*made);
         view = short_rows.view_of(whole());
     }
     coefficients = state.coefficients;
+    error_white = state.error_white;
     seconds.load = seconds_since(start);
     return formats::ok_status();
 }
@@ -199,11 +214,30 @@ formats::Status ShownFile::Parts::relight(const ViewState& state, const formats:
     return formats::ok_status();
 }
 
+// The map of errors under its own light.
+formats::Status ShownFile::Parts::light_errors() {
+    const OpenedLight even = error_map_light();
+    if (auto status = make_renderer(even.environment, {}); !status) return status;
+    const PartVectors vectors = project_parts({}, even, view.cubemap_size, 0);
+    if (auto status = renderer->set_light(vectors.lights(), even.rotation); !status) return status;
+    seconds.dots = renderer->stats().dot_seconds;
+    facts.gpu_bytes = renderer->stats().gpu_bytes;
+    drawing.terms = formats::TermSet::baked;
+    drawing.background = true;
+    error = 0;
+    return formats::ok_status();
+}
+
 formats::Result<ShownFile> ShownFile::open(const std::string& path) {
     const auto start = ViewClock::now();
     auto asset = open_asset(path);
     if (!asset) return asset.error();
+    auto errors = formats::read_receiver_errors(asset->file.bytes(), asset->loaded, path);
+    if (!errors) return errors.error();
     auto parts = std::make_unique<Parts>(std::move(*asset), path);
+    parts->receiver_errors = std::move(*errors);
+    parts->facts.has_receiver_errors = !parts->receiver_errors.empty();
+    parts->facts.receiver_errors = formats::summarize_errors(parts->receiver_errors);
     parts->seconds.load = seconds_since(start);
     return ShownFile(std::move(parts));
 }
@@ -225,7 +259,7 @@ formats::Status ShownFile::follow(const ViewState& state, const formats::Environ
     if (auto status = runtime::check_terms(parts.whole(), state.terms, parts.path); !status) {
         return status;
     }
-    if (auto status = parts.choose_coefficients(state); !status) return status;
+    if (auto status = parts.choose_rows(state); !status) return status;
     if (light_version != parts.light_version) {
         parts.renderer.reset();
         parts.light.reset();
@@ -237,7 +271,11 @@ formats::Status ShownFile::follow(const ViewState& state, const formats::Environ
     };
     if (parts.renderer && parts.lit_for && is_lit(*parts.lit_for)) return formats::ok_status();
     parts.lit_for.reset();
-    if (auto status = parts.relight(state, light, sampling); !status) return status;
+    if (auto status =
+            state.error_white > 0 ? parts.light_errors() : parts.relight(state, light, sampling);
+        !status) {
+        return status;
+    }
     parts.light_version = light_version;
     parts.lit_for = state;
     parts.lit_by = sampling;

@@ -8,6 +8,7 @@
 
 #include "bake/cli/inputs.h"
 #include "bake/cli/view/view_state.h"
+#include "formats/opal/receiver_errors.h"
 #include "formats/opal/result.h"
 #include "runtime/integrate_map.h"
 #include "runtime/picture/picture.h"
@@ -22,6 +23,8 @@ struct FileFacts {
     formats::TermSet terms = formats::TermSet::none;  ///< that can be left out by themselves
     bool has_layer = false;
     double error = -1;  ///< RMS relative, as the bake measured it; below 0: it did not
+    bool has_receiver_errors = false;
+    formats::ErrorSummary receiver_errors;
     std::string device;
     std::size_t gpu_bytes = 0;
 };
@@ -39,7 +42,7 @@ struct ViewSeconds {
 /// does again only what a change asks for. One thread at a time, any thread.
 class ShownFile {
   public:
-    /// Errors: as open_asset.
+    /// Errors: as open_asset, and damaged errors by receiver.
     static formats::Result<ShownFile> open(const std::string& path);
     ShownFile(ShownFile&&) noexcept;
     ShownFile& operator=(ShownFile&&) noexcept;
@@ -48,9 +51,11 @@ class ShownFile {
     /// The viewpoint that frames the file.
     Viewpoint framing(const ViewState& state) const;
 
-    /// Follows light, time, emitters, coefficients and terms. `light_version` grows with every
+    /// Follows light, time, emitters, coefficients and terms, or shows errors by receiver, of all
+    /// coefficients, in place of all of these. `light_version` grows with every
     /// light that is opened. `sampling`: of a map that turns; a finer one than last time counts as
-    /// a change. Errors: bad_input (terms that the file does not hold apart), resource (no OpenGL).
+    /// a change. Errors: bad_input (terms that the file does not hold apart, no errors by
+    /// receiver), resource (no OpenGL).
     formats::Status follow(const ViewState& state, const formats::Environment& light,
                            std::uint64_t light_version, runtime::MapSampling sampling);
 

@@ -138,8 +138,43 @@ void draw_emitters(ViewState& state, const FileFacts& facts) {
     }
 }
 
+// Black to white over red and yellow, as error_map.h has it.
+void draw_heat_scale(double white) {
+    const float line = ImGui::GetFrameHeight();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float third = ImGui::GetContentRegionAvail().x / 3;
+    constexpr std::array<ImU32, 4> kColors{IM_COL32(0, 0, 0, 255), IM_COL32(255, 0, 0, 255),
+                                           IM_COL32(255, 255, 0, 255),
+                                           IM_COL32(255, 255, 255, 255)};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float left = at.x + third * static_cast<float>(i);
+        ImGui::GetWindowDrawList()->AddRectFilledMultiColor(
+            {left, at.y}, {left + third, at.y + 0.6f * line}, kColors[i], kColors[i + 1],
+            kColors[i + 1], kColors[i]);
+    }
+    ImGui::Dummy({3 * third, 0.6f * line});
+    say(fmt::format("0 to {:.3g} %: rows, white light", 100 * white));
+}
+
+void draw_receiver_errors(ViewState& state, const formats::ErrorSummary& errors) {
+    constexpr double kLeast = 1e-4, kMost = 1;
+    bool is_map = state.error_white > 0;
+    if (ImGui::Checkbox("errors by vertex", &is_map)) {
+        state.error_white = is_map ? static_cast<float>(std::clamp(errors.p95, kLeast, kMost)) : 0;
+    }
+    if (state.error_white > 0) {
+        float percent = 100 * state.error_white;
+        if (ImGui::SliderFloat("white", &percent, 0.01f, 100, "%.3g %%",
+                               ImGuiSliderFlags_Logarithmic)) {
+            state.error_white = percent / 100;
+        }
+        draw_heat_scale(static_cast<double>(state.error_white));
+    }
+}
+
 void draw_accuracy(ViewState& state, const DrawnSide& side) {
     const FileFacts& facts = side.facts;
+    if (facts.has_receiver_errors) draw_receiver_errors(state, facts.receiver_errors);
     if (facts.coefficients > 6) {
         const int all = static_cast<int>(facts.coefficients);
         int kept = static_cast<int>(

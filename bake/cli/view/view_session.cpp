@@ -210,8 +210,12 @@ void Session::paint_frame() {
         frames_of_second_ = frames_;
         second_ = SessionClock::now();
     }
-    painter_.paint(state_.width, state_.height,
-                   {state_.exposure, state_.tone_map, state_.split, state_.difference_gain});
+    // Colours of errors are shown as they are.
+    const bool is_light = state_.error_white == 0;
+    painter_.paint(
+        state_.width, state_.height,
+        {is_light ? state_.exposure : 0.0f, is_light ? state_.tone_map : runtime::ToneMap::none,
+         state_.split, state_.difference_gain});
 }
 
 int Session::run(const std::string& script_name) {

@@ -20,7 +20,7 @@ runtime::Camera camera_of(const ViewState& state, const Viewpoint& from) {
 bool same_radiance(const ViewState& a, const ViewState& b) {
     const auto parts = [](const ViewState& s) {
         return std::tie(s.file, s.other, s.light, s.viewpoint, s.width, s.height, s.fov,
-                        s.rotate_light, s.time, s.terms, s.coefficients, s.emitters);
+                        s.rotate_light, s.time, s.terms, s.coefficients, s.emitters, s.error_white);
     };
     return parts(a) == parts(b);
 }
@@ -56,6 +56,7 @@ void show_file(ViewState& state, const std::string& path) {
     state.coefficients.reset();
     state.terms = formats::TermSet::baked;
     state.emitters.clear();
+    state.error_white = 0;
 }
 
 }  // namespace opaline::cli

@@ -46,6 +46,9 @@ struct ViewState {
     float split = 0.5f;  ///< `other` is shown right of this share of the width, in [0, 1]
     /// Right of the split: how far both pictures are apart, times this (PaintLook); 0: `other`.
     float difference_gain = 0;
+    /// Instead of light: the errors by receiver that the files hold, black for 0, white from this
+    /// one on (error_map.h); 0: light.
+    float error_white = 0;
     bool panels = true;  ///< the window's controls are shown
 };
 

@@ -39,7 +39,8 @@ formats::SparseRows bake_single_alone(const tests::SingleSetup& setup, const Kno
         make_row_encoder(knobs.cubemap_size, knobs.coefficients, knobs.code_bits);
     std::uint64_t rays = 0;
     return gather_rows({sets[0], subjects[0].layout, encoder, 0, batch_bytes},
-                       make_gatherers(bake, subjects[0], knobs, context), context, rays);
+                       make_gatherers(bake, subjects[0], knobs, context), context, rays)
+        .rows;
 }
 
 Knobs knobs_of(std::uint32_t cubemap, std::uint32_t single_cubemap, bool exact_rays = false) {

@@ -34,6 +34,16 @@ TEST(RenderLine, NamesAllThatWasChangedAndQuotesNames) {
               "'Bob'\\''s lamp=0.5,0,1e-07' --exposure 0.1 --tone-map none -o 'b c.png'");
 }
 
+TEST(RenderLine, ErrorsByReceiverNeedTheCameraAlone) {
+    ViewState state;
+    state.error_white = 0.05f;
+    state.exposure = 2;
+    state.coefficients = 12;
+    EXPECT_EQ(render_line(state, "a.opal", {{0, 1, 2.5f}, {0, 0, 0}}, "a.png"),
+              "opaline render a.opal --light studio --size 1280x800 --eye 0,1,2.5 --target 0,0,0 "
+              "--receiver-errors 0.05 -o a.png");
+}
+
 TEST(QuoteWord, LeavesPlainOnesAlone) {
     EXPECT_EQ(quote_word("sky:3,35"), "sky:3,35");
     EXPECT_EQ(quote_word(""), "''");

@@ -35,6 +35,7 @@ TEST(ViewScript, CommandsChangeWhatTheySay) {
         "beside b.opal\n"
         "split 0.25\n"
         "difference 8\n"
+        "receiver-errors 0.05\n"
         "toggle panels\n"
         "orbit 90 0\n"
         "zoom 2");
@@ -49,6 +50,7 @@ TEST(ViewScript, CommandsChangeWhatTheySay) {
     EXPECT_EQ(state.other, "b.opal");
     EXPECT_EQ(state.split, 0.25f);
     EXPECT_EQ(state.difference_gain, 8);
+    EXPECT_EQ(state.error_white, 0.05f);
     EXPECT_FALSE(state.panels);
     EXPECT_LT(length(state.viewpoint->eye - formats::Vec3{2, 0, 0}), 1e-5f);
 }

@@ -36,6 +36,9 @@ TEST(ViewState, RadianceIsThatOfTheFinishedPicture) {
     EXPECT_TRUE(same_radiance(state, look));
     look.terms = formats::TermSet::diffuse;
     EXPECT_FALSE(same_radiance(state, look));
+    look = state;
+    look.error_white = 0.1f;
+    EXPECT_FALSE(same_radiance(state, look));
 }
 
 }  // namespace

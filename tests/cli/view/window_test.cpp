@@ -146,6 +146,36 @@ TEST(View, TwoFilesShareTheWindowAndEmittersAreDimmed) {
     EXPECT_LE(largest_difference(read_picture(small.path("c.png")), left, {0, 320}), 1);
 }
 
+TEST(View, ErrorsByReceiverAreThePictureThatTheirLineRenders) {
+    SmallScene small;
+    ASSERT_EQ(run_opaline({"bake", small.scene(), "-o", small.path("scene.opal"), "--coefficients",
+                           "24", "--receiver-errors"})
+                  .exit_code,
+              0);
+    const Outcome outcome = view_with(small,
+                                      "orbit 0 40\nscreenshot 0.png\n"
+                                      "receiver-errors 0.1\nexposure 1\nscreenshot 1.png\n"
+                                      "receiver-errors 0.4\nscreenshot 2.png\n"
+                                      "photograph 3.png\n"
+                                      "receiver-errors 0\nexposure 0\nscreenshot 4.png\nquit\n",
+                                      {"scene.opal", "--light", "studio", "--size", "480x300"});
+    if (outcome.exit_code == kNoDisplay) GTEST_SKIP() << "no Xvfb";
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto lines = printed_lines(outcome.out);
+    ASSERT_EQ(lines.size(), 4u) << outcome.out;
+    const auto picture = [&](int i) {
+        return read_picture(small.path(std::to_string(i) + ".png"));
+    };
+    EXPECT_THAT(lines[1], HasSubstr("--receiver-errors 0.1 -o"));
+    for (const int i : {1, 2}) {
+        EXPECT_LE(largest_difference(picture(i), render_line_again(small, lines[i]), {0, 480}), 1);
+        EXPECT_GT(largest_difference(picture(i), picture(i - 1), {0, 480}), 20);
+    }
+    EXPECT_EQ(largest_difference(picture(4), picture(0), {0, 480}), 0);
+    // The scale stands among the controls.
+    EXPECT_GT(largest_difference(picture(3), picture(2), {0, 280}), 100);
+}
+
 TEST(View, ReadsAFileAgainThatChanges) {
     SmallScene small;
     small.baked();

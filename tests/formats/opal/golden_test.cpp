@@ -11,6 +11,7 @@
 #include "formats/opal/file_bytes.h"
 #include "formats/opal/half.h"
 #include "formats/opal/read_opal.h"
+#include "formats/opal/receiver_errors.h"
 #include "formats/opal/shared_exponent.h"
 
 namespace opaline::formats {
@@ -229,6 +230,16 @@ TEST_F(GoldenFile, NormalMapsToo) {
     EXPECT_EQ(decode_tangent(maps.tangent[3]).sign, -1);
     EXPECT_NEAR(decode_tangent(maps.tangent[3]).direction.x, -0.98999f, 1e-4f);
     EXPECT_NEAR(decode_tangent(maps.tangent[3]).direction.z, 0.14112f, 1e-4f);
+}
+
+TEST_F(GoldenFile, ErrorsByReceiverToo) {
+    read("rerr1.opal");
+    EXPECT_EQ(version_of(kRerrSection), 1u);
+    const auto errors = read_receiver_errors(file_->bytes(), *loaded_, "rerr1.opal");
+    ASSERT_TRUE(errors);
+    ASSERT_EQ(errors->size(), 8u);
+    EXPECT_EQ((*errors)[0], 0);
+    EXPECT_EQ((*errors)[7], 0.109375f);
 }
 
 TEST_F(GoldenFile, CloudLayersToo) {
