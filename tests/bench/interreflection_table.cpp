@@ -1,6 +1,7 @@
 // Bounced light of the bake against an exact final gather, against path tracing, and its cost.
 //   opaline_interreflection_table gather SCENE RAYS: errors of 160 receivers against 16384 rays
-//     that read the nearest of as many scatterers as there are, whose light is found with 256 rays each.
+//     that read the nearest of as many scatterers as there are, whose light is found with 256 rays
+//     each.
 //   ... truth SCENE: a file of production against path tracing of all light.
 //   ... cost SCENE: seconds and rays of stages without and with interreflection.
 // SCENE: box (a room open to the front, with a block in it), detailed (the same, of checkers),
@@ -33,6 +34,7 @@
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "runtime/light_vector.h"
+#include "tests/bench/visible_footprint.h"
 #include "tests/support/bake.h"
 #include "tests/support/effects.h"
 #include "tests/support/scenes.h"
@@ -246,6 +248,26 @@ void compare(const World& w, std::uint32_t n) {
     report("nearest scatterer", with(light->tree, LookUp::nearest));
     report("node", with(light->tree, LookUp::node));
     report("kernel", with(light->tree, LookUp::kernel));
+    std::vector<HiddenNodes> nodes(wanted);
+    for (const bool only_seen : {false, true}) {
+        report(only_seen ? "kernel, seen nodes" : "kernel without tilt", [&](std::size_t i) {
+            std::vector<NodeWeight> weights;
+            nodes[i] = weigh_seen_nodes(w.scene, w.rays, light->tree, at[i], make_bounce_grid(n),
+                                        0, only_seen, weights);
+            Row r(kTexels);
+            add_node_rows(light->tree, weights, r);
+            return r;
+        });
+    }
+    HiddenNodes all;
+    for (const HiddenNodes& own : nodes) {
+        all.looked_at += own.looked_at;
+        all.hidden += own.hidden;
+    }
+    std::printf("%.1f rays to nodes a receiver, %.1f %% hidden\n",
+                static_cast<double>(all.looked_at) / static_cast<double>(wanted),
+                100.0 * static_cast<double>(all.hidden) /
+                    static_cast<double>(std::max<std::uint64_t>(all.looked_at, 1)));
     std::vector<std::uint64_t> traced(wanted);
     report("as baked", [&](std::size_t i) {
         Row r(kTexels * light->bands);
@@ -310,16 +332,18 @@ int main(int argc, char** argv) {
     using namespace opaline;
     using namespace opaline::bake;
     const std::string what = argc > 1 ? argv[1] : "", name = argc > 2 ? argv[2] : "";
+    const bool is_known = name == "box" || name == "detailed" || name == "dense" ||
+                          name == "ball" || name == "statue";
     const formats::Scene scene = name == "box"        ? make_open_box(false, 24)
                                  : name == "detailed" ? make_open_box(true, 24)
                                  : name == "dense"    ? make_open_box(false, 64)
                                  : name == "ball"     ? tests::make_dented_ball()
                                                       : example("statue");
-    if (what == "gather" && argc > 3) {
+    if (is_known && what == "gather" && argc > 3) {
         compare(World(scene), static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)));
-    } else if (what == "truth") {
+    } else if (is_known && what == "truth") {
         check(scene, Quality::production);
-    } else if (what == "cost") {
+    } else if (is_known && what == "cost") {
         for (const Quality quality : {Quality::draft, Quality::production}) {
             bake_and_print(scene, quality, {"direct"});
             bake_and_print(scene, quality, {"direct", "interreflection"});
