@@ -252,8 +252,8 @@ void compare(const World& w, std::uint32_t n) {
     for (const bool only_seen : {false, true}) {
         report(only_seen ? "kernel, seen nodes" : "kernel without tilt", [&](std::size_t i) {
             std::vector<NodeWeight> weights;
-            nodes[i] = weigh_seen_nodes(w.scene, w.rays, light->tree, at[i], make_bounce_grid(n),
-                                        0, only_seen, weights);
+            nodes[i] = weigh_seen_nodes(w.scene, w.rays, light->tree, at[i], make_bounce_grid(n), 0,
+                                        only_seen, weights);
             Row r(kTexels);
             add_node_rows(light->tree, weights, r);
             return r;
