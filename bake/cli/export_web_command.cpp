@@ -127,7 +127,7 @@ void add_export_web_command(CLI::App& app, Job& job) {
         ->option_text("T [0]");
     command->footer(
         "The page needs WebGL 2, but no server and no network: open DIR/index.html from the disk.\n"
-        "It shows what `render` does; above a cloud layer the light does not turn.\n"
+        "It shows what `render` does; the light above a cloud layer turns unless bodies mirror it.\n"
         "After a '#', its address takes what `render` takes: light, rotate, exposure, eye, "
         "target,\n"
         "azimuth, elevation, distance, fov, emitter; the page keeps it up to date.\n\n"

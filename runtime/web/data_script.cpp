@@ -1,7 +1,11 @@
 #include "runtime/web/data_script.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <vector>
+
+#include "formats/opal/half.h"
 
 namespace opaline::runtime {
 namespace {
@@ -47,6 +51,24 @@ std::string base64_of(std::span<const std::byte> bytes) {
 void DataScript::add(std::string_view name, const char* type, std::span<const std::byte> bytes) {
     add_statement("opaline.put(" + script_literal(owner_) + "," + script_literal(name) + ",\"" +
                   type + "\",\"" + base64_of(bytes) + "\")");
+}
+
+void DataScript::put_radiance(const std::string& name, std::span<const formats::Rgb> values) {
+    constexpr float kMost = 60000;  // below the largest half
+    float most = 0;
+    for (const formats::Rgb value : values) {
+        most = std::max({most, value.r, value.g, value.b});
+    }
+    const float scale = most > 0 ? most / kMost : 1.0f;
+    std::vector<std::uint16_t> halves;
+    halves.reserve(3 * values.size());
+    for (const formats::Rgb value : values) {
+        for (const float band : {value.r, value.g, value.b}) {
+            halves.push_back(formats::half_from_float(std::min(band / scale, kMost)));
+        }
+    }
+    put(name, std::span<const std::uint16_t>(halves));
+    put(name + ".scale", std::span<const float>(&scale, 1));
 }
 
 void DataScript::add_statement(std::string_view statement) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "formats/opal/rgb.h"
+
 namespace opaline::runtime {
 
 /// A script that hands arrays to the page: browsers that open a page from a disk read scripts, but
@@ -43,6 +45,9 @@ class DataScript {
     void put_records(std::string_view name, std::span<const Record> records) {
         add(name, "u32", std::as_bytes(records));
     }
+    /// Values >= 0 as halves, three a value, times the number `name.scale`; they err by 2^-12 down
+    /// to 1e-9 of the brightest.
+    void put_radiance(const std::string& name, std::span<const formats::Rgb> values);
     /// A statement of its own.
     void add_statement(std::string_view statement);
 

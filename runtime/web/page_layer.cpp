@@ -1,12 +1,17 @@
 #include "runtime/web/page_layer.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <span>
+#include <utility>
 
 #include "runtime/clouds/environment_at.h"
 #include "runtime/clouds/light_points.h"
 #include "runtime/clouds/shader_layer.h"
 #include "runtime/picture/camera.h"
+#include "runtime/specular.h"
 #include "runtime/volumes/volume_bounds.h"
 
 namespace opaline::runtime {
@@ -62,35 +67,122 @@ void append_grid(const LayerGrid& grid, std::vector<float>& values) {
     }
 }
 
+LayerTurn turn_of(LayerLight light) {
+    return {std::move(light.ground_light.cell.value), std::move(light.base_light.cell.value)};
+}
+
+float brightest_of(const LayerTurn& turn) {
+    float brightest = 0;
+    for (const std::vector<Rgb>* grid : {&turn.ground, &turn.base}) {
+        for (const Rgb value : *grid) {
+            brightest = std::max({brightest, value.r, value.g, value.b});
+        }
+    }
+    return brightest;
+}
+
+// The largest difference of `middle` from the mean of both.
+float error_between(const LayerTurn& a, const LayerTurn& b, const LayerTurn& middle) {
+    LayerTurn difference;
+    const auto add = [&](std::vector<Rgb> LayerTurn::*grid) {
+        for (std::size_t i = 0; i < (middle.*grid).size(); ++i) {
+            const Rgb d = (middle.*grid)[i] + -0.5f * ((a.*grid)[i] + (b.*grid)[i]);
+            (difference.*grid).push_back({std::abs(d.r), std::abs(d.g), std::abs(d.b)});
+        }
+    };
+    add(&LayerTurn::ground);
+    add(&LayerTurn::base);
+    return brightest_of(difference);
+}
+
+// `turn`: as the light stands. Halves the step until what lies between is near enough.
+template <class Solve>
+std::vector<LayerTurn> fill_turns(LayerTurn turn, const Solve& solve) {
+    constexpr std::size_t kFirst = 4, kBytesPerCell = 12;  // halves of two grids
+    const std::size_t most =
+        std::min(kMostTurns, kMostTurnBytes / (kBytesPerCell * turn.ground.size()));
+    std::vector<LayerTurn> turns;
+    turns.push_back(std::move(turn));
+    for (std::size_t i = 1; i < kFirst; ++i) {
+        turns.push_back(solve(static_cast<double>(i) / kFirst));
+    }
+    for (float error = 1; error > kTurnTolerance && 2 * turns.size() <= most;) {
+        const std::size_t count = turns.size();
+        std::vector<LayerTurn> all;
+        float largest = 0, brightest = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            LayerTurn middle = solve((static_cast<double>(i) + 0.5) / static_cast<double>(count));
+            largest = std::max(largest, error_between(turns[i], turns[(i + 1) % count], middle));
+            brightest = std::max(brightest, brightest_of(middle));
+            all.push_back(turns[i]);
+            all.push_back(std::move(middle));
+        }
+        turns = std::move(all);
+        error = brightest > 0 ? largest / brightest : 0;
+    }
+    return turns;
+}
+
+void put_turns(DataScript& script, const std::string& name, std::span<const LayerTurn> turns,
+               std::vector<Rgb> LayerTurn::*grid) {
+    std::vector<Rgb> all;
+    for (const LayerTurn& turn : turns) {
+        all.insert(all.end(), (turn.*grid).begin(), (turn.*grid).end());
+    }
+    script.put_radiance(name, all);
+}
+
 }  // namespace
+
+bool turns_layer(const formats::AssetView& asset) {
+    return !specular_needs(asset).any();
+}
 
 LightAboveLayer light_above_layer(const formats::AssetView& asset,
                                   const formats::Environment& environment, unsigned threads) {
     LightAboveLayer made;
-    made.layer = light_layers(asset.clouds, environment, {}, {.time = 0, .threads = threads});
-    made.below =
-        environment_at({made.layer, environment, {}}, centre_of(asset), {.threads = threads});
+    const auto light_turned = [&](double share) {
+        const auto angle = static_cast<float>(2 * std::numbers::pi * share);
+        return light_layers(asset.clouds, environment, rotation_about_y(angle),
+                            {.time = 0, .threads = threads});
+    };
+    made.layer = light_turned(0);
+    made.turns = turns_layer(asset);
+    // An even sky has no side.
+    if (made.turns && !made.layer.sun.empty()) {
+        made.turn = fill_turns(turn_of(made.layer),
+                               [&](double share) { return turn_of(light_turned(share)); });
+    } else {
+        made.turn = {turn_of(made.layer)};
+    }
+    if (!made.turns) {
+        made.below =
+            environment_at({made.layer, environment, {}}, centre_of(asset), {.threads = threads});
+    }
     return made;
 }
 
 void put_layer(DataScript& script, const formats::AssetView& asset) {
     const LayerLight light = light_layers(asset.clouds, {}, {}, {.time = 0, .threads = 1});
     const LayerKind kind = layer_kind(light);
-    put_numbers(script, "layer kind", {kind.repeats ? 1u : 0u, kind.modes, kind.glows ? 1u : 0u});
+    put_numbers(
+        script, "layer kind",
+        {kind.repeats ? 1u : 0u, kind.modes, kind.glows ? 1u : 0u, turns_layer(asset) ? 1u : 0u});
     put_floats(script, "layer thickness", pack_thickness(light));
     put_joined(script, "layer tables",
                {pack_layer_phase(light), pack_layer_flux(light), pack_layer_glow(light)});
     put_pictures(script, "layer albedo", light.albedo.level);
 }
 
-void put_layer_light(DataScript& script, const LayerLight& light) {
+void put_layer_light(DataScript& script, const LightAboveLayer& above) {
+    const LayerLight& light = above.layer;
     const ShaderLayer record = make_shader_layer(light);
     script.put_records("layer record", std::span<const ShaderLayer>(&record, 1));
     put_joined(script, "layer suns", {pack_sun_tables(light), pack_sun_flux(light)});
-    put_pictures(script, "layer ground light",
-                 std::span<const MipLevel<Rgb>>(&light.ground_light.cell, 1));
-    put_pictures(script, "layer base light",
-                 std::span<const MipLevel<Rgb>>(&light.base_light.cell, 1));
+    put_numbers(script, "layer light size",
+                {light.ground_light.cell.columns, light.ground_light.cell.rows});
+    put_turns(script, "layer ground light", above.turn, &LayerTurn::ground);
+    put_turns(script, "layer base light", above.turn, &LayerTurn::base);
     const LayerPlaces places = layer_places(light);
     std::vector<float> values;
     for (const LayerGrid* grid : {&places.field, &places.ground, &places.light}) {

@@ -1,10 +1,8 @@
 #include "runtime/web/page_light.h"
 
-#include <algorithm>
 #include <cmath>
 #include <span>
 
-#include "formats/opal/half.h"
 #include "runtime/gloss_light.h"
 #include "runtime/reduce_map.h"
 #include "runtime/specular.h"
@@ -16,25 +14,6 @@ namespace {
 
 using formats::Environment;
 using formats::Rgb;
-
-// Radiance = scale * half.
-void put_radiance(DataScript& script, const std::string& name, std::span<const Rgb> pixels) {
-    constexpr float kMost = 60000;  // below the largest half
-    float most = 0;
-    for (const Rgb pixel : pixels) {
-        most = std::max({most, pixel.r, pixel.g, pixel.b});
-    }
-    const float scale = most > 0 ? most / kMost : 1.0f;
-    std::vector<std::uint16_t> halves;
-    halves.reserve(3 * pixels.size());
-    for (const Rgb pixel : pixels) {
-        for (const float band : {pixel.r, pixel.g, pixel.b}) {
-            halves.push_back(formats::half_from_float(std::min(band / scale, kMost)));
-        }
-    }
-    script.put(name, std::span<const std::uint16_t>(halves));
-    script.put(name + ".scale", std::span<const float>(&scale, 1));
-}
 
 // Direction, then `last`; radiance, then the solid angle: two texels a disc.
 void put_discs(DataScript& script, const std::string& name,
@@ -61,6 +40,13 @@ void put_cells(DataScript& script, const GlossLight::Cells& cells) {
     script.put("cells", std::span<const float>(values));
 }
 
+void put_shining(DataScript& script, const Environment& environment, unsigned threads) {
+    const DividedLight divided = divide_light(environment, threads);
+    script.put_radiance("cube", divided.cube);
+    script.put("points", std::span<const float>(divided.points));
+    put_discs(script, "suns", divided.suns, false);
+}
+
 void put_background(DataScript& script, const Environment& environment, unsigned threads) {
     constexpr std::uint32_t kColumns = 1024, kRows = 512, kSide = 512;
     const bool is_cube = environment.layout == Environment::Layout::cube;
@@ -75,7 +61,7 @@ void put_background(DataScript& script, const Environment& environment, unsigned
     const float turn[] = {map.u_offset, map.u_sign};
     script.put("background.shape", std::span<const std::uint32_t>(shape));
     script.put("background.turn", std::span<const float>(turn));
-    put_radiance(script, "background", map.pixel);
+    script.put_radiance("background", map.pixel);
 }
 
 }  // namespace
@@ -85,18 +71,16 @@ std::string make_light_script(const std::string& owner, const PageLight& light,
                               unsigned threads) {
     DataScript script(owner);
     const Environment& shining = above != nullptr ? above->below : light.environment;
-    const DividedLight divided = divide_light(shining, threads);
-    put_radiance(script, "cube", divided.cube);
-    script.put("points", std::span<const float>(divided.points));
-    put_discs(script, "suns", divided.suns, false);
+    // Of a layer that turns, the page itself finds what lights bodies.
+    if (above == nullptr || !above->turns) put_shining(script, shining, threads);
     put_background(script, light.environment, threads);
     put_discs(script, "discs", light.environment.discs, true);
     if (needs.gloss) put_cells(script, make_gloss_light(shining, threads).cells);
     for (const SpecularLight::Map& map :
          prefilter_specular(shining, needs.levels, {}, threads).maps) {
-        put_radiance(script, "mirrored." + std::to_string(map.level), map.radiance.pixel);
+        script.put_radiance("mirrored." + std::to_string(map.level), map.radiance.pixel);
     }
-    if (above != nullptr) put_layer_light(script, above->layer);
+    if (above != nullptr) put_layer_light(script, *above);
     return script.text();
 }
 

@@ -256,14 +256,21 @@ const Draw = (() => {
 
   const kFloatLines = gl => [gl.R32F, gl.RED, gl.FLOAT];
 
-  // What never changes of a cloud layer; `hasSheet`: volumes are seen with it.
-  function makeLayerObjects(gl, layer, hasSheet) {
+  // What never changes of a cloud layer; `hasSheet`: volumes are seen with it; `looksAround`: it lights
+  // bodies.
+  function makeLayerObjects(gl, layer, hasSheet, looksAround) {
     const program = makeProgram(
         gl, [...Layer.defines(layer), ["SHEET", hasSheet ? 1 : 0]], ["screen.vert.glsl"],
         ["cube_map.glsl", "arc_tangent.glsl", "environment.glsl", "layer_tables.glsl", "layer_march.glsl",
          "layer_see.glsl", "layers.frag.glsl"]);
-    gl.uniformBlockBinding(program.name, gl.getUniformBlockIndex(program.name, "Layer"), 0);
-    return { program, block: gl.createBuffer(), tables: makeLines(gl, kFloatLines(gl), layer.tables),
+    const around = !looksAround ? null : makeProgram(
+        gl, Layer.defines(layer), ["screen.vert.glsl"],
+        ["cube_map.glsl", "arc_tangent.glsl", "environment.glsl", "layer_tables.glsl", "layer_march.glsl",
+         "layer_see.glsl", "around.frag.glsl"]);
+    for (const { name } of around === null ? [program] : [program, around]) {
+      gl.uniformBlockBinding(name, gl.getUniformBlockIndex(name, "Layer"), 0);
+    }
+    return { program, around, block: gl.createBuffer(), tables: makeLines(gl, kFloatLines(gl), layer.tables),
              thickness: makeLines(gl, kFloatLines(gl), layer.thickness),
              albedo: makePictures(gl, layer.albedo) };
   }
@@ -287,8 +294,9 @@ const Draw = (() => {
           : makeLayers(gl, background.width, background.height, background.layout === 2 ? 6 : 1,
                        background.pixels),
       layerSuns: light.layer && makeLines(gl, kFloatLines(gl), light.layer.suns),
-      layerGround: light.layer && makePictures(gl, light.layer.ground),
-      layerBase: light.layer && makePictures(gl, light.layer.base),
+      layerGround: light.layer && makeTexture(gl, gl.TEXTURE_2D, 1, gl.RGB32F, light.layer.width, light.layer.height),
+      layerBase: light.layer && makeTexture(gl, gl.TEXTURE_2D, 1, gl.RGB32F, light.layer.width, light.layer.height),
+      layerRecord: null,
     };
   }
 
@@ -327,7 +335,7 @@ const Draw = (() => {
     gl.deleteTexture(target.depth);
   }
 
-  // Interface: setLight(light), relight(projected, colors), resize(width, height),
+  // Interface: setLight(light), project(turn), relight(projected, colors), resize(width, height),
   // drawSample(...), present(...), readPixels(...).
   function make(canvas, asset) {
     const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false });
@@ -343,7 +351,9 @@ const Draw = (() => {
                                    ["cube_map.glsl", "arc_tangent.glsl", "environment.glsl", "background.frag.glsl"]);
     const adding = makeProgram(gl, [], ["screen.vert.glsl"], ["add_sample.frag.glsl"]);
     const presenting = makeProgram(gl, [], ["screen.vert.glsl"], ["present.frag.glsl"]);
-    const layer = asset.layer === null ? null : makeLayerObjects(gl, asset.layer, asset.volumes !== null);
+    const looksAround = asset.layer?.turns && (asset.primitives.length > 0 || asset.volumes !== null);
+    const layer = asset.layer === null ? null
+        : makeLayerObjects(gl, asset.layer, asset.volumes !== null, looksAround);
     const volumes = asset.volumes === null ? null : makeVolumeObjects(gl, asset.volumes, layer !== null);
     let size = [0, 0], sampled = null, clouded = null, marched = null, sum = null, light = null, lightObjects = null;
     let turned = {};  // uniforms, where there are normal maps
@@ -354,8 +364,48 @@ const Draw = (() => {
       lightObjects = makeLightObjects(gl, light, asset);
     }
 
-    // `projected`: of Light.project.
+    // The light turned by `turn` [radians], as Light.project gives it; with a cloud layer what that leaves
+    // of it, and null where it lights no bodies.
+    function project(turn) {
+      if (layer === null) return Light.project(light, asset.cubemap, turn);
+      turnLayer(turn);
+      if (!asset.layer.turns) return Light.project(light, asset.cubemap, 0);
+      return looksAround ? Light.project(lookAround(turn), asset.cubemap, 0) : null;
+    }
+
+    function turnLayer(turn) {
+      const turned = Layer.turned(light.layer, turn), { width, height } = light.layer;
+      lightObjects.layerRecord = turned.record;
+      for (const [texture, values] of [[lightObjects.layerGround, turned.ground],
+                                       [lightObjects.layerBase, turned.base]]) {
+        gl.activeTexture(gl.TEXTURE0 + 15);
+        gl.bindTexture(gl.TEXTURE_2D, texture);
+        gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RGB, gl.FLOAT, values);
+      }
+    }
+
+    // What lights bodies with a cloud layer around them, as a light that is not to be turned.
+    function lookAround(turn) {
+      const side = Light.kSide, target = makeTarget(gl, side, 6 * side + 1, gl.RGBA32F, false);
+      gl.disable(gl.BLEND);
+      gl.disable(gl.DEPTH_TEST);
+      gl.viewport(0, 0, side, 6 * side + 1);
+      gl.useProgram(layer.around.name);
+      bindLayer(Layer.bodiesAt(light.layer, asset.camera.subarray(6, 9)));
+      setUniforms(gl, layer.around, { ...skyUniforms(turn), side });
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+      const seen = new Float32Array(4 * side * (6 * side + 1));
+      gl.readPixels(0, 0, side, 6 * side + 1, gl.RGBA, gl.FLOAT, seen);
+      freeTarget(gl, target);
+      const cube = new Float32Array(18 * side * side);
+      for (let i = 0; i < cube.length; ++i) cube[i] = seen[4 * Math.floor(i / 3) + i % 3];
+      return { padded: Light.padCube(cube), points: new Float32Array(0),
+               suns: Layer.sunsBelow(lightObjects.layerRecord, light.discs, seen.subarray(24 * side * side), turn) };
+    }
+
+    // `projected`: of project.
     function relight(projected, colors) {
+      if (projected === null) return;
       Rows.multiply(asset, projected.coefficients, colors, objects.values);
       bind(gl, "products", objects.products);
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, kColumns, objects.lines, gl.RGBA, gl.FLOAT,
@@ -465,22 +515,28 @@ const Draw = (() => {
       gl.bindVertexArray(null);
     }
 
-    // Layer, ground and sky before and behind surfaces, from `sampled` to `clouded`.
-    function drawLayer(frame, place) {
-      gl.bindFramebuffer(gl.FRAMEBUFFER, clouded.frame);
-      gl.useProgram(layer.program.name);
+    // What programs read of a cloud layer, seen from there.
+    function bindLayer(eye) {
+      const block = Layer.block(asset.layer, light.layer, lightObjects.layerRecord, eye);
       gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, layer.block);
-      gl.bufferData(gl.UNIFORM_BUFFER, Layer.block(asset.layer, light.layer, frame.eye), gl.DYNAMIC_DRAW);
-      bind(gl, "samples", sampled.color);
-      bind(gl, "depth", sampled.depth);
+      gl.bufferData(gl.UNIFORM_BUFFER, block, gl.DYNAMIC_DRAW);
       bind(gl, "table_values", layer.tables);
       bind(gl, "sun_values", lightObjects.layerSuns);
       bind(gl, "thickness_values", layer.thickness);
       bind(gl, "albedo_map", layer.albedo);
       bind(gl, "ground_light", lightObjects.layerGround);
       bind(gl, "base_light", lightObjects.layerBase);
+    }
+
+    // Layer, ground and sky before and behind surfaces, from `sampled` to `clouded`.
+    function drawLayer(frame, turn, place) {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, clouded.frame);
+      gl.useProgram(layer.program.name);
+      bindLayer(frame.eye);
+      bind(gl, "samples", sampled.color);
+      bind(gl, "depth", sampled.depth);
       setUniforms(gl, layer.program, {
-        ...rayUniforms(frame, place), ...skyUniforms(0), near_plane: frame.near, supersampling: 1,
+        ...rayUniforms(frame, place), ...skyUniforms(turn), near_plane: frame.near, supersampling: 1,
         sees_corners: 0, shows_sky: 1, spread: 2 * frame.tangent[1] / size[1] });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
@@ -521,7 +577,7 @@ const Draw = (() => {
       drawBackground(frame, turn, place);
       drawSurfaces(frame, turn, colors, place, across, [i, j]);
       gl.disable(gl.DEPTH_TEST);
-      if (layer !== null) drawLayer(frame, place);
+      if (layer !== null) drawLayer(frame, turn, place);
       if (volumes !== null) drawVolumes(frame, colors, place);
       gl.bindFramebuffer(gl.FRAMEBUFFER, sum.frame);
       gl.useProgram(adding.name);
@@ -555,7 +611,7 @@ const Draw = (() => {
       return pixels;
     }
 
-    return { setLight, relight, resize, drawSample, present, readPixels };
+    return { setLight, project, relight, resize, drawSample, present, readPixels };
   }
 
   return { make };

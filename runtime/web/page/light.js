@@ -228,11 +228,11 @@ const Light = (() => {
     const cube = radiance("cube");
     const [layout, width, height, includesPoles] = arrays.get("background.shape");
     return {
-      cube, padded: padCube(cube), points: arrays.get("points"), suns: arrays.get("suns"), discs: arrays.get("discs"),
+      cube, padded: cube.length > 0 ? padCube(cube) : null, points: arrays.get("points"), suns: arrays.get("suns"), discs: arrays.get("discs"),
       cells: arrays.get("cells"),
       background: { layout, width, height, includesPoles, turn: arrays.get("background.turn"),
                     pixels: radiance("background") },
-      layer: Layer.readLight(arrays),
+      layer: Layer.readLight(arrays, radiance),
       // Of a level of roughness; nothing where the asset has none of it.
       mirrored: level => arrays.has(`mirrored.${level}`) ? radiance(`mirrored.${level}`) : null,
     };
@@ -260,5 +260,5 @@ const Light = (() => {
     return Vector.times(1 / Vector.norm(d), d);
   }
 
-  return { read, project, coefficientsOf, texelDirection, wholeCube, halveCube, kFloats, kSide };
+  return { read, padCube, project, coefficientsOf, texelDirection, wholeCube, halveCube, kFloats, kSide };
 })();

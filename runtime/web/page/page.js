@@ -20,6 +20,7 @@ opaline.page = (() => {
     throw error;
   }
 
+  const canTurn = () => asset.layer === null || asset.layer.turns;
   const numbers = text => text.split(",").map(Number);
   const areFinite = (values, count) => values.length === count && values.every(Number.isFinite);
 
@@ -47,7 +48,7 @@ opaline.page = (() => {
       if (emitter >= 0 && areFinite(factors, 3)) colors[emitter] = factors.map(f => Math.max(f, 0));
     }
     const light = Math.max(0, opaline.lights.indexOf(given.get("light")));
-    return { view, light, turn: asset.layer === null ? number("rotate", 0, -1e6, 1e6) : 0,
+    return { view, light, turn: canTurn() ? number("rotate", 0, -1e6, 1e6) : 0,
              exposure: number("exposure", 0, -64, 64), colors };
   }
 
@@ -103,7 +104,7 @@ opaline.page = (() => {
     }
     if (shown.light !== light) draw.setLight(lights.get(light));
     const isNew = shown.light !== light || shown.turn !== turn;
-    if (isNew) projected = Light.project(lights.get(light), asset.cubemap, turn * Math.PI / 180);
+    if (isNew) projected = draw.project(turn * Math.PI / 180);
     if (isNew || shown.colors !== colors) draw.relight(projected, colors);
     shown = { light, turn, colors };
     return true;
@@ -273,7 +274,7 @@ opaline.page = (() => {
       return item;
     }));
     makeEmitterSliders();
-    at("turn").closest("label").hidden = asset.layer !== null;
+    at("turn").closest("label").hidden = !canTurn();
     at("light").addEventListener("change", () => change({ light: +at("light").value }));
     at("turn").addEventListener("input", () => change({ turn: at("turn").valueAsNumber }));
     at("exposure").addEventListener("input", () => change({ exposure: at("exposure").valueAsNumber }));

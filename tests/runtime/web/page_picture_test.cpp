@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "runtime/clouds/environment_at.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/picture/tone_map.h"
 #include "runtime/shade.h"
@@ -307,21 +308,26 @@ formats::Asset make_cloudy_scene(bool with_bodies) {
 
 // Bodies are lit from one point, that of a page.
 DisplayPicture render_cloudy_on_cpu(const formats::AssetView& view, const formats::Environment& sky,
-                                    const Camera& camera, float exposure) {
-    const LightAboveLayer above = light_above_layer(view, sky, 0);
-    const LightVector light = project_environment(above.below, view.cubemap_size);
+                                    const Camera& camera, float degrees, float exposure) {
+    const Rotation rotation = rotation_about_y(degrees * std::numbers::pi_v<float> / 180);
+    const LayerLight layer = light_layers(view.clouds, sky, rotation);
+    const BoundingSphere bodies = bound_asset(view);
+    const formats::Environment below = environment_at(
+        {layer, sky, rotation},
+        {static_cast<float>(bodies.x), static_cast<float>(bodies.y), static_cast<float>(bodies.z)});
+    const LightVector light = project_environment(below, view.cubemap_size);
     SoftwareOptions options;
-    options.layers = &above.layer;
+    options.layers = &layer;
     const VolumeLight volumes = relight_volumes(view.volumes, light);
     if (!view.volumes.empty()) options.volumes = &volumes;
     const auto picture =
         render_software(view, shade_for_picture(view, light, camera.eye, formats::TermSet::all, 0),
-                        sky, {}, camera, options);
+                        sky, rotation, camera, options);
     EXPECT_TRUE(picture);
     return tone_map(*picture, exposure);
 }
 
-TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpu) {
+TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpuUnderTurnedLight) {
     if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
     formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
     sky.discs.push_back({normalize(formats::Vec3{-0.5f, 0.6f, -0.5f}), 0.01f, {4e3f, 3e3f, 1e3f}});
@@ -342,11 +348,12 @@ TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpu) {
         const auto shown = test::take_page_picture(
             *page,
             with_bodies ? "eye=0,3000,600&target=100,1000,-900&fov=40&exposure=-0.5&rotate=50"
-                        : "eye=0,2,0&target=100,600,-900&fov=40&exposure=-2",
+                        : "eye=0,2,0&target=100,600,-900&fov=40&exposure=-2&rotate=-77",
             80, 60);
         EXPECT_EQ(shown.console, "");
-        expect_same_pixels(
-            render_cloudy_on_cpu(asset.view(), sky, camera, with_bodies ? -0.5f : -2), shown.rgba);
+        expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, with_bodies ? 50 : -77,
+                                                with_bodies ? -0.5f : -2),
+                           shown.rgba);
     }
 }
 
