@@ -318,6 +318,9 @@ DisplayPicture render_cloudy_on_cpu(const formats::AssetView& view, const format
     const LightVector light = project_environment(below, view.cubemap_size);
     SoftwareOptions options;
     options.layers = &layer;
+    const SpecularLight specular = make_specular_light(below, specular_needs(view), {}, 0);
+    options.specular = &specular;
+    options.lights = light;
     const VolumeLight volumes = relight_volumes(view.volumes, light);
     if (!view.volumes.empty()) options.volumes = &volumes;
     const auto picture =
@@ -355,6 +358,34 @@ TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpuUnderT
                                                 with_bodies ? -0.5f : -2),
                            shown.rgba);
     }
+}
+
+TEST(PagePicture, BodiesThatMirrorCloudsAreLitByTheLightAsItStands) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    formats::Asset asset = make_cloudy_scene(true);
+    asset.volumes = {};
+    asset.gloss.resize(1);
+    asset.gloss[0].f0 = {0.3f, 0.4f, 0.5f};
+    asset.gloss[0].f90 = 1;
+    asset.gloss[0].metallic = 1;
+    asset.gloss[0].roughness = 0.6f;
+    asset.openness.resize(asset.normal.size(), formats::encode_openness({0, 1, 0}, 0.9f));
+    formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    sky.discs.push_back({normalize(formats::Vec3{-0.5f, 0.6f, -0.5f}), 0.01f, {4e3f, 3e3f, 1e3f}});
+    const PageLight lights[] = {{"sky", sky}};
+    const auto page = make_web_page(asset.view(), lights, "clouds", "a.opal", 0);
+    ASSERT_TRUE(page);
+    Camera camera;
+    camera.eye = {0, 3000, 600};
+    camera.target = {100, 1000, -900};
+    camera.fov_y = 40;
+    camera.width = 48;
+    camera.height = 36;
+    camera.near_plane = near_plane_for(asset.view(), camera.eye);
+    const auto shown = test::take_page_picture(
+        *page, "eye=0,3000,600&target=100,1000,-900&fov=40&exposure=-0.5&rotate=50", 48, 36);
+    EXPECT_EQ(shown.console, "");
+    expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, 0, -0.5f), shown.rgba);
 }
 
 TEST(PagePicture, ControlsAndTheAddressFollowEachOther) {
