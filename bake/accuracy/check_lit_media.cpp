@@ -88,7 +88,7 @@ formats::Result<LitMediaError> check_lit_media(const formats::Scene& given,
     ModelCheckOptions options;
     options.seed = seed;
     options.max_events = static_cast<std::uint64_t>(kLitMediaEvents);
-    const auto check = check_light(space, receivers, baked, options, context);
+    const auto check = check_light({&space, 1}, receivers, baked, options, context);
     if (!check) {
         return check.error();
     }

@@ -1,6 +1,7 @@
 #include "bake/accuracy/check_model.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <span>
 #include <utility>
@@ -41,7 +42,7 @@ formats::Result<ModelErrorReport::Mirrored> check_mirrors(
         const runtime::SpecularLight lobes = runtime::make_specular_light(
             light.environment, runtime::specular_needs(asset), {}, context.threads);
         const auto check =
-            check_light({scene, sampler, paths}, mirrors,
+            check_light(std::array{PathSpace{scene, sampler, paths}}, mirrors,
                         relight_receivers(asset, mirrors, {vector, &lobes}), options, context);
         if (!check) {
             return check.error();

@@ -53,6 +53,8 @@ struct ModelCheckOptions {
     std::uint64_t seed = 0;
     /// The terms that correspond to the file's effects.
     TermSet simulated = TermSet::diffuse | TermSet::single | TermSet::multiple;
+    /// It holds what volumes scatter to surfaces, too.
+    bool lit_by_volumes = false;
     double noise = 0.01;                  ///< relative to the RMS of the truth: enough for any file
     double noise_share = 0.25;            ///< relative to the difference: enough for this file
     std::uint64_t max_events = 20000000;  ///< most scatterings and surfaces met, for each light
@@ -63,8 +65,9 @@ TermSet held_light(const EffectTable& effects, std::span<const PlanEntry> plan);
 
 /// Compares `asset`, baked from `scene`, with path tracing of the same terms; this measures the
 /// error of diffusion and straight paths. Other light, such as interreflection, is not compared but
-/// stated as `missing`; what volumes scatter to surfaces always is, as no file holds it. Light that
-/// receivers mirror is left out on both sides; that of opaque ones is compared by itself
+/// stated as `missing`; so is what volumes scatter to surfaces that send it on, and what surfaces
+/// send to volumes. Light that receivers mirror is left out on both sides; that of opaque ones is
+/// compared by itself
 /// (`mirrored`). Receivers inside a body, on a sharp edge, or with another surface close behind
 /// them in their own body are left out.
 ///

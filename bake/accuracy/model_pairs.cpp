@@ -9,6 +9,30 @@
 namespace opaline::bake {
 namespace {
 
+// Between seeds of estimates that are added up: their noise must not be alike.
+constexpr std::uint64_t kOtherSeed = 0x9e3779b97f4a7c15u;
+
+// What files hold. Light that went through volumes is that of the scene as it is; light between
+// surfaces meets volumes that only dim it.
+std::vector<PathSpace> held_light_spaces(const ModelScenes& scenes, const LightSampler& sampler,
+                                         const ModelCheckOptions& options) {
+    PathOptions paths;
+    paths.terms = options.simulated;
+    paths.own_mirror = false;
+    if (!options.lit_by_volumes || !scenes.without_scattering) {
+        return {{scenes.held(), sampler, paths}};
+    }
+    PathOptions through = paths, between = paths;
+    through.terms = options.simulated & ~TermSet::interreflection;
+    through.through_volumes = true;
+    between.terms = options.simulated & TermSet::interreflection;
+    std::vector<PathSpace> spaces{{scenes.whole, sampler, through}};
+    if (between.terms != TermSet::none) {
+        spaces.push_back({scenes.held(), sampler, between});
+    }
+    return spaces;
+}
+
 // Mean luminance of what is not compared. Light of the scene's own emitters depends on no
 // environment and is no part of it.
 formats::Result<double> measure_missing(const PathSpace& space,
@@ -64,7 +88,7 @@ std::array<double, 2> model_interval(std::span<const ModelPair> pairs, std::size
     });
 }
 
-formats::Result<LightCheck> check_light(const PathSpace& space,
+formats::Result<LightCheck> check_light(std::span<const PathSpace> spaces,
                                         std::span<const ReferenceReceiver> receivers,
                                         std::span<const double> baked,
                                         const ModelCheckOptions& options, const Context& context) {
@@ -73,23 +97,32 @@ formats::Result<LightCheck> check_light(const PathSpace& space,
     if (receivers.empty()) {
         return check;
     }
-    std::vector<Moments> moments(receivers.size());
+    std::vector<std::vector<Moments>> moments(spaces.size(),
+                                              std::vector<Moments>(receivers.size()));
     std::uint64_t events = 0;
     EstimateOptions wanted;
-    wanted.seed = options.seed;
     wanted.samples = 64;
     while (true) {
         wanted.first = check.samples;
-        const auto estimate = estimate_luminance(space, receivers, wanted, context);
-        if (!estimate) {
-            return estimate.error();
-        }
         check.samples += wanted.samples;
-        events += estimate->events;
+        for (std::size_t s = 0; s < spaces.size(); ++s) {
+            wanted.seed = options.seed + s * kOtherSeed;
+            const auto estimate = estimate_luminance(spaces[s], receivers, wanted, context);
+            if (!estimate) {
+                return estimate.error();
+            }
+            events += estimate->events;
+            for (std::size_t i = 0; i < receivers.size(); ++i) {
+                moments[s][i].merge(estimate->pixel[i]);
+            }
+        }
         for (std::size_t i = 0; i < receivers.size(); ++i) {
-            moments[i].merge(estimate->pixel[i]);
-            const double truth = moments[i].mean.x;
-            check.pairs[i] = {baked[i] - truth, truth, moments[i].variance_of_mean().x};
+            double truth = 0, variance = 0;
+            for (const std::vector<Moments>& own : moments) {
+                truth += own[i].mean.x;
+                variance += own[i].variance_of_mean().x;
+            }
+            check.pairs[i] = {baked[i] - truth, truth, variance};
         }
         const MeanSquares sum = sum_up(check.pairs);
         if (sum.noise() <= std::max(options.noise, options.noise_share * sum.rms_relative())) {
@@ -110,11 +143,9 @@ formats::Result<LightCheck> check_unmirrored(const ModelScenes& scenes, const Mo
                                              std::span<const double> baked,
                                              const ModelCheckOptions& options,
                                              const Context& context) {
-    PathOptions paths;
-    paths.terms = options.simulated;
-    paths.own_mirror = false;
     const LightSampler sampler = make_light_sampler(light.environment, glm::mat3(1.0f));
-    auto check = check_light({scenes.held(), sampler, paths}, receivers, baked, options, context);
+    const std::vector<PathSpace> held = held_light_spaces(scenes, sampler, options);
+    auto check = check_light(held, receivers, baked, options, context);
     if (!check) {
         return check;
     }
@@ -123,8 +154,10 @@ formats::Result<LightCheck> check_unmirrored(const ModelScenes& scenes, const Mo
     EstimateOptions wanted;
     wanted.seed = options.seed;
     wanted.samples = has_volumes ? std::max(256u, check->samples) : 256;
+    PathOptions all;
+    all.own_mirror = false;
     const auto missing =
-        measure_missing({scenes.whole, sampler, paths}, receivers,
+        measure_missing({scenes.whole, sampler, all}, receivers,
                         has_volumes ? TermSet::none : options.simulated, wanted, context);
     if (!missing) {
         return missing.error();
@@ -132,8 +165,8 @@ formats::Result<LightCheck> check_unmirrored(const ModelScenes& scenes, const Mo
     check->light = light.name;
     check->missing = *missing;
     if (has_volumes && !receivers.empty()) {
-        const MeanSquares held = sum_up(check->pairs);
-        check->missing = std::max(0.0, *missing - held.mean_truth / held.count);
+        const MeanSquares sum = sum_up(check->pairs);
+        check->missing = std::max(0.0, *missing - sum.mean_truth / sum.count);
     }
     check->terms = options.simulated;
     return check;

@@ -48,16 +48,16 @@ struct LightCheck {
     TermSet terms = TermSet::none;  ///< that were compared
 };
 
-/// Compares `baked`, luminance by receiver, with path tracing of the terms of `space`. Doubles the
-/// samples until the noise is low enough or the next round exceeds the limit of work. Errors:
-/// interrupted.
-formats::Result<LightCheck> check_light(const PathSpace& space,
+/// Compares `baked`, luminance by receiver, with path tracing of the terms of `spaces`, added up.
+/// Doubles the samples until the noise is low enough or the next round exceeds the limit of work.
+/// Errors: interrupted.
+formats::Result<LightCheck> check_light(std::span<const PathSpace> spaces,
                                         std::span<const ReferenceReceiver> receivers,
                                         std::span<const double> baked,
                                         const ModelCheckOptions& options, const Context& context);
 
 /// The same of what files simulate without mirror reflection, and what is missing: other terms, and
-/// all that volumes scatter to surfaces.
+/// what volumes scatter to surfaces, but for what files hold of it.
 formats::Result<LightCheck> check_unmirrored(const ModelScenes& scenes, const ModelLight& light,
                                              std::span<const ReferenceReceiver> receivers,
                                              std::span<const double> baked,

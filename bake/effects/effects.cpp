@@ -31,6 +31,7 @@ const EffectTable& all_effects() {
                                          describe_interreflection(Effect::interreflection),
                                          describe_scattered_once(Effect::volume_single),
                                          describe_scattered_often(Effect::volume_multiple),
+                                         describe_sent_light(Effect::volume_surface),
                                          describe_cloud(Effect::cloud),
                                          describe_radiosity(Effect::radiosity),
                                          describe_emitters(Effect::emitters),

@@ -17,6 +17,7 @@ enum class Effect : std::uint8_t {
     interreflection,  ///< light that goes from surface to surface
     volume_single,    ///< light scattered once in volumes
     volume_multiple,  ///< light scattered more than once in volumes
+    volume_surface,   ///< light that volumes scatter to surfaces
     cloud,            ///< light scattered by cloud layers
     radiosity,        ///< light between cloud layers and the ground
     emitters,         ///< light of lamps in the scene

@@ -100,6 +100,11 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
     if (request.facts.receivers > 0) {
         bill.open("shadows of volumes");
         bill.add(dimming_work(input, volumes.works, request.facts.receivers, row_count));
+        for (std::size_t i = 0; i < volumes.works.size(); ++i) {
+            const VolumeLayout& layout = volumes.layouts[i];
+            bill.add(sent_light_work(input, volumes.works[i], layout, request.facts.receivers),
+                     payer_of(volume_plan, layout.volume, "volume-surface"));
+        }
     }
 }
 

@@ -199,8 +199,9 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
             result.glowing_volumes.push_back(inputs.scene.volumes[layout.volume].emitter);
         }
     }
+    const std::vector<VolumeLayout> layouts = std::move(baked->plan.layouts);
     result.asset.volumes = std::move(baked->volumes);
-    if (auto status = measure_glow(inputs, baked->plan.layouts, context, result); !status) {
+    if (auto status = measure_glow(inputs, layouts, context, result); !status) {
         return status;
     }
     result.volume_plan = std::move(baked->plan.entries);
@@ -208,8 +209,14 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
     if (result.asset.position.empty()) {
         return formats::ok_status();
     }
-    const auto status = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t&) {
-        return dim_surfaces(inputs.scene, result.knobs, context, result.asset);
+    const auto status = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t& rays) {
+        if (std::ranges::none_of(layouts, &VolumeLayout::lights_surfaces)) {
+            return dim_surfaces(inputs.scene, result.knobs, nullptr, context, result.asset, rays);
+        }
+        const SentLight light = make_sent_light(inputs.scene, inputs.rays, layouts,
+                                                result.asset.volumes.view(), result.knobs);
+        const VertexLight sent{light, inputs.receivers};
+        return dim_surfaces(inputs.scene, result.knobs, &sent, context, result.asset, rays);
     });
     return status && context.cancelled() ? interrupted_volumes() : status;
 }

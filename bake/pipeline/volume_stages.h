@@ -4,6 +4,7 @@
 
 #include "bake/emitters/lamps.h"
 #include "bake/pipeline/pipeline.h"
+#include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/volumes/plan_volumes.h"
 
@@ -13,7 +14,8 @@ namespace opaline::bake {
 struct VolumeStages {
     const EffectTable& effects;
     const formats::Scene& scene;
-    const RayScene& rays;  ///< surfaces; may be empty
+    const RayScene& rays;                    ///< surfaces; may be empty
+    std::span<const ReceiverSet> receivers;  ///< in the order of the scene's primitives
 };
 
 /// Effort of the check of a bake's volumes: with Knobs::check_model until the noise is small;
@@ -26,9 +28,10 @@ VolumeCheckOptions volume_check_effort(const formats::Scene& scene,
 Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quality);
 
 /// Adds a file's volumes to `result`, measures them, and takes what they dim from the light of its
-/// surfaces. With Knobs::error_target they are baked in quality after quality, `draft` first, until
-/// the measured error is below the target or falls by less than a tenth; the best bake so far is
-/// kept, and `result.knobs` has its values. Errors: as bake_volumes and check_volumes; interrupted.
+/// surfaces, which receive what they scatter. With Knobs::error_target they are baked in quality
+/// after quality, `draft` first, until the measured error is below the target or falls by less than
+/// a tenth; the best bake so far is kept, and `result.knobs` has its values. Errors: as
+/// bake_volumes and check_volumes; interrupted.
 formats::Status add_volumes(const VolumeStages& inputs, const Context& context, BakeResult& result);
 
 /// Gives light of volumes the numbers of the file's emitters. `lamps`: those that the file has;

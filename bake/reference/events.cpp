@@ -296,7 +296,8 @@ bool scatter(const PathSpace& space, Path& path, glm::vec3 at, RandomStream& ran
 
 bool scatter_in_volume(const PathSpace& space, Path& path, glm::vec3 at, std::uint32_t volume,
                        RandomStream& random) {
-    path.state = after_volume(path.state);
+    const bool keeps_term = space.options.through_volumes && is_on_way_to_sky(path.state);
+    path.state = keeps_term ? path.state : after_volume(path.state);
     if (!count_event(space, path) || path.beta == glm::vec3(0) || !is_wanted(space, path.state)) {
         return false;
     }

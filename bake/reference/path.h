@@ -21,6 +21,9 @@ struct PathOptions {
     /// false: a receiver's own mirror reflection or specular lobe is left out, whatever is seen in
     /// it.
     bool own_mirror = true;
+    /// What volumes scatter to the first surface or body of a path counts as what that makes of it,
+    /// as if it came from the sky directly; false: as light that met more.
+    bool through_volumes = false;
 };
 
 /// The surroundings of a path. All outlive the walk.

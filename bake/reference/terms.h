@@ -38,6 +38,11 @@ constexpr PathState after_scattering(PathState s) {
     }
     return s;
 }
+/// One surface or body was met, from outside to outside, and nothing since.
+constexpr bool is_on_way_to_sky(PathState s) {
+    return s.stage == PathState::Stage::diffuse || s.stage == PathState::Stage::mirrored ||
+           s.stage == PathState::Stage::left;
+}
 /// In a volume, outside of all bodies.
 constexpr PathState after_volume(PathState s) {
     if (s.stage == PathState::Stage::camera || s.stage == PathState::Stage::volume) {

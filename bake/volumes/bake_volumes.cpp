@@ -48,9 +48,7 @@ Nodes place_nodes(const VolumeJob& job) {
     // Walks collide in all volumes; one without nodes reflects nothing.
     for (const VolumeLayout& layout : job.layouts) {
         NodeLattice& lattice = nodes.lattices[layout.volume];
-        const formats::Volume& volume = job.scene.volumes[layout.volume];
-        lattice = layout.glows ? make_node_lattice(volume.density, layout.spacing, volume.emission)
-                               : make_node_lattice(volume.density, layout.spacing);
+        lattice = lattice_of(job.scene.volumes[layout.volume], layout);
         if (!layout.has_nodes()) {
             lattice.node.clear();
             std::ranges::fill(lattice.corner, formats::kNoNode);
@@ -308,6 +306,11 @@ formats::Rgb rgb(const std::array<float, 3>& band) {
 }
 
 }  // namespace
+
+NodeLattice lattice_of(const formats::Volume& volume, const VolumeLayout& layout) {
+    return layout.glows ? make_node_lattice(volume.density, layout.spacing, volume.emission)
+                        : make_node_lattice(volume.density, layout.spacing);
+}
 
 formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Context& context,
                                                StageLog& log,

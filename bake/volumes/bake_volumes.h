@@ -8,6 +8,7 @@
 #include "bake/base/stage_log.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/volumes/choose_method.h"
+#include "bake/volumes/node_lattice.h"
 #include "bake/volumes/plan_volumes.h"
 #include "formats/opal/result.h"
 #include "formats/opal/volumes.h"
@@ -25,6 +26,9 @@ struct VolumeJob {
 
 /// Memory [bytes] that the attenuated light of all nodes may take while walks look it up.
 inline constexpr double kDepthBytes = 4e9;
+
+/// Where the light of a volume is baked.
+NodeLattice lattice_of(const formats::Volume& volume, const VolumeLayout& layout);
 
 /// The volumes of a file: density, nodes and their rows; two stages in the log. Layouts whose
 /// method is automatic are measured first, into `measured` where it is not null. The same bits for

@@ -31,4 +31,11 @@ EffectDescriptor describe_scattered_often(Effect id) {
             .concerns_volumes = true};
 }
 
+EffectDescriptor describe_sent_light(Effect id) {
+    return {.id = id,
+            .name = "volume-surface",
+            .help = "light that smoke or clouds scatter to surfaces",
+            .concerns_volumes = true};
+}
+
 }  // namespace opaline::bake

@@ -10,5 +10,6 @@ EffectDescriptor describe_scattered_once(Effect id);
 
 /// Light scattered more than once in volumes.
 EffectDescriptor describe_scattered_often(Effect id);
+EffectDescriptor describe_sent_light(Effect id);
 
 }  // namespace opaline::bake

@@ -10,6 +10,7 @@
 #include "bake/encode/select_coefficients.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/light_cells.h"
+#include "bake/volumes/lit_vertex.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 
@@ -60,31 +61,59 @@ struct DimJob {
     const formats::SparseRowsView& rows;
     const formats::PrimitiveRecord& record;
     const formats::Primitive& primitive;
+    const formats::Material& material;
     std::uint32_t bands;  // of the result
+    // What volumes scatter to the vertices; null: nothing.
+    const SentLight* sent;
+    const ReceiverSet* receivers;
+    std::span<const double> solid_angles;  // of a face's texels
 };
 
-std::vector<formats::SparseRow> dim_vertex(const DimJob& job, std::size_t vertex) {
+// Of texel values of a row before they are dimmed.
+LitRow answer_of(const DimJob& job, const LitVertex& lit, std::uint32_t term, std::uint32_t band,
+                 std::span<const float> texels) {
+    return job.record.shading == formats::Shading::translucent
+               ? answer_of_medium(texels, job.solid_angles, lit.front.open)
+               : answer_of_surface(job.material, term, band, job.bands);
+}
+
+struct DimmedVertex {
+    std::vector<formats::SparseRow> rows;
+    std::uint64_t rays = 0;
+};
+
+DimmedVertex dim_vertex(const DimJob& job, std::size_t vertex) {
     const std::uint32_t n = job.rows.cubemap_size;
     const std::size_t texels = formats::cubemap_texels(n);
     const std::vector<float> through =
         transmittance(job.space, job.cells, job.primitive.position[vertex], n);
     const formats::RowRange range = job.record.rows();
-    std::vector<formats::SparseRow> dimmed;
+    DimmedVertex dimmed;
+    LitVertex lit;
+    if (job.sent != nullptr) {
+        lit = light_vertex(*job.sent, *job.receivers, vertex, job.record.shading);
+        dimmed.rays = lit.rays();
+    }
     for (std::uint32_t k = 0; k < job.record.terms; ++k) {
         const auto row = static_cast<std::uint32_t>(vertex) * job.record.terms + k;
         std::vector<float> values(job.bands * texels);
         for (std::uint32_t band = 0; band < job.bands; ++band) {
             const std::uint32_t from = job.record.bands == 1 ? 0 : band;
             std::vector<float> dense = decode_texels(job.rows, range, row, from);
+            const LitRow answer =
+                job.sent != nullptr ? answer_of(job, lit, k, band, dense) : LitRow{};
             const float* const share =
                 through.data() + (through.size() == texels ? 0 : band * texels);
             for (std::size_t i = 0; i < texels; ++i) {
                 dense[i] *= share[i];
             }
+            if (job.sent != nullptr) {
+                add_sent_light(*job.sent, lit, answer, band, n, dense);
+            }
             formats::haar_forward_cube(std::span<float>(dense), n);
             std::ranges::copy(dense, values.begin() + static_cast<std::ptrdiff_t>(band * texels));
         }
-        dimmed.push_back(select_coefficients(job.selector, values, job.bands));
+        dimmed.rows.push_back(select_coefficients(job.selector, values, job.bands));
     }
     return dimmed;
 }
@@ -92,8 +121,11 @@ std::vector<formats::SparseRow> dim_vertex(const DimJob& job, std::size_t vertex
 }  // namespace
 
 formats::Status dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
-                             const Context& context, formats::Asset& asset) {
+                             const VertexLight* sent, const Context& context, formats::Asset& asset,
+                             std::uint64_t& rays) {
     const DensitySpace space = make_density_space(scene);
+    const bool is_grey = space.is_grey && (sent == nullptr || sent->light.bands() == 1);
+    const std::vector<double> solid_angles = formats::texel_solid_angles(knobs.cubemap_size);
     const std::uint32_t n = knobs.cubemap_size;
     const LightCells cells = make_light_cells(std::min(n, kFinestTransmittance));
     const Selector selector = make_selector(n, knobs.coefficients);
@@ -105,24 +137,36 @@ formats::Status dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
     bool fits = true;
     for (std::size_t p = 0; p < records.size(); ++p) {
         formats::PrimitiveRecord& record = records[p];
-        record.bands = space.is_grey ? record.bands : 3;
+        record.bands = is_grey ? record.bands : 3;
         record.first_band_row = band_rows;
         record.first_code = codes;
         const std::size_t before = rows.row_offset.back();
-        const DimJob job{
-            space, cells, selector, given, asset.primitives[p], scene.primitives[p], record.bands};
+        const formats::Primitive& primitive = scene.primitives[p];
+        const bool is_lit = sent != nullptr && sent->receivers[p].size() > 0;
+        const DimJob job{space,
+                         cells,
+                         selector,
+                         given,
+                         asset.primitives[p],
+                         primitive,
+                         scene.materials[primitive.material],
+                         record.bands,
+                         is_lit ? &sent->light : nullptr,
+                         is_lit ? &sent->receivers[p] : nullptr,
+                         solid_angles};
         for_each_block_in_order(
             record.vertex_count, kVerticesAtOnce, context,
             [&](Range range) {
-                std::vector<std::vector<formats::SparseRow>> block;
+                std::vector<DimmedVertex> block;
                 for (std::size_t v = range.begin; v < range.end; ++v) {
                     block.push_back(dim_vertex(job, v));
                 }
                 return block;
             },
-            [&](Range range, std::vector<std::vector<formats::SparseRow>>&& block) {
-                for (const auto& vertex : block) {
-                    for (const formats::SparseRow& row : vertex) {
+            [&](Range range, std::vector<DimmedVertex>&& block) {
+                for (const DimmedVertex& vertex : block) {
+                    rays += vertex.rays;
+                    for (const formats::SparseRow& row : vertex.rows) {
                         fits = fits && formats::append_row(rows, row);
                     }
                 }

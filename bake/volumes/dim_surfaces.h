@@ -1,21 +1,34 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "bake/base/context.h"
 #include "bake/plan/knobs.h"
+#include "bake/receivers/receiver.h"
+#include "bake/volumes/sent_light.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
+/// Light that volumes scatter to the vertices of a scene.
+struct VertexLight {
+    const SentLight& light;
+    std::span<const ReceiverSet> receivers;  ///< in the order of the scene's primitives
+};
+
 /// The asset with the transport of each vertex multiplied by what volumes let through from each
-/// direction to the vertex. Exact for light that a surface reflects; light that enters a body is
-/// taken to come through where it leaves. Rows of one band get three where extinctions differ by
-/// band. The primitives are those of the scene, in order. Errors: resource (more than 2^32
-/// coefficients). Stops early, with rows missing, once the context is cancelled.
+/// direction to the vertex, and with what they scatter to it, where `sent` is not null. Exact for
+/// light that a surface reflects; light that enters a body is taken to come through where it
+/// leaves. Scattered light that enters a body is taken to be even over its mean free path: a row
+/// answers to it as to even light of the sky, for each unit of irradiance. Rows of one band get
+/// three where extinctions differ by band, or scattered light does. The primitives are those of the
+/// scene, in order. Counts `rays`. Errors: resource (more than 2^32 coefficients). Stops early,
+/// with rows missing, once the context is cancelled.
 formats::Status dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
-                             const Context& context, formats::Asset& asset);
+                             const VertexLight* sent, const Context& context, formats::Asset& asset,
+                             std::uint64_t& rays);
 
 }  // namespace opaline::bake

@@ -20,6 +20,7 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::string_view kGlowEffect = "emitters";  // a volume that glows is one
+constexpr std::string_view kSentEffect = "volume-surface";
 
 std::array<double, 3> bands(formats::Rgb c) {
     return {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)};
@@ -155,6 +156,21 @@ PlanEntry decide_glow(const formats::Volume& volume, const Subject& subject, con
     return entry;
 }
 
+// `scatters`: nodes of the volume have light of the sky.
+PlanEntry decide_sent(const formats::Scene& scene, const formats::Volume& volume, bool scatters,
+                      const Subject& subject, const Knobs& knobs) {
+    PlanEntry entry = decide(kSentEffect, subject, largest_sent_light(scene, volume), knobs);
+    if (entry.on && !scatters) {
+        entry.on = entry.forced = false;
+        entry.reason = "what the volume scatters is left out";
+    } else if (entry.on) {
+        entry.reason = "surfaces receive what the volume scatters";
+    } else if (entry.reason.empty()) {
+        entry.reason = "what it scatters is too dark, or surfaces are too far away";
+    }
+    return entry;
+}
+
 // What nodes of a volume scatter of the light of all volumes.
 void scatter_glow_of_all(double glow, double once, const ScaledPhase& phase, const Knobs& knobs,
                          VolumeLayout& layout) {
@@ -206,6 +222,30 @@ double largest_scattered_glow(const formats::Scene& scene, const formats::Volume
 
 bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs) {
     return !volume.emission.empty() && decide_glow(volume, {}, knobs).on;
+}
+
+bool lights_surfaces(std::span<const PlanEntry> plan) {
+    return std::ranges::any_of(
+        plan, [](const PlanEntry& entry) { return entry.on && entry.name == kSentEffect; });
+}
+
+double largest_sent_light(const formats::Scene& scene, const formats::Volume& volume) {
+    const std::array<glm::dvec3, 8> corners = volume.density.corners();
+    const glm::dvec3 middle = 0.5 * (corners[0] + corners[7]);
+    const double radius = 0.5 * longest_line(corners);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const formats::Primitive& primitive : scene.primitives) {
+        glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+        for (const glm::vec3& p : primitive.position) {
+            low = glm::min(low, glm::dvec3(p));
+            high = glm::max(high, glm::dvec3(p));
+        }
+        if (!primitive.position.empty()) {
+            nearest = std::min(nearest, glm::length(middle - glm::clamp(middle, low, high)));
+        }
+    }
+    const double share = radius < nearest ? radius / nearest : 1;
+    return brightest(volume).once * (std::isinf(nearest) ? 0 : share * share);
 }
 
 std::array<double, 3> largest_depth(const formats::Volume& volume) {
@@ -268,6 +308,11 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         if (!volume.emission.empty()) {
             entries.push_back(decide_glow(volume, subject, knobs));
             layout.glows = entries.back().on;
+        }
+        if (!scene.primitives.empty()) {
+            const bool scatters = layout.once_terms > 0 || layout.often_terms > 0;
+            entries.push_back(decide_sent(scene, volume, scatters, subject, knobs));
+            layout.lights_surfaces = entries.back().on;
         }
         for (PlanEntry& entry : entries) {
             plan.entries.push_back(std::move(entry));

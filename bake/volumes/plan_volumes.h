@@ -27,13 +27,14 @@ struct VolumeLayout {
     bool glows = false;            ///< its own light is baked
     std::uint32_t glow_terms = 0;  ///< K_e: of scattered light of volumes; 0: none is
     std::uint32_t glow_walks = 0;  ///< from each node; 0 where glow_terms is
+    bool lights_surfaces = false;  ///< what it scatters to surfaces is baked
 
     bool has_nodes() const { return once_terms > 0 || often_terms > 0 || glow_terms > 0; }
 };
 
 struct VolumePlan {
-    std::vector<PlanEntry> entries;     ///< two a volume, three of one that glows, in order; they
-                                        ///< belong to no rule
+    std::vector<PlanEntry> entries;     ///< two a volume, one more if it glows and one where
+                                        ///< there are surfaces, in order; they belong to no rule
     std::vector<VolumeLayout> layouts;  ///< of volumes that are seen at all
 };
 
@@ -42,6 +43,15 @@ struct VolumePlan {
 /// alpha the largest albedo, under light of radiance 1: light scattered once or more is at most
 /// alpha d, light scattered more than once at most (alpha d)^2 (README.md, "Bounds").
 VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs);
+
+/// Whether surfaces receive light that volumes scatter, by the entries of a plan.
+bool lights_surfaces(std::span<const PlanEntry> plan);
+
+/// An upper bound [1] on the radiance of a surface by light that a volume scatters to it, under
+/// light of radiance 1: alpha d times (R / D)^2, at most 1, the largest share of a hemisphere,
+/// weighted by its cosines, that a ball of radius R around the volume covers at a distance D of its
+/// middle; D is that of the nearest of the boxes of the scene's primitives. 0 without surfaces.
+double largest_sent_light(const formats::Scene& scene, const formats::Volume& volume);
 
 /// The stage of a bake that finds light scattered more than once, by the ways of its layouts.
 const char* scattering_stage(std::span<const VolumeLayout> layouts);

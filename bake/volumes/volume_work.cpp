@@ -9,6 +9,7 @@
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/path_medium.h"
+#include "bake/volumes/sent_light.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_paths.h"
 #include "formats/opal/cubemap.h"
@@ -200,6 +201,24 @@ Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, dou
         sum.shared += receivers * cells * steps * input.rates.density_step;
     }
     return sum;
+}
+
+Work sent_light_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout,
+                     double receivers) {
+    if (!layout.lights_surfaces || !(work.nodes > 0)) {
+        return {};
+    }
+    // Of rays that meet the volume, a quarter as a guess: steps all through it, twice as far as
+    // from within, and the coefficients of a node's rows at each point.
+    constexpr double kShare = 0.25, kThrough = 2;
+    const NodeCoefficients most = node_coefficients(input.knobs, layout.often_terms);
+    const double steps = kThrough * work.depth_steps / (work.nodes * work.cells);
+    const double entries = work.bands * (static_cast<double>(most.attenuated) * layout.once_terms +
+                                         static_cast<double>(most.scattered));
+    const double ray = input.rates.coherent_ray.at(input.triangles) +
+                       kShare * (steps * input.rates.density_step +
+                                 kPointsOfSentRay * entries * input.rates.gather_entry);
+    return {0, receivers * count_sent_light_rays(input.knobs.quality) * ray};
 }
 
 double volume_density_bytes(const VolumeWork& work) {

@@ -56,6 +56,10 @@ Work scattering_work(const CostInput& input, const VolumeWork& work);
 Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
                   double rows);
 
+/// Light that a volume scatters to `receivers` vertices, where its layout says so.
+Work sent_light_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout,
+                     double receivers);
+
 /// Bytes in the file: of density and nodes; at most of the rows of light that arrives unscattered,
 /// and of those of multiple scattering.
 double volume_density_bytes(const VolumeWork& work);

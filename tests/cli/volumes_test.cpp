@@ -173,7 +173,7 @@ TEST(VolumeFiles, AnExampleIsBakedFromDensityToPicture) {
     EXPECT_NEAR(mean, 1, 0.03);
 }
 
-TEST(VolumeFiles, SmokeDimsWhatStandsBehindIt) {
+TEST(VolumeFiles, SmokeDimsWhatStandsBehindItAndLightsIt) {
     const TemporaryFolder folder;
     ASSERT_EQ(run_opaline({"example", "smoke", "-o", folder.path().string()}).exit_code, 0);
     // The same scene without its volume, which stands in an extension.
@@ -183,10 +183,11 @@ TEST(VolumeFiles, SmokeDimsWhatStandsBehindIt) {
         text.replace(at, 13, "OPALINE_other");
     }
     std::ofstream(folder / "clear.gltf") << text;
-    const auto brightness = [&](const char* scene) {
+    const auto brightness = [&](const char* scene, const char* effects) {
         const std::string file = (folder / "s.opal").string(), out = (folder / "s.csv").string();
-        const Outcome bake = run_opaline({"bake", (folder / scene).string(), "-o", file,
-                                          "--quality", "draft", "--volume-walks", "8"});
+        const Outcome bake =
+            run_opaline({"bake", (folder / scene).string(), "-o", file, "--quality", "draft",
+                         "--volume-walks", "8", "--effects", effects});
         EXPECT_EQ(bake.exit_code, 0) << bake.err;
         EXPECT_EQ(run_opaline({"relight", file, "--light", "white", "-o", out}).exit_code, 0);
         double sum = 0;
@@ -198,9 +199,15 @@ TEST(VolumeFiles, SmokeDimsWhatStandsBehindIt) {
         }
         return sum;
     };
-    const double behind = brightness("smoke.gltf"), clear = brightness("clear.gltf");
+    const double behind = brightness("smoke.gltf", "direct,multiple");
+    const double clear = brightness("clear.gltf", "direct,multiple");
     EXPECT_LT(behind, 0.98 * clear);
     EXPECT_GT(behind, 0.3 * clear);
+    // It absorbs a little of what it scatters.
+    const double lit =
+        brightness("smoke.gltf", "direct,multiple,volume-single,volume-multiple,volume-surface");
+    EXPECT_GT(lit, 1.01 * behind);
+    EXPECT_LT(lit, clear);
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST(GlowBake, FireLightsSurfacesAsTheReferenceSaysAndIsSwitchedByItsName) {
     options.max_events = 6000000;
     options.noise = 0.02;
     const auto check = bake::check_light(
-        space, receivers,
+        {&space, 1}, receivers,
         bake::relight_receivers(
             view, receivers,
             {.vector = make_light("black", view.cubemap_size), .emitters = {.color = lit}}),

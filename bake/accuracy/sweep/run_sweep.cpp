@@ -298,7 +298,8 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         auto paths = trace_for(scene, sweep.view.model,
                                {.seconds = kShare * options.seconds,
                                 .seed = options.bake.seed,
-                                .simulated = held_light(effects, result.plan)},
+                                .simulated = held_light(effects, result.plan),
+                                .lit_by_volumes = lights_surfaces(result.volume_plan)},
                                context);
         if (!paths) {
             return std::move(paths).error();

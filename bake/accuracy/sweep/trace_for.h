@@ -11,6 +11,7 @@ struct TraceForOptions {
     double seconds = 15;  ///< about; a least amount is traced whatever it takes
     std::uint64_t seed = 0;
     TermSet simulated = ModelCheckOptions().simulated;  ///< light that the bakes hold
+    bool lit_by_volumes = false;  ///< they hold what volumes scatter to surfaces
 };
 
 /// Path tracing that the total error of every bake is measured against: a small one first, which

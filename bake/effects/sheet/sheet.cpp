@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bake/plan/add_other_light.h"
+#include "bake/receivers/other_side.h"
 #include "bake/transport/irradiance_transport.h"
 #include "bake/truth/true_reflection.h"
 #include "formats/opal/haar.h"
@@ -49,13 +50,6 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
         directions->set = make_direction_set(inputs.knobs.cubemap_size);
     }
     return directions;
-}
-
-// `inside.inner` mirrors the origin in front of the point's own triangles; where that was moved, as
-// from inside a body, the origin behind moves along.
-Receiver other_side(const Receiver& front, const BodyPoint& inside) {
-    const glm::vec3 moved = front.origin - (2.0f * inside.position - inside.inner);
-    return {inside.inner + moved, -front.normal};
 }
 
 const formats::Sheet& sheet_of(const EffectInputs& inputs) {
