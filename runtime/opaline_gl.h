@@ -159,14 +159,15 @@ OPALINE_API opaline_status opaline_gl_get_images(const opaline_gl* gl, uint32_t 
            the same point seen with that normal: for translucent and glossy surfaces.
        vec3 opaline_turn_light(OpalineTurnedLight light, vec3 radiance, vec3 from, vec3 to)
            where `is_turned`: interpolated radiance of receivers, turned from their normal to the
-           mapped one. Uniforms of a struct OpalineTurnedLight take the numbers below.
+           mapped one. Uniforms of a struct OpalineTurnedLight take the numbers below. Of
+           thin-walled surfaces (is_turned 2) both normals are negated where view.is_turned.
    Rows of other surfaces stay as they are. */
 typedef struct opaline_gl_normal_map {
     size_t struct_size;     /* in: sizeof(opaline_gl_normal_map) */
     opaline_gl_image image; /* texture 0: there is none */
     float scale;
     uint32_t tangent;   /* buffer, stride 8: by receiver three signed normalised shorts, t above */
-    uint32_t is_turned; /* 1: diffuse; else 0 */
+    uint32_t is_turned; /* 1: diffuse; 2: thin-walled; else 0 */
     /* Of the light that relit last; 0 before. The first `suns` of eight count. */
     float harmonics[9][3], least[3];
     int32_t suns;

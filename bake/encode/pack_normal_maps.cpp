@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "bake/scene/lobe_record.h"
+#include "formats/opal/sheet_shares.h"
 
 namespace opaline::bake {
 
@@ -22,6 +23,9 @@ formats::NormalMaps pack_normal_maps(const formats::Scene& scene) {
         map.wrap_u = to_wrap(material.normal_wrap_u);
         map.wrap_v = to_wrap(material.normal_wrap_v);
         map.scale = material.normal_scale;
+        if (material.sheet) {
+            formats::store_sheet_shares({material.sheet->reflect, material.sheet->transmit}, map);
+        }
         maps.record.push_back(map);
     }
     if (maps.record.empty()) {

@@ -71,9 +71,6 @@ std::vector<std::string> unsimulated(const MaterialSource& material, const Mater
         faults.push_back(
             "metallicFactor above 0 is not simulated: the surface is baked as a dielectric");
     }
-    if (mapped.sheet && mapped.normal_image != kNone) {
-        faults.push_back("normalTexture of a thin-walled surface is not shown by pictures");
-    }
     if (material.has_occlusion_map) {
         faults.push_back("occlusionTexture is not used: occlusion is computed");
     }

@@ -2,8 +2,21 @@
 
 #include <cmath>
 
+#include "formats/opal/sheet_shares.h"
+
 namespace opaline::formats {
 namespace {
+
+// Halves in 0 ... 1, and 0 where nothing is thin-walled.
+bool are_shares_sound(const NormalMapRecord& map, bool is_sheet) {
+    for (const std::uint32_t pair : map.reserved) {
+        if ((pair & 0xffffu) > (is_sheet ? kHalfOfOne : 0u) ||
+            (pair >> 16) > (is_sheet ? kHalfOfOne : 0u)) {
+            return false;
+        }
+    }
+    return true;
+}
 
 const char* find_map_fault(const AssetView& asset) {
     const NormalMapsView& maps = asset.normal_maps;
@@ -22,7 +35,7 @@ const char* find_map_fault(const AssetView& asset) {
         if (static_cast<std::uint32_t>(map.wrap_u) > 2 ||
             static_cast<std::uint32_t>(map.wrap_v) > 2 ||
             !(std::abs(map.scale) <= kMostNormalScale) ||
-            (map.reserved[0] | map.reserved[1] | map.reserved[2]) != 0) {
+            !are_shares_sound(map, asset.primitives[map.primitive].shading == Shading::sheet)) {
             return "a texture wrap mode, a scale or a value is not one of this version";
         }
     }

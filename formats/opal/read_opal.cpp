@@ -13,6 +13,7 @@
 #include "formats/opal/layout.h"
 #include "formats/opal/row_arrays.h"
 #include "formats/opal/section_cursor.h"
+#include "formats/opal/sheet_shares.h"
 #include "formats/opal/volume_arrays.h"
 
 namespace opaline::formats {
@@ -177,7 +178,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 read = read_holes;
                 break;
             case kNormSection:
-                read = read_normal_maps;
+                read = read_normal_maps, latest = kMappedSheetVersion;
                 break;
             case kVoluSection:
                 read = read_volumes;

@@ -11,6 +11,7 @@
 #include "formats/opal/receiver_errors.h"
 #include "formats/opal/row_arrays.h"
 #include "formats/opal/section.h"
+#include "formats/opal/sheet_shares.h"
 #include "formats/opal/stored_section.h"
 #include "formats/opal/volume_arrays.h"
 
@@ -140,6 +141,10 @@ std::vector<StoredSection> store_sections(const AssetView& asset,
         add(kNormSection, Codec::zstd,
             Arrays{bytes_of(heads.normal_maps), std::as_bytes(asset.normal_maps.record),
                    std::as_bytes(asset.normal_maps.tangent)});
+        const bool has_sheets =
+            std::any_of(asset.normal_maps.record.begin(), asset.normal_maps.record.end(),
+                        [](const NormalMapRecord& map) { return sheet_shares_of(map).any(); });
+        sections.back().entry.version = has_sheets ? kMappedSheetVersion : 1;
     }
     if (!asset.volumes.empty()) {
         assert(asset.volumes.rows.cubemap_size == asset.cubemap_size);

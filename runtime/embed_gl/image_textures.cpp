@@ -96,26 +96,38 @@ void ImageTextures::make_normal_maps(const formats::AssetView& asset, GlNames& n
         map.image = find(record.image, record.wrap_u, record.wrap_v);
         map.scale = record.scale;
         map.tangent = tangent;
-        map.is_turned =
-            asset.primitives[record.primitive].shading == formats::Shading::diffuse ? 1 : 0;
+        const formats::Shading shading = asset.primitives[record.primitive].shading;
+        const formats::SheetShares shares = formats::sheet_shares_of(record);
+        if (shading == formats::Shading::sheet && shares.any()) {
+            sheet_[record.primitive] = shares;
+            map.is_turned = 2;
+        } else {
+            map.is_turned = shading == formats::Shading::diffuse ? 1 : 0;
+        }
     }
 }
 
 void ImageTextures::relight(const LightVector& light) {
-    if (!normal_map_.empty()) turned_ = make_turned_light(light);
+    if (normal_map_.empty()) return;
+    turned_ = make_turned_light(light);
+    for (const auto& [primitive, shares] : sheet_) {
+        turned_sheet_[primitive] = turned_light_of_sheet(turned_, shares);
+    }
 }
 
 opaline_gl_normal_map ImageTextures::normal_map_of(std::uint32_t primitive) const {
     const auto found = normal_map_.find(primitive);
     if (found == normal_map_.end()) return {};
     opaline_gl_normal_map map = found->second;
-    for (std::size_t k = 0; k < turned_.harmonics.size(); ++k) {
-        put(turned_.harmonics[k], map.harmonics[k]);
+    const auto sheet = turned_sheet_.find(primitive);
+    const TurnedLight& turned = sheet == turned_sheet_.end() ? turned_ : sheet->second;
+    for (std::size_t k = 0; k < turned.harmonics.size(); ++k) {
+        put(turned.harmonics[k], map.harmonics[k]);
     }
-    put(turned_.least, map.least);
-    map.suns = static_cast<std::int32_t>(turned_.suns.size());
-    for (std::size_t i = 0; i < turned_.suns.size(); ++i) {
-        const TurnedLight::Sun& sun = turned_.suns[i];
+    put(turned.least, map.least);
+    map.suns = static_cast<std::int32_t>(turned.suns.size());
+    for (std::size_t i = 0; i < turned.suns.size(); ++i) {
+        const TurnedLight::Sun& sun = turned.suns[i];
         put({sun.direction.x, sun.direction.y, sun.direction.z}, map.sun_direction[i]);
         put(sun.light, map.sun_light[i]);
     }

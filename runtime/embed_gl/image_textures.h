@@ -37,6 +37,8 @@ class ImageTextures {
     std::vector<GLuint> texture_;
     std::map<std::uint32_t, opaline_gl_normal_map> normal_map_;  // of primitives; without light
     TurnedLight turned_;
+    std::map<std::uint32_t, formats::SheetShares> sheet_;  // thin-walled primitives with maps
+    std::map<std::uint32_t, TurnedLight> turned_sheet_;    // of the light that relit last
 };
 
 }  // namespace opaline::runtime

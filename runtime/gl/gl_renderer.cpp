@@ -87,9 +87,8 @@ struct GlRenderer::State {
     Rotation rotation;
     bool mirrors_world = false;  // GlOptions::mirrored was given
     GlStats stats;
-    std::vector<formats::Rgb> own;         ///< own_radiances of the last set_light
-    std::vector<TurnedLight> turned;       ///< its lights, where there are normal maps
-    std::vector<std::uint32_t> turned_of;  ///< its PartLights::of_primitive
+    std::vector<formats::Rgb> own;  ///< own_radiances of the last set_light
+    TurnedLights turned;
 };
 
 GlRenderer::GlRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -157,10 +156,8 @@ formats::Status GlRenderer::set_light(const PartLights& lights, const Rotation& 
     state_->stats.light_seconds = clock.lap();
     if (auto status = resources.relight.dot(emitters); !status) return status;
     state_->own = own_radiances(resources.asset, emitters);
-    if (!resources.asset.normal_maps.empty()) {
-        state_->turned = make_turned_lights(lights);
-        state_->turned_of.assign(lights.of_primitive.begin(), lights.of_primitive.end());
-    }
+    state_->turned =
+        make_turned_lights(lights, resources.asset.primitives, resources.asset.normal_maps);
     if (auto status = relight_gl_volumes(resources.volumes, lights.light[lights.of_volumes],
                                          formats::TermSet::all, emitters);
         !status) {
@@ -229,8 +226,7 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
                           options.terms,
                           options.background,
                           state_->own,
-                          state_->turned,
-                          state_->turned_of};
+                          &state_->turned};
     for (std::uint32_t y = 0; y < camera.height; y += side) {
         for (std::uint32_t x = 0; x < camera.width; x += side) {
             if (options.stop != nullptr && options.stop->load()) {

@@ -10,8 +10,8 @@
 #include "runtime/gl/gl_layers.h"
 #include "runtime/gl/gl_volumes.h"
 #include "runtime/light_vector.h"
-#include "runtime/picture/camera.h"
 #include "runtime/normal_maps/turned_light.h"
+#include "runtime/picture/camera.h"
 
 namespace opaline::runtime {
 
@@ -29,9 +29,7 @@ struct DrawScene {
     formats::TermSet terms = formats::TermSet::all;
     bool background = true;               ///< false: black
     std::span<const formats::Rgb> own{};  ///< own_radiances (gl_emitters.h)
-    /// Where there are normal maps: of each light, and which one each primitive has (PartLights).
-    std::span<const TurnedLight> turned{};
-    std::span<const std::uint32_t> turned_of{};
+    const TurnedLights* turned = nullptr;
 };
 
 /// Where a tile's samples lie in the picture.

@@ -56,6 +56,7 @@ struct SurfaceKind {
     bool has_holes = false, has_hole_image = false;   ///< light passes it in places; with an image
 
     bool has_normal_map = false, is_turned = false;  ///< by an image; and its light is
+    bool has_two_sides = false;                      ///< turned light of a thin-walled surface
 
     bool has_image() const {
         return is_textured || has_gloss_image || has_own_image || has_hole_image || has_normal_map;
@@ -64,7 +65,8 @@ struct SurfaceKind {
         return (is_textured ? 1u : 0u) + (is_translucent ? 2u : 0u) + (is_mirroring ? 4u : 0u) +
                (is_glossy ? 8u : 0u) + (has_gloss_image ? 16u : 0u) + (has_own_image ? 32u : 0u) +
                (glows ? 64u : 0u) + (has_holes ? 128u : 0u) + (has_hole_image ? 256u : 0u) +
-               (has_normal_map ? 512u : 0u) + (is_turned ? 1024u : 0u);
+               (has_normal_map ? 512u : 0u) + (is_turned ? 1024u : 0u) +
+               (has_two_sides ? 2048u : 0u);
     }
 };
 
@@ -94,8 +96,12 @@ SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
     const formats::HoleRecord* const hole = hole_of(asset, primitive);
     kind.has_holes = hole != nullptr;
     kind.has_hole_image = hole != nullptr && hole->image < asset.images.size();
-    kind.has_normal_map = normal_map_of(asset, primitive) != nullptr;
-    kind.is_turned = kind.has_normal_map && record.shading == formats::Shading::diffuse;
+    const formats::NormalMapRecord* const map = normal_map_of(asset, primitive);
+    kind.has_normal_map = map != nullptr;
+    kind.has_two_sides = map != nullptr && record.shading == formats::Shading::sheet &&
+                         formats::sheet_shares_of(*map).any();
+    kind.is_turned =
+        kind.has_two_sides || (map != nullptr && record.shading == formats::Shading::diffuse);
     return kind;
 }
 
@@ -122,6 +128,7 @@ std::string defines_of(SurfaceKind kind, bool has_vertex_alpha) {
     if (kind.has_image()) text += define("HAS_TEXCOORD");
     if (kind.has_normal_map) text += define("NORMAL_MAP");
     if (kind.is_turned) text += define("TURNED");
+    if (kind.has_two_sides) text += define("TWO_SIDES");
     if (has_view(kind)) text += define("HAS_VIEW");
     if (kind.is_mirroring || kind.is_glossy) text += define("HAS_OPENNESS");
     return text;
@@ -261,8 +268,9 @@ void set_turned_light(const TurnedLight& light, GLuint program) {
 // Before the first light there is none to turn.
 const TurnedLight& turned_light_of(const DrawScene& scene, std::size_t primitive) {
     static const TurnedLight kNone;
-    if (scene.turned.empty()) return kNone;
-    return scene.turned[scene.turned_of.empty() ? 0 : scene.turned_of[primitive]];
+    const TurnedLight* const light =
+        scene.turned == nullptr ? nullptr : scene.turned->of(primitive);
+    return light == nullptr ? kNone : *light;
 }
 
 void draw_triangles(const formats::PrimitiveRecord& primitive) {

@@ -49,6 +49,33 @@ float total(Rgb c) {
     return c.r + c.g + c.b;
 }
 
+// A small light stands in up to four texels, all with one direction.
+std::vector<TurnedLight::Sun> join_suns(std::span<const TurnedLight::Sun> suns) {
+    constexpr float kSame = 0.9999f;  // within 0.8 degrees
+    std::vector<TurnedLight::Sun> joined;
+    for (const TurnedLight::Sun& sun : suns) {
+        const auto found = std::ranges::find_if(joined, [&](const TurnedLight::Sun& other) {
+            return dot(other.direction, sun.direction) > kSame;
+        });
+        if (found == joined.end()) {
+            joined.push_back(sun);
+        } else {
+            found->light = found->light + sun.light;
+        }
+    }
+    return joined;
+}
+
+// The sun's light among the harmonics.
+void add_smooth(const TurnedLight::Sun& sun, std::array<Rgb, 9>& harmonics) {
+    std::array<float, 9> value;
+    formats::eval_spherical_harmonics(sun.direction, value);
+    for (std::size_t k = 0; k < value.size(); ++k) {
+        harmonics[k] =
+            harmonics[k] + (std::numbers::pi_v<float> * kFactors[k] * value[k]) * sun.light;
+    }
+}
+
 // One band of L'.
 float turn_band(float radiance, float from, float to, float least) {
     const float direct = std::min(radiance, from);
@@ -93,11 +120,50 @@ TurnedLight make_turned_light(const LightVector& light) {
     return turned;
 }
 
-std::vector<TurnedLight> make_turned_lights(const PartLights& lights) {
-    std::vector<TurnedLight> turned;
-    turned.reserve(lights.light.size());
+TurnedLight turned_light_of_sheet(const TurnedLight& light, const formats::SheetShares& shares) {
+    const Rgb both = shares.reflect + shares.transmit;
+    const Rgb odd = shares.reflect + -1.0f * shares.transmit;
+    TurnedLight turned = light;
+    turned.suns = join_suns(light.suns);
+    std::ranges::sort(turned.suns, std::ranges::greater{},
+                      [](const TurnedLight::Sun& sun) { return total(sun.light); });
+    while (turned.suns.size() > kMaxSuns / 2) {
+        add_smooth(turned.suns.back(), turned.harmonics);
+        turned.suns.pop_back();
+    }
+    for (std::size_t k = 0; k < turned.harmonics.size(); ++k) {
+        turned.harmonics[k] = (k >= 1 && k <= 3 ? odd : both) * turned.harmonics[k];
+    }
+    const std::size_t suns = turned.suns.size();
+    turned.suns.reserve(2 * suns);
+    for (std::size_t i = 0; i < suns; ++i) {
+        const TurnedLight::Sun sun = turned.suns[i];
+        turned.suns[i].light = shares.reflect * sun.light;
+        turned.suns.push_back({-1.0f * sun.direction, shares.transmit * sun.light});
+    }
+    turned.least = both * light.least;
+    return turned;
+}
+
+TurnedLights make_turned_lights(const PartLights& lights,
+                                std::span<const formats::PrimitiveRecord> primitives,
+                                std::span<const formats::NormalMapRecord> maps) {
+    TurnedLights turned;
+    if (maps.empty()) return turned;
     for (const LightVector& light : lights.light) {
-        turned.push_back(make_turned_light(light));
+        turned.light.push_back(make_turned_light(light));
+    }
+    turned.of_primitive.assign(primitives.size(), TurnedLights::kNone);
+    for (const formats::NormalMapRecord& map : maps) {
+        std::uint32_t& of = turned.of_primitive[map.primitive];
+        const auto number = static_cast<std::uint32_t>(lights.number(map.primitive));
+        if (primitives[map.primitive].shading == formats::Shading::diffuse) {
+            of = number;
+        } else if (const formats::SheetShares shares = formats::sheet_shares_of(map);
+                   primitives[map.primitive].shading == formats::Shading::sheet && shares.any()) {
+            of = static_cast<std::uint32_t>(turned.light.size());
+            turned.light.push_back(turned_light_of_sheet(turned.light[number], shares));
+        }
     }
     return turned;
 }

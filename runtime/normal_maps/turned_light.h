@@ -1,10 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "formats/opal/asset.h"
 #include "formats/opal/rgb.h"
+#include "formats/opal/sheet_shares.h"
 #include "formats/opal/vec3.h"
 #include "runtime/light_vector.h"
 #include "runtime/part_lights.h"
@@ -42,8 +46,29 @@ struct TurnedLight {
 
 TurnedLight make_turned_light(const LightVector& light);
 
-/// The same of each of them.
-std::vector<TurnedLight> make_turned_lights(const PartLights& lights);
+/// The same for a thin-walled surface that reflects r and transmits t, seen from the side of the
+/// normal: with A_s(n) = r A(n) + t A(-n) and S_s(n) = r S(n) + t S(-n) in place of A and S. Both
+/// are sums of what the struct holds: odd harmonics times r - t, even ones times r + t, and each
+/// sun on the other side too, with t of its light. Suns beyond the brightest kMaxSuns / 2
+/// directions become smooth light. Normals are those of the side that is seen.
+TurnedLight turned_light_of_sheet(const TurnedLight& light, const formats::SheetShares& shares);
+
+/// Those of an asset's primitives.
+struct TurnedLights {
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    std::vector<TurnedLight> light;
+    std::vector<std::uint32_t> of_primitive;  ///< index into `light`; kNone: nothing is turned
+
+    const TurnedLight* of(std::size_t primitive) const {
+        const bool is_there = primitive < of_primitive.size() && of_primitive[primitive] != kNone;
+        return is_there ? &light[of_primitive[primitive]] : nullptr;
+    }
+};
+
+/// Of the diffuse and thin-walled primitives that have normal maps. Empty without any map.
+TurnedLights make_turned_lights(const PartLights& lights,
+                                std::span<const formats::PrimitiveRecord> primitives,
+                                std::span<const formats::NormalMapRecord> maps);
 
 /// L'. `radiance`: L, of any sign. Unit normals.
 formats::Rgb turn_light(const TurnedLight& light, formats::Rgb radiance, formats::Vec3 from,

@@ -6,6 +6,7 @@
 
 #include "runtime/holes.h"
 #include "runtime/normal_maps/normal_map.h"
+#include "runtime/normal_maps/turned_light.h"
 #include "runtime/parallel.h"
 #include "runtime/picture/layer_pass.h"
 #include "runtime/picture/passes.h"
@@ -13,7 +14,6 @@
 #include "runtime/picture/volume_pass.h"
 #include "runtime/surface.h"
 #include "runtime/texture.h"
-#include "runtime/normal_maps/turned_light.h"
 
 namespace opaline::runtime {
 namespace {
@@ -43,8 +43,7 @@ struct Job {
     LitVolumes volumes;
     const LayerLight* layers = nullptr;
     bool shows_sky = true;
-    std::optional<PartLights> lights;
-    std::vector<TurnedLight> turned;  // of `lights`, where there are normal maps
+    TurnedLights turned;
 };
 
 // The limit keeps sums of samples finite.
@@ -118,12 +117,13 @@ void apply_normal_map(const Job& job, const formats::NormalMapRecord& map,
         unit_or_zero(interpolate(job.asset.normal, triangle.vertex, weight));
     const formats::Vec3 mapped =
         mapped_normal(job.asset, map, uv, normal, interpolate_tangent(job, triangle, weight));
-    point.view = view_mapped(point.view, mapped);
-    if (!job.turned.empty() &&
-        job.asset.primitives[triangle.primitive].shading == formats::Shading::diffuse) {
-        const TurnedLight& light = job.turned[job.lights->number(triangle.primitive)];
-        point.radiance = turn_light(light, point.radiance, normal, mapped);
+    if (const TurnedLight* const light = job.turned.of(triangle.primitive)) {
+        const bool is_sheet =
+            job.asset.primitives[triangle.primitive].shading == formats::Shading::sheet;
+        const float side = is_sheet && point.view.is_turned ? -1.0f : 1.0f;  // that is seen
+        point.radiance = turn_light(*light, point.radiance, side * normal, side * mapped);
     }
+    point.view = view_mapped(point.view, mapped);
 }
 
 SurfacePoint point_at(const Job& job, const GridTriangle& triangle,
@@ -140,10 +140,12 @@ SurfacePoint point_at(const Job& job, const GridTriangle& triangle,
                                                    primitive.wrap_u, primitive.wrap_v);
     }
     const bool is_glossy = material.gloss != nullptr || material.lobe.radiance != nullptr;
-    if (is_glossy || primitive.shading == formats::Shading::translucent) {
+    const auto* const map = job.asset.normal_maps.of(triangle.primitive);
+    const bool is_mapped_sheet = map != nullptr && primitive.shading == formats::Shading::sheet;
+    if (is_glossy || is_mapped_sheet || primitive.shading == formats::Shading::translucent) {
         point.view = view_at(job, primitive, triangle, weight);
     }
-    if (const auto* const map = job.asset.normal_maps.of(triangle.primitive)) {
+    if (map != nullptr) {
         apply_normal_map(job, *map, triangle, weight, uv, point);
     }
     set_own_light(job.asset, material, uv, point);
@@ -294,9 +296,11 @@ formats::Result<Picture> render_software(const AssetView& asset, std::span<const
             .volumes = {},
             .layers = options.layers,
             .shows_sky = options.background,
-            .lights = options.lights,
             .turned = {}};
-    if (job.lights && !asset.normal_maps.empty()) job.turned = make_turned_lights(*job.lights);
+    if (options.lights) {
+        job.turned =
+            make_turned_lights(*options.lights, asset.primitives, asset.normal_maps.record);
+    }
     if (has_volumes) job.volumes = light_volumes(asset.volumes, *options.volumes);
     for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
         job.materials.push_back(

@@ -96,6 +96,73 @@ TEST(TurnedLight, OfASunIsExactOnOpenSurfaces) {
     EXPECT_EQ(turn_light(light, {}, tilted(170, 0.7f), sun), Rgb{});
 }
 
+// r E(n) + t E(-n) of an open sheet, E the irradiance over pi of each light by itself.
+TEST(TurnedLight, OfAThinWalledSurfaceIsThatOfBothItsSides) {
+    const formats::SheetShares shares{{0.6f, 0.3f, 0.5f}, {0.2f, 0.5f, 0.5f}};
+    const auto seen = [&](Rgb front, Rgb back) {
+        return shares.reflect * front + shares.transmit * back;
+    };
+    const auto sky = [](Vec3 d) { return Rgb{1 + 0.6f * d.y, 1 + 0.6f * d.y, 1 - d.x / 3}; };
+    const TurnedLight smooth = turned_light_of_sheet(make_turned_light(gradient()), shares);
+    constexpr float kIrradiance = 5;
+    const Vec3 toward = tilted(35, 0.7f);
+    const TurnedLight sunny =
+        turned_light_of_sheet(make_turned_light(sun_at(toward, kIrradiance, 0)), shares);
+    const auto sun = [&](Vec3 d) {
+        const float value =
+            kIrradiance * std::max(dot(d, toward), 0.0f) / std::numbers::pi_v<float>;
+        return Rgb{value, value, value};
+    };
+    for (const float side :
+         {1.0f, -1.0f}) {  // the sun ahead of the side that is seen, or behind it
+        const Vec3 n = side * tilted(5, 2);
+        for (const float azimuth : {0.0f, 2.0f, 4.0f}) {
+            const Vec3 m = side * tilted(25, azimuth);
+            const Rgb of_sky = turn_light(smooth, seen(sky(n), sky(-1.0f * n)), n, m);
+            const Rgb open_sky = seen(sky(m), sky(-1.0f * m));
+            const Rgb of_sun = turn_light(sunny, seen(sun(n), sun(-1.0f * n)), n, m);
+            const Rgb open_sun = seen(sun(m), sun(-1.0f * m));
+            EXPECT_NEAR(of_sky.r, open_sky.r, 0.01f);
+            EXPECT_NEAR(of_sky.b, open_sky.b, 0.01f);
+            EXPECT_NEAR(of_sun.r / open_sun.r, 1, 0.02f) << side << ' ' << azimuth;
+            EXPECT_NEAR(of_sun.g / open_sun.g, 1, 0.02f) << side << ' ' << azimuth;
+        }
+    }
+}
+
+// A sheet that transmits as much as it reflects looks alike from both sides under any light.
+TEST(TurnedLight, OfASheetWithEqualSharesDoesNotKnowItsFront) {
+    const TurnedLight light =
+        turned_light_of_sheet(make_turned_light(sun_at(tilted(50, 1), 9, 0.4f)),
+                              {{0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}});
+    const Rgb radiance{0.7f, 0.6f, 0.5f};
+    const Vec3 n = tilted(20, 0), m = tilted(45, 3);
+    const Rgb front = turn_light(light, radiance, n, m),
+              back = turn_light(light, radiance, -1.0f * n, -1.0f * m);
+    EXPECT_NEAR(front.r, back.r, 1e-5f);
+    EXPECT_NE(front.r, radiance.r);
+}
+
+// The light of suns beyond the fourth becomes smooth: its mean over all normals stays, (r + t) / 4.
+TEST(TurnedLight, OfASheetKeepsTheLightOfManySuns) {
+    TurnedLight light;
+    for (int i = 0; i < 8; ++i) {
+        const float size = 1 + 0.25f * static_cast<float>(i);
+        light.suns.push_back(
+            {tilted(20.0f * static_cast<float>(i), static_cast<float>(i)), {size, size, size}});
+    }
+    const TurnedLight sheet =
+        turned_light_of_sheet(light, {{0.5f, 0.5f, 0.5f}, {0.25f, 0.25f, 0.25f}});
+    ASSERT_EQ(sheet.suns.size(), 8u);
+    float all = 0, kept = 0;
+    for (const TurnedLight::Sun& sun : light.suns)
+        all += 0.75f * sun.light.g / 4;
+    for (const TurnedLight::Sun& sun : sheet.suns)
+        kept += sun.light.g / 4;
+    EXPECT_NEAR(sheet.harmonics[0].g + kept, all, 1e-5f);
+    EXPECT_GT(sheet.harmonics[0].g, 0.1f);
+}
+
 TEST(TurnedLight, LeavesASunOutWhereItDoesNotReach) {
     const TurnedLight light = make_turned_light(sun_at(tilted(50, 0), 20, 1));
     const Rgb sky{0.8f, 0.8f, 0.8f};  // below what the even sky gives: in shadow

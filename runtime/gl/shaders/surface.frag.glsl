@@ -6,7 +6,8 @@
 // GLOSS: glossy opaque (gloss.glsl comes before this); GLOSS_TEXTURED: with an
 // image of roughness and metallic (image.glsl); GLOWS: it sends out light by itself; OWN_TEXTURED: with
 // an image (image.glsl); HOLES: light passes it in places (holes.glsl comes before this);
-// NORMAL_MAP: an image has its normals (image.glsl); TURNED: its light is turned to them.
+// NORMAL_MAP: an image has its normals (image.glsl); TURNED: its light is turned to them;
+// TWO_SIDES: and is that of a thin-walled surface.
 layout(location = 0) in vec3 v_radiance;
 layout(location = 1) in vec3 v_base_color;
 layout(location = 0) out vec4 color;
@@ -97,10 +98,14 @@ void main() {
     vec3 normal = opaline_unit_or_zero(v_normal);
     vec3 mapped = opaline_mapped_normal(sample_image(normal_image, v_texcoord, normal_wrap, false),
                                         normal_scale, normal, v_tangent);
-    view = opaline_view_mapped(view, mapped);
-#endif
 #ifdef TURNED
-    radiance = opaline_turn_light(turned_light, radiance, normal, mapped);
+    float side = 1.0;
+#ifdef TWO_SIDES
+    if (view.is_turned) side = -1.0;  // the one that is seen
+#endif
+    radiance = opaline_turn_light(turned_light, radiance, side * normal, side * mapped);
+#endif
+    view = opaline_view_mapped(view, mapped);
 #endif
 #ifdef TRANSLUCENT
     radiance = opaline_translucent(radiance, base_color, view, eta);

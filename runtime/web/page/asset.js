@@ -90,7 +90,9 @@ const Asset = (() => {
                                 mode: w[6] };
     });
     records(arrays.get("normal maps"), 8, (w, f) => {
-      primitives[w[0]].normalMap = { image: image(w[1]), wrap: [w[2], w[3]], scale: f[4] };
+      const halves = [w[5], w[5] >>> 16, w[6], w[6] >>> 16, w[7], w[7] >>> 16].map(x => x & 0xffff);
+      primitives[w[0]].normalMap = { image: image(w[1]), wrap: [w[2], w[3]], scale: f[4],
+                                     shares: halves.map(half => Light.kFloats[half]) };
     });
     records(arrays.get("own lights"), 8, (w, f) => {
       primitives[w[0]].own = { emitter: w[1], radiance: Array.from(f.subarray(2, 5)),

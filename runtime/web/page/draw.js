@@ -154,6 +154,10 @@ const Draw = (() => {
     return array;
   }
 
+  // Whether its file says how to turn the light of a thin-walled surface.
+  const isTurnedSheet = ({ shading, normalMap }) =>
+    shading === "sheet" && normalMap !== null && normalMap.shares.some(share => share > 0);
+
   // [defines, files before the fragment shader] of a primitive.
   function kindOf(primitive, hasAlpha) {
     const { shading, terms, gloss, hole, normalMap, own } = primitive, c = opaline.constants;
@@ -166,7 +170,8 @@ const Draw = (() => {
       GLOSS: gloss, GLOSS_TEXTURED: gloss?.image != null, GLOWS: own,
       OWN_TEXTURED: own?.image != null, HOLES: hole, HOLE_IMAGE: hole?.image != null,
       HOLE_VERTICES: hole && hasAlpha, HAS_TEXCOORD: hasImage, HAS_VIEW: isTranslucent || gloss || normalMap,
-      NORMAL_MAP: normalMap, TURNED: normalMap && shading === "diffuse",
+      NORMAL_MAP: normalMap, TURNED: normalMap && (shading === "diffuse" || isTurnedSheet(primitive)),
+      TWO_SIDES: isTurnedSheet(primitive),
       HAS_OPENNESS: mirrors || gloss, SHEET: shading === "sheet", OPAQUE: shading === "diffuse",
       SEPARATE: primitive.isSeparate };
     const defines = Object.entries(words).filter(([, wanted]) => wanted).map(([word]) => [word, ""]);
@@ -356,7 +361,7 @@ const Draw = (() => {
         : makeLayerObjects(gl, asset.layer, asset.volumes !== null, looksAround);
     const volumes = asset.volumes === null ? null : makeVolumeObjects(gl, asset.volumes, layer !== null);
     let size = [0, 0], sampled = null, clouded = null, marched = null, sum = null, light = null, lightObjects = null;
-    let turned = {};  // uniforms, where there are normal maps
+    let turned = {}, turnedOf = new Map();  // uniforms, where there are normal maps; of thin-walled primitives
 
     function setLight(next) {
       if (lightObjects !== null) freeLightObjects(gl, lightObjects);
@@ -411,7 +416,10 @@ const Draw = (() => {
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, kColumns, objects.lines, gl.RGBA, gl.FLOAT,
                        objects.values);
       if (asset.primitives.some(p => p.normalMap !== null)) {
-        turned = TurnedLight.uniforms(projected, asset.cubemap);
+        const made = TurnedLight.make(projected, asset.cubemap);
+        turned = TurnedLight.uniforms(made);
+        turnedOf = new Map(asset.primitives.filter(isTurnedSheet).map(
+            p => [p, TurnedLight.uniforms(TurnedLight.ofSheet(made, p.normalMap.shares))]));
       }
       if (volumes === null) return;
       if (volumes.litBy !== projected) {
@@ -509,7 +517,7 @@ const Draw = (() => {
       gl.bindVertexArray(objects.array);
       for (const { primitive, program } of objects.surfaces) {
         gl.useProgram(program.name);
-        setUniforms(gl, program, { ...shared, ...surfaceUniforms(primitive, colors) });
+        setUniforms(gl, program, { ...shared, ...turnedOf.get(primitive), ...surfaceUniforms(primitive, colors) });
         gl.drawElements(gl.TRIANGLES, primitive.indices, gl.UNSIGNED_INT, 4 * primitive.firstIndex);
       }
       gl.bindVertexArray(null);

@@ -7,8 +7,8 @@ const TurnedLight = (() => {
                     0.25 * 1.0925484306, 0.25 * 1.0925484306, 0.25 * 0.3153915653,
                     0.25 * 1.0925484306, 0.25 * 0.5462742153];
 
-  // Uniforms of OpalineTurnedLight from what Light.project returns.
-  function uniforms({ integral }, n) {
+  // Of what Light.project returns: { harmonics, suns, least }.
+  function make({ integral }, n) {
     const { suns, rest } = Volumes.splitSuns(integral, n);
     const sums = kFactors.map(() => [0, 0, 0]);
     for (let j = 0; j < rest.length / 3; ++j) {
@@ -17,16 +17,47 @@ const TurnedLight = (() => {
         for (let band = 0; band < 3; ++band) sums[k][band] += harmonic[k] * rest[3 * j + band];
       }
     }
-    const coefficients = sums.map((sum, k) => Vector.times(kFactors[k], sum));
-    const lights = suns.map(sun => Vector.times(1 / Math.PI, sun.light));
-    const mean = lights.reduce((sum, light) => Vector.add(sum, Vector.times(0.25, light)),
-                               coefficients[0]);
-    const padded = vectors => [...vectors, ...new Array(Volumes.kMostSuns - vectors.length).fill([0, 0, 0])].flat();
-    return { "turned_light.harmonics[0]": coefficients.flat(), "turned_light.suns": suns.length,
-             "turned_light.least": mean.map(x => kLeastShare * Math.max(x, 0)),
-             "turned_light.sun_direction[0]": padded(suns.map(sun => sun.direction)),
-             "turned_light.sun_light[0]": padded(lights) };
+    const harmonics = sums.map((sum, k) => Vector.times(kFactors[k], sum));
+    const lights = suns.map(sun => ({ direction: sun.direction, light: Vector.times(1 / Math.PI, sun.light) }));
+    const mean = lights.reduce((sum, { light }) => Vector.add(sum, Vector.times(0.25, light)), harmonics[0]);
+    return { harmonics, suns: lights, least: mean.map(x => kLeastShare * Math.max(x, 0)) };
   }
 
-  return { uniforms };
+  const product = (a, b) => a.map((x, band) => x * b[band]);
+  const total = color => color[0] + color[1] + color[2];
+
+  // turned_light_of_sheet; `shares`: red, green and blue reflected, then transmitted.
+  function ofSheet(turned, shares) {
+    const kSame = 0.9999;
+    const reflect = shares.slice(0, 3), transmit = shares.slice(3);
+    const both = Vector.add(reflect, transmit), odd = Vector.add(reflect, Vector.times(-1, transmit));
+    const joined = [];
+    for (const { direction, light } of turned.suns) {
+      const found = joined.find(other => Vector.dot(other.direction, direction) > kSame);
+      if (found === undefined) joined.push({ direction, light });
+      else found.light = Vector.add(found.light, light);
+    }
+    joined.sort((a, b) => total(b.light) - total(a.light));
+    let harmonics = turned.harmonics;
+    for (const { direction, light } of joined.splice(Volumes.kMostSuns / 2)) {
+      const value = Volumes.harmonics(direction);
+      harmonics = harmonics.map((sum, k) => Vector.add(sum, Vector.times(Math.PI * kFactors[k] * value[k], light)));
+    }
+    return { harmonics: harmonics.map((sum, k) => product(k >= 1 && k <= 3 ? odd : both, sum)),
+             suns: [...joined.map(sun => ({ direction: sun.direction, light: product(reflect, sun.light) })),
+                    ...joined.map(sun => ({ direction: Vector.times(-1, sun.direction),
+                                            light: product(transmit, sun.light) }))],
+             least: product(both, turned.least) };
+  }
+
+  // Of OpalineTurnedLight.
+  function uniforms({ harmonics, suns, least }) {
+    const padded = vectors => [...vectors, ...new Array(Volumes.kMostSuns - vectors.length).fill([0, 0, 0])].flat();
+    return { "turned_light.harmonics[0]": harmonics.flat(), "turned_light.suns": suns.length,
+             "turned_light.least": least,
+             "turned_light.sun_direction[0]": padded(suns.map(sun => sun.direction)),
+             "turned_light.sun_light[0]": padded(suns.map(sun => sun.light)) };
+  }
+
+  return { make, ofSheet, uniforms };
 })();

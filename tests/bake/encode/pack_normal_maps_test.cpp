@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "formats/opal/sheet_shares.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {
@@ -35,6 +36,17 @@ TEST(PackNormalMaps, PrimitivesWithTangentsHaveARecordAndAllVerticesATangent) {
     EXPECT_EQ(formats::decode_tangent(maps.tangent[3]).sign, 0);
     EXPECT_EQ(formats::decode_tangent(maps.tangent[8]).sign, -1);
     EXPECT_NEAR(formats::decode_tangent(maps.tangent[8]).direction.y, 1, 1e-6f);
+}
+
+TEST(PackNormalMaps, OfThinWalledSurfacesSayWhatTheseReflectAndTransmit) {
+    formats::Scene scene = scene_with_normal_map();
+    EXPECT_FALSE(formats::sheet_shares_of(pack_normal_maps(scene).record.at(0)).any());
+    scene.materials[1].sheet =
+        formats::Sheet{.reflect = {0.5f, 0.25f, 0}, .transmit = {0, 0.3f, 1}};
+    const auto shares = formats::sheet_shares_of(pack_normal_maps(scene).record.at(0));
+    EXPECT_EQ(shares.reflect, (formats::Rgb{0.5f, 0.25f, 0}));
+    EXPECT_NEAR(shares.transmit.g, 0.3f, 0.3f / 2048);
+    EXPECT_EQ(shares.transmit.b, 1);
 }
 
 TEST(PackNormalMaps, OnesThatChangeNothingAreLeftOut) {

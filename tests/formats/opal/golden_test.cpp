@@ -13,6 +13,7 @@
 #include "formats/opal/read_opal.h"
 #include "formats/opal/receiver_errors.h"
 #include "formats/opal/shared_exponent.h"
+#include "formats/opal/sheet_shares.h"
 
 namespace opaline::formats {
 namespace {
@@ -230,6 +231,14 @@ TEST_F(GoldenFile, NormalMapsToo) {
     EXPECT_EQ(decode_tangent(maps.tangent[3]).sign, -1);
     EXPECT_NEAR(decode_tangent(maps.tangent[3]).direction.x, -0.98999f, 1e-4f);
     EXPECT_NEAR(decode_tangent(maps.tangent[3]).direction.z, 0.14112f, 1e-4f);
+}
+
+TEST_F(GoldenFile, SharesOfMappedSheetsToo) {
+    const NormalMapsView& maps = read("norm2.opal").normal_maps;
+    EXPECT_EQ(version_of(kNormSection), 2u);
+    ASSERT_EQ(maps.record.size(), 1u);
+    EXPECT_EQ(maps.record[0].scale, 0.75f);
+    EXPECT_EQ(sheet_shares_of(maps.record[0]).transmit, (Rgb{0.25f, 0.75f, 1}));
 }
 
 TEST_F(GoldenFile, ErrorsByReceiverToo) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "formats/opal/sheet_shares.h"
 #include "tests/formats/opal/asset_fixture.h"
 
 namespace opaline::tests {
@@ -18,6 +19,21 @@ inline formats::Asset make_normal_map_asset() {
                    : formats::encode_tangent({std::cos(angle), 0, std::sin(angle)},
                                              v % 2 == 0 ? 1.0f : -1.0f));
     }
+    return asset;
+}
+
+/// The same with a thin-walled second primitive, that of the map: it has two rows a vertex.
+inline formats::Asset make_mapped_sheet_asset() {
+    formats::Asset asset = make_normal_map_asset();
+    formats::PrimitiveRecord& primitive = asset.primitives[1];
+    primitive.shading = formats::Shading::sheet;
+    primitive.terms = 2;
+    primitive.flags = formats::PrimitiveRecord::kDoubleSided;
+    const formats::SparseRow dark{3, {}, {}, std::vector<float>(18)};
+    for (int v = 0; v < 4; ++v) {
+        formats::append_row(asset.transport, dark);
+    }
+    formats::store_sheet_shares({{0.5f, 0.25f, 0}, {0.25f, 0.75f, 1}}, asset.normal_maps.record[0]);
     return asset;
 }
 

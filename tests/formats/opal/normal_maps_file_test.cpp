@@ -47,6 +47,31 @@ TEST(NormalMapsFile, TangentsKeepTheirDirectionToFifteenSecondsOfArc) {
     EXPECT_EQ(decode_tangent(encode_tangent({}, 0)).direction, Vec3{});
 }
 
+std::uint32_t version_of_maps(const Asset& asset) {
+    tests::AlignedBytes stored(tests::encode(asset));
+    const auto table = read_section_table(stored.bytes(), "a.opal");
+    EXPECT_TRUE(table);
+    return tests::section_of(*table, kNormSection).version;
+}
+
+TEST(NormalMapsFile, SharesOfThinWalledSurfacesComeBackInALaterVersion) {
+    const Asset asset = tests::make_mapped_sheet_asset();
+    tests::AlignedBytes stored(tests::encode(asset));
+    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
+    ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
+    const SheetShares shares = sheet_shares_of(loaded->view.normal_maps.record[0]);
+    EXPECT_EQ(shares.reflect, (Rgb{0.5f, 0.25f, 0}));
+    EXPECT_EQ(shares.transmit, (Rgb{0.25f, 0.75f, 1}));
+    EXPECT_EQ(version_of_maps(asset), 2u);
+    EXPECT_EQ(version_of_maps(make_normal_map_asset()), 1u);
+
+    Asset too_much = asset, negative = asset;
+    too_much.normal_maps.record[0].reserved[1] = 0x3c010000u;
+    negative.normal_maps.record[0].reserved[2] = 0x8001u;
+    EXPECT_THAT(tests::fault_of(too_much, Checks::structure), HasSubstr("not one of this version"));
+    EXPECT_THAT(tests::fault_of(negative, Checks::structure), HasSubstr("not one of this version"));
+}
+
 TEST(NormalMapsFile, WhatCannotBeIsRefusedByName) {
     const std::pair<std::function<void(Asset&)>, const char*> cases[]{
         {[](Asset& a) { a.normal_maps.record.push_back(a.normal_maps.record[0]); }, "stands twice"},

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "formats/opal/sheet_shares.h"
 #include "runtime/normal_maps/normal_map.h"
 #include "runtime/normal_maps/turned_light.h"
 #include "tests/runtime/embed_gl/embedded_asset.h"
@@ -19,6 +20,8 @@ using formats::Vec3;
 
 class EmbedGlNormalMaps : public EmbedGl {};
 
+constexpr formats::SheetShares kShares{{0.5f, 0.25f, 0.75f}, {0.25f, 0.5f, 0}};
+
 Asset make_mapped() {
     Asset asset = make_asset(16, 8);
     asset.images.push_back(make_noise_image(7, 5));
@@ -29,6 +32,10 @@ Asset make_mapped() {
                    {.primitive = 0, .image = 0, .wrap_v = formats::Wrap::mirror, .scale = 0.7f},
                    {1, 0, 0}, -1);
     add_normal_map(asset, {.primitive = 1, .image = 0}, {1, 0, 0}, 1);
+    add_primitive(asset, make_sheet({9, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 1), {.is_sheet = true});
+    formats::NormalMapRecord map{.primitive = 3, .image = 0};
+    formats::store_sheet_shares(kShares, map);
+    add_normal_map(asset, map, {1, 0, 0}, 1);
     return asset;
 }
 
@@ -86,6 +93,15 @@ TEST_P(EmbedGlNormalMaps, NormalsAndTurnedLightAreTheCpus) {
     // The light that these numbers should be of.
     EXPECT_GT(dot(turned.suns[0].direction, formats::normalize({0.3f, 0.8f, 0.5f})), 0.999f);
     EXPECT_NEAR(turned.harmonics[0].b / turned.harmonics[0].r, 1.5f, 0.05f);
+
+    // The thin-walled primitive's are made of the same light.
+    const opaline_gl_normal_map sheet = normal_map_of(gl, 3);
+    EXPECT_EQ(sheet.is_turned, 2u);
+    const runtime::TurnedLight two_sided = runtime::turned_light_of_sheet(turned, kShares);
+    ASSERT_EQ(static_cast<std::size_t>(sheet.suns), two_sided.suns.size());
+    EXPECT_EQ(sheet.sun_light[sheet.suns - 1][1], two_sided.suns.back().light.g);
+    EXPECT_EQ(sheet.harmonics[1][2], two_sided.harmonics[1].b);
+    EXPECT_EQ(sheet.least[0], two_sided.least.r);
 
     // from.xy: texture coordinates; direction: the normal of the receiver; begin: its radiance.
     const std::string see =
@@ -145,7 +161,7 @@ TEST_P(EmbedGlNormalMaps, PrimitivesSayWhatTheyHaveAndWrongUseIsTold) {
     opaline_gl_normal_map map{};
     EXPECT_EQ(opaline_gl_get_normal_map(gl, 0, &map), OPALINE_INVALID_ARGUMENT);
     map.struct_size = sizeof map;
-    EXPECT_EQ(opaline_gl_get_normal_map(gl, 3, &map), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(opaline_gl_get_normal_map(gl, 4, &map), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_gl_get_normal_map(nullptr, 0, &map), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_gl_get_normal_map(gl, 0, nullptr), OPALINE_INVALID_ARGUMENT);
     EXPECT_EQ(opaline_gl_release(gl), OPALINE_OK);

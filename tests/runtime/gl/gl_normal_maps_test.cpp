@@ -2,6 +2,7 @@
 // ones.
 #include <gtest/gtest.h>
 
+#include "formats/opal/sheet_shares.h"
 #include "runtime/gl/gl_renderer.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/shade.h"
@@ -15,7 +16,8 @@ using formats::Asset;
 using formats::Wrap;
 using test::Gl;
 
-// A floor, a ball, a mirrored sheet that is seen from behind, and a translucent ball.
+// A floor, a ball, a mirrored sheet that is seen from behind, a translucent ball, and two
+// thin-walled surfaces.
 Asset asset_with_normal_maps(bool is_glossy) {
     Asset asset = test::make_asset(16, 8);
     asset.images.push_back(test::make_noise_image(7, 5));
@@ -30,9 +32,21 @@ Asset asset_with_normal_maps(bool is_glossy) {
                          {1, 0.1f, 0}, 1);
     test::add_normal_map(asset, {.primitive = 2, .image = 0, .wrap_v = Wrap::clamp}, {-1, 0, 0}, 1);
     test::add_normal_map(asset, {.primitive = 3, .image = 0, .scale = 0.3f}, {0, 1, 0}, 1);
+    // Thin-walled: the eye sees the front of one and the back of the other.
+    for (const std::uint32_t p : {4u, 5u}) {
+        const float side = p == 4 ? 1.0f : -1.0f;
+        test::add_primitive(asset,
+                            test::make_sheet({-1, side * 0.6f + 1.2f, -0.8f},
+                                             {side * 0.6f, 0, 0.2f}, {0, 0.4f, 0}, 2, 2),
+                            {.bands = 3, .is_sheet = true});
+        formats::NormalMapRecord map{.primitive = p, .image = 0, .scale = 0.6f};
+        formats::store_sheet_shares({{0.5f, 0.4f, 0.3f}, {0.2f, 0.4f, 0.6f}}, map);
+        test::add_normal_map(asset, map, {1, 0, 0}, 1);
+    }
     if (is_glossy) {
-        asset.roughness = {formats::kNotGlossy, formats::kNotGlossy, formats::kNotGlossy, 0.3f};
-        asset.gloss.resize(4);
+        asset.roughness.assign(6, formats::kNotGlossy);
+        asset.roughness[3] = 0.3f;
+        asset.gloss.resize(6);
         asset.gloss[0] = {.roughness = 0.4f, .f0 = {0.04f, 0.04f, 0.04f}, .f90 = 1};
         asset.gloss[1] = {.metallic = 0.7f, .roughness = 0.6f, .f0 = {0.1f, 0.1f, 0.1f}, .f90 = 1};
         asset.gloss[2] = {.roughness = 0.5f, .f0 = {0.2f, 0.2f, 0.2f}, .f90 = 1};

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "formats/opal/sheet_shares.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
 namespace opaline::test {
@@ -82,6 +83,9 @@ void add_normal_maps(Asset& asset) {
     add_normal_map(asset, {.primitive = 2, .image = 1, .wrap_u = Wrap::mirror, .scale = 0.5f},
                    {1, 0, 0.2f}, 1);
     add_normal_map(asset, {.primitive = 5, .image = 0, .scale = 0.2f}, {0, 0, 1}, 1);
+    formats::NormalMapRecord sheet{.primitive = 7, .image = 1, .scale = 0.4f};
+    formats::store_sheet_shares({{0.5f, 0.4f, 0.3f}, {0.2f, 0.4f, 0.6f}}, sheet);
+    add_normal_map(asset, sheet, {1, 0, 0}, 1);
 }
 
 }  // namespace
