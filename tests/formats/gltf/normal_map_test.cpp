@@ -51,6 +51,17 @@ TEST(GltfNormalMap, IsReadWithItsScaleAndWrap) {
     EXPECT_EQ(lines(imported.warnings), "");
 }
 
+TEST(GltfNormalMap, OfAThinWalledSurfaceIsReadLikeOthers) {
+    AssetBuilder asset = mapped_square(kUpright);
+    asset.json["extensionsUsed"] = {"KHR_materials_diffuse_transmission"};
+    asset.json["materials"][0]["extensions"] = {
+        {"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 0.4}}}};
+    const auto imported = must_import(asset);
+    ASSERT_TRUE(imported.scene.materials.at(0).sheet);
+    EXPECT_EQ(imported.scene.materials[0].normal_image, 0u);
+    EXPECT_EQ(lines(imported.warnings), "");
+}
+
 TEST(GltfNormalMap, TangentsFollowTheImageWhereTheFileHasNone) {
     const auto upright = must_import(mapped_square(kUpright));
     for (const glm::vec4 t : upright.scene.primitives.at(0).tangent) {

@@ -36,9 +36,18 @@ Asset asset_with_normal_maps(bool is_glossy) {
     for (const std::uint32_t p : {4u, 5u}) {
         const float side = p == 4 ? 1.0f : -1.0f;
         test::add_primitive(asset,
-                            test::make_sheet({-1, side * 0.6f + 1.2f, -0.8f},
-                                             {side * 0.6f, 0, 0.2f}, {0, 0.4f, 0}, 2, 2),
-                            {.bands = 3, .is_sheet = true});
+                            test::make_sheet({-0.4f - 0.7f * side, 1.7f, -0.5f},
+                                             {side * 0.5f, 0, 0.2f}, {0, 0.3f, 0}, 2, 2),
+                            {.bands = 3, .is_double_sided = true, .is_sheet = true});
+        // The rows of the back, which are negative, are turned over.
+        const formats::RowRange rows = asset.primitives[p].rows();
+        for (std::uint32_t row = 1; row < rows.rows; row += 2) {
+            for (std::uint32_t band = 0; band < rows.bands; ++band) {
+                const std::size_t at = rows.first_band_row + std::size_t{row} * rows.bands + band;
+                asset.transport.average_scale[at] *= -1;
+                asset.transport.detail_scale[at] *= -1;
+            }
+        }
         formats::NormalMapRecord map{.primitive = p, .image = 0, .scale = 0.6f};
         formats::store_sheet_shares({{0.5f, 0.4f, 0.3f}, {0.2f, 0.4f, 0.6f}}, map);
         test::add_normal_map(asset, map, {1, 0, 0}, 1);

@@ -24,7 +24,7 @@ void add_surfaces(Asset& asset) {
     add_primitive(asset, make_sphere({-2, 0.7f, -1}, 0.7f, 20, 14),
                   {.bands = 3, .eta = 1.2f, .terms = 10, .is_separate = true});
     add_primitive(asset, make_sheet({0, 1, -1}, {0.7f, 0, 0.2f}, {0, 0.8f, 0.1f}, 4, 1.8f),
-                  {.bands = 3, .image = 0, .is_sheet = true});
+                  {.bands = 3, .image = 0, .is_double_sided = true, .is_sheet = true});
     add_primitive(asset, make_sheet({2, 1, -1}, {0.7f, 0, 0}, {0, 0.8f, 0}, 2, 1), {.bands = 3});
     add_primitive(asset, make_sheet({2, 1, -2}, {0.7f, 0, 0}, {0, 0.8f, 0}, 2, 3),
                   {.image = 0, .wrap_u = Wrap::clamp, .is_double_sided = true});
