@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "runtime/parallel.h"
+#include "runtime/volumes/sun_phase.h"
 #include "runtime/volumes/suns.h"
 #include "runtime/volumes/volume_glow.h"
-#include "runtime/volumes/volume_source.h"
 
 namespace opaline::runtime {
 namespace {
@@ -159,14 +158,6 @@ std::vector<std::uint32_t> pack_density(const formats::VolumesView& volumes) {
     return words;
 }
 
-std::vector<float> tame_phases(const formats::VolumesView& volumes) {
-    std::vector<float> phase;
-    phase.reserve(volumes.phase.size());
-    std::ranges::transform(volumes.phase, std::back_inserter(phase),
-                           [](float p) { return tame(p, kLargestSource); });
-    return phase;
-}
-
 std::vector<std::uint32_t> pack_glow(const formats::VolumesView& volumes) {
     if (volumes.glow.brick.empty()) return {};
     std::vector<std::uint32_t> words(volumes.density_scale.size(), kNoBrick);
@@ -190,7 +181,9 @@ std::size_t most_coefficients(const formats::VolumesView& volumes) {
     std::size_t count = 0;
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         const formats::VolumeRecord& record = volumes.records[v];
-        const std::size_t suns = needs_suns(record, volumes.phase_of(v)) ? kMaxSuns : 0;
+        const std::span<const float> phase = volumes.phase_of(v);
+        const std::size_t suns =
+            needs_suns(record, phase) ? kMaxSuns * make_sun_phase(record, phase).terms : 0;
         count += record.node_count * (terms_of(volumes, v) + suns);
     }
     return count;
@@ -210,10 +203,11 @@ ShaderVolume make_shader_volume(const VolumeLattice& lattice, std::size_t volume
         return static_cast<float>(std::min(static_cast<double>(sigma) / units_per_metre, 1e30));
     };
     made.extinction = {per_unit(record.sigma_t.r), per_unit(record.sigma_t.g),
-                       per_unit(record.sigma_t.b), 0};
-    made.albedo = {record.albedo.r, record.albedo.g, record.albedo.b, 0};
+                       per_unit(record.sigma_t.b), part.sun_power[1]};
+    made.albedo = {record.albedo.r, record.albedo.g, record.albedo.b, part.sun_power[2]};
     made.coefficient = {static_cast<std::uint32_t>(3 * part.first), part.suns,
-                        static_cast<std::uint32_t>(formats::kPhaseEntries * volume), 0};
+                        static_cast<std::uint32_t>(kMaxSunTerms * formats::kPhaseEntries * volume),
+                        part.sun_terms};
     return made;
 }
 

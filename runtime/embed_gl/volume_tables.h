@@ -28,10 +28,6 @@ inline constexpr std::size_t kGlBrickWords = 1 + std::size_t{8} * 9 * 9;
 /// Precondition: the asset passed read_opal's checks.
 std::vector<std::uint32_t> pack_density(const formats::VolumesView& volumes);
 
-/// Phase functions, kPhaseEntries a volume: finite and not negative, which a damaged file may not
-/// be and not all drivers handle.
-std::vector<float> tame_phases(const formats::VolumesView& volumes);
-
 /// Light that volumes send out by themselves: for each brick of all volumes the first of its words,
 /// or formats::kNoBrick; then 9 x 9 x 9 words of each brick around which any is, x fastest,
 /// shared_exponent.h. Empty without any.
@@ -39,7 +35,7 @@ std::vector<std::uint32_t> pack_glow(const formats::VolumesView& volumes);
 
 /// The most terms of a node of any volume, suns left out; at least 1.
 std::uint32_t most_node_terms(const formats::VolumesView& volumes);
-/// Coefficients of all nodes, kMaxSuns included where a volume may have suns.
+/// Coefficients of all nodes, those of kMaxSuns suns included where a volume may have suns.
 std::size_t most_coefficients(const formats::VolumesView& volumes);
 
 /// Volume of volume_march.glsl, in std140 as in std430.

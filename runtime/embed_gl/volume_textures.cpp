@@ -50,7 +50,7 @@ opaline_status VolumeTextures::make(const formats::VolumesView& volumes, GlNames
     brick_numbers_.fill_of(volumes.table);
     density_codes_.fill_of(std::span<const std::uint32_t>(pack_density(volumes)));
     corner_numbers_.fill_of(volumes.corner);
-    phase_entries_.fill_of(std::span<const float>(tame_phases(volumes)));
+    phase_entries_.fill_of(std::span<const float>(pack_sun_tables(volumes)));
     if (!glow_words.empty()) {
         glow_words_.make(names);
         glow_words_.fill_of(std::span(glow_words));

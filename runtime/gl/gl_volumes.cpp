@@ -116,7 +116,7 @@ formats::Result<GlVolumes> upload_volumes(const VolumesView& volumes, std::size_
     gl.corner = make_buffer_of(volumes.corner, gl.resident);
     const std::vector<std::uint32_t> words = pack_density(volumes);
     gl.density = make_buffer_of(std::span<const std::uint32_t>(words), gl.resident);
-    const std::vector<float> phase = tame_phases(volumes);
+    const std::vector<float> phase = pack_sun_tables(volumes);
     gl.phase = make_buffer_of(std::span<const float>(phase), gl.resident);
     gl.resident += coefficient_bytes(volumes);
     if (const auto status = check_gl("uploading volumes"); !status) return status.error();

@@ -27,7 +27,7 @@ struct GlVolumes {
 
     GlBuffer table, corner;
     GlBuffer density;  ///< pack_density
-    GlBuffer phase;    ///< kPhaseEntries a volume
+    GlBuffer phase;    ///< pack_sun_tables
     /// Of a volume's own light: for each brick the first of its words or kNoBrick, then 9 x 9 x 9
     /// words of each brick around which any is, x fastest, shared_exponent.h.
     GlBuffer glow;

@@ -56,7 +56,12 @@ std::uint32_t glow_terms(std::span<const formats::GlowRecord> glow, const Emitte
 struct Lights {
     const LightVector& whole;
     std::vector<LightVector> moment, moment_of_rest;
-    std::vector<LightVector> sun;
+    struct SunLight {
+        LightVector vector;
+        Rgb whole;                // what <V, vector> is a share of
+        std::uint32_t joint = 0;  // its number among those of other directions
+    };
+    std::vector<SunLight> sun;
 
     std::span<const LightVector> moments(const VolumeLight::Part& part) const {
         return part.suns > 0 ? moment_of_rest : moment;
@@ -86,8 +91,15 @@ Lights prepare(const formats::VolumesView& volumes, const LightVector& light,
         lights.moment_of_rest =
             make_moment_lights(split.rest, light.n, moments_of_rest, options.threads);
         for (const Sun& sun : split.sun) {
-            result.sun.push_back(sun.direction);
-            lights.sun.push_back(make_sun_light(sun, light.n));
+            const auto same = std::ranges::find_if(result.sun, [&](formats::Vec3 d) {
+                return d.x == sun.direction.x && d.y == sun.direction.y && d.z == sun.direction.z;
+            });
+            lights.sun.push_back(
+                {make_sun_light(sun, light.n),
+                 {static_cast<float>(sun.light[0]), static_cast<float>(sun.light[1]),
+                  static_cast<float>(sun.light[2])},
+                 static_cast<std::uint32_t>(same - result.sun.begin())});
+            if (same == result.sun.end()) result.sun.push_back(sun.direction);
         }
     }
     std::size_t size = 0;
@@ -99,7 +111,13 @@ Lights prepare(const formats::VolumesView& volumes, const LightVector& light,
         result.glow.push_back(shows_own ? options.emitters.color_of(own->emitter) : Rgb{});
         VolumeLight::Part part{
             std::max({shown.single, shown.multiple, glow_terms(glow, options.emitters)}), 0, size};
-        if (meets_suns[v] != 0) part.suns = static_cast<std::uint32_t>(result.sun.size());
+        result.sun_phase.emplace_back();
+        if (meets_suns[v] != 0 && !result.sun.empty()) {
+            part.suns = static_cast<std::uint32_t>(result.sun.size());
+            result.sun_phase.back() = make_sun_phase(volumes.records[v], volumes.phase_of(v));
+            part.sun_terms = result.sun_phase.back().terms;
+            part.sun_power = result.sun_phase.back().power;
+        }
         size += std::size_t{volumes.records[v].node_count} * part.stride();
         result.part.push_back(part);
     }
@@ -115,6 +133,7 @@ struct Job {
     const Lights& lights;
     Shown shown;
     DotPath path;
+    const SunPhase& sun_phase;
     std::span<const formats::GlowRecord> glow;
     EmitterLight emitters;
 };
@@ -148,14 +167,36 @@ void add_attenuated(const Job& job, const Block& block, const LightVector& light
     }
 }
 
+// The light of suns, by how much of it the volume has left: all terms of suns.h's parts of a sun
+// together, each with its own V, so that nothing jumps as parts begin.
+void add_suns(const Job& job, const Block& block) {
+    const VolumeLight::Part& part = job.part;
+    if (part.suns == 0) return;
+    const auto share = [](float e, float whole) { return whole > 0 ? e / whole : 0.0f; };
+    for (const Lights::SunLight& sun : job.lights.sun) {
+        for (std::uint32_t node = block.first; node < block.end; ++node) {
+            Rgb e;
+            dot_rows(job.volumes.rows, job.record.rows(), sun.vector, node * job.record.terms(),
+                     {&e, 1}, job.path);
+            const SunThrough through = find_sun_through(
+                job.sun_phase, job.record.albedo,
+                {share(e.r, sun.whole.r), share(e.g, sun.whole.g), share(e.b, sun.whole.b)});
+            const std::size_t first =
+                std::size_t{node - block.first} * part.stride() + part.terms + sun.joint;
+            for (std::size_t j = 0; j < part.sun_terms; ++j) {
+                Rgb& c = block.coefficient[first + j * part.suns];
+                c = c + through[j] * e;
+            }
+        }
+    }
+}
+
 void add_single(const Job& job, const Block& block) {
     const auto factor = phase_factors(job.record);
     for (std::uint32_t k = 0; k < job.shown.single; ++k) {
         add_attenuated(job, block, job.lights.moments(job.part)[k], factor[k], k);
     }
-    for (std::uint32_t s = 0; s < job.part.suns; ++s) {
-        add_attenuated(job, block, job.lights.sun[s], 1, job.part.terms + s);
-    }
+    add_suns(job, block);
 }
 
 void add_multiple(const Job& job, const Block& block) {
@@ -206,6 +247,7 @@ VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVect
                       lights,
                       {record, options.terms},
                       options.path,
+                      result.sun_phase[v],
                       volumes.glow.of_volume(v),
                       options.emitters};
         const auto own = std::span<Rgb>(result.coefficient).subspan(part.first);
@@ -245,11 +287,10 @@ std::vector<Rgb> node_radiance(const formats::VolumesView& volumes, const Volume
                                      m[8] * x + m[9] * y + m[10] * z + m[11]};
             // From the node itself there is no direction: the mean, as without an eye.
             if (const float norm = length(to_eye); norm > 0 && std::isfinite(norm)) {
-                weight =
-                    source_weights(light, volume, volumes.phase_of(volume), (1 / norm) * to_eye);
+                weight = source_weights(light, volume, (1 / norm) * to_eye);
             }
         }
-        const Rgb sum = finite(eval_node(light, volume, i, weight));
+        const Rgb sum = finite(eval_node(light, volume, i, weight, kAllThrough));
         radiance[i] = {std::max(0.0f, sum.r), std::max(0.0f, sum.g), std::max(0.0f, sum.b)};
     }
     return radiance;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -13,37 +14,44 @@
 #include "runtime/dot.h"
 #include "runtime/emitter_light.h"
 #include "runtime/light_vector.h"
+#include "runtime/volumes/sun_phase.h"
 
 namespace opaline::runtime {
 
 /// What volumes scatter under one light, toward any eye. Node i of volume v scatters toward the
 /// unit direction w_o the source radiance
 ///
-///     J(w_o) = sum_{k < terms} c_k Y_k(w_o) + sum_{s < suns} e_s p'(-l_s . w_o),
+///     J(w_o) = sum_{k < terms} c_k Y_k(w_o) +
+///              sum_{j < sun_terms} T^(power_j albedo) sum_{s < suns} e_js q_j(-l_s . w_o),
 ///
-/// before max(0, .), with coefficients(v, i) = c_0 ..., e_0 ... and, for k = l (l + 1) + m,
+/// before max(0, .), T what of it reaches the eye, q_j the tables of the volume's SunPhase
+/// (sun_phase.h), with coefficients(v, i) = c_0 ..., e_00 ..., e_10 ... and, for k = l (l + 1) + m,
 ///
 ///     c_k = (-1)^l m_l <V, Y_k L'> [k < K_s] + <T_k, L> [k < K_m] + g E_k [k < K_e],
-///     e_s = <V, L_s>,
+///     e_js = sum over parts p of sun s of <V, L_p> (<V, L_p> / L_p)^(power_j albedo),
 ///
 /// m_l the moments of the phase function p', V row 0 of the node and T_k row 1 + k. The light L is
-/// split into suns L_s in the directions l_s, which meet the phase function as it is, and the rest
-/// L' (suns.h); where the moments say the same there are no suns, and L' = L. Where K_m = 1 its
-/// h_0 = 1 is taken as Y_0 / Y_0, so that all of J but suns is in harmonics. E_k is what the node
-/// scatters of the light that a volume sends out by itself, g the colour of that emitter.
+/// split into suns in the directions l_s, parts L_p of one direction taken together, which meet the
+/// phase function as it is, and the rest L' (suns.h); where the moments say the same there are no
+/// suns, and L' = L. Where K_m = 1 its h_0 = 1 is taken as Y_0 / Y_0, so that all of J but suns is
+/// in harmonics. E_k is what the node scatters of the light that a volume sends out by itself, g
+/// the colour of that emitter.
 struct VolumeLight {
     struct Part {
         std::uint32_t terms =
             0;  ///< K = max(K_s, K_m, K_e) of what is shown; 0: the volume scatters nothing
-        std::uint32_t suns = 0;  ///< 0, or all of VolumeLight::sun
-        std::size_t first = 0;   ///< of the volume's coefficients
+        std::uint32_t suns = 0;                       ///< 0, or all of VolumeLight::sun
+        std::size_t first = 0;                        ///< of the volume's coefficients
+        std::uint32_t sun_terms = 1;                  ///< coefficients of each sun
+        std::array<float, kMaxSunTerms> sun_power{};  ///< SunPhase::power
 
         /// Coefficients of a node.
-        std::uint32_t stride() const { return terms + suns; }
+        std::uint32_t stride() const { return terms + sun_terms * suns; }
     };
     std::vector<Part> part;  ///< one for each volume
     /// One for each volume: the colour times which it shows its own light; 0: it does not.
     std::vector<formats::Rgb> glow;
+    std::vector<SunPhase> sun_phase;        ///< one for each volume; without a table where suns = 0
     std::vector<formats::Vec3> sun;         ///< l_s, unit, toward the suns, world; kMaxSuns at most
     std::vector<formats::Rgb> coefficient;  ///< [W m^-2 sr^-1], finite; node after node
 
@@ -71,7 +79,7 @@ VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVect
                             const RelightVolumesOptions& options = {});
 
 /// max(0, J) of every node of a volume toward the point `eye` [m, world]; without one the mean of J
-/// over all directions, c_0 Y_0 + sum_s e_s / (4 pi), likewise not below 0.
+/// over all directions, likewise not below 0. T counts as 1: as near the node.
 std::vector<formats::Rgb> node_radiance(const formats::VolumesView& volumes,
                                         const VolumeLight& light, std::size_t volume,
                                         const std::optional<formats::Vec3>& eye);

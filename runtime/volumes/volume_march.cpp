@@ -51,22 +51,31 @@ std::vector<Traveller> start(const LitVolumes& volumes, const MarchRay& ray) {
         if (!(traveller.voxel > 0) || !std::isfinite(traveller.voxel)) continue;
         advance(traveller);
         if (traveller.is_left) continue;
-        traveller.weight =
-            source_weights(*volumes.light, entry.volume, entry.phase, -1 * ray.direction);
+        traveller.weight = source_weights(*volumes.light, entry.volume, -1 * ray.direction);
         travellers.push_back(traveller);
     }
     return travellers;
 }
 
-// max(0, J) at a point of the brick, trilinear between nodes.
-Rgb source_at(Traveller& traveller, const VolumeLight& light, const std::array<float, 3>& at) {
+// What the ray has left at the point counts for suns.
+SunThrough sun_through(const VolumeLight& light, const LitVolumes::Entry& entry, Rgb left) {
+    if (light.part[entry.volume].suns == 0) return kAllThrough;
+    return find_sun_through(light.sun_phase[entry.volume], entry.lattice.record->albedo, left);
+}
+
+// max(0, J) at a point of the brick, trilinear between nodes; `left` of it comes through to the
+// eye.
+Rgb source_at(Traveller& traveller, const VolumeLight& light, const std::array<float, 3>& at,
+              Rgb left) {
     const LitVolumes::Entry& entry = *traveller.entry;
     const NodeCell cell = node_cell(entry.lattice, at);
     if (traveller.cell != cell.number) {
         traveller.cell = cell.number;
         const auto nodes = nodes_of_cell(entry.lattice, traveller.block.number[0], cell.number);
+        const SunThrough through = sun_through(light, entry, left);
         for (std::size_t i = 0; i < 8; ++i) {
-            traveller.source[i] = eval_node(light, entry.volume, nodes[i], traveller.weight);
+            traveller.source[i] =
+                eval_node(light, entry.volume, nodes[i], traveller.weight, through);
         }
     }
     return mix_nodes(traveller.source, cell.weight);
@@ -148,7 +157,8 @@ void march_segment(March& march, double begin, double end) {
             const Rgb c = tame(density * lattice.record->sigma_t, kLargestExtinction);
             extinction = extinction + c;
             scattered =
-                scattered + c * lattice.record->albedo * source_at(traveller, march.light, at);
+                scattered + c * lattice.record->albedo *
+                                source_at(traveller, march.light, at, march.result.transmittance);
         }
         step(extinction, scattered, emitted, static_cast<float>(std::min(h, 1e30)), march.result);
     }
@@ -161,7 +171,7 @@ LitVolumes light_volumes(const formats::VolumesView& volumes, const VolumeLight&
     lit.light = &light;
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         if (const auto lattice = make_lattice(volumes, volumes.records[v])) {
-            lit.entry.push_back({*lattice, v, volumes.phase_of(v), make_glow(volumes, v)});
+            lit.entry.push_back({*lattice, v, make_glow(volumes, v)});
         }
     }
     return lit;

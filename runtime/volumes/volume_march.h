@@ -17,9 +17,8 @@ namespace opaline::runtime {
 struct LitVolumes {
     struct Entry {
         VolumeLattice lattice;
-        std::size_t volume = 0;        ///< its number in the asset
-        std::span<const float> phase;  ///< its phase function, kPhaseEntries values
-        VolumeGlow glow;               ///< its own light
+        std::size_t volume = 0;  ///< its number in the asset
+        VolumeGlow glow;         ///< its own light
     };
     std::vector<Entry> entry;
     const VolumeLight* light = nullptr;

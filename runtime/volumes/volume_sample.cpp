@@ -37,12 +37,12 @@ std::optional<Place> place_of(const VolumeLattice& lattice, formats::Vec3 point)
 
 Rgb source_at(const LitVolumes& volumes, const LitVolumes::Entry& entry, std::uint32_t brick,
               const std::array<float, 3>& at, formats::Vec3 to_eye) {
-    const SourceWeights weight = source_weights(*volumes.light, entry.volume, entry.phase, to_eye);
+    const SourceWeights weight = source_weights(*volumes.light, entry.volume, to_eye);
     const NodeCell cell = node_cell(entry.lattice, at);
     const auto nodes = nodes_of_cell(entry.lattice, brick, cell.number);
     std::array<Rgb, 8> source{};
     for (std::size_t i = 0; i < 8; ++i) {
-        source[i] = eval_node(*volumes.light, entry.volume, nodes[i], weight);
+        source[i] = eval_node(*volumes.light, entry.volume, nodes[i], weight, kAllThrough);
     }
     return mix_nodes(source, cell.weight);
 }

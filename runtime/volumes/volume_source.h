@@ -10,6 +10,7 @@
 #include "formats/opal/spherical_harmonics.h"
 #include "formats/opal/volumes.h"
 #include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/sun_phase.h"
 #include "runtime/volumes/suns.h"
 
 namespace opaline::runtime {
@@ -21,14 +22,13 @@ namespace opaline::runtime {
 inline constexpr float kLargestSource = 1e20f, kLargestExtinction = 1e15f;
 
 /// What the coefficients of a volume's nodes count for, in their order; Part::stride() of them.
-using SourceWeights = std::array<float, formats::kMaxHarmonics + kMaxSuns>;
+using SourceWeights = std::array<float, formats::kMaxHarmonics + kMaxSunTerms * kMaxSuns>;
 
-/// For the unit direction `to_eye`: Y_k of it, then p' between each sun's light and the eye, from
-/// `phase`, the volume's table.
-SourceWeights source_weights(const VolumeLight& light, std::size_t volume,
-                             std::span<const float> phase, formats::Vec3 to_eye);
+/// For the unit direction `to_eye`: Y_k of it, then the tables of the volume's SunPhase between
+/// each sun's light and the eye.
+SourceWeights source_weights(const VolumeLight& light, std::size_t volume, formats::Vec3 to_eye);
 
-/// For the mean over all directions: Y_0, and of suns 1 / (4 pi).
+/// For the mean over all directions: Y_0, and the means of the tables.
 SourceWeights mean_weights(const VolumeLight& light, std::size_t volume);
 
 /// Into [0, largest]; NaN fails the comparison and becomes 0.
@@ -39,14 +39,26 @@ inline formats::Rgb tame(formats::Rgb c, float largest) {
     return {tame(c.r, largest), tame(c.g, largest), tame(c.b, largest)};
 }
 
-/// J of a node before max(0, .); 0 for kNoNode.
+/// Nothing between a place and the eye.
+inline constexpr SunThrough kAllThrough{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
+
+/// J of a node before max(0, .); 0 for kNoNode. `through`: of each term of suns.
 inline formats::Rgb eval_node(const VolumeLight& light, std::size_t volume, std::uint32_t node,
-                              const SourceWeights& weight) {
+                              const SourceWeights& weight, const SunThrough& through) {
     formats::Rgb sum;
     if (node == formats::kNoNode) return sum;
+    const VolumeLight::Part& part = light.part[volume];
     const auto c = light.coefficients(volume, node);
-    for (std::size_t j = 0; j < c.size(); ++j) {
-        sum = sum + weight[j] * c[j];
+    std::size_t k = 0;
+    for (; k < part.terms; ++k) {
+        sum = sum + weight[k] * c[k];
+    }
+    for (std::size_t j = 0; j < part.sun_terms; ++j) {
+        formats::Rgb suns;
+        for (std::size_t s = 0; s < part.suns; ++s, ++k) {
+            suns = suns + weight[k] * c[k];
+        }
+        sum = sum + through[j] * suns;
     }
     return sum;
 }

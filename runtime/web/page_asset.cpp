@@ -4,6 +4,7 @@
 
 #include "formats/opal/ggx_albedo.h"
 #include "runtime/picture/camera.h"
+#include "runtime/volumes/sun_phase.h"
 #include "runtime/web/data_script.h"
 #include "runtime/web/page_layer.h"
 
@@ -40,6 +41,16 @@ void put_volumes(DataScript& script, const formats::VolumesView& volumes) {
     script.put("density", volumes.density);
     script.put("corners", volumes.corner);
     script.put("phase", volumes.phase);
+    std::vector<std::uint32_t> terms;
+    std::vector<float> powers;
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        const SunPhase phase = make_sun_phase(volumes.records[v], volumes.phase_of(v));
+        terms.push_back(phase.terms);
+        powers.insert(powers.end(), phase.power.begin(), phase.power.end());
+    }
+    script.put("sun terms", std::span<const std::uint32_t>(terms));
+    script.put("sun powers", std::span<const float>(powers));
+    script.put("sun tables", std::span<const float>(pack_sun_tables(volumes)));
     put_rows(script, "volume ", volumes.rows);
     script.put_records("glow", volumes.glow.record);
     script.put("glow bricks", volumes.glow.brick);

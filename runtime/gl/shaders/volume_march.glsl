@@ -7,12 +7,12 @@ struct Volume {
     vec4 to_bricks[3];   // rows: direction to bricks a unit; w: the eye's place
     uvec4 extent_first;  // bricks along each axis of the table; its first cell
     uvec4 numbers;       // first brick, first corner, boxes of nodes along a brick's edge, terms
-    vec4 extinction;     // where the density is 1 [1 / unit]
-    vec4 albedo;
-    uvec4 coefficient;  // the first; suns; the first entry of its phase function
+    vec4 extinction;     // where the density is 1 [1 / unit]; w: power of the second term of suns
+    vec4 albedo;         // w: of the third
+    uvec4 coefficient;  // the first; suns; the first entry of its tables; terms of a sun
 };
 // Density: of each brick the scale, then 8 x 9 x 9 pairs of codes: of a voxel and of the next along x.
-// Coefficients: R, G, B. Phases: phase_table.h.
+// Coefficients: R, G, B; of suns those of all suns for each term. Phases: sun_phase.h, phase_table.h.
 #ifdef DATA_IN_TEXTURES  // of 2048 columns
 #ifdef RECORDS_IN_BLOCK
 layout(std140) uniform VolumeRecords {
@@ -180,29 +180,44 @@ float density_at(Volume volume, Traveller traveller, vec3 at) {
     return uintBitsToFloat(density_word(first)) * mix(low, high, w.z);
 }
 
-// p' between the light of a sun and the eye, formats/opal/phase_table.h.
-float eval_phase(Volume volume, uint sun, vec3 to_eye) {
+// A table between the light of a sun and the eye, formats/opal/phase_table.h.
+float eval_phase(Volume volume, uint term, uint sun, vec3 to_eye) {
     float cosine = -dot(suns[sun], to_eye);
     float end = 128.0 * sqrt(max(1.0 - abs(cosine), 0.0));
     float at = cosine < 0.0 ? end : 256.0 - end, base = min(floor(at), 255.0);
-    uint i = volume.coefficient.z + uint(base);
+    uint i = volume.coefficient.z + 257u * term + uint(base);
     return mix(phase_at(i), phase_at(i + 1u), at - base);
 }
 
-// Source radiance at the eight nodes of a box of the brick, in the order x + 2 y + 4 z.
-void light_box(Volume volume, inout Traveller traveller, uvec3 box, vec3 to_eye,
+// What counts of a term of suns behind what comes through to the eye, runtime/volumes/sun_phase.h.
+vec3 sun_through(Volume volume, uint term, vec3 left) {
+    if (term == 0u) return vec3(1.0);
+    float power = term == 1u ? volume.extinction.w : volume.albedo.w;
+    return pow(clamp(left, 1e-30, 1.0), power * volume.albedo.rgb);
+}
+
+// Source radiance at the eight nodes of a box of the brick, in the order x + 2 y + 4 z; `left` of
+// it comes through to the eye.
+void light_box(Volume volume, inout Traveller traveller, uvec3 box, vec3 to_eye, vec3 left,
                float harmonic[HARMONICS]) {
     uint side = volume.numbers.z + 1u;
     uint first = volume.numbers.y + traveller.brick * side * side * side +
                  (box.z * side + box.y) * side + box.x;
-    uint terms = volume.numbers.w, stride = terms + volume.coefficient.y, at[8];
+    uint terms = volume.numbers.w, suns = volume.coefficient.y;
+    uint stride = terms + suns * volume.coefficient.w, at[8];
     for (uint i = 0u; i < 8u; ++i) {
         uint node = node_at(first + ((i >> 2) * side + (i >> 1 & 1u)) * side + (i & 1u));
         at[i] = node == kNone ? kNone : volume.coefficient.x + node * stride * 3u;
         traveller.source[i] = vec3(0.0);
     }
     for (uint k = 0u; k < stride; ++k) {
-        float weight = k < terms ? harmonic[k] : eval_phase(volume, k - terms, to_eye);
+        vec3 weight;
+        if (k < terms) {
+            weight = vec3(harmonic[k]);
+        } else {
+            uint term = (k - terms) / suns, sun = (k - terms) % suns;
+            weight = eval_phase(volume, term, sun, to_eye) * sun_through(volume, term, left);
+        }
         for (uint i = 0u; i < 8u; ++i) {
             if (at[i] == kNone) continue;
             traveller.source[i] += weight * coefficient_at(at[i] + 3u * k);
@@ -211,7 +226,7 @@ void light_box(Volume volume, inout Traveller traveller, uvec3 box, vec3 to_eye,
 }
 
 // max(0, J), trilinear between nodes.
-vec3 source_at(Volume volume, inout Traveller traveller, vec3 at, vec3 to_eye,
+vec3 source_at(Volume volume, inout Traveller traveller, vec3 at, vec3 to_eye, vec3 left,
                float harmonic[HARMONICS]) {
     float boxes = float(volume.numbers.z);
     vec3 scaled = at * (boxes / 8.0), base = min(floor(scaled), boxes - 1.0), w = scaled - base;
@@ -219,7 +234,7 @@ vec3 source_at(Volume volume, inout Traveller traveller, vec3 at, vec3 to_eye,
     uint box = (b.z * volume.numbers.z + b.y) * volume.numbers.z + b.x;
     if (traveller.box != box) {
         traveller.box = box;
-        light_box(volume, traveller, b, to_eye, harmonic);
+        light_box(volume, traveller, b, to_eye, left, harmonic);
     }
     vec3 low = mix(mix(traveller.source[0], traveller.source[1], w.x),
                    mix(traveller.source[2], traveller.source[3], w.x), w.y);
@@ -299,7 +314,7 @@ void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin
             vec3 c = tame_to(density * volumes[v].extinction.rgb, 1e15);
             extinction += c;
             scattered += c * volumes[v].albedo.rgb *
-                         source_at(volumes[v], travellers[v], at, to_eye, harmonic);
+                         source_at(volumes[v], travellers[v], at, to_eye, seen.transmittance, harmonic);
         }
         step_ray(extinction, scattered, emitted, h, seen);
     }

@@ -78,7 +78,9 @@ const Asset = (() => {
              density: arrays.get("density"), corners: arrays.get("corners"),
              glowBricks: arrays.get("glow bricks"), glowCodes: arrays.get("glow codes"),
              glowValues: arrays.get("glow values"),
-             phase: arrays.get("phase"), rows: readRows(arrays, "volume ", cubemap) };
+             phase: arrays.get("phase"), sunTerms: arrays.get("sun terms"),
+             sunPowers: arrays.get("sun powers"), sunTables: arrays.get("sun tables"),
+             rows: readRows(arrays, "volume ", cubemap) };
   }
 
   function read(arrays) {

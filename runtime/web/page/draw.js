@@ -245,7 +245,7 @@ const Draw = (() => {
       table: makeLines(gl, numbers, volumes.table),
       density: makeLines(gl, numbers, Volumes.packDensity(volumes)),
       corners: makeLines(gl, numbers, volumes.corners),
-      phase: makeLines(gl, [gl.R32F, gl.RED, gl.FLOAT], volumes.phase),
+      phase: makeLines(gl, [gl.R32F, gl.RED, gl.FLOAT], volumes.sunTables),
       glow: glows ? makeLines(gl, numbers, Volumes.packGlow(volumes)) : null,
       light: null, lit: null, litBy: null,
     };

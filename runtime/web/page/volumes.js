@@ -2,7 +2,7 @@
 // Volumes: their density and own light as shaders read them, and the light of their nodes: the steps
 // of runtime/volumes and runtime/embed_gl/volume_tables.cpp.
 const Volumes = (() => {
-  const kNone = 0xffffffff, kPhaseEntries = 257, kMostSuns = 8, kBrickWords = 1 + 81 * 8;
+  const kNone = 0xffffffff, kPhaseEntries = 257, kMostSunTerms = 3, kMostSuns = 8, kBrickWords = 1 + 81 * 8;
 
   // Of 9 x 9 x 9 voxels, those of neighbours among them, pairs along x.
   function packBrick(volumes, volume, cell, number, words) {
@@ -173,18 +173,34 @@ const Volumes = (() => {
         Light.coefficientsOf(integral.map((x, i) => x * harmonic[Math.floor(i / 3)][k]), n));
   }
 
+  // The light of suns, by how much of it the volume has left (add_suns of
+  // runtime/volumes/relight_volumes.cpp). `to`: of the first sun's first term.
+  function addSuns(volumes, volume, row, lights, part, values, to) {
+    const { parts } = lights, met = new Float32Array(4 * parts.length);
+    Rows.addRow(volumes.rows, volume, row, lights.suns, new Array(parts.length).fill(1), met, 0);
+    parts.forEach(({ light, joint }, s) => {
+      for (let band = 0; band < 3; ++band) {
+        const e = met[4 * s + band];
+        const share = light[band] > 0 ? Math.min(Math.max(e / light[band], 0), 1) : 0;
+        for (let j = 0; j < part.sunTerms; ++j) {
+          const power = part.sunPower[j] * volume.albedo[band];
+          values[to + 4 * (j * part.suns + joint) + band] += e * (power === 0 ? 1 : share ** power);
+        }
+      }
+    });
+  }
+
   function lightVolume(volumes, volume, lights, part, values) {
-    const { rows } = volumes, stride = part.terms + part.suns;
+    const { rows } = volumes, stride = part.terms + part.sunTerms * part.suns;
     const degree = k => Math.floor(Math.sqrt(k));
     const factors = Array.from({ length: volume.single }, (_, k) =>
         (degree(k) % 2 === 0 ? 1 : -1) * volume.moments[degree(k)]);
     const moments = part.suns > 0 ? lights.momentsOfRest : lights.moments;
-    const ones = new Array(part.suns).fill(1);
     const scale = [volume.multiple === 1 ? Math.sqrt(4 * Math.PI) : 1];
     for (let node = 0; node < volume.nodes; ++node) {
       const row = node * (1 + volume.multiple), to = 4 * (part.first + node * stride);
       Rows.addRow(rows, volume, row, moments, factors, values, to);
-      Rows.addRow(rows, volume, row, lights.suns, ones, values, to + 4 * part.terms);
+      if (part.suns > 0) addSuns(volumes, volume, row, lights, part, values, to + 4 * part.terms);
       for (let k = 0; k < volume.multiple; ++k) {
         Rows.addRow(rows, volume, row + 1 + k, lights.whole, scale, values, to + 4 * k);
       }
@@ -199,27 +215,35 @@ const Volumes = (() => {
   function relight(volumes, { integral, coefficients }, n) {
     const wants = volumes.list.map((volume, v) =>
         needsSuns(volume, volumes.phase.subarray(kPhaseEntries * v, kPhaseEntries * (v + 1))));
-    const { suns, rest } = wants.some(x => x) ? splitSuns(integral, n) : { suns: [], rest: integral };
+    const split = wants.some(x => x) ? splitSuns(integral, n) : { suns: [], rest: integral };
+    // Parts of a small light between texels have one direction.
+    const { rest } = split, suns = [];
+    const parts = split.suns.map(({ texel, light, direction }) => {
+      const same = suns.findIndex(other => other.every((x, i) => x === direction[i]));
+      if (same < 0) suns.push(direction);
+      return { texel, light, joint: same < 0 ? suns.length - 1 : same };
+    });
     const most = wanted => volumes.list.reduce(
         (a, volume, v) => wants[v] === wanted || suns.length === 0 ? Math.max(a, volume.single) : a, 0);
-    const sunLights = suns.map(sun => {
+    const sunLights = parts.map(part => {
       const alone = new Float64Array(integral.length);
-      alone.set(sun.light, 3 * sun.texel);
+      alone.set(part.light, 3 * part.texel);
       return Light.coefficientsOf(alone, n);
     });
-    const lights = { whole: coefficients, suns: joined(sunLights),
+    const lights = { whole: coefficients, parts, suns: joined(sunLights),
                      moments: joined(momentLights(integral, n, most(false))),
                      momentsOfRest: suns.length > 0 ? joined(momentLights(rest, n, most(true))) : null };
     let first = 0;
-    const parts = volumes.list.map((volume, v) => {
+    const shown = volumes.list.map((volume, v) => {
       const part = { terms: termsOf(volume), suns: wants[v] ? suns.length : 0,
-                     first };
-      first += volume.nodes * (part.terms + part.suns);
+                     sunTerms: volumes.sunTerms[v], first,
+                     sunPower: volumes.sunPowers.subarray(kMostSunTerms * v, kMostSunTerms * (v + 1)) };
+      first += volume.nodes * (part.terms + part.sunTerms * part.suns);
       return part;
     });
     const values = new Float32Array(4 * first);
-    volumes.list.forEach((volume, v) => lightVolume(volumes, volume, lights, parts[v], values));
-    return { parts, values, suns: suns.map(sun => sun.direction) };
+    volumes.list.forEach((volume, v) => lightVolume(volumes, volume, lights, shown[v], values));
+    return { parts: shown, values, suns };
   }
 
   // The same with what nodes scatter of emitters; `colors`: times which these shine.
@@ -227,12 +251,12 @@ const Volumes = (() => {
     if (volumes.glowValues.length === 0) return values;
     const sum = values.slice();
     volumes.list.forEach((volume, v) => {
-      const { first, terms, suns } = parts[v];
+      const { first, terms, suns, sunTerms } = parts[v], stride = terms + sunTerms * suns;
       for (const glow of volume.glow) {
         const color = colors[glow.emitter].map(c => c * glow.valueScale);
         if (color.every(c => c === 0)) continue;
         for (let node = 0, from = glow.firstValue; node < volume.nodes; ++node) {
-          const to = 4 * (first + node * (terms + suns));
+          const to = 4 * (first + node * stride);
           for (let k = 0; k < glow.terms; ++k, from += 3) {
             for (let b = 0; b < 3; ++b) {
               sum[to + 4 * k + b] += color[b] * Light.kFloats[volumes.glowValues[from + b]];
@@ -259,9 +283,11 @@ const Volumes = (() => {
         (Vector.dot(row, frame.eye) + row[3]) / 8 - volume.firstBrick[a]]));
       set("extent_first", [...volume.extent, volume.firstCell]);
       set("numbers", [volume.firstBrickNumber, volume.firstCorner, 8 / volume.spacing, parts[v].terms]);
-      set("extinction", [...volume.extinction.map(s => Math.min(s / frame.unit, 1e30)), 0]);
-      set("albedo", [...volume.albedo, 0]);
-      set("coefficient", [3 * parts[v].first, parts[v].suns, kPhaseEntries * v, 0]);
+      set("extinction", [...volume.extinction.map(s => Math.min(s / frame.unit, 1e30)),
+                         parts[v].sunPower[1]]);
+      set("albedo", [...volume.albedo, parts[v].sunPower[2]]);
+      set("coefficient", [3 * parts[v].first, parts[v].suns, kMostSunTerms * kPhaseEntries * v,
+                          parts[v].sunTerms]);
     });
     return values;
   }

@@ -80,6 +80,16 @@ TEST(VolumeError, UnderEvenLightTheForwardPeakIsSeenThroughTheVolume) {
               part(report, LightPlace::ahead).scattered_alone);
 }
 
+// With the sun ahead nearly all light is in the forward peak, scattered a few times by some
+// degrees.
+TEST(VolumeError, OfAForwardBlobIsSmallWithTheSunAhead) {
+    const formats::Scene scene = blob_scene(0.99f, 0.85f);
+    Knobs knobs = small_knobs();
+    knobs.set(kVolumeWalks, 16);
+    knobs.set(kVolumeTerms, 16);
+    EXPECT_LT(part(check(scene, bake(scene, knobs)), LightPlace::ahead).rms_relative, 0.12);
+}
+
 // exp(-4 0.5 sqrt(2 pi)) straight through the middle of a blob.
 TEST(VolumeError, WhatPassesThroughIsWhatBeerAndLambertSay) {
     const formats::Scene scene =

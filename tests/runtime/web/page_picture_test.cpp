@@ -17,6 +17,7 @@
 #include "tests/runtime/web/browser.h"
 #include "tests/runtime/web/every_surface.h"
 #include "tests/support/cloud_layers.h"
+#include "tests/support/cut_phase.h"
 
 namespace opaline::runtime {
 namespace {
@@ -173,8 +174,9 @@ test::TestVolume make_smoke(std::uint32_t single, std::uint32_t multiple, std::u
     smoke.single_terms = single;
     smoke.multiple_terms = multiple;
     smoke.bands = bands;
-    smoke.moment = {1, 0.7f, 0.49f, 0.343f, 0.24f};
-    smoke.phase = [](double c) { return 0.51 / std::pow(1.49 - 1.4 * c, 1.5); };
+    const tests::CutPhase phase = tests::make_cut_phase(0.7);
+    smoke.moment = phase.moments();
+    smoke.phase = phase;
     smoke.density = [](float x, float y, float z) {
         return std::max(0.0f, 1 + 0.03f * x - (x * x + y * y + z * z) / 220);
     };
