@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bake/plan/plan_input.h"
+#include "bake/volumes/largest_light.h"
 #include "bake/volumes/plan_volumes.h"
 
 namespace opaline::bake {

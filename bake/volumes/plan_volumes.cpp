@@ -11,6 +11,7 @@
 #include "bake/plan/plan_input.h"
 #include "bake/volumes/choose_method.h"
 #include "bake/volumes/density_space.h"
+#include "bake/volumes/largest_light.h"
 #include "bake/volumes/node_albedo.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/scaled_phase.h"
@@ -21,16 +22,6 @@ namespace {
 
 constexpr std::string_view kGlowEffect = "emitters";  // a volume that glows is one
 constexpr std::string_view kSentEffect = "volume-surface";
-
-std::array<double, 3> bands(formats::Rgb c) {
-    return {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)};
-}
-
-// Of a box, by its corners.
-double longest_line(const std::array<glm::dvec3, 8>& corners) {
-    return std::max({glm::length(corners[7] - corners[0]), glm::length(corners[6] - corners[1]),
-                     glm::length(corners[5] - corners[2]), glm::length(corners[3] - corners[4])});
-}
 
 // Radiance below which an effect is left out: two rows a volume share a quarter of the error.
 double least_bound(const Knobs& knobs) {
@@ -95,25 +86,6 @@ PlanEntry decide(std::string_view name, const Subject& subject, double bound, co
         entry.on = entry.forced = true;
     }
     return entry;
-}
-
-// Upper bounds under light of radiance 1, over all bands.
-struct Brightness {
-    double seen = 0;    // share of light that a line loses
-    double albedo = 0;  // largest
-    double once = 0;    // light scattered once or more
-};
-
-Brightness brightest(const formats::Volume& volume) {
-    const std::array<double, 3> depth = largest_depth(volume), albedo = bands(volume.albedo);
-    Brightness most;
-    for (std::size_t band = 0; band < 3; ++band) {
-        const double share = -std::expm1(-depth[band]);
-        most.seen = std::max(most.seen, share);
-        most.albedo = std::max(most.albedo, albedo[band]);
-        most.once = std::max(most.once, albedo[band] * share);
-    }
-    return most;
 }
 
 // What is known of a volume whose density is the same in places; "" where it is nowhere.
@@ -181,44 +153,13 @@ void scatter_glow_of_all(double glow, double once, const ScaledPhase& phase, con
     }
 }
 
-std::string why_dark(const Brightness& most) {
+std::string why_dark(const VolumeBrightness& most) {
     return most.albedo <= 0          ? "the volume absorbs and does not scatter"
            : most.seen < kLeastBound ? "the volume is so thin that it is not seen"
                                      : "hardly any light is scattered: thin, or its albedo is low";
 }
 
 }  // namespace
-
-double largest_glow(const formats::Volume& volume) {
-    float most = 0;
-    for (const glm::vec3& v : volume.emission.value) {
-        most = std::max({most, v.x, v.y, v.z});
-    }
-    if (!(most > 0)) {
-        return 0;
-    }
-    formats::SparseGrid<glm::vec3> box = volume.emission;
-    box.to_scene = volume.density.to_scene;
-    return static_cast<double>(most) * longest_line(box.corners());
-}
-
-double largest_scattered_glow(const formats::Scene& scene, const formats::Volume& volume) {
-    // A flight meets the next collision in some volume: at most all depths together.
-    std::array<double, 3> depth{}, albedo{};
-    for (const formats::Volume& each : scene.volumes) {
-        const std::array<double, 3> own = largest_depth(each), scatters = bands(each.albedo);
-        for (std::size_t band = 0; band < 3; ++band) {
-            depth[band] += own[band];
-            albedo[band] = std::max(albedo[band], own[band] > 0 ? scatters[band] : 0);
-        }
-    }
-    double most = 0;
-    for (std::size_t band = 0; band < 3; ++band) {
-        most = std::max(most, albedo[band] * -std::expm1(-depth[band]));
-    }
-    const double glow = largest_glow(volume);
-    return most < 1 ? glow / (1 - most) : (glow > 0 ? std::numeric_limits<double>::infinity() : 0);
-}
 
 bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs) {
     return !volume.emission.empty() && decide_glow(volume, {}, knobs).on;
@@ -227,39 +168,6 @@ bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs) {
 bool lights_surfaces(std::span<const PlanEntry> plan) {
     return std::ranges::any_of(
         plan, [](const PlanEntry& entry) { return entry.on && entry.name == kSentEffect; });
-}
-
-double largest_sent_light(const formats::Scene& scene, const formats::Volume& volume) {
-    const std::array<glm::dvec3, 8> corners = volume.density.corners();
-    const glm::dvec3 middle = 0.5 * (corners[0] + corners[7]);
-    const double radius = 0.5 * longest_line(corners);
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const formats::Primitive& primitive : scene.primitives) {
-        glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-        for (const glm::vec3& p : primitive.position) {
-            low = glm::min(low, glm::dvec3(p));
-            high = glm::max(high, glm::dvec3(p));
-        }
-        if (!primitive.position.empty()) {
-            nearest = std::min(nearest, glm::length(middle - glm::clamp(middle, low, high)));
-        }
-    }
-    const double share = radius < nearest ? radius / nearest : 1;
-    return brightest(volume).once * (std::isinf(nearest) ? 0 : share * share);
-}
-
-std::array<double, 3> largest_depth(const formats::Volume& volume) {
-    // The longest line through the bricks, as dense as the densest voxel of all.
-    const double diagonal = longest_line(volume.density.corners());
-    const double densest =
-        volume.density.empty()
-            ? 0
-            : static_cast<double>(*std::ranges::max_element(volume.density.value));
-    std::array<double, 3> depth = bands(volume.sigma_t);
-    for (double& d : depth) {
-        d *= densest * diagonal;
-    }
-    return depth;
 }
 
 const char* scattering_stage(std::span<const VolumeLayout> layouts) {
@@ -276,7 +184,7 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
     const double glow = all_glow(scene, knobs);
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
         const formats::Volume& volume = scene.volumes[v];
-        const Brightness most = brightest(volume);
+        const VolumeBrightness most = brightest(volume);
         const Subject subject{Subject::Kind::volume, v, volume.name};
         const ScaledPhase phase = scale_phase(volume.phase);
         PlanEntry once = decide("volume-single", subject, most.once, knobs);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -47,12 +46,6 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs);
 /// Whether surfaces receive light that volumes scatter, by the entries of a plan.
 bool lights_surfaces(std::span<const PlanEntry> plan);
 
-/// An upper bound [1] on the radiance of a surface by light that a volume scatters to it, under
-/// light of radiance 1: alpha d times (R / D)^2, at most 1, the largest share of a hemisphere,
-/// weighted by its cosines, that a ball of radius R around the volume covers at a distance D of its
-/// middle; D is that of the nearest of the boxes of the scene's primitives. 0 without surfaces.
-double largest_sent_light(const formats::Scene& scene, const formats::Volume& volume);
-
 /// The stage of a bake that finds light scattered more than once, by the ways of its layouts.
 const char* scattering_stage(std::span<const VolumeLayout> layouts);
 
@@ -61,18 +54,7 @@ inline std::size_t count_glowing(std::span<const VolumeLayout> layouts) {
     return static_cast<std::size_t>(std::ranges::count(layouts, true, &VolumeLayout::glows));
 }
 
-/// An upper bound [W m^-2 sr^-1] on what a volume sends out by itself along any straight line, over
-/// all bands; 0 of one that does not glow.
-double largest_glow(const formats::Volume& volume);
-
-/// An upper bound [W m^-2 sr^-1] on that light with what all volumes of a scene scatter of it: with
-/// s the largest albedo times 1 - e^-tau of all, glow / (1 - s).
-double largest_scattered_glow(const formats::Scene& scene, const formats::Volume& volume);
-
-/// Whether it is an emitter of the file, by that bound and by --effects.
+/// Whether it is an emitter of the file, by largest_glow and by --effects.
 bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs);
-
-/// An upper bound [1] on the optical depth of any straight line through a volume, by band.
-std::array<double, 3> largest_depth(const formats::Volume& volume);
 
 }  // namespace opaline::bake

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "bake/volumes/largest_light.h"
 #include "bake/volumes/scaled_phase.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_work.h"

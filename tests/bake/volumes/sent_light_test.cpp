@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "bake/base/frame.h"
+#include "bake/volumes/largest_light.h"
 #include "bake/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
 #include "tests/support/scenes.h"
