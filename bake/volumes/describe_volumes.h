@@ -10,6 +10,8 @@ EffectDescriptor describe_scattered_once(Effect id);
 
 /// Light scattered more than once in volumes.
 EffectDescriptor describe_scattered_often(Effect id);
+
+/// Light that volumes scatter to surfaces: part of the rows of vertices (sent_light.h).
 EffectDescriptor describe_sent_light(Effect id);
 
 }  // namespace opaline::bake

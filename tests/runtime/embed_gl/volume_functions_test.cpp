@@ -216,7 +216,7 @@ TEST_P(EmbedGlVolumes, RaysSeeWhatTheCpuMarches) {
             std::cout << "[ agreement] " << largest / brightest << ", " << largest_left << "\n";
             EXPECT_LT(darkest, 0.2f);
             EXPECT_EQ(brightest > 0.01f, step > 0);
-            // Drivers' powers, of which suns in forward volumes take some, are less exact.
+            // Without suns 3e-6; near a sun that forward volumes show, 6e-5 of the brightest.
             EXPECT_LE(largest, 1e-4f * std::max(brightest, 1e-3f));
             EXPECT_LE(largest_left, 1e-5f);
         }
@@ -290,7 +290,7 @@ TEST_P(EmbedGlVolumes, FireShinesAlongRaysAndAtPointsAsOnTheCpuInItsEmittersColo
         const float brightest = brightest_of(cpu);
         for (std::size_t i = 0; i < cpu.size(); ++i) {
             for (std::size_t b = 0; b < 3; ++b) {
-                EXPECT_NEAR(drawn[8 * i + b], cpu[i].radiance[b], 1e-4f * brightest) << i;
+                EXPECT_NEAR(drawn[8 * i + b], cpu[i].radiance[b], 1e-5f * brightest) << i;
             }
         }
         EXPECT_GT(brightest, 1.5f * scattered_alone);
@@ -353,7 +353,7 @@ TEST_P(EmbedGlVolumes, AnEarlierHostSeesFireWithoutItsOwnLight) {
     const float brightest = brightest_of(cpu);
     EXPECT_GT(brightest, 0.01f);
     for (std::size_t i = 0; i < cpu.size(); ++i) {
-        EXPECT_NEAR(drawn[8 * i], cpu[i].radiance[0], 1e-4f * brightest) << i;
+        EXPECT_NEAR(drawn[8 * i], cpu[i].radiance[0], 1e-5f * brightest) << i;
     }
 }
 
