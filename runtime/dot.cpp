@@ -4,6 +4,7 @@
 
 #include "formats/opal/detail_codes.h"
 #include "runtime/dot_paths.h"
+#include "runtime/vector_units.h"
 
 namespace opaline::runtime {
 namespace {
@@ -45,16 +46,11 @@ void dot_scalar(const TypedRows<Index, Code>& rows, const LightVector& light, st
 }  // namespace
 
 DotPath best_dot_path() {
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma")) {
+    const VectorUnits units = find_vector_units();
+    if (units.avx512 && units.fma) {
         return DotPath::avx512;
     }
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-        return DotPath::avx2;
-    }
-#endif
-    return DotPath::scalar;
+    return units.avx2 && units.fma ? DotPath::avx2 : DotPath::scalar;
 }
 
 void dot_rows(const formats::SparseRowsView& rows, const formats::RowRange& range,

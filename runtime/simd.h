@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "runtime/vector_units.h"
+
 namespace opaline::runtime {
 
 /// Several floats in registers. Each operation rounds every lane as a float by itself and nothing
@@ -39,7 +41,7 @@ __attribute__((target("avx2"))) void run_with_avx2(const Work& work) {
 template <class Work>
 void run_wide(const Work& work) {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) {
+    if (find_vector_units().avx2) {
         run_with_avx2(work);
         return;
     }
