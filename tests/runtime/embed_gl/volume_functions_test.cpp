@@ -216,7 +216,8 @@ TEST_P(EmbedGlVolumes, RaysSeeWhatTheCpuMarches) {
             std::cout << "[ agreement] " << largest / brightest << ", " << largest_left << "\n";
             EXPECT_LT(darkest, 0.2f);
             EXPECT_EQ(brightest > 0.01f, step > 0);
-            // Without suns 3e-6; near a sun that forward volumes show, 6e-5 of the brightest.
+            // Suns count by what a ray has left where it comes among eight nodes, and rounding may
+            // make that a step earlier or later: evaluated at every step, both agree to 2e-6.
             EXPECT_LE(largest, 1e-4f * std::max(brightest, 1e-3f));
             EXPECT_LE(largest_left, 1e-5f);
         }
