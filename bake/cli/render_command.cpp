@@ -170,7 +170,9 @@ void add_render_command(CLI::App& app, Job& job) {
     command->add_option("file", options->path, "the .opal file")
         ->required()
         ->option_text("FILE.opal");
-    command->add_option("--light", options->light, light_help())->required()->option_text("ENV");
+    CLI::Option* const light = command->add_option("--light", options->light, light_help())
+                                   ->required()
+                                   ->option_text("ENV");
     command
         ->add_option("-o,--output", options->frame.output,
                      ".png: tone-mapped, sRGB; .exr: linear radiance")
@@ -207,9 +209,10 @@ void add_render_command(CLI::App& app, Job& job) {
     command
         ->add_option("--receiver-errors", options->error_white,
                      "show the errors of rows that `bake --receiver-errors` stored in place of "
-                     "light: black for 0, then red, yellow, and white from E on; options of light "
-                     "and exposure change nothing")
+                     "light, which need not be given: black for 0, then red, yellow, and white "
+                     "from E on; options of light and exposure change nothing")
         ->check(real_number(1e-6, 10))
+        ->each([light](const std::string&) { light->required(false); })
         ->option_text("E");
     command->add_option("--threads", options->frame.threads, "0: one per core")
         ->transform(whole_number(0, 1024))

@@ -135,7 +135,7 @@ TEST(ReceiverErrors, AreShownInPlaceOfLight) {
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         return formats::read_png(small.path(name))->rgba;
     };
-    const auto map = draw("a.png", {"--light", "white", "--receiver-errors", "0.000001"});
+    const auto map = draw("a.png", {"--receiver-errors", "0.000001"});
     // The middle: the upper square, all of whose errors are above one in a million.
     const std::size_t middle = 4 * (36 * 96 + 48);
     EXPECT_EQ(map[middle] + map[middle + 1] + map[middle + 2], 3 * 255);
