@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "bake/encode/row_sink.h"
 #include "bake/plan/knobs.h"
@@ -85,7 +87,12 @@ TEST(ReceiverError, IsTheRmsOfWhiteLightInTheMeanOverViews) {
     std::normal_distribution<float> normal;
     for (const TermsSeen seen : {TermsSeen::apart, TermsSeen::together}) {
         const std::uint32_t terms = seen == TermsSeen::together ? 5 : 4;
-        Encoded made = encode_row(random_row(terms, 1, 3), terms, 1, 20);
+        // The first row is bright and loses nothing, so that it matters what it counts for.
+        std::vector<float> values = random_row(terms, 1, 3);
+        for (std::size_t j = 0; j < formats::cubemap_texels(kSide); ++j) {
+            values[j] *= j < 12 ? 4 : 0;
+        }
+        Encoded made = encode_row(std::move(values), terms, 1, 20);
         const formats::RowRange range{
             1, terms, 1, 3,
             made.rows.code16.size() - (made.rows.row_offset.back() - made.rows.row_offset[1])};
