@@ -1,0 +1,160 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/runtime/embed_gl/embedded_asset.h"
+#include "tests/runtime/embed_gl/host_picture.h"
+#include "tests/runtime/volumes/synthetic_volume.h"
+#include "tests/support/cut_phase.h"
+
+namespace opaline::test {
+
+inline constexpr const char* kSeeVolumes = R"(
+uniform bool is_point;
+void see(vec3 from, float begin, vec3 direction, float end, out vec4 a, out vec4 b) {
+    if (is_point) {
+        OpalineVolumeSample found = opaline_sample_volumes(from, direction);
+        a = vec4(found.extinction, 1.0);
+        b = vec4(found.scattered, 1.0);
+        return;
+    }
+    OpalineSeen seen = opaline_march_volumes(from, direction, begin, end);
+    a = vec4(seen.radiance, 1.0);
+    b = vec4(seen.transmittance, 1.0);
+}
+)";
+
+// Of density 1 somewhere in each brick: else the codes of a brick are rounded to steps of the
+// densest neighbour's, 1.5e-5 of that density.
+inline TestVolume puff(float x, std::uint32_t terms, float forward) {
+    TestVolume volume;
+    volume.extent = {2, 3, 2};
+    volume.first_brick = {-1, 0, 2};
+    volume.to_world = {0.1f, 0.01f, 0, x, -0.01f, 0.1f, 0.02f, 0, 0, 0, 0.11f, -1.6f};
+    volume.spacing = 4;
+    volume.single_terms = terms;
+    volume.multiple_terms = terms > 4 ? 4 : 1;
+    volume.bands = 3;
+    volume.moment = {1, 0.6f, 0.3f, 0.2f, 0.1f};
+    volume.sigma_t = {1, 2, 4};
+    volume.albedo = {0.9f, 0.8f, 0.7f};
+    if (forward > 0) {
+        const tests::CutPhase phase = tests::make_cut_phase(static_cast<double>(forward));
+        volume.moment = phase.moments();
+        volume.phase = phase;
+    }
+    volume.density = [](float i, float j, float k) {
+        const float r2 = i * i + (j - 12) * (j - 12) + (k - 24) * (k - 24);
+        return std::min(1.0f, std::max(0.0f, 1.8f - 1.8f * r2 / 60));
+    };
+    volume.rows = [terms](formats::NodeVoxel node) {
+        std::vector<formats::SparseRow> rows;
+        rows.push_back(constant_row(8, 0.05f * static_cast<float>(4 + node[1] % 5), 3));
+        for (std::uint32_t k = 0; k < (terms > 4 ? 4u : 1u); ++k) {
+            rows.push_back(constant_row(
+                8, 0.01f * static_cast<float>(node[0] % 7) / static_cast<float>(1 + k), 3));
+        }
+        return rows;
+    };
+    return volume;
+}
+
+/// A host that draws volumes, and what the CPU sees of them.
+class EmbedGlVolumes : public EmbedGl {
+  protected:
+    void make(const formats::Asset& asset) {
+        host_ = std::make_unique<EmbeddedAsset>(asset);
+        ASSERT_EQ(opaline_gl_create(host_->asset(), load_gl, OPALINE_GL_WITH_VOLUMES, &gl_),
+                  OPALINE_OK)
+            << opaline_last_error();
+        ASSERT_EQ(opaline_volume_light_create(host_->asset(), &volume_light_), OPALINE_OK);
+    }
+    void TearDown() override {
+        opaline_volume_light_release(volume_light_);
+        EXPECT_EQ(opaline_gl_release(gl_), OPALINE_OK);
+    }
+    void light(std::uint32_t flags = 0) {
+        ASSERT_EQ(
+            opaline_volume_light_update(volume_light_, host_->asset(), host_->light(), flags, 0),
+            OPALINE_OK)
+            << opaline_last_error();
+        ASSERT_EQ(opaline_gl_light_volumes(gl_, volume_light_), OPALINE_OK) << opaline_last_error();
+    }
+    opaline_gl_volumes objects() const {
+        opaline_gl_volumes volumes{};
+        volumes.struct_size = sizeof volumes;
+        EXPECT_EQ(opaline_gl_get_volumes(gl_, &volumes), OPALINE_OK);
+        return volumes;
+    }
+    HostPicture picture() const {
+        const opaline_gl_volumes volumes = objects();
+        return HostPicture(GetParam(), {"opaline_volumes.glsl"},
+                           "#define OPALINE_VOLUMES " + std::to_string(volumes.count) +
+                               "\n#define OPALINE_VOLUME_TERMS " + std::to_string(volumes.terms) +
+                               (volumes.glows != 0 ? "\n#define OPALINE_VOLUME_GLOW 1\n" : "\n"),
+                           kSeeVolumes);
+    }
+    /// But for the words of own light.
+    static void bind_scattered(HostPicture& picture, const opaline_gl_volumes& volumes) {
+        picture.bind_texture("opaline_brick_numbers", volumes.brick_numbers);
+        picture.bind_texture("opaline_density_codes", volumes.density_codes);
+        picture.bind_texture("opaline_corner_numbers", volumes.corner_numbers);
+        picture.bind_texture("opaline_node_light", volumes.node_light);
+        picture.bind_texture("opaline_phase_entries", volumes.phase_entries);
+        picture.bind_block("OpalineVolumeRecords", volumes.block);
+    }
+    void bind(HostPicture& picture) const {
+        const opaline_gl_volumes volumes = objects();
+        bind_scattered(picture, volumes);
+        EXPECT_EQ(volumes.glows != 0, volumes.glow_words != 0);
+        if (volumes.glows != 0) picture.bind_texture("opaline_glow_words", volumes.glow_words);
+    }
+    // What the CPU sees of rays from the eye.
+    std::vector<opaline_march_result> march(const std::vector<HostRay>& rays,
+                                            const float (&eye)[3]) const {
+        std::vector<opaline_march_ray> march;
+        for (const HostRay& ray : rays) {
+            march.push_back({{eye[0] + ray.from[0], eye[1] + ray.from[1], eye[2] + ray.from[2]},
+                             {ray.direction[0], ray.direction[1], ray.direction[2]},
+                             ray.begin,
+                             ray.end});
+        }
+        std::vector<opaline_march_result> seen(march.size());
+        EXPECT_EQ(opaline_volumes_march(host_->asset(), volume_light_, nullptr, march.data(),
+                                        static_cast<std::uint32_t>(march.size()), seen.data()),
+                  OPALINE_OK);
+        return seen;
+    }
+    std::unique_ptr<EmbeddedAsset> host_;
+    opaline_gl* gl_ = nullptr;
+    opaline_volume_light* volume_light_ = nullptr;
+};
+
+// Some begin inside, some end there, some miss.
+inline std::vector<HostRay> scattered_rays(std::size_t count) {
+    std::mt19937 generator(5);
+    std::uniform_real_distribution<float> value(-1, 1);
+    std::vector<HostRay> rays;
+    for (std::size_t i = 0; i < count; ++i) {
+        HostRay ray{{0.3f * value(generator), 0.3f * value(generator), 0},
+                    i % 3 == 0 ? 1.8f : 0.0f,
+                    {0.5f * value(generator), 0.4f * value(generator), 1},
+                    i % 4 == 0 ? 2.0f + value(generator) : 1e30f};
+        const float size = std::hypot(ray.direction[0], ray.direction[1], ray.direction[2]);
+        for (float& d : ray.direction)
+            d /= size;
+        rays.push_back(ray);
+    }
+    return rays;
+}
+
+}  // namespace opaline::test

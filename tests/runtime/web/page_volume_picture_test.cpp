@@ -1,0 +1,137 @@
+// What pages show of volumes, in a headless browser.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/runtime/picture/synthetic_asset.h"
+#include "tests/runtime/volumes/glow_support.h"
+#include "tests/runtime/volumes/synthetic_volume.h"
+#include "tests/runtime/web/browser.h"
+#include "tests/runtime/web/page_comparison.h"
+#include "tests/support/cut_phase.h"
+
+namespace opaline::runtime {
+namespace {
+
+using test::expect_same_pixels;
+using test::PageView;
+using test::render_on_cpu;
+
+// Smoke of that many terms, 1.6 m wide, denser on one side; each node has rows of its own.
+test::TestVolume make_smoke(std::uint32_t single, std::uint32_t multiple, std::uint32_t bands) {
+    test::TestVolume smoke;
+    smoke.first_brick = {-2, -2, -2};
+    smoke.extent = {4, 4, 4};
+    smoke.to_world = {0.05f, 0.01f, 0, 0.2f, 0, 0.05f, 0, 0.8f, 0.01f, 0, -0.05f, 0};
+    smoke.sigma_t = {1, 2, 4};
+    smoke.albedo = {0.9f, 0.8f, 0.7f};
+    smoke.spacing = 4;
+    smoke.single_terms = single;
+    smoke.multiple_terms = multiple;
+    smoke.bands = bands;
+    const tests::CutPhase phase = tests::make_cut_phase(0.7);
+    smoke.moment = phase.moments();
+    smoke.phase = phase;
+    smoke.density = [](float x, float y, float z) {
+        return std::max(0.0f, 1 + 0.03f * x - (x * x + y * y + z * z) / 220);
+    };
+    smoke.rows = [multiple, bands](formats::NodeVoxel node) {
+        std::vector<formats::SparseRow> rows;
+        for (std::uint32_t k = 0; k <= multiple; ++k) {
+            const auto at = static_cast<float>(node[0] + 2 * node[1] - node[2]) * 0.1f;
+            const float size = k < 2 ? 0.5f : 0.1f;
+            rows.push_back(test::constant_row(8, size * (1 + 0.3f * std::sin(at)), bands));
+            rows.back().index = {9, 200, 331};
+            rows.back().value.assign(std::size_t{3} * bands, size * std::cos(at));
+        }
+        return rows;
+    };
+    return smoke;
+}
+
+// Two volumes that overlap, one that scatters a sun forward; a sheet cuts them.
+TEST(PagePicture, VolumesLookAsOnTheCpuUnderASunBehindThem) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    formats::Asset asset = test::make_asset(8, 16);
+    asset.volumes = test::make_volumes(8);
+    test::add_volume(asset.volumes, make_smoke(25, 4, 1));
+    test::TestVolume other = make_smoke(0, 1, 3);
+    other.to_world[3] = -0.8f;
+    test::add_volume(asset.volumes, other);
+    test::add_primitive(
+        asset, test::make_sheet({0, 0.6f, 0.1f}, {0.5f, 0, 0.4f}, {0, 0.4f, 0.2f}, 2, 1), {});
+    formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    sky.discs.push_back({normalize(formats::Vec3{-0.4f, 0.2f, -1}), 0.01f, {4e4f, 3e4f, 1e4f}});
+    const PageLight lights[] = {{"sky", sky}};
+    const auto page = make_web_page(asset.view(), lights, "smoke", "a.opal", 0);
+    ASSERT_TRUE(page);
+    Camera camera;
+    camera.eye = {0.7f, 1, 4};
+    camera.target = {0, 0.7f, 0};
+    camera.fov_y = 32;
+    camera.width = 80;
+    camera.height = 60;
+    camera.near_plane = near_plane_for(asset.view(), camera.eye);
+    const auto shown =
+        test::take_page_picture(*page, "eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2", 80, 60);
+    EXPECT_EQ(shown.console, "");
+    expect_same_pixels(render_on_cpu(asset.view(), sky, camera, {{}, 20, -2}), shown.rgba);
+}
+
+// Fire of one brick of eight in a volume that is dark elsewhere, beside dark smoke.
+formats::Asset make_fire() {
+    formats::Asset asset = test::make_asset(8, 16);
+    formats::append_emitter(asset.emitters, "lamp");
+    formats::append_emitter(asset.emitters, "fire");
+    asset.volumes = test::make_volumes(8);
+    const test::TestVolume smoke = make_smoke(9, 1, 1);
+    test::TestVolume other = make_smoke(1, 0, 3);
+    other.to_world[3] = -1;
+    test::add_volume(asset.volumes, other);
+    test::add_volume(asset.volumes, smoke);
+    test::add_glow(asset.volumes, smoke,
+                   [](float x, float y, float z) {
+                       const float r2 = (x - 2) * (x - 2) + (y - 2) * (y - 2) + (z - 2) * (z - 2);
+                       return std::exp(-r2 / 12) * formats::Rgb{60, 20, 10};
+                   },
+                   {0.3f, 0.2f, 0.1f});
+    asset.volumes.glow.record.back().emitter = 1;
+    return asset;
+}
+
+TEST(PagePicture, FireShinesAndLightsItsSmokeAsOnTheCpuInItsSlidersColour) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    const formats::Asset asset = make_fire();
+    const PageLight lights[] = {{"sky", test::make_lat_long(64, 32, test::two_lights)}};
+    const auto page = make_web_page(asset.view(), lights, "fire", "a.opal", 0);
+    ASSERT_TRUE(page);
+    Camera camera;
+    camera.eye = {0.7f, 1, 4};
+    camera.target = {0, 0.7f, 0};
+    camera.fov_y = 32;
+    camera.width = 64;
+    camera.height = 48;
+    camera.near_plane = near_plane_for(asset.view(), camera.eye);
+    PageView wanted{"eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2&emitter=fire%3D0.5,1,3",
+                    20,
+                    -2,
+                    {{1, 1, 1}, {0.5f, 1, 3}}};
+    const auto shown = test::take_page_picture(*page, wanted.address, 64, 48);
+    EXPECT_EQ(shown.console, "");
+    const auto cpu = [&] {
+        return render_on_cpu(asset.view(), lights[0].environment, camera, wanted);
+    };
+    const DisplayPicture lit = cpu();
+    expect_same_pixels(lit, shown.rgba);
+    wanted.emitters[1] = {};
+    const DisplayPicture dark = cpu();
+    int of_fire = 0;
+    for (std::size_t i = 0; i < lit.rgba.size(); ++i) {
+        of_fire = std::max(of_fire, lit.rgba[i] - dark.rgba[i]);
+    }
+    EXPECT_GT(of_fire, 60);
+}
+
+}  // namespace
+}  // namespace opaline::runtime
