@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <map>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -64,6 +66,40 @@ std::size_t count_open_edges(const Body& body) {
     return static_cast<std::size_t>(
         std::ranges::count_if(times, [](const auto& edge) { return edge.second != 0; }));
 }
+
+// The number of each triangle's part: those that have a vertex in common hang together.
+std::vector<std::size_t> number_parts(const Body& body) {
+    std::vector<std::size_t> part(body.triangle.size());
+    const auto find = [&](std::size_t triangle) {
+        while (part[triangle] != triangle) {
+            triangle = part[triangle] = part[part[triangle]];
+        }
+        return triangle;
+    };
+    std::map<Place, std::size_t> first;  // triangle at a vertex
+    for (std::size_t t = 0; t < body.triangle.size(); ++t) {
+        part[t] = t;
+        for (const glm::dvec3& corner : body.triangle[t]) {
+            const std::size_t other = find(first.emplace(place_of(corner), t).first->second);
+            part[find(t)] = other;
+        }
+    }
+    for (std::size_t t = 0; t < part.size(); ++t) {
+        part[t] = find(t);
+    }
+    return part;
+}
+
+// What a part encloses, by its triangles and by the lines that cross it [m^3]; its orientation
+// decides the sign.
+struct PartContent {
+    double mesh = 0, lines = 0;
+
+    // Lines miss it, or take it for thicker than it is.
+    bool is_lost() const {
+        return std::abs(std::abs(lines) - std::abs(mesh)) > 0.5 * std::abs(mesh);
+    }
+};
 
 // Where lines along z run: kLinesOfVoxel a voxel along each of x and y.
 struct Lines {
@@ -131,9 +167,18 @@ struct Crossing {
     double z = 0;
 };
 
-std::vector<Crossing> cross_lines(const Body& body, const Lines& lines) {
+// Adds to the content of the triangles' parts, whose number `part` has.
+std::vector<Crossing> cross_lines(const Body& body, const Lines& lines,
+                                  std::span<const std::size_t> part,
+                                  std::span<PartContent> content) {
+    const double area = lines.voxel * lines.voxel / (kLinesOfVoxel * kLinesOfVoxel);
     std::vector<Crossing> crossings;
-    for (const auto& corner : body.triangle) {
+    for (std::size_t t = 0; t < body.triangle.size(); ++t) {
+        const auto& corner = body.triangle[t];
+        PartContent& own = content[part[t]];
+        own.mesh += glm::dot(corner[0] - lines.low,
+                             glm::cross(corner[1] - lines.low, corner[2] - lines.low)) /
+                    6;
         const glm::dvec3 low = glm::min(corner[0], glm::min(corner[1], corner[2])) - lines.low;
         const glm::dvec3 high = glm::max(corner[0], glm::max(corner[1], corner[2])) - lines.low;
         const int last_column = Lines::first_at(high.x, lines.voxel, lines.columns() - 2) + 1;
@@ -143,8 +188,10 @@ std::vector<Crossing> cross_lines(const Body& body, const Lines& lines) {
                  ++c) {
                 const double x = lines.x(c), y = lines.y(r);
                 if (const int turns = turns_around(corner, x, y); turns != 0) {
+                    const double z = height_at(corner, x, y);
                     crossings.push_back({static_cast<std::uint32_t>(r * lines.columns() + c),
-                                         static_cast<float>(turns), height_at(corner, x, y)});
+                                         static_cast<float>(turns), z});
+                    own.lines += area * turns * (z - lines.low.z);
                 }
             }
         }
@@ -167,11 +214,10 @@ void add_stretch(double from, double to, std::span<float> column) {
 }
 
 // The share of each voxel that is inside; z fastest, then x.
-std::vector<float> find_inside(const Body& body, const Lines& lines) {
+std::vector<float> find_inside(std::span<const Crossing> crossings, const Lines& lines) {
     const auto depth = static_cast<std::size_t>(lines.voxels.z);
     std::vector<float> inside(depth * static_cast<std::size_t>(lines.voxels.x) *
                               static_cast<std::size_t>(lines.voxels.y));
-    const std::vector<Crossing> crossings = cross_lines(body, lines);
     const int columns = lines.columns();
     float turns = 0;
     for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
@@ -208,9 +254,10 @@ Lines lines_of(const Body& body, std::uint32_t voxels) {
     return lines;
 }
 
-SparseGrid<float> fill_voxels(const Body& body, const Lines& lines) {
+SparseGrid<float> fill_voxels(const Body& body, const Lines& lines,
+                              std::span<const std::size_t> part, std::span<PartContent> content) {
     if (!(lines.voxel > 0)) return {};
-    const std::vector<float> inside = find_inside(body, lines);
+    const std::vector<float> inside = find_inside(cross_lines(body, lines, part, content), lines);
     SparseGrid<float> grid =
         fill_grid(glm::ivec3(0), lines.voxels - 1, lines.voxel, [&](glm::ivec3 v) {
             const int number = (v.y * lines.voxels.x + v.x) * lines.voxels.z + v.z;
@@ -222,10 +269,35 @@ SparseGrid<float> fill_voxels(const Body& body, const Lines& lines) {
     return grid;
 }
 
+// Nothing where all parts are found.
+std::optional<Diagnostic> describe_lost(std::span<const PartContent> content,
+                                        const std::string& material, const std::string& file,
+                                        const std::string& where) {
+    std::size_t parts = 0, lost = 0;
+    double whole = 0, missing = 0;
+    for (const PartContent& part : content) {
+        if (part.mesh == 0) continue;
+        ++parts;
+        whole += std::abs(part.mesh);
+        lost += part.is_lost() ? 1 : 0;
+        missing += part.is_lost() ? std::abs(part.mesh) : 0;
+    }
+    if (lost == 0) return std::nullopt;
+    char share[32];
+    std::snprintf(share, sizeof share, "%.2g %%", 100 * missing / whole);
+    return make_warning(file, where,
+                        std::to_string(lost) + " of the " + std::to_string(parts) +
+                            " parts of the mesh of material " + gltf::in_quotes(material) +
+                            ", with " + share +
+                            " of what it encloses, are thinner than an eighth of a voxel in some "
+                            "direction: they vanish, or come out too thick",
+                        "raise voxels, or give such parts a material of their own");
+}
+
 }  // namespace
 
-Result<Volume> fill_body(const Scene& scene, const std::string& material, std::uint32_t voxels,
-                         const std::string& file, const std::string& where) {
+Result<FilledBody> fill_body(const Scene& scene, const std::string& material, std::uint32_t voxels,
+                             const std::string& file, const std::string& where) {
     const auto refuse = [&](std::string fault, std::string remedy) {
         return make_error(ErrorKind::bad_input, file, where, std::move(fault), std::move(remedy));
     };
@@ -265,7 +337,9 @@ Result<Volume> fill_body(const Scene& scene, const std::string& material, std::u
     const Medium& medium = *own->medium;
     Volume volume;
     volume.name = "volume of material " + gltf::in_quotes(material);
-    volume.density = fill_voxels(body, lines);
+    const std::vector<std::size_t> part = number_parts(body);
+    std::vector<PartContent> content(body.triangle.size());
+    volume.density = fill_voxels(body, lines, part, content);
     if (volume.density.empty()) {
         return refuse("the mesh of material " + gltf::in_quotes(material) +
                           " has no inside, or one that is thinner than an eighth of a voxel",
@@ -285,7 +359,11 @@ Result<Volume> fill_body(const Scene& scene, const std::string& material, std::u
                      share(medium.sigma_s.g, volume.sigma_t.g),
                      share(medium.sigma_s.b, volume.sigma_t.b)};
     volume.phase = medium.phase;
-    return volume;
+    FilledBody filled{std::move(volume), {}};
+    if (auto lost = describe_lost(content, material, file, where)) {
+        filled.warnings.push_back(std::move(*lost));
+    }
+    return filled;
 }
 
 void remove_surface(Scene& scene, const std::string& material) {

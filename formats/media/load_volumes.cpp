@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <new>
 #include <optional>
@@ -148,17 +149,21 @@ struct LoadedVolumes {
 };
 
 // The inside of meshes of the scene.
-Result<Volume> load_body(const MediaFile& media, const VolumeEntry& entry, const Scene& scene) {
+Result<Volume> load_body(const MediaFile& media, const VolumeEntry& entry, const Scene& scene,
+                         std::vector<Diagnostic>& warnings) {
     const auto named_before = [&](const VolumeEntry& e) { return e.material == entry.material; };
     const auto first = std::ranges::find_if(media.volumes, named_before);
     if (first != media.volumes.end() && first->where != entry.where) {
         return make_error(ErrorKind::bad_input, media.file, entry.where,
                           "it names the same material as " + first->where, "keep one of them");
     }
-    auto volume = fill_body(scene, entry.material, entry.voxels, media.file, entry.where);
-    if (volume) {
-        volume->density.to_scene[3] += glm::dvec4(scene.origin, 0);
+    auto filled = fill_body(scene, entry.material, entry.voxels, media.file, entry.where);
+    if (!filled) {
+        return std::move(filled).error();
     }
+    std::ranges::move(filled->warnings, std::back_inserter(warnings));
+    Volume volume = std::move(filled->volume);
+    volume.density.to_scene[3] += glm::dvec4(scene.origin, 0);
     return volume;
 }
 
@@ -171,7 +176,7 @@ Result<LoadedVolumes> load_all(const MediaFile& media, const std::vector<VolumeE
         auto volume = entry.material.empty()
                           ? load_volume(entry, entry.file.empty() ? own : entry.file,
                                         metres_per_unit, reader, loaded.warnings)
-                          : load_body(media, entry, scene);
+                          : load_body(media, entry, scene, loaded.warnings);
         if (!volume) {
             return std::move(volume).error();
         }

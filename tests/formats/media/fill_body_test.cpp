@@ -34,7 +34,9 @@ Scene milky(std::vector<Primitive> primitives) {
 }
 
 formats::Result<Volume> fill(const Scene& scene, std::uint32_t voxels) {
-    return formats::fill_body(scene, "Grey", voxels, "media.json", "volumes > 0");
+    auto filled = formats::fill_body(scene, "Grey", voxels, "media.json", "volumes > 0");
+    if (!filled) return std::move(filled).error();
+    return std::move(filled->volume);
 }
 
 std::string fault_of(const Scene& scene) {
@@ -115,6 +117,27 @@ TEST(FillBody, WhereBodiesOverlapThereIsTheMediumOnce) {
     // Two caps of height 0.6 are there twice.
     const double cap = std::numbers::pi * 0.36 * (3 - 0.6) / 3;
     EXPECT_NEAR(content(*volume), 2 * mesh_content(a) - 2 * cap, 0.02);
+}
+
+// Lines run along z: across it they miss a plate, or make it as thick as they are apart.
+TEST(FillBody, PartsThinnerThanLinesAreApartAreNamed) {
+    const auto warnings_with = [](glm::vec3 size) {
+        glm::mat3 stretch(1);
+        for (int a = 0; a < 3; ++a)
+            stretch[a][a] = size[a];
+        const Primitive part = transformed(make_cube(2, false), stretch, 1, {3, 0.01f, 0.02f});
+        auto filled = formats::fill_body(milky({make_sphere(3), part}), "Grey", 32, "media.json",
+                                         "volumes > 0");
+        EXPECT_TRUE(filled);
+        return std::move(filled->warnings);
+    };
+    EXPECT_TRUE(warnings_with({0.3f, 0.3f, 0.3f}).empty());
+    EXPECT_TRUE(warnings_with({0.3f, 0.3f, 0.002f}).empty()) << "along lines it is exact";
+    for (const glm::vec3 thin : {glm::vec3(0.002f, 0.3f, 0.3f), {0.3f, 0.002f, 0.3f}}) {
+        const auto warnings = warnings_with(thin);
+        ASSERT_EQ(warnings.size(), 1u);
+        EXPECT_THAT(warnings[0].fault, AllOf(HasSubstr("1 of the 2 parts"), HasSubstr("thinner")));
+    }
 }
 
 TEST(FillBody, ItsMediumIsThatOfTheMaterial) {
