@@ -169,6 +169,8 @@ struct Volume {
     /// Where the albedo is not the same everywhere: density times albedo of each voxel, in bricks
     /// numbered as those of `density`, whose table and to_scene hold. Else empty.
     SparseGrid<glm::vec3> scattering = {};
+    bool paper = false;  ///< fidelity "paper": pictures by path integration take [Premoze2003] as
+                         ///< printed (formats/media/README.md)
 
     /// The albedo at a point in index coordinates: scattering and extinction are linear between
     /// voxels, so that voxels without density do not count. `albedo` where there is no density.

@@ -63,8 +63,33 @@ Status check_method(const PathIntegrationOptions& options,
     return formats::ok_status();
 }
 
+namespace {
+
+// Fidelity "paper" of a scene's volumes: what it contradicts, and a warning.
+Status check_paper(const PathIntegrationOptions& options, const formats::Scene& scene) {
+    if (!bake::has_paper_fidelity(scene)) {
+        return formats::ok_status();
+    }
+    if (options.renormalise && options.renormalise_option->count() > 0) {
+        return make_error(ErrorKind::usage, scene.volumes.front().name, "--renormalise",
+                          "the paper's formulas have no renormalisation, and fidelity is 'paper'",
+                          "leave it out, or make the fidelity physical");
+    }
+    return report_warnings({formats::make_warning(
+        scene.volumes.front().name, "fidelity",
+        "the formulas of [Premoze2003] as printed err more than the corrected ones: light that is "
+        "scattered often turns too fast, and even light is not kept",
+        "make the fidelity physical, but for the paper's figures")});
+}
+
+}  // namespace
+
 Status make_path_picture(const PathPicture& picture, const bake::PathSpace& space,
                          const PathIntegrationOptions& options, const bake::Context& context) {
+    const formats::Scene& scene = space.scene.surfaces.scene();
+    if (auto status = check_paper(options, scene); !status) {
+        return status;
+    }
     bake::PathImageOptions wanted;
     wanted.renormalise = options.renormalise;
     wanted.terms = space.options.terms;
@@ -82,11 +107,12 @@ Status make_path_picture(const PathPicture& picture, const bake::PathSpace& spac
         !status) {
         return status;
     }
-    print_note(
-        fmt::format("{}: path integration, {} rays for each of {} pixels, {}, of which {} "
-                    "before the first pixel",
-                    printable(picture.output), wanted.rays, radiance.pixel.size(),
-                    format_seconds(image->seconds), format_seconds(image->preparation_seconds)));
+    print_note(fmt::format(
+        "{}: path integration{}, {} rays for each of {} pixels, {}, of which {} "
+        "before the first pixel",
+        printable(picture.output), bake::has_paper_fidelity(scene) ? " with fidelity paper" : "",
+        wanted.rays, radiance.pixel.size(), format_seconds(image->seconds),
+        format_seconds(image->preparation_seconds)));
     return formats::ok_status();
 }
 

@@ -44,8 +44,9 @@ struct PathPicture {
     const runtime::Camera& camera;
 };
 
-/// Computes the picture by path integration, writes it and prints a summary. Errors: those of
-/// check_path_scene, and of writing.
+/// Computes the picture by path integration, writes it and prints a summary; warns of fidelity
+/// "paper". Precondition: check_path_scene. Errors: usage, for --renormalise on with fidelity
+/// "paper"; and of writing.
 formats::Status make_path_picture(const PathPicture& picture, const bake::PathSpace& space,
                                   const PathIntegrationOptions& options,
                                   const bake::Context& context);

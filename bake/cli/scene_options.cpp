@@ -11,6 +11,7 @@
 #include "bake/cli/option_values.h"
 #include "bake/effects/effects.h"
 #include "bake/pipeline/predict_memory.h"
+#include "bake/volumes/plan_volumes.h"
 #include "formats/opal/terms.h"
 
 namespace opaline::cli {
@@ -182,6 +183,9 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
     auto imported = open_scene(options.scene, {options.metres_per_unit, check_size}, options.media);
     if (!imported) {
         return imported;
+    }
+    if (auto status = bake::check_bakeable(imported->scene); !status) {
+        return std::move(status).error();
     }
     if (auto status = check(bake::count_memory(bake::all_effects(), imported->scene, knobs));
         !status) {

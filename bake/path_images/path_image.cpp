@@ -11,6 +11,8 @@
 #include "bake/path_images/even_furnace.h"
 #include "bake/path_images/scattered_light.h"
 #include "bake/path_images/surface_light.h"
+#include "bake/path_integral/least_attenuation.h"
+#include "bake/scattering/phase_series.h"
 
 namespace opaline::bake {
 namespace {
@@ -30,8 +32,19 @@ VolumeBox grown(VolumeBox box, double margin) {
     return {box.low - margin, box.high + margin};
 }
 
-bool needs_furnace(const PathImageOptions& options) {
-    return options.renormalise && has_any(options.terms, TermSet::volume_multiple);
+bool is_paper(const VolumeSpace& volumes) {
+    return volumes.volumes.front().volume->paper;
+}
+
+bool needs_furnace(const PathImageOptions& options, const VolumeSpace& volumes) {
+    return options.renormalise && !is_paper(volumes) &&
+           has_any(options.terms, TermSet::volume_multiple);
+}
+
+std::optional<double> curvature_of(const VolumeSpace& volumes) {
+    const formats::PhaseFunction& phase = volumes.volumes.front().volume->phase;
+    return is_paper(volumes) ? std::optional(printed_curvature(expand_phase(phase, 2).lambda[1]))
+                             : std::nullopt;
 }
 
 ScatteringSpace prepare(const ReferenceScene& scene, const LightSampler& light,
@@ -42,13 +55,13 @@ ScatteringSpace prepare(const ReferenceScene& scene, const LightSampler& light,
     for (const ImageSun& sun : lights.suns) {
         suns.push_back(sun.direction);
     }
-    const bool needs_cells = needs_furnace(options) || !lights.sky.texel.empty();
+    const bool needs_cells = needs_furnace(options, volumes) || !lights.sky.texel.empty();
     const HitScene* const surfaces =
         scene.surfaces.scene().primitives.empty() ? nullptr : &scene.surfaces;
     ScatteringSpace space{
         volumes,
         make_bands(volumes),
-        make_image_phase(volumes.volumes.front().volume->phase),
+        make_image_phase(volumes.volumes.front().volume->phase, is_paper(volumes)),
         std::move(lights),
         make_column_field(volumes, surfaces,
                           suns.empty() ? DepthLattice{} : make_depth_lattice(volumes, kSunNodes),
@@ -59,7 +72,8 @@ ScatteringSpace prepare(const ReferenceScene& scene, const LightSampler& light,
             needs_cells ? std::span<const glm::dvec3>(sky_cells()) : std::span<const glm::dvec3>(),
             context),
         {.box = grown(density_box(volumes), voxel_edge(volumes)), .step = voxel_edge(volumes)},
-        options.lengths};
+        is_paper(volumes) ? options.paper_lengths : options.lengths,
+        curvature_of(volumes)};
     return space;
 }
 
@@ -84,11 +98,14 @@ glm::dvec3 scatter_along(const Studio& studio, const ViewRay& ray,
     const ScatteringSpace& space = studio.space;
     const bool once = has_any(studio.options.terms, TermSet::volume_single);
     const bool often = has_any(studio.options.terms, TermSet::volume_multiple);
-    const PathForm form = hit && has_density_beyond(space.volumes, *hit, ray.direction)
+    const bool paper = space.curvature.has_value();
+    const PathForm form = !paper && hit && has_density_beyond(space.volumes, *hit, ray.direction)
                               ? PathForm::source
                               : PathForm::ray;
     const SkyView sky = view_sky(space.lights.sky, space.phase.density,
-                                 form == PathForm::ray ? space.phase.ray : space.phase.source,
+                                 paper                   ? space.phase.boundary
+                                 : form == PathForm::ray ? space.phase.ray
+                                                         : space.phase.source,
                                  glm::dvec3(ray.direction));
     glm::dvec3 sum(0);
     for (std::size_t k = 0; k < space.bands.size(); ++k) {
@@ -167,6 +184,13 @@ formats::Status check_path_scene(const formats::Scene& scene) {
                       "leave out --method, or place a volume with --media");
     }
     for (const formats::Volume& volume : scene.volumes) {
+        if (volume.paper != scene.volumes.front().paper) {
+            return refuse(volume.name,
+                          "path integration needs one fidelity in all volumes, and this one "
+                          "differs from that of " +
+                              scene.volumes.front().name,
+                          "give all of them the same fidelity");
+        }
         if (!volume.scattering.empty()) {
             return refuse(volume.name, "path integration needs an albedo that is alike everywhere",
                           "leave out --method, or give one albedo instead of a grid");
@@ -189,6 +213,10 @@ formats::Status check_path_scene(const formats::Scene& scene) {
     return formats::ok_status();
 }
 
+bool has_paper_fidelity(const formats::Scene& scene) {
+    return scene.volumes.front().paper;
+}
+
 formats::Result<PathImage> make_path_image(const ReferenceScene& scene, const LightSampler& light,
                                            const runtime::Camera& camera,
                                            const PathImageOptions& options,
@@ -201,14 +229,14 @@ formats::Result<PathImage> make_path_image(const ReferenceScene& scene, const Li
         return interrupted();
     }
     FurnaceGrid furnace;
-    if (needs_furnace(options)) {
+    const bool renormalises = needs_furnace(options, scene.volumes);
+    if (renormalises) {
         furnace = make_furnace_grid(space, camera, eye, context);
     }
     PathImage image;
     image.preparation_seconds = seconds_since(start);
     image.radiance = {camera.width, camera.height, {}};
-    const Studio studio{scene, light,  space, needs_furnace(options) ? &furnace : nullptr,
-                        eye,   options};
+    const Studio studio{scene, light, space, renormalises ? &furnace : nullptr, eye, options};
     const runtime::CameraFrame frame = runtime::camera_frame(camera);
     const std::size_t pixels = std::size_t{camera.width} * camera.height;
     for_each_block_in_order(

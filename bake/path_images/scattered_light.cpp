@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/path_integral/least_attenuation.h"
 #include "bake/path_integral/path_estimate.h"
 
 namespace opaline::bake {
@@ -18,8 +19,10 @@ glm::dvec3 gather_once(const ScatteringSpace& space, const ViewRay& ray, const S
     const BandMedium medium{space.volumes, options.band};
     std::vector<double> from_sun(options.suns ? suns.size() : 0);
     std::array<double, ImageSky::kCellCount + 1> from_part{};
-    const bool has_cells = std::any_of(sky.part.begin(), sky.part.end(),
-                                       [](const SkyPart& part) { return !part.is_dark; });
+    // The paper's boundary holds light of the sky that is scattered once.
+    const bool has_cells =
+        !space.curvature && std::any_of(sky.part.begin(), sky.part.end(),
+                                        [](const SkyPart& part) { return !part.is_dark; });
     for (std::size_t i = 0; i < ray.position.size(); ++i) {
         const ViewStep& step = options.steps.step[i];
         const glm::dvec3 x(ray.position[i]);
@@ -71,6 +74,12 @@ class PathGatherer {
                   const ZonalRow& kernel) const {
         const Turns turns(onward_, light);
         double sum = 0;
+        if (space_.curvature) {
+            for (const Turn& turn : turns) {
+                sum += along(least_attenuated(turn), field, number, kernel);
+            }
+            return sum / static_cast<double>(turns.size());
+        }
         for (const double length : space_.lengths) {
             const double ell_total = std::max(length * ell_onward_, kShortestTurn);
             for (const Turn& turn : turns) {
@@ -80,7 +89,33 @@ class PathGatherer {
         return sum / static_cast<double>(space_.lengths.size() * turns.size());
     }
 
+    // Light that enters where paths toward a direction of the field leave, [Premoze2003] (20, 21):
+    // the mean over planes of e^-A kernel(ell), both depths up to there.
+    double gather_at_end(const ColumnField& field, std::size_t number, glm::dvec3 light,
+                         const ZonalRow& kernel) const {
+        const Turns turns(onward_, light);
+        double sum = 0;
+        for (const Turn& turn : turns) {
+            const QuasiPath path = least_attenuated(turn);
+            glm::dvec3 last = start_;  // with density
+            const PathEnd end =
+                march_quasi_path(path, medium_, space_.limits, [&](const PathStep& step) {
+                    last = step.depth > 0 ? step.position : last;
+                    return std::exp(-step.absorption) > kLeastSurvival;
+                });
+            sum += std::exp(-end.absorption) * std::max(kernel(end.ell), 0.0) *
+                   depth_toward(field, medium_, last, number, options_.shadows).open;
+        }
+        return sum / static_cast<double>(turns.size());
+    }
+
   private:
+    // Fidelity "paper".
+    QuasiPath least_attenuated(const Turn& turn) const {
+        return least_attenuated_path(start_, turn, ell_onward_, space_.lengths, *space_.curvature,
+                                     medium_, space_.limits);
+    }
+
     double along(const QuasiPath& path, const ColumnField& field, std::size_t number,
                  const ZonalRow& kernel) const {
         double sum = 0;
@@ -128,7 +163,9 @@ glm::dvec3 gather_paths(const ScatteringSpace& space, const SkyView& sky,
     }
     for (std::size_t c = 0; c < ImageSky::kCellCount; ++c) {
         if (!sky.part[c].is_dark) {
-            sum += paths.gather(space.cell_field, c, sky_cells()[c], sky.part[c].often) *
+            const auto gather =
+                space.curvature ? &PathGatherer::gather_at_end : &PathGatherer::gather;
+            sum += (paths.*gather)(space.cell_field, c, sky_cells()[c], sky.part[c].often) *
                    sky.part[c].color;
         }
     }
@@ -144,7 +181,10 @@ glm::dvec3 gather_from_entry(const ScatteringSpace& space, const ViewRay& ray, c
     glm::dvec3 sum = gather_paths(space, sky, options, paths, space.phase.ray, onward);
     const SkyPart& ahead = sky.part[SkyView::kAhead];
     if (options.is_open && !ahead.is_dark) {
-        sum += gather_ahead(options.steps, ahead.often) * ahead.color;
+        const ViewBand& steps = options.steps;
+        sum += (space.curvature ? std::exp(steps.ell - steps.tau) * ahead.often(steps.ell)
+                                : gather_ahead(steps, ahead.often)) *
+               ahead.color;
     }
     return sum;
 }

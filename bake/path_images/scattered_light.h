@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "bake/path_images/column_field.h"
@@ -21,6 +22,8 @@ struct ScatteringSpace {
     ColumnField cell_field;          ///< toward the cells of the sky
     MarchLimits limits;              ///< of paths
     std::vector<double> lengths{1};  ///< of turns, in scattering depths of the view ray
+    /// Fidelity "paper": the phase function's, of the attenuation by which one length is chosen.
+    std::optional<double> curvature = std::nullopt;
 };
 
 /// How light that was scattered twice or more is found.
@@ -46,7 +49,9 @@ struct ScatterOptions {
 };
 
 /// `sky`: as the ray sees it, made with the kernel of the form. Order 1 is the integral along the
-/// ray ([Premoze2003] (15) to (17)); orders of two and more are corrected (18), see README.md.
+/// ray ([Premoze2003] (15) to (17)); orders of two and more are corrected (18), see README.md. With
+/// fidelity "paper" `sky` is made with the kernel of the boundary, the form is PathForm::ray, and
+/// `often` holds all that is scattered of the sky (20, 21).
 RayLight gather_scattered(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
                           const ScatterOptions& options);
 

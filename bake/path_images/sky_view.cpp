@@ -33,10 +33,19 @@ void add_row(ZonalRow& sum, const ZonalRow& row, double weight) {
 
 }  // namespace
 
-ImagePhase make_image_phase(const formats::PhaseFunction& phase) {
-    const PhaseSeries series = expand_phase(phase, degrees_of(phase));
-    return {make_phase_density(phase), make_zonal_table(PathKernel::ray, series),
-            make_zonal_table(PathKernel::source, series)};
+ImagePhase make_image_phase(const formats::PhaseFunction& phase, bool paper) {
+    const unsigned degrees = degrees_of(phase);
+    if (paper) {
+        return {make_phase_density(phase),
+                make_power_table(PathKernel::ray, phase, degrees),
+                {},
+                make_power_table(PathKernel::boundary, phase, degrees)};
+    }
+    const PhaseSeries series = expand_phase(phase, degrees);
+    return {make_phase_density(phase),
+            make_zonal_table(PathKernel::ray, series),
+            make_zonal_table(PathKernel::source, series),
+            {}};
 }
 
 SkyView view_sky(const ImageSky& sky, const PhaseDensity& phase, const ZonalTable& table,

@@ -13,9 +13,12 @@ namespace opaline::bake {
 /// A phase function, ready for pictures: of all volumes of a scene.
 struct ImagePhase {
     PhaseDensity density;
-    ZonalTable ray, source;  ///< kernels of two scatterings or more
+    /// Kernels of two scatterings or more, and with fidelity "paper" of one or more from the
+    /// boundary; then there is none of the source.
+    ZonalTable ray, source, boundary;
 };
-ImagePhase make_image_phase(const formats::PhaseFunction& phase);
+/// `paper`: directions along paths by a power of the phase function.
+ImagePhase make_image_phase(const formats::PhaseFunction& phase, bool paper);
 
 /// What a view ray sees of a part of the sky, texel by texel: only paths and visibility are those
 /// of the part's middle.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bake/scattering/poisson_phase.h"
+#include "bake/scattering/power_phase.h"
 
 namespace opaline::bake {
 namespace {
@@ -51,6 +52,39 @@ double cosine_of(const ZonalTable& table, double coordinate) {
     return std::clamp((table.forward + 1 - ratio * (table.backward + 1)) / (1 + ratio), -1.0, 1.0);
 }
 
+// A table up to the depth `even`. `moments_at`: std::vector<double>(double ell).
+template <class Moments>
+ZonalTable tabulate(PathKernel kernel, const PhaseSeries& series, double even,
+                    const Moments& moments_at) {
+    ZonalTable table;
+    table.kernel = kernel;
+    // The fewest scatterings, two or one, have the narrowest peak. Of a phase function that peaks
+    // backward, an even number of them peaks forward and an odd one backward.
+    std::vector<double> once, twice, thrice;
+    for (const double lambda : series.lambda) {
+        once.push_back(lambda);
+        twice.push_back(lambda * lambda);
+        thrice.push_back(lambda * lambda * lambda);
+    }
+    const bool is_once = kernel == PathKernel::boundary;
+    table.forward = peak_width(is_once ? once : twice, false);
+    table.backward = peak_width(is_once ? once : thrice, true);
+    table.depth_spacing = std::log1p(even) / (ZonalTable::kDepths - 1);
+
+    const double first = coordinate(table, 1), last = coordinate(table, -1);
+    table.value.resize(std::size_t{ZonalTable::kCosines} * ZonalTable::kDepths);
+    for (std::size_t depth = 0; depth < ZonalTable::kDepths; ++depth) {
+        const std::vector<double> moment =
+            moments_at(std::expm1(static_cast<double>(depth) * table.depth_spacing));
+        for (std::size_t i = 0; i < ZonalTable::kCosines; ++i) {
+            const double share = static_cast<double>(i) / (ZonalTable::kCosines - 1);
+            table.value[i * ZonalTable::kDepths + depth] = static_cast<float>(
+                eval_zonal(moment, cosine_of(table, first + (last - first) * share)));
+        }
+    }
+    return table;
+}
+
 }  // namespace
 
 std::vector<double> path_moments(PathKernel kernel, const PhaseSeries& series, double ell) {
@@ -64,39 +98,28 @@ std::vector<double> path_moments(PathKernel kernel, const PhaseSeries& series, d
 }
 
 double kernel_factor(PathKernel kernel, double ell) {
-    return kernel == PathKernel::ray ? -std::expm1(-ell) : 1.0;
+    return kernel == PathKernel::source ? 1.0 : -std::expm1(-ell);
 }
 
 ZonalTable make_zonal_table(PathKernel kernel, const PhaseSeries& series) {
-    ZonalTable table;
-    table.kernel = kernel;
-    // Two scatterings have the narrowest peak. Of a phase function that peaks backward, so does
-    // that of two points forward and that of three backward.
-    std::vector<double> twice, thrice;
     double slowest = 0;
-    for (const double lambda : series.lambda) {
-        twice.push_back(lambda * lambda);
-        thrice.push_back(lambda * lambda * lambda);
-        if (twice.size() > 1) {
-            slowest = std::max(slowest, lambda);
-        }
+    for (std::size_t l = 1; l < series.lambda.size(); ++l) {
+        slowest = std::max(slowest, series.lambda[l]);
     }
-    table.forward = peak_width(twice, false);
-    table.backward = peak_width(thrice, true);
-    table.depth_spacing = std::log1p(kEven / (1 - slowest)) / (ZonalTable::kDepths - 1);
+    return tabulate(kernel, series, kEven / (1 - slowest),
+                    [&](double ell) { return path_moments(kernel, series, ell); });
+}
 
-    const double first = coordinate(table, 1), last = coordinate(table, -1);
-    table.value.resize(std::size_t{ZonalTable::kCosines} * ZonalTable::kDepths);
-    for (std::size_t depth = 0; depth < ZonalTable::kDepths; ++depth) {
-        const std::vector<double> moment = path_moments(
-            kernel, series, std::expm1(static_cast<double>(depth) * table.depth_spacing));
-        for (std::size_t i = 0; i < ZonalTable::kCosines; ++i) {
-            const double share = static_cast<double>(i) / (ZonalTable::kCosines - 1);
-            table.value[i * ZonalTable::kDepths + depth] = static_cast<float>(
-                eval_zonal(moment, cosine_of(table, first + (last - first) * share)));
+ZonalTable make_power_table(PathKernel kernel, const formats::PhaseFunction& phase,
+                            unsigned degrees) {
+    const PhaseSeries series = expand_phase(phase, degrees);
+    return tabulate(kernel, series, depth_of_even_power(phase), [&](double ell) {
+        std::vector<double> moment = power_moments(phase, ell, degrees);
+        for (std::size_t l = 0; kernel == PathKernel::ray && l < moment.size(); ++l) {
+            moment[l] *= series.lambda[l];
         }
-    }
-    return table;
+        return moment;
+    });
 }
 
 double ZonalRow::operator()(double ell) const {

@@ -161,6 +161,19 @@ std::string why_dark(const VolumeBrightness& most) {
 
 }  // namespace
 
+formats::Status check_bakeable(const formats::Scene& scene) {
+    for (const formats::Volume& volume : scene.volumes) {
+        if (volume.paper) {
+            return formats::make_error(
+                formats::ErrorKind::bad_input, volume.name, "fidelity",
+                "bakes of volumes are physical: the formulas of [Premoze2003] as printed are for "
+                "pictures alone",
+                "leave fidelity out, or draw it: opaline reference --method path-integration");
+        }
+    }
+    return formats::ok_status();
+}
+
 bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs) {
     return !volume.emission.empty() && decide_glow(volume, {}, knobs).on;
 }

@@ -9,6 +9,7 @@
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/knobs.h"
 #include "bake/volumes/volume_method.h"
+#include "formats/opal/result.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -36,6 +37,10 @@ struct VolumePlan {
                                         ///< there are surfaces, in order; they belong to no rule
     std::vector<VolumeLayout> layouts;  ///< of volumes that are seen at all
 };
+
+/// Refuses volumes of fidelity "paper": what bakes hold is physical. Errors: bad_input, with a
+/// remedy.
+formats::Status check_bakeable(const formats::Scene& scene);
 
 /// Decides from densities, coefficients and phase functions what to bake; traces nothing. With
 /// d = 1 - e^-tau, tau an upper bound on the optical depth of any straight line through the volume,

@@ -92,6 +92,7 @@ Result<Volume> load_volume(const VolumeEntry& entry, const std::filesystem::path
     volume.sigma_t = entry.sigma_t;
     volume.albedo = entry.albedo;
     volume.phase = entry.phase;
+    volume.paper = entry.paper;
     Bounds bounds;
     include(bounds, grid);
     const glm::dvec3 farthest = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
@@ -163,6 +164,7 @@ Result<Volume> load_body(const MediaFile& media, const VolumeEntry& entry, const
     }
     std::ranges::move(filled->warnings, std::back_inserter(warnings));
     Volume volume = std::move(filled->volume);
+    volume.paper = entry.paper;
     volume.density.to_scene[3] += glm::dvec4(scene.origin, 0);
     return volume;
 }

@@ -35,6 +35,7 @@ struct VolumeEntry {
     std::string albedo_grid;  ///< name of a grid that says it instead; empty: `albedo` everywhere
     double scale = 1;         ///< of the density
     PhaseFunction phase;
+    bool paper = false;  ///< fidelity "paper": [Premoze2003] as printed
     /// Grid of radiance per metre, or of temperatures of a black body; at most one of both.
     std::string emission, temperature;
     double emission_scale = 1;     ///< of radiance

@@ -46,6 +46,10 @@ std::optional<glm::dmat4> read_transform(const Fields& fields) {
     return matrix;
 }
 
+bool read_paper(const Fields& fields) {
+    return choice(fields, "fidelity", {"physical", "paper"}).value_or(0) == 1;
+}
+
 // Light of its own.
 void read_emission(const Fields& fields, VolumeEntry& volume) {
     refuse_both(fields, "emission", "temperature");
@@ -68,7 +72,7 @@ void read_emission(const Fields& fields, VolumeEntry& volume) {
 
 // The inside of closed meshes.
 std::optional<VolumeEntry> read_body(const Fields& fields) {
-    refuse_unknown_keys(fields, {"material", "voxels"});
+    refuse_unknown_keys(fields, {"material", "voxels", "fidelity"});
     VolumeEntry volume;
     volume.where = fields.where;
     volume.material = text(fields, "material").value_or("");
@@ -78,6 +82,7 @@ std::optional<VolumeEntry> read_body(const Fields& fields) {
     }
     volume.voxels = static_cast<std::uint32_t>(
         count(fields, "voxels", kMinBodyVoxels, kMaxBodyVoxels).value_or(volume.voxels));
+    volume.paper = read_paper(fields);
     return volume;
 }
 
@@ -97,7 +102,7 @@ std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& whe
     }
     refuse_unknown_keys(
         fields, {"file", "density", "sigma_t", "albedo", "unit", "scale", "phase", "transform",
-                 "emission", "temperature", "emission_scale", "temperature_scale"});
+                 "emission", "temperature", "emission_scale", "temperature_scale", "fidelity"});
     VolumeEntry volume;
     volume.where = where;
     if (has(fields, "file")) {
@@ -120,6 +125,12 @@ std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& whe
         volume.albedo_grid = text(fields, "albedo").value_or("");
     } else {
         volume.albedo = rgb(fields, "albedo", 0, 1).value_or(volume.albedo);
+    }
+    volume.paper = read_paper(fields);
+    if (volume.paper && !volume.albedo_grid.empty()) {
+        fields.report.error(place(where, "fidelity"),
+                            "the paper's formulas need an albedo that is alike everywhere",
+                            "give one albedo instead of a grid, or leave fidelity out");
     }
     volume.scale = number(fields, "scale", kMinDensityScale, kMaxDensityScale).value_or(1);
     read_emission(fields, volume);

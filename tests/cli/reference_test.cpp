@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
 #include <sstream>
 
 #include "formats/image/exr.h"
@@ -10,6 +11,7 @@
 namespace opaline::tests {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -339,6 +341,36 @@ TEST(Reference, PathIntegrationDrawsVolumesWithoutNoise) {
     EXPECT_EQ(read_text(out), read_text(again));
     EXPECT_GT(mean_of(out), 0.01);
     EXPECT_FALSE(std::filesystem::exists(folder / "out.var.exr"));
+}
+
+TEST(Reference, PaperFidelityIsForPicturesByPathIntegrationAlone) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run_opaline({"example", "milk", "-o", folder.path().string()}).exit_code, 0);
+    const std::string paper = (folder / "paper.json").string();
+    std::ofstream(paper) << R"({"volumes": [{"file": "milk.vdb", "sigma_t": [7, 12, 19],
+                                               "fidelity": "paper"}]})";
+    const Arguments picture = {"reference", paper,   "--light",  "sun:60,35",
+                               "--size",    "16x12", "--method", "path-integration"};
+    const auto draw = [&](const Arguments& more) {
+        Arguments arguments = picture;
+        arguments.insert(arguments.end(), {"-o", (folder / "out.exr").string()});
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_opaline(arguments);
+    };
+    EXPECT_EQ(draw({"--renormalise", "on"}).exit_code, 2);
+    const Outcome drawn = draw({});
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+    EXPECT_THAT(drawn.err, AllOf(HasSubstr("as printed"), HasSubstr("with fidelity paper")));
+    EXPECT_GT(mean_of((folder / "out.exr").string()), 0.01);
+    for (const char* command : {"bake", "plan"}) {
+        Arguments arguments = {command, paper};
+        if (command == std::string_view("bake")) {
+            arguments.insert(arguments.end(), {"-o", (folder / "out.opal").string()});
+        }
+        const Outcome refused = run_opaline(arguments);
+        EXPECT_EQ(refused.exit_code, 3) << command;
+        EXPECT_THAT(refused.err, HasSubstr("reference --method path-integration")) << command;
+    }
 }
 
 TEST(Reference, PathIntegrationRefusesWhatItCannotDo) {

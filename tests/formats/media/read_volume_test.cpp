@@ -64,6 +64,14 @@ TEST(ReadVolume, LightOfItsOwnIsOneGridAndItsScales) {
     }
 }
 
+TEST(ReadVolume, FormulasArePhysicalUnlessThePapersAreAskedFor) {
+    for (const std::string entry : {R"({"file": "smoke.vdb")", R"({"material": "Milk")"}) {
+        EXPECT_FALSE(read_entry(entry + "}")->volumes[0].paper) << entry;
+        EXPECT_FALSE(read_entry(entry + R"(, "fidelity": "physical"})")->volumes[0].paper) << entry;
+        EXPECT_TRUE(read_entry(entry + R"(, "fidelity": "paper"})")->volumes[0].paper) << entry;
+    }
+}
+
 TEST(ReadVolume, ExtinctionIsPerMillimetreUnlessItSaysPerMetre) {
     const auto media = read_entry(R"({"sigma_t": [1, 2, 3]})");
     ASSERT_TRUE(media) << faults(media);
@@ -101,6 +109,9 @@ TEST(ReadVolume, FaultsAreNamedWithTheirPlace) {
         {R"({"unit": "1/m"})", "volumes > 0 > unit", "no sigma_t"},
         {R"({"scale": 0})", "volumes > 0 > scale", ""},
         {R"({"phase": {"type": "hg", "g": 1}})", "volumes > 0 > phase", ""},
+        {R"({"fidelity": "exact"})", "volumes > 0 > fidelity", ""},
+        {R"({"fidelity": "paper", "albedo": "colour"})", "volumes > 0 > fidelity", "alike"},
+        {R"({"material": "Milk", "fidelity": 1})", "volumes > 0 > fidelity", ""},
         {R"({"phase": 3})", "volumes > 0 > phase", "not an object"},
         {R"({"transform": [1, 0, 0]})", "volumes > 0 > transform", "16 numbers"},
         {R"({"transform": [1,0,0,0, 0,0,0,0, 0,0,1,0, 0,0,0,1]})", "transform", "flat"},
