@@ -290,7 +290,8 @@ std::vector<Rgb> node_radiance(const formats::VolumesView& volumes, const Volume
                 weight = source_weights(light, volume, (1 / norm) * to_eye);
             }
         }
-        const Rgb sum = finite(eval_node(light, volume, i, weight, kAllThrough));
+        const Rgb sum =
+            finite(sum_source(eval_node(light, volume, i, weight), kMaxSunTerms, kAllThrough));
         radiance[i] = {std::max(0.0f, sum.r), std::max(0.0f, sum.g), std::max(0.0f, sum.b)};
     }
     return radiance;

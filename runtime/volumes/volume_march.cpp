@@ -24,9 +24,11 @@ struct Traveller {
     bool is_left = true;  ///< behind its last brick
     SourceWeights weight{};
 
+    std::uint32_t source_terms = 1;  ///< parts of NodeSource that are not 0
+
     // Source radiance at the eight nodes around the last point, which many points share.
     std::uint32_t cell = formats::kNoNode;
-    std::array<Rgb, 8> source{};
+    std::array<NodeSource, 8> source{};
 };
 
 void advance(Traveller& traveller) {
@@ -52,19 +54,16 @@ std::vector<Traveller> start(const LitVolumes& volumes, const MarchRay& ray) {
         advance(traveller);
         if (traveller.is_left) continue;
         traveller.weight = source_weights(*volumes.light, entry.volume, -1 * ray.direction);
+        const VolumeLight::Part& part = volumes.light->part[entry.volume];
+        traveller.source_terms = part.suns > 0 ? part.sun_terms : 1;
         travellers.push_back(traveller);
     }
     return travellers;
 }
 
-// What the ray has left at the point counts for suns.
-SunThrough sun_through(const VolumeLight& light, const LitVolumes::Entry& entry, Rgb left) {
-    if (light.part[entry.volume].suns == 0) return kAllThrough;
-    return find_sun_through(light.sun_phase[entry.volume], entry.lattice.record->albedo, left);
-}
-
 // max(0, J) at a point of the brick, trilinear between nodes; `left` of it comes through to the
-// eye.
+// eye. That counts at each point anew: where a ray comes into a box of nodes differs by a step
+// between renderers that round differently.
 Rgb source_at(Traveller& traveller, const VolumeLight& light, const std::array<float, 3>& at,
               Rgb left) {
     const LitVolumes::Entry& entry = *traveller.entry;
@@ -72,13 +71,15 @@ Rgb source_at(Traveller& traveller, const VolumeLight& light, const std::array<f
     if (traveller.cell != cell.number) {
         traveller.cell = cell.number;
         const auto nodes = nodes_of_cell(entry.lattice, traveller.block.number[0], cell.number);
-        const SunThrough through = sun_through(light, entry, left);
         for (std::size_t i = 0; i < 8; ++i) {
-            traveller.source[i] =
-                eval_node(light, entry.volume, nodes[i], traveller.weight, through);
+            traveller.source[i] = eval_node(light, entry.volume, nodes[i], traveller.weight);
         }
     }
-    return mix_nodes(traveller.source, cell.weight);
+    const NodeSource source = mix_nodes(traveller.source, traveller.source_terms, cell.weight);
+    if (traveller.source_terms == 1) return tame(source[0], kLargestSource);
+    const SunThrough through =
+        find_sun_through(light.sun_phase[entry.volume], entry.lattice.record->albedo, left);
+    return tame(sum_source(source, traveller.source_terms, through), kLargestSource);
 }
 
 // Voxels from the brick's voxel (0, 0, 0), at distance t.
@@ -92,15 +93,23 @@ std::array<float, 3> place_in_brick(const Traveller& traveller, double t) {
     return at;
 }
 
+// 1 - exp(-c h).
+Rgb absorbed_over(Rgb c, float h) {
+    const auto absorbed = [h](float band) { return band > 0 ? -std::expm1(-band * h) : 0.0f; };
+    const float r = absorbed(c.r);
+    if (c.r == c.g && c.g == c.b) return {r, r, r};  // most smoke: exponentials are dear
+    return {r, absorbed(c.g), absorbed(c.b)};
+}
+
 // What a step adds up in a band: extinction c [1/m], scattering times source b, own light e.
 struct Coefficients {
     float c = 0, b = 0, e = 0;
 };
 
 // One step of one band, of length h [m].
-void step_band(const Coefficients& sum, float h, float& radiance, float& transmittance) {
+void step_band(const Coefficients& sum, float h, float absorbed, float& radiance,
+               float& transmittance) {
     constexpr float kThin = 1e-6f;  // depth below which 1 - exp(-c h) is c h
-    const float absorbed = sum.c > 0 ? -std::expm1(-sum.c * h) : 0.0f;
     if (sum.e > 0) {
         const float way = sum.c * h > kThin ? absorbed / sum.c : h;
         radiance =
@@ -112,9 +121,12 @@ void step_band(const Coefficients& sum, float h, float& radiance, float& transmi
 }
 
 void step(Rgb extinction, Rgb scattered, Rgb emitted, float h, MarchResult& result) {
-    step_band({extinction.r, scattered.r, emitted.r}, h, result.radiance.r, result.transmittance.r);
-    step_band({extinction.g, scattered.g, emitted.g}, h, result.radiance.g, result.transmittance.g);
-    step_band({extinction.b, scattered.b, emitted.b}, h, result.radiance.b, result.transmittance.b);
+    const Rgb absorbed = absorbed_over(extinction, h);
+    Rgb& radiance = result.radiance;
+    Rgb& transmittance = result.transmittance;
+    step_band({extinction.r, scattered.r, emitted.r}, h, absorbed.r, radiance.r, transmittance.r);
+    step_band({extinction.g, scattered.g, emitted.g}, h, absorbed.g, radiance.g, transmittance.g);
+    step_band({extinction.b, scattered.b, emitted.b}, h, absorbed.b, radiance.b, transmittance.b);
 }
 
 // Everything that the segments of a ray share.

@@ -40,11 +40,12 @@ Rgb source_at(const LitVolumes& volumes, const LitVolumes::Entry& entry, std::ui
     const SourceWeights weight = source_weights(*volumes.light, entry.volume, to_eye);
     const NodeCell cell = node_cell(entry.lattice, at);
     const auto nodes = nodes_of_cell(entry.lattice, brick, cell.number);
-    std::array<Rgb, 8> source{};
+    std::array<NodeSource, 8> source{};
     for (std::size_t i = 0; i < 8; ++i) {
-        source[i] = eval_node(*volumes.light, entry.volume, nodes[i], weight, kAllThrough);
+        source[i] = eval_node(*volumes.light, entry.volume, nodes[i], weight);
     }
-    return mix_nodes(source, cell.weight);
+    const NodeSource mixed = mix_nodes(source, kMaxSunTerms, cell.weight);
+    return tame(sum_source(mixed, kMaxSunTerms, kAllThrough), kLargestSource);
 }
 
 }  // namespace

@@ -42,40 +42,54 @@ inline formats::Rgb tame(formats::Rgb c, float largest) {
 /// Nothing between a place and the eye.
 inline constexpr SunThrough kAllThrough{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
 
-/// J of a node before max(0, .); 0 for kNoNode. `through`: of each term of suns.
-inline formats::Rgb eval_node(const VolumeLight& light, std::size_t volume, std::uint32_t node,
-                              const SourceWeights& weight, const SunThrough& through) {
-    formats::Rgb sum;
-    if (node == formats::kNoNode) return sum;
+/// J of a node before max(0, .), apart in what counts alike whatever is between it and the eye:
+/// harmonics and the suns' first term, whose power is 0, then the suns' further terms.
+using NodeSource = std::array<formats::Rgb, kMaxSunTerms>;
+
+/// 0 for kNoNode.
+inline NodeSource eval_node(const VolumeLight& light, std::size_t volume, std::uint32_t node,
+                            const SourceWeights& weight) {
+    NodeSource source{};
+    if (node == formats::kNoNode) return source;
     const VolumeLight::Part& part = light.part[volume];
     const auto c = light.coefficients(volume, node);
     std::size_t k = 0;
     for (; k < part.terms; ++k) {
-        sum = sum + weight[k] * c[k];
+        source[0] = source[0] + weight[k] * c[k];
     }
     for (std::size_t j = 0; j < part.sun_terms; ++j) {
-        formats::Rgb suns;
         for (std::size_t s = 0; s < part.suns; ++s, ++k) {
-            suns = suns + weight[k] * c[k];
+            source[j] = source[j] + weight[k] * c[k];
         }
-        sum = sum + through[j] * suns;
+    }
+    return source;
+}
+
+/// J of `terms` parts, `through` of each of which counts.
+inline formats::Rgb sum_source(const NodeSource& source, std::uint32_t terms,
+                               const SunThrough& through) {
+    formats::Rgb sum = source[0];
+    for (std::size_t j = 1; j < terms; ++j) {
+        sum = sum + through[j] * source[j];
     }
     return sum;
 }
 
-/// max(0, J) between eight nodes, in the order x + 2 y + 4 z; weights of the upper ones along each
-/// axis, in [0, 1]. At most kLargestSource.
-inline formats::Rgb mix_nodes(const std::array<formats::Rgb, 8>& source,
-                              const std::array<float, 3>& upper) {
-    formats::Rgb sum;
+/// Between eight nodes, in the order x + 2 y + 4 z; weights of the upper ones along each axis, in
+/// [0, 1]. The first `terms` parts.
+inline NodeSource mix_nodes(const std::array<NodeSource, 8>& source, std::uint32_t terms,
+                            const std::array<float, 3>& upper) {
+    NodeSource mixed{};
     for (std::size_t i = 0; i < 8; ++i) {
         float weight = 1;
         for (std::size_t a = 0; a < 3; ++a) {
             weight *= (i >> a & 1) != 0 ? upper[a] : 1 - upper[a];
         }
-        sum = sum + weight * source[i];
+        for (std::size_t j = 0; j < terms; ++j) {
+            mixed[j] = mixed[j] + weight * source[i][j];
+        }
     }
-    return tame(sum, kLargestSource);
+    return mixed;
 }
 
 }  // namespace opaline::runtime

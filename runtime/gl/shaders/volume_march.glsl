@@ -39,11 +39,6 @@ float phase_at(uint i) { return texelFetch(phase_entries, place_of(i), 0).r; }
 #if GLOW
 uint glow_word(uint i) { return texelFetch(glow_words, place_of(i), 0).r; }
 #endif
-int lowest_bit(uint bits) {
-    int bit = 0;
-    while (bit < VOLUMES && (bits >> bit & 1u) == 0u) ++bit;
-    return bit;
-}
 #else
 layout(std430, binding = 0) readonly buffer Volumes { Volume volumes[]; };
 layout(std430, binding = 1) readonly buffer Table { uint brick_table[]; };
@@ -60,6 +55,16 @@ float phase_at(uint i) { return phase[i]; }
 layout(std430, binding = 6) readonly buffer Glow { uint glow_codes[]; };
 uint glow_word(uint i) { return glow_codes[i]; }
 #endif
+#endif
+#if VOLUMES == 1
+int lowest_bit(uint bits) { return 0; }  // known to compilers, which then keep arrays in registers
+#elif defined(DATA_IN_TEXTURES)
+int lowest_bit(uint bits) {
+    int bit = 0;
+    while (bit < VOLUMES && (bits >> bit & 1u) == 0u) ++bit;
+    return bit;
+}
+#else
 int lowest_bit(uint bits) { return findLSB(bits); }
 #endif
 #ifndef RECORDS_IN_BLOCK
@@ -93,9 +98,14 @@ struct Traveller {
     vec3 corner;  // of the brick
     float span_begin, span_end;
     uint brick;  // kNone behind the last one
-    uint box;    // of the nodes whose radiance stands in `source`
-    vec3 source[8];
+    uint box;    // of the nodes whose radiance stands in node_source
 };
+
+// Of each volume the source radiance at the eight nodes of the last box, in the order x + 2 y + 4 z:
+// of harmonics and the suns' first term, then of each further term, which counts by what a ray has left.
+const int kSunTerms = 3;  // kMaxSunTerms of sun_phase.h
+const int kSources = 8 * kSunTerms;
+vec3 node_source[VOLUMES * kSources];
 
 struct Seen {
     vec3 radiance, transmittance;
@@ -196,37 +206,57 @@ vec3 sun_through(Volume volume, uint term, vec3 left) {
     return pow(clamp(left, 1e-30, 1.0), power * volume.albedo.rgb);
 }
 
-// Source radiance at the eight nodes of a box of the brick, in the order x + 2 y + 4 z; `left` of
-// it comes through to the eye.
-void light_box(Volume volume, inout Traveller traveller, uvec3 box, vec3 to_eye, vec3 left,
-               float harmonic[HARMONICS]) {
-    uint side = volume.numbers.z + 1u;
-    uint first = volume.numbers.y + traveller.brick * side * side * side +
-                 (box.z * side + box.y) * side + box.x;
-    uint terms = volume.numbers.w, suns = volume.coefficient.y;
-    uint stride = terms + suns * volume.coefficient.w, at[8];
-    for (uint i = 0u; i < 8u; ++i) {
-        uint node = node_at(first + ((i >> 2) * side + (i >> 1 & 1u)) * side + (i & 1u));
-        at[i] = node == kNone ? kNone : volume.coefficient.x + node * stride * 3u;
-        traveller.source[i] = vec3(0.0);
-    }
-    for (uint k = 0u; k < stride; ++k) {
-        vec3 weight;
-        if (k < terms) {
-            weight = vec3(harmonic[k]);
-        } else {
-            uint term = (k - terms) / suns, sun = (k - terms) % suns;
-            weight = eval_phase(volume, term, sun, to_eye) * sun_through(volume, term, left);
-        }
-        for (uint i = 0u; i < 8u; ++i) {
-            if (at[i] == kNone) continue;
-            traveller.source[i] += weight * coefficient_at(at[i] + 3u * k);
-        }
+// Adds coefficient k of eight nodes to what begins at `first` of node_source.
+void add_nodes(int first, uint at[8], uint k, float weight) {
+    for (int i = 0; i < 8; ++i) {
+        if (at[i] != kNone) node_source[first + i] += weight * coefficient_at(at[i] + 3u * k);
     }
 }
 
-// max(0, J), trilinear between nodes.
-vec3 source_at(Volume volume, inout Traveller traveller, vec3 at, vec3 to_eye, vec3 left,
+// Sets a term of node_source, from `first`; coefficients of eight nodes begin at `at`.
+void light_term(Volume volume, int first, uint at[8], uint term, vec3 to_eye, float harmonic[HARMONICS]) {
+    for (int i = 0; i < 8; ++i) node_source[first + i] = vec3(0.0);
+    uint terms = volume.numbers.w, suns = volume.coefficient.y;
+    if (term == 0u) {
+        for (uint k = 0u; k < terms; ++k) add_nodes(first, at, k, harmonic[k]);
+    }
+    for (uint sun = 0u; sun < suns; ++sun) {
+        add_nodes(first, at, terms + term * suns + sun, eval_phase(volume, term, sun, to_eye));
+    }
+}
+
+// Sets node_source for a box of volume v's brick.
+void light_box(Volume volume, int v, uint brick, uvec3 box, vec3 to_eye, float harmonic[HARMONICS]) {
+    uint side = volume.numbers.z + 1u;
+    uint first = volume.numbers.y + brick * side * side * side + (box.z * side + box.y) * side + box.x;
+    uint stride = volume.numbers.w + volume.coefficient.y * volume.coefficient.w, at[8];
+    for (uint i = 0u; i < 8u; ++i) {
+        uint node = node_at(first + ((i >> 2) * side + (i >> 1 & 1u)) * side + (i & 1u));
+        at[i] = node == kNone ? kNone : volume.coefficient.x + node * stride * 3u;
+    }
+#if VOLUMES == 1  // no loop: compilers know all places then, and keep node_source in registers
+    light_term(volume, 0, at, 0u, to_eye, harmonic);
+    if (volume.coefficient.w > 1u) {
+        light_term(volume, 8, at, 1u, to_eye, harmonic);
+        light_term(volume, 16, at, 2u, to_eye, harmonic);
+    }
+#else
+    for (uint term = 0u; term < volume.coefficient.w; ++term) {
+        light_term(volume, v * kSources + 8 * int(term), at, term, to_eye, harmonic);
+    }
+#endif
+}
+
+vec3 mix_nodes(int first, vec3 w) {
+    vec3 low = mix(mix(node_source[first], node_source[first + 1], w.x),
+                   mix(node_source[first + 2], node_source[first + 3], w.x), w.y);
+    vec3 high = mix(mix(node_source[first + 4], node_source[first + 5], w.x),
+                    mix(node_source[first + 6], node_source[first + 7], w.x), w.y);
+    return mix(low, high, w.z);
+}
+
+// max(0, J), trilinear between nodes; `left` of it comes through to the eye.
+vec3 source_at(Volume volume, int v, inout Traveller traveller, vec3 at, vec3 to_eye, vec3 left,
                float harmonic[HARMONICS]) {
     float boxes = float(volume.numbers.z);
     vec3 scaled = at * (boxes / 8.0), base = min(floor(scaled), boxes - 1.0), w = scaled - base;
@@ -234,13 +264,21 @@ vec3 source_at(Volume volume, inout Traveller traveller, vec3 at, vec3 to_eye, v
     uint box = (b.z * volume.numbers.z + b.y) * volume.numbers.z + b.x;
     if (traveller.box != box) {
         traveller.box = box;
-        light_box(volume, traveller, b, to_eye, left, harmonic);
+        light_box(volume, v, traveller.brick, b, to_eye, harmonic);
     }
-    vec3 low = mix(mix(traveller.source[0], traveller.source[1], w.x),
-                   mix(traveller.source[2], traveller.source[3], w.x), w.y);
-    vec3 high = mix(mix(traveller.source[4], traveller.source[5], w.x),
-                    mix(traveller.source[6], traveller.source[7], w.x), w.y);
-    return tame_to(mix(low, high, w.z), 1e20);
+#if VOLUMES == 1
+    vec3 sum = mix_nodes(0, w);
+    if (volume.coefficient.w > 1u) {
+        sum += sun_through(volume, 1u, left) * mix_nodes(8, w);
+        sum += sun_through(volume, 2u, left) * mix_nodes(16, w);
+    }
+#else
+    vec3 sum = vec3(0.0);
+    for (uint term = 0u; term < volume.coefficient.w; ++term) {
+        sum += sun_through(volume, term, left) * mix_nodes(v * kSources + 8 * int(term), w);
+    }
+#endif
+    return tame_to(sum, 1e20);
 }
 
 #if GLOW
@@ -314,7 +352,7 @@ void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin
             vec3 c = tame_to(density * volumes[v].extinction.rgb, 1e15);
             extinction += c;
             scattered += c * volumes[v].albedo.rgb *
-                         source_at(volumes[v], travellers[v], at, to_eye, seen.transmittance, harmonic);
+                         source_at(volumes[v], v, travellers[v], at, to_eye, seen.transmittance, harmonic);
         }
         step_ray(extinction, scattered, emitted, h, seen);
     }
