@@ -97,7 +97,7 @@ TEST(VolumeBake, AMeshedBallIsLitAsTheSameBallOfAGridIs) {
     formats::Medium& medium = meshed.materials[0].medium.emplace();
     medium.sigma_s = {3.6f, 3.6f, 3.6f};
     medium.sigma_a = {0.4f, 0.4f, 0.4f};
-    meshed.volumes.push_back(*formats::fill_body(meshed, "Grey", 16, "", ""));
+    meshed.volumes.push_back(formats::fill_body(meshed, "Grey", 16, "", "")->volume);
     formats::remove_surface(meshed, "Grey");
     Scene grid;
     grid.materials.resize(1);

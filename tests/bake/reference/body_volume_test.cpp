@@ -21,7 +21,7 @@ formats::Volume make_body_volume(Primitive mesh, const TransportRow& row, std::u
     medium.sigma_a = {a, a, a};
     medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
     medium.phase.g = row.g;
-    return *formats::fill_body(scene, "Grey", voxels, "", "");
+    return formats::fill_body(scene, "Grey", voxels, "", "")->volume;
 }
 
 TEST(ReferenceBodyVolume, AMeshedBallScattersADistantLightAsABallOfTheTableDoes) {
