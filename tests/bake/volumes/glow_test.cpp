@@ -5,7 +5,9 @@
 #include <limits>
 #include <numbers>
 
+#include "bake/plan/plan_input.h"
 #include "bake/volumes/glow_walks.h"
+#include "bake/volumes/largest_light.h"
 #include "bake/volumes/volume_knobs.h"
 #include "formats/opal/half.h"
 #include "formats/opal/shared_exponent.h"
@@ -155,6 +157,69 @@ TEST(PlanGlow, LightUnderTheBudgetIsLeftOutAndWhatIsLeftOutIsDarker) {
         const float seen = runtime::march_volumes(ready, {{-4, 0, 0}, {1, 0, 0}}).radiance.g;
         EXPECT_GT(seen, 0);
         EXPECT_LT(static_cast<double>(seen), entry.bound);
+    }
+}
+
+// The light that a bake with every effect shows along rays through the blob, with what it scatters
+// of itself and without.
+struct SeenGlow {
+    double own = 0, scattered = 0;  // largest
+};
+SeenGlow look_at_glow(const formats::Scene& scene, Knobs knobs) {
+    knobs.simulate_all = true;
+    formats::Volumes volumes = tests::bake_volumes_of(scene, knobs);
+    const auto look = [&](float off) {
+        const runtime::VolumeLight lit =
+            runtime::relight_volumes(volumes.view(), {}, {.terms = formats::TermSet::none});
+        const runtime::LitVolumes ready = runtime::light_volumes(volumes.view(), lit);
+        return static_cast<double>(
+            runtime::march_volumes(ready, {{-4, off, 0}, {1, 0, 0}}).radiance.g);
+    };
+    constexpr float kPlaces[] = {0.0f, 0.3f, 0.6f, 0.9f};
+    std::vector<double> all;
+    for (const float off : kPlaces) {
+        all.push_back(look(off));
+    }
+    volumes.glow.value.assign(volumes.glow.value.size(), 0);
+    SeenGlow seen;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const double own = look(kPlaces[i]);
+        seen.own = std::max(seen.own, own);
+        seen.scattered = std::max(seen.scattered, all[i] - own);
+    }
+    return seen;
+}
+
+// Of light E of its own a volume scatters at most s E / (1 - s), s its largest albedo times
+// 1 - e^-tau. From below: what is left out is darker than the bound, which is below the budget.
+// From above: what is kept is there, and no 60th of the bound.
+TEST(PlanGlow, ScatteredLightOfItsOwnIsLeftOutByABoundThatHoldsAndIsNotVain) {
+    Knobs knobs = glow_knobs();
+    knobs.set(kVolumeSpacing, 8);
+    for (const float depth : {0.05f, 0.3f, 2.0f}) {
+        const auto make = [&](float own) {
+            formats::Volume ball =
+                tests::make_volume(tests::make_ball_grid(1, 0.125), depth, 0.9f, 0);
+            tests::make_it_glow(ball, glm::vec3(own));
+            return tests::scene_of(std::move(ball));
+        };
+        const auto bound_of = [](const formats::Scene& scene) {
+            const double s = brightest(scene.volumes[0]).once;
+            return largest_glow(scene.volumes[0]) * s / (1 - s);
+        };
+        // Just below and just above the budget.
+        const auto limit = static_cast<float>(kLeastBound / bound_of(make(1)));
+        const formats::Scene dark = make(0.98f * limit), bright = make(1.02f * limit);
+        EXPECT_EQ(plan_volumes(dark, knobs).layouts.at(0).glow_terms, 0u) << depth;
+        EXPECT_EQ(plan_volumes(bright, knobs).layouts.at(0).glow_terms, 1u) << depth;
+        for (const formats::Scene& scene : {dark, bright}) {
+            const SeenGlow seen = look_at_glow(scene, knobs);
+            EXPECT_LE(seen.scattered, bound_of(scene)) << depth;
+            EXPECT_GE(seen.scattered, bound_of(scene) / 60) << depth;
+            EXPECT_LE(seen.own, largest_glow(scene.volumes[0])) << depth;
+            EXPECT_LE(seen.own + seen.scattered, largest_scattered_glow(scene, scene.volumes[0]))
+                << depth;
+        }
     }
 }
 
