@@ -133,20 +133,21 @@ formats::Status commit_all(std::vector<formats::AtomicFile>& files) {
 // Predicted seconds of the stages, before a pilot changed any knob, and the plan's entries for the
 // knobs used.
 Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
-                   const MachineRates& machine, bake::BakeResult& result) {
+                   const MachineRates& machine, const bake::BakeExtras& extras,
+                   bake::BakeResult& result) {
     const bake::EffectTable& effects = bake::all_effects();
-    const bake::CostRequest used{effects,      scene,         result.facts,
-                                 result.knobs, machine.rates, result.threads};
+    const bake::CostRequest used{effects,       scene,          result.facts,          result.knobs,
+                                 machine.rates, result.threads, extras.receiver_errors};
     bake::predict_costs(used, result.plan, result.volume_plan);
     bake::predict_savings(used, result.plan);
     std::vector<bake::PlanEntry> first = bake::plan_bake(effects, scene, result.facts, wanted);
     std::vector<bake::PlanEntry> others = result.volume_plan;
     bake::Knobs budget = wanted;
     budget.model_error = bake::find_model_error(first);
-    return {
-        bake::predict_costs({effects, scene, result.facts, budget, machine.rates, result.threads},
-                            first, others),
-        machine.note};
+    return {bake::predict_costs({effects, scene, result.facts, budget, machine.rates,
+                                 result.threads, extras.receiver_errors},
+                                first, others),
+            machine.note};
 }
 
 int run(const BakeCommand& options) {
@@ -212,7 +213,8 @@ int run(const BakeCommand& options) {
     const std::uint64_t bytes = file.bytes_written();
     std::size_t next = 0;
     if (machine) {
-        const Expectation expected = expect(imported->scene, *knobs, *machine, *result);
+        const Expectation expected =
+            expect(imported->scene, *knobs, *machine, options.extras, *result);
         if (auto status = files[next++].write(
                 make_report(imported->scene, *result, expected, warnings, bytes));
             !status) {

@@ -16,6 +16,7 @@
 #include "bake/rows/subject_states.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/openness.h"
+#include "formats/opal/receiver_errors.h"
 
 namespace opaline::bake {
 namespace {
@@ -32,7 +33,7 @@ double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
 }
 
 void bill_placing(const CostedBake& bake, bool has_lamps, Bill& bill) {
-    const auto& [effects, scene, facts, knobs, rates, threads] = bake.request;
+    const auto& [effects, scene, facts, knobs, rates, threads, receiver_errors] = bake.request;
     double body_triangles = 0;
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         body_triangles += scene.materials[m].medium ? facts.material[m].triangles : 0;
@@ -218,6 +219,10 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bill_layers(request, volume_plan, bill);
     bill_lamps(bake, volume_plan, bill);
     bill.add_bytes(mesh_bytes(request.scene, request.facts));
+    if (request.receiver_errors) {
+        bill.add_bytes(sizeof(formats::ReceiverErrorsHead) +
+                       sizeof(float) * request.facts.receivers);
+    }
     bill.cost.memory_bytes = static_cast<std::uint64_t>(
         predict_memory(request.effects, count_planned_memory(bake), request.knobs, request.threads)
             .bytes());

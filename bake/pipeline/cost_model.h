@@ -38,7 +38,8 @@ struct CostRequest {
     const SceneFacts& facts;
     const Knobs& knobs;
     const Rates& rates;
-    unsigned threads = 1;  ///< >= 1
+    unsigned threads = 1;          ///< >= 1
+    bool receiver_errors = false;  ///< BakeExtras::receiver_errors: bytes of the file alone
 };
 
 /// Predicts the bake that `plan` decides on, knobs and all, on a machine of these rates, and fills

@@ -149,5 +149,25 @@ TEST(Prediction, BytesAreThoseOfTheRowsInTheFile) {
     EXPECT_NEAR(predicted, static_cast<double>(bytes), 0.05 * static_cast<double>(bytes));
 }
 
+TEST(Prediction, ErrorsByReceiverTakeTheBytesOfTheirSectionAndNoTime) {
+    const Scene scene = make_dented_ball();
+    const bake::Knobs knobs = *bake::resolve_knobs(small_bake());
+    const bake::SceneFacts facts = bake::inspect_scene(scene);
+    const bake::Rates rates = make_rates();
+    auto plan = bake::plan_bake(scene, facts, knobs);
+    bake::CostRequest request{bake::all_effects(), scene, facts, knobs, rates, 1};
+    const bake::CostPrediction without = bake::predict_costs(request, plan);
+    request.receiver_errors = true;
+    const bake::CostPrediction with = bake::predict_costs(request, plan);
+    // u32 receivers, 12 bytes 0, then a float each (formats/README.md, RERR).
+    std::uint64_t section = 16;
+    for (const formats::Primitive& primitive : scene.primitives) {
+        section += 4 * primitive.position.size();
+    }
+    EXPECT_EQ(with.bytes - without.bytes, section);
+    EXPECT_EQ(with.shared_bytes - without.shared_bytes, section);
+    EXPECT_EQ(with.seconds, without.seconds);
+}
+
 }  // namespace
 }  // namespace opaline::tests
