@@ -27,17 +27,22 @@ OPALINE_AVX512 inline void prefetch_ahead(const T* p) {
                  _MM_HINT_T0);
 }
 
-// Broadcasts under a mask: loads alone, where inserts would take the shuffling unit too. The four
-// indices are one load as well: loads are what this loop is short of.
+// Broadcasts under a mask: loads alone, where inserts would take the shuffling unit too.
+OPALINE_AVX512 inline __m512 join_four(const float* first, const float* second, const float* third,
+                                       const float* fourth) {
+    __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(first));
+    v = _mm512_mask_broadcast_f32x4(v, 0x00f0, _mm_loadu_ps(second));
+    v = _mm512_mask_broadcast_f32x4(v, 0x0f00, _mm_loadu_ps(third));
+    return _mm512_mask_broadcast_f32x4(v, 0xf000, _mm_loadu_ps(fourth));
+}
+
+// The four indices are one load as well: loads are what this loop is short of.
 OPALINE_AVX512 inline __m512 load_four(const float* light, const std::uint16_t* index) {
     std::uint64_t all = 0;
     std::memcpy(&all, index, sizeof all);
     const std::size_t i0 = all & 0xffff, i1 = all >> 16 & 0xffff, i2 = all >> 32 & 0xffff,
                       i3 = all >> 48;
-    __m512 v = _mm512_broadcast_f32x4(_mm_loadu_ps(light + 4 * i0));
-    v = _mm512_mask_broadcast_f32x4(v, 0x00f0, _mm_loadu_ps(light + 4 * i1));
-    v = _mm512_mask_broadcast_f32x4(v, 0x0f00, _mm_loadu_ps(light + 4 * i2));
-    return _mm512_mask_broadcast_f32x4(v, 0xf000, _mm_loadu_ps(light + 4 * i3));
+    return join_four(light + 4 * i0, light + 4 * i1, light + 4 * i2, light + 4 * i3);
 }
 
 // What codes stand for (detail_codes.h).
@@ -134,31 +139,65 @@ OPALINE_AVX512 inline __m128 sum_details(const float* light, const std::uint16_t
                       rest);
 }
 
+// Face averages of the light, the same for all rows: (r g b 0) of four faces, then of two.
+struct FacesOfLight {
+    __m512 four;
+    __m256 two;
+};
+
+OPALINE_AVX512 inline FacesOfLight faces_of(const LightVector& light) {
+    const float* const l = light.rgba.data();
+    const std::size_t stride = std::size_t{4} * light.n * light.n;
+    const __m256 two = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(l + 4 * stride)),
+                                            _mm_loadu_ps(l + 5 * stride), 1);
+    return {join_four(l, l + stride, l + 2 * stride, l + 3 * stride), two};
+}
+
+OPALINE_AVX512 inline __m128 add_faces(const FacesOfLight& faces, __m512 four, __m256 two) {
+    const __m256 sum = _mm256_mul_ps(faces.two, two);
+    return add_quarters(_mm512_fmadd_ps(faces.four, four, _mm512_zextps256_ps512(sum)));
+}
+
+// `code`: six averages of red, then of green, then of blue; of grey rows six.
+template <std::uint32_t bands>
+OPALINE_AVX512 inline __m128 sum_averages(const FacesOfLight& faces, const std::int16_t* code) {
+    if constexpr (bands == 1) {
+        const __m256 c = _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(load_twelve_bytes(code)));
+        const __m512i first = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+        return add_faces(faces, _mm512_permutexvar_ps(first, _mm512_castps256_ps512(c)),
+                         _mm256_permutexvar_ps(_mm256_setr_epi32(4, 4, 4, 4, 5, 5, 5, 5), c));
+    } else {
+        const __m512 c = _mm512_cvtepi32_ps(
+            _mm512_cvtepi16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(code))));
+        const __m512i first = _mm512_setr_epi32(0, 6, 12, 0, 1, 7, 13, 0, 2, 8, 14, 0, 3, 9, 15, 0);
+        const __m512i last = _mm512_setr_epi32(4, 10, 16, 0, 5, 11, 17, 0, 0, 0, 0, 0, 0, 0, 0, 0);
+        const __m128i rest = _mm_cvtepi16_epi32(_mm_maskz_loadu_epi16(0x3, code + 16));
+        const __m512 end = _mm512_castps128_ps512(_mm_cvtepi32_ps(rest));
+        return add_faces(faces, _mm512_maskz_permutexvar_ps(0x7777, first, c),
+                         _mm512_castps512_ps256(_mm512_maskz_permutex2var_ps(0x77, c, last, end)));
+    }
+}
+
+// Of each band; the fourth lane is not stored.
+template <std::uint32_t bands>
+OPALINE_AVX512 inline __m128 scale_of(const float* scale) {
+    return bands == 1 ? _mm_set1_ps(*scale) : _mm_maskz_loadu_ps(0x7, scale);
+}
+
 template <class Code, std::uint32_t bands>
 OPALINE_AVX512 void dot_wide(const TypedRows<std::uint16_t, Code>& rows, const LightVector& light,
                              std::uint32_t first, std::span<Rgb> out) {
     const float* const l = light.rgba.data();
-    const std::size_t face_stride = std::size_t{4} * light.n * light.n;
+    const FacesOfLight faces = faces_of(light);
     for (std::size_t i = 0; i < out.size(); ++i) {
         const std::size_t row = first + i;
         const std::uint32_t begin = rows.row_offset[row];
         const __m128 details = sum_details<Code, bands>(
             l, rows.index + begin, rows.code + std::size_t{begin - rows.row_offset[0]} * bands,
             rows.row_offset[row + 1] - begin);
-        const float* const detail = rows.detail_scale + row * bands;
-        const float* const average = rows.average_scale + row * bands;
-        // Six averages of red, then of green, then of blue.
-        const std::int16_t* const code = rows.average_code + row * bands * 6;
-        constexpr std::size_t kGreen = bands == 1 ? 0 : 1, kBlue = bands == 1 ? 0 : 2;
-        __m128 averages = _mm_setzero_ps();
-        for (std::size_t f = 0; f < 6; ++f) {
-            const __m128i codes =
-                _mm_setr_epi32(code[f], code[6 * kGreen + f], code[6 * kBlue + f], 0);
-            averages =
-                _mm_fmadd_ps(_mm_loadu_ps(l + f * face_stride), _mm_cvtepi32_ps(codes), averages);
-        }
-        const __m128 detail_scale = _mm_setr_ps(detail[0], detail[kGreen], detail[kBlue], 0);
-        const __m128 average_scale = _mm_setr_ps(average[0], average[kGreen], average[kBlue], 0);
+        const __m128 averages = sum_averages<bands>(faces, rows.average_code + row * bands * 6);
+        const __m128 detail_scale = scale_of<bands>(rows.detail_scale + row * bands);
+        const __m128 average_scale = scale_of<bands>(rows.average_scale + row * bands);
         const __m128 sum = _mm_fmadd_ps(details, detail_scale, _mm_mul_ps(averages, average_scale));
         _mm_mask_storeu_ps(&out[i].r, 0x7, sum);
     }
