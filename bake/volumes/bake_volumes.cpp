@@ -13,11 +13,14 @@
 #include "bake/volumes/node_albedo.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/node_rows.h"
+#include "bake/volumes/node_worth.h"
 #include "bake/volumes/pack_density.h"
 #include "bake/volumes/phase_table.h"
+#include "bake/volumes/share_details.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_paths.h"
 #include "bake/volumes/volume_walks.h"
+#include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
 namespace {
@@ -34,6 +37,7 @@ struct Nodes {
     std::vector<NodeLattice> lattices;  // of each volume of the scene; empty where nothing is baked
     std::vector<std::size_t> first;     // node of each volume, among all
     std::vector<std::vector<glm::vec3>> albedo;  // shares of each volume's nodes
+    std::vector<std::vector<float>> density;     // around each volume's nodes
     std::size_t count = 0;
     LightCells fine;                                 // of single scattering
     LightCells coarse;                               // of multiple scattering, which is smoother
@@ -58,6 +62,7 @@ Nodes place_nodes(const VolumeJob& job) {
         nodes.first[v] = nodes.count;
         nodes.count += nodes.lattices[v].node.size();
         nodes.albedo.push_back(node_albedo_shares(nodes.space.volumes[v], nodes.lattices[v]));
+        nodes.density.push_back(node_densities(job.scene.volumes[v].density, nodes.lattices[v]));
     }
     // Light changes little within 5 degrees, light that is scattered often within 11.
     const std::uint32_t n = job.knobs.cubemap_size;
@@ -68,8 +73,9 @@ Nodes place_nodes(const VolumeJob& job) {
     for (const VolumeLayout& layout : job.layouts) {
         const NodeCoefficients most = node_coefficients(job.knobs, layout.often_terms);
         const double tolerance = kTolerance[static_cast<std::size_t>(job.knobs.quality)];
-        nodes.attenuated.push_back({make_selector(n, most.attenuated), tolerance});
-        nodes.scattered.push_back({make_selector(n, most.scattered), tolerance});
+        const std::uint32_t more = node_candidates(job.knobs.quality);
+        nodes.attenuated.push_back({make_selector(n, more * most.attenuated), tolerance});
+        nodes.scattered.push_back({make_selector(n, more * most.scattered), tolerance});
     }
     return nodes;
 }
@@ -231,6 +237,36 @@ std::vector<VolumeLayout> decide_methods(const VolumeJob& job, const VolumePathS
     return layouts;
 }
 
+// Two pools a layout: V of all nodes, and all T_k.
+DetailPools start_pools(const VolumeJob& job, const Nodes& nodes) {
+    DetailPools pools;
+    for (const VolumeLayout& layout : job.layouts) {
+        const NodeCoefficients mean = node_coefficients(job.knobs, layout.often_terms);
+        const std::size_t count = nodes.lattices[layout.volume].node.size();
+        constexpr std::uint32_t kFaces = formats::kCubeFaces;  // averages, which stay
+        pools.most.push_back(count * (mean.attenuated - kFaces));
+        pools.most.push_back(count * (mean.scattered - kFaces * layout.often_terms));
+    }
+    return pools;
+}
+
+// The rows of the next node. An error of its light shows by the density that scatters it, and as
+// far as eyes see it; some are within the volume.
+void add_to_pools(const VolumeJob& job, const Nodes& nodes, std::size_t number,
+                  const SparseRow& attenuated, DetailPools& pools) {
+    const Place place = find_place(job, nodes, number);
+    const auto pool = static_cast<std::uint32_t>(2 * number_of(job, *place.layout));
+    constexpr float kLeastSeen = 0.1f;
+    const float seen = std::max(mean_visibility(attenuated, job.knobs.cubemap_size), kLeastSeen);
+    const float weight = seen * nodes.density[place.layout->volume][place.node];
+    pools.pool.push_back(pool);
+    pools.weight.push_back(weight);
+    for (std::uint32_t k = 0; k < place.layout->often_terms; ++k) {
+        pools.pool.push_back(pool + 1);
+        pools.weight.push_back(weight);
+    }
+}
+
 formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& given, const Nodes& nodes,
                                                       LitNodes lit, const Context& context,
                                                       std::vector<MethodMeasure>* measured,
@@ -247,6 +283,7 @@ formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& given, co
     formats::SparseRows rows =
         formats::make_sparse_rows(job.knobs.cubemap_size, job.knobs.code_bits);
     bool fits = true;
+    DetailPools pools = start_pools(job, nodes);
     struct Block {
         std::vector<std::vector<SparseRow>> rows;
         std::uint64_t rays = 0;
@@ -262,6 +299,7 @@ formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& given, co
         },
         [&](Range range, Block&& block) {
             for (std::size_t i = range.begin; i < range.end; ++i) {
+                add_to_pools(job, nodes, i, lit.row[i], pools);
                 fits = fits && formats::append_row(rows, lit.row[i]);
                 lit.row[i] = {};
                 for (const SparseRow& row : block.rows[i - range.begin]) {
@@ -278,7 +316,8 @@ formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& given, co
                           "more than 2^32 coefficients do not fit into one file",
                           "raise --volume-spacing, or lower --volume-coefficients");
     }
-    return rows;
+    return share_details(rows, static_cast<std::uint32_t>(nodes.space.bands()),
+                         nodes.scattered.front().selector, pools);
 }
 
 // Where each volume's rows stand, now that they are there.

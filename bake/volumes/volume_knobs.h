@@ -89,9 +89,10 @@ inline constexpr KnobSpec kVolumeCoefficients{
     .option = "--volume-coefficients",
     .placeholder = "M",
     .help =
-        "largest number of coefficients that the rows of such a point keep together, the six face "
-        "averages of each included: a half or a quarter for light that arrives unscattered, the "
-        "largest others of light that was scattered before; default as the quality says",
+        "number of coefficients that the rows of such a point keep together in the mean, the six "
+        "face averages of each included: a half or a sixth for light that arrives unscattered, the "
+        "others for light that was scattered before; points that are seen more keep more; default "
+        "as the quality says",
     .lowest = 14,
     .highest = 39936,
     .preset = {272, 544, 1632, 39936},
@@ -184,18 +185,24 @@ inline constexpr KnobSpec kVolumeTerms{
     .matters = volume_knobs::is_scattered_often,
     .why_idle = volume_knobs::kWhyOnce};
 
-/// Largest numbers of coefficients of the rows of a node; the face averages are there in any case.
+/// Mean numbers of coefficients of the rows of a node; the face averages are there in any case.
 struct NodeCoefficients {
     std::uint32_t attenuated = 0;  ///< of V
     std::uint32_t scattered = 0;   ///< of all T_k together
 };
 
-/// V has half of them where one row holds multiple scattering and a quarter where more do.
+/// V has half of them where one row holds multiple scattering and a sixth where more do.
 inline NodeCoefficients node_coefficients(const Knobs& knobs, std::uint32_t terms) {
     const std::uint32_t texels = 6 * knobs.cubemap_size * knobs.cubemap_size;
     const std::uint32_t all = whole(knobs, kVolumeCoefficients);
-    const std::uint32_t own = terms == 0 ? all : terms == 1 ? all / 2 : all / 4;
+    const std::uint32_t own = terms == 0 ? all : terms == 1 ? all / 2 : all / 6;
     return {std::clamp(own, 7u, texels), std::clamp(all - own, 7 * terms, texels * terms)};
+}
+
+/// So many times these numbers a node may keep, where it is seen well (share_details.h).
+inline std::uint32_t node_candidates(Quality quality) {
+    constexpr std::array<std::uint32_t, 4> kTimes{4, 4, 2, 1};
+    return kTimes[static_cast<std::size_t>(quality)];
 }
 
 }  // namespace opaline::bake

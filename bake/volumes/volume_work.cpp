@@ -245,7 +245,8 @@ double volume_memory(const VolumeWork& work, const Knobs& knobs) {
     const double depths = 2 * work.nodes * work.tracks * texels(coarse_cells(knobs));
     return work.voxels * (2 * kScene + kGrowth * kCode) + 2 * work.bricks * corners * kCorner +
            depths +
-           kGrowth * (attenuated_row_bytes(work, knobs) + scattered_row_bytes(work, knobs));
+           kGrowth * node_candidates(knobs.quality) *
+               (attenuated_row_bytes(work, knobs) + scattered_row_bytes(work, knobs));
 }
 
 }  // namespace opaline::bake
