@@ -1,28 +1,76 @@
 #include "bake/transport/clearance_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kMostCells = 128;  // along a side: steps fit into a byte
+constexpr float kStepsPerCell = 4;
+constexpr std::uint8_t kMostSteps = 255;
+constexpr float kFar = 4e6f;  // squared cells: above the diagonal's; sums with it are exact
+
+// Replaces f(i), 0 to kFar, by the least f(j) + (i - j)^2: of the envelope of these parabolas
+// [Felzenszwalb2012].
+class LowerEnvelope {
+  public:
+    void replace(std::vector<float>& f) {
+        const std::size_t n = f.size();
+        middle_.resize(n);
+        begin_.resize(n + 1);
+        std::size_t last = 0;
+        middle_[0] = 0;
+        begin_[0] = -std::numeric_limits<float>::infinity();
+        const auto height = [&](std::size_t i) {
+            return f[i] + static_cast<float>(i) * static_cast<float>(i);
+        };
+        for (std::size_t i = 1; i < n; ++i) {
+            float crossing = 0;
+            for (;; --last) {
+                const std::size_t j = middle_[last];
+                crossing = (height(i) - height(j)) / (2 * static_cast<float>(i - j));
+                if (crossing > begin_[last]) {
+                    break;
+                }
+            }
+            middle_[++last] = i;
+            begin_[last] = crossing;
+        }
+        begin_[last + 1] = std::numeric_limits<float>::infinity();
+        least_.resize(n);
+        for (std::size_t i = 0, k = 0; i < n; ++i) {
+            while (begin_[k + 1] < static_cast<float>(i)) {
+                ++k;
+            }
+            const float way = static_cast<float>(i) - static_cast<float>(middle_[k]);
+            least_[i] = f[middle_[k]] + way * way;
+        }
+        f.swap(least_);
+    }
+
+  private:
+    std::vector<std::size_t> middle_;
+    std::vector<float> begin_, least_;
+};
 
 }  // namespace
 
 ClearanceGrid::ClearanceGrid(const formats::Scene& scene, glm::vec3 centre, glm::vec3 half_size,
-                             float cell) {
+                             float cell, std::uint32_t most) {
     const float longest = 2 * std::max({half_size.x, half_size.y, half_size.z});
-    cell_ = std::max(cell, longest / (kMostCells - 2));
+    cell_ = std::max(cell, longest / static_cast<float>(most - 2));
     if (!(cell_ > 0) || longest < 8 * cell_) {
         return;
     }
     per_cell_ = 1 / cell_;
+    step_ = cell_ / kStepsPerCell;
     // A margin of half a cell keeps rounded positions inside.
     size_ = glm::uvec3(glm::ceil(2.0f * half_size * per_cell_)) + 1u;
     count_ = glm::vec3(size_);
     low_ = centre - 0.5f * cell_ * count_;
-    clear_.assign(std::size_t{size_.x} * size_.y * size_.z, std::uint8_t{kMostCells});
+    clear_.assign(std::size_t{size_.x} * size_.y * size_.z, kMostSteps);
     if (!mark_triangles(scene)) {
         *this = {};
         return;
@@ -76,35 +124,43 @@ bool ClearanceGrid::mark_triangles(const formats::Scene& scene) {
     return true;
 }
 
-// Steps to the nearest marked cell, diagonal ones included, in two passes over all neighbours that
-// precede and follow [Rosenfeld1968]; minus one step, because a point may be anywhere in its cell.
+// Least distances between any points of a cell and of a marked one, squared: along each axis
+// max(0, |d| - 1)^2 for cells d apart. As a sum over axes it is minimised along one after the
+// other.
 void ClearanceGrid::measure_distances() {
-    const glm::ivec3 size(size_);
-    const auto pass = [&](int direction) {
-        for (int k = 0; k < size.z; ++k) {
-            for (int j = 0; j < size.y; ++j) {
-                for (int i = 0; i < size.x; ++i) {
-                    const glm::ivec3 at =
-                        direction > 0 ? glm::ivec3(i, j, k) : size - 1 - glm::ivec3(i, j, k);
-                    std::uint8_t& own = clear_[index(glm::uvec3(at))];
-                    for (int n = 0; n < 13 && own > 0; ++n) {
-                        // The 13 of 27 neighbours before the middle.
-                        const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-                        const glm::ivec3 other = at + direction * step;
-                        if (glm::all(glm::greaterThanEqual(other, glm::ivec3(0))) &&
-                            glm::all(glm::lessThan(other, size))) {
-                            const int through = clear_[index(glm::uvec3(other))] + 1;
-                            own = static_cast<std::uint8_t>(std::min<int>(own, through));
-                        }
-                    }
-                }
+    std::vector<float> square(clear_.size());
+    for (std::size_t i = 0; i < clear_.size(); ++i) {
+        square[i] = clear_[i] == 0 ? 0 : kFar;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        measure_along(axis, square);
+    }
+    for (std::size_t i = 0; i < clear_.size(); ++i) {
+        clear_[i] = static_cast<std::uint8_t>(
+            std::min(static_cast<float>(kMostSteps), kStepsPerCell * std::sqrt(square[i])));
+    }
+}
+
+void ClearanceGrid::measure_along(int axis, std::vector<float>& square) const {
+    const std::array<std::size_t, 3> step{1, size_.x, std::size_t{size_.x} * size_.y};
+    const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
+    const auto size = [&](std::size_t i) { return std::size_t{size_[static_cast<int>(i)]}; };
+    LowerEnvelope envelope;
+    std::vector<float> line(size(a));
+    for (std::size_t j = 0; j < size(c); ++j) {
+        for (std::size_t k = 0; k < size(b); ++k) {
+            float* const first = &square[j * step[c] + k * step[b]];
+            const auto at = [&](std::size_t i) -> float& { return first[i * step[a]]; };
+            // (|d| - 1)^2 is d^2 from the nearer of the cell's neighbours and itself.
+            for (std::size_t i = 0; i < line.size(); ++i) {
+                line[i] =
+                    std::min({at(i > 0 ? i - 1 : 0), at(i), at(std::min(i + 1, line.size() - 1))});
+            }
+            envelope.replace(line);
+            for (std::size_t i = 0; i < line.size(); ++i) {
+                at(i) = line[i];
             }
         }
-    };
-    pass(1);
-    pass(-1);
-    for (std::uint8_t& steps : clear_) {
-        steps = static_cast<std::uint8_t>(std::max(0, steps - 1));
     }
 }
 

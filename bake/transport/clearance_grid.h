@@ -16,11 +16,14 @@ class ClearanceGrid {
   public:
     /// The trivial bound: 0 everywhere.
     ClearanceGrid() = default;
+    static constexpr std::uint32_t kMostCells = 128;
+
     /// Of all triangles, inside a box given by its middle and half its size [m], in cells of `cell`
-    /// [m] > 0 or, if those would be too many, of a 128th of the longest side. The bound is 0 for
-    /// boxes of fewer than 8 cells, and where triangles lie in so many cells that the grid would
-    /// cost more than the rays that it saves.
-    ClearanceGrid(const formats::Scene& scene, glm::vec3 centre, glm::vec3 half_size, float cell);
+    /// [m] > 0 or, if that makes more than `most` (up to 1024) along the longest side, as wide as
+    /// that many allow. The bound is 0 for boxes of fewer than 8 cells, and where triangles lie in
+    /// so many cells that the grid would cost more than the rays that it saves.
+    ClearanceGrid(const formats::Scene& scene, glm::vec3 centre, glm::vec3 half_size, float cell,
+                  std::uint32_t most = kMostCells);
 
     /// Lower bound [m] of the distance from a position to the nearest triangle; 0 outside of the
     /// grid.
@@ -30,7 +33,7 @@ class ClearanceGrid {
               place.y < count_.y && place.z < count_.z)) {
             return 0;
         }
-        return cell_ * static_cast<float>(clear_[index(glm::uvec3(place))]);
+        return step_ * static_cast<float>(clear_[index(glm::uvec3(place))]);
     }
 
   private:
@@ -39,11 +42,12 @@ class ClearanceGrid {
     }
     bool mark_triangles(const formats::Scene& scene);
     void measure_distances();
+    void measure_along(int axis, std::vector<float>& square) const;
 
     glm::vec3 low_{0}, count_{0};  ///< cells along each axis: size_ as floats
     glm::uvec3 size_{0};
-    float cell_ = 0, per_cell_ = 0;
-    std::vector<std::uint8_t> clear_;  ///< number of whole cells without triangles around each cell
+    float cell_ = 0, per_cell_ = 0, step_ = 0;
+    std::vector<std::uint8_t> clear_;  ///< steps to the nearest triangle, of any place in a cell
 };
 
 }  // namespace opaline::bake

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bake/effects/multiple/gather_multiple.h"
+#include "bake/effects/multiple/walks/walk_balls.h"
 #include "bake/plan/knobs.h"
 #include "bake/receivers/surface_samples.h"
 #include "formats/opal/cubemap.h"
@@ -209,13 +210,15 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
             OtherLight::has_environment(options.light) ? kKeptOfLight : kAllCoefficients);
     }
     if (walks && !context.cancelled()) {
-        const WalkSpace space =
+        const double all_walks = count_walks(plan, area, options.walks);
+        WalkSpace space =
             make_walk_space(scene, bodies.hierarchy(), material, options.bands == 1, options.inner);
+        add_balls(space, all_walks, options.seed, context);
         const bool has_tree = !stage.tree.nodes.empty();
         walk(space, plan,
              {samples, has_tree ? stage.tree.samples : light,
               has_tree ? stage.tree.other_samples : other},
-             count_walks(plan, area, options.walks), options, context, stage);
+             all_walks, options, context, stage);
     }
     return stage;
 }

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "bake/effects/multiple/multiple_knobs.h"
+#include "bake/effects/multiple/walks/walk_balls.h"
 #include "bake/plan/plan_input.h"
 #include "bake/scattering/fresnel.h"
+#include "formats/media/mean_cosine.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -47,6 +49,23 @@ double shortest_path(const formats::Medium& medium, const MaterialFacts& body) {
 
 SitePlan plan_of(const SubjectCost& cost) {
     return expected_sites(cost.medium(), cost.facts, cost.input.knobs);
+}
+
+// What a walk costs in events. Balls save walks of hundreds of events most of them; measured on the
+// statue (tests/bench/RESULTS.md, "Balls").
+double count_steps(const formats::Medium& medium, const MaterialFacts& body) {
+    constexpr double kMost = 130;
+    const double events = count_body_events(medium, body);
+    const auto diagonal = static_cast<double>(glm::length(body.high - body.low));
+    const double g = formats::mean_cosine(medium.phase);
+    const auto has_balls = [&](const Band& band) {
+        const double sigma_t = band.sigma_s + band.sigma_a;
+        return band.sigma_s > 0 && largest_ball(band.sigma_s / sigma_t, g, diagonal * sigma_t) > 0;
+    };
+    const auto bands = bands_of(medium);
+    return !medium.variation && std::any_of(bands.begin(), bands.end(), has_balls)
+               ? events / (1 + events / kMost)
+               : events;
 }
 
 }  // namespace
@@ -92,7 +111,7 @@ Work walks_work(const SubjectCost& cost) {
     const auto& variation = cost.medium().variation;
     const double looked_up = !variation ? 1 : variation->marble ? 3 : 1.5;
     return {plan.sites * rates.place_sample,
-            walks * (looked_up * count_body_events(cost.medium(), cost.facts) *
+            walks * (looked_up * count_steps(cost.medium(), cost.facts) *
                          rates.body_event.at(cost.input.triangles) +
                      kExitsPerWalk * (rates.walk_exit + entries)) +
                 plan.sites * (1 + views) * dense * rates.truncate_texel};

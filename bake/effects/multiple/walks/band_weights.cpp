@@ -6,6 +6,7 @@
 namespace opaline::bake {
 namespace {
 
+constexpr float kMostExponent = 80;  // e to that is finite
 constexpr float kThin = 0.6931472f;  // optical depth where half scatters by itself
 
 bool is_split(float sigma_t, float distance) {
@@ -68,12 +69,12 @@ double BandWeights::left() const {
 // What a flight is worth in each group, over what it is worth in the one it is drawn from, times
 // `scale`.
 BandWeights::PerGroup BandWeights::flight_factors(float length, bool collides, float scale) const {
-    constexpr float kMost = 80;  // e to that is finite
     const float log_scale = std::log(scale);
     PerGroup factors{1, 1, 1};
     for (std::size_t g = 0; g < groups_; ++g) {
         const float exponent = (sigma_t_ - medium_->sigma_t[g]) * length + log_scale;
-        factors[g] = std::exp(std::min(kMost, collides ? exponent + log_ratio_[g] : exponent));
+        factors[g] =
+            std::exp(std::min(kMostExponent, collides ? exponent + log_ratio_[g] : exponent));
     }
     return factors;
 }
@@ -105,6 +106,33 @@ bool BandWeights::fly(float length, bool collides) {
         }
     }
     return !medium_->absorbs_in_flight || absorb_in_flight(length);
+}
+
+bool BandWeights::cross_ball(float length, float scatterings) {
+    if (groups_ > 1) {
+        // What hundreds of flights are worth is beyond the range of numbers, but for its ratios.
+        PerGroup factors{};
+        float most = 0;
+        for (std::size_t g = 0; g < groups_; ++g) {
+            factors[g] = (sigma_t_ - medium_->sigma_t[g]) * length +
+                         (scatterings > 0 ? scatterings * log_ratio_[g] : 0);
+            most = std::max(most, factors[g] + std::log(density_[g]));
+        }
+        for (float& factor : factors) {
+            factor = std::exp(std::min(kMostExponent, factor - most));
+        }
+        if (!reweigh(factors, factors)) {
+            return false;
+        }
+    }
+    for (std::size_t b = 0; b < 3; ++b) {
+        if (own_[b] > 0) {
+            const float left = std::pow(medium_->albedo[b], scatterings);
+            value_[b] *= left;
+            own_[b] *= left;
+        }
+    }
+    return medium_->absorbs_in_flight ? absorb_in_flight(length) : left() > 0;
 }
 
 // Bands that are not scattered here.

@@ -36,6 +36,10 @@ class BandWeights {
     /// return false where no weight is left.
     bool fly(float length, bool collides);
 
+    /// A walk of `length` [m] in the medium, with that many scatterings (whole), to a place where
+    /// its flight goes on.
+    bool cross_ball(float length, float scatterings);
+
     /// The first flight, toward a surface at `distance` [m]. In a group for which nearly all light
     /// would cross that, half of the walks collide before, with a density in proportion to light's.
     /// No first flight is changed where no surface is nearer than first_reach() [m]; none at all

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "bake/base/frame.h"
 #include "bake/scattering/phase.h"
 
 namespace opaline::bake {
@@ -38,6 +40,17 @@ PhaseTable make_phase_table(const formats::PhaseFunction& phase) {
     return table;
 }
 
+double mean_cosine(const PhaseTable& table) {
+    if (table.cosine.empty()) {
+        return table.g;
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < table.cosine.size(); ++i) {
+        sum += 0.5 * static_cast<double>(table.cosine[i] + table.cosine[i + 1]);
+    }
+    return sum / static_cast<double>(table.cosine.size() - 1);
+}
+
 float sample_cosine(const PhaseTable& table, float u) {
     if (!table.cosine.empty()) {
         const float place = u * static_cast<float>(table.cosine.size() - 1);
@@ -53,6 +66,15 @@ float sample_cosine(const PhaseTable& table, float u) {
     }
     const double s = (1 - g * g) / (1 + g - 2 * g * x);
     return static_cast<float>(std::clamp((1 + g * g - s * s) / (2 * g), -1.0, 1.0));
+}
+
+glm::vec3 scatter(const PhaseTable& table, glm::vec3 direction, float u, float v) {
+    const float cosine = sample_cosine(table, u);
+    const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+    const float azimuth = 2 * std::numbers::pi_v<float> * v;
+    const glm::vec3 turned = make_frame(direction).to_world(
+        {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine});
+    return glm::normalize(turned);  // thousands of turns would add up their rounding
 }
 
 }  // namespace opaline::bake

@@ -6,7 +6,9 @@
 #include <numbers>
 
 #include "bake/base/frame.h"
+#include "bake/effects/multiple/walks/find_clearance.h"
 #include "bake/effects/multiple/walks/find_hit.h"
+#include "bake/effects/multiple/walks/free_ball.h"
 #include "bake/effects/multiple/walks/medium_stack.h"
 #include "bake/scattering/fresnel.h"
 
@@ -46,15 +48,6 @@ glm::vec3 start_direction(const WalkSpace& space, const WalkStart& start, WalkRa
                                                : make_frame(start.flat).to_world(tilted);
 }
 
-glm::vec3 scatter(const PhaseTable& phase, glm::vec3 direction, WalkRandom& random) {
-    const float cosine = sample_cosine(phase, random.next());
-    const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
-    const float azimuth = 2 * kPi * random.next();
-    const glm::vec3 turned = make_frame(direction).to_world(
-        {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine});
-    return glm::normalize(turned);  // thousands of turns would add up their rounding
-}
-
 // Two indices of refraction between which light neither bends nor is reflected.
 bool is_matched(float ratio) {
     return std::abs(ratio - 1) < 1e-5f;
@@ -76,6 +69,7 @@ class Walk {
     glm::vec3 follow(const WalkStart& start) {
         ++counts_.walks;
         position_ = start_ = start.position;
+        free_.set(position_, 0, start.depth);
         if (start.arrival != glm::vec3(0)) {
             direction_ = start.arrival;
             if (collide(0)) {
@@ -96,11 +90,57 @@ class Walk {
     void go_on(std::uint32_t event) {
         for (; event < space_.most_events; ++event) {
             ++counts_.events;
-            if (!fly(flight_length())) {
+            if (!(may_jump() ? jump() : fly(flight_length()))) {
                 return;
             }
         }
         give_up(counts_.endless);
+    }
+
+    // Lower bound [m] on the distance to the nearest surface.
+    float clearance() const {
+        return std::max(space_.clearance(position_), free_.least(position_));
+    }
+
+    const BallBank* balls() const {
+        return bodies_.top() < space_.balls.size() ? space_.balls[bodies_.top()].get() : nullptr;
+    }
+
+    // Whether a ball of the bank has room here. Where the grid is too coarse to tell, the nearest
+    // triangle is looked for, unless the walk cannot have come far enough from one.
+    bool may_jump() {
+        const BallBank* const bank = balls();
+        if (bank == nullptr || !(weight_.sigma_t() > 0)) {
+            return false;
+        }
+        const float least = bank->least() / weight_.sigma_t();
+        clearance_ = clearance();
+        if (clearance_ >= least) {
+            return true;
+        }
+        constexpr float kCoarse = 3, kWorth = 3;  // measured: a search costs five flights
+        const float most = free_.most(position_);
+        if (!(space_.cell * weight_.sigma_t() > kCoarse) || most < kWorth * least) {
+            return false;
+        }
+        const float reach = std::min(1.00001f * most, bank->largest() / weight_.sigma_t());
+        ++counts_.searches;
+        const float distance = find_clearance(space_, position_, reach);
+        free_.set(position_, distance, distance < reach ? distance : most);
+        clearance_ = std::max(clearance_, free_.least(position_));
+        return clearance_ >= least;
+    }
+
+    bool jump() {
+        const float sigma_t = weight_.sigma_t();
+        const float u = random_.next();
+        const BallJump jump = balls()->draw(sigma_t * clearance_, direction_, u, random_.next());
+        ++counts_.jumps;
+        position_ += jump.way / sigma_t;
+        direction_ = jump.direction;
+        length_ += jump.length / sigma_t;
+        scatterings_ += static_cast<std::uint32_t>(jump.scatterings);
+        return weight_.cross_ball(jump.length / sigma_t, jump.scatterings) && survives();
     }
 
     float flight_length() {
@@ -140,7 +180,7 @@ class Walk {
 
     bool fly(float length) {
         WalkHit hit;
-        if (space_.clearance(position_) < length) {
+        if (clearance() < length) {
             ++counts_.rays;
             if (find_hit(space_, position_, direction_, length, hit)) {
                 return weight_.fly(glm::distance(hit.position, position_), false) && arrive(hit);
@@ -163,7 +203,7 @@ class Walk {
             return collide_in(*field);
         }
         ++scatterings_;
-        direction_ = scatter(medium().phase, direction_, random_);
+        turn();
         return weight_.absorb() && survives();
     }
 
@@ -175,9 +215,14 @@ class Walk {
             return true;
         }
         ++scatterings_;
-        direction_ = scatter(medium().phase, direction_, random_);
+        turn();
         const glm::vec3 albedo = field.albedo(position_);
         return weight_.absorb({albedo.x, albedo.y, albedo.z}) && survives();
+    }
+
+    void turn() {
+        const float u = random_.next();
+        direction_ = scatter(medium().phase, direction_, u, random_.next());
     }
 
     const WalkMedium& medium() const { return space_.media[bodies_.top()]; }
@@ -192,6 +237,7 @@ class Walk {
             return false;
         }
         length_ += glm::distance(hit.position, position_);
+        free_.set(hit.position, 0, 0);
         const float side = glm::dot(direction_, hit.flat) > 0 ? 1.0f : -1.0f;
         MediumStack beyond = bodies_;
         if (side > 0) {
@@ -298,7 +344,9 @@ class Walk {
     WalkCounts& counts_;
 
     glm::vec3 start_{0}, position_{0}, direction_{0};
-    float length_ = 0;  // of the walk so far
+    float length_ = 0;     // of the walk so far
+    float clearance_ = 0;  // where it may jump [m]
+    FreeBall free_;
     std::uint32_t scatterings_ = 0;
     bool is_reflected_ = false, has_changed_ = false;  // inside; medium
     MediumStack bodies_;
@@ -310,6 +358,8 @@ WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
     walks += other.walks;
     events += other.events;
     rays += other.rays;
+    jumps += other.jumps;
+    searches += other.searches;
     lost += other.lost;
     endless += other.endless;
     buried += other.buried;

@@ -93,10 +93,12 @@ struct WalkExit {
 /// What became of walks.
 struct WalkCounts {
     std::uint64_t walks = 0;
-    std::uint64_t events = 0;  ///< flights, in all
+    std::uint64_t events = 0;  ///< flights and jumps, in all
     std::uint64_t rays = 0;
-    std::uint64_t lost = 0;     ///< left the body's box: through a hole, or past an edge
-    std::uint64_t endless = 0;  ///< given up after WalkSpace::most_events
+    std::uint64_t jumps = 0;     ///< of the events: to the surface of a ball
+    std::uint64_t searches = 0;  ///< for the nearest triangle
+    std::uint64_t lost = 0;      ///< left the body's box: through a hole, or past an edge
+    std::uint64_t endless = 0;   ///< given up after WalkSpace::most_events
     std::uint64_t buried =
         0;                  ///< given up where more media lie in each other than MediumStack holds
     double unfinished = 0;  ///< weight that lost, endless and buried walks still had, in walks

@@ -101,6 +101,7 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
     constexpr float kCell = 0.01f;  // of the diagonal
     space.clearance = ClearanceGrid(scene, 0.5f * (space.low + space.high),
                                     0.5f * (space.high - space.low), kCell * diagonal);
+    space.cell = kCell * diagonal;
     space.most_events = most_events(space.media, diagonal);
     return space;
 }

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "bake/effects/multiple/walks/ball_bank.h"
 #include "bake/effects/multiple/walks/walk_media.h"
 #include "bake/transport/clearance_grid.h"
 #include "bake/transport/embree_scene.h"
@@ -25,6 +27,9 @@ struct WalkSpace {
     /// there.
     std::vector<std::uint8_t> medium_of;
     ClearanceGrid clearance;
+    float cell = 0;  ///< [m], of that grid
+    /// Of each medium, balls that walks cross in one step; null or no entry: none.
+    std::vector<std::shared_ptr<const BallBank>> balls;
     glm::vec3 low{0}, high{0};        ///< box around these bodies [m], a little wider
     std::uint32_t diffuse_after = 0;  ///< scatterings that leave nothing of a direction
     /// More scatterings and reflections than any walk needs but one in thousands.

@@ -1,0 +1,121 @@
+#include "bake/effects/multiple/walks/ball_bank.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "bake/base/frame.h"
+#include "bake/base/ordered_parallel.h"
+#include "bake/effects/multiple/walks/walk.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr float kLeastRadius = 1.5f;
+constexpr double kStepsPerOctave = 3;
+
+// Starts of walks that belong to no site: a bank has 256 radii at most.
+constexpr std::uint32_t kFirstStart = 0xffff0000u;
+
+}  // namespace
+
+BallJump BallBank::draw(float clearance, glm::vec3 direction, float u, float v) const {
+    const float place = static_cast<float>(kStepsPerOctave) * std::log2(clearance / kLeastRadius);
+    auto k = std::min(static_cast<std::size_t>(std::max(0.0f, place)), radius_.size() - 1);
+    if (k > 0 && radius_[k] > clearance) {
+        --k;  // rounding
+    }
+    const auto i = static_cast<std::size_t>(u * static_cast<float>(kRecords));
+    const Record& record = record_[k * kRecords + i];
+    const float azimuth = 2 * std::numbers::pi_v<float> * v;
+    const Frame frame = make_frame(direction);
+    const float cosine = std::cos(azimuth), sine = std::sin(azimuth);
+    const glm::vec3 toward = cosine * frame.u + sine * frame.v;
+    const glm::vec3 beside = cosine * frame.v - sine * frame.u;
+    const float across = std::sqrt(std::max(0.0f, 1 - record.along * record.along));
+    BallJump jump;
+    jump.way = radius_[k] * (record.along * direction + across * toward);
+    jump.direction = glm::normalize(record.direction.x * toward + record.direction.y * beside +
+                                    record.direction.z * direction);
+    jump.length = record.length;
+    jump.scatterings = record.scatterings;
+    return jump;
+}
+
+BallBank make_ball_bank(const PhaseTable& phase, const BallBankOptions& options,
+                        const Context& context) {
+    using Record = BallBank::Record;
+    struct Part {
+        std::vector<Record> record;
+        double events = 0;
+    };
+    const auto walk = [&](float radius, WalkRandom& random, double& events) {
+        glm::vec3 position(0), direction(0, 0, 1);
+        Record record;
+        for (;;) {
+            ++events;
+            const float flight = -std::log(1 - random.next());
+            const float b = glm::dot(position, direction);
+            const float inside = std::max(0.0f, radius * radius - glm::dot(position, position));
+            const float to_surface = std::sqrt(b * b + inside) - b;
+            if (flight >= to_surface) {
+                position += to_surface * direction;
+                record.length += to_surface;
+                break;
+            }
+            position += flight * direction;
+            record.length += flight;
+            ++record.scatterings;
+            const float u = random.next();
+            direction = scatter(phase, direction, u, random.next());
+        }
+        const glm::vec3 place = glm::normalize(position);
+        record.along = std::clamp(place.z, -1.0f, 1.0f);
+        const float across = std::hypot(place.x, place.y);
+        const glm::vec2 toward = across > 0 ? glm::vec2(place) / across : glm::vec2(1, 0);
+        record.direction = {toward.x * direction.x + toward.y * direction.y,
+                            toward.x * direction.y - toward.y * direction.x, direction.z};
+        return record;
+    };
+    BallBank bank;
+    double events = 0, of_next = 2.0 * BallBank::kRecords;
+    for (std::uint32_t k = 0; k < 256 && !context.cancelled(); ++k) {
+        const auto radius =
+            static_cast<float>(double{kLeastRadius} * std::exp2(k / kStepsPerOctave));
+        if (double{radius} > options.largest || events + of_next > options.events) {
+            break;
+        }
+        double own = 0;
+        std::vector<Record> records;
+        records.reserve(BallBank::kRecords);
+        for_each_block_in_order(
+            BallBank::kRecords, 1024, context,
+            [&](Range range) {
+                Part part;
+                for (std::size_t i = range.begin; i < range.end; ++i) {
+                    WalkRandom random(
+                        {options.seed, RandomStage::body_walk,
+                         kFirstStart + 256 * options.number + k, static_cast<std::uint32_t>(i)},
+                        true);
+                    part.record.push_back(walk(radius, random, part.events));
+                }
+                return part;
+            },
+            [&](Range, Part&& part) {
+                own += part.events;
+                records.insert(records.end(), part.record.begin(), part.record.end());
+            });
+        if (records.size() < BallBank::kRecords) {
+            break;
+        }
+        events += own;
+        of_next =
+            own * std::exp2(2 / kStepsPerOctave);  // in proportion to the square of the radius
+        bank.radius_.push_back(radius);
+        bank.record_.insert(bank.record_.end(), records.begin(), records.end());
+    }
+    return bank;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/effects/multiple/walks/phase_table.h"
+
+namespace opaline::bake {
+
+/// What became of a walk between the middle of a ball and its surface. Lengths are in mean free
+/// paths.
+struct BallJump {
+    glm::vec3 way{0};        ///< from the middle to the exit
+    glm::vec3 direction{0};  ///< unit, of the flight that goes on there
+    float length = 0;        ///< of the walk inside
+    float scatterings = 0;   ///< inside: whole
+};
+
+struct BallBankOptions;
+
+/// How walks leave balls inside a medium (README.md, "Balls"): for each of several radii, records
+/// of walks that start in the middle along a given direction, drawn once, event by event. A walk
+/// that draws one of them jumps to the surface of its ball. Records know no absorption: each has
+/// its number of scatterings and its length.
+class BallBank {
+  public:
+    static constexpr std::size_t kRecords = 16384;  ///< of a radius
+
+    /// Radii [mean free paths]; infinity where there are none.
+    float least() const {
+        return radius_.empty() ? std::numeric_limits<float>::infinity() : radius_.front();
+    }
+    float largest() const {
+        return radius_.empty() ? std::numeric_limits<float>::infinity() : radius_.back();
+    }
+    std::size_t radii() const { return radius_.size(); }
+    std::size_t bytes() const { return record_.size() * sizeof(Record); }
+
+    /// A record of the largest ball within `clearance` [mean free paths] >= least(), turned around
+    /// `direction`, unit. `u` and `v` uniform in [0, 1).
+    BallJump draw(float clearance, glm::vec3 direction, float u, float v) const;
+
+  private:
+    friend BallBank make_ball_bank(const PhaseTable& phase, const BallBankOptions& options,
+                                   const Context& context);
+
+    // In the frame of the first direction, z, with the exit where y = 0.
+    struct Record {
+        glm::vec3 direction{0};
+        float along = 0;  // cosine of the exit's place to the first direction
+        float length = 0, scatterings = 0;
+    };
+
+    std::vector<float> radius_;
+    std::vector<Record> record_;  // kRecords of each radius
+};
+
+struct BallBankOptions {
+    double largest = 0;  ///< radius [mean free paths], at most
+    double events = 0;   ///< of the walks that make the records, about, at most
+    std::uint64_t seed = 0;
+    std::uint32_t number = 0;  ///< of the bank, below 256: its random numbers
+};
+
+/// As many radii as the options allow, from 1.5 mean free paths in steps of 2^(1/3); none: empty.
+/// The same bits for any number of threads; empty if the context is cancelled.
+BallBank make_ball_bank(const PhaseTable& phase, const BallBankOptions& options,
+                        const Context& context);
+
+}  // namespace opaline::bake
