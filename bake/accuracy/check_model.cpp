@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "bake/accuracy/check_suns.h"
 #include "bake/accuracy/model_lights.h"
 #include "bake/accuracy/model_pairs.h"
 #include "bake/accuracy/model_receivers.h"
@@ -105,6 +106,11 @@ formats::Result<ModelErrorReport> check_model(const formats::Scene& given,
         }
         report.mirrored = *mirrored;
     }
+    auto suns = check_suns(*scenes, asset, receivers, options, context);
+    if (!suns) {
+        return std::move(suns).error();
+    }
+    report.suns = *suns;
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;

@@ -44,6 +44,19 @@ struct ModelErrorReport {
         std::uint32_t receivers_checked = 0;
     };
     std::optional<Mirrored> mirrored;  ///< nothing: no receiver checked is opaque and glossy
+    /// Single suns at receivers behind whose boundary light is refracted (check_suns.h); no part of
+    /// rms_relative.
+    struct Suns {
+        static constexpr double degrees = 5;  ///< across
+        double rms_relative = 0;
+        double ci95[2] = {0, 0};
+        double bias = 0;
+        double noise = 0;  ///< RMS standard error of the truth, relative to its RMS
+        std::uint32_t suns = 0;
+        std::uint32_t receivers_checked = 0;
+        std::uint32_t samples = 0;  ///< paths for each receiver
+    };
+    std::optional<Suns> suns;  ///< nothing: no receiver checked is such
 };
 
 /// Effort of the check. It counts events, not seconds, so the result does not depend on the
@@ -72,7 +85,8 @@ TermSet held_light(const EffectTable& effects, std::span<const PlanEntry> plan);
 /// them in their own body are left out.
 ///
 /// Behind a refracting boundary a path hits the sun's disc by chance only. Scenes with such bodies
-/// are therefore checked without suns, also without the sun of `sky`. The bits are the same for any
+/// are therefore checked without suns, also without the sun of `sky`; `suns` states these by
+/// themselves. The bits are the same for any
 /// number of threads. Errors: resource, interrupted.
 formats::Result<ModelErrorReport> check_model(const formats::Scene& scene,
                                               const formats::AssetView& asset,

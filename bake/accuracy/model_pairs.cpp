@@ -9,30 +9,6 @@
 namespace opaline::bake {
 namespace {
 
-// Between seeds of estimates that are added up: their noise must not be alike.
-constexpr std::uint64_t kOtherSeed = 0x9e3779b97f4a7c15u;
-
-// What files hold. Light that went through volumes is that of the scene as it is; light between
-// surfaces meets volumes that only dim it.
-std::vector<PathSpace> held_light_spaces(const ModelScenes& scenes, const LightSampler& sampler,
-                                         const ModelCheckOptions& options) {
-    PathOptions paths;
-    paths.terms = options.simulated;
-    paths.own_mirror = false;
-    if (!options.lit_by_volumes || !scenes.without_scattering) {
-        return {{scenes.held(), sampler, paths}};
-    }
-    PathOptions through = paths, between = paths;
-    through.terms = options.simulated & ~TermSet::interreflection;
-    through.through_volumes = true;
-    between.terms = options.simulated & TermSet::interreflection;
-    std::vector<PathSpace> spaces{{scenes.whole, sampler, through}};
-    if (between.terms != TermSet::none) {
-        spaces.push_back({scenes.held(), sampler, between});
-    }
-    return spaces;
-}
-
 // Mean luminance of what is not compared. Light of the scene's own emitters depends on no
 // environment and is no part of it.
 formats::Result<double> measure_missing(const PathSpace& space,
@@ -88,6 +64,29 @@ std::array<double, 2> model_interval(std::span<const ModelPair> pairs, std::size
     });
 }
 
+std::vector<PathSpace> held_light_spaces(const ModelScenes& scenes, const LightSampler& sampler,
+                                         const ModelCheckOptions& options) {
+    PathOptions paths;
+    paths.terms = options.simulated;
+    paths.own_mirror = false;
+    if (!options.lit_by_volumes || !scenes.without_scattering) {
+        return {{scenes.held(), sampler, paths}};
+    }
+    PathOptions through = paths, between = paths;
+    through.terms = options.simulated & ~TermSet::interreflection;
+    through.through_volumes = true;
+    between.terms = options.simulated & TermSet::interreflection;
+    std::vector<PathSpace> spaces{{scenes.whole, sampler, through}};
+    if (between.terms != TermSet::none) {
+        spaces.push_back({scenes.held(), sampler, between});
+    }
+    return spaces;
+}
+
+std::uint64_t seed_of_space(std::uint64_t seed, std::size_t space) {
+    return seed + space * 0x9e3779b97f4a7c15u;
+}
+
 formats::Result<LightCheck> check_light(std::span<const PathSpace> spaces,
                                         std::span<const ReferenceReceiver> receivers,
                                         std::span<const double> baked,
@@ -106,7 +105,7 @@ formats::Result<LightCheck> check_light(std::span<const PathSpace> spaces,
         wanted.first = check.samples;
         check.samples += wanted.samples;
         for (std::size_t s = 0; s < spaces.size(); ++s) {
-            wanted.seed = options.seed + s * kOtherSeed;
+            wanted.seed = seed_of_space(options.seed, s);
             const auto estimate = estimate_luminance(spaces[s], receivers, wanted, context);
             if (!estimate) {
                 return estimate.error();

@@ -48,6 +48,15 @@ struct LightCheck {
     TermSet terms = TermSet::none;  ///< that were compared
 };
 
+/// What files hold of a light, as spaces whose paths are added up. Light that went through volumes
+/// is that of the scene as it is; light between surfaces meets volumes that only dim it. All
+/// arguments outlive it.
+std::vector<PathSpace> held_light_spaces(const ModelScenes& scenes, const LightSampler& sampler,
+                                         const ModelCheckOptions& options);
+
+/// Of the paths of space number `space` of those: their noise must not be alike.
+std::uint64_t seed_of_space(std::uint64_t seed, std::size_t space);
+
 /// Compares `baked`, luminance by receiver, with path tracing of the terms of `spaces`, added up.
 /// Doubles the samples until the noise is low enough or the next round exceeds the limit of work.
 /// Errors: interrupted.

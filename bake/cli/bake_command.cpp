@@ -67,6 +67,10 @@ void print_summary(const BakeCommand& options, const bake::BakeResult& result, s
                                 100 * mirrored->rms_relative, 100 * mirrored->ci95[0],
                                 100 * mirrored->ci95[1]);
         }
+        if (const auto& suns = model->suns) {
+            line += fmt::format("; under suns of 5 degrees {:.1f} % (95 %: {:.1f} to {:.1f})",
+                                100 * suns->rms_relative, 100 * suns->ci95[0], 100 * suns->ci95[1]);
+        }
     }
     if (const auto& volumes = result.volume_error) {
         line += fmt::format("; volumes err by {:.1f} % (95 %: {:.1f} to {:.1f}",

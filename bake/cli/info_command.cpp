@@ -233,6 +233,12 @@ void print_provenance(const Json& provenance) {
         fmt::print("model error   {:.1f} % RMS, {:+.1f} % in the mean, at {} receivers\n",
                    percent_of(model, "rms_relative"), percent_of(model, "bias"),
                    text_of(model, "receivers_checked"));
+        if (has_object(model, "suns")) {
+            const Json& suns = model["suns"];
+            fmt::print("  of suns     {:.1f} % RMS, {:+.1f} % in the mean, {} degrees across\n",
+                       percent_of(suns, "rms_relative"), percent_of(suns, "bias"),
+                       text_of(suns, "degrees"));
+        }
     }
     if (has_volume_error) {
         print_volume_error(provenance["volume_error"]);

@@ -75,6 +75,16 @@ Json model_error_json(const ModelErrorReport& error) {
                             {"bias", mirrored->bias},
                             {"receivers_checked", mirrored->receivers_checked}};
     }
+    if (const auto& suns = error.suns) {
+        json["suns"] = {{"rms_relative", suns->rms_relative},
+                        {"ci95", {suns->ci95[0], suns->ci95[1]}},
+                        {"bias", suns->bias},
+                        {"noise", suns->noise},
+                        {"degrees", ModelErrorReport::Suns::degrees},
+                        {"suns", suns->suns},
+                        {"receivers_checked", suns->receivers_checked},
+                        {"samples", suns->samples}};
+    }
     for (const ModelErrorReport::Part& light : error.by_light) {
         json["by_light"][light.name] = {{"rms_relative", light.rms_relative},
                                         {"bias", light.bias},

@@ -27,6 +27,7 @@ struct Path {
     glm::vec3 vertex{0};                 ///< where that event was
     std::optional<PathFilter> filter{};  ///< nothing: textures are looked up at points
     glm::vec3 radiance{0};
+    glm::vec3 sky{0};  ///< weight of light from `direction`, where the sky was reached
     bool lost = false;
 };
 

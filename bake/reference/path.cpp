@@ -110,7 +110,8 @@ void reach_sky(const PathSpace& space, Path& path) {
                              : has_any(term_of(path.state), space.options.terms)) {
         const float weight =
             path.pdf > 0 ? path.pdf / (path.pdf + pdf_light(space.light, path.direction)) : 1.0f;
-        path.radiance += weight * path.beta * eval_light(space.light, path.direction);
+        path.sky = weight * path.beta;
+        path.radiance += path.sky * eval_light(space.light, path.direction);
     }
 }
 
@@ -192,9 +193,9 @@ PathSample finish(const PathSpace& space, Path& path, RandomStream& random) {
     }
     const float sum = path.radiance.x + path.radiance.y + path.radiance.z;
     if (!std::isfinite(sum)) {
-        return {glm::vec3(0), true, path.events};
+        return {.lost = true, .events = path.events};
     }
-    return {path.radiance, path.lost, path.events};
+    return {path.radiance, path.lost, path.events, path.sky, path.direction};
 }
 
 }  // namespace
@@ -275,7 +276,8 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
             path.origin = enter_at(receiver.position, inside.position, normal, path.direction);
         }
     }
-    return walks ? finish(space, path, random) : PathSample{path.radiance, false, path.events};
+    return walks ? finish(space, path, random)
+                 : PathSample{.radiance = path.radiance, .events = path.events};
 }
 
 }  // namespace opaline::bake

@@ -58,6 +58,9 @@ struct PathSample {
     bool lost = false;      ///< it left a body through a hole, or a number overflowed
     /// scattering events and surfaces on the path: a measure of the work
     std::uint32_t events = 0;
+    /// What light of radiance 1 from `to_sky` alone, unit, would add where the path ended in the
+    /// sky, but for what is sampled from the light: of a space without light, all there is.
+    glm::vec3 sky{0}, to_sky{0};
 };
 
 /// Radiance that arrives along a ray against its `direction`; `around`: the bodies it starts in.

@@ -1,28 +1,21 @@
 // How far files of `production` are from path tracing, and whether the interval that --check-model
 // states holds it. Each cell is a scene in a grey medium: transport mean free path without
 // absorption in percent of the diagonal, albedo, mean cosine, index 1.4. Prints what the check
-// states and what four times as many other vertices say, without those that the check leaves out.
-// `suns`: instead, the error under twelve suns 5 degrees across. Rows of RESULTS.md's tables:
-// opaline_error_matrix [suns] SCENE LENGTH,ALBEDO,G...; a minute a cell, suns two.
-#include <array>
+// states and what four times as many other vertices say, without those that the check leaves out;
+// then what it states of suns. Rows of RESULTS.md's tables:
+// opaline_error_matrix SCENE LENGTH,ALBEDO,G...; a minute a cell.
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "bake/accuracy/check_model.h"
 #include "bake/accuracy/model_pairs.h"
-#include "bake/accuracy/model_receivers.h"
 #include "bake/accuracy/model_truth.h"
 #include "bake/pipeline/pipeline.h"
-#include "bake/reference/reference_image.h"
-#include "bake/scene/orient_bodies.h"
 #include "formats/gltf/import_gltf.h"
 #include "runtime/light_vector.h"
-#include "runtime/shade.h"
 #include "tests/support/effects.h"
 
 namespace opaline::bake {
@@ -87,88 +80,22 @@ void print_cell(const formats::Scene& scene) {
     const ModelErrorReport& stated = *baked.model_error;
     const ModelErrorReport other = at_other_vertices(scene, baked.asset.view());
     const bool holds = stated.ci95[0] <= other.ci95[1] && other.ci95[0] <= stated.ci95[1];
-    std::printf(" %.1f (%.1f to %.1f); %.1f (%.1f to %.1f), mean %+.1f%s; %.0f s |\n",
-                100 * stated.rms_relative, 100 * stated.ci95[0], 100 * stated.ci95[1],
-                100 * other.rms_relative, 100 * other.ci95[0], 100 * other.ci95[1],
-                100 * other.bias,
-                stated.ci95[0] <= other.rms_relative && other.rms_relative <= stated.ci95[1] ? ""
-                : holds ? ", intervals overlap"
-                        : ", OUTSIDE",
-                baked.seconds_total - stated.seconds);
-}
-
-// Three at a time, one a band: the medium is grey.
-formats::Environment make_suns(int first, int count) {
-    formats::Environment sky;
-    for (int band = 0; band < 3; ++band) {
-        const double place = first + band + 0.5;
-        const double height = 1 - 2 * place / count,
-                     azimuth = 2 * std::numbers::pi * place / std::numbers::phi;
-        const double across = std::sqrt(1 - height * height);
-        formats::DistantDisc disc;
-        disc.direction = {static_cast<float>(across * std::cos(azimuth)),
-                          static_cast<float>(height),
-                          static_cast<float>(across * std::sin(azimuth))};
-        disc.angular_radius = static_cast<float>(2.5 * std::numbers::pi / 180);
-        const auto one = static_cast<float>(1 / formats::disc_solid_angle(disc.angular_radius));
-        disc.radiance = {band == 0 ? one : 0, band == 1 ? one : 0, band == 2 ? one : 0};
-        sky.discs.push_back(disc);
-    }
-    return sky;
-}
-
-// Paths meet a sun behind the boundary by chance: there are many of them.
-void print_suns(const formats::Scene& scene) {
-    constexpr int kSuns = 12;
-    constexpr double kEvents = 2e8;
-    const BakeResult baked = bake(scene, false);
-    const formats::AssetView asset = baked.asset.view();
-    const OrientedBodies bodies = orient_bodies(scene);  // as --check-model has it
-    const ReferenceScene walked =
-        make_reference_scene(bodies.scene ? *bodies.scene : scene, 0).value();
-    const auto receivers = choose_model_receivers(walked, 192, 2);
-    std::vector<ModelPair> pairs;
-    for (int first = 0; first < kSuns; first += 3) {
-        const formats::Environment sky = make_suns(first, kSuns);
-        const LightSampler sampler = make_light_sampler(sky, glm::mat3(1.0f));
-        PathOptions paths;
-        paths.terms = TermSet::single | TermSet::multiple;
-        paths.own_mirror = false;
-        EstimateOptions wanted;
-        wanted.seed = 2;
-        const Estimate pilot =
-            estimate_receivers({walked, sampler, paths}, receivers, wanted, {}).value();
-        wanted.samples = static_cast<std::uint32_t>(wanted.samples * kEvents /
-                                                    static_cast<double>(pilot.events));
-        const Estimate truth =
-            estimate_receivers({walked, sampler, paths}, receivers, wanted, {}).value();
-        const runtime::LightVector light = runtime::project_environment(sky, asset.cubemap_size);
-        for (int band = 0; band < 3; ++band) {
-            for (std::size_t r = 0; r < receivers.size(); ++r) {
-                formats::Rgb shown;
-                runtime::shade_range(
-                    asset, light,
-                    asset.primitives[receivers[r].primitive].first_vertex + receivers[r].vertex,
-                    {&shown, 1});
-                const double value = static_cast<double>(
-                    std::array{shown.r, shown.g, shown.b}[static_cast<std::size_t>(band)]);
-                const Moments& m = truth.pixel[r];
-                pairs.push_back({value - m.mean[band], m.mean[band], m.variance_of_mean()[band]});
-            }
-        }
-    }
-    const MeanSquares all = sum_up(pairs);
-    const auto interval = model_interval(pairs, receivers.size(), 0);
-    std::printf(" %.1f (%.1f to %.1f), noise of the truth %.1f, mean %+.1f |\n",
-                100 * all.rms_relative(), 100 * interval[0], 100 * interval[1], 100 * all.noise(),
-                100 * all.bias());
+    const ModelErrorReport::Suns& suns = *stated.suns;
+    std::printf(
+        " %.1f (%.1f to %.1f); %.1f (%.1f to %.1f), mean %+.1f%s; suns %.1f (%.1f to %.1f), mean "
+        "%+.1f, noise %.0f; %.0f s, check %.0f s |\n",
+        100 * stated.rms_relative, 100 * stated.ci95[0], 100 * stated.ci95[1],
+        100 * other.rms_relative, 100 * other.ci95[0], 100 * other.ci95[1], 100 * other.bias,
+        stated.ci95[0] <= other.rms_relative && other.rms_relative <= stated.ci95[1] ? ""
+        : holds ? ", intervals overlap"
+                : ", OUTSIDE",
+        100 * suns.rms_relative, 100 * suns.ci95[0], 100 * suns.ci95[1], 100 * suns.bias,
+        100 * suns.noise, baked.seconds_total - stated.seconds, stated.seconds);
 }
 
 int print_matrix(std::span<char*> argument) {
-    const bool suns = !argument.empty() && std::strcmp(argument[0], "suns") == 0;
-    argument = argument.subspan(suns ? 1 : 0);
     if (argument.size() < 2) {
-        std::fprintf(stderr, "usage: opaline_error_matrix [suns] SCENE LENGTH,ALBEDO,G...\n");
+        std::fprintf(stderr, "usage: opaline_error_matrix SCENE LENGTH,ALBEDO,G...\n");
         return 2;
     }
     const std::string file = argument[0];
@@ -185,7 +112,7 @@ int print_matrix(std::span<char*> argument) {
         }
         fill(imported->scene, cell);
         std::printf("| %s | %s |", file.c_str(), text);
-        (suns ? print_suns : print_cell)(imported->scene);
+        print_cell(imported->scene);
         std::fflush(stdout);
     }
     return 0;

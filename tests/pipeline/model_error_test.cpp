@@ -125,6 +125,30 @@ TEST(ModelError, OfAThinSheetIsThatItIsTooBright) {
                 report.ci95[0], report.ci95[1], report.bias, report.missing);
 }
 
+// Right for a thick body, which shows that suns of path and file are alike; wrong for a thin one.
+TEST(ModelError, OfSunsBehindRefractingBoundariesIsStatedByItself) {
+    BakeOptions options = fine_bake();
+    options.effects = {"multiple", "single"};
+    ModelCheckOptions wanted;
+    wanted.max_events = 2000000;
+    const tests::Scene thick =
+        tests::make_translucent_scene({tests::make_sphere(3)}, tests::make_grey_medium(60, 0.6f));
+    const auto ball = check(thick, tests::bake_scene(thick, options), wanted).suns;
+    ASSERT_TRUE(ball);
+    EXPECT_NEAR(ball->bias, 0, 0.05);
+    EXPECT_LT(ball->ci95[0], 0.1);
+    EXPECT_GT(ball->noise, 0.1) << "or it is no test of what is subtracted";
+    EXPECT_GT(ball->receivers_checked, 100u);
+    const tests::Scene thin =
+        tests::make_translucent_scene(tests::make_sheet(0.1f), tests::make_grey_medium(9.9f, 0.1f));
+    const auto sheet = check(thin, tests::bake_scene(thin, options), wanted).suns;
+    ASSERT_TRUE(sheet);
+    EXPECT_GT(sheet->ci95[0], 0.1);
+    std::printf("suns: ball %.3f [%.3f, %.3f], mean %+.3f, noise %.3f; sheet %.3f [%.3f, %.3f]\n",
+                ball->rms_relative, ball->ci95[0], ball->ci95[1], ball->bias, ball->noise,
+                sheet->rms_relative, sheet->ci95[0], sheet->ci95[1]);
+}
+
 TEST(ModelError, SunsAreConnectedToThroughMatchedBoundaries) {
     ModelCheckOptions wanted;
     wanted.max_events = 100000;
@@ -134,6 +158,7 @@ TEST(ModelError, SunsAreConnectedToThroughMatchedBoundaries) {
         check(scene, tests::bake_scene(scene, tests::small_bake()), wanted);
     EXPECT_EQ(report.by_light.size(), 6u);
     EXPECT_TRUE(report.left_out.empty());
+    EXPECT_FALSE(report.suns);
     for (const ModelErrorReport::Part& light : report.by_light) {
         EXPECT_LT(light.noise, 0.1) << light.name;
         EXPECT_LT(light.rms_relative, 0.2) << light.name << ": a thick body";
@@ -155,6 +180,10 @@ TEST(ModelError, HasTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(a.bias, b.bias);
     EXPECT_EQ(a.missing, b.missing);
     EXPECT_EQ(a.samples, b.samples);
+    ASSERT_TRUE(a.suns && b.suns);
+    EXPECT_EQ(a.suns->rms_relative, b.suns->rms_relative);
+    EXPECT_EQ(a.suns->ci95[1], b.suns->ci95[1]);
+    EXPECT_EQ(a.suns->samples, b.suns->samples);
 }
 
 TEST(ModelError, AgainstTruthTracedBeforeTheBakeIsTheSame) {
