@@ -97,50 +97,94 @@ std::uint64_t light_surface(Field& field, const DirectionSet& directions, std::s
     return rays;
 }
 
-// B of points of one medium, from the rows that its effects give; and what they make of light
-// that is even around them, which bounced light is taken for.
-std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::uint32_t material,
-                           std::span<const std::size_t> members) {
-    std::vector<Receiver> outside;
-    std::vector<BodyPoint> inside;
-    for (const std::size_t i : members) {
-        outside.push_back(field.scatterers[i].outside);
-        inside.push_back(field.scatterers[i].inside);
-    }
-    const std::vector<std::vector<float>> rows =
-        field.inputs.rows_of_medium(material, outside, inside, kCubemap);
-    const RowLayout& layout = field.inputs.layouts[material];
-    const float eta = field.inputs.bake.scene.materials[material].medium->eta;
-    // What the boundary mirrors goes on as if it were diffuse: where is wrong, how much is right.
-    const auto mirrored = static_cast<float>(fresnel_moments(static_cast<double>(eta)).external);
+// What leaves a medium at a point without what its boundary mirrors, under a base colour: c sum of
+// g_k T_k.
+void add_leaving(const RowLayout& layout, std::span<const float> weight,
+                 std::span<const float> rows, const BandColour& colour, std::uint32_t bands,
+                 std::span<float> to) {
     const std::uint32_t own_bands = layout.bands();
-    std::uint64_t rays = 0;
-    std::vector<float> around(kTexels), emitted(field.light.row_size());
-    for (std::size_t m = 0; m < members.size() && m < rows.size(); ++m) {
-        const std::size_t i = members[m];
-        Scatterer& s = field.scatterers[i];
-        std::ranges::fill(emitted, 0.0f);
-        const BandColour albedo = to_bands(s.albedo, field.light.bands);
-        const std::vector<float> weight = weigh_rows_of_medium(layout, eta, s.inside.normal);
-        for (std::size_t k = 0; k < weight.size(); ++k) {
-            for (std::uint32_t b = 0; b < field.light.bands; ++b) {
-                const std::size_t from = k * own_bands + std::min(b, own_bands - 1);
-                const float* const plane = &rows[m][from * kTexels];
-                float* const to = &emitted[b * kTexels];
-                for (std::size_t t = 0; t < kTexels; ++t) {
-                    to[t] += albedo[b] * weight[k] * plane[t];
-                }
+    for (std::size_t k = 0; k < weight.size(); ++k) {
+        for (std::uint32_t b = 0; b < bands; ++b) {
+            const std::size_t from = k * own_bands + std::min(b, own_bands - 1);
+            for (std::size_t t = 0; t < kTexels; ++t) {
+                to[b * kTexels + t] += colour[b] * weight[k] * rows[from * kTexels + t];
             }
         }
-        rays += gather_row(field, directions, s.outside, around);
-        add_scaled(around, {mirrored, mirrored, mirrored}, field.light.bands, emitted);
-        const float light = even_light(around);
-        s.openness = openness_of(field, around);
-        for (std::uint32_t b = 0; b < field.light.bands; ++b) {
-            const float out = even_light(std::span(emitted).subspan(b * kTexels, kTexels));
-            field.light.reflect[i][b] = light > 0 ? std::clamp(out / light, 0.0f, 1.0f) : 0;
+    }
+}
+
+// Of even light that reaches a body, the share that it scatters back: over points of all of its
+// surface, because what leaves at the bottom of a fold arrived beside it.
+class EvenReturn {
+  public:
+    void add(float arriving, std::span<const float> leaving, std::uint32_t bands) {
+        arriving_ += double{arriving};
+        for (std::uint32_t b = 0; b < bands; ++b) {
+            leaving_[b] += double{even_light(leaving.subspan(b * kTexels, kTexels))};
         }
-        field.light.emitted.set(i, emitted);
+    }
+    float share(std::uint32_t band) const {
+        return arriving_ > 0 ? static_cast<float>(std::clamp(leaving_[band] / arriving_, 0.0, 1.0))
+                             : 0;
+    }
+
+  private:
+    double arriving_ = 0;
+    std::array<double, 3> leaving_{};
+};
+
+// B of points of one medium, from the rows that its effects give; and what they make of bounced
+// light.
+std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::uint32_t material,
+                           std::span<const std::size_t> members) {
+    constexpr std::size_t kEvenPoints = 256;
+    const std::vector<Scatterer> spread = spread_over_material(field.inputs, material, kEvenPoints);
+    std::vector<Receiver> outside;
+    std::vector<BodyPoint> inside;
+    const auto ask_for = [&](const Scatterer& s) {
+        outside.push_back(s.outside);
+        inside.push_back(s.inside);
+    };
+    for (const std::size_t i : members) {
+        ask_for(field.scatterers[i]);
+    }
+    std::ranges::for_each(spread, ask_for);
+    const std::vector<std::vector<float>> rows =
+        field.inputs.rows_of_medium(material, outside, inside, kCubemap);
+    if (rows.size() < outside.size()) {
+        return 0;  // cancelled
+    }
+    const RowLayout& layout = field.inputs.layouts[material];
+    const float eta = field.inputs.bake.scene.materials[material].medium->eta;
+    const std::uint32_t bands = field.light.bands;
+    // What the boundary mirrors goes on as if it were diffuse: where is wrong, how much is right.
+    const auto mirrored = static_cast<float>(fresnel_moments(static_cast<double>(eta)).external);
+    std::uint64_t rays = 0;
+    std::vector<float> around(kTexels), leaving(field.light.row_size());
+    const auto find_leaving = [&](std::size_t m, const BandColour& colour) {
+        std::ranges::fill(around, 0.0f);
+        std::ranges::fill(leaving, 0.0f);
+        rays += gather_row(field, directions, outside[m], around);
+        add_leaving(layout, weigh_rows_of_medium(layout, eta, inside[m].normal), rows[m], colour,
+                    bands, leaving);
+    };
+    EvenReturn even;
+    for (std::size_t m = members.size(); m < rows.size(); ++m) {
+        find_leaving(m, {1, 1, 1});
+        even.add(even_light(around), leaving, bands);
+    }
+    for (std::size_t m = 0; m < members.size(); ++m) {
+        const std::size_t i = members[m];
+        Scatterer& s = field.scatterers[i];
+        const BandColour colour = to_bands(s.albedo, bands);
+        find_leaving(m, colour);
+        add_scaled(around, {mirrored, mirrored, mirrored}, bands, leaving);
+        s.openness = openness_of(field, around);
+        for (std::uint32_t b = 0; b < bands; ++b) {
+            field.light.reflect[i][b] =
+                std::clamp(mirrored + colour[b] * even.share(b), 0.0f, 1.0f);
+        }
+        field.light.emitted.set(i, leaving);
     }
     return rays;
 }

@@ -156,4 +156,27 @@ std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t co
     return scatterers;
 }
 
+std::vector<Scatterer> spread_over_material(const LightInputs& inputs, std::uint32_t material,
+                                            std::size_t count) {
+    const formats::Scene& scene = inputs.bake.scene;
+    std::vector<std::uint32_t> own;
+    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
+        if (scene.primitives[p].material == material) {
+            own.push_back(p);
+        }
+    }
+    const AreaTable table = make_area_table(scene, own);
+    std::vector<Scatterer> spread;
+    if (table.triangle.empty()) {
+        return spread;
+    }
+    spread.reserve(count);
+    for (const SurfacePoint& p :
+         scatter_points(scene, table, count, false, inputs.knobs.seed, RandomStage::bounce_rays)) {
+        spread.push_back(make_scatterer(
+            inputs, {{p.primitive, p.first_index}, p.barycentric, {p.position, {}}}));
+    }
+    return spread;
+}
+
 }  // namespace opaline::bake

@@ -36,4 +36,9 @@ SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::s
 std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
                                        std::uint64_t& rays);
 
+/// `count` points uniform by area on the outsides of a material, seen by others or not; a pure
+/// function of the scene, the material and the seed. None where it has no area.
+std::vector<Scatterer> spread_over_material(const LightInputs& inputs, std::uint32_t material,
+                                            std::size_t count);
+
 }  // namespace opaline::bake

@@ -1,0 +1,110 @@
+// What translucent surfaces send to each other, against path tracing.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bake/accuracy/check_model.h"
+#include "bake/accuracy/model_truth.h"
+#include "runtime/light_vector.h"
+#include "tests/support/walk_bake.h"
+
+namespace opaline::bake {
+namespace {
+
+// A block with a slot three transport mean free paths wide and deep, whose walls and bottom come
+// first: light that leaves them arrived beside them as well.
+tests::Scene make_slotted_block(std::size_t& of_slot) {
+    constexpr std::uint32_t kCells = 8;
+    constexpr std::array<float, 4> kX{-5.5f, -1.5f, 1.5f, 5.5f};
+    constexpr std::array<float, 3> kY{-7, -3, 0};
+    constexpr float kEnd = 6;
+    const glm::vec3 along{0, 0, 2 * kEnd};
+    std::vector<tests::Primitive> slot, rest;
+    const auto is_filled = [](int x, int y) {
+        return x >= 0 && x < 3 && y >= 0 && y < 2 && !(x == 1 && y == 1);
+    };
+    for (int x = 0; x < 3; ++x) {
+        for (int y = 0; y < 2; ++y) {
+            if (!is_filled(x, y)) {
+                continue;
+            }
+            const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
+            const glm::vec3 low{kX[i], kY[j], -kEnd}, across{kX[i + 1] - kX[i], 0, 0},
+                up{0, kY[j + 1] - kY[j], 0};
+            const auto add = [&](int to_x, int to_y, glm::vec3 corner, glm::vec3 a, glm::vec3 b) {
+                if (!is_filled(x + to_x, y + to_y)) {
+                    const bool is_in_slot = x + to_x == 1 && y + to_y == 1;
+                    (is_in_slot ? slot : rest).push_back(tests::make_quad(corner, a, b, kCells));
+                }
+            };
+            add(1, 0, low + across, up, along);
+            add(-1, 0, low, along, up);
+            add(0, 1, low + up, along, across);
+            add(0, -1, low, across, along);
+            rest.push_back(tests::make_quad(low, up, across, kCells));
+            rest.push_back(tests::make_quad(low + along, across, up, kCells));
+        }
+    }
+    of_slot = slot.size();
+    slot.insert(slot.end(), rest.begin(), rest.end());
+    return tests::make_translucent_scene(std::move(slot),
+                                         tests::make_grey_medium(0.95f, 0.05f, 1.4f));
+}
+
+// Under white light. By the ratio of what leaves them and the little light that reaches them,
+// points deep in the slot would send back all that is sent to them, twice the truth. As even light
+// returns, they send 1.4 times that: where light is sent to the slot alone, some of it leaves
+// beside.
+TEST(BouncedMedia, WallsOfASlotSendEachOtherHardlyMoreThanPathTracingFinds) {
+    std::size_t of_slot = 0;
+    const tests::Scene scene = make_slotted_block(of_slot);
+    ASSERT_EQ(of_slot, 3u);
+    auto probes = choose_model_probes(scene, 4000, 0, {}).value();
+    std::erase_if(probes.receivers,
+                  [&](const ReferenceReceiver& r) { return r.primitive >= of_slot; });
+    probes.lights.resize(1);
+    ASSERT_EQ(probes.lights[0].name, "white");
+    ModelCheckOptions effort;
+    effort.simulated = TermSet::interreflection;
+    effort.max_events = 1500000;
+    const LightCheck truth = trace_model_truth(scene, probes, effort, {}).value().front();
+    std::vector<double> held(probes.receivers.size());
+    for (const double sign : {1.0, -1.0}) {
+        BakeOptions options = bake_by(kWalked);
+        options.effects = {"multiple", "single"};
+        if (sign > 0) {
+            options.effects.emplace_back("interreflection");
+        }
+        const BakeResult baked = tests::bake_scene(scene, options);
+        const runtime::LightVector light = runtime::project_environment(
+            probes.lights[0].environment, baked.asset.view().cubemap_size, {}, 1);
+        const auto shown =
+            relight_receivers(baked.asset.view(), probes.receivers, {.vector = light});
+        for (std::size_t i = 0; i < held.size(); ++i) {
+            held[i] += sign * shown[i];
+        }
+    }
+    double sum = 0, traced = 0, variance = 0;
+    for (std::size_t i = 0; i < held.size(); ++i) {
+        sum += held[i];
+        traced += truth.pairs[i].truth;
+        variance += truth.pairs[i].variance;
+    }
+    std::printf("slot: %.3f of the truth, of %zu places, error of the truth %.3f\n", sum / traced,
+                held.size(), std::sqrt(variance) / traced);
+    EXPECT_GT(held.size(), 100u);
+    EXPECT_LT(std::sqrt(variance), 0.02 * traced);
+    EXPECT_GT(sum, 0.9 * traced);
+    EXPECT_LT(sum, 1.6 * traced);
+}
+
+}  // namespace
+}  // namespace opaline::bake
