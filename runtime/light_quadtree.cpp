@@ -11,8 +11,13 @@ namespace {
 
 using formats::Vec3;
 
+// Squares of what floats held fit into doubles: no need of hypot, which takes longer.
+double norm_of(const Double3& v) {
+    return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
 Vec3 unit(const Double3& v, Vec3 otherwise) {
-    const double norm = std::hypot(v[0], v[1], v[2]);
+    const double norm = norm_of(v);
     if (!(norm > 0) || !std::isfinite(norm)) return otherwise;
     return {static_cast<float>(v[0] / norm), static_cast<float>(v[1] / norm),
             static_cast<float>(v[2] / norm)};
@@ -25,7 +30,7 @@ double luminance(const Double3& c) {
 // 1 - |moment / weight|^2; 0 where there is no weight.
 float spread(const Double3& moment, double weight) {
     if (!(weight > 0) || !std::isfinite(weight)) return 0;
-    const double mean = std::hypot(moment[0], moment[1], moment[2]) / weight;
+    const double mean = norm_of(moment) / weight;
     return static_cast<float>(std::clamp(1 - mean * mean, 0.0, 1.0));
 }
 

@@ -85,12 +85,10 @@ void BlockCells::move_to(const std::array<DirectionTile, 8>& tiles) {
     common_.clear();
     others_.clear();
     for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
-        stack_.push_back({0, face, 0, kAll});
+        stack_[waiting_++] = {0, face, 0, kAll};
     }
-    while (!stack_.empty()) {
-        const Node node = stack_.back();
-        stack_.pop_back();
-        follow(node);
+    while (waiting_ > 0) {
+        follow(stack_[--waiting_]);
     }
 }
 
@@ -104,25 +102,27 @@ std::span<const LobeCell* const> BlockCells::own(std::uint32_t tile) {
     return std::span(own_).first(count);
 }
 
-void BlockCells::follow(const Node& n) {
+void BlockCells::follow(Node n) {
     const LobeCell& cell = tree_.level[n.level][(std::size_t{n.row} << n.level) + n.column];
     const Squares& of = square_[n.level];
-    std::uint32_t lit = 0, near = 0;
+    // A bit for each tile: in the lower eight of those that it lights, in the next of those near
+    // it.
+    Int4 bits{};
     for (std::uint32_t half = 0; half < 2; ++half) {
         const Float4 x = x_[half] - cell.centre.x, y = y_[half] - cell.centre.y,
                      z = z_[half] - cell.centre.z, squared = x * x + y * y + z * z;
-        const Int4 number = {1, 2, 4, 8};
-        const Int4 bits =
-            ((squared <= of.lit[half]) & number) | ((squared < of.divided[half]) & (number << 4));
-        const auto all = static_cast<std::uint32_t>(bits[0] | bits[1] | bits[2] | bits[3]);
-        lit |= (all & 15) << 4 * half;
-        near |= (all >> 4) << 4 * half;
+        const Int4 number = Int4{1, 2, 4, 8} << static_cast<std::int32_t>(4 * half);
+        bits |=
+            ((squared <= of.lit[half]) & number) | ((squared < of.divided[half]) & (number << 8));
     }
-    lit &= n.tiles;
+    bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1);
+    bits |= __builtin_shufflevector(bits, bits, 1, 0, 3, 2);
+    const auto all = static_cast<std::uint32_t>(bits[0]);
+    const std::uint32_t lit = all & n.tiles, near = all >> 8;
     const std::uint32_t divide = lit & near;
     if (divide != 0) {
         for (const std::uint32_t i : {0u, 1u, 2u, 3u}) {
-            stack_.push_back({n.level + 1, 2 * n.row + i / 2, 2 * n.column + i % 2, divide});
+            stack_[waiting_++] = {n.level + 1, 2 * n.row + i / 2, 2 * n.column + i % 2, divide};
         }
     }
     const std::uint32_t add = lit & ~near;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -79,13 +80,16 @@ class BlockCells {
         std::uint32_t tiles;  // bits: those that add it
     };
 
-    void follow(const Node& n);
+    void follow(Node n);
 
     const LobeTree& tree_;
     std::vector<Reach> reach_;               // of each level
     std::vector<Squares> square_;            // of each level: of the tiles where they are now
     std::array<Float4, 2> x_{}, y_{}, z_{};  // their centres
-    std::vector<Node> stack_;
+    // The six faces, and for each level of the tree, of which there are not as many, three cells
+    // that wait for the fourth.
+    std::array<Node, 6 + 3 * 16> stack_{};
+    std::size_t waiting_ = 0;  // in stack_
     std::vector<const LobeCell*> common_, own_;
     std::vector<TilesOfCell> others_;
 };
