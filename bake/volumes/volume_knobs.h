@@ -139,7 +139,10 @@ inline constexpr KnobSpec kVolumePaths{
     .ladder = volume_knobs::kPathLadder,
     .diagonal = volume_knobs::kPathDiagonal,
     .truths = volume_knobs::kPathTruths,
-    .theory = {.label = "directions of paths from a node"},
+    .theory = {.label = "directions of paths from a node",
+               .words = "views as even points on a sphere, of light with edges [Beck1984]; the "
+                        "error of paths themselves stays",
+               .rate = -0.75},
     .matters = volume_knobs::follows_paths,
     .why_idle = volume_knobs::kWhyNoPaths};
 

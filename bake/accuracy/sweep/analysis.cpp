@@ -15,6 +15,9 @@ std::vector<Ladder> converging_ladders(const SweepSubject& subject) {
     for (const KnobSpec* knob : subject.knobs) {
         ladders.push_back(ladder_of(*knob));
     }
+    for (const ChosenKnob& chosen : subject.chosen) {
+        ladders.push_back(ladder_of(*chosen.knob));
+    }
     return ladders;
 }
 

@@ -120,6 +120,14 @@ void add_knob_ladders(Points& points, const Knobs& base) {
             points.add(label_of(*knob, value), ladder_of(*knob), value, knobs);
         }
     }
+    for (const auto& [choice, word, knob] : points.subject.chosen) {
+        for (const double value : knob->ladder) {
+            Knobs knobs = base;
+            give(knobs, *choice, static_cast<double>(word));
+            give(knobs, *knob, value);
+            points.add(label_of(*knob, value), ladder_of(*knob), value, knobs);
+        }
+    }
     if (!points.subject.in_media) {
         return;
     }
@@ -190,6 +198,34 @@ std::vector<SweepPoint> make_layer_truths(const LadderRequest& request) {
     return std::move(points.list);
 }
 
+// The plan of volumes if those whose way was chosen went by that word.
+std::vector<PlanEntry> choose_word(std::span<const PlanEntry> plan, std::string_view word) {
+    std::vector<PlanEntry> changed(plan.begin(), plan.end());
+    for (PlanEntry& entry : changed) {
+        if (!entry.choice.empty()) {
+            entry.choice = word;
+        }
+    }
+    return changed;
+}
+
+// Knobs of volumes that have no use but by another choice.
+void add_chosen_knobs(const EffectTable& effects, std::span<const PlanEntry> volume_plan,
+                      SweepSubject& subject) {
+    for (const KnobSpec* choice : subject.knobs) {
+        for (std::size_t word = 1; word < choice->words.size(); ++word) {
+            const std::vector<PlanEntry> plan = choose_word(volume_plan, choice->words[word]);
+            for (const EffectDescriptor& effect : effects.effects) {
+                for (const KnobSpec* knob : effect.knobs) {
+                    if (effect.concerns_volumes && !subject.has(*knob) && knob->matters({}, plan)) {
+                        subject.chosen.push_back({choice, word, knob});
+                    }
+                }
+            }
+        }
+    }
+}
+
 }  // namespace
 
 bool SweepSubject::has(const KnobSpec& knob) const {
@@ -211,6 +247,7 @@ SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& sce
             subject.knobs.push_back(knob);
         }
     }
+    add_chosen_knobs(effects, volume_plan, subject);
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         const auto decisions = entries_of(plan, m);
         if (decisions.empty()) {
@@ -240,9 +277,14 @@ bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject) {
         a.effects == b.effects && a.simulate_all == b.simulate_all && a.seed == b.seed;
     return same_request && (same_rows || subject.is_layer_alone()) &&
            (!subject.in_media || a.exact_rays == b.exact_rays) &&
-           std::all_of(subject.knobs.begin(), subject.knobs.end(), [&](const KnobSpec* knob) {
-               return a[*knob] == b[*knob] &&
-                      (!knob->exact_if_given || a.is_given(*knob) == b.is_given(*knob));
+           std::all_of(subject.knobs.begin(), subject.knobs.end(),
+                       [&](const KnobSpec* knob) {
+                           return a[*knob] == b[*knob] &&
+                                  (!knob->exact_if_given || a.is_given(*knob) == b.is_given(*knob));
+                       }) &&
+           std::ranges::all_of(subject.chosen, [&](const ChosenKnob& chosen) {
+               return a[*chosen.choice] != static_cast<double>(chosen.word) ||
+                      a[*chosen.knob] == b[*chosen.knob];
            });
 }
 

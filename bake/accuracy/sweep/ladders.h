@@ -60,6 +60,14 @@ struct SweepPoint {
     Knobs knobs;
 };
 
+/// A knob that matters only if its effect computes in another way than the plan chose: `word` of
+/// `choice`.
+struct ChosenKnob {
+    const KnobSpec* choice = nullptr;
+    std::size_t word = 0;
+    const KnobSpec* knob = nullptr;
+};
+
 /// The knobs that matter for a scene.
 struct SweepSubject {
     std::vector<const KnobSpec*> knobs;  ///< of effects: those that some subject has use for
@@ -67,6 +75,7 @@ struct SweepSubject {
     bool has_surfaces = true;            ///< there are vertices, whose rows other knobs concern
     bool has_volumes = false;            ///< light is simulated in volumes
     bool has_layers = false;             ///< and in cloud layers
+    std::vector<ChosenKnob> chosen{};    ///< their ladders are baked in that way
 
     bool has(const KnobSpec& knob) const;
     /// Nothing but cloud layers: knobs of rows do not matter.

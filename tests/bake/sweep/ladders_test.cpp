@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "bake/volumes/volume_knobs.h"
 #include "formats/opal/cubemap.h"
 #include "tests/support/effects.h"
 
@@ -124,6 +125,31 @@ TEST(Ladders, EveryModelIsBakedInThreePresets) {
               (std::set<std::string>{"dipole, draft", "dipole, preview", "dipole, production",
                                      "scaled, draft", "scaled, preview", "scaled, production",
                                      "walks, draft", "walks, preview", "walks, production"}));
+}
+
+TEST(Ladders, KnobsOfAWayThatThePlanDidNotChooseAreTriedThatWay) {
+    PlanEntry often;
+    often.name = "volume-multiple";
+    often.subject.kind = Subject::Kind::volume;
+    often.on = true;
+    often.choice = "walks";
+    formats::Scene scene;
+    const std::vector<PlanEntry> plan{often};
+    const SweepSubject subject = sweep_subject(all_effects(), scene, {}, *resolve_knobs({}), plan);
+    EXPECT_TRUE(subject.has(kVolumeWalks));
+    EXPECT_FALSE(subject.has(kVolumePaths));
+    std::set<double> paths;
+    for (const SweepPoint& p : make_ladders(subject, {}, Quality::preview)) {
+        for (const Rung& r : p.rungs) {
+            if (r.ladder == ladder_of(kVolumePaths)) {
+                EXPECT_EQ(kVolumeMethodWords[static_cast<std::size_t>(p.knobs[kVolumeMethod])],
+                          "path-integration");
+                EXPECT_EQ(p.knobs[kVolumePaths], r.value);
+                paths.insert(r.value);
+            }
+        }
+    }
+    EXPECT_EQ(paths.size(), kVolumePaths.ladder.size());
 }
 
 TEST(Ladders, TruthsChooseWhatTheLaddersBaseChose) {
