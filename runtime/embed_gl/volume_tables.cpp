@@ -182,9 +182,9 @@ std::size_t most_coefficients(const formats::VolumesView& volumes) {
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         const formats::VolumeRecord& record = volumes.records[v];
         const std::span<const float> phase = volumes.phase_of(v);
-        const std::size_t suns =
-            needs_suns(record, phase) ? kMaxSuns * make_sun_phase(record, phase).terms : 0;
-        count += record.node_count * (terms_of(volumes, v) + suns);
+        const std::size_t suns = needs_suns(record, phase) ? kMaxSuns : 0;
+        const std::size_t of_node = suns > 0 ? suns * make_sun_phase(record, phase).terms : 0;
+        count += suns + record.node_count * (terms_of(volumes, v) + of_node);
     }
     return count;
 }

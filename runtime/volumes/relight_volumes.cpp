@@ -118,10 +118,18 @@ Lights prepare(const formats::VolumesView& volumes, const LightVector& light,
             part.sun_terms = result.sun_phase.back().terms;
             part.sun_power = result.sun_phase.back().power;
         }
-        size += std::size_t{volumes.records[v].node_count} * part.stride();
+        part.first += part.suns;
+        size = part.first + std::size_t{volumes.records[v].node_count} * part.stride();
         result.part.push_back(part);
     }
     result.coefficient.resize(size);
+    for (const VolumeLight::Part& part : result.part) {
+        if (part.suns == 0) continue;
+        for (const Lights::SunLight& sun : lights.sun) {
+            Rgb& all = result.coefficient[part.first - part.suns + sun.joint];
+            all = finite(all + sun.whole);
+        }
+    }
     return lights;
 }
 

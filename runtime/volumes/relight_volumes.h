@@ -40,8 +40,9 @@ struct VolumeLight {
     struct Part {
         std::uint32_t terms =
             0;  ///< K = max(K_s, K_m, K_e) of what is shown; 0: the volume scatters nothing
-        std::uint32_t suns = 0;                       ///< 0, or all of VolumeLight::sun
-        std::size_t first = 0;                        ///< of the volume's coefficients
+        std::uint32_t suns = 0;  ///< 0, or all of VolumeLight::sun
+        /// Of the volume's coefficients; those of its suns' irradiance E_s stand before it.
+        std::size_t first = 0;
         std::uint32_t sun_terms = 1;                  ///< coefficients of each sun
         std::array<float, kMaxSunTerms> sun_power{};  ///< SunPhase::power
 
@@ -55,6 +56,10 @@ struct VolumeLight {
     std::vector<formats::Vec3> sun;         ///< l_s, unit, toward the suns, world; kMaxSuns at most
     std::vector<formats::Rgb> coefficient;  ///< [W m^-2 sr^-1], finite; node after node
 
+    /// E_s [W m^-2] of a sun that a volume meets, before it comes into any.
+    formats::Rgb sun_light(std::size_t volume, std::size_t number) const {
+        return coefficient[part[volume].first - part[volume].suns + number];
+    }
     /// Of a node; `node` counts from the volume's first one.
     std::span<const formats::Rgb> coefficients(std::size_t volume, std::uint32_t node) const {
         const Part& p = part[volume];

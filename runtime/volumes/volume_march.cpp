@@ -14,9 +14,12 @@ namespace {
 
 using formats::Rgb;
 
+constexpr float kLargest = std::numeric_limits<float>::max();
+
 // A volume that the ray meets, with the brick where it is or comes to next.
 struct Traveller {
     const LitVolumes::Entry* entry = nullptr;
+    std::size_t number = 0;  ///< of the entry
     BrickWalk walk;
     double voxel = 0;  ///< distance in the world within which the ray crosses one voxel
     BrickSpan span;
@@ -41,11 +44,16 @@ void advance(Traveller& traveller) {
     traveller.cell = formats::kNoNode;
 }
 
-std::vector<Traveller> start(const LitVolumes& volumes, const MarchRay& ray) {
+// What is added up: all light, or that of suns ahead alone (volume_source.h).
+enum class Lit : std::uint8_t { all, ahead };
+
+std::vector<Traveller> start(const LitVolumes& volumes, const MarchRay& ray, Lit lit) {
     std::vector<Traveller> travellers;
-    for (const LitVolumes::Entry& entry : volumes.entry) {
+    for (std::size_t number = 0; number < volumes.entry.size(); ++number) {
+        const LitVolumes::Entry& entry = volumes.entry[number];
         Traveller traveller;
         traveller.entry = &entry;
+        traveller.number = number;
         traveller.walk = start_walk(entry.lattice, ray.origin, ray.direction, ray.begin, ray.end);
         if (!(traveller.walk.t < traveller.walk.end)) continue;
         const auto& d = traveller.walk.direction;
@@ -53,7 +61,8 @@ std::vector<Traveller> start(const LitVolumes& volumes, const MarchRay& ray) {
         if (!(traveller.voxel > 0) || !std::isfinite(traveller.voxel)) continue;
         advance(traveller);
         if (traveller.is_left) continue;
-        traveller.weight = source_weights(*volumes.light, entry.volume, -1 * ray.direction);
+        const auto weights = lit == Lit::all ? source_weights : ahead_weights;
+        traveller.weight = weights(*volumes.light, entry.volume, -1 * ray.direction);
         const VolumeLight::Part& part = volumes.light->part[entry.volume];
         traveller.source_terms = part.suns > 0 ? part.sun_terms : 1;
         travellers.push_back(traveller);
@@ -135,6 +144,8 @@ struct March {
     std::vector<Traveller> travellers;
     double step = 0.5;
     float least_transmittance = 0;
+    Lit lit = Lit::all;
+    std::vector<float> column;  ///< density times length, of each entry
     MarchResult result;
 
     bool is_opaque() const {
@@ -161,11 +172,12 @@ void march_segment(March& march, double begin, double end) {
             const auto at = place_in_brick(traveller, begin + (i + 0.5) * h);
             const float density = density_at(lattice, traveller.block, at);
             const Rgb glow = march.light.glow[traveller.entry->volume];
-            if (glow != Rgb{} && !traveller.entry->glow.empty()) {
+            if (march.lit == Lit::all && glow != Rgb{} && !traveller.entry->glow.empty()) {
                 emitted = emitted + tame(glow * glow_at(traveller.entry->glow, traveller.block, at),
                                          kLargestSource);
             }
             if (!(density > 0)) continue;
+            march.column[traveller.number] += density * static_cast<float>(h);
             const Rgb c = tame(density * lattice.record->sigma_t, kLargestExtinction);
             extinction = extinction + c;
             scattered =
@@ -174,6 +186,70 @@ void march_segment(March& march, double begin, double end) {
         }
         step(extinction, scattered, emitted, static_cast<float>(std::min(h, 1e30)), march.result);
     }
+}
+
+// Along the whole ray.
+void follow(March& march) {
+    for (double t = -HUGE_VAL; !march.travellers.empty();) {
+        // The next stretch with at least one brick, up to where one of them ends or another begins.
+        double begin = HUGE_VAL, end = HUGE_VAL;
+        for (const Traveller& traveller : march.travellers) {
+            begin = std::min(begin, std::max(t, traveller.span.begin));
+        }
+        for (const Traveller& traveller : march.travellers) {
+            end = std::min(
+                end, traveller.span.begin <= begin ? traveller.span.end : traveller.span.begin);
+        }
+        march_segment(march, begin, end);
+        if (march.is_opaque()) return;
+        t = end;
+        for (Traveller& traveller : march.travellers) {
+            if (traveller.span.end <= t) advance(traveller);
+        }
+        std::erase_if(march.travellers, [](const Traveller& each) { return each.is_left; });
+    }
+}
+
+March start_march(const LitVolumes& volumes, const MarchRay& ray, const MarchOptions& options,
+                  Lit lit) {
+    return {.light = *volumes.light,
+            .travellers = start(volumes, ray, lit),
+            .step = static_cast<double>(std::clamp(options.step, 1.0f / 64, 8.0f)),
+            .least_transmittance = options.least_transmittance,
+            .lit = lit,
+            .column = std::vector<float>(volumes.entry.size()),
+            .result = {}};
+}
+
+// The most that suns ahead can show: their light comes through what the ray meets, so that a place
+// has what passes the rest of it. Then V T is the same all along, and with tau_v the depth of
+// volume v alone
+//     L <= sum_v tau_v albedo_v sum_j T^(1 + power_j albedo_v) sum_s E_s q_j.
+Rgb most_ahead(const LitVolumes& volumes, const MarchRay& ray, const March& march) {
+    Rgb most;
+    for (std::size_t number = 0; number < volumes.entry.size(); ++number) {
+        const LitVolumes::Entry& entry = volumes.entry[number];
+        const formats::VolumeRecord& record = *entry.lattice.record;
+        const VolumeLight::Part& part = march.light.part[entry.volume];
+        if (part.suns == 0) continue;
+        const SourceWeights weight = ahead_weights(march.light, entry.volume, -1 * ray.direction);
+        const SunThrough through = find_sun_through(march.light.sun_phase[entry.volume],
+                                                    record.albedo, march.result.transmittance);
+        Rgb sum;
+        for (std::size_t k = 0; k < part.suns * part.sun_terms; ++k) {
+            sum = sum + weight[part.terms + k] * through[k / part.suns] *
+                            march.light.sun_light(entry.volume, k % part.suns);
+        }
+        const Rgb depth = tame(march.column[number] * record.sigma_t, kLargestExtinction);
+        most =
+            most + tame(depth * record.albedo * march.result.transmittance * sum, kLargestSource);
+    }
+    return most;
+}
+
+bool has_sun_ahead(const VolumeLight& light, formats::Vec3 to_eye) {
+    return std::ranges::any_of(light.sun,
+                               [&](formats::Vec3 sun) { return ahead_share(sun, to_eye) > 0; });
 }
 
 }  // namespace
@@ -191,34 +267,21 @@ LitVolumes light_volumes(const formats::VolumesView& volumes, const VolumeLight&
 
 MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
                           const MarchOptions& options) {
-    March march{.light = *volumes.light,
-                .travellers = start(volumes, ray),
-                .step = static_cast<double>(std::clamp(options.step, 1.0f / 64, 8.0f)),
-                .least_transmittance = options.least_transmittance,
-                .result = {}};
-    if (march.travellers.empty()) return {};
-    for (double t = -HUGE_VAL; !march.travellers.empty();) {
-        // The next stretch with at least one brick, up to where one of them ends or another begins.
-        double begin = HUGE_VAL, end = HUGE_VAL;
-        for (const Traveller& traveller : march.travellers) {
-            begin = std::min(begin, std::max(t, traveller.span.begin));
+    MarchResult result;
+    for (const Lit lit : {Lit::all, Lit::ahead}) {
+        March march = start_march(volumes, ray, options, lit);
+        if (march.travellers.empty()) break;
+        follow(march);
+        if (lit == Lit::all) {
+            result = march.result;
+            if (march.is_opaque()) result.transmittance = {};
+            if (!has_sun_ahead(*volumes.light, -1 * ray.direction)) break;
+        } else {
+            const Rgb beyond = march.result.radiance + -1 * most_ahead(volumes, ray, march);
+            result.radiance = tame(result.radiance + -1 * tame(beyond, kLargest), kLargest);
         }
-        for (const Traveller& traveller : march.travellers) {
-            end = std::min(
-                end, traveller.span.begin <= begin ? traveller.span.end : traveller.span.begin);
-        }
-        march_segment(march, begin, end);
-        if (march.is_opaque()) {
-            march.result.transmittance = {};
-            break;
-        }
-        t = end;
-        for (Traveller& traveller : march.travellers) {
-            if (traveller.span.end <= t) advance(traveller);
-        }
-        std::erase_if(march.travellers, [](const Traveller& each) { return each.is_left; });
     }
-    return march.result;
+    return result;
 }
 
 MarchSpan volumes_span(const LitVolumes& volumes, const MarchRay& ray) {

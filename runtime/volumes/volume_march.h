@@ -60,8 +60,13 @@ struct MarchResult {
 ///
 ///     L += T (b / c) (1 - exp(-c h)),   T *= exp(-c h),   for c = 0: L += T b h.
 ///
+/// Of suns within 12 degrees of the ray's direction it shows at most what comes through the ray
+/// itself: nothing is known of what lies behind `end`, so that parts of a ray give a little more
+/// than the whole.
+///
 /// Any finite ray gives finite values that are not negative; where begin >= end or the direction is
-/// zero, nothing. Costs at most 3 + 14 / step evaluations per brick that the ray crosses.
+/// zero, nothing. Costs at most 3 + 14 / step evaluations per brick that the ray crosses, twice as
+/// many near a sun.
 MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
                           const MarchOptions& options = {});
 

@@ -28,6 +28,13 @@ using SourceWeights = std::array<float, formats::kMaxHarmonics + kMaxSunTerms * 
 /// each sun's light and the eye.
 SourceWeights source_weights(const VolumeLight& light, std::size_t volume, formats::Vec3 to_eye);
 
+/// The share of a sun's light that counts as coming along the ray itself, from what stands straight
+/// ahead of it: 1 there, falling to 0 at 12 degrees. `sun` and `to_eye`: unit.
+float ahead_share(formats::Vec3 sun, formats::Vec3 to_eye);
+
+/// The part of source_weights that comes along the ray; those of harmonics are 0.
+SourceWeights ahead_weights(const VolumeLight& light, std::size_t volume, formats::Vec3 to_eye);
+
 /// For the mean over all directions: Y_0, and the means of the tables.
 SourceWeights mean_weights(const VolumeLight& light, std::size_t volume);
 

@@ -38,7 +38,7 @@ Sample sample_volumes(vec3 place, vec3 to_eye) {
         vec3 c = tame_to(density * volumes[v].extinction.rgb, 1e15);
         found.extinction += c;
         found.scattered += c * volumes[v].albedo.rgb *
-                           source_at(volumes[v], v, traveller, at, to_eye, vec3(1.0), harmonic);
+                           source_at(volumes[v], v, traveller, at, to_eye, vec3(1.0), harmonic, false);
     }
     return found;
 }

@@ -238,10 +238,16 @@ const Volumes = (() => {
       const part = { terms: termsOf(volume), suns: wants[v] ? suns.length : 0,
                      sunTerms: volumes.sunTerms[v], first,
                      sunPower: volumes.sunPowers.subarray(kMostSunTerms * v, kMostSunTerms * (v + 1)) };
-      first += volume.nodes * (part.terms + part.sunTerms * part.suns);
+      part.first += part.suns;  // before them: what each sun sends
+      first = part.first + volume.nodes * (part.terms + part.sunTerms * part.suns);
       return part;
     });
     const values = new Float32Array(4 * first);
+    for (const part of shown.filter(part => part.suns > 0)) {
+      for (const { light, joint } of parts) {
+        light.forEach((x, b) => { values[4 * (part.first - part.suns + joint) + b] += x; });
+      }
+    }
     volumes.list.forEach((volume, v) => lightVolume(volumes, volume, lights, shown[v], values));
     return { parts: shown, values, suns };
   }
