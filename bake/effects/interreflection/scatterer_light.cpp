@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/effects/interreflection/even_return.h"
 #include "bake/plan/medium_exitance.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/transport/irradiance_transport.h"
@@ -113,26 +114,6 @@ void add_leaving(const RowLayout& layout, std::span<const float> weight,
     }
 }
 
-// Of even light that reaches a body, the share that it scatters back: over points of all of its
-// surface, because what leaves at the bottom of a fold arrived beside it.
-class EvenReturn {
-  public:
-    void add(float arriving, std::span<const float> leaving, std::uint32_t bands) {
-        arriving_ += double{arriving};
-        for (std::uint32_t b = 0; b < bands; ++b) {
-            leaving_[b] += double{even_light(leaving.subspan(b * kTexels, kTexels))};
-        }
-    }
-    float share(std::uint32_t band) const {
-        return arriving_ > 0 ? static_cast<float>(std::clamp(leaving_[band] / arriving_, 0.0, 1.0))
-                             : 0;
-    }
-
-  private:
-    double arriving_ = 0;
-    std::array<double, 3> leaving_{};
-};
-
 // B of points of one medium, from the rows that its effects give; and what they make of bounced
 // light.
 std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::uint32_t material,
@@ -155,7 +136,8 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
         return 0;  // cancelled
     }
     const RowLayout& layout = field.inputs.layouts[material];
-    const float eta = field.inputs.bake.scene.materials[material].medium->eta;
+    const formats::Medium& medium = *field.inputs.bake.scene.materials[material].medium;
+    const float eta = medium.eta;
     const std::uint32_t bands = field.light.bands;
     // What the boundary mirrors goes on as if it were diffuse: where is wrong, how much is right.
     const auto mirrored = static_cast<float>(fresnel_moments(static_cast<double>(eta)).external);
@@ -168,10 +150,14 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
         add_leaving(layout, weigh_rows_of_medium(layout, eta, inside[m].normal), rows[m], colour,
                     bands, leaving);
     };
-    EvenReturn even;
+    EvenReturn even(medium);
     for (std::size_t m = members.size(); m < rows.size(); ++m) {
         find_leaving(m, {1, 1, 1});
-        even.add(even_light(around), leaving, bands);
+        BandColour sum{};
+        for (std::uint32_t b = 0; b < bands; ++b) {
+            sum[b] = even_light(std::span(leaving).subspan(b * kTexels, kTexels));
+        }
+        even.add(spread[m - members.size()].position, even_light(around), sum);
     }
     for (std::size_t m = 0; m < members.size(); ++m) {
         const std::size_t i = members[m];
@@ -180,9 +166,9 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
         find_leaving(m, colour);
         add_scaled(around, {mirrored, mirrored, mirrored}, bands, leaving);
         s.openness = openness_of(field, around);
+        const BandColour share = even.share(s.position);
         for (std::uint32_t b = 0; b < bands; ++b) {
-            field.light.reflect[i][b] =
-                std::clamp(mirrored + colour[b] * even.share(b), 0.0f, 1.0f);
+            field.light.reflect[i][b] = std::clamp(mirrored + colour[b] * share[b], 0.0f, 1.0f);
         }
         field.light.emitted.set(i, leaving);
     }

@@ -255,8 +255,10 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
             truth.space,
             {inputs.bake.rays, truth.suns, truth.smooth, truth.lobe, profile_of(inputs.own).exit,
              truth.points, inputs.layout.view_harmonics > 0, &truth.other},
-            receiver.inside, {inputs.layout.all_orders ? 1u : 2u}, inputs.knobs.seed, receiver.key,
-            rays);
+            receiver.inside,
+            {inputs.layout.all_orders ? 1u : 2u,
+             !inputs.layout.all_orders && model == MultipleModel::walks && truth.other},
+            inputs.knobs.seed, receiver.key, rays);
     }
     if (model != MultipleModel::walks) {
         dipole =

@@ -123,15 +123,17 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
                           options.light == nullptr ? nullptr : &entering.other);
     const bool is_inside = !scales && !plan.is_residual && options.all_orders &&
                            space.media.size() == 1 && !space.media.front().field;
-    const WalkStageOptions wanted{.radius = plan.radius,
-                                  .walks = walks,
-                                  .is_inside = is_inside,
-                                  .views = scales ? 1 : options.views,
-                                  .rows = {.cubemap_size = options.cubemap_size,
-                                           .kept = scales ? 6 : kept_of(options),
-                                           .bands = options.bands,
-                                           .seed = options.seed,
-                                           .orders = {options.all_orders ? 1u : 2u}}};
+    const WalkStageOptions wanted{
+        .radius = plan.radius,
+        .walks = walks,
+        .is_inside = is_inside,
+        .views = scales ? 1 : options.views,
+        .rows = {.cubemap_size = options.cubemap_size,
+                 .kept = scales ? 6 : kept_of(options),
+                 .bands = options.bands,
+                 .seed = options.seed,
+                 .orders = {options.all_orders ? 1u : 2u,
+                            !options.all_orders && !scales && options.light != nullptr}}};
     const std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
     const std::size_t step = options.bands == 1 ? 1 : 4;
     const glm::vec3 scale(static_cast<float>(1 / (std::numbers::pi * stage.medium.exit)));

@@ -300,6 +300,31 @@ TEST(Walk, LightScatteredOnceIsThatOfAHalfSpaceByQuadrature) {
     }
 }
 
+TEST(Walk, LightScatteredOnceIsMarkedWhereItCountsForDiffuseLightAlone) {
+    const auto slab =
+        make_walked_body(make_wide_slab(60), make_forward_medium(1, 0.8f, 0.3f, 1.3f));
+    const bake::WalkStart start = start_below({0, 0, 0}, {0, 1, 0});
+    const auto sum_up = [&](bake::WalkOrders orders, bool is_once) {
+        double sum = 0;
+        std::vector<bake::WalkExit> exits;
+        bake::WalkCounts counts;
+        for (std::uint32_t w = 0; w < 2000; ++w) {
+            bake::WalkRandom random({1, bake::RandomStage::body_walk, 0, w}, true);
+            exits.clear();
+            bake::follow_walk(slab->space, {}, start, orders, random, exits, counts);
+            for (const bake::WalkExit& exit : exits) {
+                sum += exit.is_once == is_once ? static_cast<double>(exit.weight[0]) : 0;
+            }
+        }
+        return sum;
+    };
+    const double once = sum_up({2, true}, true), more = sum_up({2, false}, false);
+    EXPECT_GT(once, 0.1 * more);
+    EXPECT_EQ(sum_up({2, true}, false), more);
+    EXPECT_EQ(sum_up({2, false}, true), 0);
+    EXPECT_NEAR(once + more, sum_up({1, false}, false), 1e-6 * more);
+}
+
 // What enters a conservative slab leaves on one of both sides. Of uniform light, the share 4/3 /
 // (tau' + 2 * 0.7104) crosses, 0.7104 being the extrapolation length of Milne's problem (asymptotic
 // in tau').

@@ -77,15 +77,19 @@ std::uint32_t ExitLight::nearest(const WalkExit& exit, std::vector<std::uint32_t
     return search(around);
 }
 
+glm::vec4 ExitLight::weigh(std::uint32_t sample, const WalkExit& exit, float scale) const {
+    const float area = samples_[sample].area;
+    const float factor = area > 0 ? scale * scale_ / area : 0;
+    return {factor * exit.weight[0], factor * exit.weight[1], factor * exit.weight[2], 0};
+}
+
 void ExitLight::add_exit(std::uint32_t sample, const WalkExit& exit, float scale,
                          ExitCells::Sums& sums) const {
     const SurfaceSample& s = samples_[sample];
     if (!(s.area > 0)) {
         return;
     }
-    const float factor = scale * scale_ / s.area;
-    const glm::vec4 weight(factor * exit.weight[0], factor * exit.weight[1],
-                           factor * exit.weight[2], 0);
+    const glm::vec4 weight = weigh(sample, exit, scale);
     if (cells_) {
         cells_->add_exit(sample, cells_->lobe().direction(s.normal, exit), weight, sums);
     } else {
@@ -105,9 +109,7 @@ void ExitLight::add(std::uint32_t sample, const ExitCells::Sums& sums, std::span
             add_to(&rgbx[4 * std::size_t{entries.index[i]}], factor * entries.value[i]);
         }
     }
-    if (other_ != nullptr) {
-        add_other(sample, {all.x, all.y, all.z}, rgbx);  // the mean of a lobe over such light is 1
-    }
+    add_diffuse(sample, all, rgbx);  // the mean of a lobe over such light is 1
 }
 
 void ExitLight::add_cells(const ExitCells::Cells& cells, std::span<float> rgbx) const {
@@ -116,13 +118,17 @@ void ExitLight::add_cells(const ExitCells::Cells& cells, std::span<float> rgbx) 
     }
 }
 
-void ExitLight::add_other(std::uint32_t sample, const std::array<float, 3>& weight,
-                          std::span<float> rgbx) const {
+void ExitLight::add_diffuse(std::uint32_t sample, const glm::vec4& weight,
+                            std::span<float> rgbx) const {
+    if (other_ == nullptr) {
+        return;
+    }
     const SparseVector entries = (*other_)[sample];
     for (std::size_t i = 0; i < entries.index.size(); ++i) {
         float* const to = &rgbx[4 * std::size_t{entries.index[i]}];
-        for (std::size_t b = 0; b < weight.size(); ++b) {
-            to[b] += weight[b] * entries.value[other_->bands == 1 ? i : 3 * i + b];
+        for (glm::length_t b = 0; b < 3; ++b) {
+            const auto band = static_cast<std::size_t>(b);
+            to[b] += weight[b] * entries.value[other_->bands == 1 ? i : 3 * i + band];
         }
     }
 }
@@ -140,9 +146,7 @@ void ExitLight::add_views(std::uint32_t sample, std::span<const std::array<float
         for (std::size_t i = 0; i < entries.index.size(); ++i) {
             add_to(&to[4 * std::size_t{entries.index[i]}], factor * entries.value[i]);
         }
-        if (other_ != nullptr) {
-            add_other(sample, {factor[0], factor[1], factor[2]}, rows.subspan(row * size, size));
-        }
+        add_diffuse(sample, {factor[0], factor[1], factor[2], 0}, rows.subspan(row * size, size));
     }
 }
 

@@ -38,15 +38,16 @@ class ExitLight {
              ExitCells::Cells& cells) const;
     /// Adds what `add` left of all samples to the row.
     void add_cells(const ExitCells::Cells& cells, std::span<float> rgbx) const;
+    /// `scale` times the weight of an exit at a sample, by band; 0 where it has no area.
+    glm::vec4 weigh(std::uint32_t sample, const WalkExit& exit, float scale) const;
+    /// Adds a sample's diffuse light alone, `weight`ed by band; nothing where there is none.
+    void add_diffuse(std::uint32_t sample, const glm::vec4& weight, std::span<float> rgbx) const;
     /// The sample's light as exits see it that forget their direction, to as many rows one after
     /// the other as are asked for, with weight[row][b].
     void add_views(std::uint32_t sample, std::span<const std::array<float, 3>> weight,
                    std::span<float> rows) const;
 
   private:
-    void add_other(std::uint32_t sample, const std::array<float, 3>& weight,
-                   std::span<float> rgbx) const;
-
     std::span<const SurfaceSample> samples_;
     const SparseVectors& light_;
     std::optional<ExitCells> cells_;

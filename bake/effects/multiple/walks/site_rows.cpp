@@ -89,9 +89,14 @@ class SiteWalker {
         for (std::size_t i = 0; i < by_sample_.size();) {
             const std::uint32_t sample = by_sample_[i].sample;
             ExitCells::Sums sums{};
+            glm::vec4 diffuse(0);  // of exits that count for such light alone
             std::array<std::array<float, 3>, kAllDegrees> views{};  // of rows by view, per band
             for (; i < by_sample_.size() && by_sample_[i].sample == sample; ++i) {
                 const std::uint32_t e = by_sample_[i].exit;
+                if (exits_[e].is_once) {
+                    diffuse += light_.weigh(sample, exits_[e], scale);
+                    continue;
+                }
                 light_.add_exit(sample, exits_[e], scale, sums);
                 for (std::size_t r = 0; r + 1 < options_.views; ++r) {
                     for (std::size_t b = 0; b < 3; ++b) {
@@ -100,6 +105,7 @@ class SiteWalker {
                 }
             }
             light_.add(sample, sums, row, cells);
+            light_.add_diffuse(sample, diffuse, row);
             if (options_.views > 1) {
                 light_.add_views(sample, std::span(views).first(options_.views - 1),
                                  std::span(dense_).subspan(size));

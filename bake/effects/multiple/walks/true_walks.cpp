@@ -104,7 +104,9 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
                 0);
             std::ranges::fill(irradiance, 0.0);
             const glm::vec2 u{random.next(), random.next()};
-            traced += add_light(light, at, *exit, u, irradiance);
+            if (!exit->is_once) {
+                traced += add_light(light, at, *exit, u, irradiance);
+            }
             if (light.other != nullptr && *light.other) {
                 std::ranges::fill(diffuse, 0.0);
                 traced += (*light.other)(at.receiver, std::uint64_t{key} << 32 | walk, 1, diffuse);

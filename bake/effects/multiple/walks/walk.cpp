@@ -305,8 +305,9 @@ class Walk {
         const float passed = transmittance(cosine, 1 / space_.eta);
         const bool counts =
             scatterings_ >= orders_.least || (scatterings_ > 0 && (is_reflected_ || has_changed_));
-        if (passed > 0 && counts) {
+        if (passed > 0 && (counts || (orders_.marks_once && scatterings_ > 0))) {
             leave(hit, normal, cosine, passed);
+            exits_.back().is_once = !counts;
         }
         is_reflected_ = true;
         position_ = hit.position - 2 * hit.error * hit.flat;

@@ -88,6 +88,7 @@ struct WalkExit {
     glm::vec3 drift{0};
     std::uint32_t primitive = 0, first_index = 0;  ///< of the triangle
     float u = 0, v = 0;                            ///< weights of its second and third corner
+    bool is_once = false;                          ///< counts by WalkOrders::marks_once alone
 };
 
 /// What became of walks.
@@ -119,6 +120,8 @@ struct WalkOrders {
     /// inside or went through another medium, but not without any scattering. 2: what is not single
     /// scattering; 1: all.
     std::uint32_t least = 2;
+    /// Light scattered once alone counts for diffuse light as well: its exits are marked.
+    bool marks_once = false;
 };
 
 /// Follows one walk backwards from the eye (README.md, "The estimator"). The start's direction is

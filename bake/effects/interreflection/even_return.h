@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+
+#include "bake/effects/interreflection/scatterer_light.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Of even light that reaches a body, the share that it scatters back around a point, band by band:
+/// of the light that arrives under an even sky at points all over its surface, as far as some
+/// transport mean free paths from there, the share that leaves at these. At one point alone it is
+/// no measure: what leaves at the bottom of a fold arrived beside it.
+class EvenReturn {
+  public:
+    explicit EvenReturn(const formats::Medium& medium);
+
+    /// A point; points are uniform by area. `arriving`: irradiance, `leaving`: radiosity by band.
+    void add(glm::vec3 position, float arriving, const BandColour& leaving);
+
+    /// In [0, 1]; where there are few points near, more and more that of all; 0 without any.
+    BandColour share(glm::vec3 position) const;
+
+  private:
+    struct Flux {
+        double arriving = 0;
+        std::array<double, 3> leaving{};
+
+        void add(const Flux& other, double weight);
+    };
+    using Cube = std::array<std::int64_t, 3>;
+    Cube cube_of(glm::vec3 position) const;
+
+    double side_;  // [m]
+    std::map<Cube, Flux> cubes_;
+    Flux all_;
+    double count_ = 0;
+};
+
+}  // namespace opaline::bake
