@@ -14,7 +14,7 @@ namespace {
 
 using formats::Rgb;
 
-constexpr float kLargest = std::numeric_limits<float>::max();
+constexpr float kLargestRadiance = std::numeric_limits<float>::max();
 
 // A volume that the ray meets, with the brick where it is or comes to next.
 struct Traveller {
@@ -278,7 +278,8 @@ MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
             if (!has_sun_ahead(*volumes.light, -1 * ray.direction)) break;
         } else {
             const Rgb beyond = march.result.radiance + -1 * most_ahead(volumes, ray, march);
-            result.radiance = tame(result.radiance + -1 * tame(beyond, kLargest), kLargest);
+            result.radiance =
+                tame(result.radiance + -1 * tame(beyond, kLargestRadiance), kLargestRadiance);
         }
     }
     return result;

@@ -118,7 +118,7 @@ void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& sid
         return;
     }
     constexpr float kReach = 0.8660254f;  // 3 / sqrt(12)
-    constexpr float kLargest = 1;
+    constexpr float kWidest = 1;
     const glm::vec3 low = kernel.centre - kReach * kernel.extent;
     const glm::vec3 high = kernel.centre + kReach * kernel.extent;
     const glm::vec3 slope{glm::length(kernel.across), glm::length(kernel.along),
@@ -140,7 +140,7 @@ void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& sid
             std::max({nearest.x, nearest.y, nearest.z}) > kReach) {
             continue;
         }
-        if (node.right != 0 && (radius > kLargest || node.is_mixed != 0)) {
+        if (node.right != 0 && (radius > kWidest || node.is_mixed != 0)) {
             const auto axis = static_cast<glm::length_t>(node.axis);
             if (high[axis] >= node.split) {
                 waiting[count++] = node.right;
