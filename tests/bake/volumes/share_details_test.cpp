@@ -7,6 +7,7 @@
 #include <random>
 
 #include "bake/volumes/node_worth.h"
+#include "bake/volumes/volume_knobs.h"
 #include "formats/opal/detail_codes.h"
 #include "tests/bake/volumes/volume_support.h"
 
