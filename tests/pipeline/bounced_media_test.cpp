@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,6 +60,39 @@ tests::Scene make_slotted_block(std::size_t& of_slot) {
                                          tests::make_grey_medium(0.95f, 0.05f, 1.4f));
 }
 
+BakeOptions walk_bake(bool separate) {
+    BakeOptions options = bake_by(kWalked);
+    options.separate_terms = separate;
+    return options;
+}
+
+// Of what files show at receivers under white light, what comes from other surfaces, added up.
+double sum_bounced(const tests::Scene& scene, std::span<const ReferenceReceiver> receivers,
+                   BakeOptions options) {
+    double sum = 0;
+    for (const double sign : {1.0, -1.0}) {
+        options.effects = {"multiple", "single"};
+        if (sign > 0) {
+            options.effects.emplace_back("interreflection");
+        }
+        const BakeResult baked = tests::bake_scene(scene, options);
+        const runtime::LightVector light =
+            tests::make_light("white", baked.asset.view().cubemap_size);
+        for (const double shown :
+             relight_receivers(baked.asset.view(), receivers, {.vector = light})) {
+            sum += sign * shown;
+        }
+    }
+    return sum;
+}
+
+std::vector<ReferenceReceiver> choose_in_slot(const tests::Scene& scene, std::size_t of_slot) {
+    auto probes = choose_model_probes(scene, 4000, 0, {}).value();
+    std::erase_if(probes.receivers,
+                  [&](const ReferenceReceiver& r) { return r.primitive >= of_slot; });
+    return probes.receivers;
+}
+
 // Under white light. By the ratio of what leaves them and the little light that reaches them,
 // points deep in the slot would send back all that is sent to them, twice the truth. As even light
 // returns, they send 1.4 times that: where light is sent to the slot alone, some of it leaves
@@ -67,43 +101,37 @@ TEST(BouncedMedia, WallsOfASlotSendEachOtherHardlyMoreThanPathTracingFinds) {
     std::size_t of_slot = 0;
     const tests::Scene scene = make_slotted_block(of_slot);
     ASSERT_EQ(of_slot, 3u);
-    auto probes = choose_model_probes(scene, 4000, 0, {}).value();
-    std::erase_if(probes.receivers,
-                  [&](const ReferenceReceiver& r) { return r.primitive >= of_slot; });
+    ModelProbes probes = choose_model_probes(scene, 0, 0, {}).value();
+    probes.receivers = choose_in_slot(scene, of_slot);
     probes.lights.resize(1);
     ASSERT_EQ(probes.lights[0].name, "white");
     ModelCheckOptions effort;
     effort.simulated = TermSet::interreflection;
     effort.max_events = 1500000;
     const LightCheck truth = trace_model_truth(scene, probes, effort, {}).value().front();
-    std::vector<double> held(probes.receivers.size());
-    for (const double sign : {1.0, -1.0}) {
-        BakeOptions options = bake_by(kWalked);
-        options.effects = {"multiple", "single"};
-        if (sign > 0) {
-            options.effects.emplace_back("interreflection");
-        }
-        const BakeResult baked = tests::bake_scene(scene, options);
-        const runtime::LightVector light = runtime::project_environment(
-            probes.lights[0].environment, baked.asset.view().cubemap_size, {}, 1);
-        const auto shown =
-            relight_receivers(baked.asset.view(), probes.receivers, {.vector = light});
-        for (std::size_t i = 0; i < held.size(); ++i) {
-            held[i] += sign * shown[i];
-        }
+    double traced = 0, variance = 0;
+    for (const ModelPair& pair : truth.pairs) {
+        traced += pair.truth;
+        variance += pair.variance;
     }
-    double sum = 0, traced = 0, variance = 0;
-    for (std::size_t i = 0; i < held.size(); ++i) {
-        sum += held[i];
-        traced += truth.pairs[i].truth;
-        variance += truth.pairs[i].variance;
-    }
+    const double sum = sum_bounced(scene, probes.receivers, walk_bake(false));
     std::printf("slot: %.3f of the truth, of %zu places, error of the truth %.3f\n", sum / traced,
-                held.size(), std::sqrt(variance) / traced);
-    EXPECT_GT(held.size(), 100u);
+                truth.pairs.size(), std::sqrt(variance) / traced);
+    EXPECT_GT(truth.pairs.size(), 100u);
     EXPECT_LT(std::sqrt(variance), 0.02 * traced);
     EXPECT_GT(sum, 0.9 * traced);
     EXPECT_LT(sum, 1.6 * traced);
+}
+
+// The effect that light scattered once may have to itself knows of the sky alone.
+TEST(BouncedMedia, LightFromOtherSurfacesIsTheSameWhetherWhatScattersOnceStandsApart) {
+    std::size_t of_slot = 0;
+    const tests::Scene scene = make_slotted_block(of_slot);
+    const auto receivers = choose_in_slot(scene, of_slot);
+    const double together = sum_bounced(scene, receivers, walk_bake(false)),
+                 apart = sum_bounced(scene, receivers, walk_bake(true));
+    std::printf("apart: %.3f of together\n", apart / together);
+    EXPECT_NEAR(apart / together, 1, 0.06);
 }
 
 }  // namespace
