@@ -1,44 +1,20 @@
 // What balls save random walks (bake/effects/multiple/walks/README.md, "Balls"): events, rays and
 // seconds of processor time a walk without and with them, in turns. Rows of RESULTS.md's table:
 // opaline_walk_table SCENE LENGTH,ALBEDO,G... with the media of opaline_error_matrix.
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <numeric>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "bake/effects/multiple/walks/site_rows.h"
 #include "bake/effects/multiple/walks/walk.h"
 #include "bake/effects/multiple/walks/walk_balls.h"
 #include "bake/receivers/surface_samples.h"
-#include "formats/gltf/import_gltf.h"
+#include "tests/bench/grey_cells.h"
 
 namespace opaline::bake {
 namespace {
-
-formats::Medium make_medium(const formats::Scene& scene, float length, float albedo, float g) {
-    glm::vec3 low(HUGE_VALF), high(-HUGE_VALF);
-    for (const formats::Primitive& p : scene.primitives) {
-        for (const glm::vec3& x : p.position) {
-            low = glm::min(low, x);
-            high = glm::max(high, x);
-        }
-    }
-    const float sigma_s = 100 / (length * glm::length(high - low)) / (1 - g);
-    const float sigma_a = sigma_s * (1 - albedo) / albedo;
-    formats::Medium medium;
-    medium.sigma_s = {sigma_s, sigma_s, sigma_s};
-    medium.sigma_a = {sigma_a, sigma_a, sigma_a};
-    medium.eta = 1.4f;
-    if (g != 0) {
-        medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
-        medium.phase.g = g;
-    }
-    return medium;
-}
 
 double processor_seconds() {
     timespec now{};
@@ -72,12 +48,9 @@ void follow(const WalkSpace& space, std::span<const WalkStart> starts, std::uint
     measured.seconds += processor_seconds() - before;
 }
 
-void print_cell(formats::Scene& scene, float length, float albedo, float g) {
+void print_cell(const formats::Scene& scene) {
     constexpr std::uint32_t kSites = 120, kRounds = 6;
     constexpr double kWalks = 12e6;  // as at production
-    for (auto& material : scene.materials) {
-        material.medium = make_medium(scene, length, albedo, g);
-    }
     const EmbreeScene triangles = EmbreeScene::build(scene, 1).value();
     const WalkSpace plain = make_walk_space(scene, triangles, 0, true);
     WalkSpace with_balls = plain;
@@ -114,34 +87,11 @@ void print_cell(formats::Scene& scene, float length, float albedo, float g) {
     std::printf(" %.2f times |\n", without.seconds / with.seconds);
 }
 
-int print_table(std::span<char*> argument) {
-    if (argument.size() < 2) {
-        std::fprintf(stderr, "usage: opaline_walk_table SCENE LENGTH,ALBEDO,G...\n");
-        return 2;
-    }
-    const std::string file = argument[0];
-    auto imported = formats::import_gltf(file);
-    if (!imported) {
-        std::fprintf(stderr, "cannot read %s\n", file.c_str());
-        return 1;
-    }
-    for (const char* text : argument.subspan(1)) {
-        float length = 0, albedo = 0, g = 0;
-        if (std::sscanf(text, "%f,%f,%f", &length, &albedo, &g) != 3) {
-            std::fprintf(stderr, "not LENGTH,ALBEDO,G: %s\n", text);
-            return 2;
-        }
-        std::printf("| %s | %s |", file.c_str(), text);
-        print_cell(imported->scene, length, albedo, g);
-        std::fflush(stdout);
-    }
-    return 0;
-}
-
 }  // namespace
 }  // namespace opaline::bake
 
 int main(int count, char** argument) {
-    return opaline::bake::print_table(
-        std::span(argument, static_cast<std::size_t>(count)).subspan(1));
+    return opaline::bake::print_grey_cells(
+        "opaline_walk_table", std::span(argument, static_cast<std::size_t>(count)).subspan(1),
+        opaline::bake::print_cell);
 }
