@@ -6,11 +6,9 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/volumes/attenuation.h"
 #include "bake/volumes/bake_glow.h"
 #include "bake/volumes/density_space.h"
-#include "bake/volumes/light_cells.h"
-#include "bake/volumes/node_albedo.h"
+#include "bake/volumes/light_nodes.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/node_rows.h"
 #include "bake/volumes/node_worth.h"
@@ -29,167 +27,6 @@ using formats::ErrorKind;
 using formats::make_error;
 using formats::SparseRow;
 
-constexpr std::size_t kNodesAtOnce = 16;  // nodes that a thread takes at once
-
-// All that is known before light is followed.
-struct Nodes {
-    DensitySpace space;
-    std::vector<NodeLattice> lattices;  // of each volume of the scene; empty where nothing is baked
-    std::vector<std::size_t> first;     // node of each volume, among all
-    std::vector<std::vector<glm::vec3>> albedo;  // shares of each volume's nodes
-    std::vector<std::vector<float>> density;     // around each volume's nodes
-    std::size_t count = 0;
-    LightCells fine;                                 // of single scattering
-    LightCells coarse;                               // of multiple scattering, which is smoother
-    std::vector<NodeEncoder> attenuated, scattered;  // of row V and of all T_k, one a layout
-};
-
-Nodes place_nodes(const VolumeJob& job) {
-    Nodes nodes;
-    nodes.space = make_density_space(job.scene);
-    nodes.lattices.resize(job.scene.volumes.size());
-    nodes.first.resize(job.scene.volumes.size());
-    // Walks collide in all volumes; one without nodes reflects nothing.
-    for (const VolumeLayout& layout : job.layouts) {
-        NodeLattice& lattice = nodes.lattices[layout.volume];
-        lattice = lattice_of(job.scene.volumes[layout.volume], layout);
-        if (!layout.has_nodes()) {
-            lattice.node.clear();
-            std::ranges::fill(lattice.corner, formats::kNoNode);
-        }
-    }
-    for (std::size_t v = 0; v < nodes.lattices.size(); ++v) {
-        nodes.first[v] = nodes.count;
-        nodes.count += nodes.lattices[v].node.size();
-        nodes.albedo.push_back(node_albedo_shares(nodes.space.volumes[v], nodes.lattices[v]));
-        nodes.density.push_back(node_densities(job.scene.volumes[v].density, nodes.lattices[v]));
-    }
-    // Light changes little within 5 degrees, light that is scattered often within 11.
-    const std::uint32_t n = job.knobs.cubemap_size;
-    const bool is_exact = job.knobs.quality == Quality::reference;
-    nodes.fine = make_light_cells(is_exact ? std::min(n, 32u) : std::min(n, 16u));
-    nodes.coarse = make_light_cells(is_exact ? std::min(n, 16u) : std::min(n, 8u));
-    constexpr std::array<double, 4> kTolerance{0.03, 0.015, 0.005, 0.0};
-    for (const VolumeLayout& layout : job.layouts) {
-        const NodeCoefficients most = node_coefficients(job.knobs, layout.often_terms);
-        const double tolerance = kTolerance[static_cast<std::size_t>(job.knobs.quality)];
-        const std::uint32_t more = node_candidates(job.knobs.quality);
-        nodes.attenuated.push_back({make_selector(n, more * most.attenuated), tolerance});
-        nodes.scattered.push_back({make_selector(n, more * most.scattered), tolerance});
-    }
-    return nodes;
-}
-
-glm::vec3 position_of(const VolumeJob& job, const Nodes& nodes, std::uint32_t volume,
-                      std::size_t node) {
-    return glm::vec3(job.scene.volumes[volume].density.to_scene *
-                     glm::dvec4(glm::dvec3(nodes.lattices[volume].node[node]), 1.0));
-}
-
-// The layout that a node among all belongs to, and its number there.
-struct Place {
-    const VolumeLayout* layout = nullptr;
-    std::size_t node = 0;
-};
-
-Place find_place(const VolumeJob& job, const Nodes& nodes, std::size_t number) {
-    for (const VolumeLayout& layout : job.layouts) {
-        const std::size_t first = nodes.first[layout.volume];
-        if (number >= first && number - first < nodes.lattices[layout.volume].node.size()) {
-            return {&layout, number - first};
-        }
-    }
-    return {};
-}
-
-std::size_t number_of(const VolumeJob& job, const VolumeLayout& layout) {
-    return static_cast<std::size_t>(&layout - job.layouts.data());
-}
-
-// Rows of a node times its albedo's share, term after term and band after band.
-void scale_rows(glm::vec3 share, std::size_t bands, std::size_t cells, std::span<float> rows) {
-    if (share == glm::vec3(1)) return;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        rows[i] *= share[static_cast<int>(i / cells % bands)];
-    }
-}
-
-// V of a node: its row, and its depths toward the coarse cells.
-struct Lit {
-    SparseRow row;
-    std::vector<float> coarse;  // band after band
-};
-
-Lit light_node(const VolumeJob& job, const Nodes& nodes, const Place& place, std::uint64_t& rays) {
-    const std::size_t bands = nodes.space.extinction_bands(), cells = nodes.fine.size();
-    std::vector<float> fine(bands * cells);
-    rays += gather_attenuation(nodes.space, job.rays, nodes.fine,
-                               position_of(job, nodes, place.layout->volume, place.node), fine);
-    Lit lit;
-    for (std::size_t band = 0; band < bands; ++band) {
-        const std::vector<float> own(
-            fine.begin() + static_cast<std::ptrdiff_t>(band * cells),
-            fine.begin() + static_cast<std::ptrdiff_t>((band + 1) * cells));
-        const std::vector<float> reduced = reduce_cells(own, nodes.fine.n, nodes.coarse.n);
-        lit.coarse.insert(lit.coarse.end(), reduced.begin(), reduced.end());
-    }
-    // The rows of a node have as many bands as any of them needs.
-    while (fine.size() < nodes.space.bands() * cells) {
-        fine.insert(fine.end(), fine.begin(), fine.begin() + static_cast<std::ptrdiff_t>(cells));
-    }
-    const auto row_bands = static_cast<std::uint32_t>(nodes.space.bands());
-    scale_rows(nodes.albedo[place.layout->volume][place.node], row_bands, cells, fine);
-    lit.row = std::move(encode_node_rows(nodes.attenuated[number_of(job, *place.layout)], fine, 1,
-                                         nodes.fine.n, row_bands)
-                            .front());
-    return lit;
-}
-
-// The attenuated light of all nodes, as rows and for walks.
-struct LitNodes {
-    std::vector<SparseRow> row;
-    DepthTable depths;
-};
-
-LitNodes light_nodes(const VolumeJob& job, const Nodes& nodes, const Context& context,
-                     std::uint64_t& rays) {
-    LitNodes lit;
-    lit.depths = make_depth_table(nodes.count, nodes.coarse.size(), nodes.space.extinction_bands());
-    struct Block {
-        std::vector<Lit> nodes;
-        std::uint64_t rays = 0;
-    };
-    for_each_block_in_order(
-        nodes.count, kNodesAtOnce, context,
-        [&](Range range) {
-            Block block;
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                block.nodes.push_back(
-                    light_node(job, nodes, find_place(job, nodes, i), block.rays));
-            }
-            return block;
-        },
-        [&](Range range, Block&& block) {
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                Lit& own = block.nodes[i - range.begin];
-                const std::size_t cells = nodes.coarse.size();
-                float most = 0;
-                for (std::size_t band = 0; band < lit.depths.bands; ++band) {
-                    const auto values = std::span(own.coarse).subspan(band * cells, cells);
-                    set_depths(lit.depths, i, band, values);
-                    most = std::max(most, *std::ranges::max_element(values));
-                }
-                lit.depths.is_dark[i] = most < 1e-6f;
-                lit.row.push_back(std::move(own.row));
-            }
-            rays += block.rays;
-            if (context.on_progress) {
-                context.on_progress({"light in volumes", range.end, nodes.count});
-            }
-        });
-    return lit;
-}
-
 // Both ways to light that was scattered before.
 struct Scattered {
     const VolumeWalkSpace& walks;
@@ -197,10 +34,10 @@ struct Scattered {
 };
 
 // The rows T_k of a node.
-std::vector<SparseRow> scatter_node(const VolumeJob& job, const Nodes& nodes,
+std::vector<SparseRow> scatter_node(const VolumeJob& job, const PlacedNodes& nodes,
                                     const Scattered& space, std::size_t number,
                                     std::uint64_t& rays) {
-    const Place place = find_place(job, nodes, number);
+    const NodePlace place = find_place(job, nodes, number);
     const VolumeLayout& layout = *place.layout;
     const std::uint32_t terms = layout.often_terms;
     if (terms == 0) {
@@ -238,7 +75,7 @@ std::vector<VolumeLayout> decide_methods(const VolumeJob& job, const VolumePathS
 }
 
 // Two pools a layout: V of all nodes, and all T_k.
-DetailPools start_pools(const VolumeJob& job, const Nodes& nodes) {
+DetailPools start_pools(const VolumeJob& job, const PlacedNodes& nodes) {
     DetailPools pools;
     for (const VolumeLayout& layout : job.layouts) {
         const NodeCoefficients mean = node_coefficients(job.knobs, layout.often_terms);
@@ -252,9 +89,9 @@ DetailPools start_pools(const VolumeJob& job, const Nodes& nodes) {
 
 // The rows of the next node. An error of its light shows by the density that scatters it, and as
 // far as eyes see it; some are within the volume.
-void add_to_pools(const VolumeJob& job, const Nodes& nodes, std::size_t number,
+void add_to_pools(const VolumeJob& job, const PlacedNodes& nodes, std::size_t number,
                   const SparseRow& attenuated, DetailPools& pools) {
-    const Place place = find_place(job, nodes, number);
+    const NodePlace place = find_place(job, nodes, number);
     const auto pool = static_cast<std::uint32_t>(2 * number_of(job, *place.layout));
     constexpr float kLeastSeen = 0.1f;
     const float seen = std::max(mean_visibility(attenuated, job.knobs.cubemap_size), kLeastSeen);
@@ -267,8 +104,9 @@ void add_to_pools(const VolumeJob& job, const Nodes& nodes, std::size_t number,
     }
 }
 
-formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& given, const Nodes& nodes,
-                                                      LitNodes lit, const Context& context,
+formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& given,
+                                                      const PlacedNodes& nodes, LitNodes lit,
+                                                      const Context& context,
                                                       std::vector<MethodMeasure>* measured,
                                                       std::uint64_t& rays) {
     const VolumeWalkSpace walks{nodes.space, given.rays,   nodes.lattices,  nodes.first,
@@ -321,7 +159,7 @@ formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& given, co
 }
 
 // Where each volume's rows stand, now that they are there.
-void number_rows(const VolumeJob& job, const Nodes& nodes, formats::Volumes& volumes) {
+void number_rows(const VolumeJob& job, const PlacedNodes& nodes, formats::Volumes& volumes) {
     std::uint32_t row = 0, band_row = 0;
     std::uint64_t code = 0;
     for (std::size_t i = 0; i < job.layouts.size(); ++i) {
@@ -346,16 +184,11 @@ formats::Rgb rgb(const std::array<float, 3>& band) {
 
 }  // namespace
 
-NodeLattice lattice_of(const formats::Volume& volume, const VolumeLayout& layout) {
-    return layout.glows ? make_node_lattice(volume.density, layout.spacing, volume.emission)
-                        : make_node_lattice(volume.density, layout.spacing);
-}
-
 formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Context& context,
                                                StageLog& log,
                                                std::vector<MethodMeasure>* measured) {
     formats::Volumes volumes;
-    const Nodes nodes = place_nodes(job);
+    const PlacedNodes nodes = place_nodes(job);
     const double bytes = 2.0 * static_cast<double>(nodes.count) *
                          static_cast<double>(nodes.space.extinction_bands()) *
                          static_cast<double>(nodes.coarse.size());

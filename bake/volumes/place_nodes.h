@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/transport/ray_scene.h"
+#include "bake/volumes/density_space.h"
+#include "bake/volumes/light_cells.h"
+#include "bake/volumes/node_lattice.h"
+#include "bake/volumes/node_rows.h"
+#include "bake/volumes/plan_volumes.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Nodes that a thread takes at once.
+inline constexpr std::size_t kNodesAtOnce = 16;
+
+/// What volumes are baked from.
+struct VolumeJob {
+    const formats::Scene& scene;
+    const RayScene& rays;  ///< surfaces that stand before the light; may be empty
+    std::span<const VolumeLayout> layouts;
+    const Knobs& knobs;
+};
+
+/// Where the light of a volume is baked.
+NodeLattice lattice_of(const formats::Volume& volume, const VolumeLayout& layout);
+
+/// All that is known before light is followed.
+struct PlacedNodes {
+    DensitySpace space;
+    /// Of each volume of the scene; empty where nothing is baked.
+    std::vector<NodeLattice> lattices;
+    std::vector<std::size_t> first;              ///< node of each volume, among all
+    std::vector<std::vector<glm::vec3>> albedo;  ///< shares of each volume's nodes
+    std::vector<std::vector<float>> density;     ///< around each volume's nodes
+    std::size_t count = 0;
+    LightCells fine;                                 ///< of single scattering
+    LightCells coarse;                               ///< of multiple scattering, which is smoother
+    std::vector<NodeEncoder> attenuated, scattered;  ///< of row V and of all T_k, one a layout
+};
+
+/// Errors: none; where a layout has no nodes, its lattice is empty.
+PlacedNodes place_nodes(const VolumeJob& job);
+
+/// [m], of a volume's node.
+glm::vec3 position_of(const VolumeJob& job, const PlacedNodes& nodes, std::uint32_t volume,
+                      std::size_t node);
+
+/// The layout that a node among all belongs to, and its number there.
+struct NodePlace {
+    const VolumeLayout* layout = nullptr;
+    std::size_t node = 0;
+};
+
+NodePlace find_place(const VolumeJob& job, const PlacedNodes& nodes, std::size_t number);
+
+/// Of a layout, among the job's.
+std::size_t number_of(const VolumeJob& job, const VolumeLayout& layout);
+
+/// Rows of a node times its albedo's share, term after term and band after band.
+void scale_rows(glm::vec3 share, std::size_t bands, std::size_t cells, std::span<float> rows);
+
+}  // namespace opaline::bake
