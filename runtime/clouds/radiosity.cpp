@@ -42,9 +42,9 @@ std::array<double, 3> totals(const Plane& plane) {
     return sum;
 }
 
-// Passes after which the rest of the geometric series is below the tolerance.
-std::uint32_t count_passes(const std::vector<RadiosityCell>& cells, const RadiosityCell& outside,
-                           bool wraps, const RadiosityOptions& options) {
+// For the largest values of all cells.
+std::uint32_t passes_for(const std::vector<RadiosityCell>& cells, const RadiosityCell& outside,
+                         bool wraps, const RadiosityOptions& options) {
     Rgb albedo, reflectance;
     const auto include = [&](const RadiosityCell& cell) {
         for (const auto band : kBands) {
@@ -54,19 +54,7 @@ std::uint32_t count_passes(const std::vector<RadiosityCell>& cells, const Radios
     };
     std::ranges::for_each(cells, include);
     if (!wraps) include(outside);
-    std::uint32_t passes = 0;
-    for (const auto band : kBands) {
-        if (!(albedo.*band > 0)) continue;
-        const double q = std::min(kMaxQuotient, static_cast<double>(albedo.*band) *
-                                                    static_cast<double>(reflectance.*band));
-        std::uint32_t n = 1;
-        for (double rest = q / (1 - q);
-             n < options.max_passes && !(rest < static_cast<double>(options.tolerance)); ++n) {
-            rest *= q;
-        }
-        passes = std::max(passes, std::min(n, options.max_passes));
-    }
-    return passes;
+    return count_passes(albedo, reflectance, options);
 }
 
 // Adds the passes that were left out: `last` times q + q^2 + ...
@@ -84,6 +72,23 @@ float sum_series(double quotient) {
 
 }  // namespace
 
+std::uint32_t count_passes(const Rgb& albedo, const Rgb& reflectance,
+                           const RadiosityOptions& options) {
+    std::uint32_t passes = 0;
+    for (const auto band : kBands) {
+        if (!(albedo.*band > 0)) continue;
+        const double q = std::min(kMaxQuotient, static_cast<double>(albedo.*band) *
+                                                    static_cast<double>(reflectance.*band));
+        std::uint32_t n = 1;
+        for (double rest = q / (1 - q);
+             n < options.max_passes && !(rest < static_cast<double>(options.tolerance)); ++n) {
+            rest *= q;
+        }
+        passes = std::max(passes, std::min(n, options.max_passes));
+    }
+    return passes;
+}
+
 Radiosity solve_radiosity(const PlaneGrid& grid, const std::vector<RadiosityCell>& cells,
                           const RadiosityCell& outside, const RadiosityOptions& options) {
     const GatherPlan plan = make_gather_plan(grid);
@@ -98,7 +103,7 @@ Radiosity solve_radiosity(const PlaneGrid& grid, const std::vector<RadiosityCell
          ground, next);
 
     Radiosity result;
-    result.passes = count_passes(cells, outside, grid.wraps, options);
+    result.passes = passes_for(cells, outside, grid.wraps, options);
     Plane last_ground, last_base;
     std::array<double, 3> before{}, after{};
     for (std::uint32_t n = 0; n < result.passes; ++n) {

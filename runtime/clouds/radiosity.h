@@ -29,8 +29,13 @@ struct Radiosity {
     std::uint32_t passes = 0;                   ///< as done
 };
 
+/// Passes after which (rho R)^n / (1 - rho R) < tolerance in all bands, max_passes at most; 0
+/// where the ground is black. Values in [0, 1].
+std::uint32_t count_passes(const formats::Rgb& albedo, const formats::Rgb& reflectance,
+                           const RadiosityOptions& options);
+
 /// Light between the ground and the base of clouds, two Lambertian planes [Bouthors2006]. Passes
-/// go on until (rho R)^n / (1 - rho R) < tolerance for the largest products. What is left then is
+/// go on as count_passes has it for the largest values of all cells. What is left then is
 /// added as a geometric series, in the shape of the last pass and with the quotient of its energy,
 /// at most kMaxQuotient: exact for even planes. Beyond a grid that does not wrap everything is as
 /// `outside`, and the inside does not reach it. Precondition: one cell per cell of the grid, values

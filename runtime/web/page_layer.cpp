@@ -1,11 +1,7 @@
 #include "runtime/web/page_layer.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <span>
-#include <utility>
 
 #include "runtime/clouds/environment_at.h"
 #include "runtime/clouds/light_points.h"
@@ -13,6 +9,7 @@
 #include "runtime/picture/camera.h"
 #include "runtime/specular.h"
 #include "runtime/volumes/volume_bounds.h"
+#include "runtime/web/page_radiosity.h"
 
 namespace opaline::runtime {
 namespace {
@@ -48,7 +45,7 @@ void put_pictures(DataScript& script, const std::string& name,
     put_numbers(script, name + " sizes", sizes);
 }
 
-// Puts both into one array; the second begins at a number of its own.
+// Puts all into one array; each begins at a number of its own.
 void put_joined(DataScript& script, const std::string& name,
                 const std::vector<std::vector<float>>& parts) {
     std::vector<float> all;
@@ -67,95 +64,18 @@ void append_grid(const LayerGrid& grid, std::vector<float>& values) {
     }
 }
 
-LayerTurn turn_of(LayerLight light) {
-    return {std::move(light.ground_light.cell.value), std::move(light.base_light.cell.value)};
-}
-
-float brightest_of(const LayerTurn& turn) {
-    float brightest = 0;
-    for (const std::vector<Rgb>* grid : {&turn.ground, &turn.base}) {
-        for (const Rgb value : *grid) {
-            brightest = std::max({brightest, value.r, value.g, value.b});
-        }
-    }
-    return brightest;
-}
-
-// The largest difference of `middle` from the mean of both.
-float error_between(const LayerTurn& a, const LayerTurn& b, const LayerTurn& middle) {
-    LayerTurn difference;
-    const auto add = [&](std::vector<Rgb> LayerTurn::*grid) {
-        for (std::size_t i = 0; i < (middle.*grid).size(); ++i) {
-            const Rgb d = (middle.*grid)[i] + -0.5f * ((a.*grid)[i] + (b.*grid)[i]);
-            (difference.*grid).push_back({std::abs(d.r), std::abs(d.g), std::abs(d.b)});
-        }
-    };
-    add(&LayerTurn::ground);
-    add(&LayerTurn::base);
-    return brightest_of(difference);
-}
-
-// `turn`: as the light stands. Halves the step until what lies between is near enough.
-template <class Solve>
-std::vector<LayerTurn> fill_turns(LayerTurn turn, const Solve& solve) {
-    constexpr std::size_t kFirst = 4, kBytesPerCell = 12;  // halves of two grids
-    const std::size_t most =
-        std::min(kMostTurns, kMostTurnBytes / (kBytesPerCell * turn.ground.size()));
-    std::vector<LayerTurn> turns;
-    turns.push_back(std::move(turn));
-    for (std::size_t i = 1; i < kFirst; ++i) {
-        turns.push_back(solve(static_cast<double>(i) / kFirst));
-    }
-    for (float error = 1; error > kTurnTolerance && 2 * turns.size() <= most;) {
-        const std::size_t count = turns.size();
-        std::vector<LayerTurn> all;
-        float largest = 0, brightest = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            LayerTurn middle = solve((static_cast<double>(i) + 0.5) / static_cast<double>(count));
-            largest = std::max(largest, error_between(turns[i], turns[(i + 1) % count], middle));
-            brightest = std::max(brightest, brightest_of(middle));
-            all.push_back(turns[i]);
-            all.push_back(std::move(middle));
-        }
-        turns = std::move(all);
-        error = brightest > 0 ? largest / brightest : 0;
-    }
-    return turns;
-}
-
-void put_turns(DataScript& script, const std::string& name, std::span<const LayerTurn> turns,
-               std::vector<Rgb> LayerTurn::*grid) {
-    std::vector<Rgb> all;
-    for (const LayerTurn& turn : turns) {
-        all.insert(all.end(), (turn.*grid).begin(), (turn.*grid).end());
-    }
-    script.put_radiance(name, all);
-}
-
 }  // namespace
 
-bool turns_layer(const formats::AssetView& asset) {
+bool moves_layer(const formats::AssetView& asset) {
     return !specular_needs(asset).any();
 }
 
 LightAboveLayer light_above_layer(const formats::AssetView& asset,
                                   const formats::Environment& environment, unsigned threads) {
     LightAboveLayer made;
-    const auto light_turned = [&](double share) {
-        const auto angle = static_cast<float>(2 * std::numbers::pi * share);
-        return light_layers(asset.clouds, environment, rotation_about_y(angle),
-                            {.time = 0, .threads = threads});
-    };
-    made.layer = light_turned(0);
-    made.turns = turns_layer(asset);
-    // An even sky has no side.
-    if (made.turns && !made.layer.sun.empty()) {
-        made.turn = fill_turns(turn_of(made.layer),
-                               [&](double share) { return turn_of(light_turned(share)); });
-    } else {
-        made.turn = {turn_of(made.layer)};
-    }
-    if (!made.turns) {
+    made.layer = light_layers(asset.clouds, environment, {}, {.time = 0, .threads = threads});
+    made.moves = moves_layer(asset);
+    if (!made.moves) {
         made.below =
             environment_at({made.layer, environment, {}}, centre_of(asset), {.threads = threads});
     }
@@ -165,13 +85,23 @@ LightAboveLayer light_above_layer(const formats::AssetView& asset,
 void put_layer(DataScript& script, const formats::AssetView& asset) {
     const LayerLight light = light_layers(asset.clouds, {}, {}, {.time = 0, .threads = 1});
     const LayerKind kind = layer_kind(light);
+    const formats::LayerRecord& record = light.record;
     put_numbers(
         script, "layer kind",
-        {kind.repeats ? 1u : 0u, kind.modes, kind.glows ? 1u : 0u, turns_layer(asset) ? 1u : 0u});
-    put_floats(script, "layer thickness", pack_thickness(light));
+        {kind.repeats ? 1u : 0u, kind.modes, kind.glows ? 1u : 0u, moves_layer(asset) ? 1u : 0u});
+    put_numbers(script, "layer frames",
+                {record.columns, record.rows, record.frames, record.loops() ? 1u : 0u});
+    put_floats(script, "layer motion",
+               {record.highest, record.frame_seconds, record.wind[0], record.wind[1]});
+    script.put("layer codes", asset.clouds.thickness_of(record));
+    std::vector<float> means;
+    for (const formats::LayerTables& tables : light.tables) {
+        means.insert(means.end(), tables.mean_t.begin(), tables.mean_t.end());
+    }
     put_joined(script, "layer tables",
-               {pack_layer_phase(light), pack_layer_flux(light), pack_layer_glow(light)});
+               {pack_layer_phase(light), pack_layer_flux(light), pack_layer_glow(light), means});
     put_pictures(script, "layer albedo", light.albedo.level);
+    put_radiosity(script, light);
 }
 
 void put_layer_light(DataScript& script, const LightAboveLayer& above) {
@@ -179,10 +109,6 @@ void put_layer_light(DataScript& script, const LightAboveLayer& above) {
     const ShaderLayer record = make_shader_layer(light);
     script.put_records("layer record", std::span<const ShaderLayer>(&record, 1));
     put_joined(script, "layer suns", {pack_sun_tables(light), pack_sun_flux(light)});
-    put_numbers(script, "layer light size",
-                {light.ground_light.cell.columns, light.ground_light.cell.rows});
-    put_turns(script, "layer ground light", above.turn, &LayerTurn::ground);
-    put_turns(script, "layer base light", above.turn, &LayerTurn::base);
     const LayerPlaces places = layer_places(light);
     std::vector<float> values;
     for (const LayerGrid* grid : {&places.field, &places.ground, &places.light}) {

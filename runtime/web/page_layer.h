@@ -10,32 +10,21 @@
 
 namespace opaline::runtime {
 
-/// A cloud layer in a page: at time 0. What turning the light about +Y changes of a `LayerLight` is
-/// the direction of its suns, which is for scripts, and the light between ground and base, which is
-/// solved here for some turns: between two of them the page interpolates.
+/// A cloud layer in a page. Scripts and shaders there blend its frames, move it with the wind, turn
+/// its suns about +Y and solve the light between ground and base (page_radiosity.h): they need the
+/// layer, and each light above it as it stands.
 
-/// Of one turn of the light, by cell.
-struct LayerTurn {
-    std::vector<formats::Rgb> ground, base;  ///< LayerLight::ground_light, base_light
-};
-
-/// A light above the first layer of an asset.
+/// A light above the first layer of an asset, at time 0.
 struct LightAboveLayer {
-    LayerLight layer;             ///< the light as it stands
-    std::vector<LayerTurn> turn;  ///< at equal steps of a whole turn; one: it is as the layer's
-    formats::Environment below;  ///< where the page does not turn the light: what lights bodies, at
-                                 ///< the centre of all (environment_at.h)
-    bool turns = false;          ///< turns_layer
+    LayerLight layer;
+    formats::Environment below;  ///< where nothing moves in the page: what lights bodies, at the
+                                 ///< centre of all (environment_at.h)
+    bool moves = false;          ///< moves_layer
 };
 
-/// Whether the page of an asset with a layer turns the light: not where bodies mirror it, because
-/// what they mirror is blurred as the page is written.
-bool turns_layer(const formats::AssetView& asset);
-
-/// Largest error of light between ground and base halfway between two turns, of its brightest cell;
-/// more turns than kMostTurns, or than kMostTurnBytes hold, are not stored.
-inline constexpr float kTurnTolerance = 0.03f;
-inline constexpr std::size_t kMostTurns = 64, kMostTurnBytes = std::size_t{6} << 20;
+/// Whether the page of an asset with a layer turns the light and moves the clouds: not where bodies
+/// mirror light, because what they mirror is blurred as the page is written.
+bool moves_layer(const formats::AssetView& asset);
 
 /// Precondition: the asset has a layer. `threads` 0: all cores; the same bits for any number.
 LightAboveLayer light_above_layer(const formats::AssetView& asset,

@@ -71,8 +71,8 @@ std::string make_light_script(const std::string& owner, const PageLight& light,
                               unsigned threads) {
     DataScript script(owner);
     const Environment& shining = above != nullptr ? above->below : light.environment;
-    // Of a layer that turns, the page itself finds what lights bodies.
-    if (above == nullptr || !above->turns) put_shining(script, shining, threads);
+    // Of a layer that moves, the page itself finds what lights bodies.
+    if (above == nullptr || !above->moves) put_shining(script, shining, threads);
     put_background(script, light.environment, threads);
     put_discs(script, "discs", light.environment.discs, true);
     if (needs.gloss) put_cells(script, make_gloss_light(shining, threads).cells);

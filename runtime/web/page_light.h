@@ -25,7 +25,7 @@ struct PageLightNeeds {
 /// for gloss, if needed. Radiance is stored as halves times a scale: it errs by 2^-12 down to 1e-9
 /// of the brightest pixel.
 /// `above`: where the asset has a cloud layer, this light above it, which is what eyes see; the
-/// page projects what is below, or finds that by itself where it turns the light.
+/// page projects what is below, or finds that by itself where it moves the clouds.
 std::string make_light_script(const std::string& owner, const PageLight& light,
                               const LightAboveLayer* above, const PageLightNeeds& needs,
                               unsigned threads);

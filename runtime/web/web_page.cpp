@@ -32,7 +32,7 @@ std::uint64_t bytes_of(const AssetView& asset) {
              asset.volumes.rows.code8.size_bytes() + asset.volumes.rows.code16.size_bytes() +
              asset.volumes.rows.index16.size_bytes() + asset.volumes.rows.index32.size_bytes() +
              asset.volumes.glow.code.size_bytes() + asset.volumes.glow.value.size_bytes() +
-             2 * asset.clouds.thickness.size_bytes() + 4 * asset.clouds.ground.size_bytes();
+             asset.clouds.thickness.size_bytes() + 4 * asset.clouds.ground.size_bytes();
     for (const formats::PreviewImage& image : asset.images) {
         bytes += image.rgb.size_bytes();
     }

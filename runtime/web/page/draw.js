@@ -2,122 +2,8 @@
 // WebGL 2: an asset before its light, a sample of every pixel at a time. Programs are specialised as
 // those of runtime/gl/gl_surfaces.cpp.
 const Draw = (() => {
-  const kColumns = 2048;  // of the texture of products
-  // Texture units; those of volumes are shared with surfaces, which bind theirs anew.
-  const kUnits = { products: 0, base_color_image: 1, mirrored_light: 2, light_maps: 3, gloss_image: 4,
-                   own_image: 5, hole_image: 6, srgb_table: 7, cells: 8, sun_table: 9, albedo: 10,
-                   map: 11, disc_table: 12, sampled: 13, normal_image: 13, sum: 14, samples: 0, depth: 1,
-                   brick_numbers: 2, density_codes: 3, corner_numbers: 4, node_light: 5,
-                   phase_entries: 6, table_values: 2, sun_values: 3, thickness_values: 4, albedo_map: 5,
-                   ground_light: 6, base_light: 7, sheet_light: 7, sheet_through: 8,
-                   glow_words: 9 };
-
-  // GLSL ES 3.00 has no explicit places of what passes between stages, nor of uniforms.
-  function translate(text, stage) {
-    const passed = stage === "vertex" ? "out" : "in";
-    return text.replace(/layout\((location|binding) = \d+\) uniform/g, "uniform")
-        .replace(new RegExp(`layout\\(location = \\d+\\) ${passed} `, "g"), `${passed} `);
-  }
-
-  const kHead = "#version 300 es\n#define DATA_IN_TEXTURES\n" +
-      ["float", "int", "sampler2D", "sampler2DArray", "usampler2D"]
-          .map(type => `precision highp ${type};\n`).join("");
-
-  function compile(gl, kind, stage, text) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) {
-      throw new Error(`the browser refuses a ${stage} shader: ${gl.getShaderInfoLog(shader)}`);
-    }
-    return shader;
-  }
-
-  // A program and its uniforms; samplers have the units of their names.
-  function makeProgram(gl, defines, vertexFiles, fragmentFiles) {
-    const name = gl.createProgram();
-    const stages = [[gl.VERTEX_SHADER, "vertex", vertexFiles],
-                    [gl.FRAGMENT_SHADER, "fragment", fragmentFiles]];
-    for (const [kind, stage, files] of stages) {
-      const text = files.map(file => translate(opaline.shaders[file], stage)).join("\n");
-      const head = defines.map(([word, value]) => `#define ${word} ${value}\n`).join("");
-      gl.attachShader(name, compile(gl, kind, stage, kHead + head + text));
-    }
-    gl.linkProgram(name);
-    if (!gl.getProgramParameter(name, gl.LINK_STATUS) && !gl.isContextLost()) {
-      throw new Error(`the browser refuses a program: ${gl.getProgramInfoLog(name)}`);
-    }
-    gl.useProgram(name);
-    const uniforms = new Map();
-    for (let i = 0; i < (gl.getProgramParameter(name, gl.ACTIVE_UNIFORMS) ?? 0); ++i) {
-      const { name: uniform, type } = gl.getActiveUniform(name, i);
-      const place = gl.getUniformLocation(name, uniform);
-      uniforms.set(uniform, { type, place });
-      if (uniform in kUnits) gl.uniform1i(place, kUnits[uniform]);
-    }
-    return { name, uniforms };
-  }
-
-  // Those that the program has; it is in use.
-  function setUniforms(gl, program, values) {
-    for (const [name, value] of Object.entries(values)) {
-      const uniform = program.uniforms.get(name);
-      if (uniform === undefined) continue;
-      const { type, place } = uniform;
-      switch (type) {
-        case gl.FLOAT: gl.uniform1f(place, value); break;
-        case gl.FLOAT_VEC2: gl.uniform2fv(place, value); break;
-        case gl.FLOAT_VEC3: gl.uniform3fv(place, value); break;
-        case gl.FLOAT_VEC4: gl.uniform4fv(place, value); break;
-        case gl.FLOAT_MAT3: gl.uniformMatrix3fv(place, false, value); break;
-        case gl.INT: gl.uniform1i(place, value); break;
-        case gl.INT_VEC2: gl.uniform2iv(place, value); break;
-        case gl.UNSIGNED_INT: gl.uniform1ui(place, value); break;
-        case gl.UNSIGNED_INT_VEC2: gl.uniform2uiv(place, value); break;
-        case gl.UNSIGNED_INT_VEC4: gl.uniform4uiv(place, value); break;
-        default: throw new Error(`no uniform has the type of ${name}`);
-      }
-    }
-  }
-
-  function bind(gl, unit, texture, target = gl.TEXTURE_2D) {
-    gl.activeTexture(gl.TEXTURE0 + kUnits[unit]);
-    gl.bindTexture(target, texture);
-  }
-
-  function makeTexture(gl, target, levels, format, width, height, layers) {
-    if (Math.max(width, height) > gl.getParameter(gl.MAX_TEXTURE_SIZE)) {
-      throw new Error(`this device's graphics take no picture of ${width} x ${height}`);
-    }
-    const texture = gl.createTexture();
-    gl.activeTexture(gl.TEXTURE0 + 15);
-    gl.bindTexture(target, texture);
-    if (target === gl.TEXTURE_2D) gl.texStorage2D(target, levels, format, width, height);
-    else gl.texStorage3D(target, levels, format, width, height, layers);
-    gl.texParameteri(target, gl.TEXTURE_MIN_FILTER,
-                     levels > 1 ? gl.NEAREST_MIPMAP_NEAREST : gl.NEAREST);
-    gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-    gl.texParameteri(target, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
-    gl.texParameteri(target, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
-    return texture;
-  }
-
-  // `format`: internal, of the values, of one of them.
-  function makeTable(gl, format, width, height, values) {
-    const texture = makeTexture(gl, gl.TEXTURE_2D, 1, format[0], width, Math.max(height, 1));
-    if (height > 0) {
-      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, format[1], format[2], values);
-    }
-    return texture;
-  }
-
-  // Rows of kColumns values, `per` numbers each.
-  function makeLines(gl, format, values, per = 1) {
-    const lines = Math.max(1, Math.ceil(values.length / per / kColumns));
-    const padded = new values.constructor(per * kColumns * lines);
-    padded.set(values);
-    return makeTable(gl, format, kColumns, lines, padded);
-  }
+  const { kColumns, makeProgram, setUniforms, bind, makeTexture, makeTable, makeLines, makeTarget,
+          addColors, freeTarget } = Gl;
 
   // A cube's faces, or one map, as layers; cube maps with all of their levels, if wanted.
   function makeLayers(gl, width, height, layers, pixels, levels = 1) {
@@ -276,8 +162,8 @@ const Draw = (() => {
       gl.uniformBlockBinding(name, gl.getUniformBlockIndex(name, "Layer"), 0);
     }
     return { program, around, block: gl.createBuffer(), tables: makeLines(gl, kFloatLines(gl), layer.tables),
-             thickness: makeLines(gl, kFloatLines(gl), layer.thickness),
-             albedo: makePictures(gl, layer.albedo) };
+             albedo: makePictures(gl, layer.albedo), radiosity: Radiosity.make(gl, layer),
+             thickness: null, time: NaN, record: null, lit: null };
   }
 
   // Of one light, for all of its turns.
@@ -299,48 +185,15 @@ const Draw = (() => {
           : makeLayers(gl, background.width, background.height, background.layout === 2 ? 6 : 1,
                        background.pixels),
       layerSuns: light.layer && makeLines(gl, kFloatLines(gl), light.layer.suns),
-      layerGround: light.layer && makeTexture(gl, gl.TEXTURE_2D, 1, gl.RGB32F, light.layer.width, light.layer.height),
-      layerBase: light.layer && makeTexture(gl, gl.TEXTURE_2D, 1, gl.RGB32F, light.layer.width, light.layer.height),
-      layerRecord: null,
     };
   }
 
   function freeLightObjects(gl, objects) {
     [...objects.mirrored.values(), objects.sunTable, objects.discTable, objects.cells, objects.maps,
-     objects.map, objects.layerSuns, objects.layerGround, objects.layerBase].forEach(texture => gl.deleteTexture(texture));
+     objects.map, objects.layerSuns].forEach(texture => gl.deleteTexture(texture));
   }
 
-  function makeTarget(gl, width, height, format, hasDepth) {
-    const target = { frame: gl.createFramebuffer(), depth: null,
-                     color: makeTexture(gl, gl.TEXTURE_2D, 1, format, width, height) };
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target.color, 0);
-    if (hasDepth) {
-      target.depth = makeTexture(gl, gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT32F, width, height);
-      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, target.depth, 0);
-    }
-    return target;
-  }
-
-  // With the light and the transmittance of a layer (clouds/layer_sheet.h) beside it.
-  function addSheet(gl, target, width, height) {
-    target.sheet = [1, 2].map(i => {
-      const texture = makeTexture(gl, gl.TEXTURE_2D, 1, gl.RGBA32F, width, height);
-      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, texture, 0);
-      return texture;
-    });
-    gl.drawBuffers([0, 1, 2].map(i => gl.COLOR_ATTACHMENT0 + i));
-    return target;
-  }
-
-  function freeTarget(gl, target) {
-    gl.deleteFramebuffer(target.frame);
-    (target.sheet ?? []).forEach(texture => gl.deleteTexture(texture));
-    gl.deleteTexture(target.color);
-    gl.deleteTexture(target.depth);
-  }
-
-  // Interface: setLight(light), project(turn), relight(projected, colors), resize(width, height),
+  // Interface: setLight(light), project(turn, time), relight(projected, colors), resize(width, height),
   // drawSample(...), present(...), readPixels(...).
   function make(canvas, asset) {
     const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false });
@@ -356,7 +209,7 @@ const Draw = (() => {
                                    ["cube_map.glsl", "arc_tangent.glsl", "environment.glsl", "background.frag.glsl"]);
     const adding = makeProgram(gl, [], ["screen.vert.glsl"], ["add_sample.frag.glsl"]);
     const presenting = makeProgram(gl, [], ["screen.vert.glsl"], ["present.frag.glsl"]);
-    const looksAround = asset.layer?.turns && (asset.primitives.length > 0 || asset.volumes !== null);
+    const looksAround = asset.layer?.moves && (asset.primitives.length > 0 || asset.volumes !== null);
     const layer = asset.layer === null ? null
         : makeLayerObjects(gl, asset.layer, asset.volumes !== null, looksAround);
     const volumes = asset.volumes === null ? null : makeVolumeObjects(gl, asset.volumes, layer !== null);
@@ -370,23 +223,27 @@ const Draw = (() => {
     }
 
     // The light turned by `turn` [radians], as Light.project gives it; with a cloud layer what that leaves
-    // of it, and null where it lights no bodies.
-    function project(turn) {
+    // of it at a time [s], and null where it lights no bodies.
+    function project(turn, time) {
       if (layer === null) return Light.project(light, asset.cubemap, turn);
-      turnLayer(turn);
-      if (!asset.layer.turns) return Light.project(light, asset.cubemap, 0);
+      moveLayer(time);
+      lightLayer(turn);
+      if (!asset.layer.moves) return Light.project(light, asset.cubemap, 0);
       return looksAround ? Light.project(lookAround(turn), asset.cubemap, 0) : null;
     }
 
-    function turnLayer(turn) {
-      const turned = Layer.turned(light.layer, turn), { width, height } = light.layer;
-      lightObjects.layerRecord = turned.record;
-      for (const [texture, values] of [[lightObjects.layerGround, turned.ground],
-                                       [lightObjects.layerBase, turned.base]]) {
-        gl.activeTexture(gl.TEXTURE0 + 15);
-        gl.bindTexture(gl.TEXTURE_2D, texture);
-        gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RGB, gl.FLOAT, values);
-      }
+    function moveLayer(time) {
+      if (layer.time === time) return;
+      gl.deleteTexture(layer.thickness);
+      layer.thickness = makeLines(gl, kFloatLines(gl), Layer.thicknessAt(asset.layer, time));
+      layer.time = time;
+    }
+
+    // Light between ground and base too.
+    function lightLayer(turn) {
+      layer.record = Layer.turned(light.layer, turn);
+      bindLayer(Layer.cornerAt(asset.layer, light.layer, layer.time));
+      layer.lit = layer.radiosity.solve(Layer.openGround(asset.layer, light.layer));
     }
 
     // What lights bodies with a cloud layer around them, as a light that is not to be turned.
@@ -405,7 +262,7 @@ const Draw = (() => {
       const cube = new Float32Array(18 * side * side);
       for (let i = 0; i < cube.length; ++i) cube[i] = seen[4 * Math.floor(i / 3) + i % 3];
       return { padded: Light.padCube(cube), points: new Float32Array(0),
-               suns: Layer.sunsBelow(lightObjects.layerRecord, light.discs, seen.subarray(24 * side * side), turn) };
+               suns: Layer.sunsBelow(layer.record, light.discs, seen.subarray(24 * side * side), turn) };
     }
 
     // `projected`: of project.
@@ -438,7 +295,7 @@ const Draw = (() => {
       sampled = makeTarget(gl, width, height, gl.RGBA32F, true);
       if (layer !== null) {
         clouded = makeTarget(gl, width, height, gl.RGBA32F, false);
-        if (volumes !== null) addSheet(gl, clouded, width, height);
+        if (volumes !== null) addColors(gl, clouded, 2, width, height);  // LayerSheet of clouds/layer_sheet.h
       }
       if (volumes !== null) marched = makeTarget(gl, width, height, gl.RGBA32F, false);
       sum = makeTarget(gl, width, height, sumFormat, false);
@@ -525,15 +382,15 @@ const Draw = (() => {
 
     // What programs read of a cloud layer, seen from there.
     function bindLayer(eye) {
-      const block = Layer.block(asset.layer, light.layer, lightObjects.layerRecord, eye);
+      const block = Layer.block(asset.layer, light.layer, layer.record, eye, layer.time);
       gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, layer.block);
       gl.bufferData(gl.UNIFORM_BUFFER, block, gl.DYNAMIC_DRAW);
       bind(gl, "table_values", layer.tables);
       bind(gl, "sun_values", lightObjects.layerSuns);
       bind(gl, "thickness_values", layer.thickness);
       bind(gl, "albedo_map", layer.albedo);
-      bind(gl, "ground_light", lightObjects.layerGround);
-      bind(gl, "base_light", lightObjects.layerBase);
+      bind(gl, "ground_light", layer.lit?.ground ?? null);
+      bind(gl, "base_light", layer.lit?.base ?? null);
     }
 
     // Layer, ground and sky before and behind surfaces, from `sampled` to `clouded`.
@@ -566,8 +423,8 @@ const Draw = (() => {
         ...rayUniforms(frame, place), ...Volumes.uniforms(asset.volumes, volumes.inverses, lit.parts, frame, colors),
         supersampling: 1, near_plane: frame.unit * frame.near });
       if (layer !== null) {
-        bind(gl, "sheet_light", clouded.sheet[0]);
-        bind(gl, "sheet_through", clouded.sheet[1]);
+        bind(gl, "sheet_light", clouded.more[0]);
+        bind(gl, "sheet_through", clouded.more[1]);
         setUniforms(gl, program, { units_of_metre: frame.unit,
                                    eye_above_ground: frame.unit * Layer.eyeAboveGround(light.layer, frame.eye) });
       }

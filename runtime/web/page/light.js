@@ -232,7 +232,7 @@ const Light = (() => {
       cells: arrays.get("cells"),
       background: { layout, width, height, includesPoles, turn: arrays.get("background.turn"),
                     pixels: radiance("background") },
-      layer: Layer.readLight(arrays, radiance),
+      layer: Layer.readLight(arrays),
       // Of a level of roughness; nothing where the asset has none of it.
       mirrored: level => arrays.has(`mirrored.${level}`) ? radiance(`mirrored.${level}`) : null,
     };

@@ -10,7 +10,7 @@ opaline.page = (() => {
   const lights = new Map();  // by number, as read
   let asset, draw, state, home;
   let drawn = 0;             // samples of the current picture
-  let shown = { light: -1, turn: NaN, colors: null }, projected = null;
+  let shown = { light: -1, turn: NaN, time: NaN, colors: null }, projected = null;
   let requested = false, moved = 0, lastFrame = 0, coarseness = 1;
 
   function say(text) { at("message").textContent = text; }
@@ -20,7 +20,8 @@ opaline.page = (() => {
     throw error;
   }
 
-  const canTurn = () => asset.layer === null || asset.layer.turns;
+  const canTurn = () => asset.layer === null || asset.layer.moves;
+  const hasTime = () => asset.layer !== null && asset.layer.moves && !Layer.isStill(asset.layer);
   const numbers = text => text.split(",").map(Number);
   const areFinite = (values, count) => values.length === count && values.every(Number.isFinite);
 
@@ -49,7 +50,7 @@ opaline.page = (() => {
     }
     const light = Math.max(0, opaline.lights.indexOf(given.get("light")));
     return { view, light, turn: canTurn() ? number("rotate", 0, -1e6, 1e6) : 0,
-             exposure: number("exposure", 0, -64, 64), colors };
+             time: hasTime() ? number("time", 0, -1e9, 1e9) : 0, exposure: number("exposure", 0, -64, 64), colors };
   }
 
   // So that the address can be kept or passed on.
@@ -57,11 +58,12 @@ opaline.page = (() => {
   function writeAddress() {
     clearTimeout(addressTimer);
     addressTimer = setTimeout(() => {
-      const { view, light, turn, exposure, colors } = state, digits = x => String(+x.toPrecision(6));
+      const { view, light, turn, time, exposure, colors } = state, digits = x => String(+x.toPrecision(6));
       const parts = new URLSearchParams({
         light: opaline.lights[light], rotate: digits(turn), exposure: digits(exposure),
         azimuth: digits(view.azimuth), elevation: digits(view.elevation),
         distance: digits(view.distance), target: view.target.map(digits).join(",") });
+      if (time !== 0) parts.set("time", digits(time));
       if (view.fov !== home.fov) parts.set("fov", digits(view.fov));
       colors.forEach((color, e) => {
         if (color.some(c => c !== 1)) {
@@ -97,16 +99,16 @@ opaline.page = (() => {
 
   // Brings the light of rows up to date; false while its script is being read.
   function relight() {
-    const { light, turn, colors } = state;
+    const { light, turn, time, colors } = state;
     if (!lights.has(light)) {
       lightOf(light).then(() => { drawn = 0; request(); }).catch(fail);
       return false;
     }
     if (shown.light !== light) draw.setLight(lights.get(light));
-    const isNew = shown.light !== light || shown.turn !== turn;
-    if (isNew) projected = draw.project(turn * Math.PI / 180);
+    const isNew = shown.light !== light || shown.turn !== turn || shown.time !== time;
+    if (isNew) projected = draw.project(turn * Math.PI / 180, time);
     if (isNew || shown.colors !== colors) draw.relight(projected, colors);
-    shown = { light, turn, colors };
+    shown = { light, turn, time, colors };
     return true;
   }
 
@@ -265,6 +267,9 @@ opaline.page = (() => {
     return first === undefined ? words[kind] ?? name : name;
   }
 
+  const labelOfTime = seconds =>
+      Math.abs(seconds) < 120 ? `${Math.round(seconds)} s` : `${(seconds / 60).toFixed(1)} min`;
+
   function makeControls() {
     document.title = at("title").textContent = opaline.title;
     at("light").append(...opaline.lights.map((name, i) => new Option(labelOf(name), i)));
@@ -275,11 +280,14 @@ opaline.page = (() => {
     }));
     makeEmitterSliders();
     at("turn").closest("label").hidden = !canTurn();
+    at("time").closest("label").hidden = !hasTime();
+    if (hasTime()) Object.assign(at("time"), { max: Layer.spanOf(asset.layer), step: Layer.spanOf(asset.layer) / 720 });
     at("light").addEventListener("change", () => change({ light: +at("light").value }));
     at("turn").addEventListener("input", () => change({ turn: at("turn").valueAsNumber }));
+    at("time").addEventListener("input", () => change({ time: at("time").valueAsNumber }));
     at("exposure").addEventListener("input", () => change({ exposure: at("exposure").valueAsNumber }));
     at("reset").addEventListener("click", () => {
-      change({ view: home, turn: 0, exposure: 0, colors: opaline.emitters.map(() => [1, 1, 1]) });
+      change({ view: home, turn: 0, time: 0, exposure: 0, colors: opaline.emitters.map(() => [1, 1, 1]) });
     });
     at("save").addEventListener("click", () => savePicture().catch(fail));
     if (window.innerWidth < 640) at("panel").open = false;
@@ -290,6 +298,8 @@ opaline.page = (() => {
     at("light").value = state.light;
     at("turn").value = turn;
     at("turn-value").textContent = `${Math.round(turn)}°`;
+    at("time").value = state.time;
+    at("time-value").textContent = labelOfTime(state.time);
     at("exposure").value = state.exposure;
     at("exposure-value").textContent = `${state.exposure > 0 ? "+" : ""}${state.exposure.toFixed(1)} EV`;
     state.colors.forEach((color, e) => {

@@ -89,14 +89,30 @@ TEST(PagePicture, DefaultViewUnderATurnedSunInTheMapIsTheOneOfPictures) {
                        shown.rgba);
 }
 
-// Bumps with holes over a ground of squares; `with_bodies`: a sheet and smoke partly in them.
+// Bumps with holes, in three frames, over a ground of squares; wind moves them. `with_bodies`:
+// endless, a sheet and smoke partly in them.
 formats::Asset make_cloudy_scene(bool with_bodies) {
     test::TestLayer layer = test::uneven_test_layer(24, 20);
     layer.droplets.kappa = {0.01, 0.012, 0.014};
+    layer.record.wind = {9, -5};
+    if (!with_bodies) layer.record.flags = formats::LayerRecord::kRadiosity;
     formats::Asset asset = test::make_asset(8, 16);
-    asset.clouds = test::make_test_clouds(layer, [](std::uint32_t column, std::uint32_t row) {
-        return 300 * std::max(0.0, std::sin(column * 0.82) * std::cos(row * 0.74) + 0.4);
-    });
+    const auto frame_of = [&](double shift) {
+        return test::make_test_clouds(layer, [shift](std::uint32_t column, std::uint32_t row) {
+            return 300 *
+                   std::max(0.0, std::sin(column * 0.82 + shift) * std::cos(row * 0.74) + 0.4);
+        });
+    };
+    asset.clouds = frame_of(0);
+    for (const double shift : {1.5, 3.0}) {
+        const formats::Clouds more = frame_of(shift);
+        asset.clouds.thickness.insert(asset.clouds.thickness.end(), more.thickness.begin(),
+                                      more.thickness.end());
+    }
+    formats::LayerRecord& record = asset.clouds.records.front();
+    record.frames = 3;
+    record.frame_seconds = 40;
+    record.flags |= formats::LayerRecord::kLoop;
     for (std::size_t i = 0; i < asset.clouds.ground.size(); ++i) {
         const auto code = static_cast<std::uint8_t>(i % 2 == 0 ? 150 : 110);
         asset.clouds.ground[i] = {code, 120, static_cast<std::uint8_t>(255 - code), 255};
@@ -120,11 +136,17 @@ formats::Asset make_cloudy_scene(bool with_bodies) {
     return asset;
 }
 
+// What turns and moves in the pages of cloud layers.
+struct CloudView {
+    float degrees = 0, exposure = 0;
+    double time = 0;
+};
+
 // Bodies are lit from one point, that of a page.
 DisplayPicture render_cloudy_on_cpu(const formats::AssetView& view, const formats::Environment& sky,
-                                    const Camera& camera, float degrees, float exposure) {
-    const Rotation rotation = rotation_about_y(degrees * std::numbers::pi_v<float> / 180);
-    const LayerLight layer = light_layers(view.clouds, sky, rotation);
+                                    const Camera& camera, const CloudView& shown) {
+    const Rotation rotation = rotation_about_y(shown.degrees * std::numbers::pi_v<float> / 180);
+    const LayerLight layer = light_layers(view.clouds, sky, rotation, {.time = shown.time});
     const BoundingSphere bodies = bound_asset(view);
     const formats::Environment below = environment_at(
         {layer, sky, rotation},
@@ -141,10 +163,10 @@ DisplayPicture render_cloudy_on_cpu(const formats::AssetView& view, const format
         render_software(view, shade_for_picture(view, light, camera.eye, formats::TermSet::all, 0),
                         sky, rotation, camera, options);
     EXPECT_TRUE(picture);
-    return tone_map(*picture, exposure);
+    return tone_map(*picture, shown.exposure);
 }
 
-TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpuUnderTurnedLight) {
+TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpuUnderTurnedLightLater) {
     if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
     formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
     sky.discs.push_back({normalize(formats::Vec3{-0.5f, 0.6f, -0.5f}), 0.01f, {4e3f, 3e3f, 1e3f}});
@@ -164,13 +186,13 @@ TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpuUnderT
         camera.near_plane = near_plane_for(asset.view(), camera.eye);
         const auto shown = test::take_page_picture(
             *page,
-            with_bodies ? "eye=0,3000,600&target=100,1000,-900&fov=40&exposure=-0.5&rotate=50"
-                        : "eye=0,2,0&target=100,600,-900&fov=40&exposure=-2&rotate=-77",
+            with_bodies
+                ? "eye=0,3000,600&target=100,1000,-900&fov=40&exposure=-0.5&rotate=50&time=-310"
+                : "eye=0,2,0&target=100,600,-900&fov=40&exposure=-2&rotate=-77&time=130",
             80, 60);
         EXPECT_EQ(shown.console, "");
-        expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, with_bodies ? 50 : -77,
-                                                with_bodies ? -0.5f : -2),
-                           shown.rgba);
+        const CloudView wanted = with_bodies ? CloudView{50, -0.5f, -310} : CloudView{-77, -2, 130};
+        expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, wanted), shown.rgba);
     }
 }
 
@@ -197,9 +219,10 @@ TEST(PagePicture, BodiesThatMirrorCloudsAreLitByTheLightAsItStands) {
     camera.height = 36;
     camera.near_plane = near_plane_for(asset.view(), camera.eye);
     const auto shown = test::take_page_picture(
-        *page, "eye=0,3000,600&target=100,1000,-900&fov=40&exposure=-0.5&rotate=50", 48, 36);
+        *page, "eye=0,3000,600&target=100,1000,-900&fov=40&exposure=-0.5&rotate=50&time=60", 48,
+        36);
     EXPECT_EQ(shown.console, "");
-    expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, 0, -0.5f), shown.rgba);
+    expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, {0, -0.5f, 0}), shown.rgba);
 }
 
 TEST(PagePicture, ControlsAndTheAddressFollowEachOther) {

@@ -108,16 +108,14 @@ TEST(WebPage, WhatAPageDoesNotDoWithCloudLayersIsNamed) {
     layer.record.columns = layer.record.rows = 16;  // of 500 m
     asset.clouds = test::make_test_clouds(
         layer, [](std::uint32_t column, std::uint32_t) { return 10.0 * column; });
-    EXPECT_THAT(left_out_of_page(asset.view()),
-                testing::ElementsAre(testing::HasSubstr("clouds stand still")));
+    EXPECT_TRUE(left_out_of_page(asset.view()).empty());
     test::add_primitive(asset, test::make_sphere({3000, 0, 0}, 1, 8, 6), {});
     asset.primitives.back().node = 1;
     EXPECT_THAT(left_out_of_page(asset.view()),
-                testing::ElementsAre(testing::HasSubstr("clouds stand still"),
-                                     testing::HasSubstr("the light of their centre")));
+                testing::ElementsAre(testing::HasSubstr("the light of their centre")));
     asset.roughness = {0.3f, 0.3f};
     EXPECT_THAT(left_out_of_page(asset.view()),
-                testing::Contains(testing::HasSubstr("light does not turn")));
+                testing::Contains(testing::HasSubstr("clouds stand still")));
 }
 
 TEST(WebPage, MoreVolumesThanAPageDrawsAreRefused) {
