@@ -127,8 +127,7 @@ void add_export_web_command(CLI::App& app, Job& job) {
         ->option_text("T [0]");
     command->footer(
         "The page needs WebGL 2, but no server and no network: open DIR/index.html from the disk.\n"
-        "It shows what `render` does; cloud layers and the light above them move unless bodies "
-        "mirror them.\n"
+        "It shows what `render` does; light turns, cloud layers move with a time.\n"
         "After a '#', its address takes what `render` takes: light, rotate, time, exposure, eye, "
         "target,\n"
         "azimuth, elevation, distance, fov, emitter; the page keeps it up to date.\n\n"

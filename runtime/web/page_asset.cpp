@@ -128,10 +128,6 @@ std::string make_asset_script(const AssetView& asset) {
 
 std::vector<std::string> left_out_of_page(const AssetView& asset) {
     std::vector<std::string> left_out;
-    if (!asset.clouds.empty() && !moves_layer(asset)) {
-        left_out.emplace_back(
-            "its clouds stand still and its light does not turn, because bodies mirror them");
-    }
     if (has_bodies_apart(asset)) {
         left_out.push_back("beneath its clouds all bodies have the light of their centre");
     }

@@ -3,11 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime/clouds/environment_at.h"
 #include "runtime/clouds/light_points.h"
 #include "runtime/clouds/shader_layer.h"
 #include "runtime/picture/camera.h"
-#include "runtime/specular.h"
 #include "runtime/volumes/volume_bounds.h"
 #include "runtime/web/page_radiosity.h"
 
@@ -66,29 +64,11 @@ void append_grid(const LayerGrid& grid, std::vector<float>& values) {
 
 }  // namespace
 
-bool moves_layer(const formats::AssetView& asset) {
-    return !specular_needs(asset).any();
-}
-
-LightAboveLayer light_above_layer(const formats::AssetView& asset,
-                                  const formats::Environment& environment, unsigned threads) {
-    LightAboveLayer made;
-    made.layer = light_layers(asset.clouds, environment, {}, {.time = 0, .threads = threads});
-    made.moves = moves_layer(asset);
-    if (!made.moves) {
-        made.below =
-            environment_at({made.layer, environment, {}}, centre_of(asset), {.threads = threads});
-    }
-    return made;
-}
-
 void put_layer(DataScript& script, const formats::AssetView& asset) {
     const LayerLight light = light_layers(asset.clouds, {}, {}, {.time = 0, .threads = 1});
     const LayerKind kind = layer_kind(light);
     const formats::LayerRecord& record = light.record;
-    put_numbers(
-        script, "layer kind",
-        {kind.repeats ? 1u : 0u, kind.modes, kind.glows ? 1u : 0u, moves_layer(asset) ? 1u : 0u});
+    put_numbers(script, "layer kind", {kind.repeats ? 1u : 0u, kind.modes, kind.glows ? 1u : 0u});
     put_numbers(script, "layer frames",
                 {record.columns, record.rows, record.frames, record.loops() ? 1u : 0u});
     put_floats(script, "layer motion",
@@ -104,8 +84,7 @@ void put_layer(DataScript& script, const formats::AssetView& asset) {
     put_radiosity(script, light);
 }
 
-void put_layer_light(DataScript& script, const LightAboveLayer& above) {
-    const LayerLight& light = above.layer;
+void put_layer_light(DataScript& script, const LayerLight& light) {
     const ShaderLayer record = make_shader_layer(light);
     script.put_records("layer record", std::span<const ShaderLayer>(&record, 1));
     put_joined(script, "layer suns", {pack_sun_tables(light), pack_sun_flux(light)});

@@ -8,6 +8,7 @@
 #include "runtime/specular.h"
 #include "runtime/web/data_script.h"
 #include "runtime/web/divide_light.h"
+#include "runtime/web/page_layer.h"
 
 namespace opaline::runtime {
 namespace {
@@ -67,20 +68,22 @@ void put_background(DataScript& script, const Environment& environment, unsigned
 }  // namespace
 
 std::string make_light_script(const std::string& owner, const PageLight& light,
-                              const LightAboveLayer* above, const PageLightNeeds& needs,
+                              const LayerLight* above, const PageLightNeeds& needs,
                               unsigned threads) {
     DataScript script(owner);
-    const Environment& shining = above != nullptr ? above->below : light.environment;
-    // Of a layer that moves, the page itself finds what lights bodies.
-    if (above == nullptr || !above->moves) put_shining(script, shining, threads);
-    put_background(script, light.environment, threads);
-    put_discs(script, "discs", light.environment.discs, true);
-    if (needs.gloss) put_cells(script, make_gloss_light(shining, threads).cells);
+    const Environment& environment = light.environment;
+    put_background(script, environment, threads);
+    put_discs(script, "discs", environment.discs, true);
+    if (above != nullptr) {
+        put_layer_light(script, *above);
+        return script.text();
+    }
+    put_shining(script, environment, threads);
+    if (needs.gloss) put_cells(script, make_gloss_light(environment, threads).cells);
     for (const SpecularLight::Map& map :
-         prefilter_specular(shining, needs.levels, {}, threads).maps) {
+         prefilter_specular(environment, needs.levels, {}, threads).maps) {
         script.put_radiance("mirrored." + std::to_string(map.level), map.radiance.pixel);
     }
-    if (above != nullptr) put_layer_light(script, *above);
     return script.text();
 }
 

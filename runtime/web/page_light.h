@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "formats/opal/environment.h"
-#include "runtime/web/page_layer.h"
+#include "runtime/clouds/layer_light.h"
 
 namespace opaline::runtime {
 
@@ -24,10 +24,10 @@ struct PageLightNeeds {
 /// it: as divide_light.h has it; what eyes see, at most 1024 x 512 pixels; cells and blurred maps
 /// for gloss, if needed. Radiance is stored as halves times a scale: it errs by 2^-12 down to 1e-9
 /// of the brightest pixel.
-/// `above`: where the asset has a cloud layer, this light above it, which is what eyes see; the
-/// page projects what is below, or finds that by itself where it moves the clouds.
+/// `above`: where the asset has a cloud layer, this light above it at time 0: the page itself finds
+/// what is below and what that needs.
 std::string make_light_script(const std::string& owner, const PageLight& light,
-                              const LightAboveLayer* above, const PageLightNeeds& needs,
+                              const LayerLight* above, const PageLightNeeds& needs,
                               unsigned threads);
 
 }  // namespace opaline::runtime

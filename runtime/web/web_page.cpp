@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "page_text.h"
+#include "runtime/clouds/layer_light.h"
 #include "runtime/gloss.h"
 #include "runtime/specular.h"
 #include "runtime/web/data_script.h"
@@ -126,9 +127,10 @@ formats::Result<std::vector<PageFile>> make_web_page(const AssetView& asset,
     const PageLightNeeds needs{specular.levels, specular.gloss};
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const std::string owner = "light-" + std::to_string(i);
-        std::optional<LightAboveLayer> above;
+        std::optional<LayerLight> above;
         if (!asset.clouds.empty()) {
-            above = light_above_layer(asset, lights[i].environment, threads);
+            above = light_layers(asset.clouds, lights[i].environment, {},
+                                 {.time = 0, .threads = threads});
         }
         files.push_back(
             {owner + ".js",

@@ -166,21 +166,35 @@ const Draw = (() => {
              thickness: null, time: NaN, record: null, lit: null };
   }
 
+  // What surfaces mirror: `blurred` maps by level of roughness; for gloss a cube map, cells and suns.
+  function makeMirrored(gl, { blurred, cube, cells, suns }) {
+    return { blurred, suns: suns.length / 8, sunTable: makePairs(gl, suns), cells: makePairs(gl, cells),
+             maps: cube === null ? null : makeLayers(gl, Light.kSide, Light.kSide, 6, cube, 8) };
+  }
+
+  function freeMirrored(gl, { blurred, sunTable, cells, maps }) {
+    [...blurred.values(), sunTable, cells, maps].forEach(texture => gl.deleteTexture(texture));
+  }
+
+  // Two texels each.
+  const makePairs = (gl, values) =>
+      makeTable(gl, [gl.RGBA32F, gl.RGBA, gl.FLOAT], 2, values.length / 8, values);
+
+  // Of a light as its script has it.
+  function mirroredOf(gl, light, { levels, hasGloss }) {
+    const blurred = new Map(levels.map(level => {
+      const pixels = light.mirrored(level), side = Math.round(Math.sqrt(pixels.length / 18));
+      return [level, makeLayers(gl, side, side, 6, pixels)];
+    }));
+    return makeMirrored(gl, { blurred, cube: hasGloss ? Light.wholeCube(light) : null, cells: light.cells,
+                              suns: light.suns });
+  }
+
   // Of one light, for all of its turns.
-  function makeLightObjects(gl, light, asset) {
-    const discs = values => makeTable(gl, [gl.RGBA32F, gl.RGBA, gl.FLOAT], 2, values.length / 8, values);
-    const { background } = light, mirrored = new Map();
-    for (const { roughness } of asset.primitives.filter(p => p.roughness >= 0)) {
-      const level = levelOf(roughness), pixels = light.mirrored(level);
-      if (mirrored.has(level) || pixels === null) continue;
-      const side = Math.round(Math.sqrt(pixels.length / 18));
-      mirrored.set(level, makeLayers(gl, side, side, 6, pixels));
-    }
-    const hasGloss = asset.primitives.some(p => p.gloss !== null);
+  function makeLightObjects(gl, light) {
+    const { background } = light;
     return {
-      mirrored, suns: light.suns.length / 8, discs: light.discs.length / 8,
-      sunTable: discs(light.suns), discTable: discs(light.discs), cells: discs(light.cells),
-      maps: hasGloss ? makeLayers(gl, Light.kSide, Light.kSide, 6, Light.wholeCube(light), 8) : null,
+      discs: light.discs.length / 8, discTable: makePairs(gl, light.discs),
       map: background.layout === 0 ? null
           : makeLayers(gl, background.width, background.height, background.layout === 2 ? 6 : 1,
                        background.pixels),
@@ -189,8 +203,7 @@ const Draw = (() => {
   }
 
   function freeLightObjects(gl, objects) {
-    [...objects.mirrored.values(), objects.sunTable, objects.discTable, objects.cells, objects.maps,
-     objects.map, objects.layerSuns].forEach(texture => gl.deleteTexture(texture));
+    [objects.discTable, objects.map, objects.layerSuns].forEach(texture => gl.deleteTexture(texture));
   }
 
   // Interface: setLight(light), project(turn, time), relight(projected, colors), resize(width, height),
@@ -209,17 +222,27 @@ const Draw = (() => {
                                    ["cube_map.glsl", "arc_tangent.glsl", "environment.glsl", "background.frag.glsl"]);
     const adding = makeProgram(gl, [], ["screen.vert.glsl"], ["add_sample.frag.glsl"]);
     const presenting = makeProgram(gl, [], ["screen.vert.glsl"], ["present.frag.glsl"]);
-    const looksAround = asset.layer?.moves && (asset.primitives.length > 0 || asset.volumes !== null);
+    const looksAround = asset.layer !== null && (asset.primitives.length > 0 || asset.volumes !== null);
+    const mirrors = { levels: [...new Set(asset.primitives.filter(p => p.roughness >= 0).map(p => levelOf(p.roughness)))],
+                      hasGloss: asset.primitives.some(p => p.gloss !== null) };
+    const mirrorsLayer = looksAround && (mirrors.hasGloss || mirrors.levels.length > 0) ? Mirrors.make(gl) : null;
     const layer = asset.layer === null ? null
         : makeLayerObjects(gl, asset.layer, asset.volumes !== null, looksAround);
     const volumes = asset.volumes === null ? null : makeVolumeObjects(gl, asset.volumes, layer !== null);
     let size = [0, 0], sampled = null, clouded = null, marched = null, sum = null, light = null, lightObjects = null;
+    let mirrored = null;
     let turned = {}, turnedOf = new Map();  // uniforms, where there are normal maps; of thin-walled primitives
 
     function setLight(next) {
       if (lightObjects !== null) freeLightObjects(gl, lightObjects);
       light = next;
-      lightObjects = makeLightObjects(gl, light, asset);
+      lightObjects = makeLightObjects(gl, light);
+      if (layer === null) setMirrored(mirroredOf(gl, light, mirrors));
+    }
+
+    function setMirrored(next) {
+      if (mirrored !== null) freeMirrored(gl, mirrored);
+      mirrored = next;
     }
 
     // The light turned by `turn` [radians], as Light.project gives it; with a cloud layer what that leaves
@@ -228,8 +251,12 @@ const Draw = (() => {
       if (layer === null) return Light.project(light, asset.cubemap, turn);
       moveLayer(time);
       lightLayer(turn);
-      if (!asset.layer.moves) return Light.project(light, asset.cubemap, 0);
-      return looksAround ? Light.project(lookAround(turn), asset.cubemap, 0) : null;
+      if (!looksAround) return null;
+      const around = lookAround(turn);
+      if (mirrorsLayer !== null) {
+        setMirrored(makeMirrored(gl, mirrorsLayer.of(around, mirrors.levels, mirrors.hasGloss)));
+      }
+      return Light.project(around, asset.cubemap, 0);
     }
 
     function moveLayer(time) {
@@ -261,7 +288,7 @@ const Draw = (() => {
       freeTarget(gl, target);
       const cube = new Float32Array(18 * side * side);
       for (let i = 0; i < cube.length; ++i) cube[i] = seen[4 * Math.floor(i / 3) + i % 3];
-      return { padded: Light.padCube(cube), points: new Float32Array(0),
+      return { cube, padded: Light.padCube(cube), points: new Float32Array(0),
                suns: Layer.sunsBelow(layer.record, light.discs, seen.subarray(24 * side * side), turn) };
     }
 
@@ -341,7 +368,7 @@ const Draw = (() => {
       bindImage("own_image", own?.image);
       bindImage("hole_image", hole?.image);
       bindImage("normal_image", normalMap?.image);
-      bind(gl, "mirrored_light", lightObjects.mirrored.get(level) ?? null, gl.TEXTURE_2D_ARRAY);
+      bind(gl, "mirrored_light", mirrored?.blurred.get(level) ?? null, gl.TEXTURE_2D_ARRAY);
       return {
         first_row: (primitive.firstRow - primitive.firstVertex * primitive.terms) >>> 0,
         shown: 1, wrap: primitive.wrap, eta: primitive.eta,
@@ -360,15 +387,15 @@ const Draw = (() => {
       bind(gl, "products", objects.products);
       bind(gl, "srgb_table", objects.srgb);
       bind(gl, "albedo", objects.albedo);
-      bind(gl, "cells", lightObjects.cells);
-      bind(gl, "sun_table", lightObjects.sunTable);
-      bind(gl, "light_maps", lightObjects.maps, gl.TEXTURE_2D_ARRAY);
+      bind(gl, "cells", mirrored?.cells ?? null);
+      bind(gl, "sun_table", mirrored?.sunTable ?? null);
+      bind(gl, "light_maps", mirrored?.maps ?? null, gl.TEXTURE_2D_ARRAY);
       const shared = {
         eye: frame.eye, right: Vector.times(1 / frame.tangent[0], frame.right),
         down: Vector.times(-1 / frame.tangent[1], frame.up), forward: frame.forward,
         unit: frame.unit, near_plane: frame.unit * frame.near,
         tile: [1, 1, (1 - 2 * place[0]) / size[0], (1 - 2 * place[1]) / size[1]],
-        light_from_world: lightFromWorld(turn), suns: lightObjects.suns,
+        light_from_world: lightFromWorld(layer === null ? turn : 0), suns: mirrored?.suns ?? 0,
         first_sample: number, sample_step: across, ...turned };
       gl.enable(gl.DEPTH_TEST);
       gl.bindVertexArray(objects.array);

@@ -9,7 +9,7 @@ const Gl = (() => {
                    brick_numbers: 2, density_codes: 3, corner_numbers: 4, node_light: 5,
                    phase_entries: 6, table_values: 2, sun_values: 3, thickness_values: 4, albedo_map: 5,
                    ground_light: 6, base_light: 7, sheet_light: 7, sheet_through: 8,
-                   glow_words: 9, plane: 0, plan: 1, before: 2, shining: 3, reflecting: 4 };
+                   glow_words: 9, tree_cells: 0, plane: 0, plan: 1, before: 2, shining: 3, reflecting: 4 };
 
   // GLSL ES 3.00 has no explicit places of what passes between stages, nor of uniforms.
   function translate(text, stage) {

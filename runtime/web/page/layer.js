@@ -4,10 +4,10 @@ const Layer = (() => {
   // Of the layer alone; null where there is none.
   function read(arrays) {
     if (!arrays.has("layer kind")) return null;
-    const [repeats, modes, glows, moves] = arrays.get("layer kind");
+    const [repeats, modes, glows] = arrays.get("layer kind");
     const [columns, rows, frames, loops] = arrays.get("layer frames");
     const [highest, frameSeconds, ...wind] = arrays.get("layer motion");
-    return { repeats, modes, glows, moves: moves !== 0, columns, rows, frames, loops, highest, frameSeconds, wind,
+    return { repeats, modes, glows, columns, rows, frames, loops, highest, frameSeconds, wind,
              codes: arrays.get("layer codes"), tables: arrays.get("layer tables"),
              tableFirst: arrays.get("layer tables first"), albedo: levels(arrays, "layer albedo"),
              plan: Radiosity.read(arrays) };

@@ -260,5 +260,5 @@ const Light = (() => {
     return Vector.times(1 / Vector.norm(d), d);
   }
 
-  return { read, padCube, project, coefficientsOf, texelDirection, wholeCube, halveCube, kFloats, kSide };
+  return { read, padCube, addSuns, solidAnglesOf, project, coefficientsOf, texelDirection, wholeCube, halveCube, kFloats, kSide };
 })();

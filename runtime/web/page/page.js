@@ -20,8 +20,7 @@ opaline.page = (() => {
     throw error;
   }
 
-  const canTurn = () => asset.layer === null || asset.layer.moves;
-  const hasTime = () => asset.layer !== null && asset.layer.moves && !Layer.isStill(asset.layer);
+  const hasTime = () => asset.layer !== null && !Layer.isStill(asset.layer);
   const numbers = text => text.split(",").map(Number);
   const areFinite = (values, count) => values.length === count && values.every(Number.isFinite);
 
@@ -49,7 +48,7 @@ opaline.page = (() => {
       if (emitter >= 0 && areFinite(factors, 3)) colors[emitter] = factors.map(f => Math.max(f, 0));
     }
     const light = Math.max(0, opaline.lights.indexOf(given.get("light")));
-    return { view, light, turn: canTurn() ? number("rotate", 0, -1e6, 1e6) : 0,
+    return { view, light, turn: number("rotate", 0, -1e6, 1e6),
              time: hasTime() ? number("time", 0, -1e9, 1e9) : 0, exposure: number("exposure", 0, -64, 64), colors };
   }
 
@@ -279,7 +278,6 @@ opaline.page = (() => {
       return item;
     }));
     makeEmitterSliders();
-    at("turn").closest("label").hidden = !canTurn();
     at("time").closest("label").hidden = !hasTime();
     if (hasTime()) Object.assign(at("time"), { max: Layer.spanOf(asset.layer), step: Layer.spanOf(asset.layer) / 720 });
     at("light").addEventListener("change", () => change({ light: +at("light").value }));

@@ -196,16 +196,31 @@ TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpuUnderT
     }
 }
 
-TEST(PagePicture, BodiesThatMirrorCloudsAreLitByTheLightAsItStands) {
-    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+// A matt sheet of metal in the clouds, a ball of polished metal and one of glossy wax above them.
+formats::Asset make_mirroring_scene() {
     formats::Asset asset = make_cloudy_scene(true);
     asset.volumes = {};
-    asset.gloss.resize(1);
-    asset.gloss[0].f0 = {0.3f, 0.4f, 0.5f};
-    asset.gloss[0].f90 = 1;
-    asset.gloss[0].metallic = 1;
-    asset.gloss[0].roughness = 0.6f;
-    asset.openness.resize(asset.normal.size(), formats::encode_openness({0, 1, 0}, 0.9f));
+    test::add_primitive(asset, test::make_sphere({-350, 1500, -500}, 300, 24, 16), {});
+    test::add_primitive(asset, test::make_sphere({500, 1400, -500}, 300, 24, 16),
+                        {.bands = 3, .eta = 1.4f, .terms = 4});
+    asset.roughness = {formats::kNotGlossy, formats::kNotGlossy, 0.3f};
+    asset.gloss.resize(3);
+    const float roughness[] = {0.6f, 0.25f};
+    for (std::size_t i = 0; i < 2; ++i) {
+        asset.gloss[i].f0 = {0.3f, 0.4f, 0.5f};
+        asset.gloss[i].f90 = 1;
+        asset.gloss[i].metallic = 1;
+        asset.gloss[i].roughness = roughness[i];
+    }
+    for (const formats::Vec3 normal : asset.normal) {
+        asset.openness.push_back(formats::encode_openness(normal, 0.9f));
+    }
+    return asset;
+}
+
+TEST(PagePicture, BodiesMirrorCloudsAsOnTheCpuUnderTurnedLightLater) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    const formats::Asset asset = make_mirroring_scene();
     formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
     sky.discs.push_back({normalize(formats::Vec3{-0.5f, 0.6f, -0.5f}), 0.01f, {4e3f, 3e3f, 1e3f}});
     const PageLight lights[] = {{"sky", sky}};
@@ -213,16 +228,17 @@ TEST(PagePicture, BodiesThatMirrorCloudsAreLitByTheLightAsItStands) {
     ASSERT_TRUE(page);
     Camera camera;
     camera.eye = {0, 3000, 600};
-    camera.target = {100, 1000, -900};
+    camera.target = {100, 1200, -600};
     camera.fov_y = 40;
-    camera.width = 48;
-    camera.height = 36;
+    camera.width = 60;
+    camera.height = 45;
     camera.near_plane = near_plane_for(asset.view(), camera.eye);
     const auto shown = test::take_page_picture(
-        *page, "eye=0,3000,600&target=100,1000,-900&fov=40&exposure=-0.5&rotate=50&time=60", 48,
-        36);
+        *page, "eye=0,3000,600&target=100,1200,-600&fov=40&exposure=-0.5&rotate=50&time=60", 60,
+        45);
     EXPECT_EQ(shown.console, "");
-    expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, {0, -0.5f, 0}), shown.rgba);
+    expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, {50, -0.5f, 60}),
+                       shown.rgba);
 }
 
 TEST(PagePicture, ControlsAndTheAddressFollowEachOther) {
