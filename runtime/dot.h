@@ -15,7 +15,8 @@ namespace opaline::runtime {
 enum class DotPath {
     scalar,  ///< the reference
     avx2,    ///< x86-64 with AVX2 and FMA
-    avx512   ///< x86-64 with AVX-512 F, BW and VL; rows of a cube map of N = 128 take avx2
+    avx512   ///< x86-64 with AVX-512 F, BW and VL, FMA and BMI1; rows of a cube map of N = 128 take
+             ///< avx2
 };
 
 /// The fastest path that this processor can run.

@@ -6,11 +6,12 @@
 
 #include <cstring>
 
+#include "formats/opal/cubemap.h"
 #include "formats/opal/detail_codes.h"
 
 // Four coefficients share a 512-bit register: (r g b 0) of each, multiplied by their codes spread
 // over the lanes. Only functions marked here use AVX-512.
-#define OPALINE_AVX512 __attribute__((target("avx512f,avx512bw,avx512vl,fma")))
+#define OPALINE_AVX512 __attribute__((target("avx512f,avx512bw,avx512vl,fma,bmi")))
 
 namespace opaline::runtime {
 namespace {
@@ -36,13 +37,17 @@ OPALINE_AVX512 inline __m512 join_four(const float* first, const float* second, 
     return _mm512_mask_broadcast_f32x4(v, 0xf000, _mm_loadu_ps(fourth));
 }
 
-// The four indices are one load as well: loads are what this loop is short of.
+// The four indices are one load as well, and are told apart in one instruction each: this loop is
+// short of instructions. They are doubled, all at once, because addresses scale by eight bytes at
+// most and a coefficient of the light has sixteen: what has indices of 16 bits has N = 64 at most,
+// so none carries.
 OPALINE_AVX512 inline __m512 load_four(const float* light, const std::uint16_t* index) {
+    static_assert(6 * (formats::kMaxCubemapSize / 2) * (formats::kMaxCubemapSize / 2) <= 1U << 15U);
     std::uint64_t all = 0;
     std::memcpy(&all, index, sizeof all);
-    const std::size_t i0 = all & 0xffff, i1 = all >> 16 & 0xffff, i2 = all >> 32 & 0xffff,
-                      i3 = all >> 48;
-    return join_four(light + 4 * i0, light + 4 * i1, light + 4 * i2, light + 4 * i3);
+    all += all;
+    return join_four(light + 2 * (all & 0xffff), light + 2 * _bextr_u64(all, 16, 16),
+                     light + 2 * _bextr_u64(all, 32, 16), light + 2 * (all >> 48));
 }
 
 // What codes stand for (detail_codes.h).
@@ -61,6 +66,17 @@ OPALINE_AVX512 inline __m512 sixteen_values(const std::int16_t* code) {
     return values_of(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(code)));
 }
 
+// Of four codes, in the first lanes.
+OPALINE_AVX512 inline __m512 four_values(const std::int8_t* code) {
+    std::int32_t four = 0;
+    std::memcpy(&four, code, sizeof four);
+    return values_of(_mm_cvtsi32_si128(four));
+}
+OPALINE_AVX512 inline __m512 four_values(const std::int16_t* code) {
+    return values_of(
+        _mm256_zextsi128_si256(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(code))));
+}
+
 // Twelve bytes, not one more: codes may end where the file's mapping ends.
 OPALINE_AVX512 inline __m128i load_twelve_bytes(const void* p) {
     return _mm_maskz_loadu_epi32(0x7, p);
@@ -76,6 +92,19 @@ OPALINE_AVX512 inline __m512 four_colors(const std::int16_t* code) {
     const __m128i low = _mm_shuffle_epi8(load_twelve_bytes(code), gaps);
     const __m128i high = _mm_shuffle_epi8(load_twelve_bytes(code + 6), gaps);
     return values_of(_mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1));
+}
+
+// Spreads the first four values over four lanes each.
+OPALINE_AVX512 inline __m512 spread_four(__m512 values) {
+    return _mm512_permutexvar_ps(_mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3),
+                                 values);
+}
+
+// What four details are multiplied by.
+template <std::uint32_t bands, class Code>
+OPALINE_AVX512 inline __m512 four_factors(const Code* code) {
+    if constexpr (bands == 1) return spread_four(four_values(code));
+    return four_colors(code);
 }
 
 template <class Code>
@@ -124,11 +153,9 @@ OPALINE_AVX512 inline __m128 sum_details(const float* light, const std::uint16_t
         s2 = _mm512_fmadd_ps(load_four(light, index + i + 8), c2, s2);
         s3 = _mm512_fmadd_ps(load_four(light, index + i + 12), c3, s3);
     }
-    if constexpr (bands == 3) {
-        for (; i + 4 <= count; i += 4) {
-            s0 = _mm512_fmadd_ps(load_four(light, index + i),
-                                 four_colors(code + std::size_t{bands} * i), s0);
-        }
+    for (; i + 4 <= count; i += 4) {
+        const Code* const c = code + std::size_t{bands} * i;
+        s0 = _mm512_fmadd_ps(load_four(light, index + i), four_factors<bands>(c), s0);
     }
     __m128 rest = _mm_setzero_ps();
     for (; i < count; ++i) {
@@ -163,8 +190,7 @@ template <std::uint32_t bands>
 OPALINE_AVX512 inline __m128 sum_averages(const FacesOfLight& faces, const std::int16_t* code) {
     if constexpr (bands == 1) {
         const __m256 c = _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(load_twelve_bytes(code)));
-        const __m512i first = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
-        return add_faces(faces, _mm512_permutexvar_ps(first, _mm512_castps256_ps512(c)),
+        return add_faces(faces, spread_four(_mm512_castps256_ps512(c)),
                          _mm256_permutexvar_ps(_mm256_setr_epi32(4, 4, 4, 4, 5, 5, 5, 5), c));
     } else {
         const __m512 c = _mm512_cvtepi32_ps(

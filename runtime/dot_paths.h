@@ -58,7 +58,7 @@ void with_widths(const formats::SparseRowsView& rows, std::uint32_t bands, const
 /// Precondition: the processor has AVX2 and FMA.
 void dot_rows_avx2(const formats::SparseRowsView& rows, const formats::RowRange& range,
                    const LightVector& light, std::uint32_t first, std::span<formats::Rgb> out);
-/// Preconditions: the processor has AVX-512 F, BW and VL, and FMA; rows.index_bytes is 2.
+/// Preconditions: the processor has AVX-512 F, BW and VL, FMA and BMI1; rows.index_bytes is 2.
 void dot_rows_avx512(const formats::SparseRowsView& rows, const formats::RowRange& range,
                      const LightVector& light, std::uint32_t first, std::span<formats::Rgb> out);
 #endif

@@ -7,7 +7,8 @@ namespace opaline::runtime {
 struct VectorUnits {
     bool avx2 = false;
     bool fma = false;
-    bool avx512 = false;  ///< foundation, bytes and words, and vectors of all lengths
+    /// Foundation, bytes and words, vectors of all lengths; and bit fields of integers (BMI1).
+    bool avx512 = false;
 };
 
 /// All false but on x86-64. Any thread.
