@@ -11,7 +11,6 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/environment/builtin_environment.h"
-#include "runtime/web/page_asset.h"
 #include "runtime/web/web_page.h"
 
 namespace opaline::cli {
@@ -52,15 +51,6 @@ formats::Result<std::vector<runtime::PageLight>> open_lights(
     return lights;
 }
 
-formats::Status warn_of_gaps(const std::string& path, const formats::AssetView& view) {
-    std::vector<formats::Diagnostic> warnings;
-    for (std::string& fault : runtime::left_out_of_page(view)) {
-        warnings.push_back(
-            formats::make_warning(path, "", std::move(fault), "`opaline render` shows everything"));
-    }
-    return report_warnings(warnings);
-}
-
 int run(const ExportWebCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     if (auto status = check_folder(options.folder, runtime::is_page_file); !status) {
@@ -69,9 +59,6 @@ int run(const ExportWebCommand& options) {
     const auto asset = open_asset(options.path);
     if (!asset) return report_error(asset.error());
     const formats::AssetView& view = asset->loaded.view;
-    if (auto status = warn_of_gaps(options.path, view); !status) {
-        return report_error(status.error());
-    }
     const auto lights = open_lights(options.lights.empty() ? default_lights(view) : options.lights);
     if (!lights) return report_error(lights.error());
     const auto page =

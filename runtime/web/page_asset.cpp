@@ -126,12 +126,4 @@ std::string make_asset_script(const AssetView& asset) {
     return script.text();
 }
 
-std::vector<std::string> left_out_of_page(const AssetView& asset) {
-    std::vector<std::string> left_out;
-    if (has_bodies_apart(asset)) {
-        left_out.push_back("beneath its clouds all bodies have the light of their centre");
-    }
-    return left_out;
-}
-
 }  // namespace opaline::runtime

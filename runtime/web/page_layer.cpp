@@ -1,7 +1,10 @@
 #include "runtime/web/page_layer.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "runtime/clouds/light_points.h"
 #include "runtime/clouds/shader_layer.h"
@@ -62,6 +65,35 @@ void append_grid(const LayerGrid& grid, std::vector<float>& values) {
     }
 }
 
+// A time at which the layer is uneven, if there is one [s].
+double uneven_time(const formats::LayerRecord& record, std::span<const std::uint16_t> codes) {
+    for (std::uint32_t frame = 0; frame < record.frames; ++frame) {
+        const auto of_frame = codes.subspan(frame * record.frame_count(), record.frame_count());
+        const auto is_other = [&](std::uint16_t code) { return code != of_frame.front(); };
+        if (std::ranges::any_of(of_frame, is_other)) {
+            return static_cast<double>(record.frame_seconds) * frame;
+        }
+    }
+    return 0;
+}
+
+// Where bodies are lit, at any time: beneath a layer that is even for a while all points see the
+// same.
+void put_light_points(DataScript& script, const formats::AssetView& asset) {
+    const formats::LayerRecord& record = asset.clouds.records.front();
+    const auto codes = asset.clouds.thickness_of(record);
+    const LayerField field = make_layer_field(record, codes, uneven_time(record, codes));
+    const formats::Vec3 centre = centre_of(asset);
+    const LightPoints points = light_points(asset, volume_corners(asset.volumes), field, centre);
+    std::vector<float> places{centre.x, centre.y, centre.z};
+    for (const formats::Vec3 point : points.point) {
+        places.insert(places.end(), {point.x, point.y, point.z});
+    }
+    put_floats(script, "light points", places);
+    put_numbers(script, "light point of primitives", points.of_primitive);
+    put_numbers(script, "light point of volumes", {points.of_volumes});
+}
+
 }  // namespace
 
 void put_layer(DataScript& script, const formats::AssetView& asset) {
@@ -82,6 +114,7 @@ void put_layer(DataScript& script, const formats::AssetView& asset) {
                {pack_layer_phase(light), pack_layer_flux(light), pack_layer_glow(light), means});
     put_pictures(script, "layer albedo", light.albedo.level);
     put_radiosity(script, light);
+    put_light_points(script, asset);
 }
 
 void put_layer_light(DataScript& script, const LayerLight& light) {
@@ -96,14 +129,6 @@ void put_layer_light(DataScript& script, const LayerLight& light) {
     values.push_back(static_cast<float>(places.base));
     values.push_back(static_cast<float>(places.ground_height));
     put_floats(script, "layer places", values);
-}
-
-bool has_bodies_apart(const formats::AssetView& asset) {
-    if (asset.clouds.empty() || (asset.primitives.empty() && asset.volumes.empty())) return false;
-    const formats::LayerRecord& record = asset.clouds.records.front();
-    const LayerField field = make_layer_field(record, asset.clouds.thickness_of(record), 0);
-    return light_points(asset, volume_corners(asset.volumes), field, centre_of(asset))
-               .point.size() > 1;
 }
 
 }  // namespace opaline::runtime

@@ -10,12 +10,9 @@ namespace opaline::runtime {
 /// its suns about +Y and solve the light between ground and base (page_radiosity.h): they need the
 /// layer, and each light above it as it stands.
 
-/// Arrays of the layer alone.
+/// Arrays of the layer, and where it lights bodies (clouds/light_points.h).
 void put_layer(DataScript& script, const formats::AssetView& asset);
 /// Arrays of a light above it, at time 0.
 void put_layer_light(DataScript& script, const LayerLight& light);
-
-/// Whether its bodies stand so far apart that pictures light them at points of their own.
-bool has_bodies_apart(const formats::AssetView& asset);
 
 }  // namespace opaline::runtime

@@ -68,16 +68,13 @@ std::string list_of(std::span<const std::string> texts) {
     return list + "]";
 }
 
-std::string make_contents_script(const AssetView& asset, std::span<const PageLight> lights,
-                                 const std::string& title) {
+std::string make_contents_script(std::span<const PageLight> lights, const std::string& title) {
     std::vector<std::string> names;
     for (const PageLight& light : lights) {
         names.push_back(light.name);
     }
-    const std::vector<std::string> left_out = left_out_of_page(asset);
     return "\"use strict\";\nopaline.title = " + script_literal(title) +
-           ";\nopaline.lights = " + list_of(names) + ";\nopaline.leftOut = " + list_of(left_out) +
-           ";\n";
+           ";\nopaline.lights = " + list_of(names) + ";\n";
 }
 
 }  // namespace
@@ -121,7 +118,7 @@ formats::Result<std::vector<PageFile>> make_web_page(const AssetView& asset,
         files.push_back({std::string(part.name), std::string(part.text)});
     }
     files.push_back({"shaders.js", make_shader_script()});
-    files.push_back({"contents.js", make_contents_script(asset, lights, title)});
+    files.push_back({"contents.js", make_contents_script(lights, title)});
     files.push_back({"asset-data.js", make_asset_script(asset)});
     const SpecularNeeds specular = specular_needs(asset);
     const PageLightNeeds needs{specular.levels, specular.gloss};

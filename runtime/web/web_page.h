@@ -25,10 +25,9 @@ inline constexpr std::size_t kMostPageVolumes = 4;
 
 /// The files of a page that shows surfaces and volumes of an asset under lights, one at least: it
 /// needs WebGL 2, no server, no network and no other file. `title` heads it. The page shows what
-/// `render_software` does, to rounding, but for left_out_of_page. `threads` 0: all cores; the files
-/// have the same bytes for any number.
-/// Errors: bad_input, for an asset without surfaces and volumes or beyond the limits above; `file`
-/// is for them.
+/// `render_software` does, to rounding. `threads` 0: all cores; the files have the same bytes for
+/// any number. Errors: bad_input, for an asset without surfaces and volumes or beyond the limits
+/// above; `file` is for them.
 formats::Result<std::vector<PageFile>> make_web_page(const formats::AssetView& asset,
                                                      std::span<const PageLight> lights,
                                                      const std::string& title,

@@ -34,5 +34,5 @@ const opaline = (() => {
     return loading.get(name);
   }
 
-  return { put, arraysOf, load, emitters: [], lights: [], leftOut: [], title: "" };
+  return { put, arraysOf, load, emitters: [], lights: [], title: "" };
 })();

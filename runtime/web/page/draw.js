@@ -231,7 +231,7 @@ const Draw = (() => {
     const volumes = asset.volumes === null ? null : makeVolumeObjects(gl, asset.volumes, layer !== null);
     let size = [0, 0], sampled = null, clouded = null, marched = null, sum = null, light = null, lightObjects = null;
     let mirrored = null;
-    let turned = {}, turnedOf = new Map();  // uniforms, where there are normal maps; of thin-walled primitives
+    let turnedOf = new Map();  // uniforms, of primitives with normal maps
 
     function setLight(next) {
       if (lightObjects !== null) freeLightObjects(gl, lightObjects);
@@ -245,18 +245,24 @@ const Draw = (() => {
       mirrored = next;
     }
 
-    // The light turned by `turn` [radians], as Light.project gives it; with a cloud layer what that leaves
-    // of it at a time [s], and null where it lights no bodies.
+    // The light turned by `turn` [radians], as Light.project gives it, for each primitive and for volumes; with a
+    // cloud layer what that leaves of it at a time [s] where they are, and null where it lights no bodies.
     function project(turn, time) {
-      if (layer === null) return Light.project(light, asset.cubemap, turn);
+      if (layer === null) {
+        const one = Light.project(light, asset.cubemap, turn);
+        return { primitives: asset.primitives.map(() => one), volumes: one };
+      }
       moveLayer(time);
       lightLayer(turn);
       if (!looksAround) return null;
-      const around = lookAround(turn);
+      const { centre, at, ofPrimitive, ofVolumes } = asset.layer.points;
+      const around = at.map(point => lookAround(turn, point));
       if (mirrorsLayer !== null) {
-        setMirrored(makeMirrored(gl, mirrorsLayer.of(around, mirrors.levels, mirrors.hasGloss)));
+        const all = at.length > 1 ? lookAround(turn, centre) : around[0];
+        setMirrored(makeMirrored(gl, mirrorsLayer.of(all, mirrors.levels, mirrors.hasGloss)));
       }
-      return Light.project(around, asset.cubemap, 0);
+      const lights = around.map(seen => Light.project(seen, asset.cubemap, 0));
+      return { primitives: Array.from(ofPrimitive, number => lights[number]), volumes: lights[ofVolumes] };
     }
 
     function moveLayer(time) {
@@ -273,14 +279,14 @@ const Draw = (() => {
       layer.lit = layer.radiosity.solve(Layer.openGround(asset.layer, light.layer));
     }
 
-    // What lights bodies with a cloud layer around them, as a light that is not to be turned.
-    function lookAround(turn) {
+    // What lights bodies at a point with a cloud layer around them, as a light that is not to be turned.
+    function lookAround(turn, point) {
       const side = Light.kSide, target = makeTarget(gl, side, 6 * side + 1, gl.RGBA32F, false);
       gl.disable(gl.BLEND);
       gl.disable(gl.DEPTH_TEST);
       gl.viewport(0, 0, side, 6 * side + 1);
       gl.useProgram(layer.around.name);
-      bindLayer(Layer.bodiesAt(light.layer, asset.camera.subarray(6, 9)));
+      bindLayer(Layer.bodiesAt(light.layer, point));
       setUniforms(gl, layer.around, { ...skyUniforms(turn), side });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
       const seen = new Float32Array(4 * side * (6 * side + 1));
@@ -295,24 +301,32 @@ const Draw = (() => {
     // `projected`: of project.
     function relight(projected, colors) {
       if (projected === null) return;
-      Rows.multiply(asset, projected.coefficients, colors, objects.values);
+      Rows.multiply(asset, projected.primitives.map(one => one.coefficients), colors, objects.values);
       bind(gl, "products", objects.products);
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, kColumns, objects.lines, gl.RGBA, gl.FLOAT,
                        objects.values);
-      if (asset.primitives.some(p => p.normalMap !== null)) {
-        const made = TurnedLight.make(projected, asset.cubemap);
-        turned = TurnedLight.uniforms(made);
-        turnedOf = new Map(asset.primitives.filter(isTurnedSheet).map(
-            p => [p, TurnedLight.uniforms(TurnedLight.ofSheet(made, p.normalMap.shares))]));
-      }
+      turnLight(projected.primitives);
       if (volumes === null) return;
       if (volumes.litBy !== projected) {
-        volumes.lit = Volumes.relight(asset.volumes, projected, asset.cubemap);
+        volumes.lit = Volumes.relight(asset.volumes, projected.volumes, asset.cubemap);
         volumes.litBy = projected;
       }
       gl.deleteTexture(volumes.light);
       volumes.light = makeLines(gl, [gl.RGBA32F, gl.RGBA, gl.FLOAT],
                                 Volumes.withGlow(asset.volumes, volumes.lit, colors), 4);
+    }
+
+    // For normal maps.
+    function turnLight(lights) {
+      const made = new Map();  // by light
+      turnedOf = new Map();
+      asset.primitives.forEach((primitive, p) => {
+        if (primitive.normalMap === null) return;
+        if (!made.has(lights[p])) made.set(lights[p], TurnedLight.make(lights[p], asset.cubemap));
+        const own = made.get(lights[p]);
+        turnedOf.set(primitive, TurnedLight.uniforms(
+            isTurnedSheet(primitive) ? TurnedLight.ofSheet(own, primitive.normalMap.shares) : own));
+      });
     }
 
     function resize(width, height) {
@@ -396,7 +410,7 @@ const Draw = (() => {
         unit: frame.unit, near_plane: frame.unit * frame.near,
         tile: [1, 1, (1 - 2 * place[0]) / size[0], (1 - 2 * place[1]) / size[1]],
         light_from_world: lightFromWorld(layer === null ? turn : 0), suns: mirrored?.suns ?? 0,
-        first_sample: number, sample_step: across, ...turned };
+        first_sample: number, sample_step: across };
       gl.enable(gl.DEPTH_TEST);
       gl.bindVertexArray(objects.array);
       for (const { primitive, program } of objects.surfaces) {

@@ -10,7 +10,15 @@ const Layer = (() => {
     return { repeats, modes, glows, columns, rows, frames, loops, highest, frameSeconds, wind,
              codes: arrays.get("layer codes"), tables: arrays.get("layer tables"),
              tableFirst: arrays.get("layer tables first"), albedo: levels(arrays, "layer albedo"),
-             plan: Radiosity.read(arrays) };
+             plan: Radiosity.read(arrays), points: readPoints(arrays) };
+  }
+
+  // Where its bodies are lit, and mirror light, all of them at `centre`.
+  function readPoints(arrays) {
+    const places = arrays.get("light points"), at = [];
+    for (let i = 0; i < places.length; i += 3) at.push(Array.from(places.subarray(i, i + 3)));
+    return { centre: at[0], at: at.slice(1), ofPrimitive: arrays.get("light point of primitives"),
+             ofVolumes: arrays.get("light point of volumes")[0] };
   }
 
   function readLight(arrays) {
@@ -166,10 +174,10 @@ const Layer = (() => {
 
   const eyeAboveGround = (light, eye) => eye[1] - light.places[13];
 
-  // Where all bodies are lit from: `centre`, lifted onto the ground.
-  function bodiesAt(light, centre) {
+  // Where bodies at a point are lit: lifted onto the ground.
+  function bodiesAt(light, point) {
     const [base, ground] = light.places.subarray(12);
-    return [centre[0], Math.max(centre[1], ground + 1e-4 * (base - ground)), centre[2]];
+    return [point[0], Math.max(point[1], ground + 1e-4 * (base - ground)), point[2]];
   }
 
   return { read, readLight, thicknessAt, spanOf, isStill, turned, cornerAt, openGround, sunsBelow, defines, block, bodiesAt,

@@ -272,11 +272,6 @@ opaline.page = (() => {
   function makeControls() {
     document.title = at("title").textContent = opaline.title;
     at("light").append(...opaline.lights.map((name, i) => new Option(labelOf(name), i)));
-    at("left-out").append(...opaline.leftOut.map(text => {
-      const item = document.createElement("li");
-      item.textContent = text;
-      return item;
-    }));
     makeEmitterSliders();
     at("time").closest("label").hidden = !hasTime();
     if (hasTime()) Object.assign(at("time"), { max: Layer.spanOf(asset.layer), step: Layer.spanOf(asset.layer) / 720 });

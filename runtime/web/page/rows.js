@@ -86,12 +86,13 @@ const Rows = (() => {
     }
   }
 
-  // Into `out`, four values a row; colors: of each emitter, times what it was authored as.
-  function multiply(asset, light, colors, out) {
-    for (const primitive of asset.primitives) {
-      (primitive.bands === 1 ? addGrey : addColored)(asset.rows, primitive, light, out);
+  // Into `out`, four values a row; lights: coefficients for each primitive; colors: of each emitter, times
+  // what it was authored as.
+  function multiply(asset, lights, colors, out) {
+    asset.primitives.forEach((primitive, p) => {
+      (primitive.bands === 1 ? addGrey : addColored)(asset.rows, primitive, lights[p], out);
       addEmitters(asset, primitive, colors, out);
-    }
+    });
   }
 
   return { multiply, addRow };

@@ -5,11 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "runtime/clouds/environment_at.h"
+#include "runtime/clouds/part_environments.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/picture/tone_map.h"
 #include "runtime/shade.h"
 #include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/volume_bounds.h"
 #include "runtime/web/page_layer.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
@@ -142,25 +143,35 @@ struct CloudView {
     double time = 0;
 };
 
-// Bodies are lit from one point, that of a page.
+// `points`: how many bodies are lit at.
 DisplayPicture render_cloudy_on_cpu(const formats::AssetView& view, const formats::Environment& sky,
-                                    const Camera& camera, const CloudView& shown) {
+                                    const Camera& camera, const CloudView& shown,
+                                    std::size_t points) {
     const Rotation rotation = rotation_about_y(shown.degrees * std::numbers::pi_v<float> / 180);
     const LayerLight layer = light_layers(view.clouds, sky, rotation, {.time = shown.time});
     const BoundingSphere bodies = bound_asset(view);
-    const formats::Environment below = environment_at(
-        {layer, sky, rotation},
-        {static_cast<float>(bodies.x), static_cast<float>(bodies.y), static_cast<float>(bodies.z)});
-    const LightVector light = project_environment(below, view.cubemap_size);
+    PartEnvironments parts{{}, {sky}, {}};
+    if (points > 0) {
+        parts = environments_of_parts({layer, sky, rotation}, view, volume_corners(view.volumes),
+                                      {static_cast<float>(bodies.x), static_cast<float>(bodies.y),
+                                       static_cast<float>(bodies.z)});
+        EXPECT_EQ(parts.at_point.size(), points);
+    }
+    std::vector<LightVector> vectors;
+    for (const formats::Environment& environment : parts.at_point) {
+        vectors.push_back(project_environment(environment, view.cubemap_size));
+    }
+    const PartLights lights{vectors, parts.points.of_primitive, parts.points.of_volumes};
     SoftwareOptions options;
     options.layers = &layer;
-    const SpecularLight specular = make_specular_light(below, specular_needs(view), {}, 0);
+    const SpecularLight specular =
+        make_specular_light(parts.mirrored(), specular_needs(view), {}, 0);
     options.specular = &specular;
-    options.lights = light;
-    const VolumeLight volumes = relight_volumes(view.volumes, light);
+    options.lights = lights;
+    const VolumeLight volumes = relight_volumes(view.volumes, vectors[lights.of_volumes]);
     if (!view.volumes.empty()) options.volumes = &volumes;
     const auto picture =
-        render_software(view, shade_for_picture(view, light, camera.eye, formats::TermSet::all, 0),
+        render_software(view, shade_for_picture(view, lights, camera.eye, formats::TermSet::all, 0),
                         sky, rotation, camera, options);
     EXPECT_TRUE(picture);
     return tone_map(*picture, shown.exposure);
@@ -192,7 +203,9 @@ TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpuUnderT
             80, 60);
         EXPECT_EQ(shown.console, "");
         const CloudView wanted = with_bodies ? CloudView{50, -0.5f, -310} : CloudView{-77, -2, 130};
-        expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, wanted), shown.rgba);
+        expect_same_pixels(
+            render_cloudy_on_cpu(asset.view(), sky, camera, wanted, with_bodies ? 2 : 0),
+            shown.rgba);
     }
 }
 
@@ -203,6 +216,8 @@ formats::Asset make_mirroring_scene() {
     test::add_primitive(asset, test::make_sphere({-350, 1500, -500}, 300, 24, 16), {});
     test::add_primitive(asset, test::make_sphere({500, 1400, -500}, 300, 24, 16),
                         {.bands = 3, .eta = 1.4f, .terms = 4});
+    asset.primitives[1].node = 1;
+    asset.primitives[2].node = 2;
     asset.roughness = {formats::kNotGlossy, formats::kNotGlossy, 0.3f};
     asset.gloss.resize(3);
     const float roughness[] = {0.6f, 0.25f};
@@ -237,7 +252,7 @@ TEST(PagePicture, BodiesMirrorCloudsAsOnTheCpuUnderTurnedLightLater) {
         *page, "eye=0,3000,600&target=100,1200,-600&fov=40&exposure=-0.5&rotate=50&time=60", 60,
         45);
     EXPECT_EQ(shown.console, "");
-    expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, {50, -0.5f, 60}),
+    expect_same_pixels(render_cloudy_on_cpu(asset.view(), sky, camera, {50, -0.5f, 60}, 3),
                        shown.rgba);
 }
 

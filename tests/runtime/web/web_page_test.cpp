@@ -1,7 +1,6 @@
 // The files of a page.
 #include "runtime/web/web_page.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -11,9 +10,7 @@
 #include "runtime/map_geometry.h"
 #include "runtime/web/data_script.h"
 #include "runtime/web/divide_light.h"
-#include "runtime/web/page_asset.h"
 #include "tests/runtime/picture/synthetic_asset.h"
-#include "tests/support/cloud_layers.h"
 
 namespace opaline::runtime {
 namespace {
@@ -95,24 +92,6 @@ TEST(DividedLight, FluxOfASunInTheMapIsKept) {
     }
     EXPECT_GT(points, 0.9 * of_sun);
     EXPECT_NEAR(points + cube, of_sun + 4 * std::numbers::pi, 2e-3 * of_sun);
-}
-
-TEST(WebPage, WhatAPageDoesNotDoWithCloudLayersIsNamed) {
-    formats::Asset asset = test::make_asset(8, 8);
-    test::add_primitive(asset, test::make_sphere({0, 0, 0}, 1, 8, 6), {});
-    EXPECT_TRUE(left_out_of_page(asset.view()).empty());
-    test::TestLayer layer = test::even_test_layer();
-    layer.flux = {8, 6};
-    layer.radiance = {4, 4, 2};
-    layer.record.flags = 0;
-    layer.record.columns = layer.record.rows = 16;  // of 500 m
-    asset.clouds = test::make_test_clouds(
-        layer, [](std::uint32_t column, std::uint32_t) { return 10.0 * column; });
-    EXPECT_TRUE(left_out_of_page(asset.view()).empty());
-    test::add_primitive(asset, test::make_sphere({3000, 0, 0}, 1, 8, 6), {});
-    asset.primitives.back().node = 1;
-    EXPECT_THAT(left_out_of_page(asset.view()),
-                testing::ElementsAre(testing::HasSubstr("the light of their centre")));
 }
 
 TEST(WebPage, MoreVolumesThanAPageDrawsAreRefused) {
