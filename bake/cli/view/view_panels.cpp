@@ -211,7 +211,9 @@ void draw_timings(const DrawnView& drawn, const PanelMemory& memory) {
 
 void draw_files(ViewState& state, const DrawnView* drawn) {
     say_wrapped(printable(state.file));
-    if (drawn != nullptr) say(fmt::format("{} receivers", drawn->file.facts.receivers));
+    if (drawn != nullptr && drawn->file.facts.receivers > 0) {
+        say(fmt::format("{} receivers", drawn->file.facts.receivers));
+    }
     if (!state.other.empty()) {
         say_wrapped("right: " + printable(state.other));
         ImGui::SliderFloat("split", &state.split, 0, 1, "%.2f");
@@ -230,11 +232,24 @@ void draw_files(ViewState& state, const DrawnView* drawn) {
     if (ImGui::Button("frame")) state.viewpoint.reset();
 }
 
+// The line that a drag moves: dark pictures and like ones do not show where it is.
+void draw_split(const ViewState& state) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const float line = ImGui::GetFrameHeight();
+    const float x = std::round(state.split * size.x), y = size.y / 2;
+    const ImU32 bright = ImGui::GetColorU32(ImGuiCol_SliderGrabActive);
+    ImDrawList* const list = ImGui::GetBackgroundDrawList();
+    list->AddLine({x, 0}, {x, size.y}, bright, 0.08f * line);
+    list->AddRectFilled({x - 0.2f * line, y - line}, {x + 0.2f * line, y + line}, bright,
+                        0.2f * line);
+}
+
 }  // namespace
 
 PanelWishes draw_panels(ViewState& state, PanelMemory& memory, const DrawnView* drawn) {
     PanelWishes wishes;
     if (!state.panels) return wishes;
+    if (!state.other.empty()) draw_split(state);
     const float line = ImGui::GetFrameHeight();
     ImGui::SetNextWindowPos({0.4f * line, 0.4f * line}, ImGuiCond_Once);
     ImGui::SetNextWindowSizeConstraints({15 * line, 2 * line},
@@ -286,65 +301,6 @@ PanelWishes draw_panels(ViewState& state, PanelMemory& memory, const DrawnView* 
     }
     ImGui::End();
     return wishes;
-}
-
-namespace {
-
-// Whether the split takes this drag.
-bool drag_split(ViewState& state, const ImGuiIO& io) {
-    if (state.other.empty()) return false;
-    const float edge = state.split * io.DisplaySize.x;
-    const float reach = 0.4f * ImGui::GetFrameHeight();
-    const bool began_there = std::abs(io.MouseClickedPos[0].x - io.MouseDelta.x - edge) < reach ||
-                             std::abs(io.MousePos.x - io.MouseDelta.x - edge) < reach;
-    if (std::abs(io.MousePos.x - edge) < reach) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left) || !began_there) return false;
-    state.split = std::clamp(io.MousePos.x / std::max(io.DisplaySize.x, 1.0f), 0.0f, 1.0f);
-    return true;
-}
-
-void drag_camera(ViewState& state, const PanelMemory& memory, const ImGuiIO& io) {
-    const double width = static_cast<double>(io.DisplaySize.x),
-                 height = static_cast<double>(std::max(io.DisplaySize.y, 1.0f));
-    const double x = static_cast<double>(io.MousePos.x), y = static_cast<double>(io.MousePos.y);
-    const double dx = static_cast<double>(io.MouseDelta.x),
-                 dy = static_cast<double>(io.MouseDelta.y);
-    // How the mouse came to where a button went down is no drag.
-    if (dx * dx + dy * dy == 0 || ImGui::IsMouseClicked(ImGuiMouseButton_Left) ||
-        ImGui::IsMouseClicked(ImGuiMouseButton_Right) ||
-        ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) {
-        return;
-    }
-    if (ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle)) {
-        state.viewpoint = pan(*state.viewpoint, state.fov, dx / height, -dy / height);
-    } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && memory.free_orbit) {
-        state.viewpoint = turn_ball(*state.viewpoint, ball_point(x - dx, y - dy, width, height),
-                                    ball_point(x, y, width, height));
-    } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-        constexpr double kTurn = 180;  // over the height of the window [degrees]
-        state.viewpoint = orbit_level(*state.viewpoint, -kTurn * dx / height, kTurn * dy / height);
-    }
-}
-
-}  // namespace
-
-void apply_input(ViewState& state, PanelMemory& memory) {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (!io.WantTextInput) {
-        // Keys by the symbol they make, which GLFW numbers as ASCII does.
-        if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Tab), false)) {
-            state.panels = !state.panels;
-        }
-        if (ImGui::IsKeyPressed('R', false)) state.viewpoint.reset();
-        if (ImGui::IsKeyPressed('L', false) && state.viewpoint) {
-            state.viewpoint = level(*state.viewpoint);
-        }
-    }
-    if (io.WantCaptureMouse || !state.viewpoint) return;
-    if (!drag_split(state, io)) drag_camera(state, memory, io);
-    if (io.MouseWheel != 0) {
-        state.viewpoint = zoom(*state.viewpoint, std::pow(0.9, static_cast<double>(io.MouseWheel)));
-    }
 }
 
 }  // namespace opaline::cli

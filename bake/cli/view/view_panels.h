@@ -26,9 +26,4 @@ struct PanelWishes {
 /// Draws the controls and applies what the user does with them. `drawn`: what is shown, or null.
 PanelWishes draw_panels(ViewState& state, PanelMemory& memory, const DrawnView* drawn);
 
-/// Camera and keys: drag to orbit, drag with the right or middle button to pan, wheel to zoom, R to
-/// frame, L to level, Tab to hide the controls. With two pictures the split follows a drag of its
-/// edge.
-void apply_input(ViewState& state, PanelMemory& memory);
-
 }  // namespace opaline::cli

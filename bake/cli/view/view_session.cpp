@@ -18,6 +18,7 @@
 #include "bake/cli/view/picture_painter.h"
 #include "bake/cli/view/render_line.h"
 #include "bake/cli/view/script_run.h"
+#include "bake/cli/view/view_input.h"
 #include "bake/cli/view/view_panels.h"
 #include "bake/cli/view/view_window.h"
 #include "bake/cli/view/watched_files.h"

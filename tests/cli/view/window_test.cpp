@@ -128,12 +128,13 @@ TEST(View, TwoFilesShareTheWindowAndEmittersAreDimmed) {
     const Outcome outcome = view_with(small,
                                       "beside scene.opal\nsplit 0.5\nemitter Lamp=0.25,0,1\n"
                                       "screenshot a.png\ndifference 1\nscreenshot b.png\n"
+                                      "split 0.95\nphotograph d.png\nscreenshot e.png\n"
                                       "beside none\nscreenshot c.png\nquit\n",
                                       {"lamps.opal", "--light", "white", "--size", "320x240"});
     if (outcome.exit_code == kNoDisplay) GTEST_SKIP() << "no Xvfb";
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     const auto lines = printed_lines(outcome.out);
-    ASSERT_EQ(lines.size(), 5u) << outcome.out;
+    ASSERT_EQ(lines.size(), 7u) << outcome.out;
     EXPECT_THAT(lines[0], HasSubstr("--emitter Lamp=0.25,0,1"));
     const formats::Image8 split = read_picture(small.path("a.png"));
     const formats::Image8 left = render_line_again(small, lines[0]);
@@ -144,6 +145,11 @@ TEST(View, TwoFilesShareTheWindowAndEmittersAreDimmed) {
     EXPECT_GT(largest_difference(split, left, {160, 320}), 20);
     EXPECT_GT(largest_difference(read_picture(small.path("b.png")), split, {160, 320}), 20);
     EXPECT_LE(largest_difference(read_picture(small.path("c.png")), left, {0, 320}), 1);
+    // With the controls a line shows where the split is.
+    const formats::Image8 window = read_picture(small.path("d.png"));
+    const formats::Image8 alone = read_picture(small.path("e.png"));
+    EXPECT_GT(largest_difference(window, alone, {303, 306}), 50);
+    EXPECT_EQ(largest_difference(window, alone, {310, 320}), 0);
 }
 
 TEST(View, ErrorsByReceiverAreThePictureThatTheirLineRenders) {
