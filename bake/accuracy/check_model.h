@@ -64,7 +64,8 @@ struct ModelErrorReport {
 struct ModelCheckOptions {
     std::uint32_t receivers = 192;  ///< to check; fewer if the scene has fewer
     std::uint64_t seed = 0;
-    /// The terms that correspond to the file's effects.
+    /// The terms that correspond to the file's effects. With interreflection but without what
+    /// crosses bodies unscattered, files hold none of the former that crossed a body so.
     TermSet simulated = TermSet::diffuse | TermSet::single | TermSet::multiple;
     /// It holds what volumes scatter to surfaces, too.
     bool lit_by_volumes = false;

@@ -9,6 +9,11 @@
 namespace opaline::bake {
 namespace {
 
+// Light that met more than one body and crossed one of them unscattered is in files that hold both.
+bool holds_crossed_light(TermSet compared) {
+    return has_all(compared, TermSet::interreflection | TermSet::unscattered);
+}
+
 // Mean luminance of what is not compared. Light of the scene's own emitters depends on no
 // environment and is no part of it.
 formats::Result<double> measure_missing(const PathSpace& space,
@@ -17,6 +22,10 @@ formats::Result<double> measure_missing(const PathSpace& space,
                                         const Context& context) {
     PathSpace other = space;
     other.options.terms = TermSet::all & ~TermSet::specular & ~TermSet::emitters & ~compared;
+    if (has_any(compared, TermSet::interreflection) && !holds_crossed_light(compared)) {
+        other.options.terms |= TermSet::interreflection;
+        other.options.crossed = CrossedLight::alone;
+    }
     const auto estimate = estimate_luminance(other, receivers, wanted, context);
     if (!estimate) {
         return estimate.error();
@@ -69,6 +78,8 @@ std::vector<PathSpace> held_light_spaces(const ModelScenes& scenes, const LightS
     PathOptions paths;
     paths.terms = options.simulated;
     paths.own_mirror = false;
+    paths.crossed =
+        holds_crossed_light(options.simulated) ? CrossedLight::counted : CrossedLight::left_out;
     if (!options.lit_by_volumes || !scenes.without_scattering) {
         return {{scenes.held(), sampler, paths}};
     }

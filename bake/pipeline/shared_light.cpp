@@ -7,6 +7,39 @@
 #include "bake/rows/rows_of_points.h"
 
 namespace opaline::bake {
+namespace {
+
+using PointRows = std::vector<std::vector<float>>;
+
+// Calls make() while of the effects those that let light cross a medium act alone, or all others.
+template <class Make>
+PointRows with_some(const EffectTable& effects, SubjectState& subject, bool crosses, Make&& make) {
+    std::vector<std::uint8_t> acted;
+    for (std::size_t e = 0; e < subject.effects.size(); ++e) {
+        acted.push_back(subject.effects[e].acts ? 1 : 0);
+        const bool lets_cross = effects.effects[e].make_look_through != nullptr;
+        subject.effects[e].acts = subject.effects[e].acts && lets_cross == crosses;
+    }
+    PointRows rows = make();
+    for (std::size_t e = 0; e < subject.effects.size(); ++e) {
+        subject.effects[e].acts = acted[e] != 0;
+    }
+    return rows;
+}
+
+// Of the effect that lets light cross a subject's medium; empty where none acts.
+LookThrough make_look(const BakeInputs& bake, const SubjectState& subject, const Knobs& knobs,
+                      const Context& context) {
+    for (std::size_t e = 0; e < subject.effects.size(); ++e) {
+        const EffectDescriptor& effect = bake.effects.effects[e];
+        if (subject.effects[e].acts && effect.make_look_through != nullptr) {
+            return effect.make_look_through(inputs_of(bake, subject, e, knobs, context));
+        }
+    }
+    return {};
+}
+
+}  // namespace
 
 Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size) {
     Knobs coarse = knobs;
@@ -37,13 +70,24 @@ std::unique_ptr<OtherLight> find_shared_light(const BakeInputs& bake, const Knob
         const std::string name(effect.name);
         auto light = run_stage(log, name, name + ": scatterers", [&](std::uint64_t& rays) {
             const auto rows_of_medium =
-                [&](std::uint32_t material, std::span<const Receiver> outside,
+                [&](std::uint32_t material, bool crosses, std::span<const Receiver> outside,
                     std::span<const BodyPoint> inside, std::uint32_t cubemap_size) {
                     const auto own = std::ranges::find(subjects, material, &SubjectState::material);
-                    return rows_of_points(bake, coarse_knobs(bake.effects, knobs, cubemap_size),
-                                          context, *own, outside, inside, rays);
+                    return with_some(bake.effects, *own, crosses, [&] {
+                        return rows_of_points(bake, coarse_knobs(bake.effects, knobs, cubemap_size),
+                                              context, *own, outside, inside, rays);
+                    });
                 };
-            return effect.make_light({bake, knobs, context, layouts, acts, rows_of_medium}, rays);
+            const auto look_through = [&](std::uint32_t material) {
+                const auto own = std::ranges::find(subjects, material, &SubjectState::material);
+                return own == subjects.end()
+                           ? LookThrough()
+                           : make_look(bake, *own,
+                                       coarse_knobs(bake.effects, knobs, knobs.cubemap_size),
+                                       context);
+            };
+            return effect.make_light(
+                {bake, knobs, context, layouts, acts, rows_of_medium, look_through}, rays);
         });
         if (light) {
             return light;

@@ -117,6 +117,16 @@ struct TruthStep {
     Work (*work)(const SubjectCost& cost, TruthEffort effort) = nullptr;
 };
 
+/// Where light comes from that crosses a medium straight to a point of its boundary from surfaces.
+struct CrossingViews {
+    /// Weights: share of the radiosity of what is seen that is radiosity of the point, but for the
+    /// base colour. No factors.
+    std::vector<SurfaceView> views;
+    double solid_angle = 0;  ///< [sr] that each stands for
+};
+/// Counts `rays`. Any thread.
+using LookThrough = std::function<CrossingViews(const BodyPoint& point, std::uint64_t& rays)>;
+
 /// Work of an effect that lights all surfaces at once.
 struct LightWork {
     Work work;                       ///< but for rows of media
@@ -133,11 +143,14 @@ struct LightInputs {
     std::span<const RowLayout> layouts;  ///< by material
     std::vector<std::uint8_t> acts;      ///< by material: whether the effect does
     /// Rows of points of one medium, coarsely: T_k, terms * bands * 6 n n Haar coefficients each,
-    /// n = `cubemap_size`.
+    /// n = `cubemap_size`. `crosses`: of light that crosses the medium straight from beyond, alone;
+    /// false: of all other.
     std::function<std::vector<std::vector<float>>(
-        std::uint32_t material, std::span<const Receiver> outside,
+        std::uint32_t material, bool crosses, std::span<const Receiver> outside,
         std::span<const BodyPoint> inside, std::uint32_t cubemap_size)>
-        rows_of_medium;
+        rows_of_medium{};
+    /// Empty where no light crosses the medium straight.
+    std::function<LookThrough(std::uint32_t material)> look_through{};
 };
 
 /// All that the rest of the baker knows of an effect. Plan, cost model, pilot, self-check, sweep,
@@ -187,6 +200,8 @@ struct EffectDescriptor {
     /// by band.
     void (*add_at_entry)(const EffectInputs& inputs,
                          std::span<std::vector<double>> factor) = nullptr;
+    /// Its light comes straight from beyond the medium: from which surfaces. Null: it does not.
+    LookThrough (*make_look_through)(const EffectInputs& inputs) = nullptr;
     /// Colour that replaces the base colour's own, of a medium shown as a surface.
     formats::Rgb (*tint)(const Prepared& study) = nullptr;
     /// Whether it takes media for homogeneous, as these knobs ask for. Null: never.

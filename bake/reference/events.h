@@ -56,8 +56,11 @@ inline bool counts_glow(const PathSpace& space) {
 
 /// True if the path may still end in a term that is counted. It may meet lamps in any state.
 inline bool is_wanted(const PathSpace& space, PathState state) {
-    return has_any(reachable_terms(state), space.options.terms) || counts_lamps(space) ||
-           counts_glow(space);
+    TermSet terms = space.options.terms;
+    if (space.options.crossed == CrossedLight::left_out && state.crossed) {
+        terms = terms & ~TermSet::interreflection;
+    }
+    return has_any(reachable_terms(state), terms) || counts_lamps(space) || counts_glow(space);
 }
 
 /// A point of an opaque surface that a path has arrived at. Normals face the path.

@@ -86,9 +86,10 @@ glm::vec3 pass_line(const PathSpace& space, LightLine line, SurroundingMedia& st
         line.from = leave_surface(*hit, line.direction);
         line.reach = std::max(0.0f, line.reach - hit->distance);
     }
-    const bool ends_well = line.is_to_sky
-                               ? stack.empty() && has_any(term_of(state), space.options.terms)
-                               : line.triangle == formats::kNone;  // else rounding at an edge
+    const bool ends_well =
+        line.is_to_sky
+            ? stack.empty() && is_counted(state, space.options.terms, space.options.crossed)
+            : line.triangle == formats::kNone;  // else rounding at an edge
     return ends_well ? passing * pass_space(scene, stack, line.from.position, line.direction,
                                             line.reach, random)
                      : glm::vec3(0);
@@ -98,7 +99,7 @@ glm::vec3 see_sky(const PathSpace& space, const RayOrigin& from, glm::vec3 direc
                   SurroundingMedia stack, PathState state, std::uint32_t key,
                   RandomStream& random) {
     if (!space.scene.has_matched_boundary) {
-        return stack.empty() && has_any(term_of(state), space.options.terms) &&
+        return stack.empty() && is_counted(state, space.options.terms, space.options.crossed) &&
                        !space.scene.surfaces.is_blocked(from, direction, key)
                    ? pass_volumes(space.scene, from.position, direction, kEndless, random)
                    : glm::vec3(0);

@@ -107,7 +107,7 @@ void reach_sky(const PathSpace& space, Path& path) {
     if (!path.stack.empty()) {
         path.lost = true;
     } else if (is_background ? space.options.terms == TermSet::all
-                             : has_any(term_of(path.state), space.options.terms)) {
+                             : is_counted(path.state, space.options.terms, space.options.crossed)) {
         const float weight =
             path.pdf > 0 ? path.pdf / (path.pdf + pdf_light(space.light, path.direction)) : 1.0f;
         path.sky = weight * path.beta;

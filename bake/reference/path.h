@@ -24,6 +24,8 @@ struct PathOptions {
     /// What volumes scatter to the first surface or body of a path counts as what that makes of it,
     /// as if it came from the sky directly; false: as light that met more.
     bool through_volumes = false;
+    /// What of `interreflection` counts, by whether it crossed a body unscattered.
+    CrossedLight crossed = CrossedLight::counted;
 };
 
 /// The surroundings of a path. All outlive the walk.

@@ -22,15 +22,23 @@ struct PathState {
     std::uint8_t scatterings = 0;  ///< since it entered the first body, or in volumes; at most 2
     bool reflected_inside = false;
     bool changed_medium = false;  ///< went from one medium to another without leaving them
+    bool in_body = false;         ///< in any body
+    bool is_straight = false;     ///< there, and not scattered since it entered
+    bool crossed = false;         ///< went through some body without being scattered in it
 };
+
+/// Which paths of TermSet::interreflection count, by PathState::crossed.
+enum class CrossedLight : std::uint8_t { counted, left_out, alone };
 
 /// Transitions.
 constexpr PathState after_diffuse(PathState s) {
+    s.is_straight = false;
     s.stage =
         s.stage == PathState::Stage::camera ? PathState::Stage::diffuse : PathState::Stage::other;
     return s;
 }
 constexpr PathState after_scattering(PathState s) {
+    s.is_straight = false;
     if (s.stage == PathState::Stage::inside) {
         s.scatterings = static_cast<std::uint8_t>(s.scatterings < 2 ? s.scatterings + 1 : 2);
     } else {
@@ -64,12 +72,16 @@ constexpr PathState after_reflection(PathState s) {
 }
 /// By the specular lobe of an opaque surface.
 constexpr PathState after_mirror(PathState s) {
+    s.is_straight = false;
     s.stage =
         s.stage == PathState::Stage::camera ? PathState::Stage::mirrored : PathState::Stage::other;
     return s;
 }
 /// Through a boundary; `out`: the path is now outside all bodies.
 constexpr PathState after_crossing(PathState s, bool out) {
+    s.crossed = s.crossed || (out && s.is_straight);
+    s.is_straight = !out && (s.is_straight || !s.in_body);
+    s.in_body = !out;
     if (s.stage == PathState::Stage::camera && !out) {
         s.stage = PathState::Stage::inside;
     } else if (s.stage == PathState::Stage::inside && !out) {
@@ -108,6 +120,14 @@ constexpr TermSet term_of(PathState s) {
             break;
     }
     return TermSet::interreflection;
+}
+
+/// Whether a path that reaches the sky here counts.
+constexpr bool is_counted(PathState s, TermSet terms, CrossedLight crossed) {
+    const TermSet term = term_of(s);
+    const bool has_met_more = term == TermSet::interreflection;
+    return has_any(term, terms) && (!has_met_more || crossed == CrossedLight::counted ||
+                                    s.crossed == (crossed == CrossedLight::alone));
 }
 
 /// All terms that a path to the sky may still end in.

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <glm/glm.hpp>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "bake/receivers/receiver.h"
+#include "formats/opal/rgb.h"
 
 namespace opaline::bake {
 
@@ -17,6 +20,13 @@ struct LitPoint {
     const Receiver& receiver;
     /// One of many points whose light is averaged, as the samples of a medium: each may be noisy.
     bool is_averaged = false;
+};
+
+/// A straight look at whatever surface is there.
+struct SurfaceView {
+    glm::vec3 origin{0}, direction{0};  ///< [m], clear of the surface it starts at; unit
+    std::array<float, 3> weight{};      ///< of what is seen, by band of the rows
+    std::span<const float> factor{};    ///< of each row
 };
 
 /// Light that arrives at surfaces besides that of the distant environment, or instead of it: light
@@ -38,6 +48,21 @@ struct OtherLight {
         const Receiver& at, std::uint64_t key, std::uint32_t count, std::span<double> irradiance)>;
     /// `lights` must outlive the result. Null: truths leave the light out.
     std::function<TrueIrradiance(std::span<const TestLight> lights)> make_truth{};
+    /// Adds the radiance that views see per unit of each basis light, times their weights and
+    /// factors: to `rows`, a row for each factor, `bands` planes each as of `add`. `solid_angle`
+    /// [sr]: of what each view stands for. Returns the rays traced. Any thread. Empty: it is not
+    /// known what is seen.
+    std::function<std::uint64_t(std::span<const SurfaceView> views, double solid_angle,
+                                std::uint32_t cubemap_size, std::uint32_t bands,
+                                std::span<float> rows)>
+        add_seen{};
+    /// The same for truths, of one view: adds the luminance of `weight` times the radiance under
+    /// each of the lights, by one sample keyed by `key` and `number`.
+    using TrueView =
+        std::function<std::uint64_t(const Receiver& along, formats::Rgb weight, std::uint64_t key,
+                                    std::uint32_t number, std::span<double> luminance)>;
+    /// As make_truth; `along`: origin and direction of the view. Empty where `add_seen` is.
+    std::function<TrueView(std::span<const TestLight> lights)> make_seen_truth{};
     std::string_view name{};  ///< of what makes it, for reports
     std::uint32_t bands = 3;
     bool environment = true;  ///< that of the environment counts, too

@@ -1,12 +1,14 @@
 #include "bake/effects/interreflection/bounce_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/effects/interreflection/bounce_gather.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/seen_light.h"
 #include "bake/effects/interreflection/site_light.h"
 
 namespace opaline::bake {
@@ -35,15 +37,58 @@ void add_scaled(std::span<const float> from, const BandColour& factor, std::span
     }
 }
 
-// What reaches a scatterer from others, on its side and, through a sheet, on the other one.
+// What reaches a scatterer from others, on its side and, through a sheet, on the other one; and
+// what of others' radiosity crosses its medium to it, as the mean of the bands.
 struct Arrivals {
-    std::vector<NodeWeight> front, back;
+    std::vector<NodeWeight> front, back, through;
+    BandColour of_through{};  // times `through`, by band
 };
+
+void weigh_through(const Field& field, const BounceTree& tree, const LookThrough& look,
+                   std::size_t i, Arrivals& arrivals, std::uint64_t& rays) {
+    const Scatterer& s = field.scatterers[i];
+    const CrossingViews crossing = look(s.inside, rays);
+    double sum = 0;
+    std::array<double, 3> by_band{};
+    for (const SeenNode& seen : find_seen(field.inputs.bake.scene, field.inputs.bake.rays, tree,
+                                          crossing.views, crossing.solid_angle, rays)) {
+        const std::array<float, 3>& weight = crossing.views[seen.view].weight;
+        const float mean = (weight[0] + weight[1] + weight[2]) / 3;
+        if (!arrivals.through.empty() && arrivals.through.back().node == seen.node) {
+            arrivals.through.back().weight += mean;
+        } else {
+            arrivals.through.push_back({seen.node, mean});
+        }
+        sum += double{mean};
+        for (std::size_t b = 0; b < by_band.size(); ++b) {
+            by_band[b] += double{weight[b]};
+        }
+    }
+    const std::array<float, 3> albedo{s.albedo.r, s.albedo.g, s.albedo.b};
+    for (std::size_t b = 0; b < by_band.size() && sum > 0; ++b) {
+        arrivals.of_through[b] = albedo[b] * static_cast<float>(by_band[b] / sum);
+    }
+    if (field.light.bands == 1) {
+        arrivals.of_through = {formats::luminance({arrivals.of_through[0], arrivals.of_through[1],
+                                                   arrivals.of_through[2]}),
+                               0, 0};
+    }
+}
+
+// By material.
+std::vector<LookThrough> looks_through(const LightInputs& inputs) {
+    std::vector<LookThrough> looks(inputs.layouts.size());
+    for (std::uint32_t m = 0; m < looks.size() && inputs.look_through; ++m) {
+        looks[m] = inputs.look_through(m);
+    }
+    return looks;
+}
 
 std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tree,
                                        std::uint64_t& rays) {
     std::vector<Arrivals> arrivals(field.scatterers.size());
     const BounceGrid grid = make_bounce_grid(kRaysOfScatterer);
+    const std::vector<LookThrough> looks = looks_through(field.inputs);
     constexpr std::size_t kBlock = 16;
     const auto weigh = [&](const Receiver& at, std::vector<NodeWeight>& weights) {
         return weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
@@ -58,6 +103,9 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
                 traced += weigh(field.scatterers[i].outside, arrivals[i].front);
                 if (field.passes_light(i)) {
                     traced += weigh(field.scatterers[i].beyond, arrivals[i].back);
+                }
+                if (const LookThrough& look = looks[field.scatterers[i].material]) {
+                    weigh_through(field, tree, look, i, arrivals[i], traced);
                 }
             }
             return traced;
@@ -98,12 +146,18 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
                 for (const std::uint32_t i :
                      std::span(order).subspan(range.begin, range.end - range.begin)) {
                     std::vector<float> to = field.light.emitted.row(i);
-                    for (const bool front : {true, false}) {
+                    const auto add = [&](std::span<const NodeWeight> from,
+                                         const BandColour& share) {
+                        if (from.empty()) {
+                            return;
+                        }
                         std::ranges::fill(row, 0.0f);
-                        add_node_rows(tree, front ? arrivals[i].front : arrivals[i].back, row);
-                        add_scaled(row, front ? field.light.reflect[i] : field.light.transmit[i],
-                                   to);
-                    }
+                        add_node_rows(tree, from, row);
+                        add_scaled(row, share, to);
+                    };
+                    add(arrivals[i].front, field.light.reflect[i]);
+                    add(arrivals[i].back, field.light.transmit[i]);
+                    add(arrivals[i].through, arrivals[i].of_through);
                     leaving.set(i, to);
                 }
                 return 0;

@@ -9,6 +9,7 @@
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "bake/effects/interreflection/rule_interreflection.h"
 #include "bake/effects/interreflection/rule_textures.h"
+#include "bake/effects/interreflection/seen_light.h"
 #include "bake/effects/interreflection/true_bounces.h"
 
 namespace opaline::bake {
@@ -36,6 +37,18 @@ std::unique_ptr<OtherLight> make_light(const LightInputs& inputs, std::uint64_t&
         return [truth](const Receiver& at, std::uint64_t key, std::uint32_t count,
                        std::span<double> irradiance) {
             return add_true_bounces(*truth, at, key, count, irradiance);
+        };
+    };
+    light->add_seen = [bounced](std::span<const SurfaceView> views, double solid_angle,
+                                std::uint32_t cubemap_size, std::uint32_t bands,
+                                std::span<float> rows) {
+        return add_seen_light(*bounced, views, solid_angle, cubemap_size, bands, rows);
+    };
+    light->make_seen_truth = [bounced](std::span<const TestLight> lights) {
+        const auto truth = std::make_shared<const BounceTruth>(make_bounce_truth(bounced, lights));
+        return [truth](const Receiver& along, formats::Rgb weight, std::uint64_t key,
+                       std::uint32_t number, std::span<double> luminance) {
+            return add_true_view(*truth, along, weight, key, number, luminance);
         };
     };
     for (const std::uint8_t acts : inputs.acts) {

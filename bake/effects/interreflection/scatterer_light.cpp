@@ -131,9 +131,15 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
     }
     std::ranges::for_each(spread, ask_for);
     const std::vector<std::vector<float>> rows =
-        field.inputs.rows_of_medium(material, outside, inside, kCubemap);
-    if (rows.size() < outside.size()) {
-        return 0;  // cancelled
+        field.inputs.rows_of_medium(material, false, outside, inside, kCubemap);
+    std::vector<std::vector<float>> crossing;
+    if (field.inputs.look_through && field.inputs.look_through(material)) {
+        crossing =
+            field.inputs.rows_of_medium(material, true, std::span(outside).first(members.size()),
+                                        std::span(inside).first(members.size()), kCubemap);
+    }
+    if (field.inputs.context.cancelled()) {
+        return 0;
     }
     const RowLayout& layout = field.inputs.layouts[material];
     const formats::Medium& medium = *field.inputs.bake.scene.materials[material].medium;
@@ -164,6 +170,10 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
         Scatterer& s = field.scatterers[i];
         const BandColour colour = to_bands(s.albedo, bands);
         find_leaving(m, colour);
+        if (!crossing.empty()) {
+            add_leaving(layout, weigh_rows_of_medium(layout, eta, inside[m].normal), crossing[m],
+                        colour, bands, leaving);
+        }
         add_scaled(around, {mirrored, mirrored, mirrored}, bands, leaving);
         s.openness = openness_of(field, around);
         const BandColour share = even.share(s.position);

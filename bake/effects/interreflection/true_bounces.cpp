@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "bake/effects/interreflection/bounce_rays.h"
@@ -36,30 +37,66 @@ class TruePath {
         Rgb weight = (1 / static_cast<float>(count)) * Rgb{1, 1, 1};
         rays_ = 0;
         for (std::uint32_t depth = 0; depth < kMostDepth; ++depth) {
-            auto u = random_uniform(truth_.light->seed, RandomStage::true_bounces, key_,
-                                    number * kMostDepth + depth);
+            auto u = random_of(number, depth);
             if (depth == 0) {
                 u[0] = std::fmod((static_cast<float>(number) + u[0]) / static_cast<float>(count),
                                  1.0f);
             }
-            if (from.normal == glm::vec3(0) || !step(from, {u[0], u[1]}, u[2], weight)) {
+            if (!step(from, {u[0], u[1]}, u[2], weight) ||
+                !survives(static_cast<float>(count), u[3], weight)) {
                 break;
             }
-            const float survival = std::min(1.0f, largest(weight) * static_cast<float>(count));
-            if (!(u[3] < survival)) {
+        }
+        return rays_;
+    }
+
+    // One whose first ray is given: the direction is along.normal.
+    std::uint64_t look(const Receiver& along, Rgb weight, std::uint32_t number) {
+        const float most = largest(weight);
+        rays_ = 0;
+        if (!(most > 0)) {
+            return rays_;
+        }
+        Receiver from;
+        for (std::uint32_t depth = 0; depth < kMostDepth; ++depth) {
+            const auto u = random_of(number, depth);
+            if (!(depth == 0 ? meet(along.origin, along.normal, u[2], from, weight)
+                             : step(from, {u[0], u[1]}, u[2], weight)) ||
+                !survives(1 / most, u[3], weight)) {
                 break;
             }
-            weight = (1 / survival) * weight;
         }
         return rays_;
     }
 
   private:
+    std::array<float, 4> random_of(std::uint32_t number, std::uint32_t depth) const {
+        return random_uniform(truth_.light->seed, RandomStage::true_bounces, key_,
+                              number * kMostDepth + depth);
+    }
+
+    // Roulette below 1 / scale.
+    static bool survives(float scale, float u, Rgb& weight) {
+        const float survival = std::min(1.0f, largest(weight) * scale);
+        if (!(u < survival)) {
+            return false;
+        }
+        weight = (1 / survival) * weight;
+        return true;
+    }
+
     // To the next surface, whose light counts. False: the path ends.
     bool step(Receiver& from, glm::vec2 u, float side_choice, Rgb& weight) {
+        return from.normal != glm::vec3(0) &&
+               meet(from.origin, make_frame(from.normal).to_world(to_hemisphere(u.x, u.y)),
+                    side_choice, from, weight);
+    }
+
+    // The same along a ray; `next`: where it goes on from.
+    bool meet(glm::vec3 origin, glm::vec3 direction, float side_choice, Receiver& next,
+              Rgb& weight) {
         const BounceLight& light = *truth_.light;
-        RayPacket packet = rays_from(from.origin);
-        const glm::vec3 direction = make_frame(from.normal).to_world(to_hemisphere(u.x, u.y));
+        RayPacket packet = rays_from(origin);
         packet.dir_x[0] = direction.x;
         packet.dir_y[0] = direction.y;
         packet.dir_z[0] = direction.z;
@@ -93,7 +130,7 @@ class TruePath {
         const auto& sheet = light.scene.materials[hits.material[0]].sheet;
         if (!sheet) {
             add_sky(front, weight);
-            from = front;
+            next = front;
             return true;
         }
         add_sky(front, weight * sheet->reflect);
@@ -104,7 +141,7 @@ class TruePath {
         }
         const float share = reflect / (reflect + transmit);
         const bool is_reflected = side_choice < share;
-        from = is_reflected ? front : back;
+        next = is_reflected ? front : back;
         weight = is_reflected ? (1 / share) * (weight * sheet->reflect)
                               : (1 / (1 - share)) * (weight * sheet->transmit);
         return true;
@@ -173,6 +210,12 @@ std::uint64_t add_true_bounces(const BounceTruth& truth, const Receiver& at, std
         rays += path.follow(at, i, count);
     }
     return rays;
+}
+
+std::uint64_t add_true_view(const BounceTruth& truth, const Receiver& along, Rgb weight,
+                            std::uint64_t key, std::uint32_t number, std::span<double> luminance) {
+    return TruePath(truth, key, luminance)
+        .look(along, std::numbers::inv_pi_v<float> * weight, number);
 }
 
 }  // namespace opaline::bake

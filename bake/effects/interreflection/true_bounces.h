@@ -27,4 +27,11 @@ BounceTruth make_bounce_truth(std::shared_ptr<const BounceLight> light,
 std::uint64_t add_true_bounces(const BounceTruth& truth, const Receiver& at, std::uint64_t key,
                                std::uint32_t count, std::span<double> irradiance);
 
+/// Adds the luminance of `weight` times the radiance that arrives against the unit direction
+/// `along.normal` at `along.origin` from the surface there, under each light, by one path: the
+/// number-th of `key`. Unbiased, but that it counts as the same in all directions. Returns the
+/// rays.
+std::uint64_t add_true_view(const BounceTruth& truth, const Receiver& along, formats::Rgb weight,
+                            std::uint64_t key, std::uint32_t number, std::span<double> luminance);
+
 }  // namespace opaline::bake

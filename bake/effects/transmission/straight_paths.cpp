@@ -49,17 +49,10 @@ struct Lane {
     bool is_on_its_way = false;
 };
 
-// A lane of rays toward the sky.
-struct Escape {
-    glm::vec3 origin;
-    StraightExit exit;
-};
-
 class Follower {
   public:
-    Follower(const StraightBody& body, std::vector<StraightExit>& exits,
-             std::vector<std::uint32_t>& past)
-        : body_(body), exits_(exits), past_(past), clearest_(body.sigma_t[0]) {
+    Follower(const StraightBody& body, StraightLight& found)
+        : body_(body), found_(found), clearest_(body.sigma_t[0]) {
         for (std::size_t b = 1; b < body.bands; ++b) {
             clearest_ = std::min(clearest_, body.sigma_t[b]);
         }
@@ -148,7 +141,7 @@ class Follower {
             return largest(lane) >= kLeastStraightWeight;
         }
         if (is_first_ && is_around_vertex(hits, i)) {
-            past_.push_back(view);
+            found_.past.push_back(view);
             return false;
         }
         return leave(lane, at, view);
@@ -182,19 +175,19 @@ class Follower {
                 ? static_cast<float>(fresnel_transmittance(static_cast<double>(cosine), inverse))
                 : 0;
         if (passed > 0) {
-            StraightExit exit{view, direction, {}};
+            StraightExit exit{view, direction, {}, at.position + 2 * at.error * at.flat};
             for (std::size_t b = 0; b < body_.bands; ++b) {
                 exit.weight[b] = passed * lane.weight[b];
                 lane.weight[b] *= 1 - passed;
             }
-            escapes_.push_back({at.position + 2 * at.error * at.flat, exit});
+            escapes_.push_back(exit);
         }
         lane.position = at.position - 2 * at.error * at.flat;
         lane.direction = glm::normalize(mirrored(normal));
         return largest(lane) >= kLeastStraightWeight;
     }
 
-    // Keeps the exits that nothing stands before.
+    // Which exits something stands before.
     void look_out() {
         for (std::size_t begin = 0; begin < escapes_.size(); begin += kLanes) {
             const std::size_t count = std::min<std::size_t>(kLanes, escapes_.size() - begin);
@@ -204,11 +197,11 @@ class Follower {
             packet.tfar.fill(kInfinity);
             LaneMask mask{};
             for (std::size_t i = 0; i < count; ++i) {
-                const Escape& e = escapes_[begin + i];
+                const StraightExit& e = escapes_[begin + i];
                 packet.org_x[i] = e.origin.x, packet.org_y[i] = e.origin.y;
                 packet.org_z[i] = e.origin.z;
-                packet.dir_x[i] = e.exit.direction.x, packet.dir_y[i] = e.exit.direction.y;
-                packet.dir_z[i] = e.exit.direction.z;
+                packet.dir_x[i] = e.direction.x, packet.dir_y[i] = e.direction.y;
+                packet.dir_z[i] = e.direction.z;
                 mask[i] = -1;
             }
             if (!body_.sky->is_empty()) {
@@ -216,22 +209,19 @@ class Follower {
                 traced_ += count;
             }
             for (std::size_t i = 0; i < count; ++i) {
-                if (packet.tfar[i] > 0) {
-                    exits_.push_back(escapes_[begin + i].exit);
-                }
+                (packet.tfar[i] > 0 ? found_.exits : found_.blocked).push_back(escapes_[begin + i]);
             }
         }
         escapes_.clear();
     }
 
     const StraightBody& body_;
-    std::vector<StraightExit>& exits_;
-    std::vector<std::uint32_t>& past_;
+    StraightLight& found_;
     float clearest_;
     glm::vec3 vertex_{0};
     bool is_first_ = true;
     std::array<Lane, kLanes> lanes_;
-    std::vector<Escape> escapes_;
+    std::vector<StraightExit> escapes_;
     std::uint64_t traced_ = 0;
 };
 
@@ -262,9 +252,8 @@ StraightStart make_straight_start(const StraightBody& body, const BodyPoint& poi
 }
 
 std::uint64_t follow_straight(const StraightBody& body, const StraightStart& start,
-                              std::span<const glm::vec3> seen, std::vector<StraightExit>& exits,
-                              std::vector<std::uint32_t>& past) {
-    Follower follower(body, exits, past);
+                              std::span<const glm::vec3> seen, StraightLight& found) {
+    Follower follower(body, found);
     for (std::size_t first = 0; first < seen.size(); first += kLanes) {
         follower.follow(start,
                         seen.subspan(first, std::min<std::size_t>(kLanes, seen.size() - first)),

@@ -45,20 +45,27 @@ struct StraightExit {
     std::uint32_t view = 0;
     glm::vec3 direction{0};         ///< unit, outside, away from the body
     std::array<float, 3> weight{};  ///< per band: attenuated, transmitted, of radiance over eta^2
+    glm::vec3 origin{0};            ///< [m], clear of the boundary
+};
+
+/// What a set of views finds, not in their order.
+struct StraightLight {
+    std::vector<StraightExit> exits;    ///< into the sky
+    std::vector<StraightExit> blocked;  ///< toward something that stands before the sky
+    /// Views that leave at once through a triangle of their own vertex: a smooth surface has none
+    /// of these.
+    std::vector<std::uint32_t> past;
 };
 
 /// Weights below are left out: with them at most that much of the light of each view.
 inline constexpr float kLeastStraightWeight = 0x1p-12f;
 
 /// Follows views straight through a body, backwards from the eye (README.md, "The paths"): at each
-/// arrival at the boundary the transmitted share is an exit, unless something stands before it, and
-/// the reflected share goes on. `seen`: unit directions inside, away from the body, toward the eye.
-/// Light from other materials inside is another effect's, and light through a hole is none. Appends
-/// to `exits`, not in the order of the views, and to `past` the views that leave at once through a
-/// triangle of their own vertex: a smooth surface has none of these. Returns the rays traced. Any
-/// thread.
+/// arrival at the boundary the transmitted share is an exit, and the reflected share goes on.
+/// `seen`: unit directions inside, away from the body, toward the eye. Light from other materials
+/// inside is not followed, and light through a hole is none. Appends to `found`. Returns the rays
+/// traced. Any thread.
 std::uint64_t follow_straight(const StraightBody& body, const StraightStart& start,
-                              std::span<const glm::vec3> seen, std::vector<StraightExit>& exits,
-                              std::vector<std::uint32_t>& past);
+                              std::span<const glm::vec3> seen, StraightLight& found);
 
 }  // namespace opaline::bake

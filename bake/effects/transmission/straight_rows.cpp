@@ -10,6 +10,7 @@
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
 #include "bake/effects/transmission/view_fit.h"
+#include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 
@@ -91,6 +92,27 @@ class Splat {
     std::vector<float> dense_;  // texel by texel
 };
 
+// The views of a point and what they find.
+struct PointViews {
+    TransmissionViews set;
+    StraightLight found;
+};
+
+PointViews follow_views(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
+                        std::uint64_t seed, std::uint64_t& rays) {
+    const std::array<float, 4> u = random_at(seed, point.position);
+    PointViews own;
+    own.set = spread_views(point.normal, body.eta, views, {u[0], u[1]});
+    rays += follow_straight(body, make_straight_start(body, point, rays), own.set.seen, own.found);
+    leave_out(own.set, own.found.past);
+    return own;
+}
+
+// [sr], of one of so many views.
+double solid_angle_of(double views) {
+    return 2 * std::numbers::pi * (1 - spread_cosine(views));
+}
+
 }  // namespace
 
 double spread_cosine(double views) {
@@ -105,19 +127,15 @@ std::uint32_t straight_terms(const RowLayout& layout) {
 }
 
 std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
-                           std::uint64_t seed, const RowLayout& layout, const DenseRow& row) {
+                           std::uint64_t seed, const RowLayout& layout, const DenseRow& row,
+                           const OtherLight* surfaces) {
     if (point.normal == glm::vec3(0)) {
         return 0;
     }
-    const std::array<float, 4> u = random_at(seed, point.position);
-    TransmissionViews set = spread_views(point.normal, body.eta, views, {u[0], u[1]});
     std::uint64_t rays = 0;
-    const StraightStart start = make_straight_start(body, point, rays);
-    std::vector<StraightExit> exits;
-    std::vector<std::uint32_t> past;
-    rays += follow_straight(body, start, set.seen, exits, past);
-    leave_out(set, past);
-    if (exits.empty()) {
+    const auto [set, found] = follow_views(body, point, views, seed, rays);
+    const bool sees_surfaces = surfaces != nullptr && surfaces->add_seen && !found.blocked.empty();
+    if (found.exits.empty() && !sees_surfaces) {
         return rays;
     }
     const std::uint32_t terms = straight_terms(layout);
@@ -128,7 +146,7 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         }
     } else {
         std::vector<double> even(set.seen.size());
-        for (const StraightExit& exit : exits) {
+        for (const StraightExit& exit : found.exits) {
             even[exit.view] += static_cast<double>(
                 body.bands == 1 ? exit.weight[0]
                                 : exit.weight[0] + exit.weight[1] + exit.weight[2]);
@@ -136,11 +154,43 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         limit_fit(set, terms, even, factors);
     }
     Splat splat(row, terms, spread_cosine(views));
-    for (const StraightExit& exit : exits) {
-        splat.add(exit, std::span(factors).subspan(std::size_t{exit.view} * terms, terms));
+    const auto factors_of = [&](const StraightExit& exit) {
+        return std::span<const float>(factors).subspan(std::size_t{exit.view} * terms, terms);
+    };
+    for (const StraightExit& exit : found.exits) {
+        splat.add(exit, factors_of(exit));
     }
     splat.add_to(row);
+    if (sees_surfaces) {
+        std::vector<SurfaceView> looks;
+        looks.reserve(found.blocked.size());
+        for (const StraightExit& exit : found.blocked) {
+            looks.push_back({exit.origin, exit.direction, exit.weight, factors_of(exit)});
+        }
+        rays += surfaces->add_seen(looks, solid_angle_of(views), row.cubemap_size, row.bands,
+                                   row.values);
+    }
     return rays;
+}
+
+CrossingViews look_through(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
+                           std::uint64_t seed, std::uint64_t& rays) {
+    CrossingViews crossing{{}, solid_angle_of(views)};
+    if (point.normal == glm::vec3(0)) {
+        return crossing;
+    }
+    const PointViews own = follow_views(body, point, views, seed, rays);
+    const double leaves = 1 - fresnel_moments(body.eta).external;
+    crossing.views.reserve(own.found.blocked.size());
+    for (const StraightExit& exit : own.found.blocked) {
+        const auto share = static_cast<float>(leaves * own.set.weight[exit.view]);
+        SurfaceView view{exit.origin, exit.direction, {}, {}};
+        for (std::size_t b = 0; b < view.weight.size(); ++b) {
+            view.weight[b] = share * exit.weight[body.bands == 1 ? 0 : b];
+        }
+        crossing.views.push_back(view);
+    }
+    return crossing;
 }
 
 }  // namespace opaline::bake

@@ -5,6 +5,7 @@
 #include "bake/effects/transmission/straight_paths.h"
 #include "bake/plan/dense_rows.h"
 #include "bake/plan/row_layout.h"
+#include "bake/transport/other_light.h"
 
 namespace opaline::bake {
 
@@ -16,9 +17,15 @@ double spread_cosine(double views);
 std::uint32_t straight_terms(const RowLayout& layout);
 
 /// Adds light that crosses the body straight to the rows of a receiver (README.md, "Rows"), from
-/// `views` of it. Random numbers belong to the seed and the receiver's place. Any thread; returns
-/// the rays traced.
+/// `views` of it. `surfaces`: what surfaces send that stand before the sky; null: they are black.
+/// Random numbers belong to the seed and the receiver's place. Any thread; returns the rays traced.
 std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
-                           std::uint64_t seed, const RowLayout& layout, const DenseRow& row);
+                           std::uint64_t seed, const RowLayout& layout, const DenseRow& row,
+                           const OtherLight* surfaces = nullptr);
+
+/// The surfaces from which light crosses the body straight to a point, by `views` of it, as of
+/// EffectDescriptor::make_look_through. Counts `rays`.
+CrossingViews look_through(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
+                           std::uint64_t seed, std::uint64_t& rays);
 
 }  // namespace opaline::bake

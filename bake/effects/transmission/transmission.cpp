@@ -36,7 +36,15 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
 
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     return add_straight(static_cast<const Body&>(*inputs.own.prepared).body, receiver.inside,
-                        whole(inputs.knobs, kStraightViews), inputs.knobs.seed, inputs.layout, row);
+                        whole(inputs.knobs, kStraightViews), inputs.knobs.seed, inputs.layout, row,
+                        inputs.light());
+}
+
+LookThrough make_look_through(const EffectInputs& inputs) {
+    return [body = make_straight_body(inputs), views = whole(inputs.knobs, kStraightViews),
+            seed = inputs.knobs.seed](const BodyPoint& point, std::uint64_t& rays) {
+        return look_through(body, point, views, seed, rays);
+    };
 }
 
 struct Truth : Prepared {
@@ -56,6 +64,10 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
     truth->body.sky = &inputs.bake.rays;  // whatever the plan says of what stands before the light
     truth->truth = {lights, make_smooth_lights(lights), truth_views(effort),
                     straight_terms(inputs.layout)};
+    if (const OtherLight* const light = inputs.light();
+        light != nullptr && light->make_seen_truth) {
+        truth->truth.surfaces = light->make_seen_truth(lights);
+    }
     return truth;
 }
 
@@ -112,6 +124,7 @@ EffectDescriptor describe_transmission(Effect id) {
                           }},
             .held_light = formats::TermSet::unscattered,
             .calibrate = calibrate_transmission,
+            .make_look_through = make_look_through,
             .warn_of_model = warn_of_model};
 }
 

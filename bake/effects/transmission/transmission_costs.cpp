@@ -46,13 +46,12 @@ void calibrate_transmission(const CalibrationBench& bench, Rates& rates) {
     const std::vector<BodyPoint> points = thinned(std::span<const BodyPoint>(bench.points), 32);
     const auto count = static_cast<double>(points.size());
     Stopwatch watch;
-    std::vector<StraightExit> exits;
-    std::vector<std::uint32_t> past;
+    StraightLight found;
     for (const BodyPoint& point : points) {
         const TransmissionViews views = spread_views(point.normal, body.eta, kViews, {0.5f, 0.5f});
         std::uint64_t traced = 0;
-        exits.clear();
-        follow_straight(body, make_straight_start(body, point, traced), views.seen, exits, past);
+        found = {};
+        follow_straight(body, make_straight_start(body, point, traced), views.seen, found);
     }
     const double views = watch.seconds() / count;
     bench.side_of(rates.straight_view) = views / kViews;

@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
 constexpr double kSpreadAs = 256;  // views: 5 degrees
+// Tells the keys of paths from surfaces apart from those of receivers.
+constexpr std::uint64_t kOfViews = std::uint64_t{1} << 63;
 
 double luminance_of(const StraightExit& exit, std::uint32_t bands) {
     double sum = 0;
@@ -49,6 +51,20 @@ void add_light(const StraightTruth& truth, glm::vec3 direction, double weight,
     }
 }
 
+// The same of a surface, by one path. `number`: of the exit.
+std::uint64_t add_surface(const StraightTruth& truth, const StraightExit& exit, std::uint32_t bands,
+                          double weight, std::uint64_t key, std::uint32_t number, Luminance& sum) {
+    Luminance seen(sum.size());
+    const formats::Rgb share{exit.weight[0], exit.weight[bands == 1 ? 0 : 1],
+                             exit.weight[bands == 1 ? 0 : 2]};
+    const std::uint64_t rays =
+        truth.surfaces({exit.origin, exit.direction}, share, key, number, seen);
+    for (std::size_t l = 0; l < sum.size(); ++l) {
+        sum[l] += weight * seen[l];
+    }
+    return rays;
+}
+
 }  // namespace
 
 TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& truth,
@@ -67,11 +83,11 @@ TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& t
     std::vector<double> weight;
     std::vector<std::array<float, 4>> random;
     std::vector<double> share;
-    std::vector<StraightExit> exits;
-    std::vector<std::uint32_t> past;
-    std::uint32_t number = 0;
+    StraightLight found;
+    std::uint32_t number = 0, looks = 0;
     for (Luminance* estimate : {&estimates.first, &estimates.second}) {
-        seen.clear(), weight.clear(), random.clear(), exits.clear(), share.clear(), past.clear();
+        seen.clear(), weight.clear(), random.clear(), share.clear();
+        found = {};
         for (std::uint32_t i = 0; i < truth.views; ++i, ++number) {
             // Cosine-distributed, c^2 stratified.
             const auto u = random_uniform(seed, RandomStage::true_straight_views, key, number);
@@ -89,18 +105,24 @@ TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& t
             weight.push_back(share.back() * kernel(seen.back()));
             random.push_back(u);
         }
-        traced += follow_straight(body, start, seen, exits, past);
+        traced += follow_straight(body, start, seen, found);
         double left = 1;
-        for (const std::uint32_t i : past) {
+        for (const std::uint32_t i : found.past) {
             left -= share[i];
         }
         if (!(left > 0)) {
             continue;
         }
-        for (const StraightExit& exit : exits) {
+        for (const StraightExit& exit : found.exits) {
             add_light(truth, exit.direction,
                       weight[exit.view] / left * luminance_of(exit, body.bands), random[exit.view],
                       *estimate);
+        }
+        if (truth.surfaces) {
+            for (const StraightExit& exit : found.blocked) {
+                traced += add_surface(truth, exit, body.bands, weight[exit.view] / left,
+                                      kOfViews | key, looks++, *estimate);
+            }
         }
     }
     return estimates;

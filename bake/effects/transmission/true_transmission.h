@@ -4,6 +4,7 @@
 #include <span>
 
 #include "bake/effects/transmission/straight_paths.h"
+#include "bake/transport/other_light.h"
 #include "bake/truth/luminance.h"
 #include "bake/truth/true_irradiance.h"
 
@@ -15,6 +16,8 @@ struct StraightTruth {
     SmoothLights smooth;
     std::uint32_t views = 0;  ///< for each of the two estimates
     std::uint32_t terms = 1;  ///< harmonics of the view
+    /// What surfaces send that stand before the sky; empty: they are black.
+    OtherLight::TrueView surfaces{};
 };
 
 /// Luminance toward the receiver's normal, less the factor F_t, of light that crosses the body

@@ -42,8 +42,9 @@ struct LitWorld {
         BakeOptions options;
         options.set(kBounceRays, bounce_rays);
         options.effects = {"direct", "interreflection"};
-        const auto black_inside = [&](std::uint32_t material, std::span<const Receiver> outside,
-                                      std::span<const BodyPoint>, std::uint32_t n) {
+        const auto black_inside = [&](std::uint32_t material, bool,
+                                      std::span<const Receiver> outside, std::span<const BodyPoint>,
+                                      std::uint32_t n) {
             const RowLayout& own = layouts[material];
             const std::size_t size = own.terms() * own.bands() * formats::cubemap_texels(n);
             return std::vector<std::vector<float>>(outside.size(), std::vector<float>(size));

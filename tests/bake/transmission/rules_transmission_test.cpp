@@ -22,11 +22,10 @@ TEST(StraightShare, IsNoLessThanWhatABallShowsAndLittleMore) {
             const auto ball = tests::make_crossed({tests::make_sphere(5)}, eta, sigma_t);
             const glm::vec3 normal = ball->scene.primitives[0].normal[17];
             const TransmissionViews views = spread_views(normal, eta, 256, {0.5f, 0.3f});
-            std::vector<StraightExit> exits;
-            std::vector<std::uint32_t> past;
-            follow_straight(ball->body, {0.9999f * normal, 1, {}}, views.seen, exits, past);
+            StraightLight found;
+            follow_straight(ball->body, {0.9999f * normal, 1, {}}, views.seen, found);
             double shown = 0;
-            for (const StraightExit& exit : exits) {
+            for (const StraightExit& exit : found.exits) {
                 shown += views.weight[exit.view] * double{exit.weight[0]};
             }
             const double bound = straight_share(eta, 2 * double{sigma_t});

@@ -51,10 +51,9 @@ inline Primitive make_crossed_slab(float thickness) {
 /// What one view finds, in order of its exits.
 inline std::vector<bake::StraightExit> look(const CrossedBody& crossed, glm::vec3 from,
                                             glm::vec3 seen) {
-    std::vector<bake::StraightExit> exits;
-    std::vector<std::uint32_t> past;
-    bake::follow_straight(crossed.body, {from, 1, from}, {&seen, 1}, exits, past);
-    return exits;
+    bake::StraightLight found;
+    bake::follow_straight(crossed.body, {from, 1, from}, {&seen, 1}, found);
+    return found.exits;
 }
 
 inline double sum_of(const std::vector<bake::StraightExit>& exits) {

@@ -84,18 +84,17 @@ TEST(StraightPaths, AnAbsorbingBallShowsOnAverageOverViewsWhatQuadratureSays) {
         truth /= sum;
         const glm::vec3 normal = ball->scene.primitives[0].normal[17];
         const TransmissionViews views = spread_views(normal, eta, 512, {0.5f, 0.3f});
-        std::vector<StraightExit> exits;
-        std::vector<std::uint32_t> past;
-        follow_straight(ball->body, {0.9999f * normal, 1, {}}, views.seen, exits, past);
+        StraightLight found;
+        follow_straight(ball->body, {0.9999f * normal, 1, {}}, views.seen, found);
         double mean = 0;
-        for (const StraightExit& exit : exits) {
+        for (const StraightExit& exit : found.exits) {
             mean += views.weight[exit.view] * double{exit.weight[0]};
         }
         EXPECT_NEAR(mean / truth, 1, 0.005) << eta;
     }
 }
 
-TEST(StraightPaths, WhatStandsBehindABodyIsNotItsLight) {
+TEST(StraightPaths, WhatStandsBehindABodyStandsApartFromTheSkyAndWithItMakesOne) {
     const auto floor_below = [] {
         tests::Primitive floor =
             tests::make_quad({-900, -1.5f, -900}, {0, 0, 1800}, {1800, 0, 0}, 1);
@@ -103,9 +102,17 @@ TEST(StraightPaths, WhatStandsBehindABodyIsNotItsLight) {
         return floor;
     };
     const auto slab = tests::make_crossed({tests::make_crossed_slab(1), floor_below()}, 1.5, 0);
-    for (const StraightExit& exit : tests::look(*slab, {0.1f, -1e-4f, 0.2f}, kUp)) {
+    StraightLight found;
+    const glm::vec3 from{0.1f, -1e-4f, 0.2f};
+    follow_straight(slab->body, {from, 1, from}, {&kUp, 1}, found);
+    for (const StraightExit& exit : found.exits) {
         EXPECT_GT(exit.direction.y, 0);
     }
+    for (const StraightExit& exit : found.blocked) {
+        EXPECT_LT(exit.direction.y, 0);
+        EXPECT_NEAR(exit.origin.y, -1, 0.01) << "where it leaves";
+    }
+    EXPECT_NEAR(tests::sum_of(found.exits) + tests::sum_of(found.blocked), 1, 5e-4);
 }
 
 TEST(StraightPaths, AnotherMaterialInsideEndsThemAndAShellOfTheirOwnDoesNothing) {
