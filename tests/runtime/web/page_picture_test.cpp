@@ -272,7 +272,8 @@ canvas.setPointerCapture = () => {};  // of pointers that a hand moves
 opaline.page.ready.then(async () => {
   location.hash = "azimuth=10&elevation=20&distance=3&light=black&emitter=a%3D2,1,0.5";
   await wait();
-  const heard = `${at("light").value} ${at("emitter-0").textContent}`;
+  const hasTime = !at("time").closest("label").hidden;
+  const heard = `${at("light").value} ${at("emitter-0").textContent} ${hasTime}`;
   drag("pointerdown", 100, 100);
   drag("pointermove", 90, 110);
   drag("pointerup", 90, 110);
@@ -284,11 +285,33 @@ opaline.page.ready.then(async () => {
 });
 )js");
     EXPECT_EQ(shown.console, "");
-    EXPECT_EQ(shown.title.substr(0, shown.title.find("&amp;target")),
-              "1 × 2 #light=white&amp;rotate=45&amp;exposure=0&amp;azimuth=13&amp;elevation=23&amp;"
-              "distance=3");
+    EXPECT_EQ(
+        shown.title.substr(0, shown.title.find("&amp;target")),
+        "1 × 2 false #light=white&amp;rotate=45&amp;exposure=0&amp;azimuth=13&amp;elevation=23&amp;"
+        "distance=3");
     EXPECT_NE(shown.title.find("emitter=a=2,1,0.5&amp;emitter=b=0,0,0"), std::string::npos)
         << shown.title;
+}
+
+TEST(PagePicture, ASliderMovesTheCloudsAndTheAddressKeepsTheirTime) {
+    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    const PageLight lights[] = {{"white", white()}};
+    const formats::Asset cloudy = make_cloudy_scene(false);
+    const std::string script = R"js(
+const at = id => document.getElementById(id);
+opaline.page.ready.then(async () => {
+  at("time").value = 50;
+  at("time").dispatchEvent(new Event("input"));
+  await new Promise(resolve => setTimeout(resolve, 500));
+  document.title = `${at("time").closest("label").hidden} ${at("time").max} ${at("time-value").textContent} ` +
+      new URLSearchParams(location.hash.slice(1)).get("time");
+});
+)js";
+    const auto page = make_web_page(cloudy.view(), lights, "a", "a.opal", 0);
+    ASSERT_TRUE(page);
+    const auto shown = test::run_on_page(*page, script);
+    EXPECT_EQ(shown.console, "");
+    EXPECT_EQ(shown.title, "false 120 50 s 50");  // three frames of 40 s, over and over
 }
 
 TEST(PagePicture, WithoutWebGlThePageSaysSo) {
