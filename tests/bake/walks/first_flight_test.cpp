@@ -77,6 +77,21 @@ TEST(FirstFlight, EachGroupOfBandsHasItsOwnExtinction) {
     }
 }
 
+// A body that stands in its floor is lit by what scatters above it.
+TEST(FirstFlight, WhatStandsInABodyTakesOnlyTheLightThatReachesIt) {
+    WalkedBody slab;
+    Primitive floor = make_wide_slab(5);
+    for (glm::vec3& p : floor.position) {
+        p.y -= 2;  // from y = -2 down
+    }
+    floor.material = 1;
+    slab.scene = make_translucent_scene({make_wide_slab(5), std::move(floor)},
+                                        make_forward_medium(1, 0.9f, 0, 1.4f));
+    slab.triangles.emplace(bake::EmbreeScene::build(slab.scene, 1).value());
+    slab.space = bake::make_walk_space(slab.scene, *slab.triangles, 0, true);
+    EXPECT_NEAR(look_down(slab.space).scattered[0], -std::expm1(-2.0), 1e-3);
+}
+
 // Through a hole flights go on to the box; what is left there the others make up for.
 TEST(FirstFlight, HoleOfABallLosesNoLight) {
     Primitive ball = make_sphere(3);

@@ -33,10 +33,10 @@ class FlightTracer {
                 scatter_along(position, direction, to_box(position, direction), view, left);
                 return mean(left);
             }
+            scatter_along(position, direction, glm::distance(hit.position, position), view, left);
             if (!hit.is_own) {
                 return 0;
             }
-            scatter_along(position, direction, glm::distance(hit.position, position), view, left);
             const float side = glm::dot(direction, hit.flat) > 0 ? 1.0f : -1.0f;
             shells -= static_cast<int>(side);
             if (shells > 0) {
