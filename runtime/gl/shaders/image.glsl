@@ -29,8 +29,9 @@ vec3 image_texel(usampler2D image, ivec2 at, ivec2 wrap, bool is_srgb) {
 }
 
 // Keeps the texel number within what an int holds: two periods are as good as any number of them.
+// Compares bits: compilers may take numbers for no NaN, and one negated comparison for the other.
 float reduce_coordinate(float t, int mode) {
-    if (!(abs(t) < 1e30)) {
+    if ((floatBitsToUint(t) & 0x7fffffffu) >= 0x7149f2cau) {  // 1e30 and all above, infinities, NaN
         return 0.0;
     }
     return mode == WRAP_CLAMP ? clamp(t, -1.0, 2.0) : t - 2.0 * floor(0.5 * t);

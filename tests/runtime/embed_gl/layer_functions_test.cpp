@@ -200,7 +200,9 @@ class EmbedGlLayer : public EmbedGl {
         EXPECT_LT(thickest, 0.1f);
         EXPECT_LE(largest, 1e-5f * brightest);
         EXPECT_LE(largest_through, 1e-5f);
-        EXPECT_LE(largest_distance, 1e-5f);
+        // Where a grazing ray meets the top is the difference of nearly equal heights, of which
+        // GPUs round the last bit each in their own way.
+        EXPECT_LE(largest_distance, 2e-5f);
     }
     std::unique_ptr<EmbeddedAsset> host_;
     opaline_gl* gl_ = nullptr;
