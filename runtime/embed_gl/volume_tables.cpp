@@ -34,22 +34,6 @@ PaddedVoxel place_of(std::size_t i) {
     return voxel;
 }
 
-// The density at a brick's 9 x 9 x 9 voxels, x fastest.
-using PaddedBrick = std::array<float, kSide * kSide * kSide>;
-
-PaddedBrick pad_brick(const VolumeLattice& lattice, std::array<std::int32_t, 3> cell) {
-    const BrickBlock block = brick_block(lattice, cell);
-    PaddedBrick value{};
-    for (std::size_t i = 0; i < value.size(); ++i) {
-        const auto [neighbour, offset] = place_of(i);
-        const std::uint32_t brick = block.number[neighbour];
-        if (brick == kNoBrick) continue;
-        value[i] = lattice.density_scale[brick] *
-                   static_cast<float>(lattice.density[brick * kBrickVoxels + offset]);
-    }
-    return value;
-}
-
 // Keeps the brick's own codes unless a neighbour's density needs a larger scale.
 void pack_brick(const PaddedBrick& value, float own_scale, std::span<std::uint32_t> words) {
     constexpr float kLargestCode = 65535;
@@ -182,9 +166,14 @@ std::size_t most_coefficients(const formats::VolumesView& volumes) {
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         const formats::VolumeRecord& record = volumes.records[v];
         const std::span<const float> phase = volumes.phase_of(v);
-        const std::size_t suns = needs_suns(record, phase) ? kMaxSuns : 0;
-        const std::size_t of_node = suns > 0 ? suns * make_sun_phase(record, phase).terms : 0;
-        count += suns + record.node_count * (terms_of(volumes, v) + of_node);
+        VolumeLight::Part part;
+        if (needs_suns(record, phase)) {
+            part.suns = kMaxSuns;
+            part.sun_terms = make_sun_phase(record, phase).terms;
+            part.sun_boxes = sun_boxes(record);
+        }
+        count += part.suns + record.brick_count * part.brick_stride() +
+                 record.node_count * std::size_t{terms_of(volumes, v)};
     }
     return count;
 }

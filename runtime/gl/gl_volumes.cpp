@@ -12,10 +12,11 @@ using formats::SparseRows;
 using formats::TermSet;
 using formats::VolumesView;
 
+void copy(const auto& span, auto& vector) {
+    vector.assign(span.begin(), span.end());
+}
+
 SparseRows copy_rows(const formats::SparseRowsView& view) {
-    const auto copy = [](const auto& span, auto& vector) {
-        vector.assign(span.begin(), span.end());
-    };
     SparseRows rows;
     rows.cubemap_size = view.cubemap_size;
     rows.code_bits = view.code_bits;
@@ -89,8 +90,12 @@ formats::Result<GlVolumes> upload_volumes(const VolumesView& volumes, std::size_
     GlVolumes gl;
     if (volumes.empty()) return gl;
     if (const auto status = check_limits(volumes, max_block_bytes); !status) return status.error();
-    gl.kept.records.assign(volumes.records.begin(), volumes.records.end());
-    gl.kept.phase.assign(volumes.phase.begin(), volumes.phase.end());
+    copy(volumes.records, gl.kept.records);
+    copy(volumes.table, gl.kept.table);
+    copy(volumes.density_scale, gl.kept.density_scale);
+    copy(volumes.density, gl.kept.density);
+    copy(volumes.corner, gl.kept.corner);
+    copy(volumes.phase, gl.kept.phase);
     gl.kept.rows = copy_rows(volumes.rows);
     const formats::GlowView& glow = volumes.glow;
     gl.kept.glow = {

@@ -15,15 +15,15 @@
 
 namespace opaline::runtime {
 
-/// An asset's volumes on the GPU. Their dot products stay on the CPU, which keeps the rows.
+/// An asset's volumes on the GPU. Light of nodes and of suns' points is found on the CPU, which
+/// keeps the arrays for that.
 struct GlVolumes {
     struct Entry {
         VolumeLattice lattice;   ///< without its arrays: those are on the GPU
         std::size_t volume = 0;  ///< its number in the asset
     };
     std::vector<Entry> entry;  ///< those that a ray can meet
-    formats::Volumes kept;     ///< records, phase functions, rows, and what nodes scatter of own
-                               ///< light
+    formats::Volumes kept;     ///< all but the voxels of nodes and codes of own light
 
     GlBuffer table, corner;
     GlBuffer density;  ///< pack_density

@@ -11,8 +11,10 @@
 #include "formats/opal/spherical_harmonics.h"
 #include "runtime/parallel.h"
 #include "runtime/volumes/moment_lights.h"
+#include "runtime/volumes/sun_light.h"
 #include "runtime/volumes/suns.h"
 #include "runtime/volumes/texel_integrals.h"
+#include "runtime/volumes/volume_lattice.h"
 #include "runtime/volumes/volume_source.h"
 
 namespace opaline::runtime {
@@ -24,6 +26,8 @@ using formats::VolumeRecord;
 
 // Nodes per block: a light vector stays in the cache while it meets all of them.
 constexpr std::uint32_t kBlock = 256;
+
+constexpr float kMostReach = 2;  // shares of light are 1 at most; rows err
 
 float finite(float x) {
     constexpr float kLargest = std::numeric_limits<float>::max();
@@ -118,8 +122,9 @@ Lights prepare(const formats::VolumesView& volumes, const LightVector& light,
             part.sun_terms = result.sun_phase.back().terms;
             part.sun_power = result.sun_phase.back().power;
         }
-        part.first += part.suns;
-        size = part.first + std::size_t{volumes.records[v].node_count} * part.stride();
+        part.sun_boxes = sun_boxes(volumes.records[v]);
+        part.first += part.suns + volumes.records[v].brick_count * part.brick_stride();
+        size = part.first + std::size_t{volumes.records[v].node_count} * part.terms;
         result.part.push_back(part);
     }
     result.coefficient.resize(size);
@@ -141,15 +146,16 @@ struct Job {
     const Lights& lights;
     Shown shown;
     DotPath path;
-    const SunPhase& sun_phase;
     std::span<const formats::GlowRecord> glow;
     EmitterLight emitters;
+    std::span<const Rgb> sent;  // by each sun
 };
 
-// Coefficients of the nodes from `first` to `end`, stride() of each.
+// Coefficients of the nodes from `first` to `end`, and shares of suns' light that reach them.
 struct Block {
     std::uint32_t first, end;
     std::span<Rgb> coefficient;
+    std::span<Rgb> reach;
 };
 
 // (-1)^l m_l by k.
@@ -170,33 +176,28 @@ void add_attenuated(const Job& job, const Block& block, const LightVector& light
         Rgb product;
         dot_rows(job.volumes.rows, job.record.rows(), light, node * job.record.terms(),
                  {&product, 1}, job.path);
-        Rgb& c = block.coefficient[std::size_t{node - block.first} * job.part.stride() + j];
+        Rgb& c = block.coefficient[std::size_t{node - block.first} * job.part.terms + j];
         c = c + factor * product;
     }
 }
 
-// The light of suns, by how much of it the volume has left: all terms of suns.h's parts of a sun
-// together, each with its own V, so that nothing jumps as parts begin.
-void add_suns(const Job& job, const Block& block) {
-    const VolumeLight::Part& part = job.part;
-    if (part.suns == 0) return;
-    const auto share = [](float e, float whole) { return whole > 0 ? e / whole : 0.0f; };
+// Shares of suns' light that reach nodes, as rows have them: parts of a sun together.
+void find_reach(const Job& job, const Block& block) {
+    const std::size_t suns = job.part.suns;
+    if (suns == 0) return;
+    const auto share = [](float e, float sent) { return sent > 0 ? e / sent : 0.0f; };
     for (const Lights::SunLight& sun : job.lights.sun) {
+        const Rgb sent = job.sent[sun.joint];
         for (std::uint32_t node = block.first; node < block.end; ++node) {
             Rgb e;
             dot_rows(job.volumes.rows, job.record.rows(), sun.vector, node * job.record.terms(),
                      {&e, 1}, job.path);
-            const SunThrough through = find_sun_through(
-                job.sun_phase, job.record.albedo,
-                {share(e.r, sun.whole.r), share(e.g, sun.whole.g), share(e.b, sun.whole.b)});
-            const std::size_t first =
-                std::size_t{node - block.first} * part.stride() + part.terms + sun.joint;
-            for (std::size_t j = 0; j < part.sun_terms; ++j) {
-                Rgb& c = block.coefficient[first + j * part.suns];
-                c = c + through[j] * e;
-            }
+            Rgb& sum = block.reach[(node - block.first) * suns + sun.joint];
+            sum = sum + Rgb{share(e.r, sent.r), share(e.g, sent.g), share(e.b, sent.b)};
         }
     }
+    std::ranges::transform(block.reach, block.reach.begin(),
+                           [](Rgb c) { return tame(c, kMostReach); });
 }
 
 void add_single(const Job& job, const Block& block) {
@@ -204,7 +205,7 @@ void add_single(const Job& job, const Block& block) {
     for (std::uint32_t k = 0; k < job.shown.single; ++k) {
         add_attenuated(job, block, job.lights.moments(job.part)[k], factor[k], k);
     }
-    add_suns(job, block);
+    find_reach(job, block);
 }
 
 void add_multiple(const Job& job, const Block& block) {
@@ -216,7 +217,7 @@ void add_multiple(const Job& job, const Block& block) {
         dot_rows(job.volumes.rows, job.record.rows(), job.lights.whole,
                  node * job.record.terms() + 1, own, job.path);
         for (std::uint32_t k = 0; k < job.shown.multiple; ++k) {
-            Rgb& c = block.coefficient[std::size_t{node - block.first} * job.part.stride() + k];
+            Rgb& c = block.coefficient[std::size_t{node - block.first} * job.part.terms + k];
             c = c + scale * own[k];
         }
     }
@@ -232,12 +233,36 @@ void add_glow(const Job& job, const Block& block, const formats::GlowRecord& glo
     for (std::uint32_t node = block.first; node < block.end; ++node) {
         for (std::size_t k = 0; k < terms; ++k) {
             const std::size_t i = 3 * (node * terms + k);
-            Rgb& c = block.coefficient[std::size_t{node - block.first} * job.part.stride() + k];
+            Rgb& c = block.coefficient[std::size_t{node - block.first} * job.part.terms + k];
             c = c + scale * Rgb{formats::float_from_half(value[i]),
                                 formats::float_from_half(value[i + 1]),
                                 formats::float_from_half(value[i + 2])};
         }
     }
+}
+
+// Where a node stands among the points of suns.
+struct NodePlace {
+    std::uint32_t brick = formats::kNoBrick;
+    std::size_t point = 0;
+};
+
+std::vector<NodePlace> find_nodes(const formats::VolumesView& volumes, std::size_t volume,
+                                  std::uint32_t boxes) {
+    const VolumeRecord& record = volumes.records[volume];
+    std::vector<NodePlace> places(record.node_count);
+    const std::size_t side = record.corners_along_edge(), stride = boxes / (side - 1);
+    for (std::uint32_t brick = 0; brick < record.brick_count; ++brick) {
+        const auto corner = volumes.corner.subspan(
+            record.first_corner + brick * record.corners_of_brick(), record.corners_of_brick());
+        for (std::size_t i = 0; i < corner.size(); ++i) {
+            if (corner[i] == formats::kNoNode) continue;
+            const std::size_t x = i % side, y = i / side % side, z = i / side / side;
+            const std::size_t points = std::size_t{boxes} + 1;
+            places[corner[i]] = {brick, stride * ((z * points + y) * points + x)};
+        }
+    }
+    return places;
 }
 
 }  // namespace
@@ -246,24 +271,30 @@ VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVect
                             const RelightVolumesOptions& options) {
     VolumeLight result;
     const Lights lights = prepare(volumes, light, options, result);
+    std::vector<std::vector<Rgb>> reach(volumes.records.size());
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         const VolumeRecord& record = volumes.records[v];
         const VolumeLight::Part& part = result.part[v];
-        const Job job{volumes,
-                      record,
-                      part,
-                      lights,
-                      {record, options.terms},
-                      options.path,
-                      result.sun_phase[v],
-                      volumes.glow.of_volume(v),
-                      options.emitters};
+        const Job job{
+            volumes,
+            record,
+            part,
+            lights,
+            {record, options.terms},
+            options.path,
+            volumes.glow.of_volume(v),
+            options.emitters,
+            std::span<const Rgb>(result.coefficient).subspan(part.first - part.suns, part.suns)};
+        reach[v].resize(std::size_t{record.node_count} * part.suns);
         const auto own = std::span<Rgb>(result.coefficient).subspan(part.first);
         for_ranges(record.node_count, kBlock, options.threads,
                    [&](std::uint32_t first, std::uint32_t end) {
-                       const Block block{first, end,
-                                         own.subspan(std::size_t{first} * part.stride(),
-                                                     std::size_t{end - first} * part.stride())};
+                       const Block block{
+                           first, end,
+                           own.subspan(std::size_t{first} * part.terms,
+                                       std::size_t{end - first} * part.terms),
+                           std::span(reach[v]).subspan(std::size_t{first} * part.suns,
+                                                       std::size_t{end - first} * part.suns)};
                        add_single(job, block);
                        add_multiple(job, block);
                        for (const formats::GlowRecord& glow : job.glow) {
@@ -273,16 +304,19 @@ VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVect
                                               [](Rgb c) { return finite(c); });
                    });
     }
+    light_sun_points(volumes, reach, options.threads, result);
     return result;
 }
 
 std::vector<Rgb> node_radiance(const formats::VolumesView& volumes, const VolumeLight& light,
                                std::size_t volume, const std::optional<formats::Vec3>& eye) {
     const VolumeRecord& record = volumes.records[volume];
+    const VolumeLight::Part& part = light.part[volume];
     const auto& m = record.to_world;
     std::vector<Rgb> radiance(record.node_count);
-    if (light.part[volume].terms == 0) return radiance;
+    if (part.terms == 0) return radiance;
     const SourceWeights mean = mean_weights(light, volume);
+    const std::vector<NodePlace> places = find_nodes(volumes, volume, part.sun_boxes);
     for (std::uint32_t i = 0; i < record.node_count; ++i) {
         SourceWeights weight = mean;
         if (eye) {
@@ -298,8 +332,15 @@ std::vector<Rgb> node_radiance(const formats::VolumesView& volumes, const Volume
                 weight = source_weights(light, volume, (1 / norm) * to_eye);
             }
         }
-        const Rgb sum =
-            finite(sum_source(eval_node(light, volume, i, weight), kMaxSunTerms, kAllThrough));
+        Rgb sum = eval_node(light, volume, i, weight);
+        if (part.suns > 0 && places[i].brick != formats::kNoBrick) {
+            const SunSource suns =
+                eval_suns(light, volume, places[i].brick, places[i].point, weight);
+            for (std::size_t j = 0; j < part.sun_terms; ++j) {
+                sum = sum + suns[j];
+            }
+        }
+        sum = finite(sum);
         radiance[i] = {std::max(0.0f, sum.r), std::max(0.0f, sum.g), std::max(0.0f, sum.b)};
     }
     return radiance;

@@ -151,14 +151,38 @@ float density_at(const VolumeLattice& lattice, const BrickBlock& block, std::arr
     return trilinear(value, weight);
 }
 
+PaddedBrick pad_brick(const VolumeLattice& lattice, std::array<std::int32_t, 3> cell) {
+    const BrickBlock block = brick_block(lattice, cell);
+    PaddedBrick value{};
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        const std::array<std::size_t, 3> at{i % kPaddedSide, i / kPaddedSide % kPaddedSide,
+                                            i / kPaddedSide / kPaddedSide};
+        std::size_t neighbour = 0, offset = 0;
+        for (std::size_t a = 3; a-- > 0;) {
+            neighbour |= (at[a] / kBrickSide) << a;
+            offset = offset * kBrickSide + at[a] % kBrickSide;
+        }
+        value[i] = voxel(lattice, block.number[neighbour], offset);
+    }
+    return value;
+}
+
 NodeCell node_cell(const VolumeLattice& lattice, std::array<float, 3> at) {
-    const std::uint32_t spacing = lattice.record->spacing, cells = kBrickSide / spacing;
+    return box_at(kBrickSide / lattice.record->spacing, at);
+}
+
+std::uint32_t sun_boxes(const VolumeRecord& record) {
+    return std::min<std::uint32_t>(2 * kBrickSide / record.spacing, kBrickSide);
+}
+
+NodeCell box_at(std::uint32_t boxes, std::array<float, 3> at) {
     NodeCell cell;
     for (std::size_t a = 3; a-- > 0;) {
-        const float scaled = at[a] / static_cast<float>(spacing);
-        const std::uint32_t base = std::min(static_cast<std::uint32_t>(scaled), cells - 1);
+        // A power of two: exact.
+        const float scaled = at[a] * (static_cast<float>(boxes) / kBrickSide);
+        const std::uint32_t base = std::min(static_cast<std::uint32_t>(scaled), boxes - 1);
         cell.weight[a] = scaled - static_cast<float>(base);
-        cell.number = cell.number * cells + base;
+        cell.number = cell.number * boxes + base;
     }
     return cell;
 }

@@ -45,12 +45,25 @@ BrickBlock brick_block(const VolumeLattice& lattice, std::array<std::int32_t, 3>
 /// (0, 0, 0), in [0, 8].
 float density_at(const VolumeLattice& lattice, const BrickBlock& block, std::array<float, 3> at);
 
+/// The density at a brick's voxels and at those of its neighbours on the upper faces: 9 x 9 x 9, x
+/// fastest.
+inline constexpr std::size_t kPaddedSide = formats::kBrickSide + 1;
+using PaddedBrick = std::array<float, kPaddedSide * kPaddedSide * kPaddedSide>;
+PaddedBrick pad_brick(const VolumeLattice& lattice, std::array<std::int32_t, 3> cell);
+
 /// The box between eight nodes in which a point of a brick lies, `at` as above.
 struct NodeCell {
-    std::uint32_t number = 0;       ///< of the box in its brick
+    std::uint32_t number = 0;       ///< of the box in its brick, x fastest
     std::array<float, 3> weight{};  ///< of the upper nodes along each axis, in [0, 1]
 };
 NodeCell node_cell(const VolumeLattice& lattice, std::array<float, 3> at);
+
+/// Boxes between the points of a brick's edge at which light of suns is known: at half the distance
+/// of nodes, but not closer than voxels.
+std::uint32_t sun_boxes(const formats::VolumeRecord& record);
+
+/// The box between eight points of a lattice with that many boxes along a brick's edge.
+NodeCell box_at(std::uint32_t boxes, std::array<float, 3> at);
 
 /// The eight nodes of a box, in the order x + 2 y + 4 z, or kNoNode.
 std::array<std::uint32_t, 8> nodes_of_cell(const VolumeLattice& lattice, std::uint32_t brick,

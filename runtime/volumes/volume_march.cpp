@@ -14,12 +14,9 @@ namespace {
 
 using formats::Rgb;
 
-constexpr float kLargestRadiance = std::numeric_limits<float>::max();
-
 // A volume that the ray meets, with the brick where it is or comes to next.
 struct Traveller {
     const LitVolumes::Entry* entry = nullptr;
-    std::size_t number = 0;  ///< of the entry
     BrickWalk walk;
     double voxel = 0;  ///< distance in the world within which the ray crosses one voxel
     BrickSpan span;
@@ -27,11 +24,10 @@ struct Traveller {
     bool is_left = true;  ///< behind its last brick
     SourceWeights weight{};
 
-    std::uint32_t source_terms = 1;  ///< parts of NodeSource that are not 0
-
-    // Source radiance at the eight nodes around the last point, which many points share.
-    std::uint32_t cell = formats::kNoNode;
-    std::array<NodeSource, 8> source{};
+    // At the eight nodes, and at the eight points of suns around the last point, which many share.
+    std::uint32_t cell = formats::kNoNode, sun_box = formats::kNoNode;
+    std::array<Rgb, 8> source{};
+    std::array<SunSource, 8> suns{};
 };
 
 void advance(Traveller& traveller) {
@@ -41,19 +37,14 @@ void advance(Traveller& traveller) {
     if (!span) return;
     traveller.span = *span;
     traveller.block = brick_block(lattice, span->cell);
-    traveller.cell = formats::kNoNode;
+    traveller.cell = traveller.sun_box = formats::kNoNode;
 }
 
-// What is added up: all light, or that of suns ahead alone (volume_source.h).
-enum class Lit : std::uint8_t { all, ahead };
-
-std::vector<Traveller> start(const LitVolumes& volumes, const MarchRay& ray, Lit lit) {
+std::vector<Traveller> start(const LitVolumes& volumes, const MarchRay& ray) {
     std::vector<Traveller> travellers;
-    for (std::size_t number = 0; number < volumes.entry.size(); ++number) {
-        const LitVolumes::Entry& entry = volumes.entry[number];
+    for (const LitVolumes::Entry& entry : volumes.entry) {
         Traveller traveller;
         traveller.entry = &entry;
-        traveller.number = number;
         traveller.walk = start_walk(entry.lattice, ray.origin, ray.direction, ray.begin, ray.end);
         if (!(traveller.walk.t < traveller.walk.end)) continue;
         const auto& d = traveller.walk.direction;
@@ -61,18 +52,33 @@ std::vector<Traveller> start(const LitVolumes& volumes, const MarchRay& ray, Lit
         if (!(traveller.voxel > 0) || !std::isfinite(traveller.voxel)) continue;
         advance(traveller);
         if (traveller.is_left) continue;
-        const auto weights = lit == Lit::all ? source_weights : ahead_weights;
-        traveller.weight = weights(*volumes.light, entry.volume, -1 * ray.direction);
-        const VolumeLight::Part& part = volumes.light->part[entry.volume];
-        traveller.source_terms = part.suns > 0 ? part.sun_terms : 1;
+        traveller.weight = source_weights(*volumes.light, entry.volume, -1 * ray.direction);
         travellers.push_back(traveller);
     }
     return travellers;
 }
 
-// max(0, J) at a point of the brick, trilinear between nodes; `left` of it comes through to the
-// eye. That counts at each point anew: where a ray comes into a box of nodes differs by a step
-// between renderers that round differently.
+// What suns add to J; `left` of it comes through to the eye. That counts at each point anew: where
+// a ray comes into a box differs by a step between renderers that round differently.
+Rgb suns_at(Traveller& traveller, const VolumeLight& light, const std::array<float, 3>& at,
+            Rgb left) {
+    const LitVolumes::Entry& entry = *traveller.entry;
+    const VolumeLight::Part& part = light.part[entry.volume];
+    const NodeCell box = box_at(part.sun_boxes, at);
+    if (traveller.sun_box != box.number) {
+        traveller.sun_box = box.number;
+        const auto points = points_of_box(part.sun_boxes, box.number);
+        for (std::size_t i = 0; i < 8; ++i) {
+            traveller.suns[i] = eval_suns(light, entry.volume, traveller.block.number[0], points[i],
+                                          traveller.weight);
+        }
+    }
+    const SunThrough through =
+        find_sun_through(light.sun_phase[entry.volume], entry.lattice.record->albedo, left);
+    return mix_suns(traveller.suns, part.sun_terms, box.weight, through);
+}
+
+// max(0, J) at a point of the brick, trilinear between nodes.
 Rgb source_at(Traveller& traveller, const VolumeLight& light, const std::array<float, 3>& at,
               Rgb left) {
     const LitVolumes::Entry& entry = *traveller.entry;
@@ -84,11 +90,9 @@ Rgb source_at(Traveller& traveller, const VolumeLight& light, const std::array<f
             traveller.source[i] = eval_node(light, entry.volume, nodes[i], traveller.weight);
         }
     }
-    const NodeSource source = mix_nodes(traveller.source, traveller.source_terms, cell.weight);
-    if (traveller.source_terms == 1) return tame(source[0], kLargestSource);
-    const SunThrough through =
-        find_sun_through(light.sun_phase[entry.volume], entry.lattice.record->albedo, left);
-    return tame(sum_source(source, traveller.source_terms, through), kLargestSource);
+    Rgb source = mix_nodes(traveller.source, cell.weight);
+    if (light.part[entry.volume].suns > 0) source = source + suns_at(traveller, light, at, left);
+    return tame(source, kLargestSource);
 }
 
 // Voxels from the brick's voxel (0, 0, 0), at distance t.
@@ -144,8 +148,6 @@ struct March {
     std::vector<Traveller> travellers;
     double step = 0.5;
     float least_transmittance = 0;
-    Lit lit = Lit::all;
-    std::vector<float> column;  ///< density times length, of each entry
     MarchResult result;
 
     bool is_opaque() const {
@@ -172,12 +174,11 @@ void march_segment(March& march, double begin, double end) {
             const auto at = place_in_brick(traveller, begin + (i + 0.5) * h);
             const float density = density_at(lattice, traveller.block, at);
             const Rgb glow = march.light.glow[traveller.entry->volume];
-            if (march.lit == Lit::all && glow != Rgb{} && !traveller.entry->glow.empty()) {
+            if (glow != Rgb{} && !traveller.entry->glow.empty()) {
                 emitted = emitted + tame(glow * glow_at(traveller.entry->glow, traveller.block, at),
                                          kLargestSource);
             }
             if (!(density > 0)) continue;
-            march.column[traveller.number] += density * static_cast<float>(h);
             const Rgb c = tame(density * lattice.record->sigma_t, kLargestExtinction);
             extinction = extinction + c;
             scattered =
@@ -210,48 +211,6 @@ void follow(March& march) {
     }
 }
 
-March start_march(const LitVolumes& volumes, const MarchRay& ray, const MarchOptions& options,
-                  Lit lit) {
-    return {.light = *volumes.light,
-            .travellers = start(volumes, ray, lit),
-            .step = static_cast<double>(std::clamp(options.step, 1.0f / 64, 8.0f)),
-            .least_transmittance = options.least_transmittance,
-            .lit = lit,
-            .column = std::vector<float>(volumes.entry.size()),
-            .result = {}};
-}
-
-// The most that suns ahead can show: their light comes through what the ray meets, so that a place
-// has what passes the rest of it. Then V T is the same all along, and with tau_v the depth of
-// volume v alone
-//     L <= sum_v tau_v albedo_v sum_j T^(1 + power_j albedo_v) sum_s E_s q_j.
-Rgb most_ahead(const LitVolumes& volumes, const MarchRay& ray, const March& march) {
-    Rgb most;
-    for (std::size_t number = 0; number < volumes.entry.size(); ++number) {
-        const LitVolumes::Entry& entry = volumes.entry[number];
-        const formats::VolumeRecord& record = *entry.lattice.record;
-        const VolumeLight::Part& part = march.light.part[entry.volume];
-        if (part.suns == 0) continue;
-        const SourceWeights weight = ahead_weights(march.light, entry.volume, -1 * ray.direction);
-        const SunThrough through = find_sun_through(march.light.sun_phase[entry.volume],
-                                                    record.albedo, march.result.transmittance);
-        Rgb sum;
-        for (std::size_t k = 0; k < part.suns * part.sun_terms; ++k) {
-            sum = sum + weight[part.terms + k] * through[k / part.suns] *
-                            march.light.sun_light(entry.volume, k % part.suns);
-        }
-        const Rgb depth = tame(march.column[number] * record.sigma_t, kLargestExtinction);
-        most =
-            most + tame(depth * record.albedo * march.result.transmittance * sum, kLargestSource);
-    }
-    return most;
-}
-
-bool has_sun_ahead(const VolumeLight& light, formats::Vec3 to_eye) {
-    return std::ranges::any_of(light.sun,
-                               [&](formats::Vec3 sun) { return ahead_share(sun, to_eye) > 0; });
-}
-
 }  // namespace
 
 LitVolumes light_volumes(const formats::VolumesView& volumes, const VolumeLight& light) {
@@ -267,22 +226,15 @@ LitVolumes light_volumes(const formats::VolumesView& volumes, const VolumeLight&
 
 MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
                           const MarchOptions& options) {
-    MarchResult result;
-    for (const Lit lit : {Lit::all, Lit::ahead}) {
-        March march = start_march(volumes, ray, options, lit);
-        if (march.travellers.empty()) break;
-        follow(march);
-        if (lit == Lit::all) {
-            result = march.result;
-            if (march.is_opaque()) result.transmittance = {};
-            if (!has_sun_ahead(*volumes.light, -1 * ray.direction)) break;
-        } else {
-            const Rgb beyond = march.result.radiance + -1 * most_ahead(volumes, ray, march);
-            result.radiance =
-                tame(result.radiance + -1 * tame(beyond, kLargestRadiance), kLargestRadiance);
-        }
-    }
-    return result;
+    March march{.light = *volumes.light,
+                .travellers = start(volumes, ray),
+                .step = static_cast<double>(std::clamp(options.step, 1.0f / 64, 8.0f)),
+                .least_transmittance = options.least_transmittance,
+                .result = {}};
+    if (march.travellers.empty()) return march.result;
+    follow(march);
+    if (march.is_opaque()) march.result.transmittance = {};
+    return march.result;
 }
 
 MarchSpan volumes_span(const LitVolumes& volumes, const MarchRay& ray) {

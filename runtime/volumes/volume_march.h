@@ -53,20 +53,15 @@ struct MarchResult {
 ///     T(t) = exp(-int_begin^t sum_v sigma_t,v density_v),
 ///
 /// per band, v over all volumes, also where they overlap. Density is trilinear between voxels, J
-/// between nodes (volumes.h). Bricks that do not exist are skipped; within the others steps of
-/// equal length h <= options.step voxels, cut at the faces of bricks, take the coefficients at
-/// their midpoints as constant: with c the extinction and b the scattering times J plus the own
-/// light of volumes, which needs no density,
+/// between nodes (volumes.h), light of suns between their points (relight_volumes.h). Bricks that
+/// do not exist are skipped; within the others steps of equal length h <= options.step voxels, cut
+/// at the faces of bricks, take the coefficients at their midpoints as constant: with c the
+/// extinction and b the scattering times J plus the own light of volumes, which needs no density,
 ///
 ///     L += T (b / c) (1 - exp(-c h)),   T *= exp(-c h),   for c = 0: L += T b h.
 ///
-/// Of suns within 12 degrees of the ray's direction it shows at most what comes through the ray
-/// itself: nothing is known of what lies behind `end`, so that parts of a ray give a little more
-/// than the whole.
-///
 /// Any finite ray gives finite values that are not negative; where begin >= end or the direction is
-/// zero, nothing. Costs at most 3 + 14 / step evaluations per brick that the ray crosses, twice as
-/// many near a sun.
+/// zero, nothing. Costs at most 3 + 14 / step evaluations per brick that the ray crosses.
 MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
                           const MarchOptions& options = {});
 

@@ -40,12 +40,21 @@ Rgb source_at(const LitVolumes& volumes, const LitVolumes::Entry& entry, std::ui
     const SourceWeights weight = source_weights(*volumes.light, entry.volume, to_eye);
     const NodeCell cell = node_cell(entry.lattice, at);
     const auto nodes = nodes_of_cell(entry.lattice, brick, cell.number);
-    std::array<NodeSource, 8> source{};
+    std::array<Rgb, 8> source{};
     for (std::size_t i = 0; i < 8; ++i) {
         source[i] = eval_node(*volumes.light, entry.volume, nodes[i], weight);
     }
-    const NodeSource mixed = mix_nodes(source, kMaxSunTerms, cell.weight);
-    return tame(sum_source(mixed, kMaxSunTerms, kAllThrough), kLargestSource);
+    Rgb sum = mix_nodes(source, cell.weight);
+    if (const VolumeLight::Part& part = volumes.light->part[entry.volume]; part.suns > 0) {
+        const NodeCell box = box_at(part.sun_boxes, at);
+        const auto points = points_of_box(part.sun_boxes, box.number);
+        std::array<SunSource, 8> suns{};
+        for (std::size_t i = 0; i < 8; ++i) {
+            suns[i] = eval_suns(*volumes.light, entry.volume, brick, points[i], weight);
+        }
+        sum = sum + mix_suns(suns, part.sun_terms, box.weight, kAllThrough);
+    }
+    return tame(sum, kLargestSource);
 }
 
 }  // namespace

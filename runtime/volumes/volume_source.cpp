@@ -1,7 +1,5 @@
 #include "runtime/volumes/volume_source.h"
 
-#include <algorithm>
-
 #include "formats/opal/phase_table.h"
 
 namespace opaline::runtime {
@@ -22,24 +20,6 @@ SourceWeights source_weights(const VolumeLight& light, std::size_t volume, forma
                 table.subspan(j * formats::kPhaseEntries, formats::kPhaseEntries),
                 -dot(light.sun[s], to_eye));
         }
-    }
-    return weight;
-}
-
-float ahead_share(formats::Vec3 sun, formats::Vec3 to_eye) {
-    constexpr float kWidth = 0.0437048f;  // 2 - 2 cos(12 degrees)
-    // Not by a cosine, which is 1 for all small angles.
-    const formats::Vec3 off = sun + to_eye;
-    const float u = std::min(dot(off, off) / kWidth, 1.0f);
-    return (1 - u * u) * (1 - u * u);
-}
-
-SourceWeights ahead_weights(const VolumeLight& light, std::size_t volume, formats::Vec3 to_eye) {
-    const VolumeLight::Part& part = light.part[volume];
-    SourceWeights weight = source_weights(light, volume, to_eye);
-    std::fill_n(weight.begin(), part.terms, 0.0f);
-    for (std::size_t k = 0; k < part.suns * part.sun_terms; ++k) {
-        weight[part.terms + k] *= ahead_share(light.sun[k % part.suns], to_eye);
     }
     return weight;
 }

@@ -21,19 +21,12 @@ namespace opaline::runtime {
 /// Beyond these a colour or an extinction [1/m] has no use, and products of both still fit.
 inline constexpr float kLargestSource = 1e20f, kLargestExtinction = 1e15f;
 
-/// What the coefficients of a volume's nodes count for, in their order; Part::stride() of them.
+/// What the coefficients of a volume count for: those of its nodes, then those of suns.
 using SourceWeights = std::array<float, formats::kMaxHarmonics + kMaxSunTerms * kMaxSuns>;
 
 /// For the unit direction `to_eye`: Y_k of it, then the tables of the volume's SunPhase between
 /// each sun's light and the eye.
 SourceWeights source_weights(const VolumeLight& light, std::size_t volume, formats::Vec3 to_eye);
-
-/// The share of a sun's light that counts as coming along the ray itself, from what stands straight
-/// ahead of it: 1 there, falling to 0 at 12 degrees. `sun` and `to_eye`: unit.
-float ahead_share(formats::Vec3 sun, formats::Vec3 to_eye);
-
-/// The part of source_weights that comes along the ray; those of harmonics are 0.
-SourceWeights ahead_weights(const VolumeLight& light, std::size_t volume, formats::Vec3 to_eye);
 
 /// For the mean over all directions: Y_0, and the means of the tables.
 SourceWeights mean_weights(const VolumeLight& light, std::size_t volume);
@@ -49,54 +42,81 @@ inline formats::Rgb tame(formats::Rgb c, float largest) {
 /// Nothing between a place and the eye.
 inline constexpr SunThrough kAllThrough{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
 
-/// J of a node before max(0, .), apart in what counts alike whatever is between it and the eye:
-/// harmonics and the suns' first term, whose power is 0, then the suns' further terms.
-using NodeSource = std::array<formats::Rgb, kMaxSunTerms>;
-
-/// 0 for kNoNode.
-inline NodeSource eval_node(const VolumeLight& light, std::size_t volume, std::uint32_t node,
-                            const SourceWeights& weight) {
-    NodeSource source{};
+/// Harmonics of a node; 0 for kNoNode.
+inline formats::Rgb eval_node(const VolumeLight& light, std::size_t volume, std::uint32_t node,
+                              const SourceWeights& weight) {
+    formats::Rgb source;
     if (node == formats::kNoNode) return source;
-    const VolumeLight::Part& part = light.part[volume];
     const auto c = light.coefficients(volume, node);
-    std::size_t k = 0;
-    for (; k < part.terms; ++k) {
-        source[0] = source[0] + weight[k] * c[k];
+    for (std::size_t k = 0; k < c.size(); ++k) {
+        source = source + weight[k] * c[k];
     }
-    for (std::size_t j = 0; j < part.sun_terms; ++j) {
+    return source;
+}
+
+/// What suns add to J at a point of a brick, apart in their terms, each of which counts by what is
+/// between the point and the eye.
+using SunSource = std::array<formats::Rgb, kMaxSunTerms>;
+
+inline SunSource eval_suns(const VolumeLight& light, std::size_t volume, std::uint32_t brick,
+                           std::size_t point, const SourceWeights& weight) {
+    const VolumeLight::Part& part = light.part[volume];
+    const auto c = light.sun_coefficients(volume, brick, point);
+    SunSource source{};
+    for (std::size_t j = 0, k = 0; j < part.sun_terms; ++j) {
         for (std::size_t s = 0; s < part.suns; ++s, ++k) {
-            source[j] = source[j] + weight[k] * c[k];
+            source[j] = source[j] + weight[part.terms + k] * c[k];
         }
     }
     return source;
 }
 
-/// J of `terms` parts, `through` of each of which counts.
-inline formats::Rgb sum_source(const NodeSource& source, std::uint32_t terms,
-                               const SunThrough& through) {
-    formats::Rgb sum = source[0];
-    for (std::size_t j = 1; j < terms; ++j) {
-        sum = sum + through[j] * source[j];
+/// The points at the corners of a box, by number as NodeCell has it, in the order x + 2 y + 4 z.
+inline std::array<std::size_t, 8> points_of_box(std::uint32_t boxes, std::uint32_t number) {
+    const std::size_t side = std::size_t{boxes} + 1;
+    const std::size_t x = number % boxes, y = number / boxes % boxes, z = number / boxes / boxes;
+    std::array<std::size_t, 8> points{};
+    for (std::size_t i = 0; i < 8; ++i) {
+        points[i] = ((z + (i >> 2)) * side + y + (i >> 1 & 1)) * side + x + (i & 1);
     }
-    return sum;
+    return points;
 }
 
-/// Between eight nodes, in the order x + 2 y + 4 z; weights of the upper ones along each axis, in
-/// [0, 1]. The first `terms` parts.
-inline NodeSource mix_nodes(const std::array<NodeSource, 8>& source, std::uint32_t terms,
-                            const std::array<float, 3>& upper) {
-    NodeSource mixed{};
+/// Weights of eight corners in that order, from those of the upper ones along each axis, in [0, 1].
+inline std::array<float, 8> corner_weights(const std::array<float, 3>& upper) {
+    std::array<float, 8> weight{};
     for (std::size_t i = 0; i < 8; ++i) {
-        float weight = 1;
+        weight[i] = 1;
         for (std::size_t a = 0; a < 3; ++a) {
-            weight *= (i >> a & 1) != 0 ? upper[a] : 1 - upper[a];
-        }
-        for (std::size_t j = 0; j < terms; ++j) {
-            mixed[j] = mixed[j] + weight * source[i][j];
+            weight[i] *= (i >> a & 1) != 0 ? upper[a] : 1 - upper[a];
         }
     }
+    return weight;
+}
+
+inline formats::Rgb mix_nodes(const std::array<formats::Rgb, 8>& source,
+                              const std::array<float, 3>& upper) {
+    const std::array<float, 8> weight = corner_weights(upper);
+    formats::Rgb mixed;
+    for (std::size_t i = 0; i < 8; ++i) {
+        mixed = mixed + weight[i] * source[i];
+    }
     return mixed;
+}
+
+/// Between eight points: of the first `terms` parts the sum, `through` of each of which counts.
+inline formats::Rgb mix_suns(const std::array<SunSource, 8>& source, std::uint32_t terms,
+                             const std::array<float, 3>& upper, const SunThrough& through) {
+    const std::array<float, 8> weight = corner_weights(upper);
+    formats::Rgb sum;
+    for (std::size_t j = 0; j < terms; ++j) {
+        formats::Rgb mixed;
+        for (std::size_t i = 0; i < 8; ++i) {
+            mixed = mixed + weight[i] * source[i][j];
+        }
+        sum = sum + through[j] * mixed;
+    }
+    return sum;
 }
 
 }  // namespace opaline::runtime

@@ -25,7 +25,7 @@ Sample sample_volumes(vec3 place, vec3 to_eye) {
         ivec3 extent = ivec3(volumes[v].extent_first.xyz), cell = ivec3(floor(traveller.origin));
         if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, extent))) continue;
         traveller.corner = vec3(cell);
-        traveller.box = kNone;
+        traveller.box = traveller.sun_box = kNone;
         traveller.brick = brick_at(volumes[v].extent_first.w +
                                    uint((cell.z * extent.y + cell.y) * extent.x + cell.x));
         if (traveller.brick == kNone) continue;
@@ -38,7 +38,7 @@ Sample sample_volumes(vec3 place, vec3 to_eye) {
         vec3 c = tame_to(density * volumes[v].extinction.rgb, 1e15);
         found.extinction += c;
         found.scattered += c * volumes[v].albedo.rgb *
-                           source_at(volumes[v], v, traveller, at, to_eye, vec3(1.0), harmonic, false);
+                           source_at(volumes[v], v, traveller, at, to_eye, vec3(1.0), harmonic);
     }
     return found;
 }

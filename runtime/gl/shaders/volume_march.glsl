@@ -9,10 +9,10 @@ struct Volume {
     uvec4 numbers;       // first brick, first corner, boxes of nodes along a brick's edge, terms
     vec4 extinction;     // where the density is 1 [1 / unit]; w: power of the second term of suns
     vec4 albedo;         // w: of the third
-    uvec4 coefficient;  // the first; suns; the first entry of its tables; terms of a sun
+    uvec4 coefficient;  // the first of its nodes; suns; the first entry of its tables; terms of a sun
 };
 // Density: of each brick the scale, then 8 x 9 x 9 pairs of codes: of a voxel and of the next along x.
-// Coefficients: R, G, B; of suns those of all suns for each term; before the first, what each sun sends. Phases: sun_phase.h, phase_table.h.
+// Coefficients: R, G, B; relight_volumes.h. Phases: sun_phase.h, phase_table.h.
 #ifdef DATA_IN_TEXTURES  // of 2048 columns
 #ifdef RECORDS_IN_BLOCK
 layout(std140) uniform VolumeRecords {
@@ -98,14 +98,13 @@ struct Traveller {
     vec3 corner;  // of the brick
     float span_begin, span_end;
     uint brick;  // kNone behind the last one
-    uint box;    // of the nodes whose radiance stands in node_source
-    float column;  // density times way
+    uint box, sun_box;  // whose source radiance stands in node_source
 };
 
-// Of each volume the source radiance at the eight nodes of the last box, in the order x + 2 y + 4 z:
-// of harmonics and the suns' first term, then of each further term, which counts by what a ray has left.
+// Of each volume the source radiance at the eight nodes of the last box, in the order x + 2 y + 4 z, then
+// at the eight points of suns' last box, of each of their terms, which count by what a ray has left.
 const int kSunTerms = 3;  // kMaxSunTerms of sun_phase.h
-const int kSources = 8 * kSunTerms;
+const int kSources = 8 + 8 * kSunTerms;
 vec3 node_source[VOLUMES * kSources];
 
 struct Seen {
@@ -142,7 +141,6 @@ Traveller enter_table(Volume volume, Ray ray) {
     traveller.cell = ivec3(clamp(floor(at), vec3(0.0), max(extent - 1.0, 0.0)));
     traveller.voxel = 1.0 / max(8.0 * length(traveller.direction), 1e-30);
     traveller.brick = kNone;
-    traveller.column = 0.0;
     return traveller;
 }
 
@@ -172,7 +170,7 @@ void advance(Volume volume, inout Traveller traveller) {
             traveller.end = traveller.t;
         }
     }
-    traveller.box = kNone;
+    traveller.box = traveller.sun_box = kNone;
 }
 
 // Codes of a voxel and the next along x, mixed; in 1 / 65535.
@@ -208,54 +206,53 @@ vec3 sun_through(Volume volume, uint term, vec3 left) {
     return pow(clamp(left, 1e-30, 1.0), power * volume.albedo.rgb);
 }
 
-// The share of a sun's light that counts as coming along the ray, runtime/volumes/volume_source.h.
-float ahead_share(vec3 sun, vec3 to_eye) {
-    vec3 off = sun + to_eye;
-    float u = min(dot(off, off) / 0.0437048, 1.0);
-    return (1.0 - u * u) * (1.0 - u * u);
-}
-
-// Adds coefficient k of eight nodes to what begins at `first` of node_source.
-void add_nodes(int first, uint at[8], uint k, float weight) {
-    for (int i = 0; i < 8; ++i) {
-        if (at[i] != kNone) node_source[first + i] += weight * coefficient_at(at[i] + 3u * k);
-    }
-}
-
-// Sets a term of node_source, from `first`; coefficients of eight nodes begin at `at`. `ahead`: of
-// suns ahead alone.
-void light_term(Volume volume, int first, uint at[8], uint term, vec3 to_eye, float harmonic[HARMONICS],
-                bool ahead) {
-    for (int i = 0; i < 8; ++i) node_source[first + i] = vec3(0.0);
-    uint terms = volume.numbers.w, sun_count = volume.coefficient.y;
-    if (term == 0u && !ahead) {
-        for (uint k = 0u; k < terms; ++k) add_nodes(first, at, k, harmonic[k]);
-    }
-    for (uint sun = 0u; sun < sun_count; ++sun) {
-        float share = ahead ? ahead_share(suns[sun], to_eye) : 1.0;
-        add_nodes(first, at, terms + term * sun_count + sun, share * eval_phase(volume, term, sun, to_eye));
-    }
-}
-
 // Sets node_source for a box of volume v's brick.
-void light_box(Volume volume, int v, uint brick, uvec3 box, vec3 to_eye, float harmonic[HARMONICS],
-               bool ahead) {
-    uint side = volume.numbers.z + 1u;
+void light_box(Volume volume, int v, uint brick, uvec3 box, float harmonic[HARMONICS]) {
+    uint side = volume.numbers.z + 1u, terms = volume.numbers.w;
     uint first = volume.numbers.y + brick * side * side * side + (box.z * side + box.y) * side + box.x;
-    uint stride = volume.numbers.w + volume.coefficient.y * volume.coefficient.w, at[8];
+    for (int i = 0; i < 8; ++i) {
+        uint at = uint(i), node = node_at(first + ((at >> 2) * side + (at >> 1 & 1u)) * side + (at & 1u));
+        vec3 sum = vec3(0.0);
+        for (uint k = 0u; k < terms && node != kNone; ++k) {
+            sum += harmonic[k] * coefficient_at(volume.coefficient.x + 3u * (node * terms + k));
+        }
+        node_source[kSources * v + i] = sum;
+    }
+}
+
+// Boxes between points of suns along a brick's edge, runtime/volumes/volume_lattice.h.
+uint sun_boxes(Volume volume) { return min(2u * volume.numbers.z, 8u); }
+
+// Sets a term of node_source, from `first`, at eight points of suns whose coefficients begin at `at`.
+void light_term(Volume volume, int first, uint at[8], uint term, vec3 to_eye) {
+    uint count = volume.coefficient.y;
+    for (int i = 0; i < 8; ++i) node_source[first + i] = vec3(0.0);
+    for (uint sun = 0u; sun < count; ++sun) {
+        float weight = eval_phase(volume, term, sun, to_eye);
+        for (int i = 0; i < 8; ++i) {
+            node_source[first + i] += weight * coefficient_at(at[i] + 3u * (term * count + sun));
+        }
+    }
+}
+
+// Sets all terms for a box of volume v's brick.
+void light_suns(Volume volume, int v, uint brick, uvec3 box, vec3 to_eye) {
+    uint side = sun_boxes(volume) + 1u, stride = volume.coefficient.y * volume.coefficient.w, at[8];
+    // Bricks stand before what suns send, the first one last.
+    uint first = volume.coefficient.x - 3u * (volume.coefficient.y + (brick + 1u) * side * side * side * stride);
     for (uint i = 0u; i < 8u; ++i) {
-        uint node = node_at(first + ((i >> 2) * side + (i >> 1 & 1u)) * side + (i & 1u));
-        at[i] = node == kNone ? kNone : volume.coefficient.x + node * stride * 3u;
+        uvec3 p = box + uvec3(i & 1u, i >> 1 & 1u, i >> 2);
+        at[i] = first + 3u * stride * ((p.z * side + p.y) * side + p.x);
     }
 #if VOLUMES == 1  // no loop: compilers know all places then, and keep node_source in registers
-    light_term(volume, 0, at, 0u, to_eye, harmonic, ahead);
+    light_term(volume, 8, at, 0u, to_eye);
     if (volume.coefficient.w > 1u) {
-        light_term(volume, 8, at, 1u, to_eye, harmonic, ahead);
-        light_term(volume, 16, at, 2u, to_eye, harmonic, ahead);
+        light_term(volume, 16, at, 1u, to_eye);
+        light_term(volume, 24, at, 2u, to_eye);
     }
 #else
     for (uint term = 0u; term < volume.coefficient.w; ++term) {
-        light_term(volume, v * kSources + 8 * int(term), at, term, to_eye, harmonic, ahead);
+        light_term(volume, kSources * v + 8 + 8 * int(term), at, term, to_eye);
     }
 #endif
 }
@@ -268,29 +265,50 @@ vec3 mix_nodes(int first, vec3 w) {
     return mix(low, high, w.z);
 }
 
-// max(0, J), trilinear between nodes; `left` of it comes through to the eye.
-vec3 source_at(Volume volume, int v, inout Traveller traveller, vec3 at, vec3 to_eye, vec3 left,
-               float harmonic[HARMONICS], bool ahead) {
-    float boxes = float(volume.numbers.z);
-    vec3 scaled = at * (boxes / 8.0), base = min(floor(scaled), boxes - 1.0), w = scaled - base;
-    uvec3 b = uvec3(base);
-    uint box = (b.z * volume.numbers.z + b.y) * volume.numbers.z + b.x;
-    if (traveller.box != box) {
-        traveller.box = box;
-        light_box(volume, v, traveller.brick, b, to_eye, harmonic, ahead);
+// A point of a brick between its `boxes` along each edge: the box, and in it, in [0, 1].
+uvec3 box_at(vec3 at, uint boxes, out vec3 within) {
+    vec3 scaled = at * (float(boxes) / 8.0), base = min(floor(scaled), float(boxes) - 1.0);
+    within = scaled - base;
+    return uvec3(base);
+}
+
+// What suns add to J; `left` of it comes through to the eye.
+vec3 suns_at(Volume volume, int v, inout Traveller traveller, vec3 at, vec3 to_eye, vec3 left) {
+    vec3 w;
+    uint boxes = sun_boxes(volume);
+    uvec3 b = box_at(at, boxes, w);
+    uint box = (b.z * boxes + b.y) * boxes + b.x;
+    if (traveller.sun_box != box) {
+        traveller.sun_box = box;
+        light_suns(volume, v, traveller.brick, b, to_eye);
     }
 #if VOLUMES == 1
-    vec3 sum = mix_nodes(0, w);
+    vec3 sum = mix_nodes(8, w);
     if (volume.coefficient.w > 1u) {
-        sum += sun_through(volume, 1u, left) * mix_nodes(8, w);
-        sum += sun_through(volume, 2u, left) * mix_nodes(16, w);
+        sum += sun_through(volume, 1u, left) * mix_nodes(16, w);
+        sum += sun_through(volume, 2u, left) * mix_nodes(24, w);
     }
 #else
     vec3 sum = vec3(0.0);
     for (uint term = 0u; term < volume.coefficient.w; ++term) {
-        sum += sun_through(volume, term, left) * mix_nodes(v * kSources + 8 * int(term), w);
+        sum += sun_through(volume, term, left) * mix_nodes(kSources * v + 8 + 8 * int(term), w);
     }
 #endif
+    return sum;
+}
+
+// max(0, J), trilinear between nodes.
+vec3 source_at(Volume volume, int v, inout Traveller traveller, vec3 at, vec3 to_eye, vec3 left,
+               float harmonic[HARMONICS]) {
+    vec3 w;
+    uvec3 b = box_at(at, volume.numbers.z, w);
+    uint box = (b.z * volume.numbers.z + b.y) * volume.numbers.z + b.x;
+    if (traveller.box != box) {
+        traveller.box = box;
+        light_box(volume, v, traveller.brick, b, harmonic);
+    }
+    vec3 sum = mix_nodes(kSources * v, w);
+    if (volume.coefficient.y > 0u) sum += suns_at(volume, v, traveller, at, to_eye, left);
     return tame_to(sum, 1e20);
 }
 
@@ -347,8 +365,7 @@ bool is_opaque(Seen seen) {
 
 // From begin to end lies no face of a brick: the volumes `inside` all along.
 void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin, float end,
-                   float voxel, vec3 to_eye, float harmonic[HARMONICS], bool ahead,
-                   inout Seen seen) {
+                   float voxel, vec3 to_eye, float harmonic[HARMONICS], inout Seen seen) {
     float count = clamp(ceil((end - begin) / (kStep * voxel)), 1.0, ceil(14.0 / kStep));
     float h = (end - begin) / count;
     for (float i = 0.0; i < count && !is_opaque(seen); ++i) {
@@ -359,48 +376,21 @@ void march_segment(inout Traveller travellers[VOLUMES], uint inside, float begin
             vec3 place = travellers[v].origin + t * travellers[v].direction;
             vec3 at = clamp((place - travellers[v].corner) * 8.0, 0.0, 8.0);
 #if GLOW
-            if (!ahead) emitted += glow_at(volumes[v], glow_colors[v].rgb, travellers[v], at);
+            emitted += glow_at(volumes[v], glow_colors[v].rgb, travellers[v], at);
 #endif
             float density = density_at(volumes[v], travellers[v], at);
             if (!(density > 0.0)) continue;
-            travellers[v].column += density * h;
             vec3 c = tame_to(density * volumes[v].extinction.rgb, 1e15);
             extinction += c;
             scattered += c * volumes[v].albedo.rgb *
-                         source_at(volumes[v], v, travellers[v], at, to_eye, seen.transmittance, harmonic, ahead);
+                         source_at(volumes[v], v, travellers[v], at, to_eye, seen.transmittance, harmonic);
         }
         step_ray(extinction, scattered, emitted, h, seen);
     }
 }
 
-// The most that suns ahead can show, runtime/volumes/volume_march.cpp.
-vec3 most_ahead(Traveller travellers[VOLUMES], vec3 to_eye, vec3 left) {
-    vec3 most = vec3(0.0);
-    for (uint bits = kAllVolumes; bits != 0u; bits &= bits - 1u) {
-        int v = lowest_bit(bits);
-        uint count = volumes[v].coefficient.y;
-        vec3 sum = vec3(0.0);
-        for (uint k = 0u; k < count * volumes[v].coefficient.w; ++k) {
-            uint term = k / count, sun = k % count;
-            sum += ahead_share(suns[sun], to_eye) * eval_phase(volumes[v], term, sun, to_eye) *
-                   sun_through(volumes[v], term, left) *
-                   coefficient_at(volumes[v].coefficient.x - 3u * (count - sun));
-        }
-        vec3 depth = tame_to(travellers[v].column * volumes[v].extinction.rgb, 1e15);
-        most += tame_to(depth * volumes[v].albedo.rgb * left * sum, 1e20);
-    }
-    return most;
-}
-
-bool has_sun_ahead(vec3 to_eye) {
-    for (int s = 0; s < SUNS; ++s) {
-        if (ahead_share(suns[s], to_eye) > 0.0) return true;
-    }
-    return false;
-}
-
-// The radiance of suns ahead beyond the most they can show, or all.
-Seen march_part(Ray ray, float harmonic[HARMONICS], bool ahead) {
+// What volumes add to a ray and what they leave of the light behind.
+Seen march(Ray ray, float harmonic[HARMONICS]) {
     Seen seen = Seen(vec3(0.0), vec3(1.0));
     Traveller travellers[VOLUMES];
     uint remaining = 0u;  // those with a brick at t or further on
@@ -424,7 +414,7 @@ Seen march_part(Ray ray, float harmonic[HARMONICS], bool ahead) {
             end = min(end, is_inside ? travellers[v].span_end : travellers[v].span_begin);
             voxel = is_inside ? min(voxel, travellers[v].voxel) : voxel;
         }
-        march_segment(travellers, inside, begin, end, voxel, -ray.direction, harmonic, ahead, seen);
+        march_segment(travellers, inside, begin, end, voxel, -ray.direction, harmonic, seen);
         if (is_opaque(seen)) break;
         t = end;
         for (uint left = inside; left != 0u; left &= left - 1u) {
@@ -434,25 +424,7 @@ Seen march_part(Ray ray, float harmonic[HARMONICS], bool ahead) {
             remaining &= travellers[v].brick == kNone ? ~(1u << v) : kAllVolumes;
         }
     }
-    if (ahead) {
-        seen.radiance = max(seen.radiance - most_ahead(travellers, -ray.direction, seen.transmittance), 0.0);
-    }
     if (is_opaque(seen)) seen.transmittance = vec3(0.0);
-    return seen;
-}
-
-// What volumes add to a ray and what they leave of the light behind.
-Seen march(Ray ray, float harmonic[HARMONICS]) {
-    Seen seen;
-    for (int part = 0; part < 2; ++part) {  // a loop: drivers inline a march for each call
-        Seen found = march_part(ray, harmonic, part == 1);
-        if (part == 0) {
-            seen = found;
-            if (!has_sun_ahead(-ray.direction)) break;
-        } else {
-            seen.radiance = max(seen.radiance - found.radiance, 0.0);
-        }
-    }
     return seen;
 }
 

@@ -173,45 +173,43 @@ const Volumes = (() => {
         Light.coefficientsOf(integral.map((x, i) => x * harmonic[Math.floor(i / 3)][k]), n));
   }
 
-  // The light of suns, by how much of it the volume has left (add_suns of
-  // runtime/volumes/relight_volumes.cpp). `to`: of the first sun's first term.
-  function addSuns(volumes, volume, row, lights, part, values, to) {
-    const { parts } = lights, met = new Float32Array(4 * parts.length);
-    Rows.addRow(volumes.rows, volume, row, lights.suns, new Array(parts.length).fill(1), met, 0);
-    parts.forEach(({ light, joint }, s) => {
-      for (let band = 0; band < 3; ++band) {
-        const e = met[4 * s + band];
-        const share = light[band] > 0 ? Math.min(Math.max(e / light[band], 0), 1) : 0;
-        for (let j = 0; j < part.sunTerms; ++j) {
-          const power = part.sunPower[j] * volume.albedo[band];
-          values[to + 4 * (j * part.suns + joint) + band] += e * (power === 0 ? 1 : share ** power);
-        }
+  // Shares of suns' light that reach a node, as its rows have them (find_reach of
+  // runtime/volumes/relight_volumes.cpp); `sent`: by each sun, four values.
+  function findReach(volumes, volume, node, lights, part, sent, reach) {
+    const { parts } = lights, met = new Float32Array(4 * parts.length), to = 3 * node * part.suns;
+    Rows.addRow(volumes.rows, volume, node * (1 + volume.multiple), lights.suns, new Array(parts.length).fill(1), met, 0);
+    parts.forEach(({ joint }, s) => {
+      for (let b = 0; b < 3; ++b) {
+        if (sent[4 * joint + b] > 0) reach[to + 3 * joint + b] += met[4 * s + b] / sent[4 * joint + b];
       }
     });
+    for (let i = to; i < to + 3 * part.suns; ++i) reach[i] = Math.min(Math.max(reach[i], 0), 2);
   }
 
-  function lightVolume(volumes, volume, lights, part, values) {
-    const { rows } = volumes, stride = part.terms + part.sunTerms * part.suns;
+  function lightVolume(volumes, v, lights, part, values) {
+    const { rows } = volumes, volume = volumes.list[v], reach = new Float32Array(3 * part.suns * volume.nodes);
+    const sent = values.subarray(4 * (part.first - part.suns), 4 * part.first);
     const degree = k => Math.floor(Math.sqrt(k));
     const factors = Array.from({ length: volume.single }, (_, k) =>
         (degree(k) % 2 === 0 ? 1 : -1) * volume.moments[degree(k)]);
     const moments = part.suns > 0 ? lights.momentsOfRest : lights.moments;
     const scale = [volume.multiple === 1 ? Math.sqrt(4 * Math.PI) : 1];
     for (let node = 0; node < volume.nodes; ++node) {
-      const row = node * (1 + volume.multiple), to = 4 * (part.first + node * stride);
+      const row = node * (1 + volume.multiple), to = 4 * (part.first + node * part.terms);
       Rows.addRow(rows, volume, row, moments, factors, values, to);
-      if (part.suns > 0) addSuns(volumes, volume, row, lights, part, values, to + 4 * part.terms);
+      if (part.suns > 0) findReach(volumes, volume, node, lights, part, sent, reach);
       for (let k = 0; k < volume.multiple; ++k) {
         Rows.addRow(rows, volume, row + 1 + k, lights.whole, scale, values, to + 4 * k);
       }
     }
+    if (part.suns > 0) VolumeSuns.light(volumes, v, lights.directions, reach, part, values);
   }
 
   // The most terms of a node, suns left out.
   const termsOf = volume => Math.max(volume.single, volume.multiple, ...volume.glow.map(g => g.terms));
 
-  // What nodes scatter of distant light: four values a coefficient, stride of them a node; suns: their
-  // directions.
+  // What nodes scatter of distant light: four values a coefficient (VolumeLight of
+  // runtime/volumes/relight_volumes.h); suns: their directions.
   function relight(volumes, { integral, coefficients }, n) {
     const wants = volumes.list.map((volume, v) =>
         needsSuns(volume, volumes.phase.subarray(kPhaseEntries * v, kPhaseEntries * (v + 1))));
@@ -230,7 +228,7 @@ const Volumes = (() => {
       alone.set(part.light, 3 * part.texel);
       return Light.coefficientsOf(alone, n);
     });
-    const lights = { whole: coefficients, parts, suns: joined(sunLights),
+    const lights = { whole: coefficients, parts, directions: suns, suns: joined(sunLights),
                      moments: joined(momentLights(integral, n, most(false))),
                      momentsOfRest: suns.length > 0 ? joined(momentLights(rest, n, most(true))) : null };
     let first = 0;
@@ -238,8 +236,10 @@ const Volumes = (() => {
       const part = { terms: termsOf(volume), suns: wants[v] ? suns.length : 0,
                      sunTerms: volumes.sunTerms[v], first,
                      sunPower: volumes.sunPowers.subarray(kMostSunTerms * v, kMostSunTerms * (v + 1)) };
-      part.first += part.suns;  // before them: what each sun sends
-      first = part.first + volume.nodes * (part.terms + part.sunTerms * part.suns);
+      // Before nodes: what each sun sends; before that the points of suns, brick after brick downward.
+      const points = (VolumeSuns.boxesOf(volume) + 1) ** 3;
+      part.first += part.suns * (1 + volume.bricks * points * part.sunTerms);
+      first = part.first + volume.nodes * part.terms;
       return part;
     });
     const values = new Float32Array(4 * first);
@@ -248,7 +248,7 @@ const Volumes = (() => {
         light.forEach((x, b) => { values[4 * (part.first - part.suns + joint) + b] += x; });
       }
     }
-    volumes.list.forEach((volume, v) => lightVolume(volumes, volume, lights, shown[v], values));
+    volumes.list.forEach((_, v) => lightVolume(volumes, v, lights, shown[v], values));
     return { parts: shown, values, suns };
   }
 
@@ -257,12 +257,12 @@ const Volumes = (() => {
     if (volumes.glowValues.length === 0) return values;
     const sum = values.slice();
     volumes.list.forEach((volume, v) => {
-      const { first, terms, suns, sunTerms } = parts[v], stride = terms + sunTerms * suns;
+      const { first, terms } = parts[v];
       for (const glow of volume.glow) {
         const color = colors[glow.emitter].map(c => c * glow.valueScale);
         if (color.every(c => c === 0)) continue;
         for (let node = 0, from = glow.firstValue; node < volume.nodes; ++node) {
-          const to = 4 * (first + node * stride);
+          const to = 4 * (first + node * terms);
           for (let k = 0; k < glow.terms; ++k, from += 3) {
             for (let b = 0; b < 3; ++b) {
               sum[to + 4 * k + b] += color[b] * Light.kFloats[volumes.glowValues[from + b]];
