@@ -23,6 +23,17 @@ using formats::Vec3;
 
 constexpr double kSlack = 1e-3;  // of a step, which rounding may add
 
+// work(brick) for each of `count`, in pieces.
+template <class Work>
+void for_bricks(std::uint32_t count, unsigned threads, const Work& work) {
+    constexpr std::uint32_t kBricks = 4;
+    for_ranges(count, kBricks, threads, [&](std::uint32_t first, std::uint32_t end) {
+        for (std::uint32_t brick = first; brick < end; ++brick) {
+            work(brick);
+        }
+    });
+}
+
 // A volume's density, ready for many rays.
 struct Field {
     VolumeLattice lattice;
@@ -47,11 +58,8 @@ std::optional<Field> make_field(const formats::VolumesView& volumes,
     for (std::uint32_t at = 0; at < lattice->table.size(); ++at) {
         if (lattice->table[at] != kNoBrick) field.cell_of_brick[lattice->table[at]] = at;
     }
-    constexpr std::uint32_t kBricks = 64;  // a piece of work
-    for_ranges(record.brick_count, kBricks, threads, [&](std::uint32_t first, std::uint32_t end) {
-        for (std::uint32_t brick = first; brick < end; ++brick) {
-            field.density[brick] = pad_brick(*lattice, cell_of(field, brick));
-        }
+    for_bricks(record.brick_count, threads, [&](std::uint32_t brick) {
+        field.density[brick] = pad_brick(*lattice, cell_of(field, brick));
     });
     return field;
 }
@@ -229,17 +237,12 @@ void light_sun_points(const formats::VolumesView& volumes, std::span<const std::
             volume.push_back(v);
         }
     }
-    constexpr std::uint32_t kBricks = 4;  // a piece of work
     for (std::size_t f = 0; f < fields.size(); ++f) {
         if (light.part[volume[f]].suns == 0) continue;
         const SunPoints points{fields, fields[f], volume[f], reach[volume[f]], light};
         for (const bool copies : {false, true}) {
-            for_ranges(fields[f].lattice.record->brick_count, kBricks, threads,
-                       [&](std::uint32_t first, std::uint32_t end) {
-                           for (std::uint32_t brick = first; brick < end; ++brick) {
-                               light_brick(points, brick, copies);
-                           }
-                       });
+            for_bricks(fields[f].lattice.record->brick_count, threads,
+                       [&](std::uint32_t brick) { light_brick(points, brick, copies); });
         }
     }
 }
