@@ -186,7 +186,9 @@ void light_point(const SunPoints& points, std::uint32_t brick,
     const Vec3 from{world(0), world(4), world(8)};
     for (std::size_t s = 0; s < part.suns; ++s) {
         const Rgb known = find_share(points.fields, from, points.light.sun[s]);
-        const Rgb rows = 2 * reach_at(points, brick, at, s, part.suns);
+        // Coloured rows may hold hues of the albedo, too, which densities do not know.
+        const float most = record.bands == 1 ? 2.0f : 1.0f;
+        const Rgb rows = most * reach_at(points, brick, at, s, part.suns);
         const Rgb share{std::min(known.r, rows.r), std::min(known.g, rows.g),
                         std::min(known.b, rows.b)};
         const SunThrough through =

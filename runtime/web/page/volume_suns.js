@@ -137,7 +137,7 @@ const VolumeSuns = (() => {
           for (let b = 0; b < 3; ++b) depth[b] += c * way.volume.extinction[b];
         });
         for (let b = 0; b < 3; ++b) {
-          const share = Math.min(Math.exp(-depth[b]), 2 * rows[b]), sent = values[4 * (part.first - part.suns + s) + b];
+          const share = Math.min(Math.exp(-depth[b]), (volume.bands === 1 ? 2 : 1) * rows[b]), sent = values[4 * (part.first - part.suns + s) + b];
           for (let j = 0; j < part.sunTerms; ++j) {
             const power = part.sunPower[j] * volume.albedo[b];
             values[to + 4 * (j * part.suns + s) + b] = sent * share * (power === 0 ? 1 : share ** power);
