@@ -41,14 +41,24 @@ inline std::vector<std::uint32_t> find_largest(std::span<const float> score, std
         }
         above += here;
     }
-    std::vector<std::uint32_t> chosen, candidates;
-    chosen.reserve(std::min(count, score.size()));
+    // Each is written and stays where it is one: no branch to mispredict.
+    const std::size_t in_last = std::size_t{histogram[0][last]} + histogram[1][last] +
+                                histogram[2][last] + histogram[3][last];
+    std::vector<std::uint32_t> chosen(above + 1), candidates(in_last + 1);
+    std::size_t higher = 0, same = 0;
     const float least = std::bit_cast<float>(static_cast<std::uint32_t>(last << kShift));
+    const float beyond = std::bit_cast<float>(static_cast<std::uint32_t>((last + 1) << kShift));
     for (std::uint32_t i = 0; i < score.size(); ++i) {
-        if (score[i] >= least && score[i] > 0) {
-            (bucket_of(score[i]) > last ? chosen : candidates).push_back(i);
-        }
+        const float s = score[i];
+        chosen[higher] = i;
+        candidates[same] = i;
+        const bool is_higher = s >= beyond;
+        higher += is_higher ? 1 : 0;
+        same += static_cast<std::size_t>(s >= least) & static_cast<std::size_t>(s > 0) &
+                static_cast<std::size_t>(!is_higher);
     }
+    chosen.resize(higher);
+    candidates.resize(same);
     const std::size_t rest = std::min(count - above, candidates.size());
     const auto middle = candidates.begin() + static_cast<std::ptrdiff_t>(rest);
     if (middle != candidates.end()) {

@@ -3,9 +3,11 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "bake/base/largest.h"
+#include "bake/base/vector8.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 
@@ -15,13 +17,31 @@ using formats::kCubeFaces;
 
 namespace {
 
-// 0 * NaN and 0 * infinity are NaN and make the sum NaN: one test for all values.
-bool all_finite(std::span<const float> values) {
-    float nothing = 0;
-    for (const float value : values) {
-        nothing += 0 * value;
+// NaN and infinity have all bits of the exponent.
+OPALINE_VECTOR_CLONES
+bool all_finite(const float* value, std::size_t count) {
+    constexpr std::int32_t kExponent = 0x7f800000;
+    std::int32_t found = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        std::int32_t bits;
+        __builtin_memcpy(&bits, value + k, sizeof bits);
+        found |= (bits & kExponent) == kExponent ? 1 : 0;
     }
-    return nothing == 0;
+    return found == 0;
+}
+
+OPALINE_VECTOR_CLONES
+void add_squares(const float* value, std::size_t count, float share, float* sum) {
+    for (std::size_t k = 0; k < count; ++k) {
+        sum[k] += share * value[k] * (share * value[k]);
+    }
+}
+
+OPALINE_VECTOR_CLONES
+void weigh_squares(const float* weight, std::size_t count, float* square) {
+    for (std::size_t k = 0; k < count; ++k) {
+        square[k] = weight[k] * weight[k] * square[k];
+    }
 }
 
 }  // namespace
@@ -46,24 +66,22 @@ formats::SparseRow select_coefficients(const Selector& selector,
     constexpr std::array<float, 3> kLuminance{0.2126f, 0.7152f, 0.0722f};
     const std::size_t size = selector.weight.size();
     assert(coefficients.size() == bands * size && (bands == 1 || bands == 3));
-    if (!all_finite(coefficients)) {
+    if (!all_finite(coefficients.data(), coefficients.size())) {
         constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
         return {bands, {}, {}, std::vector<float>(std::size_t{bands} * kCubeFaces, kNotANumber)};
     }
+    // The square of the score has the same order and needs no square root.
     std::vector<float> score(size);
-    for (std::size_t k = 0; k < size; ++k) {
-        float squares = 0;
-        for (std::uint32_t band = 0; band < bands; ++band) {
-            const float value =
-                (bands == 1 ? 1.0f : kLuminance[band]) * coefficients[band * size + k];
-            squares += value * value;
-        }
-        // The square of the score has the same order and needs no square root.
-        score[k] = selector.weight[k] * selector.weight[k] * squares;
+    for (std::uint32_t band = 0; band < bands; ++band) {
+        add_squares(&coefficients[band * size], size, bands == 1 ? 1.0f : kLuminance[band],
+                    score.data());
     }
+    weigh_squares(selector.weight.data(), size, score.data());
     formats::SparseRow row;
     row.bands = bands;
     row.index = find_largest(score, selector.kept > kCubeFaces ? selector.kept - kCubeFaces : 0);
+    row.value.reserve(bands * row.index.size());
+    row.average.reserve(std::size_t{bands} * kCubeFaces);
     const std::uint32_t face_size = selector.cubemap_size * selector.cubemap_size;
     for (std::uint32_t band = 0; band < bands; ++band) {
         for (const std::uint32_t k : row.index) {

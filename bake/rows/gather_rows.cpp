@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/encode/receiver_error.h"
@@ -28,7 +29,7 @@ std::vector<std::uint32_t> order_of(const ReceiverSet& set, const RowLayout& lay
 }
 
 // Reorders the `terms` rows of each receiver from the order of `order` to that of the receivers.
-formats::SparseRows as_given(const formats::SparseRows& rows, std::span<const std::uint32_t> order,
+formats::SparseRows as_given(formats::SparseRows rows, std::span<const std::uint32_t> order,
                              const RowLayout& layout) {
     const std::uint32_t terms = layout.terms();
     std::vector<std::uint32_t> from(order.size() * terms);
@@ -37,7 +38,7 @@ formats::SparseRows as_given(const formats::SparseRows& rows, std::span<const st
             from[std::size_t{order[place]} * terms + k] = place * terms + k;
         }
     }
-    return formats::pick_rows(rows, layout.bands(), from);
+    return formats::pick_rows(std::move(rows), layout.bands(), from);
 }
 
 std::size_t batch_size(std::span<const Gatherer> gatherers, std::size_t all, std::size_t bytes) {
@@ -151,7 +152,7 @@ GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, con
     // Rows are missing if the bake was cancelled or if they are too many for one file; the caller
     // checks.
     const bool is_whole = rows.row_offset.size() == set.size() * layout.terms() + 1;
-    if (is_whole && layout.translucent) rows = as_given(rows, order, layout);
+    if (is_whole && layout.translucent) rows = as_given(std::move(rows), order, layout);
     return {std::move(rows), std::move(errors)};
 }
 

@@ -1,9 +1,12 @@
 #include "formats/opal/sparse_rows.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include "formats/opal/cubemap.h"
 #include "formats/opal/detail_codes.h"
@@ -11,16 +14,14 @@
 namespace opaline::formats {
 namespace {
 
-// NaN where any of them is not finite.
+// NaN where any of them is not finite. Magnitudes order as their bits do, which need no branch.
 float largest_magnitude(std::span<const float> values) {
-    float largest = 0;
+    constexpr std::int32_t kMagnitude = 0x7fffffff, kInfinity = 0x7f800000;
+    std::int32_t most = 0;
     for (const float value : values) {
-        if (!std::isfinite(value)) {
-            return std::numeric_limits<float>::quiet_NaN();
-        }
-        largest = std::max(largest, std::abs(value));
+        most = std::max(most, std::bit_cast<std::int32_t>(value) & kMagnitude);
     }
-    return largest;
+    return most < kInfinity ? std::bit_cast<float>(most) : std::numeric_limits<float>::quiet_NaN();
 }
 
 // One scale for a set of values so that the largest uses the full code range. A scale too small to
@@ -38,19 +39,21 @@ std::int16_t quantise(float value, float scale, std::int32_t limit) {
     return static_cast<std::int16_t>(std::clamp(code, -limit, limit));
 }
 
-// The code whose detail_value is nearest.
-std::int8_t quantise_root(float value, float scale) {
+// The codes whose detail_value is nearest. The loop has neither a branch nor a call: it runs four
+// or more at once.
+void quantise_roots(std::span<const float> values, float scale, std::int8_t* code) {
     if (!(scale > 0)) {
-        return 0;
+        std::fill_n(code, values.size(), std::int8_t{0});
+        return;
     }
-    const float target = std::abs(value) / scale;
-    auto root = static_cast<std::int32_t>(std::lround(std::sqrt(target)));
-    // Squares have their middle above that of their roots.
-    if (target < static_cast<float>(root * root - root) + 0.5f) {
-        --root;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const float target = std::abs(values[i]) / scale;
+        const auto below = static_cast<std::int32_t>(std::sqrt(target));
+        // Squares have their middle above that of their roots.
+        const std::int32_t over = target < static_cast<float>(below * below + below) + 0.5f ? 0 : 1;
+        const std::int32_t root = std::min(below + over, 127);
+        code[i] = static_cast<std::int8_t>(values[i] < 0 ? -root : root);
     }
-    root = std::clamp(root, 0, 127);
-    return static_cast<std::int8_t>(value < 0 ? -root : root);
 }
 
 template <class T>
@@ -59,6 +62,30 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 }
 
 constexpr std::int32_t kAverageLimit = 32767;
+
+// Of details band by band, whose scales are the last ones.
+void append_codes(SparseRows& rows, std::span<const float> values, std::uint32_t bands) {
+    const std::size_t details = values.size() / bands;
+    const std::size_t first_8 = rows.code8.size(), first_16 = rows.code16.size();
+    rows.code8.resize(first_8 + (rows.code_bits == 8 ? values.size() : 0));
+    rows.code16.resize(first_16 + (rows.code_bits == 8 ? 0 : values.size()));
+    std::vector<std::int8_t> codes(rows.code_bits == 8 ? details : 0);
+    for (std::uint32_t band = 0; band < bands; ++band) {
+        const std::span<const float> own = values.subspan(band * details, details);
+        const float scale = rows.detail_scale[rows.detail_scale.size() - bands + band];
+        if (rows.code_bits == 8) {
+            quantise_roots(own, scale, codes.data());
+            for (std::size_t i = 0; i < details; ++i) {
+                rows.code8[first_8 + i * bands + band] = codes[i];
+            }
+        } else {
+            for (std::size_t i = 0; i < details; ++i) {
+                rows.code16[first_16 + i * bands + band] =
+                    quantise(own[i], scale, kLargestDetail16);
+            }
+        }
+    }
+}
 
 }  // namespace
 
@@ -83,7 +110,6 @@ bool append_row(SparseRows& rows, const SparseRow& row) {
     }
     const std::int32_t limit = rows.code_bits == 8 ? kLargestDetail8 : kLargestDetail16;
     const std::span<const float> values(row.value), averages(row.average);
-    const std::size_t first_band_row = rows.detail_scale.size();
     for (std::uint32_t band = 0; band < row.bands; ++band) {
         const auto average = averages.subspan(std::size_t{band} * kCubeFaces, kCubeFaces);
         const float average_scale = code_scale(largest_magnitude(average), kAverageLimit);
@@ -94,22 +120,14 @@ bool append_row(SparseRows& rows, const SparseRow& row) {
         rows.detail_scale.push_back(
             code_scale(largest_magnitude(values.subspan(band * details, details)), limit));
     }
-    for (std::size_t i = 0; i < details; ++i) {
+    for (const std::uint32_t index : row.index) {
         if (rows.index_bytes == 2) {
-            rows.index16.push_back(static_cast<std::uint16_t>(row.index[i]));
+            rows.index16.push_back(static_cast<std::uint16_t>(index));
         } else {
-            rows.index32.push_back(row.index[i]);
-        }
-        for (std::uint32_t band = 0; band < row.bands; ++band) {
-            const float scale = rows.detail_scale[first_band_row + band];
-            const float value = values[band * details + i];
-            if (rows.code_bits == 8) {
-                rows.code8.push_back(quantise_root(value, scale));
-            } else {
-                rows.code16.push_back(quantise(value, scale, limit));
-            }
+            rows.index32.push_back(index);
         }
     }
+    append_codes(rows, values, row.bands);
     rows.row_offset.push_back(rows.row_offset.back() + static_cast<std::uint32_t>(details));
     return true;
 }
@@ -143,39 +161,47 @@ bool append_rows(SparseRows& rows, const SparseRows& tail) {
     return true;
 }
 
-SparseRows pick_rows(const SparseRows& rows, std::uint32_t bands,
-                     std::span<const std::uint32_t> from) {
+SparseRows pick_rows(SparseRows rows, std::uint32_t bands, std::span<const std::uint32_t> from) {
     SparseRows picked = make_sparse_rows(rows.cubemap_size, rows.code_bits);
-    const auto copy = [](auto& to, const auto& values, std::size_t first, std::size_t count) {
-        if (!values.empty()) {
-            const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
-            to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
-        }
-    };
     std::size_t details = 0;
+    picked.row_offset.reserve(from.size() + 1);
     for (const std::uint32_t r : from) {
         details += rows.row_offset[r + 1] - rows.row_offset[r];
+        picked.row_offset.push_back(static_cast<std::uint32_t>(details));
     }
-    picked.row_offset.reserve(from.size() + 1);
-    picked.average_scale.reserve(from.size() * bands);
-    picked.detail_scale.reserve(from.size() * bands);
-    picked.average_code.reserve(from.size() * bands * kCubeFaces);
-    picked.index16.reserve(rows.index16.empty() ? 0 : details);
-    picked.index32.reserve(rows.index32.empty() ? 0 : details);
-    picked.code8.reserve(rows.code8.empty() ? 0 : details * bands);
-    picked.code16.reserve(rows.code16.empty() ? 0 : details * bands);
-    for (const std::uint32_t r : from) {
-        const std::size_t first = rows.row_offset[r], count = rows.row_offset[r + 1] - first;
-        const std::size_t band_row = std::size_t{r} * bands;
-        picked.row_offset.push_back(picked.row_offset.back() + static_cast<std::uint32_t>(count));
-        copy(picked.average_scale, rows.average_scale, band_row, bands);
-        copy(picked.detail_scale, rows.detail_scale, band_row, bands);
-        copy(picked.average_code, rows.average_code, band_row * kCubeFaces, bands * kCubeFaces);
-        copy(picked.index16, rows.index16, first, count);
-        copy(picked.index32, rows.index32, first, count);
-        copy(picked.code8, rows.code8, first * bands, count * bands);
-        copy(picked.code16, rows.code16, first * bands, count * bands);
-    }
+    // One part after the other, each gone once it is copied: not all are there twice.
+    const auto take = [&](auto& to, auto& values, std::size_t count, const auto& copy) {
+        if (!values.empty()) {
+            to.reserve(count);
+            for (const std::uint32_t r : from) {
+                copy(to, values, r);
+            }
+            std::remove_reference_t<decltype(values)>().swap(values);
+        }
+    };
+    const auto of_row = [](std::size_t each) {
+        return [each](auto& to, const auto& values, std::uint32_t r) {
+            const auto first = values.begin() + static_cast<std::ptrdiff_t>(r * each);
+            to.insert(to.end(), first, first + static_cast<std::ptrdiff_t>(each));
+        };
+    };
+    const auto of_details = [&](std::size_t each) {
+        return [&rows, each](auto& to, const auto& values, std::uint32_t r) {
+            const auto place = [&](std::uint32_t row) {
+                return values.begin() +
+                       static_cast<std::ptrdiff_t>(std::size_t{rows.row_offset[row]} * each);
+            };
+            to.insert(to.end(), place(r), place(r + 1));
+        };
+    };
+    take(picked.average_scale, rows.average_scale, from.size() * bands, of_row(bands));
+    take(picked.detail_scale, rows.detail_scale, from.size() * bands, of_row(bands));
+    take(picked.average_code, rows.average_code, from.size() * bands * kCubeFaces,
+         of_row(std::size_t{bands} * kCubeFaces));
+    take(picked.index16, rows.index16, details, of_details(1));
+    take(picked.index32, rows.index32, details, of_details(1));
+    take(picked.code8, rows.code8, details * bands, of_details(bands));
+    take(picked.code16, rows.code16, details * bands, of_details(bands));
     return picked;
 }
 

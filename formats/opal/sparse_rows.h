@@ -79,8 +79,7 @@ bool append_rows(SparseRows& rows, const SparseRows& tail);
 
 /// Rows in another order: row i of the result is row from[i]. Every row of `rows` has `bands`
 /// bands; each stands in `from` at most once.
-SparseRows pick_rows(const SparseRows& rows, std::uint32_t bands,
-                     std::span<const std::uint32_t> from);
+SparseRows pick_rows(SparseRows rows, std::uint32_t bands, std::span<const std::uint32_t> from);
 
 /// Where a primitive's rows stand (see SparseRowsView).
 struct RowRange {
